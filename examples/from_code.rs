@@ -19,8 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Both runs half a second after the start, beside each other.
     let frame = Runner::new(&scene, &[0, 1]).frame(30);
     let gpu = Gpu::new(&AdapterChoice::Auto)?;
-    let samples = 4; // of each pixel: 4 for smooth edges, 1 for speed
-    let image = Renderer::new(&gpu, scene.view.size, samples)?.draw(&compose(&scene, &frame))?;
+    let image = Renderer::new(&gpu, scene.view.size)?.draw(&compose(&scene, &frame))?;
     image.save("cubes.png")?;
     Ok(())
 }

@@ -43,9 +43,9 @@ const SMALLEST_ELEMENT = vec2<f32>(4.0, 8.0);
 // Folds inside the turned-over set of elements smaller than this (px) are fainter.
 const SMALL_FOLDED = 8.0;
 
-// The depth of the turned-over set by itself at the sample nearest to a point.
-fn alarm_depth_around(place: vec2<f32>, sample: u32) -> f32 {
-    return load_alarm_depth(texel_around(place, sample), sample);
+// The depth of the turned-over set by itself at one of the taps around a point.
+fn alarm_depth_around(place: vec2<f32>, tap: u32) -> f32 {
+    return load_alarm_depth(texel_around(place, tap));
 }
 
 @vertex
@@ -81,19 +81,19 @@ fn covered(distance: f32, width: f32) -> f32 {
 }
 
 // The visibility of an edge, and how much of it lies behind a body.
-fn edge_shares(at: Beside, kind: u32, sample: u32) -> vec2<f32> {
-    let seen = visible_share(at.depth * (1.0 + OFFSET), sample_depth(at.middle, sample));
+fn edge_shares(at: Beside, kind: u32, tap: u32) -> vec2<f32> {
+    let seen = visible_share(at.depth * (1.0 + OFFSET), tap_depth(at.middle, tap));
     // Obstacles hide all edges; their own edges are seen through clear surfaces only.
-    let through = !(seen < 1.0 && is_obstacle(at.middle, sample));
+    let through = !(seen < 1.0 && is_obstacle(at.middle, tap));
     return vec2(seen, select(0.0, 1.0 - seen, through));
 }
 
 // How much of a contour is outer outline, how much is a step of depth inside the body, and how much is hidden.
-fn contour_shares(at: Beside, kind: u32, sample: u32) -> vec3<f32> {
-    let here = sample_depth(at.middle, sample);
+fn contour_shares(at: Beside, kind: u32, tap: u32) -> vec3<f32> {
+    let here = tap_depth(at.middle, tap);
     let normal = vec2(-at.along.y, at.along.x);
     let across = normal * (0.9 + 1.3 * panel.line_scale);
-    let sides = vec2(sample_depth(at.middle + across, sample), sample_depth(at.middle - across, sample));
+    let sides = vec2(tap_depth(at.middle + across, tap), tap_depth(at.middle - across, tap));
     let nearer = max(sides.x, sides.y);
     let farther = min(sides.x, sides.y);
     let step = STEP * panel.soft;
@@ -102,8 +102,8 @@ fn contour_shares(at: Beside, kind: u32, sample: u32) -> vec3<f32> {
     let covered_by = distance - distance_of(max(farther, min(here, nearer)));
     var shown = 1.0 - smoothstep(0.4 * step, 0.6 * step, covered_by);
     let obstacles = vec2(
-        is_obstacle(at.middle + across, sample),
-        is_obstacle(at.middle - across, sample),
+        is_obstacle(at.middle + across, tap),
+        is_obstacle(at.middle - across, tap),
     );
     if kind == OBSTACLE_CONTOUR {
         // Round obstacles come nearer still: only other things than obstacles hide their contours fully.
@@ -114,14 +114,14 @@ fn contour_shares(at: Beside, kind: u32, sample: u32) -> vec3<f32> {
     }
     // Obstacles hide all contours behind them.
     var clear = 1.0;
-    if kind != OBSTACLE_CONTOUR && is_obstacle(at.middle, sample) {
+    if kind != OBSTACLE_CONTOUR && is_obstacle(at.middle, tap) {
         clear = visible_share(at.depth * (1.0 + OFFSET), here);
     }
     var outline = 0.0;
     if farther <= 0.0 {
         // Background beside it: part of the outline. A fold of the surface that covers it slightly must be very close.
         let close = normal * select(-0.9, 0.9, sides.x <= sides.y);
-        outline = select(shown, 1.0, sample_depth(at.middle + close, sample) <= 0.0);
+        outline = select(shown, 1.0, tap_depth(at.middle + close, tap) <= 0.0);
     }
     // Where one thing ends before another, a contour is drawn however close they are.
     let deep = smoothstep(0.8 * step, 1.2 * step, distance_of(farther) - distance_of(nearer));
@@ -149,8 +149,7 @@ fn beside(segment: Segment) -> Beside {
     return Beside(middle, along, length(pixel - middle), mix(segment.depths.x, segment.depths.y, share));
 }
 
-// Visibility is tested per sample of the pixel around the nearest point of the line, so that lines end as smoothly as
-// surfaces do. Edges and contours have separate pipelines, because contours need many more reads.
+// Visibility is tested at the taps around the nearest point of the line, so that lines end smoothly. Edges and contours have separate pipelines, because contours need many more reads.
 @fragment
 fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let at = beside(segment);
@@ -160,14 +159,14 @@ fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let strength = min(1.0, element / SMALL_ELEMENT) * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, element);
     let hidden_alpha = mix(SEEN_THROUGH, HIDDEN, panel.opacity);
     var shares = vec2(0.0);
-    for (var sample = 0u; sample < SAMPLES; sample++) {
-        shares += edge_shares(at, kind, sample) / f32(SAMPLES);
+    for (var tap = 0u; tap < TAPS; tap++) {
+        shares += edge_shares(at, kind, tap) / f32(TAPS);
     }
     if kind == ALARM_EDGE {
         // Turned-over elements hide more of it than others.
         var free = 0.0;
-        for (var sample = 0u; sample < SAMPLES; sample++) {
-            free += visible_share(at.depth * (1.0 + OFFSET), alarm_depth_around(at.middle, sample)) / f32(SAMPLES);
+        for (var tap = 0u; tap < TAPS; tap++) {
+            free += visible_share(at.depth * (1.0 + OFFSET), alarm_depth_around(at.middle, tap)) / f32(TAPS);
         }
         let behind = mix(0.15, hidden_alpha.y, free);
         let alpha = select(0.95 * shares.x + behind * shares.y, 0.95, panel.flatness > 0.5);
@@ -197,8 +196,8 @@ fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
         return select(vec4(0.0, 0.0, outline, 0.0), vec4(0.0, outline, 0.0, 0.0), of_alarm);
     }
     var shares = vec3(0.0);
-    for (var sample = 0u; sample < SAMPLES; sample++) {
-        shares += contour_shares(at, segment.kind, sample) / f32(SAMPLES);
+    for (var tap = 0u; tap < TAPS; tap++) {
+        shares += contour_shares(at, segment.kind, tap) / f32(TAPS);
     }
     shares *= segment.strength;
     // Small bodies would be mostly outline.
@@ -210,12 +209,12 @@ fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
         // Where the set ends, its outline is drawn at full strength.
         let across = vec2(-at.along.y, at.along.x) * (0.9 + 1.3 * scale);
         var ends = 0.0;
-        for (var sample = 0u; sample < SAMPLES; sample++) {
+        for (var tap = 0u; tap < TAPS; tap++) {
             let farther = min(
-                alarm_depth_around(at.middle + across, sample),
-                alarm_depth_around(at.middle - across, sample),
+                alarm_depth_around(at.middle + across, tap),
+                alarm_depth_around(at.middle - across, tap),
             );
-            ends += select(0.0, 1.0, farther <= 0.0) / f32(SAMPLES);
+            ends += select(0.0, 1.0, farther <= 0.0) / f32(TAPS);
         }
         let smallness = min(1.0, panel.line_share * panel.element / SMALL_FOLDED);
         let fold = mix(smallness * smallness, 1.0, ends);

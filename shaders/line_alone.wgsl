@@ -1,5 +1,5 @@
 // Lines in panels without solid obstacles.
 
-fn is_obstacle(place: vec2<f32>, sample: u32) -> bool {
+fn is_obstacle(place: vec2<f32>, tap: u32) -> bool {
     return false;
 }

@@ -2,7 +2,7 @@
 
 const OBSTACLE = 254.0 / 255.0;
 
-fn is_obstacle(place: vec2<f32>, sample: u32) -> bool {
-    let opacity = load_sample_opacity(texel_around(place, sample), sample);
+fn is_obstacle(place: vec2<f32>, tap: u32) -> bool {
+    let opacity = textureLoad(body_colour, texel_around(place, tap), 0).a;
     return abs(opacity - OBSTACLE) < 0.001;
 }

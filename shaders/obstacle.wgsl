@@ -14,11 +14,6 @@ struct SolidCorner {
     @location(6) near: f32,
 }
 
-struct SolidPixel {
-    @location(0) colour: vec4<f32>,
-    @builtin(sample_mask) samples: u32,
-}
-
 // Width of the rim (px in the reference picture).
 const RIM_WIDTH = 2.0;
 
@@ -38,28 +33,26 @@ fn solid_corner(
     return SolidCorner(panel.clip * vec4(position, 1.0), position, normal, colour, rim, inward, above, near);
 }
 
-fn solid(corner: SolidCorner, opacity: f32) -> SolidPixel {
-    // The border with the floor is tested per sample.
-    let rise = vec2(dpdx(corner.above), dpdy(corner.above));
-    var samples = 0u;
-    for (var sample = 0u; sample < SAMPLES; sample++) {
-        let above = corner.above + dot(rise, sample_place(sample) - 0.5);
-        samples |= select(0u, 1u << sample, above >= 0.0);
-    }
+fn solid(corner: SolidCorner, opacity: f32) -> vec4<f32> {
+    let rise = length(vec2(dpdx(corner.above), dpdy(corner.above)));
     let light = light_left(corner.position, facing_normal(corner.position, corner.normal), 1.0 - TAKEN * corner.near);
     let material = mix(corner.rim, corner.colour, saturate(corner.inward - RIM_WIDTH * panel.line_scale + 0.5));
     let colour = material * light.diffuse + light.gloss;
-    let inside = saturate(corner.inward + 0.5);
-    return SolidPixel(vec4(sqrt(saturate(colour) * inside), opacity * inside), samples);
+    // Nothing is drawn below the floor.
+    let inside = saturate(corner.inward + 0.5) * saturate(corner.above / max(rise, 1e-9) + 0.5);
+    if inside <= 0.0 {
+        discard;
+    }
+    return vec4(sqrt(saturate(colour) * inside), opacity * inside);
 }
 
 @fragment
-fn solid_surface(corner: SolidCorner) -> SolidPixel {
+fn solid_surface(corner: SolidCorner) -> @location(0) vec4<f32> {
     return solid(corner, OBSTACLE);
 }
 
 // Among the turned-over elements, to be seen through clear surfaces.
 @fragment
-fn solid_behind(corner: SolidCorner) -> SolidPixel {
+fn solid_behind(corner: SolidCorner) -> @location(0) vec4<f32> {
     return solid(corner, 1.0);
 }

@@ -31,9 +31,7 @@ struct Canvas {
 @group(0) @binding(0) var<uniform> canvas: Canvas;
 @group(0) @binding(1) var glyphs: texture_2d<f32>;
 
-const FILLED = 0u;
 const STRUCK = 1u;
-const GLYPH = 2u;
 const NODE = 3u;
 const COUNTER_CLOCKWISE = 4u;
 const CLOCKWISE = 5u;
@@ -147,6 +145,24 @@ fn corner(@builtin(vertex_index) index: u32, mark: Mark) -> Corner {
     return Corner(place, mark.rectangle, mark.colour, mark.second, mark.glyph, mark.shape, mark.along);
 }
 
+// A pixel in the mark's own coordinates.
+fn in_mark(corner: Corner) -> vec2<f32> {
+    let from_corner = corner.place.xy - corner.rectangle.xy;
+    return vec2(dot(from_corner, corner.along), dot(from_corner, vec2(-corner.along.y, corner.along.x)));
+}
+
+@fragment
+fn glyph_colour(corner: Corner) -> @location(0) vec4<f32> {
+    let texel = vec2<i32>(corner.glyph) + vec2<i32>(floor(in_mark(corner)));
+    return vec4(corner.colour.rgb, textureLoad(glyphs, texel, 0).r);
+}
+
+// Rectangles, the greatest part of all marks. A software driver would run the code of all shapes for each pixel.
+@fragment
+fn rectangle_colour(corner: Corner) -> @location(0) vec4<f32> {
+    return corner.colour;
+}
+
 @fragment
 fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
     let opaque = opaque_colour(corner);
@@ -155,12 +171,7 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
 
 // The colour of a pixel of an opaque mark, and how much of the pixel it covers.
 fn opaque_colour(corner: Corner) -> vec4<f32> {
-    let from_corner = corner.place.xy - corner.rectangle.xy;
-    let at = vec2(dot(from_corner, corner.along), dot(from_corner, vec2(-corner.along.y, corner.along.x)));
-    if corner.shape == GLYPH {
-        let texel = vec2<i32>(corner.glyph) + vec2<i32>(floor(at));
-        return vec4(corner.colour.rgb, textureLoad(glyphs, texel, 0).r);
-    }
+    let at = in_mark(corner);
     if corner.shape == STRUCK {
         let size = corner.rectangle.zw;
         let off = abs(at.x / size.x + at.y / size.y - 1.0) / length(1.0 / size);

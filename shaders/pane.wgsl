@@ -57,7 +57,8 @@ fn before_bodies(pixel: vec2<f32>, depth: f32) -> f32 {
         return 0.0;
     }
     let at = vec2<i32>(pixel - panel.place.xy);
-    var share = share_beyond(at, depth);
+    let here = load_depth(at);
+    var share = select(0.0, 1.0, here > 0.0 && here < depth);
     // Outlines stand over the border of their body: beside it they lie as deep as what is next to them.
     let opacity = textureLoad(lines, at, 0);
     let drawn = max(max(opacity.r, opacity.g), max(opacity.b, opacity.a));

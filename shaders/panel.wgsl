@@ -45,8 +45,6 @@ struct Panel {
     opacity: f32,
     // 1 if turned-over elements are hatched, else 0.
     hatch: f32,
-    // 0 if nothing lies behind elements that are not inverted, 1 if something may.
-    behind: f32,
     // How much is drawn of the lines of elements, from 0 to 1.
     line_share: f32,
     // How wide contours of bodies are, from 0 to 1.

@@ -48,14 +48,14 @@ fn texel_of(place: vec2<f32>) -> vec2<i32> {
     return vec2<i32>(clamp(floor(place), low, high));
 }
 
-// The texel of which a sample lies nearest to a point (px). All samples together stand for the pixel around that point.
-fn texel_around(place: vec2<f32>, sample: u32) -> vec2<i32> {
-    return texel_of(place - sample_place(sample) + 0.5);
+// The texel at one of the taps around a point (px). All taps together stand for the pixel around that point.
+fn texel_around(place: vec2<f32>, tap: u32) -> vec2<i32> {
+    return texel_of(place - tap_place(tap) + 0.5);
 }
 
-// The depth of the bodies at the sample nearest to a point.
-fn sample_depth(place: vec2<f32>, sample: u32) -> f32 {
-    return load_sample_depth(texel_around(place, sample), sample);
+// The depth of the bodies at one of the taps around a point.
+fn tap_depth(place: vec2<f32>, tap: u32) -> f32 {
+    return load_depth(texel_around(place, tap));
 }
 
 // Lines fade over this range of depths before and behind the surface, as a part of the distance, so that none appears or

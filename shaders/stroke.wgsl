@@ -60,24 +60,24 @@ fn decoded(colour: vec3<f32>) -> vec3<f32> {
     return select(pow((colour + 0.055) / 1.055, vec3(2.4)), colour / 12.92, colour <= vec3(0.04045));
 }
 
-// The visibility of a disc, for one sample of the pixel around its middle and one of the pixel that is drawn.
-fn disc_share(middle: vec2<f32>, pixel: vec2<f32>, before: f32, nearness: f32, sample: u32) -> f32 {
+// The visibility of a disc, for one tap of the pixel around its middle and one of the pixel that is drawn.
+fn disc_share(middle: vec2<f32>, pixel: vec2<f32>, before: f32, nearness: f32, tap: u32) -> f32 {
     // At an outline, the next pixel may be the background's.
     let beside = min(
-        min(sample_depth(middle + vec2(1.5, 0.0), sample), sample_depth(middle - vec2(1.5, 0.0), sample)),
-        min(sample_depth(middle + vec2(0.0, 1.5), sample), sample_depth(middle - vec2(0.0, 1.5), sample)),
+        min(tap_depth(middle + vec2(1.5, 0.0), tap), tap_depth(middle - vec2(1.5, 0.0), tap)),
+        min(tap_depth(middle + vec2(0.0, 1.5), tap), tap_depth(middle - vec2(0.0, 1.5), tap)),
     );
-    let seen = visible_share(before, min(sample_depth(middle, sample), beside));
-    let here = sample_depth(pixel, sample);
+    let seen = visible_share(before, min(tap_depth(middle, tap), beside));
+    let here = tap_depth(pixel, tap);
     let front = before / (1.0 - FRONT * nearness);
     return seen * saturate(0.5 + 0.5 * (front - here) / (max(0.5 * FRONT * nearness, FADED_DEPTH) * max(here, 1e-9)));
 }
 
 // The visibility of a line, and how much of it runs over a surface and not along an outline, where it is seen against
 // the ground.
-fn line_shares(middle: vec2<f32>, across: vec2<f32>, before: f32, sample: u32) -> vec2<f32> {
-    let here = sample_depth(middle, sample);
-    let inside = here > 0.0 && min(sample_depth(middle + across, sample), sample_depth(middle - across, sample)) > 0.0;
+fn line_shares(middle: vec2<f32>, across: vec2<f32>, before: f32, tap: u32) -> vec2<f32> {
+    let here = tap_depth(middle, tap);
+    let inside = here > 0.0 && min(tap_depth(middle + across, tap), tap_depth(middle - across, tap)) > 0.0;
     return vec2(visible_share(before, here), select(0.0, 1.0, inside));
 }
 
@@ -96,8 +96,8 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
         let nearness = min(0.5 / FRONT, stroke.size / panel.focal);
         let inward = stroke.size - distance;
         var shown = 0.0;
-        for (var sample = 0u; sample < SAMPLES; sample++) {
-            shown += disc_share(middle, pixel, before, nearness, sample) / f32(SAMPLES);
+        for (var tap = 0u; tap < TAPS; tap++) {
+            shown += disc_share(middle, pixel, before, nearness, tap) / f32(TAPS);
         }
         shown = max(shown, panel.flatness);
         let colour = mix(stroke.second.rgb, stroke.first.rgb, saturate(inward - RIM * stroke.size + 0.5));
@@ -112,8 +112,8 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
     let along = difference / max(length(difference), 1e-6);
     let across = 2.0 * vec2(-along.y, along.x);
     var shares = vec2(0.0);
-    for (var sample = 0u; sample < SAMPLES; sample++) {
-        shares += line_shares(middle, across, before, sample) / f32(SAMPLES);
+    for (var tap = 0u; tap < TAPS; tap++) {
+        shares += line_shares(middle, across, before, tap) / f32(TAPS);
     }
     shares.x = max(shares.x, panel.flatness);
     var own = mix(stroke.first.rgb, stroke.second.rgb, share);

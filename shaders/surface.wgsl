@@ -145,26 +145,30 @@ fn alarm_surface(corner: Corner) -> @location(0) vec4<f32> {
     return vec4(sqrt(saturate(alarm(corner).lit)), 1.0);
 }
 
+fn opaque(colour: vec3<f32>) -> vec4<f32> {
+    return vec4(sqrt(saturate(colour)), 1.0);
+}
+
 // What is stored of a surface that is not inverted of a colour, which lets through what is behind.
 fn see_through(colour: vec3<f32>) -> vec4<f32> {
     let alpha = select(min(panel.opacity, MOST_OPACITY), 1.0, panel.opacity >= 1.0);
     return vec4(sqrt(saturate(colour) * panel.opacity), alpha);
 }
 
-// What is seen where one sample of what is behind a surface of a colour lies at a depth: linear, multiplied with alpha.
-fn over_behind(colour: vec3<f32>, corner: Corner, behind: f32, sample: u32) -> vec4<f32> {
-    let stored = load_alarm_colour(vec2<i32>(corner.place.xy), sample);
-    if panel.opacity < 1.0 {
-        if behind > 0.0 && stored.a > SOLID_BEHIND {
-            return vec4(saturate(mix(stored.rgb * stored.rgb, colour, panel.opacity)), 1.0);
-        }
-        // In the plane, turned-over elements lie before others.
-        if behind <= 0.0 || panel.flatness > 0.5 {
-            return vec4(saturate(colour) * panel.opacity, panel.opacity);
-        }
+// What is stored of a surface of a colour over what lies behind it.
+fn over_behind(colour: vec3<f32>, corner: Corner) -> vec4<f32> {
+    let at = vec2<i32>(corner.place.xy);
+    let behind = load_alarm_depth(at);
+    let stored = load_alarm_colour(at);
+    if behind <= 0.0 {
+        return see_through(colour);
     }
-    if behind <= 0.0 || panel.flatness > 0.5 {
-        return vec4(saturate(colour), 1.0);
+    if panel.opacity < 1.0 && stored.a > SOLID_BEHIND {
+        return opaque(mix(stored.rgb * stored.rgb, colour, panel.opacity));
+    }
+    // In the plane, turned-over elements lie before others.
+    if panel.flatness > 0.5 {
+        return see_through(colour);
     }
     let depth = panel.near / behind - 1.0 / corner.place.w;
     // The clearer the surface, the less what is deep under it loses.
@@ -174,30 +178,7 @@ fn over_behind(colour: vec3<f32>, corner: Corner, behind: f32, sample: u32) -> v
     let alarm = mix(lit, unlit, 0.65 * deep);
     // Blue-grey under vermilion would turn pink, so the surface is desaturated first.
     let grey = mix(colour, vec3(dot(colour, LUMINANCE)), 0.7);
-    return vec4(saturate(mix(grey, alarm, 1.0 - 0.4 * deep)), 1.0);
-}
-
-// The depth of every sample behind a pixel, and the nearest of them; 0 where nothing is. All samples are used, so that
-// borders behind the surface are as smooth as its own.
-struct Behind {
-    depths: array<f32, SAMPLES>,
-    nearest: f32,
-}
-
-fn all_behind(place: vec4<f32>) -> Behind {
-    let at = vec2<i32>(place.xy);
-    var behind: Behind;
-    for (var sample = 0u; sample < SAMPLES; sample++) {
-        behind.depths[sample] = load_alarm_depth(at, sample);
-        behind.nearest = max(behind.nearest, behind.depths[sample]);
-    }
-    return behind;
-}
-
-// What is stored of the mean of all samples. The opacity of anything transparent stays below that of an obstacle.
-fn stored_mean(sum: vec4<f32>) -> vec4<f32> {
-    let mean = sum / f32(SAMPLES);
-    return vec4(sqrt(mean.rgb), select(min(mean.a, MOST_OPACITY), 1.0, mean.a > 0.9999));
+    return opaque(mix(grey, alarm, 1.0 - 0.4 * deep));
 }
 
 // How much of a pixel the dots of a flat element cover.
@@ -210,25 +191,24 @@ fn dots(place: vec2<f32>) -> f32 {
     return DOT_ALPHA * saturate(DOT * scale + 0.5 - off);
 }
 
-@fragment
-fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
+// The colour of a surface that is not inverted.
+fn sound(corner: Corner) -> vec3<f32> {
     let light = light(corner.position, corner.normal);
     var own = panel.sound;
     if corner.hatch > 0.5 {
         // Flat: grey with dots.
         own = mix(vec3(dot(own, LUMINANCE)), panel.edge, dots(corner.place.xy));
     }
-    let colour = own * light.diffuse + light.gloss;
-    if panel.behind < 0.5 {
-        return see_through(colour);
-    }
-    var behind = all_behind(corner.place);
-    if behind.nearest <= 0.0 {
-        return see_through(colour);
-    }
-    var sum = vec4(0.0);
-    for (var sample = 0u; sample < SAMPLES; sample++) {
-        sum += over_behind(colour, corner, behind.depths[sample], sample);
-    }
-    return stored_mean(sum);
+    return own * light.diffuse + light.gloss;
+}
+
+@fragment
+fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
+    return see_through(sound(corner));
+}
+
+// Where something lies behind such surfaces. A software driver would run all of it for every surface.
+@fragment
+fn sound_before(corner: Corner) -> @location(0) vec4<f32> {
+    return over_behind(sound(corner), corner);
 }

@@ -83,44 +83,38 @@ fn tinted_alarm(corner: TintedCorner) -> @location(0) vec4<f32> {
 }
 
 // As for plain surfaces.
-fn tinted_over(colour: vec3<f32>, corner: TintedCorner, behind: f32, sample: u32) -> vec4<f32> {
-    let stored = load_alarm_colour(vec2<i32>(corner.place.xy), sample);
+fn tinted_over(colour: vec3<f32>, corner: TintedCorner) -> vec4<f32> {
+    let at = vec2<i32>(corner.place.xy);
+    let behind = load_alarm_depth(at);
+    let stored = load_alarm_colour(at);
+    let is_solid = panel.opacity < 1.0 && stored.a > SOLID_BEHIND;
+    if behind <= 0.0 || (panel.flatness > 0.5 && !is_solid) {
+        return see_through(colour);
+    }
     if panel.opacity < 1.0 {
-        let is_solid = stored.a > SOLID_BEHIND;
-        if behind <= 0.0 || (panel.flatness > 0.5 && !is_solid) {
-            return vec4(saturate(colour) * panel.opacity, panel.opacity);
-        }
         // Turned-over elements keep their own opacity: a little of the surface shows that it lies before them.
         let covering = select(panel.opacity * panel.opacity, panel.opacity, is_solid);
-        return vec4(saturate(mix(stored.rgb * stored.rgb, colour, covering)), 1.0);
-    }
-    if behind <= 0.0 || panel.flatness > 0.5 {
-        return vec4(saturate(colour), 1.0);
+        return opaque(mix(stored.rgb * stored.rgb, colour, covering));
     }
     let depth = panel.near / behind - 1.0 / corner.place.w;
     let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
     // Of a hatch only the stripes are seen, whatever lies between them.
     let alarm = select(stored.rgb * stored.rgb, panel.alarm, panel.hatch > 0.5);
-    return vec4(saturate(mix(colour, alarm, THROUGH * (1.0 - 0.4 * deep) * stored.a)), 1.0);
+    return opaque(mix(colour, alarm, THROUGH * (1.0 - 0.4 * deep) * stored.a));
+}
+
+fn sound_tint(corner: TintedCorner) -> vec3<f32> {
+    // Flat elements are dotted.
+    let dotted = select(0.0, dots(corner.place.xy), corner.hatch > 0.5);
+    return mix(tint(corner), panel.edge, dotted);
 }
 
 @fragment
 fn tinted_sound(corner: TintedCorner) -> @location(0) vec4<f32> {
-    var colour = tint(corner);
-    if corner.hatch > 0.5 {
-        // Flat.
-        colour = mix(colour, panel.edge, dots(corner.place.xy));
-    }
-    if panel.behind < 0.5 {
-        return see_through(colour);
-    }
-    var behind = all_behind(corner.place);
-    if behind.nearest <= 0.0 {
-        return see_through(colour);
-    }
-    var sum = vec4(0.0);
-    for (var sample = 0u; sample < SAMPLES; sample++) {
-        sum += tinted_over(colour, corner, behind.depths[sample], sample);
-    }
-    return stored_mean(sum);
+    return see_through(sound_tint(corner));
+}
+
+@fragment
+fn tinted_before(corner: TintedCorner) -> @location(0) vec4<f32> {
+    return tinted_over(sound_tint(corner), corner);
 }

@@ -1,6 +1,6 @@
 //! Makes images of frames and figures: composes pictures, then draws them.
 
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Pending};
 use crate::history::History;
 use crate::moments::Moments;
 use crate::picture::{Composer, NoRoom, Picture, compose_figure};
@@ -10,16 +10,31 @@ use crate::scene::figure::Figure;
 use crate::sim::snapshot::Frame;
 use crate::vector;
 use image::RgbImage;
+use std::sync::Arc;
 
 /// Draws frames of one scene.
 pub(crate) struct Artist<'a> {
     /// One for the scene's background, or two for white and black if it has none.
     composers: Vec<Composer<'a>>,
     renderer: Renderer,
+    /// The last frame and its pixels. One that is the same is not drawn again.
+    last: Option<(Composed, Arc<Vec<u8>>)>,
+}
+
+/// A frame that is being drawn.
+pub(crate) struct Begun {
+    composed: Composed,
+    state: State,
+}
+
+/// How far drawing is.
+enum State {
+    Submitted(Pending),
+    Drawn(Arc<Vec<u8>>),
 }
 
 /// A frame that is composed and can be drawn.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Composed {
     /// One picture, or two on white and on black.
     pictures: Vec<Picture>,
@@ -40,12 +55,12 @@ impl Composed {
 }
 
 impl<'a> Artist<'a> {
-    /// For frames of a scene, with so many samples per pixel.
+    /// For frames of a scene.
     ///
     /// # Errors
     /// If the device fails.
-    pub(crate) fn new(gpu: &Gpu, scene: &'a Scene, samples: u32) -> Result<Self, RenderError> {
-        Ok(Self { composers: composers(scene), renderer: Renderer::new(gpu, scene.view.size, samples)? })
+    pub(crate) fn new(gpu: &Gpu, scene: &'a Scene) -> Result<Self, RenderError> {
+        Ok(Self { composers: composers(scene), renderer: Renderer::new(gpu, scene.view.size)?, last: None })
     }
 
     /// Sets the time series of the scene, which the chart shows; see [`Composer::set_history`].
@@ -58,12 +73,32 @@ impl<'a> Artist<'a> {
         Composed { pictures: self.composers.iter().map(|composer| composer.compose(frame)).collect() }
     }
 
-    /// Draws a frame: pixels in rows from the top left, red, green and blue, and alpha if the scene has no background.
+    /// Begins to draw a frame, which [`Self::finish`] must complete before the next one begins. Meanwhile the next one may be
+    /// composed.
     ///
     /// # Errors
     /// If the device fails.
-    pub(crate) fn draw(&mut self, composed: &Composed) -> Result<Vec<u8>, RenderError> {
-        draw_with(&mut self.renderer, &composed.pictures)
+    pub(crate) fn begin(&mut self, composed: Composed) -> Result<Begun, RenderError> {
+        let same = self.last.as_ref().filter(|(last, _)| *last == composed);
+        let state = match (same, &composed.pictures[..]) {
+            (Some((_, pixels)), _) => State::Drawn(Arc::clone(pixels)),
+            (None, [picture]) => State::Submitted(self.renderer.submit(picture)?),
+            (None, pictures) => State::Drawn(Arc::new(draw_with(&mut self.renderer, pictures)?)),
+        };
+        Ok(Begun { composed, state })
+    }
+
+    /// The frame that was begun: pixels in rows from the top left, red, green and blue, and alpha if the scene has no background.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub(crate) fn finish(&mut self, Begun { composed, state }: Begun) -> Result<Arc<Vec<u8>>, RenderError> {
+        let pixels = match state {
+            State::Submitted(pending) => Arc::new(self.renderer.collect(pending)?),
+            State::Drawn(pixels) => pixels,
+        };
+        self.last = Some((composed, Arc::clone(&pixels)));
+        Ok(pixels)
     }
 }
 
@@ -103,14 +138,10 @@ pub(crate) fn compose_frame(scene: &Scene, frame: &Frame, history: Option<&Histo
 ///
 /// # Panics
 /// If there are lit bodies and no device.
-pub(crate) fn draw_bodies(
-    gpu: Option<&Gpu>,
-    pictures: &[Picture],
-    samples: u32,
-) -> Result<Option<Vec<u8>>, RenderError> {
+pub(crate) fn draw_bodies(gpu: Option<&Gpu>, pictures: &[Picture]) -> Result<Option<Vec<u8>>, RenderError> {
     let lit: Vec<_> = pictures.iter().filter_map(vector::bodies).collect();
     let device = |_: &Picture| gpu.expect("a device for lit bodies");
-    lit.first().map(device).map(|gpu| draw_pictures(gpu, &lit, samples)).transpose()
+    lit.first().map(device).map(|gpu| draw_pictures(gpu, &lit)).transpose()
 }
 
 /// The pixels of one picture, in rows from the top left: red, green and blue, and alpha if there are two, on white and on
@@ -118,8 +149,8 @@ pub(crate) fn draw_bodies(
 ///
 /// # Errors
 /// If the device fails.
-pub(crate) fn draw_pictures(gpu: &Gpu, pictures: &[Picture], samples: u32) -> Result<Vec<u8>, RenderError> {
-    let mut renderer = Renderer::new(gpu, pictures[0].size, samples)?;
+pub(crate) fn draw_pictures(gpu: &Gpu, pictures: &[Picture]) -> Result<Vec<u8>, RenderError> {
+    let mut renderer = Renderer::new(gpu, pictures[0].size)?;
     draw_with(&mut renderer, pictures)
 }
 
@@ -130,19 +161,14 @@ fn draw_with(renderer: &mut Renderer, pictures: &[Picture]) -> Result<Vec<u8>, R
     }
 }
 
-/// Draws a figure from its simulated states, with so many samples per pixel.
+/// Draws a figure from its simulated states.
 ///
 /// # Errors
 /// If the figure is too small for its contents, or the device fails.
 ///
 /// # Panics
 /// If `moments` are those of another figure.
-pub(crate) fn draw_figure(
-    gpu: &Gpu,
-    figure: &Figure,
-    moments: &Moments,
-    samples: u32,
-) -> Result<RgbImage, FigureError> {
+pub(crate) fn draw_figure(gpu: &Gpu, figure: &Figure, moments: &Moments) -> Result<RgbImage, FigureError> {
     let picture = compose_figure(figure, moments)?;
-    Ok(Renderer::new(gpu, figure.size, samples)?.draw(&picture)?)
+    Ok(Renderer::new(gpu, figure.size)?.draw(&picture)?)
 }

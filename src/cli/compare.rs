@@ -8,7 +8,7 @@ use super::{
     failure::{warn, warn_of_figure},
     frames::FrameRanges,
     interrupt,
-    options::{samples, size},
+    options::size,
     scenes::status_of,
 };
 #[cfg(feature = "render")]
@@ -85,10 +85,6 @@ struct Drawing {
     /// Width and height of the pictures (px) [default: those of the golden; 320 wide for a new one]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
-
-    /// Samples per pixel [default: those of the golden; 4 for a new one]
-    #[arg(long, value_name = "N", value_parser = samples())]
-    samples: Option<u32>,
 
     /// Graphics adapter: auto, cpu, gpu, or part of its name [default: the kind that drew the golden, else cpu, a software
     /// driver]
@@ -184,13 +180,8 @@ impl Compare {
     /// Rejects options that only scenes have.
     #[cfg(feature = "render")]
     fn no_drawing(&self) -> Result<(), Failure> {
-        let Drawing { frames, size, samples, adapter } = &self.drawing;
-        let given = [
-            ("--frames", frames.is_some()),
-            ("--size", size.is_some()),
-            ("--samples", samples.is_some()),
-            ("--adapter", adapter.is_some()),
-        ];
+        let Drawing { frames, size, adapter } = &self.drawing;
+        let given = [("--frames", frames.is_some()), ("--size", size.is_some()), ("--adapter", adapter.is_some())];
         match given.into_iter().find(|(_, is_given)| *is_given) {
             None => Ok(()),
             Some((option, _)) => Err(Failure::usage(format!(
@@ -218,7 +209,7 @@ impl Compare {
             Subject::Scene(scene) => warn(path, scene),
             Subject::Figure(figure) => warn_of_figure(figure),
         }
-        let Drawing { frames, size, samples, adapter } = &self.drawing;
+        let Drawing { frames, size, adapter } = &self.drawing;
         let frames = match (frames, &subject) {
             (None, _) => None,
             (Some(frames), Subject::Scene(scene)) => {
@@ -229,7 +220,7 @@ impl Compare {
                 return Err(Failure::usage("--frames is for scenes; a figure is one picture"));
             }
         };
-        let wish = DrawOptions { frames, size: *size, samples: *samples, ..DrawOptions::default() };
+        let wish = DrawOptions { frames, size: *size, ..DrawOptions::default() };
         let gpu =
             adapter.as_ref().map_or_else(|| usual_gpu(expected), Gpu::new).map_err(|error| Failure::adapter(&error))?;
         interrupt::listen();

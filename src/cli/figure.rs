@@ -166,7 +166,7 @@ impl FigureCommand {
         let print = figure.print.as_ref();
         let source = print.map_or("", |print| &print.file);
         let still = Still { pictures: &[picture], print, source, title, tags: &tags };
-        let bytes = still.file(self.format(), gpu, self.device.samples)?;
+        let bytes = still.file(self.format(), gpu)?;
         if interrupt::requested() {
             return Ok(None);
         }

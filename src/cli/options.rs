@@ -6,7 +6,6 @@ use super::frames::FrameRanges;
 #[cfg(feature = "render")]
 use crate::gpu::{AdapterChoice, Gpu};
 #[cfg(feature = "render")]
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
@@ -109,10 +108,6 @@ impl PrintOptions {
 #[cfg(feature = "render")]
 #[derive(Args, Debug)]
 pub(super) struct DeviceOptions {
-    /// Samples per pixel: 4 for smooth edges, 1 for speed
-    #[arg(long, value_name = "N", default_value = "4", value_parser = samples())]
-    pub(super) samples: u32,
-
     /// Graphics adapter: auto (a GPU if there is one), cpu, gpu, or part of its name
     #[arg(long, value_name = "ADAPTER", default_value = "auto")]
     adapter: AdapterChoice,
@@ -131,11 +126,6 @@ impl DeviceOptions {
         }
         Ok(gpu)
     }
-}
-
-#[cfg(feature = "render")]
-pub(super) fn samples() -> impl TypedValueParser<Value = u32> {
-    PossibleValuesParser::new(["1", "4"]).map(|typed| typed.parse().expect("one of the numbers above"))
 }
 
 /// A number from `least` to `most`.

@@ -11,7 +11,7 @@ use super::still::{
     Format as FileFormat, NO_ADAPTER, Still, check_type, replaceable as replaceable_still, source_of, too_small,
 };
 use crate::animation::{Animation, AnimationError, Format, Sheet, Spool, Timeline, Written};
-use crate::artist::{Artist, compose_frame};
+use crate::artist::{Artist, Begun, compose_frame};
 use crate::gpu::Gpu;
 use crate::history::History;
 use crate::look::Ghost;
@@ -33,7 +33,7 @@ const EXAMPLES: &str = "\
 Examples:
   localshape render scenes/fig4b.toml                      all frames into output/fig4b/
   localshape render scenes/fig4b.toml --frames 0-180x10    every tenth
-  localshape render scenes/*.toml -o pictures --size 640x360 --samples 1
+  localshape render scenes/*.toml -o pictures --size 640x360
   localshape render scenes/fig4b.toml --animate fig4b.gif --no-frames
   localshape render scenes/fig4b.toml --only Mass-spring --frames 30 -o one
   localshape render scenes/fig4b.toml --frames 30 -o frame.pdf   one frame for print, with text that can be searched
@@ -108,14 +108,8 @@ impl Render {
             run: jobs.first().and_then(|job| job.runs.first().copied()),
             stills: if self.options.frames.is_some() { usize::MAX } else { Sheet::FRAMES },
         });
-        let device = Device {
-            gpu,
-            samples: self.device.samples,
-            writers: threads.min(MOST_WRITERS),
-            keep: !self.no_frames,
-            shared,
-            made: Mutex::default(),
-        };
+        let device =
+            Device { gpu, writers: threads.min(MOST_WRITERS), keep: !self.no_frames, shared, made: Mutex::default() };
         let result = record::run_all(jobs, &self.options, words, self.timings, Some(&device));
         if self.options.printing.prints_text() {
             let made = device.made.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -162,7 +156,7 @@ impl Render {
         let source = source_of(scene);
         let (print, title) = (scene.view.print.as_ref(), &scene.title);
         let still = Still { pictures: &pictures, print, source: &source, title, tags: &tags };
-        file.append(&still.file(format, gpu.as_ref(), self.device.samples)?)?;
+        file.append(&still.file(format, gpu.as_ref())?)?;
         file.commit()?;
         if self.options.printing.prints_text() {
             let [width, height] = scene.view.size;
@@ -203,7 +197,6 @@ impl Render {
 /// What all scenes are drawn with.
 struct Device {
     gpu: Gpu,
-    samples: u32,
     writers: usize,
     /// Whether frames stay.
     keep: bool,
@@ -345,12 +338,12 @@ impl Studio for Device {
         });
         Ok(Box::new(Drawing {
             scene,
-            artist: Artist::new(&self.gpu, scene, self.samples)?,
+            artist: Artist::new(&self.gpu, scene)?,
+            begun: None,
             writer: FrameWriter::new(self.keep.then_some(folder), self.writers, tap),
             films,
             keep: self.keep,
             adapter: self.gpu.description().to_string(),
-            samples: self.samples,
             compose: Spent::default(),
             draw: Spent::default(),
             cut: Vec::new(),
@@ -362,16 +355,29 @@ impl Studio for Device {
 struct Drawing<'a> {
     scene: &'a Scene,
     artist: Artist<'a>,
+    /// The frame that is being drawn while the next one is simulated and composed.
+    begun: Option<(u64, Tags, Begun)>,
     writer: FrameWriter,
     films: Option<Films<'a>>,
     /// Whether frames stay.
     keep: bool,
     adapter: String,
-    samples: u32,
     compose: Spent,
     draw: Spent,
     /// Runs and frames in which their bodies leave their panels.
     cut: Vec<(usize, u64)>,
+}
+
+impl Drawing<'_> {
+    /// Waits for the frame that is being drawn, and sees to it that it is written.
+    fn hand_on(&mut self) -> Result<(), Failure> {
+        let Some((frame, tags, begun)) = self.begun.take() else { return Ok(()) };
+        let clock = Clock::thread();
+        let pixels = self.artist.finish(begun)?;
+        self.draw += clock.spent();
+        let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
+        Ok(self.writer.write(PixelFrame { size, dpi, pixels, frame, tags })?)
+    }
 }
 
 impl Pictures for Drawing<'_> {
@@ -380,7 +386,6 @@ impl Pictures for Drawing<'_> {
         // Frames that are not kept count as simulated only.
         if self.keep {
             summary.frames.size = Some(self.scene.view.size);
-            summary.frames.samples = Some(self.samples);
             summary.frames.written = Some(0);
         }
     }
@@ -400,15 +405,16 @@ impl Pictures for Drawing<'_> {
         let cut = frame.runs.iter().zip(composed.cut()).filter(|(_, is_cut)| *is_cut);
         self.cut.extend(cut.map(|(run, _)| (run.run, frame.index)));
         check_type(self.scene.view.print.as_ref(), composed.first(), &source_of(self.scene))?;
+        self.hand_on()?;
         let clock = Clock::thread();
-        let pixels = self.artist.draw(&composed)?;
+        let begun = self.artist.begin(composed)?;
         self.draw += clock.spent();
-        let tags = Tags::of_frame(self.scene, frame, &self.adapter);
-        let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
-        Ok(self.writer.write(PixelFrame { size, dpi, pixels, frame: frame.index, tags })?)
+        self.begun = Some((frame.index, Tags::of_frame(self.scene, frame, &self.adapter), begun));
+        Ok(())
     }
 
-    fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure> {
+    fn finish(mut self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure> {
+        let last = self.hand_on();
         let (written, encode, result) = self.writer.finish();
         let filmed = self.films.map_or(Ok(()), |films| films.finish());
         summary.frames.written = self.keep.then_some(written);
@@ -417,7 +423,6 @@ impl Pictures for Drawing<'_> {
             run.cut = of_run.map(|(_, frame)| *frame).collect();
         }
         (times.compose, times.draw, times.encode) = (Some(self.compose), Some(self.draw), Some(encode));
-        result?;
-        filmed
+        last.and(result.map_err(Failure::from)).and(filmed)
     }
 }

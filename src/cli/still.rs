@@ -89,18 +89,18 @@ pub(super) struct Still<'a> {
 }
 
 impl Still<'_> {
-    /// The file, drawn with a device if one is needed, with so many samples per pixel.
-    pub(super) fn file(&self, format: Format, gpu: Option<&Gpu>, samples: u32) -> Result<Vec<u8>, Failure> {
+    /// The file, drawn with a device if one is needed.
+    pub(super) fn file(&self, format: Format, gpu: Option<&Gpu>) -> Result<Vec<u8>, Failure> {
         let picture = &self.pictures[0];
         check_type(self.print, picture, self.source)?;
         match format {
             Format::Png => {
-                let pixels = draw_pictures(gpu.expect("a device for pixels"), self.pictures, samples)?;
+                let pixels = draw_pictures(gpu.expect("a device for pixels"), self.pictures)?;
                 let dpi = self.print.map(|print| print.dpi);
                 Ok(encode_print(picture.size, &pixels, self.tags, Compression::High, dpi))
             }
             Format::Vector(format) => {
-                let bodies = draw_bodies(gpu, self.pictures, samples)?;
+                let bodies = draw_bodies(gpu, self.pictures)?;
                 let page = Page {
                     picture,
                     bodies: bodies.as_deref().map(vector::Pixels),

@@ -261,7 +261,7 @@ impl Comparison {
             })
             .collect();
         if let Some(drawn) = &actual.record {
-            (record.size, record.samples) = (drawn.size, drawn.samples);
+            record.size = drawn.size;
             record.scenes.clone_from(&drawn.scenes);
         }
         Ok(Some(record))

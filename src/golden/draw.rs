@@ -57,8 +57,6 @@ pub(crate) struct DrawOptions {
     pub(crate) size: Option<[u32; 2]>,
     /// Width of a new golden (px).
     pub(crate) width: Option<u32>,
-    /// Samples of each pixel.
-    pub(crate) samples: Option<u32>,
 }
 
 impl DrawOptions {
@@ -71,9 +69,6 @@ impl DrawOptions {
         }
         if let Some([width, height]) = self.size {
             options += &format!(" --size {width}x{height}");
-        }
-        if let Some(samples) = self.samples {
-            options += &format!(" --samples {samples}");
         }
         options
     }
@@ -164,14 +159,13 @@ fn draw_scene(
     };
     let mut scene = scene.clone();
     let size = size(scene.view.size, options, old);
-    let samples = samples(options, old);
     scene.view.size = size;
     let runs: Vec<usize> = (0..scene.runs.len()).collect();
     let mut plan = Plan::new(last, runs.len(), scene.body.len(), &frames);
     if let Some(old) = old {
         plan = plan.with(old, last);
     }
-    let mut artist = gpu.map(|gpu| Artist::new(gpu, &scene, samples)).transpose()?;
+    let mut artist = gpu.map(|gpu| Artist::new(gpu, &scene)).transpose()?;
     let adapter = gpu.map_or_else(String::new, |gpu| gpu.description().to_string());
     let (mut states, mut pictures, mut drawn) = (States::default(), BTreeMap::new(), Vec::new());
     let mut stopped = BTreeMap::new();
@@ -209,7 +203,8 @@ fn draw_scene(
             }
         }
         if let (Some(artist), true) = (&mut artist, plan.pictures.contains(&index)) {
-            let pixels = artist.draw(&artist.compose(&frame))?;
+            let begun = artist.begin(artist.compose(&frame))?;
+            let pixels = artist.finish(begun)?;
             let label = Tags::of_frame(&scene, &frame, &adapter);
             let bytes = encode(size, &pixels, &label.texts(), Compression::High);
             let file = frame_file_name(index);
@@ -220,7 +215,7 @@ fn draw_scene(
     let cycle = scene.cycle();
     states.set_steps(scene.runs.iter().map(|run| (run.name.as_str(), Step { step: run.step, cycle })));
     let scenes = vec![scene.digest.clone()];
-    let record = Record { subject: String::new(), scenes, size, samples, pictures: drawn, states };
+    let record = Record { subject: String::new(), scenes, size, pictures: drawn, states };
     Ok(Some(Made { record, pictures, notes: stopped.into_values().collect() }))
 }
 
@@ -236,7 +231,6 @@ fn draw_figure(
         return Err(DrawError::Options(format!("{} is a figure and has no frames to choose from", figure.name)));
     }
     figure.size = size(figure.size, options, old);
-    let samples = samples(options, old);
     let mut taking = Taking::new(&figure);
     while !taking.advance(SLICE) {
         if !go_on() {
@@ -251,7 +245,7 @@ fn draw_figure(
     }
     let (mut pictures, mut drawn) = (BTreeMap::new(), Vec::new());
     if let Some(gpu) = gpu {
-        let image = draw_figure_on(gpu, &figure, &moments, samples).map_err(|error| match error {
+        let image = draw_figure_on(gpu, &figure, &moments).map_err(|error| match error {
             FigureError::Render(error) => DrawError::Render(error),
             FigureError::NoRoom(error) => {
                 let [width, height] = figure.size;
@@ -264,7 +258,7 @@ fn draw_figure(
         pictures.insert(file, encode(figure.size, image.as_raw(), &label.texts(), Compression::High));
     }
     let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
-    let record = Record { subject: String::new(), scenes, size: figure.size, samples, pictures: drawn, states };
+    let record = Record { subject: String::new(), scenes, size: figure.size, pictures: drawn, states };
     Ok(Some(Made { record, pictures, notes: Vec::new() }))
 }
 
@@ -276,10 +270,6 @@ fn size(own: [u32; 2], options: &DrawOptions, old: Option<&Record>) -> [u32; 2] 
     let [width, height] = own;
     let small = options.width.unwrap_or(WIDTH).min(width);
     [small, (u64::from(height) * u64::from(small) / u64::from(width.max(1))).max(16) as u32]
-}
-
-fn samples(options: &DrawOptions, old: Option<&Record>) -> u32 {
-    options.samples.or(old.map(|old| old.samples)).unwrap_or(4)
 }
 
 #[cfg(test)]
@@ -311,7 +301,7 @@ mod tests {
         }
         let [file, adapter, version] = ["a.png", "", ""].map(str::to_owned);
         let pictures = vec![Drawn { file, frame: 0, adapter, version }];
-        Record { subject: String::new(), scenes: Vec::new(), size: [320, 200], samples: 4, pictures, states }
+        Record { subject: String::new(), scenes: Vec::new(), size: [320, 200], pictures, states }
     }
 
     fn side(record: Record, kind: Kind) -> Side {

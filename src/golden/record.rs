@@ -44,7 +44,6 @@ pub(super) struct Record {
     /// Width and height of the pictures (px).
     pub(super) size: [u32; 2],
     /// Samples of each pixel.
-    pub(super) samples: u32,
     pub(super) pictures: Vec<Drawn>,
     pub(super) states: States,
 }
@@ -79,7 +78,6 @@ struct File {
     subject: String,
     scenes: Vec<String>,
     size: [u32; 2],
-    samples: u32,
     #[serde(rename = "picture", default)]
     pictures: Vec<Drawn>,
     #[serde(rename = "run", default)]
@@ -142,8 +140,8 @@ impl File {
             return Err("it has no `[[picture]]`, or two of one name".to_owned());
         }
         let [width, height] = self.size;
-        if !self.size.iter().all(|side| (16..=16_384).contains(side)) || ![1, 4].contains(&self.samples) {
-            return Err(format!("pictures of {width}×{height} pixels with {} samples cannot be drawn", self.samples));
+        if !self.size.iter().all(|side| (16..=16_384).contains(side)) {
+            return Err(format!("pictures of {width}×{height} pixels cannot be drawn"));
         }
         Ok(())
     }
@@ -213,8 +211,8 @@ impl Record {
             state.positions =
                 Some(Positions { quantum, every, nodes, at: counts.chunks_exact(3).map(vector).collect() });
         }
-        let File { subject, scenes, size, samples, pictures, .. } = file;
-        Ok(Self { subject, scenes, size, samples, pictures, states: States { runs } })
+        let File { subject, scenes, size, pictures, .. } = file;
+        Ok(Self { subject, scenes, size, pictures, states: States { runs } })
     }
 
     /// Reads the record of a golden's folder.
@@ -291,7 +289,7 @@ impl Record {
         let [width, height] = self.size;
         let mut text = format!(
             "# What {} did when this was accepted. Written by localshape: not to be edited, but to be renewed.\n\
-             format = {FORMAT}\nsubject = {}\nscenes = [{}]\nsize = [{width}, {height}]\nsamples = {}\n\n\
+             format = {FORMAT}\nsubject = {}\nscenes = [{}]\nsize = [{width}, {height}]\n\n\
              # Frame, and the start of the digest of all positions and velocities of each run.\n\
              digests = '''{digests}\n'''\n\n\
              # Frame, run from 0, kinetic, elastic and gravitational energy (J), elements turned over, volume ratio, shape error (m).\n\
@@ -301,7 +299,6 @@ impl Record {
             self.subject.replace(char::is_control, " "),
             quoted(&self.subject),
             scenes.join(", "),
-            self.samples,
         );
         for run in runs {
             let FileRun { name, nodes, every, quantum, .. } = run;
@@ -385,7 +382,6 @@ mod tests {
             subject: "fig4b.toml".into(),
             scenes: vec!["ab".into()],
             size: [320, 180],
-            samples: 4,
             pictures: vec![drawn],
             states,
         }
@@ -396,10 +392,7 @@ mod tests {
         let exact = record();
         let text = exact.text();
         let read = Record::parse(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        assert_eq!(
-            (&read.subject, &read.scenes, read.size, read.samples),
-            (&exact.subject, &exact.scenes, exact.size, 4)
-        );
+        assert_eq!((&read.subject, &read.scenes, read.size), (&exact.subject, &exact.scenes, exact.size));
         assert_eq!(read.pictures, exact.pictures);
         assert_eq!([read.states.runs[0].step, read.states.runs[1].step], [exact.states.runs[0].step, None]);
         for (run, coarse) in exact.states.runs.iter().zip(&read.states.runs) {
@@ -452,7 +445,7 @@ mod tests {
         let positions = Some(Positions { quantum: 0.0, every: 1, nodes: at.len(), at });
         large.states.add("run", 0, State { digest: "0123456789abcdef".into(), positions, ..State::default() });
         large.pictures = record().pictures;
-        (large.size, large.samples) = ([320, 180], 4);
+        large.size = [320, 180];
         let text = large.text();
         assert!(text.len() < 20_000, "{}", text.len());
         assert_eq!(Record::parse(&text).unwrap().text(), text);

@@ -14,7 +14,7 @@ pub(crate) struct PixelFrame {
     /// Pixels of an inch, if it is for print.
     pub dpi: Option<f64>,
     /// Red, green and blue of each pixel, or these and opacity, in rows from the top left, sRGB; see [`encode`].
-    pub pixels: Vec<u8>,
+    pub pixels: Arc<Vec<u8>>,
     /// The number of the frame.
     pub frame: u64,
     /// The text chunks of the file.
@@ -136,7 +136,7 @@ mod tests {
         let [version, adapter] = [String::new(), String::new()];
         let shows = Shown::Frame { frame: index, time: 0.0 };
         let tags = Tags { shows, scenes: Vec::new(), states: Vec::new(), version, adapter };
-        PixelFrame { size: [2, 1], dpi: None, pixels: vec![0; 6], frame: index, tags }
+        PixelFrame { size: [2, 1], dpi: None, pixels: Arc::new(vec![0; 6]), frame: index, tags }
     }
 
     #[test]

@@ -74,8 +74,6 @@ pub(crate) struct FrameSummary {
     pub written: Option<usize>,
     /// Width and height of the pictures (px); `null` without pictures.
     pub size: Option<[u32; 2]>,
-    /// Samples per pixel; `null` without pictures.
-    pub samples: Option<u32>,
 }
 
 /// The result of a run.
@@ -150,7 +148,7 @@ impl Summary {
             },
             command: command.to_vec(),
             outcome: Outcome::Unfinished,
-            frames: FrameSummary { asked, recorded: 0, written: None, size: None, samples: None },
+            frames: FrameSummary { asked, recorded: 0, written: None, size: None },
             files: Vec::new(),
             adapter: None,
             runs: runs.iter().map(run).collect(),

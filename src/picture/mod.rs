@@ -104,6 +104,8 @@ pub(crate) struct Panel {
     pub greyed: bool,
     /// Edges and contours of both, and of solid obstacles.
     pub lines: Vec<Line>,
+    /// Lines at which the colours of surfaces may change, drawn or not: pixels that they cross are smoothed.
+    pub borders: Vec<Line>,
     /// The obstacles besides the floor.
     pub obstacles: Obstacles,
     /// Springs and other lines with colours of their own, above the surfaces, in the order in which they are drawn.

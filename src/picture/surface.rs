@@ -26,6 +26,8 @@ const CELLS_OF_FEW: usize = 4000;
 const MANY_FACES: usize = 3000;
 const VERY_MANY_FACES: usize = 12_000;
 
+/// Faces whose normals have a greater cosine than this are lit so alike that no border is seen between them.
+const SMOOTH: f64 = 0.995;
 /// Edges of elements smaller than this (px) would be invisible and are left out. The shader has the same constant.
 const SMALLEST_ELEMENT: f64 = 4.0;
 /// Edges of elements smaller than this (px) do not show through the body.
@@ -109,34 +111,50 @@ struct Patch {
     facing: Vec<f64>,
 }
 
-/// A side of a face: its nodes, and where its values begin in [`Borders`].
-type Border = ([u32; 2], u32);
+/// The lines of surfaces: those that are drawn, and borders, at which colours change whether a line is drawn or not.
+#[derive(Default)]
+pub(super) struct SurfaceLines {
+    pub(super) drawn: Vec<Line>,
+    pub(super) borders: Vec<Border>,
+}
+
+/// A line at which colours change.
+pub(super) struct Border {
+    pub(super) line: Line,
+    /// The nodes of its edge; none within a face.
+    pub(super) edge: Option<[u32; 2]>,
+}
+
+/// A side of a face: its nodes, where its values begin in [`FaceSides`], and the face.
+type FaceSide = ([u32; 2], u32, u32);
 
 /// The sides of all faces of a surface, cut into pieces: how far the normals of the face point towards the viewer there.
 #[derive(Default)]
-struct Borders {
+struct FaceSides {
     /// The values at the ends of the pieces, side after side.
     facing: Vec<f64>,
-    sides: Vec<Border>,
+    /// The mean unit normal of each face.
+    normals: Vec<DVec3>,
+    sides: Vec<FaceSide>,
     /// Where the values of one edge's sides change their sign, as parts of its length.
     changes: Vec<f64>,
 }
 
-impl Borders {
+impl FaceSides {
     /// The sides in the order of their edges; those of one edge stand beside each other.
-    fn sorted(&self, nodes: usize) -> Vec<Border> {
+    fn sorted(&self, nodes: usize) -> Vec<FaceSide> {
         // Sorted into boxes by the first node, which leaves hardly anything to sort.
-        let low = |side: &Border| side.0[0].min(side.0[1]) as usize;
+        let low = |side: &FaceSide| side.0[0].min(side.0[1]) as usize;
         let mut starts = vec![0_u32; nodes + 1];
         self.sides.iter().for_each(|side| starts[low(side) + 1] += 1);
         (0..nodes).for_each(|node| starts[node + 1] += starts[node]);
-        let mut sorted = vec![([0; 2], 0); self.sides.len()];
+        let mut sorted = vec![([0; 2], 0, 0); self.sides.len()];
         for side in &self.sides {
             let place = &mut starts[low(side)];
             sorted[*place as usize] = *side;
             *place += 1;
         }
-        let key = |side: &Border| (ordered(side.0), side.1);
+        let key = |side: &FaceSide| (ordered(side.0), side.1);
         let mut rest = &mut sorted[..];
         while let Some(first) = rest.first().map(low) {
             let count = rest.iter().take_while(|side| low(side) == first).count();
@@ -148,19 +166,25 @@ impl Borders {
     }
 
     /// The value of a side at a part of its edge's length, which runs from the lower node to the higher one.
-    fn at(&self, &([from, to], first): &Border, share: f64, cut: usize) -> f64 {
+    fn at(&self, &([from, to], first, _): &FaceSide, share: f64, cut: usize) -> f64 {
         let along = (if from < to { share } else { 1.0 - share }) * cut as f64;
         let piece = (along as usize).min(cut - 1);
         let [a, b] = [0, 1].map(|end| self.facing[first as usize + piece + end]);
         a + (b - a) * (along - piece as f64)
     }
 
+    /// Whether the faces of two sides are lit differently.
+    fn are_bent(&self, sides: &[FaceSide]) -> bool {
+        let normal = |side: &FaceSide| self.normals[side.2 as usize];
+        sides.iter().skip(1).any(|side| normal(side).dot(normal(&sides[0])) < SMOOTH)
+    }
+
     /// Calls `draw` with the parts of an edge at which the surface turns away from the viewer: the outside of one of its
     /// sides is seen, that of another is not. An edge of one side alone is a border of the surface.
-    fn contours(&mut self, sides: &[Border], cut: usize, draw: &mut dyn FnMut([f64; 2])) {
+    fn contours(&mut self, sides: &[FaceSide], cut: usize, draw: &mut dyn FnMut([f64; 2])) {
         let mut changes = std::mem::take(&mut self.changes);
         changes.clear();
-        for &([from, to], first) in sides {
+        for &([from, to], first, _) in sides {
             let values = &self.facing[first as usize..][..=cut];
             for (piece, two) in values.windows(2).enumerate().filter(|(_, two)| (two[0] < 0.0) != (two[1] < 0.0)) {
                 let share = (piece as f64 + two[0] / (two[0] - two[1])) / cut as f64;
@@ -207,7 +231,7 @@ impl Surroundings<'_> {
     /// Adds a surface to a mesh and its lines to the lines.
     ///
     /// There are `total` faces in this and other surfaces.
-    pub(super) fn add(&self, faces: &[Side], total: usize, kinds: Lines, mesh: &mut Mesh, lines: &mut Vec<Line>) {
+    pub(super) fn add(&self, faces: &[Side], total: usize, kinds: Lines, mesh: &mut Mesh, lines: &mut SurfaceLines) {
         if faces.is_empty() {
             return;
         }
@@ -223,7 +247,7 @@ impl Surroundings<'_> {
             && self.opacity == 1.0
             && total > VERY_MANY_FACES
             && !self.lens.orthographic;
-        let (mut patch, mut borders) = (Patch::default(), Borders::default());
+        let (mut patch, mut borders) = (Patch::default(), FaceSides::default());
         borders.sides.reserve(4 * faces.len());
         borders.facing.reserve(4 * (cut + 1) * faces.len());
         for side in faces {
@@ -248,14 +272,14 @@ impl Surroundings<'_> {
     }
 
     /// The lines along one edge, at which the sides of some faces meet.
-    fn edge(&self, sides: &[Border], borders: &mut Borders, cut: usize, kinds: Lines, lines: &mut Vec<Line>) {
+    fn edge(&self, sides: &[FaceSide], borders: &mut FaceSides, cut: usize, kinds: Lines, lines: &mut SurfaceLines) {
         let [a, b] = ordered(sides[0].0);
         let (start, end) = (self.at(a), self.at(b));
-        let share = self.own_lines();
-        if share == 0.0 {
+        if self.own_lines() == 0.0 {
             return;
         }
-        let faces_away = |&(_, first): &Border| borders.facing[first as usize..][..=cut].iter().all(|&seen| seen < 0.0);
+        let faces_away =
+            |&(_, first, _): &FaceSide| borders.facing[first as usize..][..=cut].iter().all(|&seen| seen < 0.0);
         let is_hidden = kinds.edge == LineKind::Edge && !self.lens.orthographic && sides.iter().all(faces_away);
         // Edges of turned-over elements are always drawn.
         let [in_front, behind] = match kinds.edge {
@@ -264,12 +288,23 @@ impl Surroundings<'_> {
         };
         let is_large = self.element > if is_hidden { SEEN_THROUGH * self.opacity } else { SMALLEST_ELEMENT };
         if is_large && if is_hidden { behind } else { in_front } {
-            lines.push(self.line(start, end, kinds.edge, if behind { 1.0 } else { 0.0 }));
+            lines.drawn.push(self.line(start, end, kinds.edge, if behind { 1.0 } else { 0.0 }));
         }
+        let mut is_contour = false;
         borders.contours(sides, cut, &mut |part| {
-            let [from, to] = part.map(|at| start.lerp(end, at));
-            lines.push(self.line(from, to, kinds.contour, share));
+            self.contour(part.map(|at| start.lerp(end, at)), Some([a, b]), kinds, lines);
+            is_contour = true;
         });
+        if !is_hidden && !is_contour && (borders.are_bent(sides) || self.shades.is_some_and(Shades::jump)) {
+            lines.borders.push(Border { line: self.line(start, end, kinds.edge, 1.0), edge: Some([a, b]) });
+        }
+    }
+
+    /// A place where the surface turns away from the viewer.
+    fn contour(&self, [from, to]: [DVec3; 2], edge: Option<[u32; 2]>, kinds: Lines, lines: &mut SurfaceLines) {
+        let line = self.line(from, to, kinds.contour, self.own_lines());
+        lines.drawn.push(line);
+        lines.borders.push(Border { line, edge });
     }
 
     /// How far an outward normal at a point points towards the viewer, in parts of its length times the distance.
@@ -394,14 +429,13 @@ impl Surroundings<'_> {
 
     /// Contours within one face. Those of a bilinear patch run where its normal is at right angles to the line of sight,
     /// interpolated within each triangle; they end exactly where those along the edges begin.
-    fn inner_contours(&self, patch: &Patch, kinds: Lines, lines: &mut Vec<Line>) {
+    fn inner_contours(&self, patch: &Patch, kinds: Lines, lines: &mut SurfaceLines) {
         let Patch { points, triangles, is_curved, facing, .. } = patch;
-        let share = self.own_lines();
         let is_away = |at: usize| facing[at] < 0.0;
-        if share == 0.0 || (1..facing.len()).all(|at| is_away(at) == is_away(0)) {
+        if self.own_lines() == 0.0 || (1..facing.len()).all(|at| is_away(at) == is_away(0)) {
             return;
         }
-        let mut draw = |[from, to]: [DVec3; 2]| lines.push(self.line(from, to, kinds.contour, share));
+        let mut draw = |ends: [DVec3; 2]| self.contour(ends, None, kinds, lines);
         if *is_curved {
             for triangle in triangles {
                 let crossed = around(triangle).map(|side| ordered(side).map(|at| at as usize));
@@ -426,10 +460,12 @@ impl Surroundings<'_> {
 }
 
 /// Records how far the normals along the sides of a face point towards the viewer.
-fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, cut: usize, borders: &mut Borders) {
+fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, cut: usize, borders: &mut FaceSides) {
     let Patch { nodes, facing, .. } = patch;
+    let face = borders.normals.len() as u32;
+    borders.normals.push(newell(&patch.corners).normalize_or_zero());
     for (side, ends) in around(nodes).enumerate() {
-        borders.sides.push((ends, u32::try_from(borders.facing.len()).expect("fewer than 2^32 pieces")));
+        borders.sides.push((ends, u32::try_from(borders.facing.len()).expect("fewer than 2^32 pieces"), face));
         if patch.is_curved {
             borders.facing.extend((0..=cut).map(|along| facing[border_point(side, along, cut)]));
             continue;

@@ -17,9 +17,9 @@ pub(super) struct Composite {
 }
 
 impl Composite {
-    pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
-        let module = shader(gpu, "composite", &[super::PANEL_SHADER, super::sampled(samples)[1], SHADER]);
-        let layout = group_layout(gpu, "bodies", &[texture_entry(0, false, samples), texture_entry(2, false, 1)]);
+    pub(super) fn new(gpu: &Gpu, panels: &Panels) -> Self {
+        let module = shader(gpu, "composite", &[super::PANEL_SHADER, super::BODIES_SHADER, SHADER]);
+        let layout = group_layout(gpu, "bodies", &[0, 2, 3].map(|binding| texture_entry(binding, false)));
         let recipe = Recipe {
             groups: &[&panels.layout, &layout],
             blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
@@ -30,7 +30,7 @@ impl Composite {
 
     /// Binds new textures.
     pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
-        let views = [(0, &bodies.colour), (2, &bodies.lines)];
+        let views = [(0, &bodies.colour), (2, &bodies.lines), (3, &bodies.borders)];
         self.textures = Some(bind_textures(gpu, "bodies", &self.layout, &views));
     }
 

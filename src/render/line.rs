@@ -8,23 +8,37 @@ use crate::picture::{Line, LineKind, Panel, Picture, Rectangle};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
-pub(super) const SHADER: &str = include_str!("../../shaders/line.wgsl");
+const SHADER: &str = include_str!("../../shaders/line.wgsl");
 /// The part of the shader about solid obstacles, without any and with some.
-pub(super) const ALONE_SHADER: &str = include_str!("../../shaders/line_alone.wgsl");
-pub(super) const AMONG_SHADER: &str = include_str!("../../shaders/line_among.wgsl");
+const ALONE_SHADER: &str = include_str!("../../shaders/line_alone.wgsl");
+const AMONG_SHADER: &str = include_str!("../../shaders/line_among.wgsl");
 
 /// One line as the shader reads it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-struct Segment {
+pub(super) struct Segment {
     from: [f32; 3],
     to: [f32; 3],
     kind: u32,
     strength: f32,
 }
 
-const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
+pub(super) const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
     wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32, 3 => Float32];
+
+impl Segment {
+    pub(super) fn new(line: &Line) -> Self {
+        let &Line { from, to, kind, strength } = line;
+        Self { from, to, kind: kind as u32, strength }
+    }
+}
+
+/// The parts of the shader, alone or among solid obstacles.
+pub(super) fn parts(among: bool) -> [&'static str; 7] {
+    let obstacles = if among { AMONG_SHADER } else { ALONE_SHADER };
+    let [panel, segment] = [super::PANEL_SHADER, super::SEGMENT_SHADER];
+    [panel, segment, super::TAPS_SHADER, super::BODIES_SHADER, obstacles, super::TURNED_OVER_SHADER, SHADER]
+}
 
 /// Whether there are lines of turned-over elements.
 pub(super) fn has_alarm(panel: &Panel) -> bool {
@@ -47,18 +61,16 @@ pub(super) struct Lines {
     alone: Variant,
     /// Among solid obstacles, as soon as there are any.
     among: Option<Variant>,
-    samples: u32,
     segments: GrowingBuffer<Segment>,
     /// The edges and the contours of each panel.
     ranges: Vec<[Range<u32>; 2]>,
 }
 
 impl Lines {
-    pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
+    pub(super) fn new(gpu: &Gpu, panels: &Panels) -> Self {
         Self {
-            alone: Variant::new(gpu, panels, samples, false),
+            alone: Variant::new(gpu, panels, false),
             among: None,
-            samples,
             segments: GrowingBuffer::new(gpu, "lines", wgpu::BufferUsages::VERTEX, 1024),
             ranges: Vec::new(),
         }
@@ -67,7 +79,7 @@ impl Lines {
     /// Prepares to draw lines among solid obstacles.
     pub(super) fn prepare_among(&mut self, gpu: &Gpu, panels: &Panels, bodies: &Bodies) {
         if self.among.is_none() {
-            let mut among = Variant::new(gpu, panels, self.samples, true);
+            let mut among = Variant::new(gpu, panels, true);
             among.retarget(gpu, bodies);
             self.among = Some(among);
         }
@@ -84,12 +96,7 @@ impl Lines {
             };
             let mut add = |lines: &mut dyn Iterator<Item = &Line>| {
                 let start = segments.len() as u32;
-                segments.extend(lines.map(|line| Segment {
-                    from: line.from,
-                    to: line.to,
-                    kind: line.kind as u32,
-                    strength: line.strength,
-                }));
+                segments.extend(lines.map(Segment::new));
                 start..segments.len() as u32
             };
             let edges = add(&mut panel.lines.iter().filter(|line| !contour(line)));
@@ -121,14 +128,11 @@ impl Lines {
 }
 
 impl Variant {
-    fn new(gpu: &Gpu, panels: &Panels, samples: u32, among: bool) -> Self {
-        let obstacles = if among { AMONG_SHADER } else { ALONE_SHADER };
-        let [positions, reading, alarm] = super::sampled(samples);
-        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, positions, reading, obstacles, alarm, SHADER];
-        let module = shader(gpu, "line", &parts);
-        let mut entries = vec![texture_entry(1, true, samples), texture_entry(2, true, samples)];
+    fn new(gpu: &Gpu, panels: &Panels, among: bool) -> Self {
+        let module = shader(gpu, "line", &parts(among));
+        let mut entries = vec![texture_entry(1, true), texture_entry(2, true)];
         if among {
-            entries.push(texture_entry(0, false, samples));
+            entries.push(texture_entry(0, false));
         }
         let layout = group_layout(gpu, "depth", &entries);
         let largest = wgpu::BlendComponent {

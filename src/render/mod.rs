@@ -1,13 +1,15 @@
 //! From a [`Picture`] to an image: the passes, in order.
 //!
 //! 1. `surface`: turned-over elements by themselves, so that they can be seen through the body.
-//! 2. `surface`: all surfaces, with several samples a pixel, in textures no larger than the bodies; among them solid
-//!    obstacles (`obstacle`).
-//! 3. `line`: edges and contours as opacities, one sample a pixel with smooth borders of their own.
-//! 4. `ground`: the floor, its grid and its shadows, into the picture.
-//! 5. `composite`: bodies and lines over the ground, between transparent obstacles (`obstacle`).
-//! 6. `stroke`: lines with colours of their own and nodes in space, over the bodies; only where there are any.
-//! 7. `overlay`: marks and words; between them flat curves (`curve`), only where there are any.
+//! 2. `surface`: all surfaces, in textures no larger than the bodies; among them solid obstacles (`obstacle`).
+//! 3. `border`: smooth borders where their colours change at a line.
+//! 4. `line`: edges and contours as opacities, with smooth borders of their own.
+//! 5. `ground`: the floor, its grid and its shadows, into the picture.
+//! 6. `composite`: bodies and lines over the ground, between transparent obstacles (`obstacle`).
+//! 7. `stroke`: lines with colours of their own and nodes in space, over the bodies; only where there are any.
+//! 8. `overlay`: marks and words; between them flat curves (`curve`), only where there are any.
+//!
+//! Every pixel has one sample: all borders are found from the geometry, which costs nothing where there are none.
 //!
 //! A picture without a background is drawn twice, and `alpha` finds its opacities.
 //!
@@ -16,6 +18,7 @@
 //! Each has one file here and one of the same name in `shaders/`.
 
 mod alpha;
+mod border;
 mod composite;
 mod curve;
 mod glyphs;
@@ -42,23 +45,10 @@ use target::{Bodies, Canvas};
 const PANEL_SHADER: &str = include_str!("../../shaders/panel.wgsl");
 const SEGMENT_SHADER: &str = include_str!("../../shaders/segment.wgsl");
 
-/// The parts of shaders that depend on the number of samples: the positions of samples, reading what was drawn with them, and
-/// reading the turned-over set, drawn by itself.
-fn sampled(samples: u32) -> [&'static str; 3] {
-    if samples > 1 {
-        [
-            include_str!("../../shaders/four_samples.wgsl"),
-            include_str!("../../shaders/multisampled.wgsl"),
-            include_str!("../../shaders/alarm_multisampled.wgsl"),
-        ]
-    } else {
-        [
-            include_str!("../../shaders/one_sample.wgsl"),
-            include_str!("../../shaders/single.wgsl"),
-            include_str!("../../shaders/alarm_single.wgsl"),
-        ]
-    }
-}
+/// Reading around a point, reading what was drawn of the bodies, and of the turned-over set by itself.
+const TAPS_SHADER: &str = include_str!("../../shaders/taps.wgsl");
+const BODIES_SHADER: &str = include_str!("../../shaders/bodies.wgsl");
+const TURNED_OVER_SHADER: &str = include_str!("../../shaders/turned_over.wgsl");
 
 /// Why a picture cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -81,9 +71,6 @@ pub enum RenderError {
         /// Size that the renderer was made for (px).
         expected: [u32; 2],
     },
-    /// Only 1 and 4 samples a pixel can be had everywhere.
-    #[error("{0} samples a pixel cannot be had; choose 1 or 4")]
-    Samples(u32),
     /// The device failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
@@ -94,10 +81,10 @@ pub enum RenderError {
 pub struct Renderer {
     gpu: Gpu,
     size: [u32; 2],
-    samples: u32,
     panels: Panels,
     surfaces: surface::Surfaces,
     lines: line::Lines,
+    borders: border::Borders,
     /// Made when they are first needed.
     solids: Option<Solids>,
     slabs: Option<Slabs>,
@@ -115,29 +102,26 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// Prepares to draw pictures of a width and height (px) with 1 or 4 samples a pixel.
+    /// Prepares to draw pictures of a width and height (px).
     ///
     /// # Errors
-    /// A size or number of samples that cannot be had, or a device that fails.
-    pub fn new(gpu: &Gpu, size: [u32; 2], samples: u32) -> Result<Self, RenderError> {
+    /// A size that cannot be had, or a device that fails.
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, RenderError> {
         let [width, height] = size;
         let longest = gpu.longest_side();
         if size.contains(&0) || width.max(height) > longest {
             return Err(RenderError::Size { width, height, longest });
         }
-        if samples != 1 && samples != 4 {
-            return Err(RenderError::Samples(samples));
-        }
         let panels = Panels::new(gpu);
         let renderer = Self {
             size,
-            samples,
-            surfaces: surface::Surfaces::new(gpu, samples),
-            lines: line::Lines::new(gpu, &panels, samples),
+            surfaces: surface::Surfaces::new(gpu),
+            lines: line::Lines::new(gpu, &panels),
+            borders: border::Borders::new(gpu, &panels),
             solids: None,
             slabs: None,
             grounds: ground::Grounds::new(gpu, &panels),
-            composite: composite::Composite::new(gpu, &panels, samples),
+            composite: composite::Composite::new(gpu, &panels),
             strokes: None,
             tint: None,
             overlay: overlay::Overlay::new(gpu),
@@ -158,7 +142,7 @@ impl Renderer {
     /// A picture of another size, or a device that fails.
     pub fn draw(&mut self, picture: &Picture) -> Result<RgbImage, RenderError> {
         let pending = self.submit(picture)?;
-        let pixels = self.read_back.collect(&self.gpu, pending)?;
+        let pixels = self.collect(pending)?;
         let [width, height] = self.size;
         // The read-back gives exactly three bytes for each pixel.
         Ok(RgbImage::from_raw(width, height, pixels).expect("three bytes a pixel"))
@@ -183,9 +167,17 @@ impl Renderer {
         Ok(alpha::recover(&white, &black, made_for_light, &solid))
     }
 
+    /// Waits for a picture that was submitted, and returns its pixels: three bytes each, in rows from the top left.
+    ///
+    /// # Errors
+    /// A device that fails.
+    pub(crate) fn collect(&self, pending: Pending) -> Result<Vec<u8>, RenderError> {
+        Ok(self.read_back.collect(&self.gpu, pending)?)
+    }
+
     /// Submits a picture and returns at once. It must be collected before the next one is submitted, because there is one
     /// buffer for reading back.
-    fn submit(&mut self, picture: &Picture) -> Result<Pending, RenderError> {
+    pub(crate) fn submit(&mut self, picture: &Picture) -> Result<Pending, RenderError> {
         if picture.size != self.size {
             return Err(RenderError::OtherSize { found: picture.size, expected: self.size });
         }
@@ -197,9 +189,10 @@ impl Renderer {
         let bodies = match self.bodies.take().filter(|bodies| bodies.suit(needed, has_behind)) {
             Some(bodies) => bodies,
             None => {
-                let bodies = Bodies::new(&gpu, target::rounded(needed), self.samples, has_behind);
+                let bodies = Bodies::new(&gpu, target::rounded(needed), has_behind);
                 self.surfaces.retarget(&gpu, &bodies);
                 self.lines.retarget(&gpu, &bodies);
+                self.borders.retarget(&gpu, &bodies);
                 self.composite.retarget(&gpu, &bodies);
                 if let Some(slabs) = &mut self.slabs {
                     slabs.retarget(&gpu, &bodies);
@@ -212,6 +205,7 @@ impl Renderer {
         self.panels.write(&gpu, picture, &places);
         self.surfaces.write(&gpu, picture);
         self.lines.write(&gpu, picture);
+        self.borders.write(&gpu, picture);
         self.grounds.write(&gpu, picture);
         self.overlay.write(&gpu, picture);
         if !picture.curves.is_empty() {
@@ -222,16 +216,16 @@ impl Renderer {
         let with_clear = picture.panels.iter().any(|panel| panel.opacity < 1.0);
         if with_solids {
             self.lines.prepare_among(&gpu, &self.panels, &bodies);
-            let new = || Solids::new(&gpu, &self.panels, self.samples);
+            let new = || Solids::new(&gpu, &self.panels);
             let solids = self.solids.get_or_insert_with(new);
             solids.write(&gpu, picture);
             if with_clear {
-                solids.prepare_behind(&gpu, &self.panels, self.samples);
+                solids.prepare_behind(&gpu, &self.panels);
             }
         }
         if with_slabs {
             let new = || {
-                let mut slabs = Slabs::new(&gpu, &self.panels, self.samples);
+                let mut slabs = Slabs::new(&gpu, &self.panels);
                 slabs.retarget(&gpu, &bodies);
                 slabs
             };
@@ -245,7 +239,7 @@ impl Renderer {
             self.surfaces.prepare(&gpu, &self.panels, picture);
         });
         let coloured = picture.panels.iter().any(is_coloured).then(|| {
-            let made = || tint::Tint::new(&gpu, &bodies, self.samples);
+            let made = || tint::Tint::new(&gpu, &bodies);
             let tint = self.tint.get_or_insert_with(made);
             tint.prepare(&gpu, &self.panels, picture);
             tint.write(&gpu, picture);
@@ -253,7 +247,7 @@ impl Renderer {
         });
         let colourings = [plain.map(|()| self.surfaces.plain(occluders)), coloured];
         if stroke::Strokes::are_in(picture) {
-            let made = || stroke::Strokes::new(&gpu, &self.panels, &bodies, self.samples);
+            let made = || stroke::Strokes::new(&gpu, &self.panels, &bodies);
             self.strokes.get_or_insert_with(made).write(&gpu, picture);
         }
         let strokes = self.strokes.as_ref().filter(|_| stroke::Strokes::are_in(picture));
@@ -272,6 +266,10 @@ impl Renderer {
             if let Some(solids) = solids {
                 solids.draw(&mut pass, &self.panels, &places);
             }
+        }
+        {
+            let mut pass = begin(&mut commands, "borders", &bodies.borders, CLEAR, None);
+            self.borders.draw(&mut pass, &self.panels, &places);
         }
         {
             let mut pass = begin(&mut commands, "lines", &bodies.lines, CLEAR, None);

@@ -12,7 +12,12 @@ use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/obstacle.wgsl");
-pub(super) const PANE_SHADER: &str = include_str!("../../shaders/pane.wgsl");
+const PANE_SHADER: &str = include_str!("../../shaders/pane.wgsl");
+
+/// The parts of the shader of slabs.
+pub(super) fn pane_parts() -> [&'static str; 5] {
+    [super::PANEL_SHADER, super::SEGMENT_SHADER, super::TAPS_SHADER, super::BODIES_SHADER, PANE_SHADER]
+}
 
 /// A corner of a solid as the shader reads it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -86,9 +91,9 @@ impl Solids {
         picture.panels.iter().any(|panel| !panel.obstacles.solids.is_empty())
     }
 
-    pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
+    pub(super) fn new(gpu: &Gpu, panels: &Panels) -> Self {
         Self {
-            pipeline: Self::pipeline(gpu, panels, "solid_surface", samples),
+            pipeline: Self::pipeline(gpu, panels, "solid_surface"),
             behind: None,
             vertices: GrowingBuffer::new(gpu, "corners of obstacles", wgpu::BufferUsages::VERTEX, 4096),
             indices: GrowingBuffer::new(gpu, "triangles of obstacles", wgpu::BufferUsages::INDEX, 16384),
@@ -96,20 +101,20 @@ impl Solids {
         }
     }
 
-    fn pipeline(gpu: &Gpu, panels: &Panels, fragment: &'static str, samples: u32) -> wgpu::RenderPipeline {
+    fn pipeline(gpu: &Gpu, panels: &Panels, fragment: &'static str) -> wgpu::RenderPipeline {
         // The light is that on bodies.
-        let module = shader(gpu, "obstacle", &[&super::surface::parts(samples, 0)[..], &[SHADER]].concat());
+        let module = shader(gpu, "obstacle", &[&super::surface::parts(0)[..], &[SHADER]].concat());
         let recipe = Recipe {
             groups: &[&panels.layout],
             vertices: &[Some(for_vertices::<SolidVertex>(&SOLID))],
-            ..Recipe::bodies("obstacle", &module, ["solid_corner", fragment], samples)
+            ..Recipe::bodies("obstacle", &module, ["solid_corner", fragment])
         };
         recipe.build(gpu)
     }
 
     /// Prepares to draw solids seen through clear surfaces.
-    pub(super) fn prepare_behind(&mut self, gpu: &Gpu, panels: &Panels, samples: u32) {
-        self.behind.get_or_insert_with(|| Self::pipeline(gpu, panels, "solid_behind", samples));
+    pub(super) fn prepare_behind(&mut self, gpu: &Gpu, panels: &Panels) {
+        self.behind.get_or_insert_with(|| Self::pipeline(gpu, panels, "solid_behind"));
     }
 
     /// Uploads the solids of a picture.
@@ -183,11 +188,9 @@ impl Slabs {
         picture.panels.iter().any(|panel| !panel.obstacles.slabs.is_empty())
     }
 
-    pub(super) fn new(gpu: &Gpu, panels: &Panels, samples: u32) -> Self {
-        let [positions, reading, _] = super::sampled(samples);
-        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, positions, reading, PANE_SHADER];
-        let module = shader(gpu, "pane", &parts);
-        let entries = [texture_entry(1, true, samples), texture_entry(2, false, 1)];
+    pub(super) fn new(gpu: &Gpu, panels: &Panels) -> Self {
+        let module = shader(gpu, "pane", &pane_parts());
+        let entries = [texture_entry(1, true), texture_entry(2, false)];
         let group = group_layout(gpu, "pane", &entries);
         let build = |entries, vertices, topology| {
             let recipe = Recipe {

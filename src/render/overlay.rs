@@ -23,6 +23,10 @@ fn ring(radius: f32, count: u32) -> impl Iterator<Item = [f32; 2]> {
     })
 }
 
+/// Shapes with pipelines of their own.
+const RECTANGLE: u32 = 0;
+const GLYPH: u32 = 2;
+
 /// One mark or glyph as the shader reads it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
@@ -50,35 +54,37 @@ pub(super) struct CanvasUniform {
 /// The pipeline of the overlay, and the marks and glyphs of one picture.
 #[derive(Debug)]
 pub(super) struct Overlay {
-    pipeline: wgpu::RenderPipeline,
+    /// For rectangles, for other marks, and for glyphs.
+    pipelines: [wgpu::RenderPipeline; 3],
     layout: wgpu::BindGroupLayout,
     canvas: GrowingBuffer<CanvasUniform>,
     glyphs: Glyphs,
     marks: GrowingBuffer<Mark>,
-    /// How many of the marks lie below the bodies, and how many are marks and no glyphs.
-    under: u32,
-    plain: u32,
+    /// The pipeline of runs of marks in the order in which they are drawn: below the bodies, above them, and words.
+    runs: [Vec<(usize, Range<u32>)>; 3],
     bind_group: Option<wgpu::BindGroup>,
 }
 
 impl Overlay {
     pub(super) fn new(gpu: &Gpu) -> Self {
         let module = shader(gpu, "overlay", &[SHADER]);
-        let entries = [uniform_entry(0, size_of::<CanvasUniform>(), false), texture_entry(1, false, 1)];
+        let entries = [uniform_entry(0, size_of::<CanvasUniform>(), false), texture_entry(1, false)];
         let layout = group_layout(gpu, "overlay", &entries);
-        let recipe = Recipe {
-            groups: &[&layout],
-            vertices: &[Some(for_instances::<Mark>(&ATTRIBUTES))],
-            ..Recipe::rectangles("overlay", &module, ["corner", "mark_colour"], ENCODED_FORMAT)
+        let build = |fragment| {
+            let recipe = Recipe {
+                groups: &[&layout],
+                vertices: &[Some(for_instances::<Mark>(&ATTRIBUTES))],
+                ..Recipe::rectangles("overlay", &module, ["corner", fragment], ENCODED_FORMAT)
+            };
+            recipe.build(gpu)
         };
         Self {
-            pipeline: recipe.build(gpu),
+            pipelines: ["rectangle_colour", "mark_colour", "glyph_colour"].map(build),
             layout,
             canvas: GrowingBuffer::new(gpu, "canvas", wgpu::BufferUsages::UNIFORM, 1),
             glyphs: Glyphs::new(gpu),
             marks: GrowingBuffer::new(gpu, "marks", wgpu::BufferUsages::VERTEX, 256),
-            under: 0,
-            plain: 0,
+            runs: Default::default(),
             bind_group: None,
         }
     }
@@ -86,8 +92,7 @@ impl Overlay {
     /// Uploads the marks and glyphs of a picture.
     pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
         let mut marks: Vec<_> = picture.under.iter().chain(&picture.marks).map(plain).collect();
-        self.under = picture.under.len() as u32;
-        self.plain = marks.len() as u32;
+        let (under, above) = (picture.under.len() as u32, marks.len() as u32);
         for run in &picture.words {
             if run.has_halo {
                 let offsets = HALO.iter().flat_map(|&(radius, count)| ring(radius * run.size, count));
@@ -97,6 +102,7 @@ impl Overlay {
             self.write_run(&picture.fonts, run, run.colour, [0.0; 2], &mut marks);
         }
         self.marks.write(gpu, &marks);
+        self.runs = [0..under, under..above, above..marks.len() as u32].map(|range| runs(&marks, range));
         if self.glyphs.upload(gpu) || self.bind_group.is_none() {
             let size = picture.size.map(|length| length as f32);
             self.canvas.write(gpu, &[CanvasUniform { size, unused: [0.0; 2] }]);
@@ -116,7 +122,7 @@ impl Overlay {
                     colour: opaque(colour),
                     second: opaque(colour),
                     glyph: raster.at,
-                    shape: 2,
+                    shape: GLYPH,
                 });
             }
         }
@@ -129,27 +135,49 @@ impl Overlay {
 
     /// Draws the marks below the bodies.
     pub(super) fn draw_under(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.draw_range(pass, 0..self.under);
+        self.draw_runs(pass, &self.runs[0]);
     }
 
     /// Draws the marks above the bodies.
     pub(super) fn draw_marks(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.draw_range(pass, self.under..self.plain);
+        self.draw_runs(pass, &self.runs[1]);
     }
 
     /// Draws the words.
     pub(super) fn draw_words(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.draw_range(pass, self.plain..self.marks.len() as u32);
+        self.draw_runs(pass, &self.runs[2]);
     }
 
-    fn draw_range(&self, pass: &mut wgpu::RenderPass<'_>, range: Range<u32>) {
-        if !range.is_empty() {
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, self.bind_group.as_ref(), &[]);
-            pass.set_vertex_buffer(0, self.marks.buffer().slice(..));
-            pass.draw(0..4, range);
+    fn draw_runs(&self, pass: &mut wgpu::RenderPass<'_>, runs: &[(usize, Range<u32>)]) {
+        pass.set_bind_group(0, self.bind_group.as_ref(), &[]);
+        pass.set_vertex_buffer(0, self.marks.buffer().slice(..));
+        for (pipeline, range) in runs {
+            pass.set_pipeline(&self.pipelines[*pipeline]);
+            pass.draw(0..4, range.clone());
         }
     }
+}
+
+/// The pipeline of a mark, by its place in [`Overlay::pipelines`].
+fn pipeline(mark: &Mark) -> usize {
+    match mark.shape {
+        RECTANGLE => 0,
+        GLYPH => 2,
+        _ => 1,
+    }
+}
+
+/// Marks in a range, in runs that share a pipeline.
+fn runs(marks: &[Mark], range: Range<u32>) -> Vec<(usize, Range<u32>)> {
+    let mut start = range.start;
+    let of_one =
+        marks[range.start as usize..range.end as usize].chunk_by(|one, other| pipeline(one) == pipeline(other));
+    let mut run = |marks: &[Mark]| {
+        let first = start;
+        start += marks.len() as u32;
+        (pipeline(&marks[0]), first..start)
+    };
+    of_one.map(&mut run).collect()
 }
 
 fn opaque([red, green, blue]: Colour) -> [u8; 4] {
@@ -166,7 +194,7 @@ fn plain(mark: &picture::Mark) -> Mark {
         second: opaque(mark.second),
         glyph: [0; 2],
         shape: match mark.shape {
-            MarkShape::Filled => 0,
+            MarkShape::Filled => RECTANGLE,
             MarkShape::Struck => 1,
             MarkShape::Node => 3,
             MarkShape::CounterClockwise => 4,

@@ -31,10 +31,8 @@ pub(super) struct PanelUniform {
     pub(super) place: Vec4,
     pub(super) opacity: f32,
     pub(super) hatch: f32,
-    pub(super) behind: f32,
     pub(super) line_share: f32,
     pub(super) contour_share: f32,
-    pub(super) unused: [f32; 3],
     pub(super) occluders: [OccluderUniform; MOST_OCCLUDERS],
 }
 
@@ -143,10 +141,8 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         place: Vec4::new(left, top, sight.middle[0], sight.middle[1]),
         opacity: panel.opacity,
         hatch: if panel.hatch { 1.0 } else { 0.0 },
-        behind: if has_behind(panel) { 1.0 } else { 0.0 },
         line_share: sight.line_share,
         contour_share: sight.contour_share,
-        unused: [0.0; 3],
         occluders: std::array::from_fn(|at| {
             panel.obstacles.occluders.get(at).map_or(OccluderUniform::NONE, OccluderUniform::new)
         }),

@@ -6,12 +6,18 @@ use crate::gpu::Gpu;
 pub(super) const BODY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Depth is the near distance over the distance: 1 nearest, 0 infinitely far.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// What is added to linear colours at borders, multiplied with alpha.
+pub(super) const BORDER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Opacities of four kinds of lines.
 pub(super) const LINE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// The finished picture, written as linear light.
 pub(super) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// The finished picture, written as sRGB values.
 pub(super) const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// Surfaces are moved back by what their depth changes within about a pixel, so that lines on them, which are tested against
+/// the pixels around, lie before them however they are turned. Greater depths are nearer.
+const LINES_BEFORE: f32 = -1.0;
 
 /// The description of a pipeline, as far as pipelines differ.
 pub(super) struct Recipe<'a> {
@@ -24,7 +30,8 @@ pub(super) struct Recipe<'a> {
     pub(super) target: wgpu::TextureFormat,
     pub(super) blend: Option<wgpu::BlendState>,
     pub(super) depth: bool,
-    pub(super) samples: u32,
+    /// How much farther depth is stored than it is, in parts of what it changes from pixel to pixel.
+    pub(super) slope: f32,
 }
 
 impl<'a> Recipe<'a> {
@@ -45,20 +52,15 @@ impl<'a> Recipe<'a> {
             target,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),
             depth: false,
-            samples: 1,
+            slope: 0.0,
         }
     }
 
     /// Opaque triangles with depth, in the textures that hold bodies.
-    pub(super) fn bodies(
-        label: &'static str,
-        shader: &'a wgpu::ShaderModule,
-        entries: [&'static str; 2],
-        samples: u32,
-    ) -> Self {
+    pub(super) fn bodies(label: &'static str, shader: &'a wgpu::ShaderModule, entries: [&'static str; 2]) -> Self {
         let topology = wgpu::PrimitiveTopology::TriangleList;
         let rectangles = Self::rectangles(label, shader, entries, BODY_FORMAT);
-        Self { topology, blend: None, depth: true, samples, ..rectangles }
+        Self { topology, blend: None, depth: true, slope: LINES_BEFORE, ..rectangles }
     }
 
     pub(super) fn build(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
@@ -83,9 +85,9 @@ impl<'a> Recipe<'a> {
                 depth_write_enabled: Some(true),
                 depth_compare: Some(wgpu::CompareFunction::Greater),
                 stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
+                bias: wgpu::DepthBiasState { slope_scale: self.slope, ..Default::default() },
             }),
-            multisample: wgpu::MultisampleState { count: self.samples, ..Default::default() },
+            multisample: wgpu::MultisampleState::default(),
             fragment: Some(wgpu::FragmentState {
                 module: self.shader,
                 entry_point: Some(self.entries[1]),
@@ -136,7 +138,7 @@ pub(super) fn uniform_entry(binding: u32, size: usize, has_dynamic_offset: bool)
 }
 
 /// A texture that is read pixel by pixel.
-pub(super) fn texture_entry(binding: u32, depth: bool, samples: u32) -> wgpu::BindGroupLayoutEntry {
+pub(super) fn texture_entry(binding: u32, depth: bool) -> wgpu::BindGroupLayoutEntry {
     let sample_type = match depth {
         true => wgpu::TextureSampleType::Depth,
         false => wgpu::TextureSampleType::Float { filterable: false },
@@ -147,7 +149,7 @@ pub(super) fn texture_entry(binding: u32, depth: bool, samples: u32) -> wgpu::Bi
         ty: wgpu::BindingType::Texture {
             sample_type,
             view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: samples > 1,
+            multisampled: false,
         },
         count: None,
     }

@@ -4,7 +4,7 @@ use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;
 use super::panel::{OccluderUniform, PanelUniform};
 use super::{
-    PANEL_SHADER, SEGMENT_SHADER, composite, curve, ground, line, obstacle, overlay, sampled, stroke, surface, tint,
+    BODIES_SHADER, PANEL_SHADER, border, composite, curve, ground, line, obstacle, overlay, stroke, surface, tint,
 };
 use crate::picture::MOST_OCCLUDERS;
 use std::mem::offset_of;
@@ -24,20 +24,17 @@ fn shaders_are_valid() {
     parse(&[PANEL_SHADER, ground::SHADER]);
     parse(&[overlay::SHADER]);
     parse(&[curve::SHADER]);
-    for samples in [1, 4] {
-        for occluders in 0..=MOST_OCCLUDERS {
-            parse(&surface::parts(samples, occluders));
-            parse(&[&surface::parts(samples, occluders)[..], &[tint::SHADER]].concat());
-        }
-        parse(&[&surface::parts(samples, 0)[..], &[obstacle::SHADER]].concat());
-        let [positions, reading, alarm] = sampled(samples);
-        for obstacles in [line::ALONE_SHADER, line::AMONG_SHADER] {
-            parse(&[PANEL_SHADER, SEGMENT_SHADER, positions, reading, obstacles, alarm, line::SHADER]);
-        }
-        parse(&[PANEL_SHADER, SEGMENT_SHADER, positions, reading, obstacle::PANE_SHADER]);
-        parse(&[PANEL_SHADER, reading, composite::SHADER]);
-        parse(&[PANEL_SHADER, SEGMENT_SHADER, positions, reading, stroke::SHADER]);
+    for occluders in 0..=MOST_OCCLUDERS {
+        parse(&surface::parts(occluders));
+        parse(&[&surface::parts(occluders)[..], &[tint::SHADER]].concat());
     }
+    parse(&[&surface::parts(0)[..], &[obstacle::SHADER]].concat());
+    parse(&border::parts());
+    parse(&line::parts(false));
+    parse(&line::parts(true));
+    parse(&obstacle::pane_parts());
+    parse(&[PANEL_SHADER, BODIES_SHADER, composite::SHADER]);
+    parse(&stroke::parts());
 }
 
 /// Names and places of the fields of a struct, and its size.
@@ -62,7 +59,7 @@ fn structs_are_laid_out_alike_on_both_sides() {
     let module = parse(&[PANEL_SHADER, ground::SHADER]);
     same_layout!(module, "Panel", PanelUniform,
         clip eye near key flatness up floor sound element alarm line_scale alarm_line outline_alpha edge focal outline soft
-        region place opacity hatch behind line_share contour_share occluders);
+        region place opacity hatch line_share contour_share occluders);
     same_layout!(module, "Occluder", OccluderUniform, first second rotation);
     same_layout!(module, "Ground", GroundUniform,
         first second middle fade key sky background floor grid shadow viewport);
@@ -72,7 +69,7 @@ fn structs_are_laid_out_alike_on_both_sides() {
 
 #[test]
 fn the_scale_of_a_field_has_as_many_colours_on_both_sides() {
-    let module = parse(&[&surface::parts(4, 0)[..], &[tint::SHADER]].concat());
+    let module = parse(&[&surface::parts(0)[..], &[tint::SHADER]].concat());
     let ramp = module.global_variables.iter().find(|(_, variable)| variable.name.as_deref() == Some("ramp"));
     let (_, ramp) = ramp.expect("the scale");
     let naga::TypeInner::Array { size: naga::ArraySize::Constant(count), stride, .. } = module.types[ramp.ty].inner

@@ -8,7 +8,12 @@ use crate::picture::{Bead, Colour, Picture, Second, Stroke};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
-pub(super) const SHADER: &str = include_str!("../../shaders/stroke.wgsl");
+const SHADER: &str = include_str!("../../shaders/stroke.wgsl");
+
+/// The parts of the shader.
+pub(super) fn parts() -> [&'static str; 5] {
+    [super::PANEL_SHADER, super::SEGMENT_SHADER, super::TAPS_SHADER, super::BODIES_SHADER, SHADER]
+}
 
 /// One line or disc as the shader reads it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -43,11 +48,9 @@ impl Strokes {
         picture.panels.iter().any(|panel| !panel.strokes.is_empty() || !panel.beads.is_empty())
     }
 
-    pub(super) fn new(gpu: &Gpu, panels: &Panels, bodies: &Bodies, samples: u32) -> Self {
-        let [positions, reading, _] = super::sampled(samples);
-        let parts = [super::PANEL_SHADER, super::SEGMENT_SHADER, positions, reading, SHADER];
-        let module = shader(gpu, "stroke", &parts);
-        let layout = group_layout(gpu, "depth of bodies", &[texture_entry(1, true, samples)]);
+    pub(super) fn new(gpu: &Gpu, panels: &Panels, bodies: &Bodies) -> Self {
+        let module = shader(gpu, "stroke", &parts());
+        let layout = group_layout(gpu, "depth of bodies", &[texture_entry(1, true)]);
         let recipe = Recipe {
             groups: &[&panels.layout, &layout],
             vertices: &[Some(for_instances::<Instance>(&ATTRIBUTES))],

@@ -1,6 +1,6 @@
-//! Surfaces of bodies: the turned-over set by itself, then both sets with all samples.
+//! Surfaces of bodies: the turned-over set by itself, then both sets.
 
-use super::panel::{Panels, is_plain};
+use super::panel::{Panels, has_behind, is_plain};
 use super::pipeline::{Recipe, bind_textures, for_vertices, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
@@ -30,11 +30,10 @@ const COUNTS: [&str; MOST_OCCLUDERS + 1] = [
     "const OCCLUDERS = 5u;\n",
 ];
 
-/// The parts of the shader, for a number of samples and of obstacles near a body.
-pub(super) fn parts(samples: u32, occluders: usize) -> [&'static str; 6] {
+/// The parts of the shader, for a number of obstacles near a body.
+pub(super) fn parts(occluders: usize) -> [&'static str; 5] {
     let obstacles = if occluders > 0 { AMONG_SHADER } else { ALONE_SHADER };
-    let [positions, _, alarm] = super::sampled(samples);
-    [super::PANEL_SHADER, positions, alarm, COUNTS[occluders], obstacles, SHADER]
+    [super::PANEL_SHADER, super::TURNED_OVER_SHADER, COUNTS[occluders], obstacles, SHADER]
 }
 
 /// The largest number of obstacles near one of the bodies of a picture.
@@ -52,6 +51,8 @@ pub(super) struct Pipelines {
     pub(super) alarm_behind: wgpu::RenderPipeline,
     pub(super) alarm: wgpu::RenderPipeline,
     pub(super) sound: wgpu::RenderPipeline,
+    /// The same where something lies behind.
+    pub(super) before: wgpu::RenderPipeline,
 }
 
 /// The two sets of elements of a panel, in the order in which they are stored.
@@ -69,8 +70,8 @@ pub(super) struct Colouring<'a> {
 }
 
 /// The textures of the turned-over set, which is seen through the other surfaces.
-pub(super) fn behind_entries(samples: u32) -> [wgpu::BindGroupLayoutEntry; 2] {
-    [texture_entry(2, true, samples), texture_entry(3, false, samples)]
+pub(super) fn behind_entries() -> [wgpu::BindGroupLayoutEntry; 2] {
+    [texture_entry(2, true), texture_entry(3, false)]
 }
 
 /// The pipelines of the surfaces, and the meshes of one picture.
@@ -78,50 +79,48 @@ pub(super) fn behind_entries(samples: u32) -> [wgpu::BindGroupLayoutEntry; 2] {
 pub(super) struct Surfaces {
     /// Made when they are first needed.
     pipelines: ForOccluders<Pipelines>,
-    samples: u32,
     behind_layout: wgpu::BindGroupLayout,
     behind: Option<wgpu::BindGroup>,
     vertices: GrowingBuffer<Vertex>,
     indices: GrowingBuffer<u32>,
     /// The indices of each panel's two sets.
     ranges: Vec<[Range<u32>; 2]>,
-    /// Whether a panel's surfaces are coloured by a field.
-    are_coloured: Vec<bool>,
+    /// Whether a panel's surfaces are coloured by a field, and whether anything lies behind them.
+    kinds: Vec<[bool; 2]>,
 }
 
 impl Surfaces {
-    pub(super) fn new(gpu: &Gpu, samples: u32) -> Self {
-        let behind_layout = group_layout(gpu, "turned over", &behind_entries(samples));
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        let behind_layout = group_layout(gpu, "turned over", &behind_entries());
         Self {
             pipelines: ForOccluders::default(),
-            samples,
             behind_layout,
             behind: None,
             vertices: GrowingBuffer::new(gpu, "vertices", wgpu::BufferUsages::VERTEX, 1024),
             indices: GrowingBuffer::new(gpu, "indices", wgpu::BufferUsages::INDEX, 4096),
             ranges: Vec::new(),
-            are_coloured: Vec::new(),
+            kinds: Vec::new(),
         }
     }
 
-    fn made(gpu: &Gpu, panels: &Panels, behind: &wgpu::BindGroupLayout, samples: u32, occluders: usize) -> Pipelines {
-        let module = shader(gpu, "surface", &parts(samples, occluders));
+    fn made(gpu: &Gpu, panels: &Panels, behind: &wgpu::BindGroupLayout, occluders: usize) -> Pipelines {
+        let module = shader(gpu, "surface", &parts(occluders));
         let build = |label, entries, groups: &[&wgpu::BindGroupLayout]| {
-            let recipe =
-                Recipe { groups, vertices: &[Some(vertices())], ..Recipe::bodies(label, &module, entries, samples) };
+            let recipe = Recipe { groups, vertices: &[Some(vertices())], ..Recipe::bodies(label, &module, entries) };
             recipe.build(gpu)
         };
         Pipelines {
             alarm_behind: build("turned over, behind", ["alarm_corner", "alarm_behind"], &[&panels.layout]),
             alarm: build("turned over", ["alarm_corner", "alarm_surface"], &[&panels.layout]),
-            sound: build("sound", ["sound_corner", "sound_surface"], &[&panels.layout, behind]),
+            sound: build("sound", ["sound_corner", "sound_surface"], &[&panels.layout]),
+            before: build("sound, before others", ["sound_corner", "sound_before"], &[&panels.layout, behind]),
         }
     }
 
     /// Prepares to draw a picture without a field.
     pub(super) fn prepare(&mut self, gpu: &Gpu, panels: &Panels, picture: &Picture) {
         let count = occluders(picture);
-        let made = || Self::made(gpu, panels, &self.behind_layout, self.samples, count);
+        let made = || Self::made(gpu, panels, &self.behind_layout, count);
         self.pipelines[count].get_or_insert_with(made);
     }
 
@@ -135,7 +134,7 @@ impl Surfaces {
             start..indices.len() as u32
         };
         self.ranges = picture.panels.iter().map(|panel| [add(&panel.sound), add(&panel.turned_over)]).collect();
-        self.are_coloured = picture.panels.iter().map(|panel| !is_plain(picture, panel)).collect();
+        self.kinds = picture.panels.iter().map(|panel| [!is_plain(picture, panel), has_behind(panel)]).collect();
         self.vertices.write(gpu, &vertices);
         self.indices.write(gpu, &indices);
     }
@@ -160,7 +159,7 @@ impl Surfaces {
         places: &[Rectangle],
         colourings: [Option<Colouring<'_>>; 2],
     ) {
-        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.alarm_behind, TURNED_OVER);
+        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.alarm_behind, (TURNED_OVER, true));
     }
 
     /// Draws everything.
@@ -171,8 +170,9 @@ impl Surfaces {
         places: &[Rectangle],
         colourings: [Option<Colouring<'_>>; 2],
     ) {
-        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.alarm, TURNED_OVER);
-        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.sound, SOUND);
+        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.alarm, (TURNED_OVER, true));
+        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.sound, (SOUND, false));
+        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.before, (SOUND, true));
     }
 
     fn draw(
@@ -182,12 +182,13 @@ impl Surfaces {
         places: &[Rectangle],
         colourings: [Option<Colouring<'_>>; 2],
         pipeline: fn(&Pipelines) -> &wgpu::RenderPipeline,
-        set: usize,
+        (set, with_behind): (usize, bool),
     ) {
         pass.set_vertex_buffer(0, self.vertices.buffer().slice(..));
         pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
         for (colouring, coloured) in colourings.into_iter().zip([false, true]) {
-            let Some(colouring) = colouring else { continue };
+            let kind = [coloured, with_behind];
+            let Some(colouring) = colouring.filter(|_| self.kinds.contains(&kind)) else { continue };
             pass.set_pipeline(pipeline(colouring.pipelines));
             if let Some(group) = colouring.groups[set] {
                 pass.set_bind_group(1, group, &[]);
@@ -195,7 +196,7 @@ impl Surfaces {
             if let Some(shades) = colouring.shades {
                 pass.set_vertex_buffer(1, shades.slice(..));
             }
-            let own = |(panel, &place): (usize, &Rectangle)| match self.are_coloured[panel] == coloured {
+            let own = |(panel, &place): (usize, &Rectangle)| match self.kinds[panel] == kind {
                 true => place,
                 false => [0; 4],
             };

@@ -1,6 +1,6 @@
 //! The textures that pictures are drawn into.
 
-use super::pipeline::{BODY_FORMAT, DEPTH_FORMAT, ENCODED_FORMAT, LINE_FORMAT, PICTURE_FORMAT};
+use super::pipeline::{BODY_FORMAT, BORDER_FORMAT, DEPTH_FORMAT, ENCODED_FORMAT, LINE_FORMAT, PICTURE_FORMAT};
 use crate::gpu::Gpu;
 
 /// Textures that hold bodies grow in steps of this length (px), so that a body in motion seldom needs new ones.
@@ -38,27 +38,29 @@ impl Canvas {
 #[derive(Debug)]
 pub(super) struct Bodies {
     pub(super) size: [u32; 2],
-    /// Everything of the bodies, with all samples.
+    /// Everything of the bodies.
     pub(super) colour: wgpu::TextureView,
     pub(super) depth: wgpu::TextureView,
     /// Whether the next two have the full size, or a single pixel that is never read.
     has_behind: bool,
-    /// The turned-over elements by themselves, with all samples.
+    /// The turned-over elements by themselves.
     pub(super) alarm_colour: wgpu::TextureView,
     pub(super) alarm_depth: wgpu::TextureView,
+    /// What pixels gain that borders cross.
+    pub(super) borders: wgpu::TextureView,
     /// Opacities of lines.
     pub(super) lines: wgpu::TextureView,
 }
 
 impl Bodies {
     /// Textures of a size, with or without those of the turned-over set alone.
-    pub(super) fn new(gpu: &Gpu, size: [u32; 2], samples: u32, has_behind: bool) -> Self {
-        let texture = |label, size, format, sample_count| {
+    pub(super) fn new(gpu: &Gpu, size: [u32; 2], has_behind: bool) -> Self {
+        let texture = |label, size, format| {
             let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: extent(size),
                 mip_level_count: 1,
-                sample_count,
+                sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
                 format,
                 usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
@@ -69,12 +71,13 @@ impl Bodies {
         let behind = if has_behind { size } else { [1; 2] };
         Self {
             size,
-            colour: texture("bodies", size, BODY_FORMAT, samples),
-            depth: texture("depth of bodies", size, DEPTH_FORMAT, samples),
+            colour: texture("bodies", size, BODY_FORMAT),
+            depth: texture("depth of bodies", size, DEPTH_FORMAT),
             has_behind,
-            alarm_colour: texture("turned over", behind, BODY_FORMAT, samples),
-            alarm_depth: texture("depth of turned over", behind, DEPTH_FORMAT, samples),
-            lines: texture("lines", size, LINE_FORMAT, 1),
+            alarm_colour: texture("turned over", behind, BODY_FORMAT),
+            alarm_depth: texture("depth of turned over", behind, DEPTH_FORMAT),
+            borders: texture("borders", size, BORDER_FORMAT),
+            lines: texture("lines", size, LINE_FORMAT),
         }
     }
 

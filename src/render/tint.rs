@@ -17,7 +17,6 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![3 => Flo
 #[derive(Debug)]
 pub(super) struct Tint {
     pipelines: ForOccluders<Pipelines>,
-    samples: u32,
     alarm_layout: wgpu::BindGroupLayout,
     /// For the turned-over sets: the scale; for the others also what lies behind them.
     alarm_group: wgpu::BindGroup,
@@ -28,16 +27,15 @@ pub(super) struct Tint {
 }
 
 impl Tint {
-    pub(super) fn new(gpu: &Gpu, bodies: &Bodies, samples: u32) -> Self {
+    pub(super) fn new(gpu: &Gpu, bodies: &Bodies) -> Self {
         let scale = || uniform_entry(4, SHADES * size_of::<Vec4>(), false);
         let alarm_layout = group_layout(gpu, "scale", &[scale()]);
-        let [depth, colour] = surface::behind_entries(samples);
+        let [depth, colour] = surface::behind_entries();
         let behind = [depth, colour, scale()];
         let sound_layout = group_layout(gpu, "scale, turned over", &behind);
         let ramp = GrowingBuffer::new(gpu, "scale", wgpu::BufferUsages::UNIFORM, SHADES);
         Self {
             pipelines: ForOccluders::default(),
-            samples,
             alarm_group: bind(gpu, "scale", &alarm_layout, &[(4, ramp.buffer().as_entire_binding())]),
             alarm_layout,
             sound_group: sound_group(gpu, &sound_layout, &ramp, bodies),
@@ -47,20 +45,14 @@ impl Tint {
         }
     }
 
-    fn made(
-        gpu: &Gpu,
-        panels: &Panels,
-        layouts: [&wgpu::BindGroupLayout; 2],
-        samples: u32,
-        occluders: usize,
-    ) -> Pipelines {
-        let module = shader(gpu, "tint", &[&surface::parts(samples, occluders)[..], &[SHADER]].concat());
+    fn made(gpu: &Gpu, panels: &Panels, layouts: [&wgpu::BindGroupLayout; 2], occluders: usize) -> Pipelines {
+        let module = shader(gpu, "tint", &[&surface::parts(occluders)[..], &[SHADER]].concat());
         let vertices = [Some(surface::vertices()), Some(for_vertices::<f32>(&ATTRIBUTES))];
         let build = |label, entries, layout| {
             let recipe = Recipe {
                 groups: &[&panels.layout, layout],
                 vertices: &vertices,
-                ..Recipe::bodies(label, &module, entries, samples)
+                ..Recipe::bodies(label, &module, entries)
             };
             recipe.build(gpu)
         };
@@ -69,6 +61,7 @@ impl Tint {
             alarm_behind: build("turned over, behind, coloured", ["tinted_alarm_corner", "tinted_behind"], of_alarm),
             alarm: build("turned over, coloured", ["tinted_alarm_corner", "tinted_alarm"], of_alarm),
             sound: build("sound, coloured", ["tinted_corner", "tinted_sound"], of_sound),
+            before: build("sound, coloured, before others", ["tinted_corner", "tinted_before"], of_sound),
         }
     }
 
@@ -76,7 +69,7 @@ impl Tint {
     pub(super) fn prepare(&mut self, gpu: &Gpu, panels: &Panels, picture: &Picture) {
         let count = surface::occluders(picture);
         let layouts = [&self.alarm_layout, &self.sound_layout];
-        self.pipelines[count].get_or_insert_with(|| Self::made(gpu, panels, layouts, self.samples, count));
+        self.pipelines[count].get_or_insert_with(|| Self::made(gpu, panels, layouts, count));
     }
 
     /// By the field, for a number of obstacles near a body that was prepared.

@@ -210,12 +210,12 @@ fn any_number_of_threads_makes_the_same_bytes() {
 #[test]
 fn rendering_makes_animations_meanwhile() {
     let Some(place) = crate::render::place_to_draw() else { return };
-    let ran = place.run("render small.toml --samples 1 --animate a.gif --animate a.apng").good();
+    let ran = place.run("render small.toml --animate a.gif --animate a.apng").good();
     for line in ["a.gif  96×64, 4 pictures of 7 frames in 0.13 s", "a.apng  96×64, 7 pictures in 0.12 s"] {
         assert!(ran.out.contains(line), "{line}: {}", ran.out);
     }
     place.run("animate output/small -o b.apng").good();
-    let ran = place.run("render small.toml --samples 1 --animate c.apng --no-frames -o numbers").good();
+    let ran = place.run("render small.toml --animate c.apng --no-frames -o numbers").good();
     assert!(ran.out.contains("7 frames simulated in numbers"), "{}", ran.out);
     assert_eq!(place.names("numbers"), ["diagnostics.csv", "run.json"]);
     let (frames, _) = decode_apng(&place.path("a.apng"));
@@ -236,13 +236,13 @@ fn rendering_makes_animations_meanwhile() {
 fn rendering_makes_sheets_meanwhile() {
     let Some(place) = crate::render::place_to_draw() else { return };
     place.write("long.toml", &lasting("0.3"));
-    let ran = place.run("render long.toml --samples 1 --animate a.png").good();
+    let ran = place.run("render long.toml --animate a.png").good();
     assert!(ran.out.contains("a.png  1920×1080, 12 pictures of 19 frames, "), "{}", ran.out);
     let ran = place.run("animate output/long -o b.png").good();
     assert!(ran.out.contains("b.png  1920×1080, 12 pictures of 19 frames, "), "{}", ran.out);
     let pixels = |name: &str| localshape::internals::Pixels::read(&place.path(name)).unwrap().bytes;
     assert!(pixels("a.png") == pixels("b.png"), "the same frames with the same times");
-    let ran = place.run("render long.toml --samples 1 --animate c.png --frames 0-13 --no-frames -o c").good();
+    let ran = place.run("render long.toml --animate c.png --frames 0-13 --no-frames -o c").good();
     assert!(ran.out.contains("c.png  1920×1080, 14 pictures, "), "all that were chosen: {}", ran.out);
 }
 
@@ -253,7 +253,7 @@ fn an_interrupted_rendering_makes_no_animation() {
     use crate::interrupt::{signal, start};
     let Some(place) = crate::render::place_to_draw() else { return };
     place.write("long.toml", &lasting("100"));
-    let arguments = "render long.toml --samples 1 --animate a.gif --animate b.apng";
+    let arguments = "render long.toml --animate a.gif --animate b.apng";
     let running = start(&place, arguments, "output/long/frame_00001.png");
     signal(&running, &["INT"]);
     let ran = running.wait();

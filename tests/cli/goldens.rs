@@ -85,15 +85,9 @@ fn a_golden_is_made_and_passes_until_the_state_moves() {
 #[test]
 fn drawing_is_never_taken_for_physics() {
     let Some(place) = with_golden() else { return };
-    // Another number of samples.
-    let coarse = place.run("compare golden small.toml --samples 1");
-    assert_eq!(coarse.status, Some(1));
-    assert!(coarse.out.contains("same state, drawn differently") && !coarse.out.contains("moved"), "{coarse:?}");
-    assert!(coarse.out.contains("14 states are the same"), "{coarse:?}");
     // Another width of the driver's vectors.
-    place.run("compare --bless coarse small.toml --samples 1").good();
     for width in ["256", "512"] {
-        let mut command = place.command(["compare", "coarse", "small.toml"]);
+        let mut command = place.command(["compare", "golden", "small.toml"]);
         let wide = run(command.env("LP_NATIVE_VECTOR_WIDTH", width));
         assert!(wide.status == Some(0) && wide.out.contains("14 states are the same"), "{width}: {wide:?}");
     }
@@ -144,8 +138,8 @@ fn only_what_failed_is_rewritten() {
     assert_eq!(names.map(made), before);
     place.run("compare golden small.toml").good();
     // The command that accepts it contains the options of this one.
-    let other = place.run("compare golden small.toml --size 90x64 --samples 1 --frames 3").out;
-    assert!(other.contains("--bless --frames 3 --size 90x64 --samples 1 golden small.toml\n"), "{other}");
+    let other = place.run("compare golden small.toml --size 90x64 --frames 3").out;
+    assert!(other.contains("--bless --frames 3 --size 90x64 golden small.toml\n"), "{other}");
     // Nothing outside the golden is changed.
     place.write("precious.png", "precious");
     let record = place.read("golden/golden.toml").replace("\"frame_00002.png\"", "\"../precious.png\"");

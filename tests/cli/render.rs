@@ -43,7 +43,7 @@ fn pixels(path: &Path) -> ([u32; 2], Vec<u8>) {
 fn a_scene_without_a_background_makes_frames_with_opacities() {
     let Some(place) = place_to_draw() else { return };
     place.write("clear.toml", &format!("{SMALL}background = \"transparent\"\n"));
-    place.run("render clear.toml --samples 1 --frames 0-2").good();
+    place.run("render clear.toml --frames 0-2").good();
     let path = place.path("output/clear/frame_00002.png");
     let file = std::io::BufReader::new(std::fs::File::open(&path).expect("a frame"));
     let mut reader = png::Decoder::new(file).read_info().expect("a picture");
@@ -54,7 +54,7 @@ fn a_scene_without_a_background_makes_frames_with_opacities() {
     assert!(bytes.chunks_exact(4).any(|pixel| pixel[3] == 255), "and bodies");
     assert_eq!(tags(&path).frame(), Some(2));
     let first = std::fs::read(&path).expect("a frame");
-    place.run("render clear.toml --samples 1 --frames 2").good();
+    place.run("render clear.toml --frames 2").good();
     assert_eq!(std::fs::read(&path).expect("a frame"), first, "the same bytes again");
 }
 
@@ -93,7 +93,7 @@ fn frames_for_print_say_their_resolution_and_refuse_small_type() {
     let place = Place::new();
     let sized = |size: &str| SMALL.replace("size = [96, 64]", &format!("size = {size}"));
     place.write("print.toml", &sized("{ mm = [90, 60], dpi = 100 }\ntext_scale = { pt = 8 }"));
-    place.run("render print.toml --frames 0 --samples 1").good();
+    place.run("render print.toml --frames 0").good();
     let file = std::io::BufReader::new(std::fs::File::open(place.path("output/print/frame_00000.png")).unwrap());
     let reader = png::Decoder::new(file).read_info().expect("a picture");
     let info = reader.info();
@@ -111,14 +111,14 @@ fn frames_for_print_say_their_resolution_and_refuse_small_type() {
 #[test]
 fn frames_of_another_size_or_with_other_runs_are_refused_unless_told() {
     let Some(place) = place_to_draw() else { return };
-    place.run("render small.toml --samples 1 --frames 0-2").good();
-    place.run("render small.toml --samples 1 --frames 3").good();
+    place.run("render small.toml --frames 0-2").good();
+    place.run("render small.toml --frames 3").good();
     for command in ["--size 80x60", "--only Mass-spring"] {
-        let ran = place.run(&format!("render small.toml --samples 1 --frames 1 {command}"));
+        let ran = place.run(&format!("render small.toml --frames 1 {command}"));
         ran.bad(2, &["output/small holds 4 frames of this scene of 96×64 pixels", "-o", "--overwrite"]);
     }
     assert_eq!(place.names("output/small").len(), 2 + 4);
-    place.run("render small.toml --samples 1 --frames 1 --size 80x60 --overwrite").good();
+    place.run("render small.toml --frames 1 --size 80x60 --overwrite").good();
     assert_eq!(place.names("output/small"), ["diagnostics.csv", "frame_00001.png", "run.json"]);
     // Numbers can be beside any frames of the scene.
     place.run("simulate small.toml").good();
@@ -127,7 +127,7 @@ fn frames_of_another_size_or_with_other_runs_are_refused_unless_told() {
 #[test]
 fn frames_diagnostics_and_summary() {
     let Some(place) = place_to_draw() else { return };
-    let ran = place.run("render small.toml --samples 1").good();
+    let ran = place.run("render small.toml").good();
     assert!(ran.out.contains("7 frames of 96×64 in output/small"), "{}", ran.out);
     assert!(ran.out.contains("drawing") && ran.out.contains("encoding"), "{}", ran.out);
     let names = place.names("output/small");
@@ -164,8 +164,8 @@ fn frames_diagnostics_and_summary() {
 #[test]
 fn again_and_without_pictures() {
     let Some(place) = place_to_draw() else { return };
-    place.run("render small.toml -o one --threads 1 --samples 1").good();
-    place.run("render small.toml -o two --threads 3 --samples 1").good();
+    place.run("render small.toml -o one --threads 1").good();
+    place.run("render small.toml -o two --threads 3").good();
     place.run("simulate small.toml -o numbers").good();
     assert_eq!(place.read("one/diagnostics.csv"), place.read("numbers/diagnostics.csv"));
     for name in place.names("one").into_iter().filter(|name| name != "run.json") {
@@ -202,19 +202,19 @@ fn with_strip(text: &str) -> String {
 fn strips_are_the_same_whichever_frames_are_drawn() {
     let Some(place) = place_to_draw() else { return };
     place.write("strip.toml", &with_strip(SMALL));
-    place.run("render strip.toml --samples 1").good();
-    place.run("render strip.toml --samples 1 --frames 3 -o alone --threads 1").good();
+    place.run("render strip.toml").good();
+    place.run("render strip.toml --frames 3 -o alone --threads 1").good();
     let bytes = |path: &str| std::fs::read(place.path(path)).unwrap();
     assert!(bytes("output/strip/frame_00003.png") == bytes("alone/frame_00003.png"));
-    place.run("render small.toml --samples 1 --frames 3 --size 320x180 -o without").good();
+    place.run("render small.toml --frames 3 --size 320x180 -o without").good();
     let [with, without] = ["alone", "without"].map(|folder| pixels(&place.path(folder).join("frame_00003.png")).1);
     assert!(with != without);
     // A strip does not change any number.
     place.run("simulate strip.toml -o numbers").good();
     assert_eq!(place.read("output/strip/diagnostics.csv"), place.read("numbers/diagnostics.csv"));
 
-    place.run("render strip.toml --samples 1 --only Mass-spring -o one").good();
-    place.run("render strip.toml --samples 1 --only Mass-spring --frames 3 -o other").good();
+    place.run("render strip.toml --only Mass-spring -o one").good();
+    place.run("render strip.toml --only Mass-spring --frames 3 -o other").good();
     assert!(bytes("one/frame_00003.png") == bytes("other/frame_00003.png"));
 }
 
@@ -232,14 +232,13 @@ fn interrupted_while_simulating_ahead() {
 }
 
 #[test]
-fn samples_and_adapters() {
+fn adapters() {
     let Some(place) = place_to_draw() else { return };
-    for (folder, more) in [("smooth", ""), ("hard", " --samples 1"), ("auto", " --adapter auto")] {
+    for (folder, more) in [("default", ""), ("auto", " --adapter auto")] {
         place.run(&format!("render small.toml --frames 3 -o {folder}{more}")).good();
     }
     let bytes = |folder: &str| std::fs::read(place.path(folder).join("frame_00003.png")).unwrap();
-    assert!(bytes("smooth") != bytes("hard"), "samples make a difference");
-    assert!(bytes("smooth") == bytes("auto"), "auto is the default");
+    assert!(bytes("default") == bytes("auto"), "auto is the default");
     let adapter = place.json("auto/run.json")["adapter"].as_str().unwrap().to_owned();
     let name = adapter.split([' ', '(']).next().unwrap();
     place.run(&format!("render small.toml --frames 3 -o named --adapter {name}")).good();
@@ -259,7 +258,6 @@ fn json_with_pictures() {
 #[test]
 fn wrong_options() {
     let place = Place::with_small();
-    place.run("render small.toml --samples 2").bad(2, &["--samples", "1, 4"]);
     place.run("render small.toml --size 1280").bad(2, &["--size", "1280x720"]);
     place.run("render small.toml --size 0x4").bad(2, &["--size", "16384"]);
     assert_eq!(place.names("."), ["small.toml"]);
@@ -270,19 +268,19 @@ fn wrong_options() {
 fn frames_of_another_scene() {
     let Some(place) = place_to_draw() else { return };
     place.write("other.toml", &lasting("0.05"));
-    place.run("render small.toml -o out --samples 1").good();
+    place.run("render small.toml -o out").good();
     std::fs::remove_file(place.path("out/run.json")).unwrap();
     std::fs::remove_file(place.path("out/diagnostics.csv")).unwrap();
     place.run("render other.toml -o out").bad(2, &["7 frames of another scene", "--overwrite"]);
     place.run("simulate other.toml -o out").bad(2, &["7 frames of another scene", "--overwrite"]);
-    place.run("render other.toml -o out --samples 1 --overwrite").good();
+    place.run("render other.toml -o out --overwrite").good();
     let frames: Vec<_> = place.names("out").into_iter().filter(|name| name.ends_with(".png")).collect();
     assert_eq!(frames.len(), 4, "{frames:?}");
 
     // The diagnostics of its other frames are not lost unasked; the frames themselves are kept.
-    let ran = place.run("render other.toml -o out --frames 1 --samples 1");
+    let ran = place.run("render other.toml -o out --frames 1");
     ran.bad(2, &["out holds diagnostics of 3 frames of this scene, which this command does not make"]);
-    place.run("render other.toml -o out --frames 1 --samples 1 --overwrite").good();
+    place.run("render other.toml -o out --frames 1 --overwrite").good();
     assert_eq!(place.names("out").len(), 4 + 2);
 }
 
@@ -304,7 +302,7 @@ fn without_a_driver() {
 fn a_diverged_run_is_drawn_to_the_end() {
     let Some(place) = place_to_draw() else { return };
     place.write("wild.toml", &SMALL.replace("step = \"T/50\"", "step = \"T/2\"").replace("0.1\n", "5.0\n"));
-    place.run("render wild.toml --frames 0-300x100 --samples 1").good();
+    place.run("render wild.toml --frames 0-300x100").good();
     let tags = |frame: &str| tags(&place.path("output/wild").join(frame));
     assert_eq!(tags("frame_00200.png").states, tags("frame_00300.png").states);
 }
@@ -316,14 +314,14 @@ fn says_which_runs_leave_their_panels() {
     }
     let place = Place::with_small();
     place.write("beside.toml", &SMALL.replace("[view]", "[view]\ncamera.target = [2, 0, 0]"));
-    let ran = place.run("render beside.toml --frames 0,3 --samples 1").good();
+    let ran = place.run("render beside.toml --frames 0,3").good();
     assert!(
         ran.out.contains("warning: Mass-spring leaves its panel in 2 of 2 frames, first in frame 0"),
         "{}",
         ran.out
     );
     assert_eq!(place.json("output/beside/run.json")["runs"][1]["cut"], serde_json::json!([0, 3]));
-    assert!(!place.run("render small.toml --frames 0,3 --samples 1").good().out.contains("warning"));
+    assert!(!place.run("render small.toml --frames 0,3").good().out.contains("warning"));
     assert_eq!(place.json("output/small/run.json")["runs"][1]["cut"], serde_json::Value::Null);
 }
 
@@ -332,7 +330,7 @@ fn says_which_runs_leave_their_panels() {
 fn interrupted_while_drawing() {
     let Some(place) = place_to_draw() else { return };
     place.write("long.toml", &lasting("1000"));
-    let running = crate::interrupt::start(&place, "render long.toml --samples 1", "output/long/frame_00003.png");
+    let running = crate::interrupt::start(&place, "render long.toml", "output/long/frame_00003.png");
     crate::interrupt::signal(&running, &["INT"]);
     assert_eq!(running.wait().status, Some(130));
     let run = place.json("output/long/run.json");

@@ -130,7 +130,7 @@ fn a_panel_without_a_field_is_drawn_like_one_in_a_picture_without_any() {
     (scene.view.legend, scene.view.scale_bar) = (false, false);
     scene.view.size = [960, 400];
     let draw = |picture: &Picture| {
-        let mut renderer = Renderer::new(gpu, picture.size, 4).expect("a size that can be drawn");
+        let mut renderer = Renderer::new(gpu, picture.size).expect("a size that can be drawn");
         renderer.draw(picture).expect("the device works")
     };
     let with = Composer::new(&scene).compose(&frame);

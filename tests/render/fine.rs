@@ -124,8 +124,8 @@ fn borders_are_as_smooth_as_in_larger_pictures() {
             std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/primitives/{name}.toml"));
         let scene = Scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
         let picture = compose(&scene, &frame(&scene, scene.last_frame()));
-        let small = draw(gpu, &picture, 4);
-        let large = draw(gpu, &larger(&picture), 4);
+        let small = draw(gpu, &picture);
+        let large = draw(gpu, &larger(&picture));
         let truth = means(&large, &light);
         let ours = summary(small.as_raw().iter().zip(&truth).map(|(&byte, &truth)| off(byte, truth)));
         assert!(ours.0 <= MEAN && ours.1 as f64 <= PART * small.as_raw().len() as f64, "{name}: {ours:?}");
@@ -146,7 +146,7 @@ fn borders_of_what_is_seen_through_a_body_are_as_smooth_as_in_larger_pictures() 
             frame.runs[0].snapshot.turned_over[13] = turned_over;
             let mut picture = compose(&scene, &frame);
             picture.panels[0].lines.clear();
-            (draw(gpu, &picture, 4), draw(gpu, &larger(&picture), 4))
+            (draw(gpu, &picture), draw(gpu, &larger(&picture)))
         };
         let [(without, _), (small, large)] = [false, true].map(&mut draw_both);
         let truth = means(&large, &light);

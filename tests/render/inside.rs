@@ -32,16 +32,16 @@ fn an_element_turned_over_inside_is_seen_and_the_better_the_clearer_the_others_a
     sound.runs[0].snapshot.turned_over[13] = false;
     let seen = [1.0, 0.7, 0.4, 0.1].map(|opacity| {
         scene.view.opacity = opacity;
-        assert_eq!(orange(&draw(gpu, &compose(&scene, &sound), 4)), 0, "nothing has turned over");
-        orange(&draw(gpu, &compose(&scene, &frame), 4))
+        assert_eq!(orange(&draw(gpu, &compose(&scene, &sound))), 0, "nothing has turned over");
+        orange(&draw(gpu, &compose(&scene, &frame)))
     });
     assert!(seen[0] > 100_000, "{seen:?}");
     assert!(seen.windows(2).all(|two| two[1] > two[0]), "{seen:?}");
     assert!(seen[2] as f64 > 1.3 * seen[0] as f64, "{seen:?}");
     scene.view.opacity = 1.0;
     scene.view.explode = 1.0;
-    assert!(orange(&draw(gpu, &compose(&scene, &frame), 4)) > 100_000);
-    assert_eq!(orange(&draw(gpu, &compose(&scene, &sound), 4)), 0, "nothing has turned over");
+    assert!(orange(&draw(gpu, &compose(&scene, &frame))) > 100_000);
+    assert_eq!(orange(&draw(gpu, &compose(&scene, &sound))), 0, "nothing has turned over");
 }
 
 #[test]
@@ -50,10 +50,10 @@ fn an_opaque_body_is_the_same_whatever_was_seen_through_before() {
     let (scene, frame) = middle_turned_over();
     let mut clear = compose(&scene, &frame);
     clear.panels[0].opacity = 0.4;
-    let mut renderer = renderer(gpu, scene.view.size, 4);
+    let mut renderer = renderer(gpu, scene.view.size);
     let through = renderer.draw(&clear).expect("the device works");
     let opaque = renderer.draw(&compose(&scene, &frame)).expect("the device works");
-    assert_eq!(opaque, draw(gpu, &compose(&scene, &frame), 4));
+    assert_eq!(opaque, draw(gpu, &compose(&scene, &frame)));
     assert_ne!(opaque, through);
 }
 
@@ -77,7 +77,7 @@ fn solids_are_seen_through_clear_surfaces_only() {
         let scene = scene(ball, opacity);
         let frame = Runner::new(&scene, &[0]).frame(0);
         let (at, side) = ([640 - 12, 365 - 12], 24);
-        let image = draw(gpu, &compose(&scene, &frame), 4);
+        let image = draw(gpu, &compose(&scene, &frame));
         let inner = image::imageops::crop_imm(&image, at[0], at[1], side, side).to_image();
         inner.into_raw().into_iter().map(f64::from).sum::<f64>() / f64::from(3 * side * side)
     };

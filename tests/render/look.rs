@@ -18,7 +18,7 @@ const PLAIN: u8 = 12;
 
 /// A picture on white, on black and without a background.
 fn three(gpu: &Gpu, scene: &Scene, frame: &Frame) -> (RgbImage, RgbImage, RgbaImage) {
-    let mut renderer = renderer(gpu, scene.view.size, 4);
+    let mut renderer = renderer(gpu, scene.view.size);
     let [white, black] = [[255; 3], [0; 3]].map(|ground| Composer::on_ground(scene, ground).compose(frame));
     let transparent = renderer.draw_transparent(&white, &black).expect("the device works");
     let mut draw = |picture: &Picture| renderer.draw(picture).expect("the device works");
@@ -118,7 +118,7 @@ fn fonts_that_a_scene_brings_are_the_ones_it_is_written_with() {
     let Some(gpu) = gpu("fonts_that_a_scene_brings_are_the_ones_it_is_written_with") else { return };
     let (mut scene, frame) = fig4b(0);
     scene.view.size = SIZE;
-    let mut renderer = renderer(gpu, SIZE, 1);
+    let mut renderer = renderer(gpu, SIZE);
     let [regular, semi_bold] = built_in().map(|bytes| Some(bytes.into()));
     let mut draw = |font: FontFiles| {
         scene.view.look.font = font;
@@ -293,7 +293,7 @@ fn without_a_hatch_turned_over_elements_have_one_colour() {
             let mut scene = parse(&text);
             let frame = Runner::new(&scene, &[1]).frame(scene.last_frame());
             assert!(frame.runs[0].snapshot.turned_over.contains(&true));
-            let mut renderer = renderer(gpu, scene.view.size, 4);
+            let mut renderer = renderer(gpu, scene.view.size);
             let alarm = scene.view.look.palette.alarm;
             let [hatched, plain] = [true, false].map(|hatch| {
                 scene.view.hatch = hatch;
@@ -327,7 +327,7 @@ fn without_a_hatch_turned_over_elements_in_space_are_lit_whatever_colours_the_ot
         compose(&scene, &frame)
     };
     let field = "colour.by = 'speed'\nlegend = false";
-    let mut renderer = renderer(gpu, [1280, 720], 4);
+    let mut renderer = renderer(gpu, [1280, 720]);
     let mut draw = |picture: &Picture| renderer.draw(picture).expect("the device works");
     let [plain, coloured] = ["", field].map(|colour| draw(&turned_over_alone(&picture(colour))));
     assert!(apart(&plain, &coloured).0 <= 1, "{:?}", apart(&plain, &coloured));
@@ -339,7 +339,7 @@ fn without_a_hatch_turned_over_elements_in_space_are_lit_whatever_colours_the_ot
         panel.sound.vertices.iter_mut().for_each(|vertex| vertex.normal = [0.0, 1.0, 0.0]);
         let image = draw(&picture);
         let mut shades = std::collections::HashMap::<[u8; 3], usize>::new();
-        image.pixels().filter(|pixel| pixel[0] > pixel[2].saturating_add(20)).for_each(|pixel| {
+        image.pixels().filter(|pixel| pixel[0] > pixel[2].saturating_add(5)).for_each(|pixel| {
             *shades.entry(pixel.0).or_default() += 1;
         });
         let often: Vec<_> = shades.iter().filter(|(_, count)| **count > 50).collect();

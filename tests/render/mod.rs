@@ -75,13 +75,13 @@ fn all(scene: &Scene) -> Vec<usize> {
     (0..scene.runs.len()).collect()
 }
 
-fn renderer(gpu: &Gpu, size: [u32; 2], samples: u32) -> Renderer {
-    Renderer::new(gpu, size, samples).expect("a size that can be drawn")
+fn renderer(gpu: &Gpu, size: [u32; 2]) -> Renderer {
+    Renderer::new(gpu, size).expect("a size that can be drawn")
 }
 
 /// A picture drawn by a renderer of its own.
-fn draw(gpu: &Gpu, picture: &Picture, samples: u32) -> RgbImage {
-    renderer(gpu, picture.size, samples).draw(picture).expect("the device works")
+fn draw(gpu: &Gpu, picture: &Picture) -> RgbImage {
+    renderer(gpu, picture.size).draw(picture).expect("the device works")
 }
 
 /// Checks that the boxes of no two lines of text overlap, and that none leaves the picture.

@@ -221,7 +221,7 @@ fn what_blew_up_stays_among_finite_numbers() {
         let picture = compose(&scene, &frame);
         assert!(numbers(&picture.panels[0]).iter().all(|number| number.is_finite()), "{far}");
         if let Some(gpu) = gpu("what_blew_up_stays_among_finite_numbers") {
-            let mut renderer = renderer(gpu, picture.size, 1);
+            let mut renderer = renderer(gpu, picture.size);
             renderer.draw(&picture).expect("the device works");
         }
     }
@@ -419,8 +419,7 @@ fn a_rod_that_touches_darkens_the_body_below_it_and_one_that_does_not_leaves_it_
         // Only the shadow of the rod is left.
         picture.panels[0].obstacles.solids.clear();
         picture.panels[0].lines.clear();
-        let image =
-            Renderer::new(gpu, picture.size, 4).and_then(|mut renderer| renderer.draw(&picture)).expect("drawn");
+        let image = Renderer::new(gpu, picture.size).and_then(|mut renderer| renderer.draw(&picture)).expect("drawn");
         let [near, far] = [0.02, 0.14].map(|z| {
             let at = picture.panels[0].sight.clip
                 * seen(&scene(&[WORLD, block, FLOOR, &rod, view]), [0.02, 0.2, z]).extend(1.0);

@@ -19,16 +19,14 @@ fn the_same_picture_gives_the_same_bytes_whatever_was_drawn_before() {
     let (mut scene, frame) = fig4b(4);
     scene.view.size = [427, 240];
     let (other_scene, other) = fig4b(32);
-    for samples in [1, 4] {
-        let mut renderer = renderer(gpu, scene.view.size, samples);
-        let first = renderer.draw(&compose(&scene, &frame)).expect("the device works");
-        let mut elsewhere = compose(&Scene { view: scene.view.clone(), ..other_scene.clone() }, &other);
-        elsewhere.words.clear();
-        renderer.draw(&elsewhere).expect("the device works");
-        let again = renderer.draw(&compose(&scene, &frame)).expect("the device works");
-        assert_eq!(first, again, "{samples} samples");
-        assert_eq!(first, draw(gpu, &compose(&scene, &frame), samples), "{samples} samples, new renderer");
-    }
+    let mut renderer = renderer(gpu, scene.view.size);
+    let first = renderer.draw(&compose(&scene, &frame)).expect("the device works");
+    let mut elsewhere = compose(&Scene { view: scene.view.clone(), ..other_scene.clone() }, &other);
+    elsewhere.words.clear();
+    renderer.draw(&elsewhere).expect("the device works");
+    let again = renderer.draw(&compose(&scene, &frame)).expect("the device works");
+    assert_eq!(first, again);
+    assert_eq!(first, draw(gpu, &compose(&scene, &frame)), "new renderer");
 }
 
 #[test]
@@ -40,7 +38,7 @@ fn turned_over_elements_show_only_where_there_are_any() {
         let over: Vec<_> = frame.runs.iter().map(|run| run.snapshot.diagnostics.turned_over).collect();
         assert_eq!(over[0], 0, "this frame is known for it");
         assert!(over[1] > 0, "this frame is known for it");
-        let image = draw(gpu, &compose(&scene, &frame), 4);
+        let image = draw(gpu, &compose(&scene, &frame));
         let half = |left| image::imageops::crop_imm(&image, left, 0, 640, 720).to_image();
         assert_eq!(vermilion(&half(0)), 0, "{theme:?}");
         assert!(vermilion(&half(640)) > 2000, "{theme:?}: {}", vermilion(&half(640)));
@@ -53,21 +51,20 @@ fn any_size_can_be_drawn() {
     let (mut scene, frame) = fig4b(4);
     for size in [[64, 64], [1, 1], [333, 77], [65, 1025], [2, 700]] {
         scene.view.size = size;
-        let image = draw(gpu, &compose(&scene, &frame), 4);
+        let image = draw(gpu, &compose(&scene, &frame));
         assert_eq!([image.width(), image.height()], size);
     }
 }
 
 #[test]
-fn sizes_and_samples_that_cannot_be_had_are_refused() {
-    let Some(gpu) = gpu("sizes_and_samples_that_cannot_be_had_are_refused") else { return };
+fn sizes_that_cannot_be_had_are_refused() {
+    let Some(gpu) = gpu("sizes_that_cannot_be_had_are_refused") else { return };
     let longest = gpu.longest_side();
     for size in [[0, 10], [10, 0], [longest + 1, 10], [u32::MAX, u32::MAX]] {
-        assert!(matches!(Renderer::new(gpu, size, 1), Err(RenderError::Size { .. })), "{size:?}");
+        assert!(matches!(Renderer::new(gpu, size), Err(RenderError::Size { .. })), "{size:?}");
     }
-    assert!(matches!(Renderer::new(gpu, [10, 10], 3), Err(RenderError::Samples(3))));
     let (scene, frame) = fig4b(0);
-    let mut renderer = renderer(gpu, [10, 10], 1);
+    let mut renderer = renderer(gpu, [10, 10]);
     assert!(matches!(renderer.draw(&compose(&scene, &frame)), Err(RenderError::OtherSize { .. })));
 }
 
@@ -81,7 +78,7 @@ fn a_run_that_blew_up_is_drawn_like_any_other() {
     for (at, position) in snapshot.position.iter_mut().enumerate() {
         *position *= 10_f64.powi(at as i32 % 40 * 7);
     }
-    let image = draw(gpu, &compose(&scene, &frame), 4);
+    let image = draw(gpu, &compose(&scene, &frame));
     assert!(image.pixels().any(|pixel| pixel[0] < 100), "there is something to see");
 }
 
@@ -91,7 +88,7 @@ fn the_corner_of_the_picture_is_the_ground() {
     let (mut scene, frame) = fig4b(0);
     for (theme, ground) in [(Theme::Light, [0xfb, 0xfb, 0xfa]), (Theme::Dark, [0x12, 0x16, 0x1c])] {
         scene.view.look = Style::of(theme);
-        let image = draw(gpu, &compose(&scene, &frame), 1);
+        let image = draw(gpu, &compose(&scene, &frame));
         for (x, y) in [(0, 0), (1279, 0), (0, 719), (1279, 719)] {
             assert_eq!(image.get_pixel(x, y).0, ground, "{theme:?} at {x}, {y}");
         }

@@ -80,7 +80,7 @@ fn borders_of_flat_marks_are_smooth() {
             opacity: 255,
             shape,
         });
-        let image = draw(gpu, &picture, 4);
+        let image = draw(gpu, &picture);
         let y = crossing(&image, 110, 40..90);
         assert_smooth(&image, 100..120, y, &format!("{shape:?}"));
     }
@@ -94,7 +94,7 @@ fn borders_of_flat_marks_are_smooth() {
         opacity: 255,
         shape: MarkShape::Node,
     });
-    let image = draw(gpu, &picture, 4);
+    let image = draw(gpu, &picture);
     assert_smooth(&image, 94..110, 40, "disc");
 }
 
@@ -103,7 +103,7 @@ fn borders_of_obstacles_in_the_plane_are_smooth() {
     let Some(gpu) = gpu("borders_of_obstacles_in_the_plane_are_smooth") else { return };
     let turned = "box'\nsize = [0.8, 0.4]\ncentre = [0, 0]\nrotation = { angle = 0.08 }";
     for (kind, x) in [(turned, 150..170), ("sphere'\nradius = 0.3\ncentre = [0, 0]", 144..160)] {
-        let image = draw(gpu, &empty_plane(&format!("[[obstacle]]\nkind = '{kind}\n")), 4);
+        let image = draw(gpu, &empty_plane(&format!("[[obstacle]]\nkind = '{kind}\n")));
         let y = crossing(&image, (x.start + x.end) / 2, 20..95);
         assert_smooth(&image, x, y, kind);
     }
@@ -119,7 +119,7 @@ fn lines_and_bodies_in_space_are_smooth() {
     let mut picture = compose(&scene, &frames(&scene, 0..1)[0]);
     picture.words.clear();
     picture.marks.clear();
-    let image = draw(gpu, &picture, 4);
+    let image = draw(gpu, &picture);
     let y = crossing(&image, 160, 30..96);
     assert_smooth(&image, 150..170, y, "outline");
     let panel = &mut picture.panels[0];
@@ -131,7 +131,7 @@ fn lines_and_bodies_in_space_are_smooth() {
         behind: 0,
         width: 16.0,
     });
-    let image = draw(gpu, &picture, 4);
+    let image = draw(gpu, &picture);
     let y = crossing(&image, 160, 62..84);
     assert_smooth(&image, 140..180, y, "stroke");
 }
@@ -156,7 +156,7 @@ fn what_turns_slowly_changes_slowly() {
         for show in shows {
             let scene = scene(&[WORLD, SPRINGS, body, TURNING, show, camera]);
             let composer = Composer::new(&scene);
-            let mut renderer = renderer(gpu, scene.view.size, 4);
+            let mut renderer = renderer(gpu, scene.view.size);
             let images: Vec<_> = frames(&scene, 0..12)
                 .iter()
                 .map(|frame| {
@@ -178,10 +178,8 @@ fn obstacles_are_drawn_alike_every_time() {
     let text = include_str!("../golden/primitives/obstacles.toml");
     let scene = parse(text);
     let frame = &frames(&scene, 6..7)[0];
-    for samples in [1, 4] {
-        let [one, other] = [(), ()].map(|()| draw(gpu, &compose(&scene, frame), samples));
-        assert_eq!(one, other);
-    }
+    let [one, other] = [(), ()].map(|()| draw(gpu, &compose(&scene, frame)));
+    assert_eq!(one, other);
 }
 
 /// Means of 8×8 pixels are between two bytes where the shadow changes slowly: there are no bands of one byte each. The plain
@@ -197,7 +195,7 @@ fn a_wide_shadow_has_no_bands() {
         (panel.sound, panel.turned_over) = Default::default();
         panel.lines.clear();
     }
-    let image = draw(gpu, &picture, 1);
+    let image = draw(gpu, &picture);
     assert!((0..1280).all(|x| image.get_pixel(x, 2).0 == picture.palette.background));
     let (mut between, mut all) = (0, 0);
     for (x, y) in (40..75).flat_map(|y| (0..160).map(move |x| (8 * x, 8 * y))) {

@@ -81,7 +81,7 @@ struct Camera(Renderer);
 
 impl Camera {
     fn new(gpu: &Gpu, scene: &Scene) -> Self {
-        Self(renderer(gpu, scene.view.size, 4))
+        Self(renderer(gpu, scene.view.size))
     }
 
     fn shot(&mut self, scene: &Scene, frame: &Frame) -> RgbImage {

@@ -179,7 +179,7 @@ fn the_present_moment_is_at_its_pixel() {
         let (mut scene, frames) = with_strip(Diagnostic::ShapeError, [50]);
         scene.view.look = Style::of(theme);
         let [picture] = pictures(&scene, &frames);
-        let mut renderer = renderer(gpu, scene.view.size, 4);
+        let mut renderer = renderer(gpu, scene.view.size);
         let image = renderer.draw(&picture).expect("the device works");
         let ground = picture.palette.background;
         let off = |x: u32, y: u32| -> u32 {
@@ -302,7 +302,7 @@ fn joints_do_not_show() {
     let Some(gpu) = gpu("joints_do_not_show") else { return };
     let (mut scene, frame) = fig4b(0);
     scene.view.size = [200, 100];
-    let mut renderer = renderer(gpu, scene.view.size, 1);
+    let mut renderer = renderer(gpu, scene.view.size);
     let mut draw = |points: Vec<[f32; 2]>, dash: &[f32]| {
         let mut picture = compose(&scene, &frame);
         picture.panels.clear();

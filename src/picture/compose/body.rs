@@ -2,14 +2,15 @@
 
 use super::panel::Draft;
 use crate::picture::plane::node_radius;
-use crate::picture::surface::{Lines, Surroundings};
+use crate::picture::surface::{Lines, SurfaceLines, Surroundings};
 use crate::picture::wire::Wire;
 use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
 use glam::DVec3;
+use std::collections::HashSet;
 
 impl Draft<'_> {
     /// The surfaces of the elements that are not turned over and of those that are, with their lines.
-    pub(super) fn surfaces(&self, lines: &mut Vec<Line>) -> [Mesh; 2] {
+    pub(super) fn surfaces(&self, lines: &mut SurfaceLines) -> [Mesh; 2] {
         let [mut sound, mut turned_over] = [Mesh::default(), Mesh::default()];
         if self.position.is_empty() || !self.scene.view.visible.surfaces {
             return [sound, turned_over];
@@ -34,10 +35,18 @@ impl Draft<'_> {
         let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
         surroundings.add(&sets[0], total, kinds, &mut sound, lines);
         let kinds = Lines { edge: LineKind::AlarmEdge, contour: LineKind::AlarmContour };
+        let of_sound = lines.borders.len();
         surroundings.add(&sets[1], total, kinds, &mut turned_over, lines);
+        // What both sets share counts once.
+        let shared: HashSet<_> = lines.borders[of_sound..].iter().filter_map(|border| border.edge).collect();
+        let mut at = 0;
+        lines.borders.retain(|border| {
+            at += 1;
+            at > of_sound || border.edge.is_none_or(|edge| !shared.contains(&edge))
+        });
         // With a field, strokes are drawn instead.
         if self.shades.is_none() {
-            self.bare_lines(lines);
+            self.bare_lines(&mut lines.drawn);
         }
         [sound, turned_over]
     }

@@ -12,6 +12,7 @@ use crate::picture::obstacle::{self, Site, Staged, Staging};
 use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
 use crate::picture::shadow::key_light;
+use crate::picture::surface::SurfaceLines;
 use crate::picture::surface::own_lines;
 use crate::picture::{Framing, Line, LineKind, Mark, Mesh, Obstacles, Panel, Sight};
 use crate::scene::Scene;
@@ -141,10 +142,13 @@ impl<'a> Draft<'a> {
 
     /// Draws the panel, with flat marks below and above the bodies.
     pub(super) fn panel(&self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) -> Panel {
-        let mut lines = Vec::new();
+        let mut lines = SurfaceLines::default();
         let [sound, turned_over] = self.surfaces(&mut lines);
         self.marks_of_plane(under, above);
+        let SurfaceLines { drawn: mut lines, borders } = lines;
+        let of_body = lines.len();
         let (obstacles, staged) = self.obstacles([&sound, &turned_over], &mut lines, above);
+        let borders = borders.into_iter().map(|border| border.line).chain(lines[of_body..].iter().copied()).collect();
         if !self.scene.view.outline {
             lines.retain(|line| !matches!(line.kind, LineKind::Contour | LineKind::ObstacleContour));
         }
@@ -161,6 +165,7 @@ impl<'a> Draft<'a> {
             hatch: self.scene.view.hatch,
             greyed: self.greyed,
             lines,
+            borders,
             obstacles,
             strokes: self.strokes(),
             beads: self.beads(),

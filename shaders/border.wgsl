@@ -1,0 +1,59 @@
+// Smooth borders of surfaces: where their colours change at a line, what a pixel that the line crosses gains from the area that
+// lies on the other side. What several lines add is summed, as each covers another part of the pixel.
+
+// A line is hidden by what is nearer by more than surfaces gain in depth within so many pixels at a slope of one.
+const HIDDEN_BY = 3.0;
+// From this distance (px) to the line on, rounding cannot make a pixel belong to the other side.
+const SURE = 0.02;
+
+// The part of a pixel that lies on the side of a line to which its normal points, if the middle of the pixel is so far on that
+// side (px).
+fn area_beyond(off: f32, normal: vec2<f32>) -> f32 {
+    let wide = max(abs(normal.x), abs(normal.y));
+    let narrow = min(abs(normal.x), abs(normal.y));
+    let left = 0.5 * (wide + narrow) - abs(off);
+    let smaller = select(0.5 - abs(off) / wide, left * left / (2.0 * wide * max(narrow, 1e-6)), left < narrow);
+    return select(smaller, 1.0 - smaller, off > 0.0);
+}
+
+@fragment
+fn border_colour(segment: Segment) -> @location(0) vec4<f32> {
+    let start = segment.ends.xy;
+    let difference = segment.ends.zw - start;
+    let extent = length(difference);
+    let along = difference / max(extent, 1e-6);
+    let normal = vec2(-along.y, along.x);
+    let from_start = segment.place.xy - start;
+    let off = dot(from_start, normal);
+    let gone = dot(from_start, along);
+    // How far from its middle a pixel reaches, along the line and across.
+    let reach = 0.5 * (abs(normal.x) + abs(normal.y));
+    let within = min(gone + reach, extent) - max(gone - reach, 0.0);
+    if abs(off) >= reach || within <= 0.0 {
+        discard;
+    }
+    // Colours are read beside the line, and not beside its ends, where another line begins.
+    let share = clamp(gone, min(1.0, 0.5 * extent), max(extent - 1.0, 0.5 * extent)) / max(extent, 1e-6);
+    let middle = start + share * difference;
+    let first = texel_of(middle - normal);
+    let second = texel_of(middle + normal);
+    let of_alarm = segment.kind == ALARM_EDGE || segment.kind == ALARM_CONTOUR;
+    let depths = select(
+        vec2(load_depth(first), load_depth(second)),
+        vec2(load_alarm_depth(first), load_alarm_depth(second)),
+        of_alarm,
+    );
+    // Faces meet in a crease on both of its sides, a contour has the surface on one.
+    let is_crease = segment.kind == EDGE || segment.kind == ALARM_EDGE;
+    let beside = select(min(depths.x, depths.y), max(depths.x, depths.y), is_crease);
+    let distance = distance_of(mix(segment.depths.x, segment.depths.y, share));
+    if distance * (1.0 - HIDDEN_BY / panel.focal) > distance_of(beside) || (is_crease && min(depths.x, depths.y) <= 0.0) {
+        discard;
+    }
+    let own_texel = texel_of(segment.place.xy);
+    let own = decoded_body(textureLoad(body_colour, own_texel, 0));
+    let one = decoded_body(textureLoad(body_colour, select(first, own_texel, off < -SURE), 0));
+    let other = decoded_body(textureLoad(body_colour, select(second, own_texel, off > SURE), 0));
+    let seen = mix(one, other, area_beyond(off, normal));
+    return (seen - own) * within / (2.0 * reach);
+}
