@@ -19,6 +19,7 @@ use super::exploded::Exploded;
 use super::layout::{self, Layout, Rectangle, Scale};
 use super::legend::{Bar, Legend, Sample, SampleKind};
 use super::locator::Locator;
+use super::shadow;
 use super::shell::Shell;
 use super::skin::Skin;
 use super::tally::Tally;
@@ -63,8 +64,9 @@ pub struct Composer<'a> {
     rest_areas: Vec<f64>,
     /// Which faces lie on its outside, and which between elements.
     shell: Shell,
-    /// The surface of the body.
+    /// The surface of the body, and the edges of its triangles if it throws a shadow.
     skin: Skin,
+    seams: Vec<shadow::Edge>,
     /// How faces that are not convex are cut into triangles.
     ears: Ears,
     /// Elements without faces.
@@ -152,6 +154,7 @@ impl<'a> Composer<'a> {
         let body = exploded.as_ref().map_or(body, |exploded| &exploded.body);
         let ears = Ears::new(body);
         let skin = Skin::new(body, &ears);
+        let throws_shadow = scene.view.shadow && body.dimension == Dimension::Space;
         let bare = bare_elements(body);
         let visible = scene.view.visible;
         let map = scene.view.colour.map(|scale| scale.map);
@@ -169,6 +172,7 @@ impl<'a> Composer<'a> {
             descriptions,
             rest_areas: areas,
             shell: if visible.surfaces { Shell::new(body) } else { Shell::default() },
+            seams: if throws_shadow { shadow::edges(&skin.triangles) } else { Vec::new() },
             skin,
             ears,
             bare,
