@@ -97,7 +97,6 @@ impl Foot {
     }
 }
 
-
 /// Where two triangles of a surface meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Edge {
@@ -118,10 +117,10 @@ pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {
     for around in sides.chunk_by(|one, other| one.0 == other.0) {
         let (there, back) = around.split_at(around.partition_point(|&(_, is_back, _)| !is_back));
         let triangle = |sides: &[([u32; 2], bool, u32)], at: usize| sides.get(at).map_or(NO_TRIANGLE, |side| side.2);
-        edges.extend((0..there.len().max(back.len())).map(|at| Edge {
-            ends: around[0].0,
-            triangles: [triangle(there, at), triangle(back, at)],
-        }));
+        edges.extend(
+            (0..there.len().max(back.len()))
+                .map(|at| Edge { ends: around[0].0, triangles: [triangle(there, at), triangle(back, at)] }),
+        );
     }
     edges
 }
@@ -350,11 +349,9 @@ impl Cover {
             let cells = group * COLUMNS + first..=group * COLUMNS + last;
             let mut layers = [0_i16; LANES];
             for (steps, counts) in self.steps[cells.clone()].iter_mut().zip(&mut self.counts[cells]) {
-                for lane in 0..LANES {
-                    layers[lane] = layers[lane].wrapping_add(steps[lane]);
-                    counts[lane] += u16::from(layers[lane] != 0);
-                }
-                *steps = [0; LANES];
+                let more = std::mem::replace(steps, [0; LANES]);
+                layers = std::array::from_fn(|lane| layers[lane].wrapping_add(more[lane]));
+                *counts = std::array::from_fn(|lane| counts[lane] + u16::from(layers[lane] != 0));
             }
         }
     }
@@ -407,8 +404,8 @@ fn blurred<'a>(kernel: &[f32], row: impl Fn(usize) -> &'a [f32; CELLS]) -> [f32;
 
 /// The first cell whose middle is not below a coordinate: that rounded, and kept within the grid.
 fn first_middle(at: f64) -> usize {
-    // Truncation is many times faster than `round` without SSE 4.1.
-    (at + 0.5).clamp(0.0, CELLS as f64) as usize
+    // Truncation is many times faster than `round` without SSE 4.1, and that to 32 bits faster than to 64.
+    (at + 0.5).clamp(0.0, CELLS as f64) as u32 as usize
 }
 
 #[cfg(test)]
@@ -439,8 +436,7 @@ mod tests {
         let plane = Plane::new(DVec3::Y, 0.0);
         let key = DVec3::new(-1.0, 1.0, 0.0).normalize();
         let edges = edges(&triangles);
-        let [of_key, of_sky] =
-            Casters::new(points, &triangles, &edges).shades(&plane, key, DVec2::ZERO, 4.0, 1.0);
+        let [of_key, of_sky] = Casters::new(points, &triangles, &edges).shades(&plane, key, DVec2::ZERO, 4.0, 1.0);
         let on_floor = |x: f64, z: f64| DVec2::new(x * plane.axes[0].x + z * plane.axes[0].z, z * plane.axes[1].z);
         assert_eq!(value(&of_key, on_floor(0.0, 0.0)), 255);
         assert!(value(&of_key, on_floor(1.0, 0.0)) > 250);
