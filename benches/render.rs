@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 const CASES: [(u32, [u32; 3], u32); 3] =
     [(588, [7, 7, 7], 60), (20_172, [41, 41, 41], 12), (300_300, [273, 1, 273], 4)];
 /// How often each sequence is rendered.
-const TURNS: usize = 5;
+const TURNS: usize = 3;
 /// What `run.json` calls the stages.
 const STAGES: [&str; 4] = ["simulate", "compose", "draw", "encode"];
 
