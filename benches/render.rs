@@ -1,59 +1,134 @@
-//! How long a picture takes, stage by stage: composing it, drawing it and reading it back.
+//! What a frame costs, by stage: `cargo bench --bench render`, and `benches/README.md` how to read it.
 //!
-//! `cargo bench --bench render`. Encoding is measured elsewhere.
+//! The program itself renders scenes into a temporary folder, a short and a long sequence of frames in turns. What the
+//! longer one takes more, over the number of frames that it has more, is the cost of a frame; the median counts.
 
-use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use localshape::gpu::{AdapterChoice, Gpu};
-use localshape::picture::Composer;
-use localshape::render::Renderer;
-use localshape::runner::Runner;
-use localshape::scene::{Limits, Scene};
-use localshape::sim::Frame;
-use std::hint::black_box;
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
-/// Cubes that fall on the floor, as in Fig. 4(b), of any number along each side.
-fn scene(cubes: usize) -> (Scene, Frame) {
-    let text = include_str!("../scenes/fig4b.toml").replace("cells = [3, 3, 3]", &format!("cells = {:?}", [cubes; 3]));
-    let scene = Scene::parse(&text, "fig4b.toml", &Limits::default()).expect("the scene is sound");
-    let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let frame = Runner::new(&scene, &runs).frame(if cubes > 5 { 0 } else { 4 });
-    (scene, frame)
+/// Blocks of cubes, by the triangles of their surface: cubes along each edge, and frames beyond the first one.
+const CASES: [(u32, [u32; 3], u32); 3] =
+    [(588, [7, 7, 7], 60), (20_172, [41, 41, 41], 12), (300_300, [273, 1, 273], 4)];
+/// How often each sequence is rendered.
+const TURNS: usize = 3;
+/// What `run.json` calls the stages.
+const STAGES: [&str; 4] = ["simulate", "compose", "draw", "encode"];
+
+/// Two panels with floor, shadow, lines and words.
+const SCENE: &str = r#"
+title = "A block dropped on a floor"
+gravity = [0, -9.8, 0]
+[time]
+duration = 3.0
+step = "T/50"
+frames_per_second = 60
+[body]
+lattice = { cells = CELLS, side = 0.1 }
+mass = 1.0
+rotation = { axis = [1, 0, 1], angle = 0.028284 }
+lowest = 0.0
+velocity = [0, -9.899495, 0]
+[[run]]
+name = "Local shape"
+model = { kind = "shape-based", stiffness = 1e4, damping_ratio = 0.1 }
+[[run]]
+name = "Mass-spring"
+model = { kind = "mass-spring", stiffness = 1e4, damping_ratio = 0.1, springs = "edges+one-diagonal" }
+[[obstacle]]
+kind = "floor"
+restitution = 0.5
+friction = 0.3
+[view]
+size = [1280, 720]
+title = "A block dropped from 5 m"
+letters = true
+"#;
+
+/// One run of the program.
+struct Rendered {
+    /// Processor time of each stage (s).
+    stages: [f64; 4],
+    /// From its start to its end, and to the first frame on disk (s).
+    wall: f64,
+    first: f64,
+    /// The most memory it had (MiB); 0 where the system does not tell.
+    peak: f64,
 }
 
-fn compose(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("compose");
-    for cubes in [3, 20] {
-        let (scene, frame) = scene(cubes);
-        let composer = Composer::new(&scene);
-        group.bench_function(BenchmarkId::from_parameter(cubes), |bencher| {
-            bencher.iter(|| black_box(composer.compose(black_box(&frame))));
-        });
-    }
-}
-
-fn draw(criterion: &mut Criterion) {
-    let gpu = match Gpu::new(&AdapterChoice::Auto) {
-        Ok(gpu) => gpu,
-        Err(error) => return eprintln!("drawing is not measured: {error}"),
-    };
-    eprintln!("drawing on {}", gpu.description());
-    let mut group = criterion.benchmark_group("draw");
-    group.sample_size(30);
-    for cubes in [3, 20] {
-        let (mut scene, frame) = scene(cubes);
-        for size in [[640, 360], [1280, 720], [1920, 1080]] {
-            scene.view.size = size;
-            let picture = Composer::new(&scene).compose(&frame);
-            for samples in [1, 4] {
-                let mut renderer = Renderer::new(&gpu, size, samples).expect("the size is small enough");
-                let name = format!("{cubes}/{}x{}/{samples}x", size[0], size[1]);
-                group.bench_function(name, |bencher| {
-                    bencher.iter(|| black_box(renderer.draw(black_box(&picture)).expect("the device works")));
-                });
-            }
+/// Renders the first frame of a scene and so many more.
+fn render(scene: &Path, more: u32, folder: &Path) -> Rendered {
+    let start = Instant::now();
+    let mut program = Command::new(env!("CARGO_BIN_EXE_localshape"))
+        .args(["render", "--quiet", "--frames", &format!("0-{more}")])
+        .arg(scene)
+        .arg("-o")
+        .arg(folder)
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let (status, first_frame) = (format!("/proc/{}/status", program.id()), folder.join("frame_00000.png"));
+    let (mut first, mut peak) = (None, 0.0);
+    let ended = loop {
+        if first.is_none() && first_frame.exists() {
+            first = Some(start.elapsed().as_secs_f64());
         }
-    }
+        peak = peak_mib(&status).unwrap_or(peak);
+        match program.try_wait().expect("the program ends") {
+            Some(ended) => break ended,
+            None => sleep(Duration::from_millis(1)),
+        }
+    };
+    let wall = start.elapsed().as_secs_f64();
+    assert!(ended.success(), "the program cannot render here");
+    let summary = std::fs::read(folder.join("run.json")).expect("a summary");
+    let summary: Value = serde_json::from_slice(&summary).expect("a summary");
+    let stages = STAGES.map(|stage| summary["times"][stage]["cpu"].as_f64().unwrap_or(f64::NAN));
+    std::fs::remove_dir_all(folder).expect("its own folder");
+    Rendered { stages, wall, first: first.unwrap_or(wall), peak }
 }
 
-criterion_group!(benches, compose, draw);
-criterion_main!(benches);
+/// The most memory that a process has had so far (MiB).
+fn peak_mib(status: &str) -> Option<f64> {
+    let text = std::fs::read_to_string(status).ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(line.trim().strip_suffix(" kB")?.parse::<f64>().ok()? / 1024.0)
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+fn main() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().join("frames");
+    println!("milliseconds of processor time a frame, two panels, 1280×720");
+    println!("triangles  simulate  compose     draw   encode  | drawn   wall ms  first s  peak MiB");
+    let mut lines = Vec::new();
+    for (triangles, cells, more) in CASES {
+        let scene = folder.path().join("scene.toml");
+        std::fs::write(&scene, SCENE.replace("CELLS", &format!("{cells:?}"))).expect("a temporary file");
+        let turns: Vec<_> = (0..TURNS).map(|_| [render(&scene, 0, &out), render(&scene, more, &out)]).collect();
+        let of = |value: &dyn Fn(&[Rendered; 2]) -> f64| median(turns.iter().map(value).collect());
+        let each = 1e3 / f64::from(more);
+        let stage = |at: usize| of(&|[short, long]| each * (long.stages[at] - short.stages[at]));
+        // What pictures cost: without the simulation.
+        let drawn = |one: &Rendered| one.stages[1..].iter().sum::<f64>();
+        let cpu = of(&|[short, long]| each * (drawn(long) - drawn(short)));
+        let wall = of(&|[short, long]| each * (long.wall - short.wall));
+        let (first, peak) = (of(&|[short, _]| short.first), of(&|[_, long]| long.peak));
+        let [simulate, compose, draw, encode] = [0, 1, 2, 3].map(stage);
+        println!(
+            "{triangles:9}  {simulate:8.2} {compose:8.2} {draw:8.2} {encode:8.2}  | {cpu:5.1} {wall:9.1} {first:8.3} {peak:9.1}"
+        );
+        lines.push((triangles, cpu, first, peak));
+    }
+    let (small, large) = (&lines[0], &lines[1]);
+    println!("\ncpu-ms-{}: {:.2}", small.0, small.1);
+    println!("cpu-ms-{}: {:.2}", large.0, large.1);
+    println!("first-frame-s: {:.3}", small.2);
+    println!("peak-mib: {:.1}", small.3);
+}

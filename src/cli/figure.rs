@@ -5,7 +5,7 @@ use super::failure::{Failure, Status, warn_of_figure, with_causes};
 use super::interrupt;
 use super::options::{DeviceOptions, PrintOptions, ThreadOptions, number_in, size};
 use super::record;
-use super::still::{Format, NO_ADAPTER, Still, replaceable};
+use super::still::{Drawn, Format, NO_ADAPTER, Still, replaceable};
 use crate::gpu::Gpu;
 use crate::look::Theme;
 use crate::moments::{Forces, Moments, Taking};
@@ -18,7 +18,10 @@ use crate::sim::diagnostics::{Chosen, Reach};
 use crate::sim::snapshot::{self, RunFrame, Snapshot};
 use clap::{Args, ValueEnum, ValueHint};
 use serde_json::{Value, json};
+use std::collections::VecDeque;
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::thread;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -108,18 +111,34 @@ impl FigureCommand {
         let folder = self.folder();
         std::fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
         let _lock = FolderLock::beside_others(folder);
-        let mut made = Vec::new();
-        let mut result = Ok(Status::Done);
-        for (figure, path) in figures.iter().zip(&paths) {
-            match pool.install(|| self.make(figure, path, gpu.as_ref())) {
-                Ok(Some(numbers)) => made.push((figure, path, numbers)),
-                Ok(None) => result = Ok(Status::Interrupted),
-                Err(failure) => result = Err(failure),
+        let (mut made, mut result) = (Vec::new(), Ok(Status::Done));
+        // Figures are compressed and written while the next ones are simulated and drawn, one on each thread at the most.
+        thread::scope(|scope| {
+            let (mut figures, mut writing) = (figures.iter().zip(&paths), VecDeque::new());
+            loop {
+                let next = figures.next().filter(|_| matches!(result, Ok(Status::Done)));
+                if let Some((figure, path)) = next {
+                    match pool.install(|| self.make(figure, path, gpu.as_ref())) {
+                        Ok(Some((made, numbers))) => {
+                            writing.push_back((figure, path, numbers, scope.spawn(|| made.write())));
+                        }
+                        Ok(None) => result = Ok(Status::Interrupted),
+                        Err(failure) => result = Err(failure),
+                    }
+                    if writing.len() < self.threads.count() {
+                        continue;
+                    }
+                }
+                let Some((figure, path, numbers, thread)) = writing.pop_front() else { break };
+                match thread.join().unwrap_or_else(|panic| resume_unwind(panic)) {
+                    Ok(true) => made.push((figure, path, numbers)),
+                    // What happened first is told.
+                    _ if result.is_err() => {}
+                    Ok(false) => result = Ok(Status::Interrupted),
+                    Err(failure) => result = Err(failure),
+                }
             }
-            if !matches!(result, Ok(Status::Done)) {
-                break;
-            }
-        }
+        });
         // Finished figures are listed before the failure.
         self.report(&made)?;
         result
@@ -151,10 +170,10 @@ impl FigureCommand {
         Ok(())
     }
 
-    /// Makes one figure and returns the numbers behind it; `None` if it was interrupted. That its file can be written is
-    /// checked before the work.
-    fn make(&self, figure: &Figure, path: &Path, gpu: Option<&Gpu>) -> Result<Option<Value>, Failure> {
-        let mut file = AtomicFile::create(path)?;
+    /// Makes one figure, up to its file, and returns it with the numbers behind it; `None` if it was interrupted. That its
+    /// file can be written is checked before the work.
+    fn make(&self, figure: &Figure, path: &Path, gpu: Option<&Gpu>) -> Result<Option<(Made, Value)>, Failure> {
+        let file = AtomicFile::create(path)?;
         let Some(moments) = self.take(figure) else { return Ok(None) };
         let picture = compose_figure(figure, &moments).map_err(|error| {
             let [width, height] = figure.size;
@@ -166,13 +185,8 @@ impl FigureCommand {
         let print = figure.print.as_ref();
         let source = print.map_or("", |print| &print.file);
         let still = Still { pictures: &[picture], print, source, title, tags: &tags };
-        let bytes = still.file(self.format(), gpu)?;
-        if interrupt::requested() {
-            return Ok(None);
-        }
-        file.append(&bytes)?;
-        file.commit()?;
-        Ok(Some(numbers(figure, &moments)))
+        let drawn = still.draw(self.format(), gpu)?;
+        Ok(Some((Made { drawn, file }, numbers(figure, &moments))))
     }
 
     /// The format of the files.
@@ -283,6 +297,25 @@ impl FigureCommand {
             }
         }
         Ok(())
+    }
+}
+
+/// A figure that is drawn, and its file.
+struct Made {
+    drawn: Drawn,
+    file: AtomicFile,
+}
+
+impl Made {
+    /// Compresses and writes it, unless the user asked to stop. Returns whether it did.
+    fn write(mut self) -> Result<bool, Failure> {
+        let bytes = self.drawn.file();
+        if interrupt::requested() {
+            return Ok(false);
+        }
+        self.file.append(&bytes)?;
+        self.file.commit()?;
+        Ok(true)
     }
 }
 

@@ -156,7 +156,7 @@ impl Render {
         let source = source_of(scene);
         let (print, title) = (scene.view.print.as_ref(), &scene.title);
         let still = Still { pictures: &pictures, print, source: &source, title, tags: &tags };
-        file.append(&still.file(format, gpu.as_ref())?)?;
+        file.append(&still.draw(format, gpu.as_ref())?.file())?;
         file.commit()?;
         if self.options.printing.prints_text() {
             let [width, height] = scene.view.size;

@@ -89,15 +89,15 @@ pub(super) struct Still<'a> {
 }
 
 impl Still<'_> {
-    /// The file, drawn with a device if one is needed.
-    pub(super) fn file(&self, format: Format, gpu: Option<&Gpu>) -> Result<Vec<u8>, Failure> {
+    /// Draws it, with a device if one is needed.
+    pub(super) fn draw(&self, format: Format, gpu: Option<&Gpu>) -> Result<Drawn, Failure> {
         let picture = &self.pictures[0];
         check_type(self.print, picture, self.source)?;
         match format {
             Format::Png => {
                 let pixels = draw_pictures(gpu.expect("a device for pixels"), self.pictures)?;
                 let dpi = self.print.map(|print| print.dpi);
-                Ok(encode_print(picture.size, &pixels, self.tags, Compression::High, dpi))
+                Ok(Drawn::Pixels { size: picture.size, pixels, tags: self.tags.to_vec(), dpi })
             }
             Format::Vector(format) => {
                 let bodies = draw_bodies(gpu, self.pictures)?;
@@ -110,8 +110,26 @@ impl Still<'_> {
                     maker: &format!("{}{}", film::MARK, env!("CARGO_PKG_VERSION")),
                     tags: self.tags,
                 };
-                vector::write(&page, format).map_err(|error| Failure::usage(error.to_string()))
+                vector::write(&page, format).map(Drawn::Vectors).map_err(|error| Failure::usage(error.to_string()))
             }
+        }
+    }
+}
+
+/// One picture that is drawn.
+pub(super) enum Drawn {
+    /// What is yet to be compressed, which takes longest.
+    Pixels { size: [u32; 2], pixels: Vec<u8>, tags: Vec<(&'static str, String)>, dpi: Option<f64> },
+    /// The file.
+    Vectors(Vec<u8>),
+}
+
+impl Drawn {
+    /// The file.
+    pub(super) fn file(self) -> Vec<u8> {
+        match self {
+            Self::Pixels { size, pixels, tags, dpi } => encode_print(size, &pixels, &tags, Compression::High, dpi),
+            Self::Vectors(file) => file,
         }
     }
 }

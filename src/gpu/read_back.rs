@@ -14,10 +14,13 @@ pub(crate) fn padded_row(width: u32) -> u32 {
 
 /// Takes the colours out of padded rows of four-byte pixels and leaves alpha and padding behind.
 fn without_padding(rows: &[u8], width: u32, height: u32) -> Vec<u8> {
-    let mut colours = Vec::with_capacity(width as usize * height as usize * 3);
-    for row in rows.chunks_exact(padded_row(width) as usize).take(height as usize) {
-        for pixel in row[..(width * PIXEL) as usize].chunks_exact(PIXEL as usize) {
-            colours.extend_from_slice(&pixel[..3]);
+    let mut colours = vec![0; width as usize * height as usize * 3];
+    let rows = rows.chunks_exact(padded_row(width) as usize);
+    for (row, colours) in rows.zip(colours.chunks_exact_mut(width as usize * 3)) {
+        // Arrays of known length, which compile to whole words.
+        let (pixels, colours) = (row.as_chunks::<{ PIXEL as usize }>().0, colours.as_chunks_mut::<3>().0);
+        for (&[red, green, blue, _], colour) in pixels.iter().zip(colours) {
+            *colour = [red, green, blue];
         }
     }
     colours

@@ -6,7 +6,6 @@ use super::text::{Fonts, TextRun, Weight, is_invisible};
 use super::{Curve, Mark, MarkShape, number};
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette};
-use crate::scene::Scene;
 use crate::sim::snapshot::{Divergence, RunFrame, Snapshot, Status};
 
 /// The text in place of a number for a run that diverged.
@@ -425,15 +424,14 @@ pub(super) fn distance(metres: f64, most: f64, extent: f64) -> Number {
     Number { widest: number::length(most, extent), wordings: wordings.into(), is_loud: false }
 }
 
-/// The number at the lower right of a run that has not diverged.
-pub(super) fn number(scene: &Scene, snapshot: &Snapshot, area_ratio: Option<f64>) -> Number {
+/// The number at the lower right of a run that has not diverged, of a body of an extent (m).
+pub(super) fn number(extent: f64, snapshot: &Snapshot, area_ratio: Option<f64>) -> Number {
     let words = |value: String, names: [&str; 2]| names.map(|name| [value.clone(), name.to_owned()]).to_vec();
     if let Some(ratio) = area_ratio {
         let widest = "−0.00".to_owned();
         let wordings = words(number::ratio(ratio), ["smallest area ratio", "area ratio"]);
         return Number { widest, wordings, is_loud: false };
     }
-    let extent = scene.body.extent();
     let value = number::length(snapshot.diagnostics.shape_error, extent);
     let widest = number::length(0.888 * extent, extent);
     Number { widest, wordings: words(value, ["shape error", "error"]), is_loud: false }

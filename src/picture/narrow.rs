@@ -10,7 +10,13 @@ const FARTHEST: f64 = 1e6;
 /// other.
 #[expect(clippy::cast_possible_truncation, reason = "this is the function that is meant to do it")]
 pub(super) fn narrow(value: f64) -> f32 {
-    if value.is_nan() { 0.0 } else { value.clamp(-FARTHEST, FARTHEST) as f32 }
+    if value.abs() <= FARTHEST {
+        value as f32
+    } else if value.is_nan() {
+        0.0
+    } else {
+        FARTHEST.copysign(value) as f32
+    }
 }
 
 /// A point or direction of three narrowed coordinates.

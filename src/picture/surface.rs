@@ -182,6 +182,13 @@ impl FaceSides {
     /// Calls `draw` with the parts of an edge at which the surface turns away from the viewer: the outside of one of its
     /// sides is seen, that of another is not. An edge of one side alone is a border of the surface.
     fn contours(&mut self, sides: &[FaceSide], cut: usize, draw: &mut dyn FnMut([f64; 2])) {
+        // Nowhere along nearly all edges.
+        let are_away = |&(_, first, _): &FaceSide, away: bool| {
+            self.facing[first as usize..][..=cut].iter().all(|&seen| (seen < 0.0) == away)
+        };
+        if sides.len() > 1 && [false, true].iter().any(|&away| sides.iter().all(|side| are_away(side, away))) {
+            return;
+        }
         let mut changes = std::mem::take(&mut self.changes);
         changes.clear();
         for &([from, to], first, _) in sides {

@@ -70,7 +70,22 @@ const DESCENT: f32 = 0.22;
 
 /// The fonts of a picture: those of its scene, with the built-in ones as fallback. Cheap to clone.
 #[derive(Clone, Debug)]
-pub(crate) struct Fonts(Arc<[Face]>);
+pub(crate) struct Fonts {
+    faces: Arc<[Face]>,
+    /// The letters of ASCII, of which most text consists, in each weight.
+    ascii: Arc<[Vec<Letter>; 2]>,
+}
+
+/// A character of a text of some weight.
+#[derive(Clone, Copy, Debug)]
+struct Letter {
+    /// The number of its font, and its glyph there.
+    face: u8,
+    glyph: GlyphId,
+    /// How far the glyph moves the pen by itself, and how far it is to move it, in units of the type's size.
+    own: f64,
+    advance: f64,
+}
 
 /// One font.
 #[derive(Debug)]
@@ -85,7 +100,7 @@ pub(crate) struct Face {
 /// Two collections are equal if they hold the same fonts.
 impl PartialEq for Fonts {
     fn eq(&self, other: &Self) -> bool {
-        self.0.iter().map(|face| face.key).eq(other.0.iter().map(|face| face.key))
+        self.faces.iter().map(|face| face.key).eq(other.faces.iter().map(|face| face.key))
     }
 }
 
@@ -131,16 +146,20 @@ impl Fonts {
         };
         let own = [&files.regular, &files.semi_bold].map(own);
         let faces = [built_in(REGULAR, 0), built_in(SEMI_BOLD, 1)].into_iter();
-        Self(match own {
+        let faces = match own {
             [Some(regular), Some(semi_bold)] => faces.chain([regular, semi_bold]).collect(),
             [Some(only), None] | [None, Some(only)] => faces.chain([only]).collect(),
             [None, None] => faces.collect(),
-        })
+        };
+        let blank = Self { faces, ascii: Arc::default() };
+        let letters = |weight| ('\0'..='\x7f').map(|character| blank.look_up(weight, character)).collect();
+        let ascii = Arc::new([Weight::Regular, Weight::SemiBold].map(letters));
+        Self { ascii, ..blank }
     }
 
     /// One of the fonts, by the number that glyphs name. The first one for a number that there is not.
     pub(crate) fn face(&self, number: u8) -> &Face {
-        self.0.get(usize::from(number)).unwrap_or(&self.0[0])
+        self.faces.get(usize::from(number)).unwrap_or(&self.faces[0])
     }
 
     /// The fonts that a text of a weight is looked up in, in order.
@@ -150,7 +169,7 @@ impl Fonts {
             Weight::SemiBold => 1,
         };
         // The scene's own are stored after the built-in ones; a single one serves both weights.
-        let own = match self.0.len() {
+        let own = match self.faces.len() {
             2 => None,
             3 => Some(2),
             _ => Some(2 + built_in),
@@ -172,21 +191,31 @@ impl Fonts {
         last
     }
 
-    /// How far a glyph moves the pen by itself, in units of the type's size.
-    fn own_advance(&self, (face, glyph): (u8, GlyphId)) -> f64 {
-        let face = self.face(face);
-        f64::from(face.font.h_advance_unscaled(glyph)) / f64::from(face.units_per_em())
+    /// A character, with all that a line needs of it.
+    fn letter(&self, weight: Weight, character: char) -> Letter {
+        let known = self.ascii[weight as usize].get(character as usize);
+        known.copied().unwrap_or_else(|| self.look_up(weight, character))
     }
 
-    /// How far a character moves the pen, in units of the type's size. All digits move it equally far, so that numbers
-    /// do not jump from frame to frame.
-    fn advance(&self, weight: Weight, character: char) -> f64 {
-        let of = |character| self.own_advance(self.glyph(weight, character));
-        match character {
+    /// The same from the fonts. All digits move the pen equally far, so that numbers do not jump from frame to frame.
+    fn look_up(&self, weight: Weight, character: char) -> Letter {
+        let own = |(face, glyph): (u8, GlyphId)| {
+            let face = self.face(face);
+            f64::from(face.font.h_advance_unscaled(glyph)) / f64::from(face.units_per_em())
+        };
+        let of = |character| own(self.glyph(weight, character));
+        let (face, glyph) = self.glyph(weight, character);
+        let advance = match character {
             '0'..='9' => ('0'..='9').map(of).fold(0.0, f64::max),
             THIN_SPACE => THIN * of(' '),
             _ => of(character),
-        }
+        };
+        Letter { face, glyph, own: own((face, glyph)), advance }
+    }
+
+    /// How far a character moves the pen, in units of the type's size.
+    fn advance(&self, weight: Weight, character: char) -> f64 {
+        self.letter(weight, character).advance
     }
 
     /// The width of a text set at a size (px).
@@ -254,11 +283,10 @@ impl Fonts {
         let mut pen = left;
         let mut glyphs = Vec::with_capacity(text.len());
         for character in text.chars() {
-            let glyph @ (face, id) = self.glyph(weight, character);
-            let own = self.own_advance(glyph) * size;
-            let moved = self.advance(weight, character) * size;
+            let Letter { face, glyph, own, advance } = self.letter(weight, character);
+            let [own, moved] = [own, advance].map(|advance| advance * size);
             // A digit that is narrower than the widest one stands in the middle of its cell.
-            glyphs.push(Glyph { face, id: id.0, x: narrow(pen + (moved - own) / 2.0) });
+            glyphs.push(Glyph { face, id: glyph.0, x: narrow(pen + (moved - own) / 2.0) });
             pen += moved;
         }
         TextRun {

@@ -1,15 +1,15 @@
 //! The floor of a panel, its grid and its shadows.
 
+use super::Composer;
 use super::panel::Draft;
 use crate::look::FloorStyle;
 use crate::picture::Floor;
 use crate::picture::layout;
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::Staged;
-use crate::picture::shadow::{self, Plane, Shade};
+use crate::picture::shadow::{Casters, Plane, Shade};
 use crate::sim::contact::{self, Motion, Obstacle, Shape};
 use glam::{DVec2, DVec3};
-use std::borrow::Cow;
 
 /// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
 const FLOOR_FADE: [f64; 2] = [0.7, 2.0];
@@ -98,9 +98,8 @@ impl Draft<'_> {
 
     /// The shadows of key light and sky, within `reach` of a point on the ground (sides).
     fn shadows(&self, staged: &Staged, plane: &Plane, middle: DVec2, reach: f64) -> [Shade; 2] {
-        let (points, triangles) = self.casters(staged);
         let mut shades = if self.scene.view.shadow && self.key.dot(plane.normal) > 0.05 {
-            shadow::shades(&points, &triangles, plane, self.key, middle, reach, self.composer.soft)
+            self.casters(staged).shades(plane, self.key, middle, reach, self.composer.soft)
         } else {
             std::array::from_fn(|_| Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
         };
@@ -114,19 +113,18 @@ impl Draft<'_> {
         shades
     }
 
-    /// The shadow casters, body and solid obstacles: points (sides) and triangles.
-    fn casters(&self, staged: &Staged) -> (Vec<DVec3>, Cow<'_, [[u32; 3]]>) {
-        let skin = &self.composer.skin;
+    /// The shadow casters: body and solid obstacles.
+    fn casters(&self, staged: &Staged) -> Casters<'_> {
+        let Composer { skin, seams, .. } = self.composer;
         let relative = |at: &DVec3| (at - self.origin) / self.side;
         let on_skin = skin.nodes.iter().filter_map(|&node| self.position.get(node as usize));
-        let mut points: Vec<_> = on_skin.map(relative).collect();
-        let mut triangles = Cow::Borrowed(if points.is_empty() { &[][..] } else { &skin.triangles });
-        if !staged.shadow_triangles.is_empty() {
-            let base = points.len() as u32;
-            points.extend(staged.shadow_points.iter().map(relative));
-            triangles.to_mut().extend(staged.shadow_triangles.iter().map(|triangle| triangle.map(|at| base + at)));
-        }
-        (points, triangles)
+        let mut casters = if self.position.is_empty() {
+            Casters::new(Vec::new(), &[], &[])
+        } else {
+            Casters::new(on_skin.map(relative).collect(), &skin.triangles, seams)
+        };
+        casters.add(staged.shadow_points.iter().map(relative), &staged.shadow_triangles);
+        casters
     }
 
     /// How many times wider than usual the floor is drawn: what lies farther away fades at about the same place in the

@@ -19,12 +19,13 @@ use super::exploded::Exploded;
 use super::layout::{self, Layout, Rectangle, Scale};
 use super::legend::{Bar, Legend, Sample, SampleKind};
 use super::locator::Locator;
+use super::shadow;
 use super::shell::Shell;
 use super::skin::Skin;
 use super::tally::Tally;
 use super::text::Fonts;
 use super::timeline::Timeline;
-use super::tracking::Tracking;
+use super::tracking::{Shot, Tracking};
 use super::wire::{Edges, spring_strain};
 use super::{Framing, Picture, number};
 use crate::colour::Colour;
@@ -41,6 +42,7 @@ pub(crate) use figure::{NoRoom, compose_figure};
 use glam::DVec3;
 use panel::Draft;
 use std::borrow::Cow;
+use std::sync::OnceLock;
 pub(crate) use words::left_out;
 use words::{Around, Clock, Words};
 
@@ -63,8 +65,9 @@ pub struct Composer<'a> {
     rest_areas: Vec<f64>,
     /// Which faces lie on its outside, and which between elements.
     shell: Shell,
-    /// The surface of the body.
+    /// The surface of the body, and the edges of its triangles if it throws a shadow.
     skin: Skin,
+    seams: Vec<shadow::Edge>,
     /// How faces that are not convex are cut into triangles.
     ears: Ears,
     /// Elements without faces.
@@ -100,6 +103,19 @@ pub struct Composer<'a> {
     locator: Option<Locator>,
     /// Where nodes have come near plates and walls, once the time series are set.
     reach: Reach,
+    /// How the panels of the first frame are arranged, and those of all others of the same runs.
+    arranged: OnceLock<Arranged>,
+}
+
+/// How the panels of some runs are arranged, in any frame.
+#[derive(Debug)]
+struct Arranged {
+    runs: Vec<usize>,
+    columns: usize,
+    around: Around,
+    /// How a camera that follows sees the bodies, and the one of a difference.
+    shot: Option<Shot>,
+    shot_of_difference: Option<Shot>,
 }
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
@@ -152,6 +168,7 @@ impl<'a> Composer<'a> {
         let body = exploded.as_ref().map_or(body, |exploded| &exploded.body);
         let ears = Ears::new(body);
         let skin = Skin::new(body, &ears);
+        let throws_shadow = scene.view.shadow && body.dimension == Dimension::Space;
         let bare = bare_elements(body);
         let visible = scene.view.visible;
         let map = scene.view.colour.map(|scale| scale.map);
@@ -169,6 +186,7 @@ impl<'a> Composer<'a> {
             descriptions,
             rest_areas: areas,
             shell: if visible.surfaces { Shell::new(body) } else { Shell::default() },
+            seams: if throws_shadow { shadow::edges(&skin.triangles) } else { Vec::new() },
             skin,
             ears,
             bare,
@@ -182,6 +200,7 @@ impl<'a> Composer<'a> {
             tracking: scene.view.camera.follow.then(|| Tracking::new(scene, &History::default())).flatten(),
             locator: None,
             reach: Reach::default(),
+            arranged: OnceLock::new(),
             grips,
             exploded,
         }
@@ -191,6 +210,7 @@ impl<'a> Composer<'a> {
     /// a camera that follows takes its path and its scale from them, and plates and walls their size.
     pub fn set_history(&mut self, history: &History) {
         let scene = self.scene;
+        self.arranged = OnceLock::new();
         self.tracking = scene.view.camera.follow.then(|| Tracking::new(scene, history)).flatten();
         self.locator = self.tracking.as_ref().and_then(|tracking| Locator::new(scene, tracking));
         self.reach = Reach::default();
@@ -222,22 +242,24 @@ impl<'a> Composer<'a> {
         let size = view.size.map(|length| length.max(1));
         let compared = self.compared(frame);
         let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
-        let columns = self.columns(&runs);
-        let Around { layout, title, caption, legend, clock } = self.words().around(&runs, columns);
+        let others;
+        let arranged = match self.arranged.get_or_init(|| self.arrange(&runs)) {
+            known if known.runs == runs => known,
+            _ => {
+                others = self.arrange(&runs);
+                &others
+            }
+        };
+        let Arranged { columns, around, shot, shot_of_difference, .. } = arranged;
+        let (columns, Around { layout, title, caption, legend, clock }) = (*columns, around);
         let scale = layout.scale;
-        // The chart of a difference takes room from its body, which is as large as the others.
-        let difference = layout.panels.get(runs.len()).map(|&panel| self.rooms(panel, scale).0);
-        let largest = |room: Option<Rectangle>, most: f64| room.and_then(|room| self.shot(room, scale, most));
-        let most = largest(difference, f64::INFINITY).map_or(f64::INFINITY, |shot| shot.pixels);
-        let shot = largest(layout.panels.first().copied(), most);
-        let shot_of_difference = largest(difference, shot.map_or(f64::INFINITY, |shot| shot.pixels));
         let places = layout.panels.iter().zip(&frame.runs);
         let framings: Vec<_> = places.map(|(&panel, run)| self.framing(shot.as_ref(), run, (panel, scale))).collect();
         let mut writer = self.writer(scale);
-        writer.hairlines(&layout);
+        writer.hairlines(layout);
         let hairlines = std::mem::take(&mut writer.marks);
-        let with_clock = clock == Clock::InPanel;
-        self.write(frame, &layout, columns, framings.first(), with_clock, &mut writer);
+        let with_clock = *clock == Clock::InPanel;
+        self.write(frame, layout, columns, framings.first(), with_clock, &mut writer);
         let place = layout.panels.get(runs.len()).copied();
         let compared = compared.as_ref().zip(place);
         if let Some((compared, place)) = compared {
@@ -246,12 +268,12 @@ impl<'a> Composer<'a> {
             self.write_difference(compared, place, runs.len(), has_clock.then_some(frame.time), &mut writer);
         }
         self.timeline.iter().for_each(|timeline| timeline.draw(&mut writer, frame));
-        writer.title(layout.around, &title);
-        if let Clock::Above(Some(baseline)) = clock {
+        writer.title(layout.around, title);
+        if let &Clock::Above(Some(baseline)) = clock {
             writer.clock_alone(layout.around, [f64::from(size[0]), baseline], frame.time, &view.clock);
         }
-        writer.caption(layout.around, &caption, layout.caption);
-        if let Some(((legend, &panel), framing)) = legend.zip(layout.panels.first()).zip(framings.first()) {
+        writer.caption(layout.around, caption, layout.caption);
+        if let Some(((legend, &panel), framing)) = (*legend).zip(layout.panels.first()).zip(framings.first()) {
             let arrow = view.visible.displacements.then(|| self.key_arrow(legend, panel, framing, scale));
             let bars = self.bars(frame, compared.map(|(compared, _)| compared));
             legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &self.samples(), &bars);
@@ -275,8 +297,9 @@ impl<'a> Composer<'a> {
             let marks = [&mut under, &mut marks];
             panels.push(self.draw_difference(compared, place, &framing, scale, marks, &mut ghosts));
         }
-        let Writer { marks: above, curves, mut words, .. } = writer;
-        let curves = [ghosts, curves].concat();
+        let Writer { marks: above, curves: in_front, mut words, .. } = writer;
+        let mut curves = ghosts;
+        curves.extend(in_front);
         // Text and tallies lie above bodies; text over a body gets a halo.
         marks.extend(above);
         for word in &mut words {
@@ -284,6 +307,20 @@ impl<'a> Composer<'a> {
         }
         let (fonts, ramp) = (self.fonts.clone(), self.ramp.clone());
         Picture { size, palette: self.palette, fonts, ramp, panels, under, marks, curves, words }
+    }
+
+    /// Arranges the panels of some runs.
+    fn arrange(&self, runs: &[usize]) -> Arranged {
+        let columns = self.columns(runs);
+        let around = self.words().around(runs, columns);
+        let (layout, scale) = (&around.layout, around.layout.scale);
+        // The chart of a difference takes room from its body, which is as large as the others.
+        let difference = layout.panels.get(runs.len()).map(|&panel| self.rooms(panel, scale).0);
+        let largest = |room: Option<Rectangle>, most: f64| room.and_then(|room| self.shot(room, scale, most));
+        let most = largest(difference, f64::INFINITY).map_or(f64::INFINITY, |shot| shot.pixels);
+        let shot = largest(layout.panels.first().copied(), most);
+        let shot_of_difference = largest(difference, shot.map_or(f64::INFINITY, |shot| shot.pixels));
+        Arranged { runs: runs.to_vec(), columns, around, shot, shot_of_difference }
     }
 
     /// Writes the words of all panels.
@@ -322,7 +359,7 @@ impl<'a> Composer<'a> {
             if labels.count {
                 from = writer.count(viewport, &self.tally, run.shown());
             }
-            let usual = caption::number(self.scene, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
+            let usual = caption::number(self.extent, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
             let to = to.min(writer.left_of_numbers(viewport, &usual));
             // One scale for all panels, and so one bar.
             if let Some(framing) = framing.filter(|_| scale_bar && at == 0) {

@@ -48,7 +48,7 @@ pub(super) struct Draft<'a> {
     /// The panel's unit of length (m).
     pub(super) side: f64,
     /// The nodes (m); none if not all are known.
-    pub(super) position: Vec<DVec3>,
+    pub(super) position: Cow<'a, [DVec3]>,
     /// The field that is shown.
     pub(super) shades: Option<Shades>,
     /// Its places at the nodes, if anything but surfaces shows them.
@@ -89,14 +89,14 @@ impl<'a> Draft<'a> {
         let lens = Lens::new(view, framing, body.dimension, viewport.map(f64::from), scale.unit);
         // Without positions nothing is drawn.
         let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
-        let mut position: Vec<_> = position.iter().map(|&at| finite(at, FARTHEST * view.side)).collect();
+        let mut position = finite(position, FARTHEST * view.side);
         // Without values, a greyed body has its own colour.
         let mut field = Cow::Borrowed(if greyed { &[][..] } else { &run.snapshot.field[..] });
         let mut drawn = body;
         if let Some(exploded) = &composer.exploded {
             let ground = contact::ground(&scene.obstacles, run.snapshot.time).map(|(normal, _)| normal);
             if !position.is_empty() {
-                position = exploded.positions(&position, ground);
+                position = Cow::Owned(exploded.positions(&position, ground));
             }
             if view.colour.is_some_and(|scale| scale.field.support() == Support::Nodes) {
                 field = Cow::Owned(exploded.of_nodes(&field, body.len()));
@@ -354,8 +354,11 @@ impl<'a> Draft<'a> {
     }
 }
 
-/// Clamps coordinates, so that arithmetic with them stays finite.
-fn finite(point: DVec3, farthest: f64) -> DVec3 {
+/// Clamps coordinates where any is too large, so that arithmetic with them stays finite.
+fn finite(points: &[DVec3], farthest: f64) -> Cow<'_, [DVec3]> {
+    if points.iter().all(|point| point.abs().cmple(DVec3::splat(farthest)).all()) {
+        return Cow::Borrowed(points);
+    }
     let one = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-farthest, farthest) };
-    DVec3::new(one(point.x), one(point.y), one(point.z))
+    points.iter().map(|&DVec3 { x, y, z }| DVec3::new(one(x), one(y), one(z))).collect()
 }

@@ -26,6 +26,7 @@ pub(super) struct Words<'a> {
 }
 
 /// What stands around panels, and where everything stands.
+#[derive(Debug)]
 pub(super) struct Around {
     pub(super) layout: Layout,
     /// Lines of the title and of the caption, as many as have room.
