@@ -8,8 +8,8 @@ use super::dynamics::{Dynamics, SpeedLimit};
 use super::field::Field;
 use super::integrate::{ByForces, Integrator};
 use super::kernel::{ByKernel, Scheme};
-use super::model::{ElasticModel, Report};
-use super::part::Part;
+use super::model::{ElasticModel, Known, Report};
+use super::part::{Forces, Part};
 use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
 use super::state::{Memory, State};
 pub(crate) use super::system::Surroundings;
@@ -128,36 +128,40 @@ impl World {
             let memory = grip.start(&mut state);
             state.memory.constraints.extend(memory);
         }
+        let Stepping { integrator, step, kernel } = stepping;
+        let fast = match bodies {
+            [(_, model)] if kernel == Kernel::Fast => model.known().zip(Scheme::of(integrator)),
+            _ => None,
+        };
         let (mut parts, mut limit) = (Vec::new(), None::<SpeedLimit>);
         let (mut first_node, mut mass) = (0, Vec::with_capacity(nodes));
         for (body, model) in bodies {
-            let forces = model.prepare(body);
+            let forces = match fast {
+                Some((Known::ShapeBased(model), _)) => prepared_late(model.clone(), body),
+                Some((Known::MassSpring(model), _)) => prepared_late(model.clone(), body),
+                None => {
+                    let forces = model.prepare(body);
+                    Forces::new(Box::new(|| forces))
+                }
+            };
             let nodes = first_node..first_node + body.len();
-            let start = forces.start(&state.position[nodes.clone()]);
+            let start = model.start(body, &state.position[nodes.clone()]);
             let first = state.memory.model.len();
             state.memory.model.extend(start);
             let memory = first..state.memory.model.len();
             let part = Part { body: Arc::clone(body), forces, nodes, memory, diagnose: Diagnose::new(body) };
             let period = model.shortest_period(body);
-            let own = SpeedLimit::new(body, part.nodes_of(state.nodes()), period, &surroundings, stepping.step);
+            let own = SpeedLimit::new(body, part.nodes_of(state.nodes()), period, &surroundings, step);
             limit = Some(limit.map_or(own, |limit| limit.max(own)));
             mass.extend_from_slice(&body.mass);
             first_node = part.nodes.end;
             parts.push(part);
         }
         let Surroundings { gravity, obstacles, grips } = surroundings;
-        let Stepping { integrator, step, kernel } = stepping;
         let system = System { parts, mass, gravity, contact: Box::new(obstacles), grips, step };
-        let fast = match bodies {
-            [(body, model)] if kernel == Kernel::Fast => {
-                let known = model.known().zip(Scheme::of(integrator));
-                known.map(|(model, scheme)| ByKernel::new(body, model, scheme, gravity, step))
-            }
-            _ => None,
-        };
-        let dynamics: Box<dyn Dynamics> = match fast {
-            Some(kernel) => Box::new(kernel),
-            None => Box::new(ByForces::new(integrator, &state)),
+        let dynamics: Box<dyn Dynamics> = match (fast, bodies) {
+            (Some((model, scheme)), [(body, _)]) => Box::new(ByKernel::new(body, model, scheme, gravity, step)),
+            _ => Box::new(ByForces::new(integrator, &state)),
         };
         let (limit, wanted) = (limit.unwrap_or_default(), Diagnostic::ALL.to_vec());
         Self { system, dynamics, crew: Crew::new(1), limit, field: None, wanted, state }
@@ -339,4 +343,10 @@ impl World {
             status: self.state.status,
         }
     }
+}
+
+/// The forces of a model that vectorised steps take the place of.
+fn prepared_late(model: impl ElasticModel + 'static, body: &Arc<Body>) -> Forces {
+    let body = Arc::clone(body);
+    Forces::new(Box::new(move || model.prepare(&body)))
 }

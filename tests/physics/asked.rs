@@ -33,16 +33,16 @@ impl ElasticModel for Counting {
         self.model.describe(body)
     }
 
+    fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
+        self.model.start(body, position)
+    }
+
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
         Box::new(CountingForces { forces: self.model.prepare(body), reports: Arc::clone(&self.reports) })
     }
 }
 
 impl ForceModel for CountingForces {
-    fn start(&self, position: &[DVec3]) -> Vec<f64> {
-        self.forces.start(position)
-    }
-
     fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]) {
         self.forces.add_forces(at, memory, next, scratch, forces);
     }
