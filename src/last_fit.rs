@@ -38,6 +38,8 @@ pub(crate) fn last_fit(scene: &Scene, run: usize, threads: usize) -> Option<Last
     }
     let (divergence, widest) = end?;
     world.set_state(fitting);
+    // Pictures write that the run diverges, and no diagnostics of this state.
+    world.want(&[]);
     let mut snapshot = world.snapshot();
     snapshot.status = Status::Diverged(divergence);
     let times_wider = widest / radius(&snapshot.position);

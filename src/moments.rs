@@ -5,6 +5,7 @@ use crate::look::Ghost;
 use crate::runner::Runner;
 use crate::scene::Scene;
 use crate::scene::figure::{Content, Figure, Sheet};
+use crate::sim::diagnostics::{Diagnostic, Reach};
 use crate::sim::snapshot::{RunFrame, Snapshot};
 use crate::sim::world::Moment;
 use glam::DVec3;
@@ -37,7 +38,7 @@ impl Moments {
     ///
     /// It uses the rayon thread pool of the caller; the result has the same bits for any number of threads.
     pub fn new(figure: &Figure) -> Self {
-        let mut taking = Taking::new(figure);
+        let mut taking = Taking::new(figure, Reach::Frames);
         while !taking.advance(u64::MAX) {}
         taking.finish()
     }
@@ -91,6 +92,8 @@ type OfRun<'a> = (&'a Scene, usize);
 /// The simulations of a figure, advanced in slices.
 pub(crate) struct Taking<'a> {
     figure: &'a Figure,
+    /// The diagnostics of its states.
+    wanted: Vec<Diagnostic>,
     parts: Vec<Part<'a>>,
     /// The parts with the time series of the first scene's runs, if strips are shown.
     series: Option<Vec<usize>>,
@@ -109,21 +112,23 @@ struct Part<'a> {
 }
 
 impl<'a> Taking<'a> {
-    /// The simulations of a figure at their start.
-    pub(crate) fn new(figure: &'a Figure) -> Self {
+    /// The simulations of a figure at their start. The states have the diagnostics that are written at least so widely, and
+    /// those that the figure shows.
+    pub(crate) fn new(figure: &'a Figure, reach: Reach) -> Self {
+        let wanted = Diagnostic::within(reach);
         match &figure.content {
-            Content::Sheet(sheet) => Self::of_sheet(figure, sheet),
-            Content::Forces(_) => Self { figure, parts: Vec::new(), series: None },
+            Content::Sheet(sheet) => Self::of_sheet(figure, sheet, wanted.chain(sheet.number).collect()),
+            Content::Forces(_) => Self { figure, wanted: wanted.collect(), parts: Vec::new(), series: None },
         }
     }
 
-    fn of_sheet(figure: &'a Figure, sheet: &'a Sheet) -> Self {
+    fn of_sheet(figure: &'a Figure, sheet: &'a Sheet, wanted: Vec<Diagnostic>) -> Self {
         let mut parts: Vec<Part<'a>> = Vec::new();
         let mut part = |of: [usize; 2]| match parts.iter().position(|part| part.of == of) {
             Some(known) => known,
             None => {
                 // Most sheets show more runs than there are threads.
-                let runner = Runner::among(usize::MAX, &sheet.scenes[of[0]], &[of[1]]);
+                let runner = Runner::among(usize::MAX, &sheet.scenes[of[0]], &[of[1]]).with_diagnostics(&wanted);
                 parts.push(Part { of, runner, stops: Vec::new(), taken: Vec::new(), end: Moment::at(0.0) });
                 parts.len() - 1
             }
@@ -168,7 +173,8 @@ impl<'a> Taking<'a> {
             }
             part
         });
-        Self { figure, parts: parts.collect(), series }
+        let parts = parts.collect();
+        Self { figure, wanted, parts, series }
     }
 
     /// Advances each run by at most `most_steps`, and returns whether all have reached their end. The result has the
@@ -213,9 +219,11 @@ impl<'a> Taking<'a> {
                 Moments { cells: rows, others, history, forces: Vec::new() }
             }
             Content::Forces(forces) => {
-                let of_run = |scene: &Scene, run: usize| Forces {
-                    snapshot: scene.world(run).snapshot(),
-                    on_nodes: scene.runs[run].model.forces_at_start(&scene.body, &scene.initial),
+                let of_run = |scene: &Scene, run: usize| {
+                    let mut world = scene.world(run);
+                    world.want(&self.wanted);
+                    let on_nodes = scene.runs[run].model.forces_at_start(&scene.body, &scene.initial);
+                    Forces { snapshot: world.snapshot(), on_nodes }
                 };
                 let of_scene = |scene: &Scene| (0..scene.runs.len()).map(|run| of_run(scene, run)).collect();
                 Moments { forces: forces.scenes.iter().map(of_scene).collect(), ..Moments::default() }
@@ -250,7 +258,7 @@ mod tests {
         let Content::Sheet(sheet) = &figure.content else { panic!("a contact sheet") };
         let whole = Moments::new(&figure);
         assert_eq!((whole.cells.len(), whole.cells[0].len()), (sheet.rows.len(), sheet.columns.len()));
-        let mut taking = Taking::new(&figure);
+        let mut taking = Taking::new(&figure, Reach::Frames);
         while !taking.advance(17) {
             assert!(taking.steps()[0] < taking.steps()[1]);
         }

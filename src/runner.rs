@@ -104,6 +104,12 @@ impl<'a> Runner<'a> {
         self
     }
 
+    /// The same with these diagnostics only in its frames.
+    pub(crate) fn with_diagnostics(mut self, wanted: &[Diagnostic]) -> Self {
+        self.runs.iter_mut().for_each(|running| running.world.want(wanted));
+        self
+    }
+
     /// The same, recording time series of some diagnostics of all runs.
     pub(crate) fn with_time_series(self, wanted: &[Diagnostic]) -> Self {
         self.with_closer_time_series(wanted, None, &[])

@@ -100,7 +100,8 @@ fn cut(scene: &Scene) -> Option<Mistake> {
         return None;
     }
     let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let picture = crate::picture::compose(scene, &Runner::new(scene, &runs).frame(0));
+    let mut runner = Runner::new(scene, &runs).with_diagnostics(&scene.frame_diagnostics());
+    let picture = crate::picture::compose(scene, &runner.frame(0));
     picture.panels.iter().any(|panel| panel.is_cut).then(|| Mistake {
         line: 0,
         column: 0,

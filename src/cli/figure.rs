@@ -268,7 +268,7 @@ impl FigureCommand {
 
     /// What a figure shows of its simulations; `None` if it was interrupted.
     fn take(&self, figure: &Figure) -> Option<Moments> {
-        let mut taking = Taking::new(figure);
+        let mut taking = Taking::new(figure, Reach::Summaries);
         let slice = figure.scenes().iter().map(|scene| record::slice(&scene.body)).min().unwrap_or(1);
         let bar = self.printing.progress(&figure.name, taking.steps()[1]);
         let mut is_there = false;

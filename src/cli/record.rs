@@ -126,7 +126,7 @@ pub(super) fn one_frame(
 ) -> Result<Option<(Frame, Option<History>)>, Failure> {
     let wanted = scene.time_series();
     let mut frames = pool.install(|| {
-        let runner = Runner::new(scene, runs);
+        let runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
         let runner = match wanted {
             Some(wanted) => runner.with_time_series(wanted).with_difference(),
             None => runner,

@@ -65,7 +65,8 @@ fn smallest_type(picture: &Picture) -> f32 {
 /// Why some runs of a scene are not printed, as far as the first frame shows: before anything is simulated.
 pub(super) fn too_small(scene: &Scene, runs: &[usize]) -> Option<String> {
     let print = scene.view.print.as_ref()?;
-    let first = compose_frame(scene, &Runner::new(scene, runs).frame(0), None);
+    let mut runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
+    let first = compose_frame(scene, &runner.frame(0), None);
     print.too_small(f64::from(smallest_type(&first[0])), &source_of(scene))
 }
 

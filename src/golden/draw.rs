@@ -13,6 +13,7 @@ use crate::render::RenderError;
 use crate::runner::{Frames, Next, Runner};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene, SceneError, is_figure_file};
+use crate::sim::diagnostics::Reach;
 use crate::sim::snapshot::{Divergence, Status};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -231,7 +232,7 @@ fn draw_figure(
         return Err(DrawError::Options(format!("{} is a figure and has no frames to choose from", figure.name)));
     }
     figure.size = size(figure.size, options, old);
-    let mut taking = Taking::new(&figure);
+    let mut taking = Taking::new(&figure, Reach::Goldens);
     while !taking.advance(SLICE) {
         if !go_on() {
             return Ok(None);

@@ -124,6 +124,11 @@ impl Scene {
             || (!is_flat && self.obstacles.iter().any(has_size));
         needed.then_some(view.strip.as_slice())
     }
+
+    /// The diagnostics of a frame that its picture shows: the number of each run, and the present value in a chart.
+    pub(crate) fn frame_diagnostics(&self) -> Vec<Diagnostic> {
+        self.view.strip.iter().copied().chain([Diagnostic::ShapeError]).collect()
+    }
 }
 
 impl Run {

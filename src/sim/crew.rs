@@ -19,6 +19,8 @@ type Work<'a> = dyn Fn(usize) + Sync + 'a;
 pub struct Crew {
     shared: Arc<Shared>,
     helpers: Vec<JoinHandle<()>>,
+    /// Locked during a round, as there is one at a time.
+    turn: Mutex<()>,
 }
 
 struct Shared {
@@ -50,7 +52,7 @@ impl Crew {
                 std::thread::Builder::new().name("step".into()).spawn(move || shared.help(number)).ok()
             })
             .collect();
-        Self { shared, helpers }
+        Self { shared, helpers, turn: Mutex::default() }
     }
 
     /// The number of threads: at least one, and less than requested if the system refused to start some.
@@ -59,15 +61,16 @@ impl Crew {
     }
 
     /// Calls `work` with each number below [`Self::threads`], in parallel, and returns when all have returned. The
-    /// calling thread has number 0.
+    /// calling thread has number 0. `work` must not use the crew itself.
     ///
     /// # Panics
     /// If `work` panics on any thread.
-    pub(crate) fn run(&mut self, work: &Work<'_>) {
+    pub(crate) fn run(&self, work: &Work<'_>) {
         let Shared { busy, panicked, .. } = &*self.shared;
         if self.helpers.is_empty() {
             return work(0);
         }
+        let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: helpers use it only while they are busy, and this function waits until none is, also after a panic.
         let lent = unsafe { std::mem::transmute::<&Work<'_>, &'static Work<'static>>(work) };
         busy.store(self.helpers.len(), Ordering::Relaxed);
@@ -79,6 +82,23 @@ impl Crew {
             std::panic::resume_unwind(panic);
         }
         assert!(!panicked.swap(false, Ordering::Relaxed), "a thread that helped has panicked");
+    }
+
+    /// The results of `work` for each number below `count`, in order; each thread computes a range of them.
+    ///
+    /// # Panics
+    /// If `work` panics on any thread.
+    pub(crate) fn map<T: Send>(&self, count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+        let threads = self.threads();
+        if threads.min(count) <= 1 {
+            return (0..count).map(work).collect();
+        }
+        let ranges: Vec<Mutex<Vec<T>>> = (0..threads).map(|_| Mutex::default()).collect();
+        self.run(&|me| {
+            let own = (me * count / threads..(me + 1) * count / threads).map(&work).collect();
+            *ranges[me].lock().unwrap_or_else(PoisonError::into_inner) = own;
+        });
+        ranges.into_iter().flat_map(|range| range.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
     }
 }
 
@@ -152,7 +172,7 @@ mod tests {
     #[test]
     fn everyone_works_once_in_each_round() {
         for threads in [1, 2, 5] {
-            let mut crew = Crew::new(threads);
+            let crew = Crew::new(threads);
             let counts: Vec<_> = (0..threads).map(|_| AtomicUsize::new(0)).collect();
             for round in 1..50 {
                 crew.run(&|number| {
@@ -164,8 +184,17 @@ mod tests {
     }
 
     #[test]
+    fn results_are_in_order() {
+        for (threads, count) in
+            [1, 2, 5].into_iter().flat_map(|threads| [0, 1, 3, 5, 100].map(|count| (threads, count)))
+        {
+            assert_eq!(Crew::new(threads).map(count, |at| at), (0..count).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
     fn a_panic_reaches_the_caller() {
-        let mut crew = Crew::new(3);
+        let crew = Crew::new(3);
         for member in 0..3 {
             let run = catch_unwind(AssertUnwindSafe(|| crew.run(&|number| assert_ne!(number, member))));
             assert!(run.is_err());

@@ -1,7 +1,8 @@
 //! The quantities from which diagnostics are computed: volumes of elements, and the best rigid placement.
 
 use super::body::{Body, ElementKind};
-use super::diagnostics::{Diagnostic, Diagnostics, Facts, Lazy};
+use super::crew::Crew;
+use super::diagnostics::{Facts, Lazy};
 use super::element;
 use super::gather::Group;
 use super::lanes::{Lanes, Set, Work, each};
@@ -10,8 +11,7 @@ use super::rotation::{self, moment};
 use super::snapshot::Placement;
 use super::state::Nodes;
 use glam::{DMat3, DVec3};
-use rayon::prelude::*;
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Mul, Range, Sub};
 use std::sync::Arc;
 
 /// Elements in one task of a thread.
@@ -47,7 +47,7 @@ impl Diagnose {
     /// Precomputes the quantities of the body at rest.
     pub(crate) fn new(body: &Arc<Body>) -> Self {
         let affine: Vec<_> = (0..body.elements.len()).filter_map(|element| Affine::new(body, element)).collect();
-        let mut volumes_at_rest = volumes_by_faces(body, &body.rest);
+        let mut volumes_at_rest = volumes_by_faces(body, &body.rest, &Crew::new(1));
         for Affine { element, .. } in &affine {
             volumes_at_rest[*element] = hull_volume(body, *element);
         }
@@ -57,39 +57,20 @@ impl Diagnose {
         Self { body: Arc::clone(body), volumes_at_rest, volume_at_rest, affine, rest_centre, centred }
     }
 
-    /// The diagnostics of a state, whether each element is turned over and whether it is flat, and the best rigid placement
-    /// of the body.
-    pub(crate) fn state(
-        &self,
-        state: Nodes<'_>,
+    /// What the diagnostics of a state are computed from, each when it is first used. `report` gives energy and residuals.
+    pub(super) fn facts<'a>(
+        &'a self,
+        state: Nodes<'a>,
         gravity: DVec3,
-        report: &Report,
-    ) -> (Diagnostics, [Vec<bool>; 2], Placement) {
-        let facts = self.facts(state, gravity, || report.clone());
-        let all = Diagnostics::of(&facts, |_| true);
-        (all, [facts.turned_over().collect(), facts.flat().collect()], *facts.placement)
-    }
-
-    /// The diagnostics in `wanted`; the others are zero, and what only they need is not computed.
-    pub(crate) fn some(
-        &self,
-        state: Nodes<'_>,
-        gravity: DVec3,
-        report: impl FnOnce() -> Report,
-        wanted: &[Diagnostic],
-    ) -> Diagnostics {
-        use Diagnostic::{Elastic, Energy, Gravitational, Kinetic};
-        let is_part = |one| wanted.contains(&Energy) && [Kinetic, Elastic, Gravitational].contains(&one);
-        Diagnostics::of(&self.facts(state, gravity, report), |one| wanted.contains(&one) || is_part(one))
-    }
-
-    fn facts<'a>(&'a self, state: Nodes<'a>, gravity: DVec3, report: impl FnOnce() -> Report + 'a) -> Facts<'a> {
+        report: impl FnOnce() -> Report + 'a,
+        crew: &'a Crew,
+    ) -> Facts<'a> {
         Facts {
             mass: &self.body.mass,
             state,
             gravity,
             report: Lazy::new(Box::new(report)),
-            volumes: Lazy::new(Box::new(move || self.volumes(state.position))),
+            volumes: Lazy::new(Box::new(move || self.volumes(state.position, crew))),
             volumes_at_rest: &self.volumes_at_rest,
             volume_at_rest: self.volume_at_rest,
             placement: Lazy::new(Box::new(move || self.placement(state.position))),
@@ -98,9 +79,9 @@ impl Diagnose {
     }
 
     /// Signed volume of each element (m³, in the plane m²).
-    fn volumes(&self, position: &[DVec3]) -> Vec<f64> {
-        let mut volumes = volumes_by_faces(&self.body, position);
-        let measured: Vec<_> = self.affine.par_iter().map(|affine| affine.stretch(&self.body, position)).collect();
+    fn volumes(&self, position: &[DVec3], crew: &Crew) -> Vec<f64> {
+        let mut volumes = volumes_by_faces(&self.body, position, crew);
+        let measured = crew.map(self.affine.len(), |at| self.affine[at].stretch(&self.body, position));
         for (affine, stretch) in self.affine.iter().zip(measured) {
             volumes[affine.element] = stretch * self.volumes_at_rest[affine.element];
         }
@@ -147,30 +128,27 @@ impl Affine {
 }
 
 /// Signed volume of each element from its faces (m³, in the plane m²); zero for elements without faces of their own.
-fn volumes_by_faces(body: &Body, position: &[DVec3]) -> Vec<f64> {
-    let mut volumes = vec![0.0; body.elements.len()];
-    let set = Set::best();
-    volumes.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, volumes)| {
-        set.run(Measure { body, position, first: chunk * CHUNK, volumes });
-    });
-    volumes
+fn volumes_by_faces(body: &Body, position: &[DVec3], crew: &Crew) -> Vec<f64> {
+    let (set, count) = (Set::best(), body.elements.len());
+    let of_chunk =
+        |chunk: usize| set.run(Measure { body, position, range: chunk * CHUNK..count.min((chunk + 1) * CHUNK) });
+    crew.map(count.div_ceil(CHUNK), of_chunk).concat()
 }
 
 /// Computes the volumes of consecutive elements from their faces.
 struct Measure<'a> {
     body: &'a Body,
     position: &'a [DVec3],
-    first: usize,
-    volumes: &'a mut [f64],
+    range: Range<usize>,
 }
 
 impl Work for Measure<'_> {
-    type Output = ();
+    type Output = Vec<f64>;
 
     #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let Self { body, position, first, volumes } = self;
-        let end = first + volumes.len();
+    fn run<L: Lanes>(self) -> Vec<f64> {
+        let Self { body, position, range: Range { start: first, end } } = self;
+        let mut volumes = vec![0.0; end - first];
         let mut at = first;
         while at < end {
             let kind = body.kinds[at];
@@ -196,6 +174,7 @@ impl Work for Measure<'_> {
             }
             at += count;
         }
+        volumes
     }
 }
 
@@ -300,7 +279,7 @@ fn mean(points: &[DVec3]) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::diagnostics::{is_flat, is_turned_over};
+    use super::super::diagnostics::{Diagnostic, Diagnostics, is_flat, is_turned_over};
     use super::*;
     use crate::sim::body::Dimension;
     use crate::sim::body::IndexLists;
@@ -313,7 +292,12 @@ mod tests {
         elements.push(&(0..rest.len() as u32).collect::<Vec<_>>());
         let body =
             Arc::new(Body::new(Dimension::Space, rest.clone(), vec![1.0; rest.len()], elements, Solids::Ordered, None));
-        Diagnose::new(&body).state(State::at_rest(rest).nodes(), DVec3::ZERO, &Report::default()).0
+        diagnostics(&Diagnose::new(&body), &State::at_rest(rest))
+    }
+
+    fn diagnostics(diagnose: &Diagnose, state: &State) -> Diagnostics {
+        let crew = Crew::new(1);
+        Diagnostics::of(&diagnose.facts(state.nodes(), DVec3::ZERO, Report::default, &crew), Diagnostic::ALL)
     }
 
     /// An element with seven corners has no table of faces: its volume is the affine estimate.
@@ -353,7 +337,7 @@ mod tests {
             let tilt = DQuat::from_xyzw(0.1, -0.2, 0.01 * f64::from(turn), 0.9).normalize();
             let place = |at: &DVec3| tilt * (*at * DVec3::new(1.0, 1.0, height)) + DVec3::new(3.0, -2.0, 1.0);
             let now = State::at_rest(rest.iter().map(place).collect());
-            diagnose.state(now.nodes(), DVec3::ZERO, &Report::default()).0.turned_over
+            diagnostics(&diagnose, &now).turned_over
         };
         assert!((0..100).all(|turn| over(0.0, turn) == 0));
         assert!((0..100).all(|turn| over(-1e-6, turn) == 1));
@@ -378,8 +362,7 @@ mod tests {
         let alone: Vec<_> = (0..body.elements.len()).map(alone).collect();
         assert!(alone.iter().filter(|&&volume| volume != 0.0).count() > 40);
         for set in Set::all() {
-            let mut volumes = vec![0.0; alone.len()];
-            set.run(Measure { body: &body, position: &body.rest, first: 0, volumes: &mut volumes });
+            let volumes = set.run(Measure { body: &body, position: &body.rest, range: 0..alone.len() });
             assert_eq!(
                 volumes.iter().map(|v| v.to_bits()).collect::<Vec<_>>(),
                 alone.iter().map(|v| v.to_bits()).collect::<Vec<_>>(),
@@ -418,10 +401,7 @@ mod tests {
         let body = Body::new(Dimension::Space, rest.clone(), vec![1.0; 14], elements, Solids::Convex, None);
         let mut now = rest;
         now[..6].iter_mut().for_each(|corner| corner.y *= 0.5);
-        let ratio = Diagnose::new(&Arc::new(body))
-            .state(State::at_rest(now).nodes(), DVec3::ZERO, &Report::default())
-            .0
-            .volume_ratio;
+        let ratio = diagnostics(&Diagnose::new(&Arc::new(body)), &State::at_rest(now)).volume_ratio;
         assert!((ratio - (2.0 / 3.0 + 1.0) / (4.0 / 3.0 + 1.0)).abs() < 1e-12, "{ratio}");
     }
 }

@@ -151,7 +151,10 @@ macro_rules! diagnostics {
 
         impl Diagnostics {
             /// The wanted diagnostics; the others are zero.
-            pub(super) fn of($facts: &Facts<'_>, is_wanted: impl Fn(Diagnostic) -> bool) -> Self {
+            pub(super) fn of($facts: &Facts<'_>, wanted: &[Diagnostic]) -> Self {
+                use Diagnostic::{Elastic, Energy, Gravitational, Kinetic};
+                let is_part = |one| wanted.contains(&Energy) && [Kinetic, Elastic, Gravitational].contains(&one);
+                let is_wanted = |one| wanted.contains(&one) || is_part(one);
                 $(let $key: $type = if is_wanted(Diagnostic::$variant) { $value } else { Default::default() };)+
                 Self { $($key),+ }
             }

@@ -26,10 +26,10 @@ pub(super) trait Dynamics: Send + Sync {
     fn settle(&mut self, _state: &mut State) {}
 
     /// Energy and residuals of a part in a state that is settled. Calls `share`, if given, as [`ForceModel::report`]
-    /// does, which is the reference.
+    /// does, which is the reference. It may use the threads of the crew.
     ///
     /// [`ForceModel::report`]: super::model::ForceModel::report
-    fn report(&self, part: &Part, state: &State, share: Option<&mut Share<'_>>) -> Report {
+    fn report(&self, part: &Part, state: &State, share: Option<&mut Share<'_>>, _: &Crew) -> Report {
         let memory = &state.memory.model[part.memory.clone()];
         part.forces.report(part.nodes_of(state.nodes()), memory, share.unwrap_or(&mut |_, _, _| {}))
     }

@@ -1,10 +1,11 @@
 //! Scalar fields over a body, by which a picture can be coloured.
 
 use super::body::Body;
-use super::rotation::{self, moment};
+use super::crew::Crew;
+use super::kernel;
+use super::lanes::Set;
 use super::snapshot::Placement;
 use super::state::Nodes;
-use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -74,9 +75,16 @@ impl Field {
     }
 
     /// The field at a state. `energies` is the elastic energy of each node (J), for [`Field::ElasticEnergy`].
-    pub(super) fn values(self, body: &Body, state: Nodes<'_>, placement: &Placement, energies: Vec<f64>) -> Vec<f64> {
+    pub(super) fn values(
+        self,
+        body: &Body,
+        state: Nodes<'_>,
+        placement: &Placement,
+        energies: Vec<f64>,
+        crew: &Crew,
+    ) -> Vec<f64> {
         match self {
-            Self::Strain => body.elements.iter().map(|nodes| strain(body, nodes, state.position)).collect(),
+            Self::Strain => kernel::strains(Set::best(), body, state.position, placement.turn, crew),
             Self::Displacement => {
                 let nodes = body.rest.iter().zip(state.position);
                 nodes.map(|(&rest, &now)| now.distance(placement.place(rest))).collect()
@@ -87,26 +95,13 @@ impl Field {
     }
 }
 
-/// The relative deformation of an element; see [`Field::Strain`].
-fn strain(body: &Body, nodes: &[u32], position: &[DVec3]) -> f64 {
-    let centred = |points: &[DVec3]| {
-        let corners = nodes.iter().map(|&node| points[node as usize]);
-        let mean = corners.clone().sum::<DVec3>() / nodes.len() as f64;
-        corners.map(|corner| corner - mean).collect::<Vec<_>>()
-    };
-    let (rest, now) = (centred(&body.rest), centred(position));
-    let at_rest = moment(&rest, now.iter().copied());
-    let best = rotation::best(body.dimension, at_rest);
-    let off: f64 = rest.iter().zip(&now).map(|(&rest, &now)| (now - best * rest).length_squared()).sum();
-    (off / rest.iter().map(|rest| rest.length_squared()).sum::<f64>()).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sim::body::Dimension;
     use crate::sim::body::Solids;
-    use glam::DQuat;
+    use crate::sim::state::State;
+    use glam::{DQuat, DVec3};
 
     #[test]
     fn strain_is_the_scale_of_a_scaled_element_and_nothing_for_a_turned_one() {
@@ -123,8 +118,10 @@ mod tests {
             );
             let turn = if dimension == Dimension::Plane { DQuat::from_xyzw(0.0, 0.0, 0.6, 0.8) } else { turn };
             for scale in [1.0, 1.25, 0.4] {
-                let position: Vec<_> = rest.iter().map(|&point| DVec3::ONE + scale * (turn * point)).collect();
-                assert!((strain(&body, &[0, 1, 2, 3], &position) - (scale - 1.0).abs()).abs() < 1e-14, "{scale}");
+                let now = State::at_rest(rest.iter().map(|&point| DVec3::ONE + scale * (turn * point)).collect());
+                let crew = Crew::new(1);
+                let strain = Field::Strain.values(&body, now.nodes(), &Placement::default(), Vec::new(), &crew);
+                assert!((strain[0] - (scale - 1.0).abs()).abs() < 1e-14, "{scale}: {strain:?}");
             }
         }
     }

@@ -5,14 +5,18 @@ use super::diagnose::Diagnose;
 use super::model::ForceModel;
 use super::state::Nodes;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
+
+/// Forces that are prepared when they are first used: vectorised steps do without, and prepared ones of large bodies take
+/// several times the memory of a state.
+pub(crate) type Forces = LazyLock<Box<dyn ForceModel>, Box<dyn FnOnce() -> Box<dyn ForceModel> + Send>>;
 
 /// One body in a simulation, and the ranges of its nodes and its memory in the [`State`](super::State).
 pub(crate) struct Part {
     /// The body.
     pub body: Arc<Body>,
     /// The forces of its model.
-    pub forces: Box<dyn ForceModel>,
+    pub forces: Forces,
     /// The range of its nodes.
     pub nodes: Range<usize>,
     /// The range of its model's memory in [`Memory::model`](super::state::Memory::model).

@@ -47,7 +47,7 @@ pub struct Snapshot {
     pub placement: Placement,
     /// The values of the requested field, one for each node or each element; empty if no field was requested.
     pub field: Vec<f64>,
-    /// Energies, momenta and measures of shape.
+    /// Energies, momenta and measures of shape: those that were requested; the others are zero.
     pub diagnostics: Diagnostics,
     /// Whether the run has diverged.
     pub status: Status,

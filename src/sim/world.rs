@@ -3,13 +3,13 @@
 use super::body::Body;
 use super::crew::Crew;
 use super::diagnose::Diagnose;
-use super::diagnostics::Diagnostic;
+use super::diagnostics::{Diagnostic, Facts};
 use super::dynamics::{Dynamics, SpeedLimit};
 use super::field::Field;
 use super::integrate::{ByForces, Integrator};
 use super::kernel::{ByKernel, Scheme};
-use super::model::{ElasticModel, Report};
-use super::part::Part;
+use super::model::{ElasticModel, Known, Report};
+use super::part::{Forces, Part};
 use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
 use super::state::{Memory, State};
 pub(crate) use super::system::Surroundings;
@@ -88,8 +88,10 @@ pub struct World {
     dynamics: Box<dyn Dynamics>,
     crew: Crew,
     limit: SpeedLimit,
-    /// What snapshots show besides positions and velocities.
+    /// The field in snapshots.
     field: Option<Field>,
+    /// The diagnostics in snapshots.
+    wanted: Vec<Diagnostic>,
     state: State,
 }
 
@@ -126,42 +128,48 @@ impl World {
             let memory = grip.start(&mut state);
             state.memory.constraints.extend(memory);
         }
+        let Stepping { integrator, step, kernel } = stepping;
+        let fast = match bodies {
+            [(_, model)] if kernel == Kernel::Fast => model.known().zip(Scheme::of(integrator)),
+            _ => None,
+        };
         let (mut parts, mut limit) = (Vec::new(), None::<SpeedLimit>);
         let (mut first_node, mut mass) = (0, Vec::with_capacity(nodes));
         for (body, model) in bodies {
-            let forces = model.prepare(body);
+            let forces = match fast {
+                Some((Known::ShapeBased(model), _)) => prepared_late(model.clone(), body),
+                Some((Known::MassSpring(model), _)) => prepared_late(model.clone(), body),
+                None => {
+                    let forces = model.prepare(body);
+                    Forces::new(Box::new(|| forces))
+                }
+            };
             let nodes = first_node..first_node + body.len();
-            let start = forces.start(&state.position[nodes.clone()]);
+            let start = model.start(body, &state.position[nodes.clone()]);
             let first = state.memory.model.len();
             state.memory.model.extend(start);
             let memory = first..state.memory.model.len();
             let part = Part { body: Arc::clone(body), forces, nodes, memory, diagnose: Diagnose::new(body) };
             let period = model.shortest_period(body);
-            let own = SpeedLimit::new(body, part.nodes_of(state.nodes()), period, &surroundings, stepping.step);
+            let own = SpeedLimit::new(body, part.nodes_of(state.nodes()), period, &surroundings, step);
             limit = Some(limit.map_or(own, |limit| limit.max(own)));
             mass.extend_from_slice(&body.mass);
             first_node = part.nodes.end;
             parts.push(part);
         }
         let Surroundings { gravity, obstacles, grips } = surroundings;
-        let Stepping { integrator, step, kernel } = stepping;
         let system = System { parts, mass, gravity, contact: Box::new(obstacles), grips, step };
-        let fast = match bodies {
-            [(body, model)] if kernel == Kernel::Fast => {
-                let known = model.known().zip(Scheme::of(integrator));
-                known.map(|(model, scheme)| ByKernel::new(body, model, scheme, gravity, step))
-            }
-            _ => None,
+        let dynamics: Box<dyn Dynamics> = match (fast, bodies) {
+            (Some((model, scheme)), [(body, _)]) => Box::new(ByKernel::new(body, model, scheme, gravity, step)),
+            _ => Box::new(ByForces::new(integrator, &state)),
         };
-        let dynamics: Box<dyn Dynamics> = match fast {
-            Some(kernel) => Box::new(kernel),
-            None => Box::new(ByForces::new(integrator, &state)),
-        };
-        Self { system, dynamics, crew: Crew::new(1), limit: limit.unwrap_or_default(), field: None, state }
+        let (limit, wanted) = (limit.unwrap_or_default(), Diagnostic::ALL.to_vec());
+        Self { system, dynamics, crew: Crew::new(1), limit, field: None, wanted, state }
     }
 
-    /// Sets the threads for vectorised steps, which use as many as the body is large enough for. They do not change any
-    /// bit. By default one thread is used; [`Kernel::Reference`] uses the thread pool of the caller (rayon) instead.
+    /// Sets the threads for vectorised steps and for diagnostics, which use as many as the body is large enough for. They
+    /// do not change any bit. By default one thread is used; [`Kernel::Reference`] uses the thread pool of the caller
+    /// (rayon) for forces and energies instead.
     pub fn set_crew(&mut self, crew: Crew) {
         self.crew = crew;
     }
@@ -174,6 +182,12 @@ impl World {
     /// Sets the field that snapshots contain from now on; `None` for no field.
     pub(crate) fn show(&mut self, field: Option<Field>) {
         self.field = field;
+    }
+
+    /// Sets the diagnostics that snapshots contain from now on, at first all. The others are zero, and what only they
+    /// need is not computed.
+    pub(crate) fn want(&mut self, diagnostics: &[Diagnostic]) {
+        self.wanted = diagnostics.to_vec();
     }
 
     /// Advances by a number of steps. After a divergence only the clock advances.
@@ -265,7 +279,7 @@ impl World {
     /// # Panics
     /// If there is no such part.
     pub(crate) fn report(&self, part: usize) -> Report {
-        self.dynamics.report(&self.system.parts[part], &self.state, None)
+        self.dynamics.report(&self.system.parts[part], &self.state, None, &self.crew)
     }
 
     /// α of Eq. (18) of each element of the first part (rad/s²) in the last step, which must be one of an Euler method
@@ -278,14 +292,16 @@ impl World {
 
     /// The diagnostics of the first part in the present state, without copying positions and velocities.
     pub fn diagnostics(&self) -> Diagnostics {
-        let part = &self.system.parts[0];
-        part.diagnose.state(part.nodes_of(self.state.nodes()), self.system.gravity, &self.report(0)).0
+        self.some_diagnostics(Diagnostic::ALL)
     }
 
     /// The diagnostics in `wanted`; the others are zero, and what only they need is not computed.
     pub(crate) fn some_diagnostics(&self, wanted: &[Diagnostic]) -> Diagnostics {
-        let part = &self.system.parts[0];
-        part.diagnose.some(part.nodes_of(self.state.nodes()), self.system.gravity, || self.report(0), wanted)
+        Diagnostics::of(&self.facts(&self.system.parts[0], || self.report(0)), wanted)
+    }
+
+    fn facts<'a>(&'a self, part: &'a Part, report: impl FnOnce() -> Report + 'a) -> Facts<'a> {
+        part.diagnose.facts(part.nodes_of(self.state.nodes()), self.system.gravity, report, &self.crew)
     }
 
     /// The present state of the first part with its diagnostics.
@@ -298,20 +314,22 @@ impl World {
     /// # Panics
     /// If there is no such part.
     pub(crate) fn snapshot_of(&self, part: usize) -> Snapshot {
-        let part = &self.system.parts[part];
-        let nodes = part.nodes_of(self.state.nodes());
+        let Self { system, dynamics, state, crew, field, wanted, .. } = self;
+        let part = &system.parts[part];
+        let nodes = part.nodes_of(state.nodes());
         let mut energies = Vec::new();
-        let report = if self.field == Some(Field::ElasticEnergy) {
+        let known = (*field == Some(Field::ElasticEnergy)).then(|| {
             energies.resize(part.body.len(), 0.0);
             let mut share = |_: usize, nodes: &[u32], shares: &[f64]| {
                 nodes.iter().zip(shares).for_each(|(&node, share)| energies[node as usize] += share);
             };
-            self.dynamics.report(part, &self.state, Some(&mut share))
-        } else {
-            self.dynamics.report(part, &self.state, None)
-        };
-        let (diagnostics, [turned_over, flat], placement) = part.diagnose.state(nodes, self.system.gravity, &report);
-        let field = self.field.map_or_else(Vec::new, |field| field.values(&part.body, nodes, &placement, energies));
+            dynamics.report(part, state, Some(&mut share), crew)
+        });
+        let facts = self.facts(part, move || known.unwrap_or_else(|| dynamics.report(part, state, None, crew)));
+        let diagnostics = Diagnostics::of(&facts, wanted);
+        let (turned_over, flat, placement) = (facts.turned_over().collect(), facts.flat().collect(), *facts.placement);
+        let values = |field: Field| field.values(&part.body, nodes, &placement, energies, crew);
+        let field = field.map_or_else(Vec::new, values);
         Snapshot {
             step: self.state.steps,
             time: self.state.steps as f64 * self.system.step,
@@ -325,4 +343,10 @@ impl World {
             status: self.state.status,
         }
     }
+}
+
+/// The forces of a model that vectorised steps take the place of.
+fn prepared_late(model: impl ElasticModel + 'static, body: &Arc<Body>) -> Forces {
+    let body = Arc::clone(body);
+    Forces::new(Box::new(move || model.prepare(&body)))
 }

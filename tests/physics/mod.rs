@@ -1,5 +1,6 @@
 //! The physics compared with the paper and with closed forms, without files and without a graphics device.
 
+mod asked;
 mod closed_forms;
 mod conformance;
 mod contact;

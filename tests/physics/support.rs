@@ -93,8 +93,7 @@ pub(crate) struct Remembering {
 
 impl Remembering {
     pub(crate) fn new(body: &Arc<Body>, model: &dyn ElasticModel, start: &State) -> Self {
-        let forces = model.prepare(body);
-        Self { memory: forces.start(&start.position), forces }
+        Self { memory: model.start(body, &start.position), forces: model.prepare(body) }
     }
 
     /// The forces (N) and the next memory.

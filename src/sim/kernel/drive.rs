@@ -168,8 +168,8 @@ impl Dynamics for ByKernel {
         }
     }
 
-    fn report(&self, part: &Part, state: &State, share: Option<&mut Share<'_>>) -> Report {
-        self.energy.report(&state.position[part.nodes.clone()], &state.memory.model[part.memory.clone()], share)
+    fn report(&self, part: &Part, state: &State, share: Option<&mut Share<'_>>, crew: &Crew) -> Report {
+        self.energy.report(&state.position[part.nodes.clone()], &state.memory.model[part.memory.clone()], share, crew)
     }
 
     fn steps(&self, state: &State) -> u64 {

@@ -21,6 +21,7 @@ pub(in crate::sim) mod stepper;
 mod tests;
 
 pub(in crate::sim) use drive::ByKernel;
+pub(in crate::sim) use report::strains;
 pub(in crate::sim) use stepper::Scheme;
 
 use crate::sim::contact::{Bound, Floor};

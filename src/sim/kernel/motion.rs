@@ -35,6 +35,16 @@ impl Stage {
         !matches!(self, Self::SemiImplicitEuler | Self::ExplicitEuler)
     }
 
+    /// Whether it uses what was kept.
+    pub(in crate::sim) fn loads_acceleration(self) -> bool {
+        matches!(self, Self::Finish | Self::FinishDrift | Self::Coast | Self::Arrive(_))
+    }
+
+    /// Whether it changes what is kept.
+    pub(in crate::sim) fn stores_acceleration(self) -> bool {
+        self.keeps_acceleration() && !matches!(self, Self::Coast | Self::Kick(_))
+    }
+
     /// Whether forces are evaluated.
     pub(in crate::sim) fn has_forces(self) -> bool {
         !matches!(self, Self::Coast | Self::Leave(_))

@@ -1,5 +1,6 @@
-//! Elastic energy and residuals in lanes: what [`ForceModel::report`](crate::sim::model::ForceModel::report) computes,
-//! up to round-off.
+//! Elastic energy, residuals and strains in lanes: what
+//! [`ForceModel::report`](crate::sim::model::ForceModel::report) and [`Field::Strain`](crate::sim::field::Field::Strain)
+//! say, up to round-off.
 //!
 //! Lanes are consecutive elements with the same number of corners, or consecutive springs. Nothing is stored from one
 //! report to the next: shapes at rest are those of the body. Sums run within chunks and then over chunks, in order, so
@@ -8,11 +9,11 @@
 use super::Rotation;
 use super::rotation::{self, Matrix, Solver, axial, matrix, turned_back};
 use crate::sim::body::{Body, Dimension};
+use crate::sim::crew::Crew;
 use crate::sim::gather::Group;
 use crate::sim::lanes::{Lanes, MOST, Set, Work, each};
 use crate::sim::model::{Report, Share};
-use glam::DVec3;
-use rayon::prelude::*;
+use glam::{DMat3, DQuat, DVec3};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -39,7 +40,13 @@ pub(in crate::sim) struct Energy {
 impl Energy {
     /// Energy and residuals with the nodes at `position` (m) and this memory of the model. Calls `share`, if given, for
     /// each element or spring, in order.
-    pub(in crate::sim) fn report(&self, position: &[DVec3], memory: &[f64], share: Option<&mut Share<'_>>) -> Report {
+    pub(in crate::sim) fn report(
+        &self,
+        position: &[DVec3],
+        memory: &[f64],
+        share: Option<&mut Share<'_>>,
+        crew: &Crew,
+    ) -> Report {
         let count = match &self.of {
             Elastic::Elements(_) => self.body.elements.len(),
             Elastic::Springs(springs) => springs.len(),
@@ -50,7 +57,7 @@ impl Energy {
             let chunk = Chunk { energy: self, position, memory, range: range(chunk), with_shares };
             self.set.run(chunk)
         };
-        let found: Vec<Found> = (0..count.div_ceil(CHUNK)).into_par_iter().map(measure).collect();
+        let found: Vec<Found> = crew.map(count.div_ceil(CHUNK), measure);
         if let Some(share) = share {
             for (chunk, Found { shares, .. }) in found.iter().enumerate() {
                 let mut rest = &shares[..];
@@ -116,63 +123,33 @@ impl Chunk<'_> {
     #[inline(always)]
     fn elements<L: Lanes>(self, rotation: Rotation) -> Found {
         let Self { energy: Energy { body, stiffness, .. }, position, memory, range, with_shares } = self;
-        let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let (k, half_k) = (L::splat(*stiffness), L::splat(0.5 * stiffness));
-        // `R0` and `r` of each corner, and its energy.
-        let (mut shape, mut now, mut shares) = (Vec::new(), Vec::new(), Vec::new());
+        let (zero, k, half_k) = (L::splat(0.0), L::splat(*stiffness), L::splat(0.5 * stiffness));
+        // The energy of each corner.
+        let (mut shapes, mut shares) = (Shapes::<L>::default(), Vec::new());
         let mut found = Found::default();
         let mut at = range.start;
         while at < range.end {
-            let corners = body.elements[at].len();
-            let (group, count) = Group::take::<L>(
-                at..range.end,
-                |element| &body.elements[element],
-                |element| body.elements[element].len() == corners,
-            );
-            group.centred::<L>(&body.rest, &mut shape);
-            group.centred::<L>(position, &mut now);
-            let (mut a, mut squares, mut inertia) = ([[zero; 3]; 3], zero, zero);
-            for corner in 0..corners {
-                let (rest, r) = (shape[corner], now[corner]);
-                a = each!(3, column => each!(3, row => r[row].mul_add(rest[column], a[column][row])));
-                let squared = square(rest);
-                squares = squares + squared;
-                inertia = group.number::<L>(corner, &body.mass).mul_add(squared, inertia);
-            }
-            let last = |width: usize, entry: usize| {
-                let mut array = [0.0; MOST];
+            let (group, count) = take::<L>(body, at..range.end);
+            shapes.read(&group, body, position);
+            let width = if body.dimension == Dimension::Plane { 2 } else { 4 };
+            let mut last = [[0.0; MOST]; 4];
+            for (entry, last) in last[..width].iter_mut().enumerate() {
                 for lane in 0..L::WIDTH {
-                    array[lane] = memory[(at + lane.min(count - 1)) * width + entry];
+                    last[lane] = memory[(at + lane.min(count - 1)) * width + entry];
                 }
-                array
-            };
-            let m = match body.dimension {
-                Dimension::Plane => in_plane(&a, each!(2, entry => L::from_array(last(2, entry)))),
-                Dimension::Space => {
-                    let last = each!(4, entry => L::from_array(last(4, entry)));
-                    let scale = one.div(squares).select(zero.lt(squares), one);
-                    let turn = match rotation {
-                        Rotation::Arctangent { passes } => {
-                            rotation::Arctangent { passes }.follow(&a, scale, last, L::ALL)
-                        }
-                        Rotation::Optimum => rotation::Optimum.follow(&a, scale, last, L::ALL),
-                    };
-                    matrix(turn, one)
-                }
-            };
-            let mut energy = zero;
+            }
+            let m = shapes.rotation(body.dimension, rotation, &last);
+            let (mut energy, mut inertia) = (zero, zero);
             shares.clear();
-            for corner in 0..corners {
-                let ([x, y, z], r) = (shape[corner], now[corner]);
-                let displacement = each!(3, row =>
-                    r[row] - z.mul_add(m[2][row], y.mul_add(m[1][row], x * m[0][row])));
-                let share = half_k * square(displacement);
+            for corner in 0..group.corners() {
+                let share = half_k * square(shapes.displacement(corner, &m));
                 energy = energy + share;
+                inertia = group.number::<L>(corner, &body.mass).mul_add(square(shapes.rest[corner]), inertia);
                 if with_shares {
                     shares.push(share.to_array());
                 }
             }
-            let torque = axial(&turned_back(&a, &m));
+            let torque = axial(&turned_back(&shapes.a, &m));
             let alpha = (k * square(torque).sqrt()).div(inertia).to_array();
             let energy = energy.to_array();
             for lane in 0..count {
@@ -207,6 +184,124 @@ impl Chunk<'_> {
     }
 }
 
+/// The [strain](crate::sim::field::Field::Strain) of each element with the nodes at `position` (m). Rotations are sought
+/// from `near` on: the nearer it is, the faster they are found.
+pub(in crate::sim) fn strains(set: Set, body: &Body, position: &[DVec3], near: DMat3, crew: &Crew) -> Vec<f64> {
+    let count = body.elements.len();
+    let near = match body.dimension {
+        // Eq. (9) keeps the last angle only where all are equally good.
+        Dimension::Plane => [1.0, 0.0, 0.0, 0.0],
+        Dimension::Space => DQuat::from_mat3(&near).to_array(),
+    };
+    let of_chunk =
+        |chunk: usize| set.run(Strains { body, position, near, range: chunk * CHUNK..count.min((chunk + 1) * CHUNK) });
+    crew.map(count.div_ceil(CHUNK), of_chunk).concat()
+}
+
+/// Computes the strains of consecutive elements.
+struct Strains<'a> {
+    body: &'a Body,
+    position: &'a [DVec3],
+    near: [f64; 4],
+    range: Range<usize>,
+}
+
+impl Work for Strains<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Vec<f64> {
+        let Self { body, position, near, range } = self;
+        let near = each!(4, entry => [near[entry]; MOST]);
+        let mut shapes = Shapes::<L>::default();
+        let mut strains = Vec::with_capacity(range.len());
+        let mut at = range.start;
+        while at < range.end {
+            let (group, count) = take::<L>(body, at..range.end);
+            shapes.read(&group, body, position);
+            let m = shapes.rotation(body.dimension, Rotation::Optimum, &near);
+            let mut off = L::splat(0.0);
+            for corner in 0..group.corners() {
+                off = off + square(shapes.displacement(corner, &m));
+            }
+            strains.extend_from_slice(&off.div(shapes.squares).sqrt().to_array()[..count]);
+            at += count;
+        }
+        strains
+    }
+}
+
+/// The first elements of a range with the same number of corners, and their number.
+#[inline(always)]
+fn take<L: Lanes>(body: &Body, range: Range<usize>) -> (Group<'_>, usize) {
+    let corners = body.elements[range.start].len();
+    Group::take::<L>(range, |element| &body.elements[element], |element| body.elements[element].len() == corners)
+}
+
+/// The corners of elements relative to their means, and sums over them.
+struct Shapes<L> {
+    /// `R0` (m).
+    rest: Vec<[L; 3]>,
+    /// `r` (m).
+    now: Vec<[L; 3]>,
+    /// `Σ r R0ᵀ` (m²).
+    a: Matrix<L>,
+    /// `Σ |R0|²` (m²).
+    squares: L,
+}
+
+impl<L: Lanes> Default for Shapes<L> {
+    #[inline(always)]
+    fn default() -> Self {
+        let zero = L::splat(0.0);
+        Self { rest: Vec::new(), now: Vec::new(), a: [[zero; 3]; 3], squares: zero }
+    }
+}
+
+impl<L: Lanes> Shapes<L> {
+    /// Reads elements with the nodes at `position` (m).
+    #[inline(always)]
+    fn read(&mut self, group: &Group<'_>, body: &Body, position: &[DVec3]) {
+        group.centred::<L>(&body.rest, &mut self.rest);
+        group.centred::<L>(position, &mut self.now);
+        let zero = L::splat(0.0);
+        let (mut a, mut squares) = ([[zero; 3]; 3], zero);
+        for corner in 0..group.corners() {
+            let (rest, r) = (self.rest[corner], self.now[corner]);
+            a = each!(3, column => each!(3, row => r[row].mul_add(rest[column], a[column][row])));
+            squares = squares + square(rest);
+        }
+        (self.a, self.squares) = (a, squares);
+    }
+
+    /// The rotations `M` from the last ones: quaternions, or (cos, sin) in the plane.
+    #[inline(always)]
+    fn rotation(&self, dimension: Dimension, rotation: Rotation, last: &[[f64; MOST]; 4]) -> Matrix<L> {
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        match dimension {
+            Dimension::Plane => in_plane(&self.a, each!(2, entry => L::from_array(last[entry]))),
+            Dimension::Space => {
+                let last = each!(4, entry => L::from_array(last[entry]));
+                let scale = one.div(self.squares).select(zero.lt(self.squares), one);
+                let turn = match rotation {
+                    Rotation::Arctangent { passes } => {
+                        rotation::Arctangent { passes }.follow(&self.a, scale, last, L::ALL)
+                    }
+                    Rotation::Optimum => rotation::Optimum.follow(&self.a, scale, last, L::ALL),
+                };
+                matrix(turn, one)
+            }
+        }
+    }
+
+    /// `r − M R0` of a corner (m).
+    #[inline(always)]
+    fn displacement(&self, corner: usize, m: &Matrix<L>) -> [L; 3] {
+        let ([x, y, z], r) = (self.rest[corner], self.now[corner]);
+        each!(3, row => r[row] - z.mul_add(m[2][row], y.mul_add(m[1][row], x * m[0][row])))
+    }
+}
+
 #[inline(always)]
 fn square<L: Lanes>([x, y, z]: [L; 3]) -> L {
     z.mul_add(z, y.mul_add(y, x * x))
@@ -233,6 +328,7 @@ mod tests {
     use super::*;
     use crate::sim::model::ElasticModel;
     use crate::sim::model::mass_spring::MassSpring;
+    use crate::sim::rotation::{best, moment};
     use crate::sim::state::Nodes;
     use crate::sim::topology::Springs;
 
@@ -259,10 +355,9 @@ mod tests {
         let mut found = None;
         for (set, threads) in Set::all().flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
             energy.set = set;
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-            let here = pool.install(|| with_shares(|share| energy.report(position, memory, Some(share))));
-            let without = pool.install(|| energy.report(position, memory, None));
-            assert_eq!(here.0, without);
+            let crew = Crew::new(threads);
+            let here = with_shares(|share| energy.report(position, memory, Some(share), &crew));
+            assert_eq!(here.0, energy.report(position, memory, None, &crew));
             assert!(found.as_ref().is_none_or(|found| *found == here), "{set:?} on {threads} threads has other bits");
             found = Some(here);
         }
@@ -305,8 +400,40 @@ mod tests {
         body.elements.iter().map(largest).fold(0.0, f64::max)
     }
 
+    /// The strain of an element by its definition.
+    fn strain(body: &Body, nodes: &[u32], position: &[DVec3]) -> f64 {
+        let centred = |points: &[DVec3]| {
+            let corners = nodes.iter().map(|&node| points[node as usize]);
+            let mean = corners.clone().sum::<DVec3>() / nodes.len() as f64;
+            corners.map(|corner| corner - mean).collect::<Vec<_>>()
+        };
+        let (rest, now) = (centred(&body.rest), centred(position));
+        let best = best(body.dimension, moment(&rest, now.iter().copied()));
+        let off: f64 = rest.iter().zip(&now).map(|(&rest, &now)| (now - best * rest).length_squared()).sum();
+        (off / rest.iter().map(|rest| rest.length_squared()).sum::<f64>()).sqrt()
+    }
+
+    /// From the identity, and from a rotation that is far from all.
+    fn assert_strains(name: &str, body: &Body, position: &[DVec3]) {
+        let expected: Vec<_> = body.elements.iter().map(|nodes| strain(body, nodes, position)).collect();
+        for near in [DMat3::IDENTITY, DMat3::from_quat(DQuat::from_xyzw(0.7, -0.1, 0.1, 0.7).normalize())] {
+            let mut found = None;
+            for (set, threads) in Set::all().flat_map(|set| [1, 3].map(|threads| (set, threads))) {
+                let here = strains(set, body, position, near, &Crew::new(threads));
+                assert!(
+                    found.as_ref().is_none_or(|found| *found == here),
+                    "{name}: {set:?}, {threads} threads: other bits"
+                );
+                found = Some(here);
+            }
+            for (found, &expected) in found.expect("some set").iter().zip(&expected) {
+                assert!((found - expected).abs() <= 1e-14 * (1.0 + expected), "{name}: {found} instead of {expected}");
+            }
+        }
+    }
+
     #[test]
-    fn energies_and_residuals_are_those_of_the_reference() {
+    fn energies_residuals_and_strains_are_those_of_the_reference() {
         let crushes = [DVec3::new(1.0, 1.0, -1.0), DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 0.0), DVec3::ZERO];
         let mut bodies = vec![("a block", whole([11, 12, 10], 0.1, 1)), ("squares", whole([9, 3, 0], 0.1, 2))];
         for corners in 2..9 {
@@ -332,6 +459,7 @@ mod tests {
                 }
                 let position = &state.position;
                 let name = format!("{name}, {} corners, {crush:?}", body.elements[0].len());
+                assert_strains(&name, body, position);
                 for rotation in [Rotation::Optimum, TWICE] {
                     let (model, of) = (shape_based(rotation, 0.0), Elastic::Elements(rotation));
                     let stiffness = model.stiffness();

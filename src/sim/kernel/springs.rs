@@ -278,13 +278,13 @@ impl Arrays {
             let mut nodes = Nodes {
                 position: self.load(0, at),
                 velocity: self.load(VELOCITY, at),
-                acceleration: if stage.keeps_acceleration() { self.load(ACCELERATION, at) } else { zero },
+                acceleration: if stage.loads_acceleration() { self.load(ACCELERATION, at) } else { zero },
             };
             let inverse_mass = L::load(self.state.add(INVERSE_MASS * self.stride + at));
             let lost = motion.advance(&mut nodes, force, inverse_mass);
             self.store(0, at, nodes.position);
             self.store(VELOCITY, at, nodes.velocity);
-            if stage.keeps_acceleration() {
+            if stage.stores_acceleration() {
                 self.store(ACCELERATION, at, nodes.acceleration);
             }
             lost

@@ -122,6 +122,12 @@ pub trait ElasticModel: Debug + Send + Sync {
         None
     }
 
+    /// The memory at the start, with the nodes of `body` at `position` (m). Its length never changes.
+    fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
+        let _ = (body, position);
+        Vec::new()
+    }
+
     /// Precomputes what the evaluation of the forces on `body` needs.
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel>;
 }
@@ -129,8 +135,7 @@ pub trait ElasticModel: Debug + Send + Sync {
 impl dyn ElasticModel + '_ {
     /// The internal forces (N) on each node of a body, with the initial memory of the model for this state.
     pub fn forces_at_start(&self, body: &Arc<Body>, state: &State) -> Vec<DVec3> {
-        let model = self.prepare(body);
-        let memory = model.start(&state.position);
+        let (model, memory) = (self.prepare(body), self.start(body, &state.position));
         let mut forces = vec![DVec3::ZERO; body.len()];
         model.add_forces(state.nodes(), &memory, &mut memory.clone(), &mut Scratch::default(), &mut forces);
         forces
@@ -165,12 +170,6 @@ pub enum Known<'a> {
 /// # Ok::<(), localshape::scene::SceneError>(())
 /// ```
 pub trait ForceModel: Send + Sync {
-    /// The initial memory, with the nodes at `position` (m). Its length never changes.
-    fn start(&self, position: &[DVec3]) -> Vec<f64> {
-        let _ = position;
-        Vec::new()
-    }
-
     /// Adds elastic and damping forces (N) to `forces`, one per node, and writes every entry of the `next` memory.
     fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]);
 

@@ -180,6 +180,25 @@ impl ElasticModel for ShapeBased {
         is_known.then_some(Known::ShapeBased(self))
     }
 
+    /// The rotations that are optimal for the initial positions, which need not be the identity.
+    fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
+        let solver = self.solver(body.dimension);
+        let mut memory = vec![0.0; solver.width() * body.elements.len()];
+        let mut rest = Vec::new();
+        for (nodes, memory) in body.elements.iter().zip(memory.chunks_exact_mut(solver.width())) {
+            rest.clear();
+            rest.extend(at_rest(nodes, body));
+            let at_rest = moment_at_rest(&rest, nodes, mean(nodes, position), position);
+            let optimum = || davenport1968::optimum(at_rest, DQuat::IDENTITY);
+            match solver {
+                Solver::Plane => planar::solve(at_rest, DVec2::X).write_to_slice(memory),
+                Solver::Space => optimum().write_to_slice(memory),
+                Solver::Linear => DMat3::from_quat(optimum()).write_cols_to_slice(memory),
+            }
+        }
+        memory
+    }
+
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
         Box::new(Elements::new(self.clone(), body))
     }
@@ -278,10 +297,7 @@ impl Elements {
     fn new(model: ShapeBased, body: &Arc<Body>) -> Self {
         let elements = &body.elements;
         let mut rest = Vec::with_capacity(elements.indices().len());
-        for nodes in elements.iter() {
-            let centre = mean(nodes, &body.rest);
-            rest.extend(nodes.iter().map(|&node| body.rest[node as usize] - centre));
-        }
+        elements.iter().for_each(|nodes| rest.extend(at_rest(nodes, body)));
         let inertia = (0..elements.len())
             .map(|element| inertia(&elements[element], &rest[elements.range(element)], &body.mass))
             .collect();
@@ -341,22 +357,6 @@ impl Elements {
 }
 
 impl ForceModel for Elements {
-    /// The rotations that are optimal for the initial positions, which need not be the identity.
-    fn start(&self, position: &[DVec3]) -> Vec<f64> {
-        let mut memory = vec![0.0; self.solver.width() * self.body.elements.len()];
-        for (element, memory) in memory.chunks_exact_mut(self.solver.width()).enumerate() {
-            let (nodes, rest) = self.element(element);
-            let at_rest = moment_at_rest(rest, nodes, mean(nodes, position), position);
-            let optimum = || davenport1968::optimum(at_rest, DQuat::IDENTITY);
-            match self.solver {
-                Solver::Plane => planar::solve(at_rest, DVec2::X).write_to_slice(memory),
-                Solver::Space => optimum().write_to_slice(memory),
-                Solver::Linear => DMat3::from_quat(optimum()).write_cols_to_slice(memory),
-            }
-        }
-        memory
-    }
-
     fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]) {
         let corners = scratch.vectors(self.rest.len());
         blocks::for_each(&self.body.elements, self.solver.width(), next, corners, &|element, next, corners| {
@@ -404,6 +404,12 @@ impl ForceModel for Elements {
         };
         (0..self.body.elements.len()).map(residual).collect()
     }
+}
+
+/// `R0` of each corner of an element (m).
+fn at_rest(nodes: &[u32], body: &Body) -> impl Iterator<Item = DVec3> {
+    let centre = mean(nodes, &body.rest);
+    nodes.iter().map(move |&node| body.rest[node as usize] - centre)
 }
 
 /// `Σ R0 rᵀ` of an element (m²).

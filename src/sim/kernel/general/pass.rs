@@ -100,12 +100,12 @@ impl<L: Lanes> Own<'_, L> {
             let force: [L; 3] =
                 each!(3, axis => d.neg_mul_add(velocity[axis], k.neg_mul_add(position[axis], sum[axis])));
             let mut acceleration = [L::splat(0.0); 3];
-            if self.stage.keeps_acceleration() {
+            if self.stage.loads_acceleration() {
                 acceleration = each!(3, axis => L::load(accelerations.add(axis * MOST)));
             }
             let mut nodes = Nodes { position, velocity, acceleration };
             let lost = self.motion.advance(&mut nodes, force, inverse_mass);
-            if self.stage.keeps_acceleration() {
+            if self.stage.stores_acceleration() {
                 each!(3, axis => nodes.acceleration[axis].store(accelerations.add(axis * MOST)));
             }
             let ([px, py, pz], [vx, vy, vz]) = (nodes.position, nodes.velocity);

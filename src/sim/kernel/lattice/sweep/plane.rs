@@ -371,7 +371,7 @@ impl Sweep<'_> {
     ) -> Option<usize> {
         let planes = if plane == 0 || plane == self.grid.cells[2] { 1.0 } else { 2.0 };
         let (stiffness, damping) = (L::splat(planes * self.stiffness), L::splat(planes * self.damping));
-        let keeps_acceleration = motion.stage().keeps_acceleration();
+        let stage = motion.stage();
         let zero = L::splat(0.0);
         let mut near = 0;
         // SAFETY: a stride has all nodes of a plane in whole vectors.
@@ -382,7 +382,7 @@ impl Sweep<'_> {
                 let to = self.nodes(plane, at);
                 let valence = L::load(self.valence.add(at));
                 let (stiffness, damping) = (stiffness * valence, damping * valence);
-                let acceleration = if keeps_acceleration { load(to, ACCELERATION) } else { [zero; 3] };
+                let acceleration = if stage.loads_acceleration() { load(to, ACCELERATION) } else { [zero; 3] };
                 let mut nodes = Nodes { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
                 let mut total = force(at);
                 thrice!(axis => {
@@ -400,7 +400,7 @@ impl Sweep<'_> {
                     nodes.position[axis].store(to.add(axis * MOST));
                     nodes.velocity[axis].store(to.add((VELOCITY + axis) * MOST));
                 });
-                if keeps_acceleration {
+                if stage.stores_acceleration() {
                     thrice!(axis => nodes.acceleration[axis].store(to.add((ACCELERATION + axis) * MOST)));
                 }
             }
@@ -409,7 +409,7 @@ impl Sweep<'_> {
             }
             for at in (first..end).step_by(L::WIDTH) {
                 let to = self.nodes(plane, at);
-                let acceleration = if keeps_acceleration { load(to, ACCELERATION) } else { [zero; 3] };
+                let acceleration = if stage.keeps_acceleration() { load(to, ACCELERATION) } else { [zero; 3] };
                 let mut nodes = Nodes { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
                 motion.meet(&mut nodes, inverse_mass(to));
                 thrice!(axis => {
