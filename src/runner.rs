@@ -372,9 +372,16 @@ impl<'a> Frames<'a> {
             Some(_) => scene.last_frame(),
             None => self.frames.last().copied().unwrap_or(0),
         };
-        let end = self.runner.steps_at(scene.moment(last));
+        [self.simulated().into_iter().fold(0, u64::saturating_add), self.runner.steps_at(scene.moment(last))]
+    }
+
+    /// Steps that each run has taken so far.
+    pub(crate) fn simulated(&self) -> Vec<u64> {
+        let end = self.runner.scene.moment(self.runner.scene.last_frame());
+        // Runs that have gone all the way are then set back to each frame.
         let is_known = self.waiting.as_ref().is_some_and(|waiting| waiting.is_known);
-        [if is_known { end } else { self.runner.steps() }, end]
+        let steps = |running: &Running| if is_known { running.world.steps_at(end) } else { running.world.steps() };
+        self.runner.runs.iter().map(steps).collect()
     }
 
     /// Number of frames returned.

@@ -208,7 +208,7 @@ impl Recording<'_> {
         self.summary.files = [
             (DIAGNOSTICS_FILE, recorded.is_ok()),
             (STATES_FILE, matches!(kept, Some(Ok(())))),
-            (FRAME_FILES, self.summary.frames.written > Some(0)),
+            (FRAME_FILES, self.summary.frames.written > Some(0) || self.summary.frames.kept > 0),
         ]
         .into_iter()
         .filter_map(|(name, written)| written.then_some(name))
@@ -281,6 +281,9 @@ impl Recording<'_> {
                 }
                 Next::Done => break,
             }
+        }
+        for (run, steps) in self.summary.runs.iter_mut().zip(frames.simulated()) {
+            run.steps = steps;
         }
         self.times.simulate.cpu = helpers_time(&mut frames).map(|time| time.as_secs_f64());
         bar.finish_and_clear();

@@ -17,7 +17,7 @@ use crate::history::History;
 use crate::look::Ghost;
 use crate::output::{
     AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Spent, Summary, Tags, Tap, Timings, folder_of,
-    frame_files,
+    frame_file_name, frame_files, is_drawn,
 };
 use crate::scene::Scene;
 use crate::shell;
@@ -36,6 +36,7 @@ Examples:
   localshape render scenes/*.toml -o pictures --size 640x360 --samples 1
   localshape render scenes/fig4b.toml --animate fig4b.gif --no-frames
   localshape render scenes/fig4b.toml --only Mass-spring --frames 30 -o one
+  localshape render scenes/fig4b.toml --resume             after an interruption: draws the frames that are missing
   localshape render scenes/fig4b.toml --frames 30 -o frame.pdf   one frame for print, with text that can be searched
 
 The folder then has frame_00000.png and so on, diagnostics.csv (energies, momenta, turned-over elements and more, for \
@@ -76,6 +77,11 @@ pub(super) struct Render {
     #[arg(long, requires = "animate")]
     no_frames: bool,
 
+    /// Do not draw frames again that are in the folder already, with the same scene, states, version, adapter, size and
+    /// samples. All are simulated
+    #[arg(long, conflicts_with = "no_frames")]
+    resume: bool,
+
     /// Also print how long each stage took
     #[arg(long)]
     timings: bool,
@@ -113,6 +119,7 @@ impl Render {
             samples: self.device.samples,
             writers: threads.min(MOST_WRITERS),
             keep: !self.no_frames,
+            resume: self.resume,
             shared,
             made: Mutex::default(),
         };
@@ -131,9 +138,9 @@ impl Render {
             let message = format!("{name} is a file for one frame; render the scenes one at a time, or into a folder");
             return Err(Failure::usage(message));
         };
-        if self.options.states || !self.animate.is_empty() || self.options.printing.json {
-            let message =
-                format!("{name} gets one frame and nothing else; with --states, --animate or --json name a folder");
+        if self.options.states || self.resume || !self.animate.is_empty() || self.options.printing.json {
+            let others = "--states, --resume, --animate or --json";
+            let message = format!("{name} gets one frame and nothing else; with {others} name a folder");
             return Err(Failure::usage(message));
         }
         let (runs, frames) = (self.options.runs(scene)?, self.options.frames(scene)?);
@@ -207,6 +214,8 @@ struct Device {
     writers: usize,
     /// Whether frames stay.
     keep: bool,
+    /// Whether frames that are there already are kept.
+    resume: bool,
     /// What animations are made of, if any are.
     shared: Option<Shared>,
     /// Lines to print about animations at the end.
@@ -346,7 +355,10 @@ impl Studio for Device {
         Ok(Box::new(Drawing {
             scene,
             artist: Artist::new(&self.gpu, scene, self.samples)?,
-            writer: FrameWriter::new(self.keep.then_some(folder), self.writers, tap),
+            drawn_before: self.resume.then(|| folder.to_owned()),
+            kept: 0,
+            writer: FrameWriter::new(self.keep.then_some(folder), self.writers, tap.clone()),
+            tap,
             films,
             keep: self.keep,
             adapter: self.gpu.description().to_string(),
@@ -362,7 +374,13 @@ impl Studio for Device {
 struct Drawing<'a> {
     scene: &'a Scene,
     artist: Artist<'a>,
+    /// The folder with frames that were drawn before and are kept if they are the same.
+    drawn_before: Option<PathBuf>,
+    /// The number of these.
+    kept: usize,
     writer: FrameWriter,
+    /// What gets all frames besides the folder.
+    tap: Option<Tap>,
     films: Option<Films<'a>>,
     /// Whether frames stay.
     keep: bool,
@@ -394,6 +412,17 @@ impl Pictures for Drawing<'_> {
     }
 
     fn draw(&mut self, frame: &Frame) -> Result<(), Failure> {
+        let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
+        let mut texts = Tags::of_frame(self.scene, frame, &self.adapter).texts();
+        texts.push(("samples", self.samples.to_string()));
+        if let Some(folder) = &self.drawn_before {
+            let path = folder.join(frame_file_name(frame.index));
+            if is_drawn(&path, size, &texts, dpi)? {
+                self.kept += 1;
+                let pass = |tap: &Tap| tap(frame.index, &std::fs::read(&path).map_err(OutputError::reading(&path))?);
+                return Ok(self.tap.as_ref().map_or(Ok(()), pass)?);
+            }
+        }
         let clock = Clock::thread();
         let composed = self.artist.compose(frame);
         self.compose += clock.spent();
@@ -403,15 +432,14 @@ impl Pictures for Drawing<'_> {
         let clock = Clock::thread();
         let pixels = self.artist.draw(&composed)?;
         self.draw += clock.spent();
-        let tags = Tags::of_frame(self.scene, frame, &self.adapter);
-        let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
-        Ok(self.writer.write(PixelFrame { size, dpi, pixels, frame: frame.index, tags })?)
+        Ok(self.writer.write(PixelFrame { size, dpi, pixels, frame: frame.index, texts })?)
     }
 
     fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure> {
         let (written, encode, result) = self.writer.finish();
         let filmed = self.films.map_or(Ok(()), |films| films.finish());
         summary.frames.written = self.keep.then_some(written);
+        summary.frames.kept = self.kept;
         for run in &mut summary.runs {
             let of_run = self.cut.iter().filter(|(at, _)| self.scene.runs[*at].name == run.name);
             run.cut = of_run.map(|(_, frame)| *frame).collect();

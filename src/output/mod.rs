@@ -26,7 +26,7 @@ pub(crate) use folder::{FRAME_FILES, Folder, Plan, Replace, frame_file_name, fra
 pub(crate) use frames::Tap;
 pub(crate) use frames::{FrameWriter, PixelFrame};
 pub(crate) use lock::FolderLock;
-pub(crate) use png::encode_print;
+pub(crate) use png::{encode_print, is_drawn};
 pub use png::{Compression, Shown, Tags, encode, read_tags};
 pub(crate) use sheets::SheetFiles;
 pub(crate) use states::{STATES_FILE, StatesWriter};

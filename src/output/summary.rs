@@ -72,6 +72,9 @@ pub(crate) struct FrameSummary {
     pub recorded: usize,
     /// The number of written pictures; `null` without pictures.
     pub written: Option<usize>,
+    /// The number of pictures that were there already and stayed (`--resume`); absent if there are none.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub kept: usize,
     /// Width and height of the pictures (px); `null` without pictures.
     pub size: Option<[u32; 2]>,
     /// Samples per pixel; `null` without pictures.
@@ -85,10 +88,12 @@ pub(crate) struct RunSummary {
     pub name: String,
     /// Time step (s).
     pub time_step: f64,
+    /// The steps that this command has simulated; after a divergence they are only counted.
+    pub steps: u64,
     /// `ok` or `diverged`.
     #[serde(flatten)]
     pub status: RunStatus,
-    /// The frames in which its body leaves its panel; absent if there are none.
+    /// The frames drawn by this command in which its body leaves its panel; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cut: Vec<u64>,
     /// The last recorded frame; `null` before the first.
@@ -134,6 +139,7 @@ impl Summary {
             RunSummary {
                 name: run.name.clone(),
                 time_step: run.step,
+                steps: 0,
                 status: RunStatus::Ok,
                 cut: Vec::new(),
                 last: None,
@@ -150,7 +156,7 @@ impl Summary {
             },
             command: command.to_vec(),
             outcome: Outcome::Unfinished,
-            frames: FrameSummary { asked, recorded: 0, written: None, size: None, samples: None },
+            frames: FrameSummary { asked, recorded: 0, written: None, kept: 0, size: None, samples: None },
             files: Vec::new(),
             adapter: None,
             runs: runs.iter().map(run).collect(),
@@ -186,6 +192,11 @@ impl Summary {
         text.push('\n');
         write_whole(&folder.join(SUMMARY_FILE), text.as_bytes())
     }
+}
+
+/// Whether a number of frames is not worth a word.
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// The relative path from a folder to a file with a full path; `None` if there is none, as between disks on Windows.

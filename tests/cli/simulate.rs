@@ -150,6 +150,30 @@ fn some_frames_of_one_run() {
     assert_eq!(rows(&some), wanted);
 }
 
+/// Nothing is simulated that was not asked for: neither other runs nor what comes after the last frame.
+#[test]
+fn only_what_was_asked_for_is_simulated() {
+    let place = Place::with_small();
+    let runs = |options: &str| {
+        place.run(&format!("simulate small.toml --overwrite{options}")).good();
+        place.json("output/small/run.json")["runs"].as_array().unwrap().clone()
+    };
+    let whole = runs("");
+    let steps = |run: &Value, frame: f64| (frame / 60.0 / run["time_step"].as_f64().unwrap()).round() as u64;
+    for (options, names, last) in [
+        ("", &["Local shape", "Mass-spring"][..], 6.0),
+        (" --frames 0-2", &["Local shape", "Mass-spring"], 2.0),
+        (" --frames 4,1 --only Mass-spring", &["Mass-spring"], 4.0),
+        (" --frames 0", &["Local shape", "Mass-spring"], 0.0),
+    ] {
+        let runs = runs(options);
+        assert_eq!(runs.iter().map(|run| run["name"].as_str().unwrap()).collect::<Vec<_>>(), names, "{options}");
+        let simulated: Vec<_> = runs.iter().map(|run| run["steps"].as_u64().unwrap()).collect();
+        assert_eq!(simulated, runs.iter().map(|run| steps(run, last)).collect::<Vec<_>>(), "{options}");
+    }
+    assert!(steps(&whole[0], 6.0) > 6, "more than one step to a frame");
+}
+
 #[test]
 fn json_is_one_document() {
     let place = Place::with_small();
@@ -276,6 +300,7 @@ fn everything_in_the_files_is_documented() {
     let times = Timings { compose: spent, draw: spent, encode: spent, ..Timings::default() };
     run["times"] = serde_json::to_value(times).unwrap();
     run["runs"][0]["cut"] = [3].into();
+    run["frames"]["kept"] = 1.into();
     let [mut found, mut told] = [ways(&run, ""), documented("run.json")];
     found.sort();
     found.dedup();

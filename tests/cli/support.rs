@@ -50,7 +50,9 @@ pub(crate) fn frame_tags(frame: u64, time: f64) -> Tags {
 
 /// A picture as `render` writes it.
 pub(crate) fn frame_file(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> {
-    encode(size, pixels, &tags.texts(), Compression::Fast)
+    let mut texts = tags.texts();
+    texts.extend(tags.frame().map(|_| ("samples", "4".to_owned())));
+    encode(size, pixels, &texts, Compression::Fast)
 }
 
 /// The number of frames of [`SMALL`].
