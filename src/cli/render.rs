@@ -3,6 +3,7 @@
 use super::console;
 use super::failure::{Failure, Status};
 use super::film::{comment, replaceable, summary};
+use super::frames::Shard;
 use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, size};
 use super::record::{self, Pictures, Studio};
@@ -16,8 +17,8 @@ use crate::gpu::Gpu;
 use crate::history::History;
 use crate::look::Ghost;
 use crate::output::{
-    AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Spent, Summary, Tags, Tap, Timings, folder_of,
-    frame_file_name, frame_files, is_drawn,
+    AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Spent, StoredStates, Summary, Tags, Tap,
+    Timings, folder_of, frame_file_name, frame_files, is_drawn,
 };
 use crate::scene::Scene;
 use crate::shell;
@@ -77,6 +78,15 @@ pub(super) struct Render {
     #[arg(long, requires = "animate")]
     no_frames: bool,
 
+    /// Draw states.npz, which `simulate --states` has written for the same scene, and simulate nothing
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "states")]
+    from_states: Option<PathBuf>,
+
+    /// Make only a share of the frames: 2/4 the second one and every fourth one after it. `localshape merge` joins all shards
+    /// [default folder: output/NAME-2-of-4]
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["states", "animate"])]
+    shard: Option<Shard>,
+
     /// Do not draw frames again that are in the folder already, with the same scene, states, version, adapter, size and
     /// samples. All are simulated
     #[arg(long, conflicts_with = "no_frames")]
@@ -102,8 +112,15 @@ impl Render {
             return self.still(path, format, &scenes);
         }
         let films = self.films(scenes.len())?;
-        let jobs = self.options.jobs(scenes, !self.no_frames, words)?;
+        if let (Some(file), true) = (&self.from_states, scenes.len() > 1) {
+            let message = format!("{} has the states of one scene; render the scenes one at a time", file.display());
+            return Err(Failure::usage(message));
+        }
+        let mut jobs = self.options.jobs(scenes, !self.no_frames, self.shard, words)?;
         jobs.iter().try_for_each(check_compared)?;
+        if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {
+            job.stored = Some(StoredStates::open(file, &job.scene, &job.runs, &job.frames)?);
+        }
         // Opened when all else is known to be right, and before the first folder is touched.
         let gpu = self.device.open(jobs.iter().map(|job| job.scene.view.size))?;
         let threads = self.options.threads.count();
@@ -138,8 +155,9 @@ impl Render {
             let message = format!("{name} is a file for one frame; render the scenes one at a time, or into a folder");
             return Err(Failure::usage(message));
         };
-        if self.options.states || self.resume || !self.animate.is_empty() || self.options.printing.json {
-            let others = "--states, --resume, --animate or --json";
+        let is_part = self.resume || self.shard.is_some() || self.from_states.is_some();
+        if self.options.states || is_part || !self.animate.is_empty() || self.options.printing.json {
+            let others = "--states, --from-states, --shard, --resume, --animate or --json";
             let message = format!("{name} gets one frame and nothing else; with {others} name a folder");
             return Err(Failure::usage(message));
         }

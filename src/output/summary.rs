@@ -79,6 +79,9 @@ pub(crate) struct FrameSummary {
     pub size: Option<[u32; 2]>,
     /// Samples per pixel; `null` without pictures.
     pub samples: Option<u32>,
+    /// Which share of the frames this is, and of how many; absent if it is all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shard: Option<[usize; 2]>,
 }
 
 /// The result of a run.
@@ -156,7 +159,7 @@ impl Summary {
             },
             command: command.to_vec(),
             outcome: Outcome::Unfinished,
-            frames: FrameSummary { asked, recorded: 0, written: None, kept: 0, size: None, samples: None },
+            frames: FrameSummary { asked, recorded: 0, written: None, kept: 0, size: None, samples: None, shard: None },
             files: Vec::new(),
             adapter: None,
             runs: runs.iter().map(run).collect(),
@@ -200,7 +203,7 @@ fn is_zero(count: &usize) -> bool {
 }
 
 /// The relative path from a folder to a file with a full path; `None` if there is none, as between disks on Windows.
-fn relative(file: &Path, folder: &Path) -> Option<String> {
+pub(crate) fn relative(file: &Path, folder: &Path) -> Option<String> {
     let folder = folder.canonicalize().ok()?;
     let shared = folder.components().zip(file.components()).take_while(|(one, other)| one == other).count();
     let up = folder.components().skip(shared).map(|_| Component::ParentDir);

@@ -1,7 +1,7 @@
-//! Sequences that are drawn in parts: again after an interruption.
+//! Sequences that are drawn in parts: again after an interruption, from stored states, and in shards.
 
 use crate::render::{can_draw, place_to_draw};
-use crate::support::{Place, SMALL, lasting};
+use crate::support::{Place, SMALL, lasting, run};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -52,7 +52,10 @@ fn resumed_frames_are_those_of_a_run_without_interruption() {
         let before = place.names(folder).iter().filter(|name| name.ends_with(".png")).count() as u64;
         assert!((4..121).contains(&before), "{before} frames of 121 are drawn");
         let ran = place.run(&format!("render scene.toml -o {folder} --resume")).good();
-        assert!(ran.out.contains(&format!("121 frames of 96×64 in {folder}, {before} of them drawn before")), "{ran:?}");
+        assert!(
+            ran.out.contains(&format!("121 frames of 96×64 in {folder}, {before} of them drawn before")),
+            "{ran:?}"
+        );
         assert_eq!(drawn_and_kept(&place, folder), [121 - before, before]);
         assert!(files(&place, folder) == files(&place, "whole"), "{folder}");
     }
@@ -85,7 +88,10 @@ fn resuming_draws_again_what_is_not_the_same() {
     place.run("render small.toml --resume --size 80x60").bad(2, &["7 frames of this scene of 96×64 pixels"]);
     place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.6"));
     let ran = place.run("render small.toml --resume").good();
-    assert!(ran.out.starts_with("output/small: replacing 7 frames made by an earlier version of small.toml"), "{ran:?}");
+    assert!(
+        ran.out.starts_with("output/small: replacing 7 frames made by an earlier version of small.toml"),
+        "{ran:?}"
+    );
     assert_eq!(drawn_and_kept(&place, "output/small"), [7, 0]);
 }
 
@@ -101,4 +107,247 @@ fn an_animation_of_resumed_frames_is_the_same() {
     assert!(bytes("whole.y4m") == bytes("resumed.y4m"));
     place.run("render small.toml --resume --animate no.gif --no-frames").bad(2, &["--resume", "--no-frames"]);
     place.run("render small.toml --resume --frames 1 -o one.png").bad(2, &["one.png gets one frame", "--resume"]);
+}
+
+/// The small scene with all that pictures show beyond its states: a course, paths, a difference, forces that act for a while,
+/// a field that comes from the model, and a run that diverges.
+fn rich() -> String {
+    let wild = "[[run]]\nname = \"Wild\"\nmodel = { kind = \"mass-spring\", stiffness = 1e4, springs = \"edges\" }\nstep = \"T/2\"\n";
+    let grab = "[[grab]]\nnodes = [0]\npath = { keys = [{ time = 0.02 }, { time = 0.3, shift = [0, 0.2, 0] }] }\n";
+    let view = "[view]\nstrip = \"energy\"\ncolour = { by = \"elastic-energy\", range = [0, 1] }\n\
+                paths = [\"centre\"]\ndifference = [\"Local shape\", \"Mass-spring\"]\n";
+    let rotation = "stiffness = 1e4, damping_ratio = 0.1, rotation = \"arctangent\" }";
+    SMALL
+        .replacen("stiffness = 1e4, damping_ratio = 0.1 }", rotation, 1)
+        .replace("[[obstacle]]", &format!("{wild}{grab}[[obstacle]]"))
+        .replace("[view]\n", view)
+        .replace("size = [96, 64]", "size = [640, 360]")
+        .replace("duration = 0.1", "duration = 1.0")
+}
+
+/// Steps that each run of the last command has taken.
+fn steps(place: &Place, folder: &str) -> Vec<u64> {
+    let runs = place.json(&format!("{folder}/run.json"))["runs"].as_array().unwrap().clone();
+    runs.iter().map(|run| run["steps"].as_u64().unwrap()).collect()
+}
+
+/// Frames of stored states have the same bytes, and nothing is simulated for them.
+#[test]
+fn frames_of_stored_states_are_those_of_a_simulation() {
+    let Some(place) = place_to_draw() else { return };
+    place.write("rich.toml", &rich());
+    for (scene, options) in [
+        ("small", ""),
+        ("rich", " --frames 0-60x15"),
+        ("rich", " --frames 3,45 --only Mass-spring --only Local\u{a0}shape --size 500x300"),
+    ] {
+        place.run(&format!("simulate {scene}.toml --states -o states --overwrite")).good();
+        for (folder, source) in [("direct", ""), ("stored", " --from-states states/states.npz")] {
+            let typed = format!("render {scene}.toml -o {folder} --samples 1 --overwrite{source}{options}");
+            let words = typed.split(' ').map(|word| word.replace('\u{a0}', " "));
+            run(&mut place.command(words)).good();
+        }
+        assert!(files(&place, "direct") == files(&place, "stored"), "{scene}{options}");
+        assert!(steps(&place, "stored").iter().all(|&steps| steps == 0) && steps(&place, "direct")[0] > 0);
+        let summary = |folder: &str| {
+            let run = place.json(&format!("{folder}/run.json"));
+            run["runs"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(|run| (run["status"].clone(), run["last"].clone()))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(summary("stored"), summary("direct"));
+    }
+    // The wild run is one that diverges.
+    place.run("render rich.toml --from-states states/states.npz --frames 60 --samples 1 -o last").good();
+    assert_eq!(place.json("last/run.json")["runs"][2]["status"], "diverged");
+}
+
+/// The states that `render` writes serve as well, and so do those of some frames up to the last.
+#[test]
+fn states_of_some_frames_are_drawn() {
+    let Some(place) = place_to_draw() else { return };
+    place.run("render small.toml --samples 1 --states --frames 2-6x2").good();
+    let bytes = |path: &str| std::fs::read(place.path(path)).unwrap();
+    place.run("simulate small.toml --states --frames 2-6x2 -o numbers").good();
+    assert!(bytes("output/small/states.npz") == bytes("numbers/states.npz"));
+    let from = "--from-states numbers/states.npz --samples 1";
+    place.run(&format!("render small.toml {from} --frames 4 -o one")).good();
+    assert!(bytes("one/frame_00004.png") == bytes("output/small/frame_00004.png"));
+    place
+        .run(&format!("render small.toml {from} -o all"))
+        .bad(2, &["numbers/states.npz lacks frame 0: it has 3 frames from 2 to 6; choose among them with --frames"]);
+    // Pictures that show the whole course need it.
+    place.run("simulate small.toml --states --frames 0-4 -o early").good();
+    let ran = place.run("render small.toml --from-states early/states.npz --frames 0-4 -o all");
+    ran.bad(2, &["early/states.npz lacks the course of the scene to its end", "--states"]);
+    assert_eq!(steps(&place, "early")[0], steps(&place, "numbers")[0] * 4 / 6);
+    place.write("still.toml", &lasting("0.1"));
+    place.run("simulate still.toml --states --frames 0-4 -o early --overwrite").good();
+    place.run("render still.toml --from-states early/states.npz --frames 0-4 -o still").good();
+    assert!(!place.path("all").exists());
+}
+
+#[test]
+fn states_that_do_not_fit_are_refused() {
+    let Some(place) = place_to_draw() else { return };
+    place.run("simulate small.toml --states -o states").good();
+    let states = std::fs::read(place.path("states/states.npz")).unwrap();
+    let refused = |status: i32, words: &[&str]| {
+        place.run("render small.toml --from-states states/states.npz -o out").bad(status, words);
+        assert!(!place.path("out").exists(), "nothing is written before it is known that it can be drawn");
+    };
+    place.run("render small.toml --from-states none.npz -o out").bad(4, &["cannot read none.npz"]);
+    place.run("render small.toml --from-states small.toml -o out").bad(2, &["small.toml is not a NumPy archive"]);
+    place.run("render small.toml small.toml --from-states states/states.npz -o out").bad(2, &["one scene"]);
+    place.run("render small.toml --from-states states/states.npz --states").bad(2, &["--from-states", "--states"]);
+    place.run("render small.toml --frames 1 --from-states states/states.npz -o a.png").bad(2, &["--from-states"]);
+    place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.6"));
+    refused(
+        2,
+        &["states.npz has states of another version of “Two cubes”; expected those of “Two cubes” as it is now"],
+    );
+    place.write("small.toml", &SMALL.replace("Two cubes", "Cubes"));
+    refused(2, &["states.npz has states of another scene, “Two cubes”; expected those of “Cubes”", "--states"]);
+    place.write("small.toml", SMALL);
+    std::fs::write(place.path("states/states.npz"), &states[..states.len() / 2]).unwrap();
+    refused(2, &["states/states.npz is a damaged NumPy archive, or is cut short"]);
+    place.run("simulate small.toml --states --only Mass-spring -o states --overwrite").good();
+    refused(2, &["states.npz has no states of “Local shape”, only of “Mass-spring”; choose among these with --only"]);
+
+    // One bit of one position in frame 3 is another: earlier frames are drawn, and the files are whole.
+    let position = |frame: usize| {
+        let at = states.windows(24).position(|bytes| bytes == b"Local shape.position.npy").unwrap();
+        let start = at + states[at..].windows(6).position(|bytes| bytes == b"\x93NUMPY").unwrap();
+        let head = 10 + usize::from(u16::from_le_bytes([states[start + 8], states[start + 9]]));
+        start + head + frame * 12 * 24
+    };
+    let mut damaged = states.clone();
+    damaged[position(3)] ^= 1;
+    std::fs::write(place.path("states/states.npz"), &damaged).unwrap();
+    let ran = place.run("render small.toml --from-states states/states.npz -o out");
+    ran.bad(4, &["cannot read states/states.npz: frame 3 of “Local shape” is damaged"]);
+    assert_eq!(place.json("out/run.json")["outcome"], "failed");
+    let names = ["diagnostics.csv", "frame_00000.png", "frame_00001.png", "frame_00002.png", "run.json"];
+    assert_eq!(place.names("out"), names);
+}
+
+/// What other programs write from it is no longer what this one wrote.
+#[test]
+fn states_that_numpy_has_written_are_refused() {
+    let (Some(place), Some(python)) = (place_to_draw(), crate::support::numpy()) else { return };
+    place.run("simulate small.toml --states -o states").good();
+    let script = "import numpy; states = dict(numpy.load('states/states.npz')); print(states['localshape'].dtype)\n\
+                  assert states['Mass-spring.memory'].shape == (7, 0)\n\
+                  numpy.savez_compressed('packed.npz', **states); del states['localshape']; numpy.savez('bare.npz', **states)";
+    assert_eq!(python(&place.path("."), script).trim(), "uint8");
+    let ran = place.run("render small.toml --from-states packed.npz -o out");
+    ran.bad(4, &["cannot read packed.npz: frame 0 of “Local shape” cannot be read, the file is damaged or packed"]);
+    let ran = place.run("render small.toml --from-states bare.npz -o out");
+    ran.bad(2, &["bare.npz has no array `localshape`, which `localshape simulate --states` writes"]);
+}
+
+/// Draws all shards of a scene into `shards/1` and so on.
+fn shards(place: &Place, of: usize, options: &str) {
+    for number in 1..=of {
+        let folder = format!("--shard {number}/{of} -o shards/{number}");
+        place.run(&format!("render small.toml --samples 1 {folder}{options}")).good();
+    }
+}
+
+/// Shards, one of them killed and resumed, make the bytes of one process.
+#[cfg(unix)]
+#[test]
+fn merged_shards_are_the_whole() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::new();
+    place.write("scene.toml", &rich().replace("size = [640, 360]", "size = [320, 240]"));
+    place.run("render scene.toml -o whole --threads 2").good();
+    place.run("simulate scene.toml --states -o states").good();
+    let render = |number: usize| {
+        format!("render scene.toml --from-states states/states.npz --shard {number}/3 --resume -o shards/{number}")
+    };
+    place.run(&render(3)).good();
+    place.run(&render(1)).good();
+    let mut running = crate::interrupt::start(&place, &render(2), "shards/2/frame_00001.png");
+    running.kill();
+    let ran = place.run("merge shards/1 shards/2 shards/3 -o merged");
+    ran.bad(2, &["shards/2 is not complete (unfinished); run its command again, with --resume"]);
+    assert!(!place.path("merged").exists());
+    place.run(&render(2)).good();
+    assert!(drawn_and_kept(&place, "shards/2")[1] > 0);
+    let ran = place.run("merge shards/3 shards/1 shards/2 -o merged").good();
+    assert_eq!(ran.out, "Two cubes\n61 frames of 320×240 in merged, from 3 shards\n");
+    assert!(files(&place, "merged") == files(&place, "whole"));
+    let [mut whole, mut merged] = ["whole", "merged"].map(|folder| place.json(&format!("{folder}/run.json")));
+    for run in [&mut whole, &mut merged] {
+        // What one process simulated, the others have read.
+        (run["command"], run["times"]) = (Value::Null, Value::Null);
+        run["runs"].as_array_mut().unwrap().iter_mut().for_each(|run| run["steps"] = 0.into());
+    }
+    assert_eq!(merged, whole);
+    // Again, and of another scene.
+    place.run("merge shards/3 shards/1 shards/2 -o merged -q").good();
+    place.write("small.toml", SMALL);
+    place.run("simulate small.toml -o other").good();
+    place
+        .run("merge shards/3 shards/1 shards/2 -o other")
+        .bad(2, &["other holds the results of another scene", "merge --overwrite"]);
+}
+
+#[test]
+fn shards_with_holes_or_of_other_sequences_are_not_merged() {
+    let Some(place) = place_to_draw() else { return };
+    shards(&place, 3, "");
+    let merge = |folders: &str, words: &[&str]| {
+        place.run(&format!("merge {folders} -o merged")).bad(2, words);
+        assert!(!place.path("merged").exists());
+    };
+    merge("shards/1 shards/3", &["missing: shard 2/3; expected all of 3"]);
+    merge("shards/1 shards/3 shards/1", &["shards/1 and shards/1 are both shard 1/3"]);
+    place.run("merge shards/1 nowhere -o merged").bad(4, &["cannot read nowhere"]);
+    merge("shards/1 shards", &["shards has no run.json of localshape"]);
+    place.run("render small.toml --samples 1 --frames 1-6x3 -o unsplit").good();
+    merge("shards/1 unsplit shards/3", &["unsplit is no shard"]);
+    place.run("merge shards/1 shards/2 shards/3 -o shards/1").bad(2, &["-o shards/1 is one of the shards"]);
+
+    let other = |options: &str, words: &[&str]| {
+        place.run(&format!("render small.toml --shard 2/3 -o other --overwrite{options}")).good();
+        merge("shards/1 other shards/3", words);
+    };
+    other("", &["shards/1 (1) and other (4) differ in the samples"]);
+    other(" --samples 1 --size 80x60", &["differ in the size"]);
+    other(" --samples 1 --only Mass-spring", &["differ in the runs"]);
+    // Of other frames: 2 and 5 stand where 1 and 4 should.
+    other(" --samples 1 --frames 1-6", &["frame 3 is in shard 1/3 and should be in 2/3"]);
+    place.write("edited.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.6"));
+    place.run("render edited.toml --samples 1 --shard 2/3 -o edited").good();
+    merge("shards/1 edited shards/3", &["differ in the scene"]);
+    let frame = place.path("shards/2/frame_00004.png");
+    std::fs::copy(place.path("edited/frame_00004.png"), &frame).unwrap();
+    merge("shards/1 shards/2 shards/3", &["frame_00004.png is not that frame of this scene", "--resume"]);
+    std::fs::remove_file(&frame).unwrap();
+    merge("shards/1 shards/2 shards/3", &["frame_00004.png is missing; run the command of its shard again"]);
+    shards(&place, 3, " --resume");
+    place.run("merge shards/1 shards/2 shards/3 -o merged").good();
+}
+
+#[test]
+fn wrong_shards() {
+    let place = Place::with_small();
+    for (shard, words) in [
+        ("0/4", "there is no shard 0 of 4; expected 1/4 to 4/4"),
+        ("5/4", "there is no shard 5 of 4"),
+        ("4", "such as 2/4"),
+    ] {
+        place.run(&format!("render small.toml --shard {shard}")).bad(2, &["--shard", words]);
+    }
+    place.run("render small.toml --shard 8/9").bad(2, &["--shard: shard 8/9 of 7 frames is empty; expected at most 7"]);
+    place.run("render small.toml --shard 1/2 --states").bad(2, &["--shard", "--states"]);
+    place.run("render small.toml --frames 1 --shard 1/1 -o one.png").bad(2, &["one.png gets one frame", "--shard"]);
+    assert_eq!(place.names("."), ["small.toml"]);
 }
