@@ -230,10 +230,14 @@ fn check_all_there(parts: &[Part]) -> Result<(), Failure> {
     let frames = parts.iter().flat_map(|part| part.rows.keys().map(|&frame| (frame, part.shard[0])));
     let mut frames: Vec<_> = frames.collect();
     frames.sort_unstable();
+    let help = "shards of the same --frames share these out in turn";
+    if let Some(two) = frames.windows(2).find(|two| two[0].0 == two[1].0) {
+        let [(frame, one), (_, other)] = [two[0], two[1]];
+        return Err(Failure::usage(format!("frame {frame} is in shard {one}/{of} and in {other}/{of}; {help}")));
+    }
     for (at, &(frame, number)) in frames.iter().enumerate() {
         let expected = at % of + 1;
         if number != expected {
-            let help = "shards of the same --frames share these out in turn";
             let message = format!("frame {frame} is in shard {number}/{of} and should be in {expected}/{of}; {help}");
             return Err(Failure::usage(message));
         }

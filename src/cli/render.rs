@@ -40,6 +40,8 @@ Examples:
   localshape render scenes/fig4b.toml --resume             after an interruption: draws the frames that are missing
   localshape render scenes/fig4b.toml --frames 30 -o frame.pdf   one frame for print, with text that can be searched
 
+With --shard, many processes draw a scene: docs/clusters.md has scripts for them.
+
 The folder then has frame_00000.png and so on, diagnostics.csv (energies, momenta, turned-over elements and more, for \
 each run and frame) and run.json (command, outcome and files). A folder never mixes frames of different scenes, sizes \
 (--size) or choices of runs (--only); other frames of the same sequence stay.

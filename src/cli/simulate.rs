@@ -11,7 +11,7 @@ Examples:
   localshape simulate scenes/fig4b.toml
   localshape simulate scenes/fig4b.toml --states -o results
   localshape simulate scenes/*.toml --json > results.json
-  localshape simulate scenes/fig4b.toml --states && localshape render scenes/fig4b.toml --from-states output/fig4b/states.npz -o pictures
+  localshape render scenes/fig4b.toml --from-states results/states.npz -o pictures   draws what the second one simulated
 
 The folder then has diagnostics.csv (energies, momenta, turned-over elements and more, for each run and frame), run.json \
 (command, outcome and files) and, with --states, states.npz. A run that diverges is a result, not an error.

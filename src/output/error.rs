@@ -53,7 +53,7 @@ pub enum OutputError {
         /// The file.
         path: PathBuf,
         /// What is wrong, and what to do.
-        what: String,
+        what: Box<str>,
     },
     /// The folder has files that belong to something else.
     #[error("{} holds {what}; choose another folder with -o, or replace what is there with --overwrite", path.display())]

@@ -49,7 +49,7 @@ impl StoredStates {
             }
             Ok(Self { path: path.to_owned(), npz, course, runs })
         };
-        let mut stored = open().map_err(|what| OutputError::States { path: path.to_owned(), what })?;
+        let mut stored = open().map_err(|what| OutputError::States { path: path.to_owned(), what: what.into() })?;
         if let Some(history) = &mut stored.course.history {
             only(history, scene, runs);
         }

@@ -4,6 +4,10 @@ use crate::render::{can_draw, place_to_draw};
 use crate::support::{Place, SMALL, lasting, run};
 use serde_json::Value;
 use std::collections::BTreeMap;
+#[cfg(unix)]
+use std::path::Path;
+#[cfg(unix)]
+use std::process::Command;
 
 /// All files in a folder but `run.json`, which has times.
 fn files(place: &Place, folder: &str) -> BTreeMap<String, Vec<u8>> {
@@ -322,8 +326,12 @@ fn shards_with_holes_or_of_other_sequences_are_not_merged() {
     other("", &["shards/1 (1) and other (4) differ in the samples"]);
     other(" --samples 1 --size 80x60", &["differ in the size"]);
     other(" --samples 1 --only Mass-spring", &["differ in the runs"]);
-    // Of other frames: 2 and 5 stand where 1 and 4 should.
-    other(" --samples 1 --frames 1-6", &["frame 3 is in shard 1/3 and should be in 2/3"]);
+    // Of other frames: 2 and 5, or 4 alone, instead of 1 and 4.
+    other(" --samples 1 --frames 1-6", &["frame 2 is in shard 2/3 and in 3/3; shards of the same --frames"]);
+    other(
+        " --samples 1 --frames 0,4-6",
+        &["frame 2 is in shard 3/3 and should be in 2/3; shards of the same --frames"],
+    );
     place.write("edited.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.6"));
     place.run("render edited.toml --samples 1 --shard 2/3 -o edited").good();
     merge("shards/1 edited shards/3", &["differ in the scene"]);
@@ -334,6 +342,55 @@ fn shards_with_holes_or_of_other_sequences_are_not_merged() {
     merge("shards/1 shards/2 shards/3", &["frame_00004.png is missing; run the command of its shard again"]);
     shards(&place, 3, " --resume");
     place.run("merge shards/1 shards/2 shards/3 -o merged").good();
+}
+
+/// A script of `docs/clusters`, which finds the program of this test.
+#[cfg(unix)]
+fn script(place: &Place, name: &str, arguments: &str) -> Command {
+    let program = Path::new(env!("CARGO_BIN_EXE_localshape")).parent().unwrap();
+    let paths = std::env::var_os("PATH").unwrap_or_default();
+    let paths = std::iter::once(program.to_owned()).chain(std::env::split_paths(&paths));
+    let mut command = Command::new("bash");
+    command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/clusters").join(name)).args(arguments.split(' '));
+    command.current_dir(place.path(".")).env("PATH", std::env::join_paths(paths).unwrap());
+    command
+}
+
+/// The jobs of the script for Slurm, one after the other; that Slurm runs them was tried on a cluster.
+#[cfg(unix)]
+#[test]
+fn the_jobs_for_slurm_draw_the_whole() {
+    let Some(place) = place_to_draw() else { return };
+    place.run("render small.toml -o whole").good();
+    let jobs = [("states", 0), ("frames", 2), ("frames", 1), ("frames", 3), ("frames", 2), ("merge", 0), ("merge", 0)];
+    for (job, task) in jobs {
+        let mut command = script(&place, "frames-slurm", "small.toml made 3");
+        command.env("SLURM_JOB_NAME", format!("localshape-{job}")).env("SLURM_ARRAY_TASK_ID", task.to_string());
+        let ran = run(&mut command).good();
+        assert_eq!(ran.out.contains("7 frames of 96×64 in made/frames, from 3 shards"), job == "merge", "{ran:?}");
+    }
+    assert_eq!(drawn_and_kept(&place, "made/shards/2"), [0, 2]);
+    assert!(files(&place, "made/frames") == files(&place, "whole"));
+    let ran = run(&mut script(&place, "frames-slurm", "small.toml made"));
+    assert!(ran.status == Some(2) && ran.err.starts_with("Draws a scene on a Slurm cluster"), "{ran:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn gnu_parallel_draws_the_whole() {
+    let Some(place) = place_to_draw() else { return };
+    if Command::new("parallel").arg("--version").output().is_err() {
+        let missing = "there is no GNU parallel: `apt install parallel`";
+        assert!(std::env::var_os("LOCALSHAPE_REQUIRE_PARALLEL").is_none_or(|value| value != "1"), "{missing}");
+        return crate::support::skip(missing);
+    }
+    place.run("render small.toml -o whole").good();
+    for _ in 0..2 {
+        let ran = run(&mut script(&place, "frames-parallel", "small.toml made 3 --jobs 2")).good();
+        assert!(ran.out.contains("7 frames of 96×64 in "), "{ran:?}");
+        assert!(files(&place, "made/frames") == files(&place, "whole"));
+    }
+    assert_eq!(drawn_and_kept(&place, "made/shards/1"), [0, 3]);
 }
 
 #[test]
