@@ -118,7 +118,8 @@ impl Render {
             let message = format!("{} has the states of one scene; render the scenes one at a time", file.display());
             return Err(Failure::usage(message));
         }
-        let mut jobs = self.options.jobs(scenes, !self.no_frames, self.shard, words)?;
+        let states = self.from_states.as_deref();
+        let mut jobs = self.options.jobs(scenes, !self.no_frames, self.shard, states, words)?;
         jobs.iter().try_for_each(check_compared)?;
         if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {
             job.stored = Some(StoredStates::open(file, &job.scene, &job.runs, &job.frames)?);

@@ -3,7 +3,7 @@
 use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::{FrameRanges, Shard};
 use super::options::{RunOptions, SceneOptions};
-use crate::output::{Folder, OutputError, Plan, Replace, StoredStates, Whose};
+use crate::output::{Folder, OutputError, Plan, Replace, STATES_FILE, StoredStates, Whose};
 use crate::scene::{Limits, Scene, SceneError};
 use crate::shell;
 use std::collections::HashMap;
@@ -69,14 +69,16 @@ pub(super) struct Job {
 
 impl RunOptions {
     /// What is to be done for each scene, with or without `pictures`, for all frames or a share of them, by the command of
-    /// these `words`.
+    /// these `words`, which may read the states in a file.
     pub(super) fn jobs(
         &self,
         scenes: Vec<Scene>,
         pictures: bool,
         shard: Option<Shard>,
+        states_read: Option<&Path>,
         words: &[OsString],
     ) -> Result<Vec<Job>, Failure> {
+        let states_read = states_read.and_then(|file| file.canonicalize().ok());
         let several = scenes.len() > 1;
         let mut folders: HashMap<PathBuf, String> = HashMap::new();
         let mut jobs = Vec::new();
@@ -103,7 +105,9 @@ impl RunOptions {
             }
             let names = runs.iter().map(|&run| scene.runs[run].name.clone()).collect();
             let size = pictures.then_some(scene.view.size);
-            let plan = Plan { runs: names, frames: frames.clone(), states: self.states, size };
+            // States that are read are not replaced by their own pictures.
+            let is_read = states_read.is_some() && path.join(STATES_FILE).canonicalize().ok() == states_read;
+            let plan = Plan { runs: names, frames: frames.clone(), states: self.states || is_read, size };
             let folder = Folder::inspect(&path, Whose::of(&scene), plan, self.replace());
             let folder = folder.map_err(|error| occupied(error, words))?;
             jobs.push(Job { runs, frames, folder, scene, shard, stored: None });

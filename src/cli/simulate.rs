@@ -32,7 +32,7 @@ pub(super) struct Simulate {
 
 impl Simulate {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
-        let jobs = self.options.jobs(self.scenes.load_all(self.options.printing.quiet)?, false, None, words)?;
+        let jobs = self.options.jobs(self.scenes.load_all(self.options.printing.quiet)?, false, None, None, words)?;
         record::run_all(jobs, &self.options, words, false, None)
     }
 }

@@ -46,7 +46,7 @@ pub(crate) struct Plan {
     pub runs: Vec<String>,
     /// Numbers of the frames, rising.
     pub frames: Vec<u64>,
-    /// Whether states are written.
+    /// Whether there are states: they are written, or those in the folder are read.
     pub states: bool,
     /// Width and height of the pictures (px), if frames are drawn. All frames in a folder have the same size and runs.
     pub size: Option<[u32; 2]>,

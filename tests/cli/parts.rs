@@ -194,6 +194,20 @@ fn states_of_some_frames_are_drawn() {
     assert!(!place.path("all").exists());
 }
 
+/// Drawing states beside them does not remove them.
+#[test]
+fn states_stay_beside_their_pictures() {
+    let Some(place) = place_to_draw() else { return };
+    place.run("simulate small.toml --states").good();
+    let states = std::fs::read(place.path("output/small/states.npz")).unwrap();
+    for _ in 0..2 {
+        let ran = place.run("render small.toml --samples 1 --resume --from-states output/small/states.npz").good();
+        assert!(ran.out.starts_with("Two cubes\n7 frames"), "nothing is replaced: {ran:?}");
+        assert!(std::fs::read(place.path("output/small/states.npz")).unwrap() == states);
+    }
+    assert_eq!(drawn_and_kept(&place, "output/small"), [0, 7]);
+}
+
 #[test]
 fn states_that_do_not_fit_are_refused() {
     let Some(place) = place_to_draw() else { return };
