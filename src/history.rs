@@ -8,6 +8,7 @@ use crate::sim::contact::{self, Shape};
 use crate::sim::snapshot::{Diagnostics, Divergence};
 use crate::sim::world::{Moment, World};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// Least number of moments, if there are as many steps: a curve as wide as a picture then looks smooth.
 const FEWEST_MOMENTS: u64 = 600;
@@ -18,7 +19,7 @@ const EARLY: u64 = 16;
 const MOST_MOMENTS: u64 = 2000;
 
 /// The time series of runs of a scene.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct History {
     /// Time of the scene's last frame (s).
     pub end: f64,
@@ -30,7 +31,7 @@ pub struct History {
 }
 
 /// The time series of one run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeSeries {
     /// Index of the run in the scene.
     pub run: usize,
@@ -70,7 +71,7 @@ impl TimeSeries {
 
 /// For each obstacle of a scene the box around all nodes that have been near it (m), where the obstacle was at the start;
 /// `None` for all but plates and walls.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Reach(Vec<Option<[DVec3; 2]>>);
 
 impl Reach {

@@ -3,6 +3,8 @@
 use crate::scene::Scene;
 use crate::sim::crew::Crew;
 use crate::sim::snapshot::{LastFit, Status};
+use crate::sim::state::State;
+use crate::sim::world::World;
 use glam::DVec3;
 
 /// A state fits if its nodes lie within this many times the radius of the body at rest or at the start, whichever is
@@ -11,6 +13,23 @@ const FITS: f64 = 1.5;
 /// Number of steps after which it is tested whether a state fits. From the last of these that does on, each step is tested.
 const STRIDE: u64 = 64;
 
+/// The last state that fits of a run that diverges, and what pictures show of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Fitting {
+    /// The state. Its status says where the run diverges.
+    pub(crate) state: State,
+    /// What is shown.
+    pub(crate) shown: LastFit,
+}
+
+impl Fitting {
+    /// From the state, in the world of its run, which then has it, and how many times wider the body is at the end.
+    pub(crate) fn new(world: &mut World, state: State, times_wider: f64) -> Self {
+        world.set_state(state.clone());
+        Self { state, shown: LastFit { snapshot: world.snapshot(), times_wider } }
+    }
+}
+
 /// Whether a state with nodes at `position` (m) fits.
 pub(crate) fn fits(scene: &Scene, position: &[DVec3]) -> bool {
     radius(position) <= FITS * radius(&scene.body.rest).max(radius(&scene.initial.position))
@@ -18,7 +37,7 @@ pub(crate) fn fits(scene: &Scene, position: &[DVec3]) -> bool {
 
 /// The last state that fits of a run that diverges before the scene ends; `None` for one that does not. Simulates the run
 /// once more, which only runs pay for that diverge or have a state that does not fit.
-pub(crate) fn last_fit(scene: &Scene, run: usize, threads: usize) -> Option<LastFit> {
+pub(crate) fn last_fit(scene: &Scene, run: usize, threads: usize) -> Option<Fitting> {
     let mut world = scene.world(run);
     world.set_crew(Crew::new(threads));
     let mut last = world.steps_at(scene.moment(scene.last_frame()));
@@ -37,13 +56,9 @@ pub(crate) fn last_fit(scene: &Scene, run: usize, threads: usize) -> Option<Last
         end?;
     }
     let (divergence, widest) = end?;
-    world.set_state(fitting);
-    // Pictures write that the run diverges, and no diagnostics of this state.
-    world.want(&[]);
-    let mut snapshot = world.snapshot();
-    snapshot.status = Status::Diverged(divergence);
-    let times_wider = widest / radius(&snapshot.position);
-    Some(LastFit { snapshot, times_wider })
+    let times_wider = widest / radius(&fitting.position);
+    fitting.status = Status::Diverged(divergence);
+    Some(Fitting::new(&mut world, fitting, times_wider))
 }
 
 /// The distance of the farthest point from the mean of all (m): the same however a body is turned.

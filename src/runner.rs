@@ -2,14 +2,14 @@
 //! All other code simulates through this one, which makes it long: runs, their time series and their stored frames share one state.
 
 pub use crate::history::{History, TimeSeries};
-use crate::last_fit::fits;
+use crate::last_fit::{Fitting, fits};
 use crate::look::Traced;
 use crate::scene::Scene;
 use crate::sim::apart;
 use crate::sim::body::Body;
 use crate::sim::crew::Crew;
 use crate::sim::diagnostics::Diagnostic;
-use crate::sim::snapshot::{Frame, LastFit, RunFrame, Status};
+use crate::sim::snapshot::{Frame, RunFrame, Status};
 use crate::sim::state::State;
 use crate::sim::world::{Moment, Stepping, Surroundings, World};
 use rayon::prelude::*;
@@ -57,7 +57,7 @@ struct Running {
     /// Whether it is drawn.
     is_drawn: bool,
     /// What pictures show of it from there on if it diverges, known as soon as it is needed.
-    last_fit: OnceLock<Option<LastFit>>,
+    last_fit: OnceLock<Option<Fitting>>,
 }
 
 impl<'a> Runner<'a> {
@@ -254,7 +254,7 @@ impl Running {
             return frame;
         }
         let found = last_fit.get_or_init(|| crate::last_fit::last_fit(scene, *run, *threads));
-        let shown = found.as_ref().filter(|found| found.snapshot.step < frame.snapshot.step);
+        let shown = found.as_ref().map(|found| &found.shown).filter(|shown| shown.snapshot.step < frame.snapshot.step);
         RunFrame { last_fit: shown.cloned().map(Box::new), ..frame }
     }
 
@@ -295,14 +295,38 @@ impl Running {
 }
 
 /// Frames of a scene in rising order, simulated once, also if the time series of the whole scene have to be known
-/// before the first frame is drawn.
+/// before the first frame is drawn, or not at all if their states are stored.
 pub(crate) struct Frames<'a> {
     runner: Runner<'a>,
     frames: Vec<u64>,
     /// Number of frames returned.
     taken: usize,
-    /// The states of frames that wait until the time series are known.
-    waiting: Option<Waiting>,
+    source: Source<'a>,
+}
+
+/// Where the states of frames come from.
+enum Source<'a> {
+    /// From the simulation, one after the other.
+    Simulated,
+    /// From the simulation, after all of it: they wait until the time series are known.
+    Waiting(Waiting),
+    /// From an earlier simulation, with its time series until they are returned.
+    Stored(Box<dyn Stored + 'a>, Option<History>),
+}
+
+/// What an earlier simulation of the same runs of the same scene has stored.
+pub(crate) trait Stored: Send {
+    /// The state of the run at this place among the runs, in a frame, which it reaches after so many steps.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    fn state(&mut self, place: usize, frame: u64, steps: u64) -> io::Result<State>;
+
+    /// Takes the time series, if there are any.
+    fn take_history(&mut self) -> Option<History>;
+
+    /// What [`Frames::last_fit`] returned of a run.
+    fn last_fit(&self, place: usize) -> Option<Option<(State, f64)>>;
 }
 
 /// The states of frames, stored until they are drawn.
@@ -331,8 +355,26 @@ impl<'a> Frames<'a> {
     /// everything is then simulated before the first frame is returned, and the states of the frames are stored in an
     /// unnamed temporary file in `folder`.
     pub(crate) fn new(runner: Runner<'a>, frames: &[u64], whole_series: bool, folder: &Path) -> Self {
-        let waiting = whole_series.then(|| Waiting { states: Store::new(folder), reached: 0, is_known: false });
-        Self { runner, frames: frames.to_vec(), taken: 0, waiting }
+        let waiting = || Source::Waiting(Waiting { states: Store::new(folder), reached: 0, is_known: false });
+        let source = if whole_series { waiting() } else { Source::Simulated };
+        Self { runner, frames: frames.to_vec(), taken: 0, source }
+    }
+
+    /// Frames of a runner, in rising order, that an earlier simulation has stored.
+    ///
+    /// # Errors
+    /// If what is stored does not belong to these runs.
+    pub(crate) fn stored(mut runner: Runner<'a>, frames: &[u64], mut stored: impl Stored + 'a) -> io::Result<Self> {
+        for (place, running) in runner.runs.iter_mut().enumerate() {
+            let Some(found) = stored.last_fit(place) else { continue };
+            if found.as_ref().is_some_and(|(state, _)| !running.world.takes(state)) {
+                return Err(io::ErrorKind::InvalidData.into());
+            }
+            let found = found.map(|(state, times_wider)| Fitting::new(&mut running.world, state, times_wider));
+            running.last_fit = found.into();
+        }
+        let history = stored.take_history();
+        Ok(Self { runner, frames: frames.to_vec(), taken: 0, source: Source::Stored(Box::new(stored), history) })
     }
 
     /// Advances each run by at most `most_steps`.
@@ -340,8 +382,13 @@ impl<'a> Frames<'a> {
     /// # Errors
     /// If stored states cannot be written or read.
     pub(crate) fn next(&mut self, most_steps: u64) -> io::Result<Next> {
-        let Self { runner, frames, taken, waiting } = self;
-        if let Some(waiting) = waiting
+        let Self { runner, frames, taken, source } = self;
+        if let Source::Stored(_, history) = source
+            && let Some(history) = history.take()
+        {
+            return Ok(Next::TimeSeries(history));
+        }
+        if let Source::Waiting(waiting) = source
             && !waiting.is_known
         {
             let frame = frames.get(waiting.reached).copied();
@@ -358,14 +405,19 @@ impl<'a> Frames<'a> {
             return Ok(Next::TimeSeries(runner.take_history()));
         }
         let Some(&frame) = frames.get(*taken) else { return Ok(Next::Done) };
-        if let Some(waiting) = waiting {
-            let first = *taken * runner.runs.len();
-            for (at, running) in runner.runs.iter_mut().enumerate() {
-                let state = State::from_bytes(&waiting.states.get(first + at)?);
-                running.world.set_state(state.ok_or(io::ErrorKind::InvalidData)?);
-            }
-        } else if !runner.advance_towards(runner.scene.moment(frame), most_steps) {
+        let moment = runner.scene.moment(frame);
+        if matches!(source, Source::Simulated) && !runner.advance_towards(moment, most_steps) {
             return Ok(Next::Working);
+        }
+        let first = *taken * runner.runs.len();
+        for (place, running) in runner.runs.iter_mut().enumerate() {
+            let state = match source {
+                Source::Simulated => continue,
+                Source::Waiting(waiting) => State::from_bytes(&waiting.states.get(first + place)?),
+                Source::Stored(stored, _) => Some(stored.state(place, frame, running.world.steps_at(moment))?),
+            };
+            let state = state.filter(|state| running.world.takes(state));
+            running.world.set_state(state.ok_or(io::ErrorKind::InvalidData)?);
         }
         *taken += 1;
         Ok(Next::Frame(runner.taken(frame)))
@@ -374,13 +426,41 @@ impl<'a> Frames<'a> {
     /// Steps taken so far, and steps at the end, of all runs together.
     pub(crate) fn steps(&self) -> [u64; 2] {
         let scene = self.runner.scene;
-        let last = match self.waiting {
-            Some(_) => scene.last_frame(),
-            None => self.frames.last().copied().unwrap_or(0),
+        let last = match self.source {
+            Source::Stored(..) => return [0; 2],
+            Source::Waiting(_) => scene.last_frame(),
+            Source::Simulated => self.frames.last().copied().unwrap_or(0),
         };
-        let end = self.runner.steps_at(scene.moment(last));
-        let is_known = self.waiting.as_ref().is_some_and(|waiting| waiting.is_known);
-        [if is_known { end } else { self.runner.steps() }, end]
+        [self.simulated().into_iter().fold(0, u64::saturating_add), self.runner.steps_at(scene.moment(last))]
+    }
+
+    /// Steps that each run has taken so far.
+    pub(crate) fn simulated(&self) -> Vec<u64> {
+        let end = self.runner.scene.moment(self.runner.scene.last_frame());
+        let steps = |running: &Running| match &self.source {
+            Source::Stored(..) => 0,
+            // Runs that have gone all the way are then set back to each frame.
+            Source::Waiting(waiting) if waiting.is_known => running.world.steps_at(end),
+            _ => running.world.steps(),
+        };
+        self.runner.runs.iter().map(steps).collect()
+    }
+
+    /// The states of all runs in the last frame that was returned; before the first, those at the start.
+    pub(crate) fn states(&self) -> impl Iterator<Item = &State> {
+        self.runner.runs.iter().map(|running| running.world.state())
+    }
+
+    /// What pictures of the frames returned so far show of a run that diverges, if they show anything but its states: the
+    /// last state that fits, and how many times wider the body is at the end. `None` inside if it does not diverge.
+    pub(crate) fn last_fit(&self, place: usize) -> Option<Option<(&State, f64)>> {
+        let found = self.runner.runs[place].last_fit.get()?;
+        Some(found.as_ref().map(|found| (&found.state, found.shown.times_wider)))
+    }
+
+    /// The time series recorded so far, if they were not returned.
+    pub(crate) fn take_history(&mut self) -> History {
+        self.runner.take_history()
     }
 
     /// Number of frames returned.

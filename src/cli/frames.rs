@@ -50,6 +50,43 @@ impl FromStr for FrameRanges {
     }
 }
 
+/// One of several equal shares of the frames: `2/4` has the second frame and every fourth one after it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Shard {
+    /// Its number, from 1 to `of`.
+    pub(super) number: usize,
+    /// How many there are.
+    pub(super) of: usize,
+}
+
+impl Shard {
+    /// Its share of some frames.
+    pub(super) fn select(self, frames: &[u64]) -> Result<Vec<u64>, String> {
+        let share: Vec<_> = frames.iter().copied().skip(self.number - 1).step_by(self.of).collect();
+        if share.is_empty() {
+            let (number, of, count) = (self.number, self.of, frames.len());
+            return Err(format!("shard {number}/{of} of {count} frames is empty; expected at most {count} shards"));
+        }
+        Ok(share)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(typed: &str) -> Result<Self, String> {
+        let numbers = typed
+            .split_once('/')
+            .and_then(|(number, of)| Some([number.trim().parse::<usize>().ok()?, of.trim().parse().ok()?]));
+        let [number, of] = numbers.ok_or("expected the number of a shard and how many there are, such as 2/4")?;
+        if of == 0 || !(1..=of).contains(&number) {
+            let first = if of == 0 { "1/1".to_owned() } else { format!("1/{of} to {of}/{of}") };
+            return Err(format!("there is no shard {number} of {of}; expected {first}"));
+        }
+        Ok(Self { number, of })
+    }
+}
+
 fn span(part: &str) -> Result<Span, String> {
     let number = |digits: &str| -> Result<u64, String> {
         digits.trim().parse().map_err(|_| {
@@ -89,6 +126,33 @@ mod tests {
         assert_eq!(frames("1-9x3"), [1, 4, 7]);
         assert_eq!(frames("9, 5 ,7-9"), [5, 7, 8, 9]);
         assert_eq!(frames("180"), [180]);
+    }
+
+    #[test]
+    fn shards_share_out_all_frames() {
+        let frames = frames("0-180x7");
+        for of in 1..=frames.len() {
+            let share = |number: usize| Shard { number, of }.select(&frames).unwrap();
+            let mut all: Vec<_> = (1..=of).flat_map(share).collect();
+            let sizes: Vec<_> = (1..=of).map(|number| share(number).len()).collect();
+            assert!(sizes.iter().max().unwrap() - sizes.iter().min().unwrap() <= 1, "{sizes:?}");
+            all.sort_unstable();
+            assert_eq!(all, frames);
+        }
+        assert_eq!("2/4".parse::<Shard>().unwrap().select(&[3, 5, 8, 9, 10, 12]), Ok(vec![5, 12]));
+        let error = "3/3".parse::<Shard>().unwrap().select(&[3, 5]).unwrap_err();
+        assert_eq!(error, "shard 3/3 of 2 frames is empty; expected at most 2 shards");
+        for (typed, message) in [
+            ("0/4", "there is no shard 0 of 4; expected 1/4 to 4/4"),
+            ("5/4", "there is no shard 5 of 4; expected 1/4 to 4/4"),
+            ("1/0", "there is no shard 1 of 0; expected 1/1"),
+            ("2", "such as 2/4"),
+            ("-1/4", "such as 2/4"),
+            ("1/4/2", "such as 2/4"),
+        ] {
+            let error = typed.parse::<Shard>().unwrap_err();
+            assert!(error.contains(message), "{typed}: {error}");
+        }
     }
 
     #[test]

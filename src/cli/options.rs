@@ -45,7 +45,7 @@ pub(super) struct RunOptions {
     pub(super) only: Vec<String>,
 
     /// Also write positions and velocities of every frame to states.npz, for numpy.load: `time`, `RUN.position` and
-    /// `RUN.velocity` for each run, and `RUN.time` for a run with its own time step
+    /// `RUN.velocity` for each run, and `RUN.time` for a run with its own time step. `render --from-states` draws them
     #[arg(long)]
     pub(super) states: bool,
 

@@ -9,7 +9,7 @@ use super::scenes::Job;
 use crate::history::History;
 use crate::output::{
     Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, OutputError, STATES_FILE, Spent, StatesWriter,
-    Summary, Timings, thread_time,
+    StoredStates, Summary, Timings, thread_time,
 };
 use crate::runner::{Frames, Next, Runner};
 use crate::scene::Scene;
@@ -19,7 +19,7 @@ use crate::sim::snapshot::Frame;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Value, json};
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
@@ -69,6 +69,7 @@ pub(super) fn run_all(
             blank = "";
         }
         let mut summary = Summary::new(&job.scene, &job.runs, job.frames.len(), &command);
+        summary.frames.shard = job.shard.map(|shard| [shard.number, shard.of]);
         result = record(job, &mut summary, &pool, options, studio);
         if options.printing.json {
             let mut document = json!({ "folder": path.to_string_lossy() });
@@ -96,7 +97,7 @@ fn record(
     options: &RunOptions,
     studio: Option<&dyn Studio>,
 ) -> Result<(), Failure> {
-    let Job { scene, runs, frames, folder } = job;
+    let Job { scene, runs, frames, folder, stored, .. } = job;
     let begin = || -> Result<_, Failure> {
         let folder = folder.prepare()?;
         let pictures = studio.map(|studio| studio.begin(&scene, folder.path(), &frames)).transpose()?;
@@ -105,7 +106,8 @@ fn record(
     let result = begin().and_then(|(folder, pictures)| {
         let times = Timings::default();
         let path = folder.path();
-        Recording { scene: &scene, runs, frames, folder: path, summary, last: None, times }.run(pool, options, pictures)
+        let recording = Recording { scene: &scene, runs, frames, folder: path, summary, last: None, times };
+        recording.run(pool, options, pictures, stored)
     });
     if result.is_err() {
         summary.outcome = Outcome::Failed;
@@ -176,13 +178,14 @@ struct Recording<'a> {
     times: Timings,
 }
 
-impl Recording<'_> {
+impl<'a> Recording<'a> {
     /// Makes all frames. Whatever happens on the way, what was made until then is finished and kept.
     fn run(
-        &mut self,
+        mut self,
         pool: &ThreadPool,
         options: &RunOptions,
         mut pictures: Option<Box<dyn Pictures + '_>>,
+        stored: Option<StoredStates>,
     ) -> Result<(), Failure> {
         let (total, simulating) = (Clock::process(), processor_time(pool));
         if let Some(pictures) = &pictures {
@@ -191,16 +194,28 @@ impl Recording<'_> {
         // Written before the first frame, so that the folder is known as this scene's even if the program is killed.
         self.summary.write(self.folder)?;
         let mut diagnostics = DiagnosticsWriter::create(self.folder, self.scene)?;
-        let mut states =
-            options.states.then(|| StatesWriter::create(self.folder, self.scene, &self.runs)).transpose()?;
+        let mut simulation = self.simulation(pool, options, pictures.as_deref(), stored)?;
+        let begin = || StatesWriter::create(self.folder, self.scene, &self.runs, simulation.frames.states());
+        let mut states = options.states.then(begin).transpose()?;
 
-        let made = self.simulate(pool, options.printing, pictures.as_deref_mut(), |frame, pictures| {
-            diagnostics.write(frame)?;
-            if let Some(states) = &mut states {
-                states.write(frame)?;
+        let made = self.simulate(pool, options.printing, &mut simulation, |next, frames| match next {
+            Next::TimeSeries(history) => {
+                pictures.as_deref_mut().into_iter().for_each(|pictures| pictures.take_history(history));
+                states.as_mut().into_iter().for_each(|states| states.set_history(history));
+                Ok(())
             }
-            pictures.map_or(Ok(()), |pictures| pictures.draw(frame))
+            Next::Frame(frame) => {
+                diagnostics.write(frame)?;
+                if let Some(states) = &mut states {
+                    states.write(frame, frames.states())?;
+                }
+                pictures.as_deref_mut().map_or(Ok(()), |pictures| pictures.draw(frame))
+            }
+            Next::Working | Next::Done => Ok(()),
         });
+        if let Some(states) = &mut states {
+            (0..self.runs.len()).for_each(|place| states.set_last_fit(place, simulation.frames.last_fit(place)));
+        }
 
         let drawn = pictures.map_or(Ok(()), |pictures| pictures.finish(self.summary, &mut self.times));
         let recorded = diagnostics.finish();
@@ -208,7 +223,7 @@ impl Recording<'_> {
         self.summary.files = [
             (DIAGNOSTICS_FILE, recorded.is_ok()),
             (STATES_FILE, matches!(kept, Some(Ok(())))),
-            (FRAME_FILES, self.summary.frames.written > Some(0)),
+            (FRAME_FILES, self.summary.frames.written > Some(0) || self.summary.frames.kept > 0),
         ]
         .into_iter()
         .filter_map(|(name, written)| written.then_some(name))
@@ -237,29 +252,52 @@ impl Recording<'_> {
         result.and(written)
     }
 
-    /// Simulates frame by frame until all are there or the user wants to stop. Only pictures need the scene's field, and
-    /// some of them its time series before the first frame.
-    fn simulate<'p>(
-        &mut self,
+    /// Where the frames come from. Only pictures, now or from the states that are written, need the scene's field, and some of
+    /// them its time series, which are those of the whole scene.
+    fn simulation(
+        &self,
         pool: &ThreadPool,
-        printing: PrintOptions,
-        mut pictures: Option<&mut (dyn Pictures + 'p)>,
-        mut take: impl FnMut(&Frame, Option<&mut (dyn Pictures + 'p)>) -> Result<(), Failure>,
-    ) -> Result<(), Failure> {
-        let needs_field = pictures.is_some();
-        let wanted = pictures.as_ref().and_then(|pictures| pictures.time_series()).map(<[_]>::to_vec);
-        let mut frames = pool.install(|| {
-            let mut runner = Runner::new(self.scene, &self.runs);
-            if !needs_field {
+        options: &RunOptions,
+        pictures: Option<&dyn Pictures>,
+        stored: Option<StoredStates>,
+    ) -> Result<Simulation<'a>, Failure> {
+        let scene = self.scene;
+        let is_whole = self.frames.last() == Some(&scene.last_frame());
+        let wanted = match pictures {
+            Some(pictures) => pictures.time_series(),
+            None => scene.time_series().filter(|_| options.states && is_whole),
+        };
+        let is_drawn = pictures.is_some();
+        let ahead = wanted.is_some() && is_drawn;
+        pool.install(|| {
+            let mut runner = Runner::new(scene, &self.runs);
+            if let Some(stored) = stored {
+                let read_from = stored.path().to_owned();
+                let frames = Frames::stored(runner, &self.frames, stored).map_err(OutputError::reading(&read_from))?;
+                return Ok(Simulation { frames, ahead: false, notes: false, read_from: Some(read_from) });
+            }
+            if !is_drawn && !options.states {
                 runner = runner.without_pictures();
             }
             if let Some(wanted) = &wanted {
                 runner = runner.with_time_series(wanted).with_difference();
             }
-            Frames::new(runner, &self.frames, wanted.is_some(), self.folder)
-        });
+            let frames = Frames::new(runner, &self.frames, ahead, self.folder);
+            Ok(Simulation { frames, ahead, notes: wanted.is_some() && !ahead, read_from: None })
+        })
+    }
+
+    /// Takes all frames, and the time series if there are any, until all are there or the user wants to stop.
+    fn simulate(
+        &mut self,
+        pool: &ThreadPool,
+        printing: PrintOptions,
+        simulation: &mut Simulation<'_>,
+        mut take: impl FnMut(&Next, &Frames<'_>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let Simulation { frames, ahead, notes, read_from } = simulation;
         let bar = printing.progress(&self.scene.title, frames.steps()[1]);
-        if wanted.is_some() {
+        if *ahead {
             bar.set_message("simulating ahead");
         }
         let slice = slice(&self.scene.body);
@@ -268,24 +306,47 @@ impl Recording<'_> {
             let next = pool.install(|| frames.next(slice));
             self.times.simulate += Spent { cpu: None, ..clock.spent() };
             bar.set_position(frames.steps()[0]);
-            match next.map_err(OutputError::writing(self.folder))? {
-                Next::Working => {}
-                Next::TimeSeries(history) => {
-                    pictures.as_deref_mut().into_iter().for_each(|pictures| pictures.take_history(&history));
-                }
+            let next = next.map_err(|error| match read_from {
+                Some(file) => OutputError::reading(file)(error),
+                None => OutputError::writing(self.folder)(error),
+            })?;
+            if let Next::Frame(_) = next {
+                bar.set_message(format!("frame {} of {}", frames.taken(), self.frames.len()));
+            }
+            take(&next, frames)?;
+            match next {
+                Next::Working | Next::TimeSeries(_) => {}
                 Next::Frame(frame) => {
-                    bar.set_message(format!("frame {} of {}", frames.taken(), self.frames.len()));
-                    take(&frame, pictures.as_deref_mut())?;
                     self.summary.frames.recorded += 1;
                     self.last = Some(frame);
                 }
-                Next::Done => break,
+                Next::Done => {
+                    if *notes {
+                        let history = frames.take_history();
+                        take(&Next::TimeSeries(history), frames)?;
+                    }
+                    break;
+                }
             }
         }
-        self.times.simulate.cpu = helpers_time(&mut frames).map(|time| time.as_secs_f64());
+        for (run, steps) in self.summary.runs.iter_mut().zip(frames.simulated()) {
+            run.steps = steps;
+        }
+        self.times.simulate.cpu = helpers_time(frames).map(|time| time.as_secs_f64());
         bar.finish_and_clear();
         Ok(())
     }
+}
+
+/// Where frames come from.
+struct Simulation<'a> {
+    frames: Frames<'a>,
+    /// Whether all is simulated before the first frame.
+    ahead: bool,
+    /// Whether the time series are known after the last one.
+    notes: bool,
+    /// The file from which states are read instead.
+    read_from: Option<PathBuf>,
 }
 
 /// Steps of each run after which the user is listened to: some milliseconds' worth, at some 2 ns for each corner of an

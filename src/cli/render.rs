@@ -3,6 +3,7 @@
 use super::console;
 use super::failure::{Failure, Status};
 use super::film::{comment, replaceable, summary};
+use super::frames::Shard;
 use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, size};
 use super::record::{self, Pictures, Studio};
@@ -16,8 +17,8 @@ use crate::gpu::Gpu;
 use crate::history::History;
 use crate::look::Ghost;
 use crate::output::{
-    AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Spent, Summary, Tags, Tap, Timings, folder_of,
-    frame_files,
+    AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Spent, StoredStates, Summary, Tags, Tap,
+    Timings, folder_of, frame_file_name, frame_files, is_drawn,
 };
 use crate::scene::Scene;
 use crate::shell;
@@ -36,7 +37,10 @@ Examples:
   localshape render scenes/*.toml -o pictures --size 640x360
   localshape render scenes/fig4b.toml --animate fig4b.gif --no-frames
   localshape render scenes/fig4b.toml --only Mass-spring --frames 30 -o one
+  localshape render scenes/fig4b.toml --resume             after an interruption: draws the frames that are missing
   localshape render scenes/fig4b.toml --frames 30 -o frame.pdf   one frame for print, with text that can be searched
+
+With --shard, many processes draw a scene: docs/clusters.md has scripts for them.
 
 The folder then has frame_00000.png and so on, diagnostics.csv (energies, momenta, turned-over elements and more, for \
 each run and frame) and run.json (command, outcome and files). A folder never mixes frames of different scenes, sizes \
@@ -76,6 +80,20 @@ pub(super) struct Render {
     #[arg(long, requires = "animate")]
     no_frames: bool,
 
+    /// Draw states.npz, which `simulate --states` has written for the same scene, and simulate nothing
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "states")]
+    from_states: Option<PathBuf>,
+
+    /// Make only a share of the frames: 2/4 the second one and every fourth one after it. `localshape merge` joins all shards
+    /// [default folder: output/NAME-2-of-4]
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["states", "animate"])]
+    shard: Option<Shard>,
+
+    /// Do not draw frames again that are in the folder already, with the same scene, states, version, adapter and
+    /// size. All are simulated
+    #[arg(long, conflicts_with = "no_frames")]
+    resume: bool,
+
     /// Also print how long each stage took
     #[arg(long)]
     timings: bool,
@@ -96,8 +114,16 @@ impl Render {
             return self.still(path, format, &scenes);
         }
         let films = self.films(scenes.len())?;
-        let jobs = self.options.jobs(scenes, !self.no_frames, words)?;
+        if let (Some(file), true) = (&self.from_states, scenes.len() > 1) {
+            let message = format!("{} has the states of one scene; render the scenes one at a time", file.display());
+            return Err(Failure::usage(message));
+        }
+        let states = self.from_states.as_deref();
+        let mut jobs = self.options.jobs(scenes, !self.no_frames, self.shard, states, words)?;
         jobs.iter().try_for_each(check_compared)?;
+        if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {
+            job.stored = Some(StoredStates::open(file, &job.scene, &job.runs, &job.frames)?);
+        }
         // Opened when all else is known to be right, and before the first folder is touched.
         let gpu = self.device.open(jobs.iter().map(|job| job.scene.view.size))?;
         let threads = self.options.threads.count();
@@ -109,7 +135,7 @@ impl Render {
             stills: if self.options.frames.is_some() { usize::MAX } else { Sheet::FRAMES },
         });
         let device =
-            Device { gpu, writers: threads.min(MOST_WRITERS), keep: !self.no_frames, shared, made: Mutex::default() };
+            Device { gpu, writers: threads.min(MOST_WRITERS), keep: !self.no_frames, resume: self.resume, shared, made: Mutex::default() };
         let result = record::run_all(jobs, &self.options, words, self.timings, Some(&device));
         if self.options.printing.prints_text() {
             let made = device.made.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -125,9 +151,10 @@ impl Render {
             let message = format!("{name} is a file for one frame; render the scenes one at a time, or into a folder");
             return Err(Failure::usage(message));
         };
-        if self.options.states || !self.animate.is_empty() || self.options.printing.json {
-            let message =
-                format!("{name} gets one frame and nothing else; with --states, --animate or --json name a folder");
+        let is_part = self.resume || self.shard.is_some() || self.from_states.is_some();
+        if self.options.states || is_part || !self.animate.is_empty() || self.options.printing.json {
+            let others = "--states, --from-states, --shard, --resume, --animate or --json";
+            let message = format!("{name} gets one frame and nothing else; with {others} name a folder");
             return Err(Failure::usage(message));
         }
         let (runs, frames) = (self.options.runs(scene)?, self.options.frames(scene)?);
@@ -200,6 +227,8 @@ struct Device {
     writers: usize,
     /// Whether frames stay.
     keep: bool,
+    /// Whether frames that are there already are kept.
+    resume: bool,
     /// What animations are made of, if any are.
     shared: Option<Shared>,
     /// Lines to print about animations at the end.
@@ -340,7 +369,10 @@ impl Studio for Device {
             scene,
             artist: Artist::new(&self.gpu, scene)?,
             begun: None,
-            writer: FrameWriter::new(self.keep.then_some(folder), self.writers, tap),
+            drawn_before: self.resume.then(|| folder.to_owned()),
+            kept: 0,
+            writer: FrameWriter::new(self.keep.then_some(folder), self.writers, tap.clone()),
+            tap,
             films,
             keep: self.keep,
             adapter: self.gpu.description().to_string(),
@@ -355,9 +387,15 @@ impl Studio for Device {
 struct Drawing<'a> {
     scene: &'a Scene,
     artist: Artist<'a>,
-    /// The frame that is being drawn while the next one is simulated and composed.
-    begun: Option<(u64, Tags, Begun)>,
+    /// The frame that is being drawn while the next one is simulated and composed, and its text chunks.
+    begun: Option<(u64, Vec<(&'static str, String)>, Begun)>,
+    /// The folder with frames that were drawn before and are kept if they are the same.
+    drawn_before: Option<PathBuf>,
+    /// The number of these.
+    kept: usize,
     writer: FrameWriter,
+    /// What gets all frames besides the folder.
+    tap: Option<Tap>,
     films: Option<Films<'a>>,
     /// Whether frames stay.
     keep: bool,
@@ -371,12 +409,12 @@ struct Drawing<'a> {
 impl Drawing<'_> {
     /// Waits for the frame that is being drawn, and sees to it that it is written.
     fn hand_on(&mut self) -> Result<(), Failure> {
-        let Some((frame, tags, begun)) = self.begun.take() else { return Ok(()) };
+        let Some((frame, texts, begun)) = self.begun.take() else { return Ok(()) };
         let clock = Clock::thread();
         let pixels = self.artist.finish(begun)?;
         self.draw += clock.spent();
         let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
-        Ok(self.writer.write(PixelFrame { size, dpi, pixels, frame, tags })?)
+        Ok(self.writer.write(PixelFrame { size, dpi, pixels, frame, texts })?)
     }
 }
 
@@ -399,6 +437,16 @@ impl Pictures for Drawing<'_> {
     }
 
     fn draw(&mut self, frame: &Frame) -> Result<(), Failure> {
+        let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
+        let texts = Tags::of_frame(self.scene, frame, &self.adapter).texts();
+        if let Some(folder) = &self.drawn_before {
+            let path = folder.join(frame_file_name(frame.index));
+            if is_drawn(&path, size, &texts, dpi)? {
+                self.kept += 1;
+                let pass = |tap: &Tap| tap(frame.index, &std::fs::read(&path).map_err(OutputError::reading(&path))?);
+                return Ok(self.tap.as_ref().map_or(Ok(()), pass)?);
+            }
+        }
         let clock = Clock::thread();
         let composed = self.artist.compose(frame);
         self.compose += clock.spent();
@@ -409,7 +457,7 @@ impl Pictures for Drawing<'_> {
         let clock = Clock::thread();
         let begun = self.artist.begin(composed)?;
         self.draw += clock.spent();
-        self.begun = Some((frame.index, Tags::of_frame(self.scene, frame, &self.adapter), begun));
+        self.begun = Some((frame.index, texts, begun));
         Ok(())
     }
 
@@ -418,6 +466,7 @@ impl Pictures for Drawing<'_> {
         let (written, encode, result) = self.writer.finish();
         let filmed = self.films.map_or(Ok(()), |films| films.finish());
         summary.frames.written = self.keep.then_some(written);
+        summary.frames.kept = self.kept;
         for run in &mut summary.runs {
             let of_run = self.cut.iter().filter(|(at, _)| self.scene.runs[*at].name == run.name);
             run.cut = of_run.map(|(_, frame)| *frame).collect();

@@ -24,7 +24,7 @@ pub(super) fn report(summary: &Summary, folder: &Path, timings: bool) -> String 
 
 fn made(summary: &Summary, folder: &Path) -> String {
     let frames = &summary.frames;
-    let made = frames.written.unwrap_or(frames.recorded);
+    let made = frames.written.map_or(frames.recorded, |written| written + frames.kept);
     let plural = if made == 1 { "" } else { "s" };
     let mut text = match summary.outcome {
         Outcome::Interrupted => format!("interrupted after {made} of {} frames", frames.asked),
@@ -35,7 +35,11 @@ fn made(summary: &Summary, folder: &Path) -> String {
         None => write!(text, " simulated"),
     }
     .expect("writing to a string");
-    text + &format!(" in {}", folder.display())
+    write!(text, " in {}", folder.display()).expect("writing to a string");
+    match frames.kept {
+        0 => text,
+        kept => text + &format!(", {kept} of them drawn before"),
+    }
 }
 
 fn row(run: &RunSummary) -> [String; 4] {
@@ -61,7 +65,7 @@ fn row(run: &RunSummary) -> [String; 4] {
 fn cut(summary: &Summary) -> String {
     let warning = |run: &RunSummary| {
         let first = run.cut.first()?;
-        let (count, all) = (run.cut.len(), summary.frames.recorded);
+        let (count, all) = (run.cut.len(), summary.frames.written.unwrap_or(summary.frames.recorded));
         let help = "move the camera back, or let it follow: `view.camera` without `target` and `distance`";
         Some(format!(
             "warning: {} leaves its panel in {count} of {all} frames, first in frame {first}; {help}\n",

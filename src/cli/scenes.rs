@@ -1,9 +1,9 @@
 //! From scene files as typed to scenes that can be run.
 
 use super::failure::{Failure, Status, complain, warn, with_causes};
-use super::frames::FrameRanges;
+use super::frames::{FrameRanges, Shard};
 use super::options::{RunOptions, SceneOptions};
-use crate::output::{Folder, OutputError, Plan, Replace};
+use crate::output::{Folder, OutputError, Plan, Replace, STATES_FILE, StoredStates, Whose};
 use crate::scene::{Limits, Scene, SceneError};
 use crate::shell;
 use std::collections::HashMap;
@@ -61,11 +61,24 @@ pub(super) struct Job {
     /// Numbers of frames, rising.
     pub(super) frames: Vec<u64>,
     pub(super) folder: Folder,
+    /// Which share of the frames that is, if it is not all.
+    pub(super) shard: Option<Shard>,
+    /// The states of the frames, if they were simulated before.
+    pub(super) stored: Option<StoredStates>,
 }
 
 impl RunOptions {
-    /// What is to be done for each scene, with or without `pictures`, by the command of these `words`.
-    pub(super) fn jobs(&self, scenes: Vec<Scene>, pictures: bool, words: &[OsString]) -> Result<Vec<Job>, Failure> {
+    /// What is to be done for each scene, with or without `pictures`, for all frames or a share of them, by the command of
+    /// these `words`, which may read the states in a file.
+    pub(super) fn jobs(
+        &self,
+        scenes: Vec<Scene>,
+        pictures: bool,
+        shard: Option<Shard>,
+        states_read: Option<&Path>,
+        words: &[OsString],
+    ) -> Result<Vec<Job>, Failure> {
+        let states_read = states_read.and_then(|file| file.canonicalize().ok());
         let several = scenes.len() > 1;
         let mut folders: HashMap<PathBuf, String> = HashMap::new();
         let mut jobs = Vec::new();
@@ -73,7 +86,11 @@ impl RunOptions {
             let path = match &self.out {
                 Some(out) if several => out.join(&scene.name),
                 Some(out) => out.clone(),
-                None => Path::new("output").join(&scene.name),
+                // Shards that are drawn at the same time need folders of their own.
+                None => match shard {
+                    Some(Shard { number, of }) => Path::new("output").join(format!("{}-{number}-of-{of}", scene.name)),
+                    None => Path::new("output").join(&scene.name),
+                },
             };
             if let Some(first) = folders.insert(path.clone(), scene.title.clone()) {
                 let (second, path) = (&scene.title, path.display());
@@ -82,15 +99,18 @@ impl RunOptions {
                 return Err(Failure::usage(message));
             }
             let runs = self.runs(&scene)?;
-            let frames = self.frames(&scene)?;
+            let mut frames = self.frames(&scene)?;
+            if let Some(shard) = shard {
+                frames = shard.select(&frames).map_err(|message| Failure::usage(format!("--shard: {message}")))?;
+            }
             let names = runs.iter().map(|&run| scene.runs[run].name.clone()).collect();
             let size = pictures.then_some(scene.view.size);
-            let plan = Plan { runs: names, frames: frames.clone(), states: self.states, size };
-            let folder = Folder::inspect(&path, &scene, plan, self.replace()).map_err(|error| match error {
-                OutputError::Occupied { .. } => Failure::usage(format!("{error}: {}", overwriting(words))),
-                error => error.into(),
-            })?;
-            jobs.push(Job { runs, frames, folder, scene });
+            // States that are read are not replaced by their own pictures.
+            let is_read = states_read.is_some() && path.join(STATES_FILE).canonicalize().ok() == states_read;
+            let plan = Plan { runs: names, frames: frames.clone(), states: self.states || is_read, size };
+            let folder = Folder::inspect(&path, Whose::of(&scene), plan, self.replace());
+            let folder = folder.map_err(|error| occupied(error, words))?;
+            jobs.push(Job { runs, frames, folder, scene, shard, stored: None });
         }
         Ok(jobs)
     }
@@ -120,6 +140,14 @@ impl RunOptions {
         let last = scene.last_frame();
         let ranges = self.frames.clone().unwrap_or_else(|| FrameRanges::all(last));
         ranges.select(last).map_err(|message| Failure::usage(format!("frames of “{}”: {message}", scene.title)))
+    }
+}
+
+/// Why a folder cannot be used, with the command of these `words` that replaces what is there.
+pub(super) fn occupied(error: OutputError, words: &[OsString]) -> Failure {
+    match error {
+        OutputError::Occupied { .. } => Failure::usage(format!("{error}: {}", overwriting(words))),
+        error => error.into(),
     }
 }
 

@@ -11,6 +11,7 @@ Examples:
   localshape simulate scenes/fig4b.toml
   localshape simulate scenes/fig4b.toml --states -o results
   localshape simulate scenes/*.toml --json > results.json
+  localshape render scenes/fig4b.toml --from-states results/states.npz -o pictures   draws what the second one simulated
 
 The folder then has diagnostics.csv (energies, momenta, turned-over elements and more, for each run and frame), run.json \
 (command, outcome and files) and, with --states, states.npz. A run that diverges is a result, not an error.
@@ -31,7 +32,7 @@ pub(super) struct Simulate {
 
 impl Simulate {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
-        let jobs = self.options.jobs(self.scenes.load_all(self.options.printing.quiet)?, false, words)?;
+        let jobs = self.options.jobs(self.scenes.load_all(self.options.printing.quiet)?, false, None, None, words)?;
         record::run_all(jobs, &self.options, words, false, None)
     }
 }

@@ -5,9 +5,10 @@ use super::view::{View, axes};
 use crate::sim::body::Dimension;
 use crate::sim::contact::Obstacle;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// Where a body is drawn at one moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Place {
     /// The mean of its nodes (m).
     pub(crate) centre: DVec3,

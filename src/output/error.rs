@@ -47,6 +47,14 @@ pub enum OutputError {
         /// What it is.
         what: &'static str,
     },
+    /// Stored states are damaged, or do not fit the scene.
+    #[error("{} {what}", path.display())]
+    States {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and what to do.
+        what: Box<str>,
+    },
     /// The folder has files that belong to something else.
     #[error("{} holds {what}; choose another folder with -o, or replace what is there with --overwrite", path.display())]
     Occupied {

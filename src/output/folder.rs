@@ -46,7 +46,7 @@ pub(crate) struct Plan {
     pub runs: Vec<String>,
     /// Numbers of the frames, rising.
     pub frames: Vec<u64>,
-    /// Whether states are written.
+    /// Whether there are states: they are written, or those in the folder are read.
     pub states: bool,
     /// Width and height of the pictures (px), if frames are drawn. All frames in a folder have the same size and runs.
     pub size: Option<[u32; 2]>,
@@ -75,15 +75,25 @@ pub(crate) struct Folder {
 }
 
 /// Identifies the scene to which results belong.
-#[derive(Debug)]
-struct Whose {
-    digest: String,
-    title: String,
-    file: Option<PathBuf>,
+#[derive(Clone, Debug)]
+pub(crate) struct Whose {
+    /// Digest of its meaning.
+    pub digest: String,
+    /// Its title.
+    pub title: String,
+    /// Its file, as a full path.
+    pub file: Option<PathBuf>,
+}
+
+impl Whose {
+    /// That of a scene.
+    pub(crate) fn of(scene: &Scene) -> Self {
+        Self { digest: scene.digest.clone(), title: scene.title.clone(), file: scene.file.clone() }
+    }
 }
 
 impl Folder {
-    /// Inspects a folder, which need not exist, before it is used for `scene`.
+    /// Inspects a folder, which need not exist, before it is used for a scene.
     ///
     /// A folder with results of another scene, or with other files that have the names of output files, is refused
     /// unless `replace` permits their replacement. Something that has such a name but is not a file, such as a folder,
@@ -94,8 +104,7 @@ impl Folder {
     ///
     /// # Errors
     /// If the folder cannot be read, is refused or is not a folder.
-    pub(crate) fn inspect(path: &Path, scene: &Scene, plan: Plan, replace: Replace) -> Result<Self, OutputError> {
-        let scene = Whose { digest: scene.digest.clone(), title: scene.title.clone(), file: scene.file.clone() };
+    pub(crate) fn inspect(path: &Path, scene: Whose, plan: Plan, replace: Replace) -> Result<Self, OutputError> {
         let mut folder = Self { path: path.to_owned(), scene, plan, replace, replaced: None };
         if is_folder(path)? {
             FolderLock::check(path)?;
@@ -377,7 +386,7 @@ mod tests {
         let (one, other) = (scene("one", 1.0), scene("other", 2.0));
         let place = tempfile::tempdir().unwrap();
         let plan = Plan { runs: Vec::new(), frames: Vec::new(), states: false, size: None };
-        let inspect = |scene, replace| Folder::inspect(place.path(), scene, plan.clone(), replace);
+        let inspect = |scene, replace| Folder::inspect(place.path(), Whose::of(scene), plan.clone(), replace);
         inspect(&one, Replace::Nothing).unwrap().prepare().unwrap();
         Summary::new(&one, &[0], 0, &[]).write(place.path()).unwrap();
         for replace in [Replace::Nothing, Replace::Own] {

@@ -1,6 +1,6 @@
 //! Compresses and writes frames on separate threads, in parallel to drawing.
 
-use super::{Clock, Compression, OutputError, Spent, Tags, encode_print, frame_file_name, write_whole};
+use super::{Clock, Compression, OutputError, Spent, encode_print, frame_file_name, write_whole};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -18,7 +18,7 @@ pub(crate) struct PixelFrame {
     /// The number of the frame.
     pub frame: u64,
     /// The text chunks of the file.
-    pub tags: Tags,
+    pub texts: Vec<(&'static str, String)>,
 }
 
 /// A second consumer of the frame files besides the disk: it gets their numbers and bytes, in any order.
@@ -111,7 +111,7 @@ fn write_frames(folder: Option<&Path>, queue: &Mutex<Option<Receiver<PixelFrame>
     loop {
         let Some(frame) = lock().as_ref().and_then(|frames| frames.recv().ok()) else { return written };
         let clock = Clock::thread();
-        let bytes = encode_print(frame.size, &frame.pixels, &frame.tags.texts(), Compression::Fast, frame.dpi);
+        let bytes = encode_print(frame.size, &frame.pixels, &frame.texts, Compression::Fast, frame.dpi);
         let index = frame.frame;
         let kept = folder.map_or(Ok(()), |folder| write_whole(&folder.join(frame_file_name(index)), &bytes));
         let result = kept.and_then(|()| tap.map_or(Ok(()), |tap| tap(index, &bytes)));
@@ -129,14 +129,10 @@ fn write_frames(folder: Option<&Path>, queue: &Mutex<Option<Receiver<PixelFrame>
 
 #[cfg(test)]
 mod tests {
-    use super::super::Shown;
     use super::*;
 
     fn frame(index: u64) -> PixelFrame {
-        let [version, adapter] = [String::new(), String::new()];
-        let shows = Shown::Frame { frame: index, time: 0.0 };
-        let tags = Tags { shows, scenes: Vec::new(), states: Vec::new(), version, adapter };
-        PixelFrame { size: [2, 1], dpi: None, pixels: Arc::new(vec![0; 6]), frame: index, tags }
+        PixelFrame { size: [2, 1], dpi: None, pixels: Arc::new(vec![0; 6]), frame: index, texts: Vec::new() }
     }
 
     #[test]

@@ -14,6 +14,8 @@ mod lock;
 mod png;
 mod sheets;
 mod states;
+#[cfg_attr(not(feature = "render"), allow(dead_code, reason = "only drawing reads states"))]
+mod stored;
 mod summary;
 mod timing;
 
@@ -21,15 +23,18 @@ pub(crate) use atomic::{AtomicFile, folder_of, write_whole};
 pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub(crate) use digest::state_digest;
 pub(crate) use error::{OutputError, is_folder, read_file};
-pub(crate) use folder::{FRAME_FILES, Folder, Plan, Replace, frame_file_name, frame_files};
+pub(crate) use folder::{FRAME_FILES, Folder, Plan, Replace, Whose, frame_file_name, frame_files};
 #[cfg(feature = "render")]
 pub(crate) use frames::Tap;
 pub(crate) use frames::{FrameWriter, PixelFrame};
 pub(crate) use lock::FolderLock;
-pub(crate) use png::encode_print;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
+pub(crate) use png::{encode_print, is_drawn};
 pub(crate) use sheets::SheetFiles;
 pub(crate) use states::{STATES_FILE, StatesWriter};
+pub(crate) use stored::StoredStates;
+#[cfg(feature = "render")]
+pub(crate) use summary::relative;
 pub(crate) use summary::{Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary};
 pub(crate) use timing::{Clock, thread_time};
 pub use timing::{Spent, Timings};

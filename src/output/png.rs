@@ -155,12 +155,7 @@ pub(crate) fn encode_print(
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(compression);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    let a_metre = dpi.map(|dpi| (dpi / 0.0254).round() as u32);
-    encoder.set_pixel_dims(a_metre.map(|count| png::PixelDimensions {
-        xppu: count,
-        yppu: count,
-        unit: png::Unit::Meter,
-    }));
+    encoder.set_pixel_dims(dpi.map(pixel_dims));
     for (name, text) in texts {
         let name = format!("localshape:{name}");
         // A tEXt chunk can have only Latin-1 without control characters.
@@ -198,6 +193,36 @@ pub fn read_tags(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> {
         }
         Err(_) => Ok(None),
     }
+}
+
+/// Whether a file is the picture that would be written with this size (px), these texts and these pixels of an inch; `false`
+/// if there is no such file.
+///
+/// # Errors
+/// If the file cannot be read.
+pub(crate) fn is_drawn(
+    path: &Path,
+    size: [u32; 2],
+    texts: &[(&'static str, String)],
+    dpi: Option<f64>,
+) -> Result<bool, OutputError> {
+    // Opening a pipe would block.
+    if !path.is_file() {
+        return Ok(false);
+    }
+    let file = File::open(path).map_err(OutputError::reading(path))?;
+    let Ok(reader) = png::Decoder::new(BufReader::new(file)).read_info() else { return Ok(false) };
+    let info = reader.info();
+    let has = |(name, text): &(&'static str, String)| texts_of(info, name) == [Some(text.clone())];
+    let of_metre = |dims: png::PixelDimensions| dims.xppu;
+    let is_for_print = info.pixel_dims.map(of_metre) == dpi.map(pixel_dims).map(of_metre);
+    Ok([info.width, info.height] == size && is_for_print && texts.iter().all(has))
+}
+
+/// The pixels of a metre from those of an inch.
+fn pixel_dims(dpi: f64) -> png::PixelDimensions {
+    let count = (dpi / 0.0254).round() as u32;
+    png::PixelDimensions { xppu: count, yppu: count, unit: png::Unit::Meter }
 }
 
 /// The texts with one of our keywords, `None` for each that cannot be read.

@@ -2,10 +2,14 @@
 
 use super::atomic::folder_of;
 use super::{AtomicFile, OutputError};
+use crate::history::History;
 use crate::scene::Scene;
 use crate::sim::body::Body;
-use crate::sim::snapshot::Frame;
+use crate::sim::snapshot::{Divergence, Frame, Status};
+use crate::sim::state::State;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -16,6 +20,9 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 /// The name of the file in its folder.
 pub(crate) const STATES_FILE: &str = "states.npz";
 
+/// The name of the array of bytes that only this program reads.
+pub(super) const COURSE: &str = "localshape";
+
 /// Writes the states of frames, one after the other, with bounded memory.
 ///
 /// The archive has `time` (F), the time of each frame (s), and for each run `NAME.position` (m) and `NAME.velocity`
@@ -25,6 +32,9 @@ pub(crate) const STATES_FILE: &str = "states.npz";
 ///
 /// The body is stored once: `rest` (N × 3, m), `mass` (N, kg), and as 64-bit integers the nodes of each element,
 /// `elements`, and of each face on the surface of the body, `faces`, with -1 at the end of shorter rows.
+///
+/// So that pictures can be drawn from it, it also has what models and constraints remember from step to step, `NAME.memory`
+/// (F × M), and `localshape`, bytes with an [`Origin`] and a [`Course`].
 ///
 /// Arrays are consecutive in the archive but all grow with each frame, and the number of frames is known only at the
 /// end. So frames are first written to an unnamed temporary file, one record each, and rearranged at the end, which
@@ -39,7 +49,46 @@ pub(crate) struct StatesWriter {
     record: u64,
     /// For each run whether it has its own times.
     own_time: Vec<bool>,
-    frames: u64,
+    origin: Origin,
+    course: Course,
+}
+
+/// Where states come from.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Origin {
+    /// Version of this crate. Another one may read [`Course`] differently.
+    pub(super) version: String,
+    /// Digest of the scene.
+    pub(super) digest: String,
+    /// Its title.
+    pub(super) title: String,
+}
+
+/// What pictures of states need besides the arrays.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Course {
+    /// Numbers of the frames, rising.
+    pub(super) frames: Vec<u64>,
+    /// The runs, in the scene's order.
+    pub(super) runs: Vec<StoredRun>,
+    /// The time series of the scene, if its pictures need them and it was simulated to its end.
+    pub(super) history: Option<History>,
+}
+
+/// One run of a [`Course`].
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct StoredRun {
+    /// Its name.
+    pub(super) name: String,
+    /// How many numbers of the memory belong to the model; the others belong to constraints.
+    pub(super) model: usize,
+    /// Where it diverged, if it did.
+    pub(super) divergence: Option<Divergence>,
+    /// What [`Stored::last_fit`](crate::runner::Stored::last_fit) returns, with the state as bytes.
+    pub(super) last_fit: Option<Option<(Vec<u8>, f64)>>,
+    /// For each frame the SHA-256 of positions, velocities and memory: single frames are read, and the archive's own
+    /// checksums are those of all.
+    pub(super) digests: Vec<[u8; 32]>,
 }
 
 /// One array of the archive, and the position of its part in each record.
@@ -55,11 +104,17 @@ struct Array {
 }
 
 impl StatesWriter {
-    /// Creates the file in `folder`, for frames that show `runs`, indices into the scene's runs.
+    /// Creates the file in `folder`, for frames that show `runs`, indices into the scene's runs, which have these states at the
+    /// start.
     ///
     /// # Errors
     /// If the folder cannot be written to.
-    pub(crate) fn create(folder: &Path, scene: &Scene, runs: &[usize]) -> Result<Self, OutputError> {
+    pub(crate) fn create<'s>(
+        folder: &Path,
+        scene: &Scene,
+        runs: &[usize],
+        states: impl Iterator<Item = &'s State>,
+    ) -> Result<Self, OutputError> {
         let path = folder.join(STATES_FILE);
         let spool = tempfile::tempfile_in(folder_of(&path)).map_err(OutputError::writing(&path))?;
         let nodes = scene.body.len();
@@ -67,41 +122,78 @@ impl StatesWriter {
         let mut record = 8;
         let step = |run: usize| scene.runs[run].step;
         let own_time: Vec<bool> = runs.iter().map(|&run| step(run) != step(runs[0])).collect();
-        for (&run, &own_time) in runs.iter().zip(&own_time) {
+        let mut stored = Vec::new();
+        for ((&run, &own_time), state) in runs.iter().zip(&own_time).zip(states) {
             if own_time {
                 let name = format!("{}.time", scene.runs[run].name);
                 arrays.push(Array { name, shape: String::new(), offset: record, length: 8 });
                 record += 8;
             }
-            for quantity in ["position", "velocity"] {
-                let length = 24 * nodes;
+            let model = state.memory.model.len();
+            let memory = model + state.memory.constraints.len();
+            let nodes_of = format!(" {nodes}, 3");
+            for (quantity, shape, length) in [
+                ("position", nodes_of.clone(), 24 * nodes),
+                ("velocity", nodes_of, 24 * nodes),
+                ("memory", format!(" {memory}"), 8 * memory),
+            ] {
                 let name = format!("{}.{quantity}", scene.runs[run].name);
-                arrays.push(Array { name, shape: format!(" {nodes}, 3"), offset: record, length });
+                arrays.push(Array { name, shape, offset: record, length });
                 record += length as u64;
             }
+            let name = scene.runs[run].name.clone();
+            stored.push(StoredRun { name, model, divergence: None, last_fit: None, digests: Vec::new() });
         }
-        Ok(Self { path, spool, body: Arc::clone(&scene.body), arrays, record, own_time, frames: 0 })
+        let version = env!("CARGO_PKG_VERSION").to_owned();
+        let origin = Origin { version, digest: scene.digest.clone(), title: scene.title.clone() };
+        let course = Course { runs: stored, ..Course::default() };
+        Ok(Self { path, spool, body: Arc::clone(&scene.body), arrays, record, own_time, origin, course })
     }
 
-    /// Appends one frame.
+    /// Appends one frame, with the state of each run in it.
     ///
     /// # Errors
     /// If it cannot be written; frames written before are kept.
-    pub(crate) fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
+    pub(crate) fn write<'s>(
+        &mut self,
+        frame: &Frame,
+        states: impl Iterator<Item = &'s State>,
+    ) -> Result<(), OutputError> {
         let mut record = Vec::with_capacity(self.record as usize);
         record.extend(frame.time.to_le_bytes());
-        for (run, &own_time) in frame.runs.iter().zip(&self.own_time) {
+        let runs = frame.runs.iter().zip(&self.own_time).zip(&mut self.course.runs);
+        for (((run, &own_time), stored), state) in runs.zip(states) {
             if own_time {
                 record.extend(run.snapshot.time.to_le_bytes());
             }
-            for vector in run.snapshot.position.iter().chain(&run.snapshot.velocity) {
+            let start = record.len();
+            for vector in state.position.iter().chain(&state.velocity) {
                 record.extend(vector_bytes(vector));
+            }
+            record.extend(
+                state.memory.model.iter().chain(&state.memory.constraints).flat_map(|number| number.to_le_bytes()),
+            );
+            stored.digests.push(Sha256::digest(&record[start..]).into());
+            if let Status::Diverged(divergence) = state.status {
+                stored.divergence = Some(divergence);
             }
         }
         assert_eq!(record.len() as u64, self.record, "every frame shows the runs that the file was begun for");
         self.spool.write_all(&record).map_err(OutputError::writing(&self.path))?;
-        self.frames += 1;
+        self.course.frames.push(frame.index);
         Ok(())
+    }
+
+    /// Adds what pictures show of the run at a place among the runs if it diverges, see
+    /// [`Frames::last_fit`](crate::runner::Frames::last_fit).
+    pub(crate) fn set_last_fit(&mut self, place: usize, found: Option<Option<(&State, f64)>>) {
+        let bytes = |(state, times_wider): (&State, f64)| (state.to_bytes(), times_wider);
+        self.course.runs[place].last_fit = found.map(|found| found.map(bytes));
+    }
+
+    /// Adds the time series of the scene.
+    pub(crate) fn set_history(&mut self, history: &History) {
+        self.course.history = Some(history.clone());
     }
 
     /// Rearranges the frames written so far and renames the file to its final name.
@@ -129,17 +221,22 @@ impl StatesWriter {
 
     fn fill(&mut self, archive: &mut ZipWriter<BufWriter<&mut File>>) -> io::Result<()> {
         let mut part = Vec::new();
+        let frames = self.course.frames.len() as u64;
         for array in &self.arrays {
-            let shape = format!("({},{})", self.frames, array.shape);
-            begin(archive, &array.name, "<f8", &shape, self.frames * array.length as u64)?;
+            let shape = format!("({frames},{})", array.shape);
+            begin(archive, &array.name, "<f8", &shape, frames * array.length as u64)?;
             part.resize(array.length, 0);
-            for frame in 0..self.frames {
+            for frame in 0..frames {
                 self.spool.seek(SeekFrom::Start(frame * self.record + array.offset))?;
                 self.spool.read_exact(&mut part)?;
                 archive.write_all(&part)?;
             }
         }
-        fill_body(archive, &self.body)
+        fill_body(archive, &self.body)?;
+        let mut bytes = postcard::to_allocvec(&self.origin).expect("plain data");
+        bytes.extend(postcard::to_allocvec(&self.course).expect("plain data"));
+        begin(archive, COURSE, "|u1", &format!("({},)", bytes.len()), bytes.len() as u64)?;
+        archive.write_all(&bytes)
     }
 }
 

@@ -72,8 +72,14 @@ pub(crate) struct FrameSummary {
     pub recorded: usize,
     /// The number of written pictures; `null` without pictures.
     pub written: Option<usize>,
+    /// The number of pictures that were there already and stayed (`--resume`); absent if there are none.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub kept: usize,
     /// Width and height of the pictures (px); `null` without pictures.
     pub size: Option<[u32; 2]>,
+    /// Which share of the frames this is, and of how many; absent if it is all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shard: Option<[usize; 2]>,
 }
 
 /// The result of a run.
@@ -83,10 +89,12 @@ pub(crate) struct RunSummary {
     pub name: String,
     /// Time step (s).
     pub time_step: f64,
+    /// The steps that this command has simulated; after a divergence they are only counted.
+    pub steps: u64,
     /// `ok` or `diverged`.
     #[serde(flatten)]
     pub status: RunStatus,
-    /// The frames in which its body leaves its panel; absent if there are none.
+    /// The frames drawn by this command in which its body leaves its panel; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cut: Vec<u64>,
     /// The last recorded frame; `null` before the first.
@@ -132,6 +140,7 @@ impl Summary {
             RunSummary {
                 name: run.name.clone(),
                 time_step: run.step,
+                steps: 0,
                 status: RunStatus::Ok,
                 cut: Vec::new(),
                 last: None,
@@ -148,7 +157,7 @@ impl Summary {
             },
             command: command.to_vec(),
             outcome: Outcome::Unfinished,
-            frames: FrameSummary { asked, recorded: 0, written: None, size: None },
+            frames: FrameSummary { asked, recorded: 0, written: None, kept: 0, size: None, shard: None },
             files: Vec::new(),
             adapter: None,
             runs: runs.iter().map(run).collect(),
@@ -186,8 +195,13 @@ impl Summary {
     }
 }
 
+/// Whether a number of frames is not worth a word.
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
 /// The relative path from a folder to a file with a full path; `None` if there is none, as between disks on Windows.
-fn relative(file: &Path, folder: &Path) -> Option<String> {
+pub(crate) fn relative(file: &Path, folder: &Path) -> Option<String> {
     let folder = folder.canonicalize().ok()?;
     let shared = folder.components().zip(file.components()).take_while(|(one, other)| one == other).count();
     let up = folder.components().skip(shared).map(|_| Component::ParentDir);

@@ -108,6 +108,11 @@ impl Values {
         &self.bytes[at * width..(at + 1) * width]
     }
 
+    /// The bytes of all numbers.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
     /// One number as an integer, saturated to signed 64 bits. Zero for a fraction.
     pub(crate) fn whole(&self, row: usize, column: usize) -> i64 {
         let raw = self.raw(row, column);
@@ -256,7 +261,23 @@ impl Npz {
     }
 }
 
+impl Npz {
+    /// Reads a part of the numbers of an array, from an offset on (bytes), without what is before it.
+    pub(crate) fn part(&mut self, array: &Array, offset: u64, into: &mut [u8]) -> Result<(), String> {
+        use std::io::SeekFrom;
+        let broken = |error: &dyn std::fmt::Display| format!("cannot be read, the file is damaged or packed ({error})");
+        let mut entry = self.zip.by_index_seek(array.index).map_err(|error| broken(&error))?;
+        entry.seek(SeekFrom::Start(array.head + offset)).map_err(|error| broken(&error))?;
+        entry.read_exact(into).map_err(|error| broken(&error))
+    }
+}
+
 impl Array {
+    /// Whether it holds double precision numbers, row by row.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.dtype == Dtype::Float64 && !self.by_columns
+    }
+
     /// Whether it holds whole numbers.
     pub(crate) fn is_whole(&self) -> bool {
         matches!(self.dtype, Dtype::Signed(_) | Dtype::Unsigned(_))

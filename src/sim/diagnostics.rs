@@ -144,7 +144,7 @@ macro_rules! diagnostics {
     )+) => {
         /// Numbers that describe a state, in SI units; in the plane volumes are areas. A number that the model or the
         /// body does not have is NaN: the elastic energy and `residual` of some models, the volume ratio of a cloth.
-        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
         pub struct Diagnostics {
             $($(#[doc = $meaning])+ pub $key: $type,)+
         }

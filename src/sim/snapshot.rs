@@ -3,9 +3,10 @@
 pub(crate) use super::diagnostics::Diagnostic;
 pub use super::diagnostics::Diagnostics;
 use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
 
 /// Where and when a run diverged. This is a result, not an error.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Divergence {
     /// Time of the end of the first step that was rejected (s).
     pub time: f64,

@@ -247,17 +247,22 @@ impl World {
         &self.state
     }
 
+    /// Whether a state has the numbers of nodes and of memory of these bodies.
+    pub(crate) fn takes(&self, state: &State) -> bool {
+        let lengths = |state: &State| {
+            let Memory { model, constraints, .. } = &state.memory;
+            [state.position.len(), state.velocity.len(), model.len(), constraints.len()]
+        };
+        lengths(state) == lengths(&self.state)
+    }
+
     /// Continues from another state of the same bodies under the same conditions. The time step has to be the same, as
     /// the time of a state is its number of steps times the time step.
     ///
     /// # Panics
     /// If the state does not have the numbers of nodes and of memory of these bodies.
     pub fn set_state(&mut self, state: State) {
-        let lengths = |state: &State| {
-            let Memory { model, constraints, .. } = &state.memory;
-            [state.position.len(), state.velocity.len(), model.len(), constraints.len()]
-        };
-        assert_eq!(lengths(&state), lengths(&self.state), "a state of the same bodies");
+        assert!(self.takes(&state), "a state of the same bodies");
         self.state = state;
         let Memory { model, integrator, .. } = &mut self.state.memory;
         if integrator.len() != 3 * self.state.position.len() + model.len() {

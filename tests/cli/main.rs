@@ -13,6 +13,8 @@ mod goldens;
 mod info;
 mod interrupt;
 #[cfg(feature = "render")]
+mod parts;
+#[cfg(feature = "render")]
 mod render;
 mod simulate;
 mod support;

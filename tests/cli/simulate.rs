@@ -150,6 +150,30 @@ fn some_frames_of_one_run() {
     assert_eq!(rows(&some), wanted);
 }
 
+/// Nothing is simulated that was not asked for: neither other runs nor what comes after the last frame.
+#[test]
+fn only_what_was_asked_for_is_simulated() {
+    let place = Place::with_small();
+    let runs = |options: &str| {
+        place.run(&format!("simulate small.toml --overwrite{options}")).good();
+        place.json("output/small/run.json")["runs"].as_array().unwrap().clone()
+    };
+    let whole = runs("");
+    let steps = |run: &Value, frame: f64| (frame / 60.0 / run["time_step"].as_f64().unwrap()).round() as u64;
+    for (options, names, last) in [
+        ("", &["Local shape", "Mass-spring"][..], 6.0),
+        (" --frames 0-2", &["Local shape", "Mass-spring"], 2.0),
+        (" --frames 4,1 --only Mass-spring", &["Mass-spring"], 4.0),
+        (" --frames 0", &["Local shape", "Mass-spring"], 0.0),
+    ] {
+        let runs = runs(options);
+        assert_eq!(runs.iter().map(|run| run["name"].as_str().unwrap()).collect::<Vec<_>>(), names, "{options}");
+        let simulated: Vec<_> = runs.iter().map(|run| run["steps"].as_u64().unwrap()).collect();
+        assert_eq!(simulated, runs.iter().map(|run| steps(run, last)).collect::<Vec<_>>(), "{options}");
+    }
+    assert!(steps(&whole[0], 6.0) > 6, "more than one step to a frame");
+}
+
 #[test]
 fn json_is_one_document() {
     let place = Place::with_small();
@@ -276,6 +300,7 @@ fn everything_in_the_files_is_documented() {
     let times = Timings { compose: spent, draw: spent, encode: spent, ..Timings::default() };
     run["times"] = serde_json::to_value(times).unwrap();
     run["runs"][0]["cut"] = [3].into();
+    (run["frames"]["kept"], run["frames"]["shard"]) = (1.into(), serde_json::json!([1, 2]));
     let [mut found, mut told] = [ways(&run, ""), documented("run.json")];
     found.sort();
     found.dedup();
@@ -419,5 +444,5 @@ fn states_of_runs_with_steps_of_their_own() {
     place.run("simulate own.toml --states --only Mass-spring").good();
     assert_eq!(array(&place, file, "time").1, recorded);
     let archive = zip::ZipArchive::new(std::fs::File::open(place.path(file)).unwrap()).unwrap();
-    assert_eq!(archive.len(), 3 + 4, "it has no second time");
+    assert_eq!(archive.len(), 4 + 5, "it has no second time");
 }

@@ -1,0 +1,423 @@
+//! Sequences that are drawn in parts: again after an interruption, from stored states, and in shards.
+
+use crate::render::{can_draw, place_to_draw};
+use crate::support::{Place, SMALL, lasting, run};
+use serde_json::Value;
+use std::collections::BTreeMap;
+#[cfg(unix)]
+use std::path::Path;
+#[cfg(unix)]
+use std::process::Command;
+
+/// All files in a folder but `run.json`, which has times.
+fn files(place: &Place, folder: &str) -> BTreeMap<String, Vec<u8>> {
+    let names = place.names(folder).into_iter().filter(|name| name != "run.json");
+    names.map(|name| (name.clone(), std::fs::read(place.path(folder).join(name)).unwrap())).collect()
+}
+
+/// The numbers of frames that were drawn and that were there already.
+fn drawn_and_kept(place: &Place, folder: &str) -> [u64; 2] {
+    let frames: &Value = &place.json(&format!("{folder}/run.json"))["frames"];
+    [&frames["written"], &frames["kept"]].map(|count| count.as_u64().unwrap_or(0))
+}
+
+/// Which pictures need the course of the scene decides how far it is simulated, and never `--only`.
+#[test]
+fn only_a_scene_whose_pictures_show_its_course_is_simulated_to_its_end() {
+    let Some(place) = place_to_draw() else { return };
+    place.write("still.toml", &lasting("0.1"));
+    let steps = |scene: &str, options: &str| {
+        place.run(&format!("render {scene}.toml --overwrite{options}")).good();
+        let runs = place.json(&format!("output/{scene}/run.json"))["runs"].as_array().unwrap().clone();
+        runs.iter().map(|run| run["steps"].as_u64().unwrap()).collect::<Vec<_>>()
+    };
+    let whole = steps("still", "");
+    assert_eq!(steps("small", " --frames 2"), whole, "its camera follows");
+    assert_eq!(steps("still", " --frames 2"), whole.iter().map(|steps| (steps + 1) / 3).collect::<Vec<_>>());
+    assert_eq!(steps("still", " --only Mass-spring"), whole[1..]);
+    assert_eq!(drawn_and_kept(&place, "output/still"), [7, 0]);
+}
+
+/// A killed program leaves whole frames, and drawing the others gives the bytes of one that was not killed.
+#[cfg(unix)]
+#[test]
+fn resumed_frames_are_those_of_a_run_without_interruption() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::new();
+    place.write("scene.toml", &lasting("2"));
+    place.run("render scene.toml -o whole").good();
+    for (folder, signal) in [("killed", "KILL"), ("ended", "TERM")] {
+        let sign = format!("{folder}/frame_00003.png");
+        let running = crate::interrupt::start(&place, &format!("render scene.toml -o {folder}"), &sign);
+        crate::interrupt::signal(&running, &[signal]);
+        running.wait();
+        let before = place.names(folder).iter().filter(|name| name.ends_with(".png")).count() as u64;
+        assert!((4..121).contains(&before), "{before} frames of 121 are drawn");
+        let ran = place.run(&format!("render scene.toml -o {folder} --resume")).good();
+        assert!(
+            ran.out.contains(&format!("121 frames of 96×64 in {folder}, {before} of them drawn before")),
+            "{ran:?}"
+        );
+        assert_eq!(drawn_and_kept(&place, folder), [121 - before, before]);
+        assert!(files(&place, folder) == files(&place, "whole"), "{folder}");
+    }
+}
+
+/// A frame stays only if it is what would be drawn.
+#[test]
+fn resuming_draws_again_what_is_not_the_same() {
+    let Some(place) = place_to_draw() else { return };
+    place.run("render small.toml").good();
+    let whole = files(&place, "output/small");
+    let frame = |number: u32| format!("output/small/frame_{number:05}.png");
+    let resume = |options: &str| {
+        place.run(&format!("render small.toml --resume{options}")).good();
+        drawn_and_kept(&place, "output/small")
+    };
+    assert_eq!(resume(""), [0, 7]);
+    assert_eq!(resume(""), [7, 0]);
+    assert_eq!(resume(""), [7, 0]);
+    // Missing, of another moment, and cut off.
+    std::fs::remove_file(place.path(frame(1))).unwrap();
+    std::fs::copy(place.path(frame(3)), place.path(frame(2))).unwrap();
+    let bytes = std::fs::read(place.path(frame(4))).unwrap();
+    std::fs::write(place.path(frame(4)), &bytes[..60]).unwrap();
+    let ran = place.run("render small.toml --resume");
+    ran.bad(2, &["output/small holds frame_00004.png, which was not written by localshape"]);
+    assert_eq!(resume(" --overwrite"), [3, 4]);
+    assert!(files(&place, "output/small") == whole);
+    // Another size, and an earlier version of the scene, are treated as without `--resume`.
+    place.run("render small.toml --resume --size 80x60").bad(2, &["7 frames of this scene of 96×64 pixels"]);
+    place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.6"));
+    let ran = place.run("render small.toml --resume").good();
+    assert!(
+        ran.out.starts_with("output/small: replacing 7 frames made by an earlier version of small.toml"),
+        "{ran:?}"
+    );
+    assert_eq!(drawn_and_kept(&place, "output/small"), [7, 0]);
+}
+
+/// An animation has all frames, whoever has drawn them.
+#[test]
+fn an_animation_of_resumed_frames_is_the_same() {
+    let Some(place) = place_to_draw() else { return };
+    place.run("render small.toml --animate whole.y4m").good();
+    std::fs::remove_file(place.path("output/small/frame_00002.png")).unwrap();
+    place.run("render small.toml --resume --animate resumed.y4m").good();
+    assert_eq!(drawn_and_kept(&place, "output/small"), [1, 6]);
+    let bytes = |name: &str| std::fs::read(place.path(name)).unwrap();
+    assert!(bytes("whole.y4m") == bytes("resumed.y4m"));
+    place.run("render small.toml --resume --animate no.gif --no-frames").bad(2, &["--resume", "--no-frames"]);
+    place.run("render small.toml --resume --frames 1 -o one.png").bad(2, &["one.png gets one frame", "--resume"]);
+}
+
+/// The small scene with all that pictures show beyond its states: a course, paths, a difference, forces that act for a while,
+/// a field that comes from the model, and a run that diverges.
+fn rich() -> String {
+    let wild = "[[run]]\nname = \"Wild\"\nmodel = { kind = \"mass-spring\", stiffness = 1e4, springs = \"edges\" }\nstep = \"T/2\"\n";
+    let grab = "[[grab]]\nnodes = [0]\npath = { keys = [{ time = 0.02 }, { time = 0.3, shift = [0, 0.2, 0] }] }\n";
+    let view = "[view]\nstrip = \"energy\"\ncolour = { by = \"elastic-energy\", range = [0, 1] }\n\
+                paths = [\"centre\"]\ndifference = [\"Local shape\", \"Mass-spring\"]\n";
+    let rotation = "stiffness = 1e4, damping_ratio = 0.1, rotation = \"arctangent\" }";
+    SMALL
+        .replacen("stiffness = 1e4, damping_ratio = 0.1 }", rotation, 1)
+        .replace("[[obstacle]]", &format!("{wild}{grab}[[obstacle]]"))
+        .replace("[view]\n", view)
+        .replace("size = [96, 64]", "size = [640, 360]")
+        .replace("duration = 0.1", "duration = 1.0")
+}
+
+/// Steps that each run of the last command has taken.
+fn steps(place: &Place, folder: &str) -> Vec<u64> {
+    let runs = place.json(&format!("{folder}/run.json"))["runs"].as_array().unwrap().clone();
+    runs.iter().map(|run| run["steps"].as_u64().unwrap()).collect()
+}
+
+/// Frames of stored states have the same bytes, and nothing is simulated for them.
+#[test]
+fn frames_of_stored_states_are_those_of_a_simulation() {
+    let Some(place) = place_to_draw() else { return };
+    place.write("rich.toml", &rich());
+    for (scene, options) in [
+        ("small", ""),
+        ("rich", " --frames 0-60x15"),
+        ("rich", " --frames 3,45 --only Mass-spring --only Local\u{a0}shape --size 500x300"),
+    ] {
+        place.run(&format!("simulate {scene}.toml --states -o states --overwrite")).good();
+        for (folder, source) in [("direct", ""), ("stored", " --from-states states/states.npz")] {
+            let typed = format!("render {scene}.toml -o {folder} --overwrite{source}{options}");
+            let words = typed.split(' ').map(|word| word.replace('\u{a0}', " "));
+            run(&mut place.command(words)).good();
+        }
+        assert!(files(&place, "direct") == files(&place, "stored"), "{scene}{options}");
+        assert!(steps(&place, "stored").iter().all(|&steps| steps == 0) && steps(&place, "direct")[0] > 0);
+        let summary = |folder: &str| {
+            let run = place.json(&format!("{folder}/run.json"));
+            run["runs"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(|run| (run["status"].clone(), run["last"].clone()))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(summary("stored"), summary("direct"));
+    }
+    // The wild run is one that diverges.
+    place.run("render rich.toml --from-states states/states.npz --frames 60 -o last").good();
+    assert_eq!(place.json("last/run.json")["runs"][2]["status"], "diverged");
+}
+
+/// The states that `render` writes serve as well, and so do those of some frames up to the last.
+#[test]
+fn states_of_some_frames_are_drawn() {
+    let Some(place) = place_to_draw() else { return };
+    place.run("render small.toml --states --frames 2-6x2").good();
+    let bytes = |path: &str| std::fs::read(place.path(path)).unwrap();
+    place.run("simulate small.toml --states --frames 2-6x2 -o numbers").good();
+    assert!(bytes("output/small/states.npz") == bytes("numbers/states.npz"));
+    let from = "--from-states numbers/states.npz";
+    place.run(&format!("render small.toml {from} --frames 4 -o one")).good();
+    assert!(bytes("one/frame_00004.png") == bytes("output/small/frame_00004.png"));
+    place
+        .run(&format!("render small.toml {from} -o all"))
+        .bad(2, &["numbers/states.npz lacks frame 0: it has 3 frames from 2 to 6; choose among them with --frames"]);
+    // Pictures that show the whole course need it.
+    place.run("simulate small.toml --states --frames 0-4 -o early").good();
+    let ran = place.run("render small.toml --from-states early/states.npz --frames 0-4 -o all");
+    ran.bad(2, &["early/states.npz lacks the course of the scene to its end", "--states"]);
+    assert_eq!(steps(&place, "early")[0], steps(&place, "numbers")[0] * 4 / 6);
+    place.write("still.toml", &lasting("0.1"));
+    place.run("simulate still.toml --states --frames 0-4 -o early --overwrite").good();
+    place.run("render still.toml --from-states early/states.npz --frames 0-4 -o still").good();
+    assert!(!place.path("all").exists());
+}
+
+/// Drawing states beside them does not remove them.
+#[test]
+fn states_stay_beside_their_pictures() {
+    let Some(place) = place_to_draw() else { return };
+    place.run("simulate small.toml --states").good();
+    let states = std::fs::read(place.path("output/small/states.npz")).unwrap();
+    for _ in 0..2 {
+        let ran = place.run("render small.toml --resume --from-states output/small/states.npz").good();
+        assert!(ran.out.starts_with("Two cubes\n7 frames"), "nothing is replaced: {ran:?}");
+        assert!(std::fs::read(place.path("output/small/states.npz")).unwrap() == states);
+    }
+    assert_eq!(drawn_and_kept(&place, "output/small"), [0, 7]);
+}
+
+#[test]
+fn states_that_do_not_fit_are_refused() {
+    let Some(place) = place_to_draw() else { return };
+    place.run("simulate small.toml --states -o states").good();
+    let states = std::fs::read(place.path("states/states.npz")).unwrap();
+    let refused = |status: i32, words: &[&str]| {
+        place.run("render small.toml --from-states states/states.npz -o out").bad(status, words);
+        assert!(!place.path("out").exists(), "nothing is written before it is known that it can be drawn");
+    };
+    place.run("render small.toml --from-states none.npz -o out").bad(4, &["cannot read none.npz"]);
+    place.run("render small.toml --from-states small.toml -o out").bad(2, &["small.toml is not a NumPy archive"]);
+    place.run("render small.toml small.toml --from-states states/states.npz -o out").bad(2, &["one scene"]);
+    place.run("render small.toml --from-states states/states.npz --states").bad(2, &["--from-states", "--states"]);
+    place.run("render small.toml --frames 1 --from-states states/states.npz -o a.png").bad(2, &["--from-states"]);
+    place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.6"));
+    refused(
+        2,
+        &["states.npz has states of another version of “Two cubes”; expected those of “Two cubes” as it is now"],
+    );
+    place.write("small.toml", &SMALL.replace("Two cubes", "Cubes"));
+    refused(2, &["states.npz has states of another scene, “Two cubes”; expected those of “Cubes”", "--states"]);
+    place.write("small.toml", SMALL);
+    std::fs::write(place.path("states/states.npz"), &states[..states.len() / 2]).unwrap();
+    refused(2, &["states/states.npz is a damaged NumPy archive, or is cut short"]);
+    place.run("simulate small.toml --states --only Mass-spring -o states --overwrite").good();
+    refused(2, &["states.npz has no states of “Local shape”, only of “Mass-spring”; choose among these with --only"]);
+
+    // One bit of one position in frame 3 is another: earlier frames are drawn, and the files are whole.
+    let position = |frame: usize| {
+        let at = states.windows(24).position(|bytes| bytes == b"Local shape.position.npy").unwrap();
+        let start = at + states[at..].windows(6).position(|bytes| bytes == b"\x93NUMPY").unwrap();
+        let head = 10 + usize::from(u16::from_le_bytes([states[start + 8], states[start + 9]]));
+        start + head + frame * 12 * 24
+    };
+    let mut damaged = states.clone();
+    damaged[position(3)] ^= 1;
+    std::fs::write(place.path("states/states.npz"), &damaged).unwrap();
+    let ran = place.run("render small.toml --from-states states/states.npz -o out");
+    ran.bad(4, &["cannot read states/states.npz: frame 3 of “Local shape” is damaged"]);
+    assert_eq!(place.json("out/run.json")["outcome"], "failed");
+    let names = ["diagnostics.csv", "frame_00000.png", "frame_00001.png", "frame_00002.png", "run.json"];
+    assert_eq!(place.names("out"), names);
+}
+
+/// What other programs write from it is no longer what this one wrote.
+#[test]
+fn states_that_numpy_has_written_are_refused() {
+    let (Some(place), Some(python)) = (place_to_draw(), crate::support::numpy()) else { return };
+    place.run("simulate small.toml --states -o states").good();
+    let script = "import numpy; states = dict(numpy.load('states/states.npz')); print(states['localshape'].dtype)\n\
+                  assert states['Mass-spring.memory'].shape == (7, 0)\n\
+                  numpy.savez_compressed('packed.npz', **states); del states['localshape']; numpy.savez('bare.npz', **states)";
+    assert_eq!(python(&place.path("."), script).trim(), "uint8");
+    let ran = place.run("render small.toml --from-states packed.npz -o out");
+    ran.bad(4, &["cannot read packed.npz: frame 0 of “Local shape” cannot be read, the file is damaged or packed"]);
+    let ran = place.run("render small.toml --from-states bare.npz -o out");
+    ran.bad(2, &["bare.npz has no array `localshape`, which `localshape simulate --states` writes"]);
+}
+
+/// Draws all shards of a scene into `shards/1` and so on.
+fn shards(place: &Place, of: usize, options: &str) {
+    for number in 1..=of {
+        let folder = format!("--shard {number}/{of} -o shards/{number}");
+        place.run(&format!("render small.toml {folder}{options}")).good();
+    }
+}
+
+/// Shards, one of them killed and resumed, make the bytes of one process.
+#[cfg(unix)]
+#[test]
+fn merged_shards_are_the_whole() {
+    if !can_draw() {
+        return;
+    }
+    let place = Place::new();
+    place.write("scene.toml", &rich().replace("size = [640, 360]", "size = [320, 240]"));
+    place.run("render scene.toml -o whole --threads 2").good();
+    place.run("simulate scene.toml --states -o states").good();
+    let render = |number: usize| {
+        format!("render scene.toml --from-states states/states.npz --shard {number}/3 --resume -o shards/{number}")
+    };
+    place.run(&render(3)).good();
+    place.run(&render(1)).good();
+    let mut running = crate::interrupt::start(&place, &render(2), "shards/2/frame_00001.png");
+    running.kill();
+    let ran = place.run("merge shards/1 shards/2 shards/3 -o merged");
+    ran.bad(2, &["shards/2 is not complete (unfinished); run its command again, with --resume"]);
+    assert!(!place.path("merged").exists());
+    place.run(&render(2)).good();
+    assert!(drawn_and_kept(&place, "shards/2")[1] > 0);
+    let ran = place.run("merge shards/3 shards/1 shards/2 -o merged").good();
+    assert_eq!(ran.out, "Two cubes\n61 frames of 320×240 in merged, from 3 shards\n");
+    assert!(files(&place, "merged") == files(&place, "whole"));
+    let [mut whole, mut merged] = ["whole", "merged"].map(|folder| place.json(&format!("{folder}/run.json")));
+    for run in [&mut whole, &mut merged] {
+        // What one process simulated, the others have read.
+        (run["command"], run["times"]) = (Value::Null, Value::Null);
+        run["runs"].as_array_mut().unwrap().iter_mut().for_each(|run| run["steps"] = 0.into());
+    }
+    assert_eq!(merged, whole);
+    // Again, and of another scene.
+    place.run("merge shards/3 shards/1 shards/2 -o merged -q").good();
+    place.write("small.toml", SMALL);
+    place.run("simulate small.toml -o other").good();
+    place
+        .run("merge shards/3 shards/1 shards/2 -o other")
+        .bad(2, &["other holds the results of another scene", "merge --overwrite"]);
+}
+
+#[test]
+fn shards_with_holes_or_of_other_sequences_are_not_merged() {
+    let Some(place) = place_to_draw() else { return };
+    shards(&place, 3, "");
+    let merge = |folders: &str, words: &[&str]| {
+        place.run(&format!("merge {folders} -o merged")).bad(2, words);
+        assert!(!place.path("merged").exists());
+    };
+    merge("shards/1 shards/3", &["missing: shard 2/3; expected all of 3"]);
+    merge("shards/1 shards/3 shards/1", &["shards/1 and shards/1 are both shard 1/3"]);
+    place.run("merge shards/1 nowhere -o merged").bad(4, &["cannot read nowhere"]);
+    merge("shards/1 shards", &["shards has no run.json of localshape"]);
+    place.run("render small.toml --frames 1-6x3 -o unsplit").good();
+    merge("shards/1 unsplit shards/3", &["unsplit is no shard"]);
+    place.run("merge shards/1 shards/2 shards/3 -o shards/1").bad(2, &["-o shards/1 is one of the shards"]);
+
+    let other = |options: &str, words: &[&str]| {
+        place.run(&format!("render small.toml --shard 2/3 -o other --overwrite{options}")).good();
+        merge("shards/1 other shards/3", words);
+    };
+    other(" --size 80x60", &["differ in the size"]);
+    other(" --only Mass-spring", &["differ in the runs"]);
+    // Of other frames: 2 and 5, or 4 alone, instead of 1 and 4.
+    other(" --frames 1-6", &["frame 2 is in shard 2/3 and in 3/3; shards of the same --frames"]);
+    other(
+        " --frames 0,4-6",
+        &["frame 2 is in shard 3/3 and should be in 2/3; shards of the same --frames"],
+    );
+    place.write("edited.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.6"));
+    place.run("render edited.toml --shard 2/3 -o edited").good();
+    merge("shards/1 edited shards/3", &["differ in the scene"]);
+    let frame = place.path("shards/2/frame_00004.png");
+    std::fs::copy(place.path("edited/frame_00004.png"), &frame).unwrap();
+    merge("shards/1 shards/2 shards/3", &["frame_00004.png is not that frame of this scene", "--resume"]);
+    std::fs::remove_file(&frame).unwrap();
+    merge("shards/1 shards/2 shards/3", &["frame_00004.png is missing; run the command of its shard again"]);
+    shards(&place, 3, " --resume");
+    place.run("merge shards/1 shards/2 shards/3 -o merged").good();
+}
+
+/// A script of `docs/clusters`, which finds the program of this test.
+#[cfg(unix)]
+fn script(place: &Place, name: &str, arguments: &str) -> Command {
+    let program = Path::new(env!("CARGO_BIN_EXE_localshape")).parent().unwrap();
+    let paths = std::env::var_os("PATH").unwrap_or_default();
+    let paths = std::iter::once(program.to_owned()).chain(std::env::split_paths(&paths));
+    let mut command = Command::new("bash");
+    command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/clusters").join(name)).args(arguments.split(' '));
+    command.current_dir(place.path(".")).env("PATH", std::env::join_paths(paths).unwrap());
+    command
+}
+
+/// The jobs of the script for Slurm, one after the other; that Slurm runs them was tried on a cluster.
+#[cfg(unix)]
+#[test]
+fn the_jobs_for_slurm_draw_the_whole() {
+    let Some(place) = place_to_draw() else { return };
+    place.run("render small.toml -o whole").good();
+    let jobs = [("states", 0), ("frames", 2), ("frames", 1), ("frames", 3), ("frames", 2), ("merge", 0), ("merge", 0)];
+    for (job, task) in jobs {
+        let mut command = script(&place, "frames-slurm", "small.toml made 3");
+        command.env("SLURM_JOB_NAME", format!("localshape-{job}")).env("SLURM_ARRAY_TASK_ID", task.to_string());
+        let ran = run(&mut command).good();
+        assert_eq!(ran.out.contains("7 frames of 96×64 in made/frames, from 3 shards"), job == "merge", "{ran:?}");
+    }
+    assert_eq!(drawn_and_kept(&place, "made/shards/2"), [0, 2]);
+    assert!(files(&place, "made/frames") == files(&place, "whole"));
+    let ran = run(&mut script(&place, "frames-slurm", "small.toml made"));
+    assert!(ran.status == Some(2) && ran.err.starts_with("Draws a scene on a Slurm cluster"), "{ran:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn gnu_parallel_draws_the_whole() {
+    let Some(place) = place_to_draw() else { return };
+    if Command::new("parallel").arg("--version").output().is_err() {
+        let missing = "there is no GNU parallel: `apt install parallel`";
+        assert!(std::env::var_os("LOCALSHAPE_REQUIRE_PARALLEL").is_none_or(|value| value != "1"), "{missing}");
+        return crate::support::skip(missing);
+    }
+    place.run("render small.toml -o whole").good();
+    for _ in 0..2 {
+        let ran = run(&mut script(&place, "frames-parallel", "small.toml made 3 --jobs 2")).good();
+        assert!(ran.out.contains("7 frames of 96×64 in "), "{ran:?}");
+        assert!(files(&place, "made/frames") == files(&place, "whole"));
+    }
+    assert_eq!(drawn_and_kept(&place, "made/shards/1"), [0, 3]);
+}
+
+#[test]
+fn wrong_shards() {
+    let place = Place::with_small();
+    for (shard, words) in [
+        ("0/4", "there is no shard 0 of 4; expected 1/4 to 4/4"),
+        ("5/4", "there is no shard 5 of 4"),
+        ("4", "such as 2/4"),
+    ] {
+        place.run(&format!("render small.toml --shard {shard}")).bad(2, &["--shard", words]);
+    }
+    place.run("render small.toml --shard 8/9").bad(2, &["--shard: shard 8/9 of 7 frames is empty; expected at most 7"]);
+    place.run("render small.toml --shard 1/2 --states").bad(2, &["--shard", "--states"]);
+    place.run("render small.toml --frames 1 --shard 1/1 -o one.png").bad(2, &["one.png gets one frame", "--shard"]);
+    assert_eq!(place.names("."), ["small.toml"]);
+}
