@@ -315,7 +315,7 @@ fn keys_that_exclude_or_need_each_other() {
         &method("runge-kutta"),
         &[(4, 14, "a fixed number of passes gives forces that depend")],
     );
-    case(SPACE, "1e4 }", "1e4, passes = 2, rotation = 'exact' }", &[(8, 59, "without; take it out")]);
+    case(SPACE, "1e4 }", "1e4, passes = 2, rotation = 'robust' }", &[(8, 59, "without; take it out")]);
     case(SPACE, "[[run]]", "masses = [1, 2]\n[[run]]", &[(6, 1, "`body.masses` needs `nodes`")]);
     case(
         PLANE,
