@@ -156,9 +156,9 @@ impl Plots {
         if low > high {
             return [0.0, 1.0];
         }
-        // Room for dots and names: a quarter of a decade at least.
-        let parts = if axis == 0 { 4.0 } else { 1.0 };
-        let rounded = [libm::floor((low - 0.1) * parts) / parts, libm::ceil((high + 0.1) * parts) / parts];
+        // Room for dots and names.
+        let (parts, below) = if axis == 0 { (4.0, 0.1) } else { (1.0, 1.0) };
+        let rounded = [libm::floor((low - below) * parts) / parts, libm::ceil((high + 0.1) * parts) / parts];
         if rounded[0] < rounded[1] { rounded } else { [rounded[0], rounded[0] + 1.0] }
     }
 }
@@ -276,12 +276,12 @@ impl Room {
                 chosen.iter().enumerate().filter(|(other, _)| *other != at).filter_map(|(_, area)| *area).collect();
             let cost = |&(area, cost): &(Area, f64)| {
                 let on_names: f64 = others.iter().map(|&other| 60.0 * shared(area, other)).sum();
-                let on_lines: f64 = lines
-                    .iter()
-                    .enumerate()
-                    .map(|(of, line)| covered(area, line) * if of == at { 0.6 } else { 1.0 })
-                    .sum();
-                cost + on_names + on_lines
+                let on_line = |(of, line): (usize, &Vec<[f64; 2]>)| match of == at {
+                    true => 0.6 * covered(area, line),
+                    // Next to a dot of another curve it would seem to be that one's name.
+                    false => covered(area, line) + near(area, line),
+                };
+                cost + on_names + lines.iter().enumerate().map(on_line).sum::<f64>()
             };
             let best = places[at].iter().min_by(|one, other| cost(one).total_cmp(&cost(other)));
             chosen[at] = best.map(|(area, _)| *area);
@@ -334,6 +334,16 @@ fn shared(one: Area, other: Area) -> f64 {
     let side = |axis: usize| (one[axis + 2].min(other[axis + 2]) - one[axis].max(other[axis])).max(0.0);
     let size = |area: Area| (area[2] - area[0]) * (area[3] - area[1]);
     side(0) * side(1) / size(one).min(size(other))
+}
+
+/// How many of the dots lie beside an area.
+fn near(area: Area, dots: &[[f64; 2]]) -> f64 {
+    let is_near = |&&[x, y]: &&[f64; 2]| {
+        let beside = (area[0] - x).max(x - area[2]).max(0.0);
+        let above = (area[1] - y).max(y - area[3]).max(0.0);
+        libm::hypot(beside, above) < 1.5 * GAP
+    };
+    dots.iter().filter(is_near).count() as f64
 }
 
 /// How much of a line through points an area covers: each dot counts, and each height of a letter along the line.

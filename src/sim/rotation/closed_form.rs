@@ -15,9 +15,11 @@ use super::davenport1968;
 use glam::{DMat3, DQuat};
 
 /// The least divisor, relative to `λ³`; it is 8/27 for a cube at rest.
-const SOUND: f64 = 1e-4;
-/// Newton's method converges in three to six steps where the divisor is sound.
+const SOUND: f64 = 1e-3;
+/// Newton's method converges in three to seven steps where the divisor is sound, and slowly next to a double root.
 const MOST_STEPS: u32 = 12;
+/// It has converged where a step is at most this part of the root: the next one would be round-off.
+const SHORT: f64 = 1e-9;
 
 /// The rotation that maximises `tr(M Σ R0 rᵀ)`; `last` is used where the divisor is too small only. `at_rest` is
 /// `Σ R0 rᵀ`.
@@ -43,15 +45,19 @@ fn regular(at_rest: DMat3) -> Option<DQuat> {
     let constant = first * first - 4.0 * second;
     // No root is larger, so the iteration falls towards the largest one.
     let mut root = (3.0 * first).sqrt();
-    for _ in 0..MOST_STEPS {
+    let mut steps = 0;
+    loop {
         let square = root * root;
         let slope = 4.0 * root * (square - first) - 8.0 * determinant;
         let step = (square * (square - 2.0 * first) - 8.0 * determinant * root + constant) / slope;
-        // Next to a double root both are round-off.
-        if !(slope > 0.0 && step > f64::EPSILON * root) {
-            break;
+        steps += 1;
+        if steps > MOST_STEPS || !step.is_finite() {
+            return None;
         }
         root -= step;
+        if step.abs() <= SHORT * root {
+            break;
+        }
     }
     let divisor = 0.5 * root * (root * root - first) - determinant;
     if !(divisor > SOUND * root * root * root) {

@@ -11,33 +11,30 @@ use super::linearised::{solve_symmetric, symmetric_determinant};
 use super::torque;
 use glam::{DMat3, DQuat, DVec3};
 
-/// The least determinant of `H` that counts as regular, relative to the third power of the size of the moments. The
-/// paper has the same number for moments of about 1.
+/// The least determinant of `H` that counts as regular, for stretches of about 1.
 const SINGULAR: f64 = 1e-9;
 
 /// The rotation of an element from its last one, after a number of passes. `at_rest` is `Σ R0 rᵀ`.
 pub(crate) fn iterate(at_rest: DMat3, last: DQuat, passes: u32) -> DQuat {
-    let size = super::size(at_rest);
-    let mut rotation = last;
-    if !(size > 0.0 && size.is_finite()) {
+    // To stretches of about 1, for which the paper's steps of steepest ascent are meant.
+    let squares: f64 = at_rest.to_cols_array().iter().map(|entry| entry * entry).sum();
+    let scaled = at_rest * (squares / 3.0).sqrt().recip();
+    if !scaled.is_finite() {
         return last;
     }
+    let mut rotation = last;
     for _ in 0..passes {
-        rotation = (increment(DMat3::from_quat(rotation) * at_rest, size) * rotation).normalize();
+        rotation = (increment(DMat3::from_quat(rotation) * scaled) * rotation).normalize();
     }
     rotation
 }
 
-/// One step, as a quaternion of any length.
-fn increment(a: DMat3, size: f64) -> DQuat {
+/// One step for stretches of about 1, as a quaternion of any length.
+fn increment(a: DMat3) -> DQuat {
     let uphill = -torque(a);
-    let mut quarter = if symmetric_determinant(a).abs() < SINGULAR * size * size * size {
-        uphill / size
-    } else {
-        solve_symmetric(a) * 0.25
-    };
+    let mut quarter = if symmetric_determinant(a).abs() < SINGULAR { uphill } else { solve_symmetric(a) * 0.25 };
     if quarter.dot(uphill) < 0.0 {
-        quarter = uphill * (0.125 / size);
+        quarter = uphill * 0.125;
     }
     let DVec3 { x, y, z } = quarter * 2.0;
     DQuat::from_xyzw(x, y, z, 1.0 - quarter.length_squared())

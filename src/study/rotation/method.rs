@@ -2,9 +2,10 @@
 
 use super::reference::by_svd;
 use super::sample::Sample;
-use crate::sim::rotation::{RotationReading, robust};
+use crate::sim::rotation::{RotationReading, linear_update, robust};
 use crate::sim::words::typed;
-use glam::DQuat;
+use glam::{DMat3, DQuat};
+use std::hint::black_box;
 
 /// A solver with a number of passes.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,6 +98,24 @@ impl Method {
             Solver::Reading(reading) => reading.follow(sample.at_rest, sample.last, self.passes.unwrap_or(0)),
             Solver::Svd => by_svd(sample.at_rest).unwrap_or(DQuat::NAN),
         }
+    }
+
+    /// Does the same work as in a simulation, where the result of Eq. (16) stays a matrix.
+    #[inline]
+    pub(super) fn work(&self, sample: &Sample) {
+        match (self.solver, self.passes) {
+            (Solver::Reading(RotationReading::LinearUpdate), Some(passes)) => {
+                black_box(linear_update::update(sample.at_rest, DMat3::from_quat(sample.last), passes));
+            }
+            _ => {
+                black_box(self.rotation(sample));
+            }
+        }
+    }
+
+    /// The same solver with another number of passes, if it has any.
+    pub(super) fn with_passes(&self, passes: u32) -> Self {
+        Self { passes: self.passes.map(|_| passes), ..self.clone() }
     }
 
     /// Whether the default needed its global solver for a sample; `None` for other methods.

@@ -2,7 +2,7 @@
 
 use super::degenerate::{CLASSES, Outcome};
 use super::sample::{Kind, LEAST_GAP};
-use super::{Measured, Results};
+use super::{MANY, Measured, Method, Results};
 use crate::output::exact;
 use crate::table::Sheet;
 use serde_json::{Value, json};
@@ -16,6 +16,8 @@ impl Results {
         let protocol = &self.protocol;
         let time = if self.is_processor_time { "Processor" } else { "Wall" };
         let (strain, _) = USUAL;
+        /// The increment of the errors by strain (rad).
+        const INCREMENT: f64 = 0.1;
         let mut text = format!(
             "<!-- {mark} -->\n\
             # Solvers of rotations: error against time\n\n\
@@ -32,14 +34,19 @@ impl Results {
         text += &self.errors(strain).markdown(1);
         text += "\n`any` are elements of all shapes, also flat, thin and inverted ones, from any last rotation, with a \
             unique optimum.\n";
-        text += "\n## Time (ns for each element) at these strains, with quartiles in parentheses\n\n";
+        text += &format!("\n## Error (rad) for increments of {INCREMENT} rad, at strains of up to\n\n");
+        text += &self.errors_by_strain(INCREMENT).markdown(1);
+        text += "\nAt 1 one stretch is zero, so that elements are flat; beyond, it is negative, and they are turned inside \
+            out.\n";
+        text +=
+            "\n## Time (ns for each element) for the elements of the first table, with quartiles in parentheses\n\n";
         text += &self.times(strain).markdown(1);
         text += "\n## Degenerate elements, from any last rotation\n\n";
         text += &self.robustness().markdown(1);
         text += &format!(
             "\n`{}`: the optimum, and where there are several the one nearest to the last rotation; `{}`: one of several, \
-            but not the nearest; `{}`: a rotation that is no optimum; `{}`: not a number. Iterations have three passes, \
-            `mueller` twenty. `arctangent`, `vector-length`, `symmetric`, `cayley` and `quintic` go over to `davenport` \
+            but not the nearest; `{}`: a rotation that is no optimum; `{}`: not a number. Iterations have {MANY} passes. \
+            `arctangent`, `vector-length`, `symmetric`, `cayley` and `quintic` go over to `davenport` \
             where the Hessian is not positive definite; what `linear-update` makes is no rotation, and the one nearest \
             to it is shown.\n",
             Outcome::Nearest.words(),
@@ -69,8 +76,8 @@ impl Results {
     }
 
     fn facts(&self) -> Option<Facts> {
-        let number = self.methods.iter().position(super::Method::is_default)?;
-        let printed = self.methods.iter().position(super::Method::is_printed)?;
+        let number = self.methods.iter().position(Method::is_default)?;
+        let printed = self.methods.iter().position(Method::is_printed)?;
         let usual = |kind: Kind| match kind {
             Kind::Warm { strain, increment } => strain <= USUAL.0 && increment <= USUAL.1,
             Kind::Cold => false,
@@ -88,48 +95,48 @@ impl Results {
         })
     }
 
+    /// The errors by increment at a strain, and of any elements.
     fn errors(&self, strain: f64) -> Sheet {
-        let cell = |one: &Measured| short(one.worst);
-        self.by_increment(strain, cell)
+        let kinds = self.protocol.increments.iter().map(|&increment| Kind::Warm { strain, increment });
+        let heads = self.protocol.increments.iter().map(f64::to_string).chain(["any".to_owned()]);
+        self.table(heads, &kinds.chain([Kind::Cold]).collect::<Vec<_>>(), |one| short(one.worst))
     }
 
+    /// The errors by strain at an increment (rad).
+    fn errors_by_strain(&self, increment: f64) -> Sheet {
+        let kinds = self.protocol.strains.iter().map(|&strain| Kind::Warm { strain, increment });
+        let heads = self.protocol.strains.iter().map(f64::to_string);
+        self.table(heads, &kinds.collect::<Vec<_>>(), |one| short(one.worst))
+    }
+
+    /// The times in the order of [`Self::errors`].
     fn times(&self, strain: f64) -> Sheet {
-        let cell = |one: &Measured| {
+        let kinds = self.protocol.increments.iter().map(|&increment| Kind::Warm { strain, increment });
+        let heads = self.protocol.increments.iter().map(f64::to_string).chain(["any".to_owned()]);
+        self.table(heads, &kinds.chain([Kind::Cold]).collect::<Vec<_>>(), |one| {
             let time = one.time;
             format!("{:.0} ({:.0}–{:.0})", time.median, time.lower, time.upper)
+        })
+    }
+
+    /// A row for each method, and a column for each kind of elements.
+    fn table(&self, heads: impl Iterator<Item = String>, kinds: &[Kind], cell: impl Fn(&Measured) -> String) -> Sheet {
+        let heads = ["solver".to_owned()].into_iter().chain(heads).collect();
+        let row = |(number, method): (usize, &Method)| {
+            let of = |kind: &Kind| self.measured.iter().find(|one| one.method == number && one.kind == *kind);
+            let cells = kinds.iter().map(|kind| of(kind).map_or_else(String::new, &cell));
+            [method.title()].into_iter().chain(cells).collect()
         };
-        self.by_increment(strain, cell)
+        Sheet { heads, rows: self.methods.iter().enumerate().map(row).collect() }
     }
 
-    /// A row for each method, a column for each increment, and one for any elements.
-    fn by_increment(&self, strain: f64, cell: impl Fn(&Measured) -> String) -> Sheet {
-        let mut sheet = Sheet { heads: vec!["solver".to_owned()], rows: Vec::new() };
-        sheet.heads.extend(self.protocol.increments.iter().map(f64::to_string));
-        sheet.heads.push("any".to_owned());
-        for (number, method) in self.methods.iter().enumerate() {
-            let mut row = vec![method.title()];
-            row.extend(
-                self.protocol
-                    .increments
-                    .iter()
-                    .map(|&increment| self.at(number, strain, increment).map_or_else(String::new, &cell)),
-            );
-            row.push(self.cold(number).map_or_else(String::new, &cell));
-            sheet.rows.push(row);
-        }
-        sheet
-    }
-
-    /// A row for each solver, with most passes, and a column for each class.
+    /// A row for each solver, and a column for each class.
     fn robustness(&self) -> Sheet {
         let mut sheet = Sheet { heads: vec!["solver".to_owned()], rows: Vec::new() };
         sheet.heads.extend(CLASSES.map(|class| class.name.to_owned()));
-        for (number, method) in self.methods.iter().enumerate() {
-            if self.methods.get(number + 1).is_some_and(|next| next.name() == method.name()) {
-                continue;
-            }
-            let outcomes = self.outcomes[number].map(|outcome| outcome.words().to_owned());
-            sheet.rows.push([method.name().to_owned()].into_iter().chain(outcomes).collect());
+        for (solver, outcomes) in &self.outcomes {
+            let outcomes = outcomes.map(|outcome| outcome.words().to_owned());
+            sheet.rows.push([solver.name().to_owned()].into_iter().chain(outcomes).collect());
         }
         sheet
     }
@@ -179,9 +186,10 @@ impl Results {
             })
         };
         let rows: Vec<_> = self.measured.iter().map(row).collect();
-        let outcomes = self.methods.iter().zip(&self.outcomes).map(|(method, outcomes)| {
-            let of_class = CLASSES.iter().zip(outcomes).map(|(class, outcome)| (class.name.to_owned(), json!(outcome.words())));
-            json!({ "solver": method.name(), "passes": method.passes, "outcomes": of_class.collect::<serde_json::Map<_, _>>() })
+        let outcomes = self.outcomes.iter().map(|(solver, outcomes)| {
+            let named = CLASSES.iter().zip(outcomes);
+            let of_class = named.map(|(class, outcome)| (class.name.to_owned(), json!(outcome.words())));
+            json!({ "solver": solver.name(), "outcomes": of_class.collect::<serde_json::Map<_, _>>() })
         });
         let facts = self.facts().map(|facts| {
             json!({
