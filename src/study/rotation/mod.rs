@@ -212,6 +212,18 @@ mod tests {
     }
 
     #[test]
+    fn columns_are_documented() {
+        let results = measure(&quick(), &|_| true).expect("it is never stopped");
+        let page = include_str!("../../../docs/files.md");
+        let section = page.split("\n## ").find(|section| section.starts_with("`rotation.csv`")).expect("its section");
+        let cells = section.lines().filter_map(|line| line.strip_prefix("| `")?.split(" | ").next());
+        let documented: Vec<_> = cells.flat_map(|cell| cell.split(", ")).map(|name| name.trim_matches('`')).collect();
+        let csv = results.csv();
+        assert_eq!(csv.lines().next().expect("heads").split(',').collect::<Vec<_>>(), documented);
+        assert_eq!(csv.lines().count(), 1 + results.measured.len());
+    }
+
+    #[test]
     fn errors_are_the_same_on_every_run() {
         let errors = || {
             let results = measure(&quick(), &|_| true).expect("it is never stopped");
