@@ -203,11 +203,13 @@ impl Room {
         let written: Vec<String> =
             plot.slopes.iter().flat_map(|(_, slopes)| slopes).map(|slope| format!("slope {slope}")).collect();
         if let Some((meet, slopes)) = &plot.slopes {
-            for (slope, text) in slopes.iter().zip(&written) {
-                let meet = meet.map(libm::log10);
-                // Not below the axis.
+            let meet = meet.map(libm::log10);
+            let is_inside = |axis: usize| (self.ranges[axis][0]..=self.ranges[axis][1]).contains(&meet[axis]);
+            for (slope, text) in slopes.iter().zip(&written).filter(|_| is_inside(0) && is_inside(1)) {
+                // Downwards, and not beyond the axes.
                 let down = (meet[1] - self.ranges[1][0]) / slope.abs();
-                let reach = REACH.min(down) * -slope.signum();
+                let aside = if *slope > 0.0 { meet[0] - self.ranges[0][0] } else { self.ranges[0][1] - meet[0] };
+                let reach = REACH.min(down).min(aside) * -slope.signum();
                 let line = [meet, [meet[0] + reach, meet[1] + slope * reach]].map(|end| self.pixel(end));
                 writer.curves.push(curve(&line, SLOPE, palette.axis));
                 names.push(Name { text, colour: palette.second_text, anchors: vec![line[1]] });
@@ -380,7 +382,7 @@ mod tests {
             name: "plot".to_owned(),
             axes: ["time (ns)".to_owned(), "error (rad)".to_owned()],
             curves: vec![curve("one", points.clone()), curve("two", points.clone())],
-            slopes: Some(([0.1, 0.1], vec![2.0, 5.0])),
+            slopes: Some(([1e4, 1e-4], vec![2.0, 5.0])),
         };
         let (title, caption) = ("Title".to_owned(), vec!["Words".to_owned()]);
         Plots { title, caption, plots: vec![plot(&points), plot(&vec![[3e5, 1e-3]])], columns: 2 }
@@ -402,6 +404,7 @@ mod tests {
     fn names_do_not_cover_each_other() {
         let picture = page(vec![[1.0, 1e-12], [10.0, 1e-9], [100.0, 1e-6]]).compose();
         let names: Vec<_> = picture.words.iter().filter(|word| word.has_halo).map(|word| word.bounds()).collect();
+        // Two curves and two slopes in the first plot, and again in the second one.
         assert_eq!(names.len(), 8);
         for (at, one) in names.iter().enumerate() {
             for other in &names[..at] {

@@ -60,9 +60,7 @@ fn regular(at_rest: DMat3) -> Option<DQuat> {
         }
     }
     let divisor = 0.5 * root * (root * root - first) - determinant;
-    if !(divisor > SOUND * root * root * root) {
-        return None;
-    }
+    let is_sound = divisor > SOUND * root * root * root;
     let matrix = cofactors * root + a * (0.5 * (root * root + first)) - a * (a.transpose() * a);
-    Some(DQuat::from_mat3(&(matrix * divisor.recip())).normalize())
+    is_sound.then(|| DQuat::from_mat3(&(matrix * divisor.recip())).normalize())
 }
