@@ -1,6 +1,6 @@
 //! The elements that solvers are measured with: random, and the same on every machine.
 
-use super::reference::{by_svd, refined};
+use super::reference::refined;
 use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::PI;
 
@@ -42,9 +42,8 @@ pub(crate) fn samples(kind: Kind, count: usize) -> Vec<(Sample, DQuat)> {
         };
         let (axes, turn) = (DMat3::from_quat(random.rotation()), random.rotation());
         let at_rest = (DMat3::from_quat(turn) * axes * DMat3::from_diagonal(stretch) * axes.transpose()).transpose();
-        // Where the smallest stretch is negative, the optimum is another rotation than `turn` only if it is not the
-        // smallest in size.
-        let sought = refined(at_rest, by_svd(at_rest).unwrap_or(turn));
+        // Only the stretch of the smallest size is negative, so this is `turn`, but for the rounding of the moments.
+        let sought = refined(at_rest, turn);
         let increment = match kind {
             Kind::Warm { increment, .. } => increment,
             Kind::Cold => PI * random.next(),
