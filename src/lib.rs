@@ -108,6 +108,7 @@ pub mod runner;
 pub mod scene;
 mod shell;
 pub mod sim;
+mod study;
 mod table;
 #[cfg(feature = "render")]
 mod vector;

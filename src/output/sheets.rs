@@ -1,11 +1,11 @@
-//! The files of a table, in one folder, each written completely or not at all.
+//! The files of a table or a study, in one folder, each written completely or not at all.
 
 use super::{AtomicFile, FolderLock, OutputError, is_folder, read_file};
 use std::fs;
 use std::path::Path;
 
-/// The first characters of the Markdown file of every table.
-const BEGINNING: &str = "<!-- localshape table ";
+/// The first characters of the Markdown file of every table and study, before the rest of the command.
+const BEGINNING: &str = "<!-- localshape ";
 
 /// Files created in a folder under hidden names. If they are dropped unfinished, they are removed.
 #[derive(Debug)]
@@ -38,8 +38,8 @@ impl SheetFiles {
         let line = String::from_utf8_lossy(text.split(|&byte| byte == b'\n').next().unwrap_or_default()).into_owned();
         let made_by = line.strip_prefix(BEGINNING).and_then(|rest| rest.strip_suffix(" -->"));
         let what = match made_by {
-            Some(how) if mark.strip_prefix("localshape table ") == Some(how) => return Ok(()),
-            Some(how) => format!("what was made by `localshape table {how}`"),
+            Some(how) if mark.strip_prefix("localshape ") == Some(how) => return Ok(()),
+            Some(how) => format!("what was made by `localshape {how}`"),
             None => format!("{first}, which was not written by localshape"),
         };
         Err(OutputError::Occupied { path: folder.to_owned(), what })

@@ -45,7 +45,7 @@ impl Stepping {
 #[serde(rename_all = "kebab-case")]
 pub enum Kernel {
     /// Vectorised, with the same bits on every machine and for any number of threads. For mass-spring models, and for
-    /// shape-based models with `rotation = "exact"` or `"arctangent"` that are undamped or have `damping_of =
+    /// shape-based models with `rotation = "robust"` or `"arctangent"` that are undamped or have `damping_of =
     /// "relative-motion"`.
     #[default]
     Fast,

@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Sheet {
     /// The headings of the columns.
-    pub heads: Vec<&'static str>,
+    pub heads: Vec<String>,
     /// The rows.
     pub rows: Vec<Vec<String>>,
 }
@@ -14,7 +14,7 @@ impl Sheet {
     pub(crate) fn of<const N: usize>(rows: impl IntoIterator<Item = [(&'static str, String); N]>) -> Self {
         let mut sheet = Self::default();
         for row in rows {
-            sheet.heads = row.iter().map(|(head, _)| *head).collect();
+            sheet.heads = row.iter().map(|(head, _)| (*head).to_owned()).collect();
             sheet.rows.push(row.into_iter().map(|(_, cell)| cell).collect());
         }
         sheet

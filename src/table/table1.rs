@@ -36,7 +36,7 @@ pub(crate) struct Solver {
 pub(crate) const SOLVERS: [Solver; 3] = [
     Solver { name: "arctangent", words: "Eq. (15)", has_passes: true },
     Solver { name: "symmetric", words: "Eq. (15) with the symmetric part of its matrix", has_passes: true },
-    Solver { name: "exact", words: "exact rotation", has_passes: false },
+    Solver { name: "robust", words: "exact rotation", has_passes: false },
 ];
 
 /// The parameters of the measurement.

@@ -66,7 +66,7 @@ fn sim_knows_no_file_no_clock_and_no_device_and_no_other_room() {
 
 #[test]
 fn only_gpu_and_render_name_wgpu() {
-    for room in ["sim", "colour", "reading", "look", "scene", "picture", "vector", "output", "cli", "table"] {
+    for room in ["sim", "colour", "reading", "look", "scene", "picture", "vector", "output", "cli", "table", "study"] {
         assert_eq!(offenders(room, &["wgpu"]), [""; 0]);
     }
 }
@@ -105,6 +105,8 @@ fn nothing_flows_back() {
     assert_eq!(offenders("table", &["std::fs"]), [""; 0]);
     // Of `output` it uses clocks and the formatting of numbers only.
     assert_eq!(rooms_named_by("table"), BTreeSet::from(["output", "scene", "sim"].map(str::to_owned)));
+    assert_eq!(offenders("study", &["std::fs"]), [""; 0]);
+    assert_eq!(rooms_named_by("study"), BTreeSet::from(["output", "sim", "table"].map(str::to_owned)));
 }
 
 /// The simulation does not depend on pictures: bodies, motions, obstacles, grips and steps, as read and resolved.

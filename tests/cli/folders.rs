@@ -169,8 +169,9 @@ fn files_of_others_under_our_names_are_refused_unless_told() {
 fn a_file_in_the_way() {
     let place = Place::with_small();
     place.write("taken", "a file");
-    let commands = ["simulate small.toml", "table table1", "table all", "render small.toml", "figure fig1"];
-    for command in commands.iter().take(if cfg!(feature = "render") { 5 } else { 3 }) {
+    let commands =
+        ["simulate small.toml", "table table1", "table all", "study rotation", "render small.toml", "figure fig1"];
+    for command in commands.iter().take(if cfg!(feature = "render") { 6 } else { 4 }) {
         for folder in ["taken", "taken/below"] {
             let ran = place.run(&format!("{command} -o {folder}"));
             ran.bad(4, &["error: taken is a file, not a folder; choose another folder with -o\n"]);
@@ -265,7 +266,13 @@ fn one_program_at_a_time() {
         refused.push(format!("process {} ", first.id()));
     }
     let words: Vec<_> = refused.iter().map(String::as_str).collect();
-    for command in ["simulate long.toml", "simulate other.toml", "simulate other.toml --overwrite", "table table1"] {
+    for command in [
+        "simulate long.toml",
+        "simulate other.toml",
+        "simulate other.toml --overwrite",
+        "table table1",
+        "study rotation",
+    ] {
         place.run(&format!("{command} -o out")).bad(2, &words);
     }
     assert!(first.is_running());

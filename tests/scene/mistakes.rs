@@ -260,6 +260,16 @@ fn wrong_choices() {
         "1e4, springs = 'edge' }\n[[o",
         &[(15, 60, "is \"edge\"; expected \"edges\", \"edges+one-diagonal\",")],
     );
+    case(
+        SPACE,
+        "1e4 }",
+        "1e4, rotation = 'davenprt' }",
+        &[(
+            8,
+            61,
+            "`run[0].model.rotation` is \"davenprt\"; expected \"arctangent\", \"vector-length\", \"linear-update\", \"symmetric\", \"cayley\", \"quintic\", \"mueller\", \"kugelstadt\", \"closed-form\", \"davenport\" or \"robust\" did you mean \"davenport\"?",
+        )],
+    );
     case(PLANE, "step", "integrator = 'euler'\nstep", &[(4, 14, "`time.integrator` is \"euler\"")]);
 }
 
@@ -333,7 +343,7 @@ fn keys_that_exclude_or_need_each_other() {
         &method("runge-kutta"),
         &[(4, 14, "a fixed number of passes gives forces that depend")],
     );
-    case(SPACE, "1e4 }", "1e4, passes = 2, rotation = 'exact' }", &[(8, 59, "without; take it out")]);
+    case(SPACE, "1e4 }", "1e4, passes = 2, rotation = 'robust' }", &[(8, 59, "without; take it out")]);
     case(SPACE, "[[run]]", "masses = [1, 2]\n[[run]]", &[(6, 1, "`body.masses` needs `nodes`")]);
     case(
         PLANE,

@@ -57,7 +57,7 @@ fn rotation(body: &Body, model: &ShapeBased) -> Rotation {
     match model.rotation {
         // Eq. (9) is the optimum.
         _ if body.dimension == Dimension::Plane => Rotation::Optimum,
-        RotationReading::Exact => Rotation::Optimum,
+        RotationReading::Robust => Rotation::Optimum,
         _ => Rotation::Arctangent { passes: model.passes },
     }
 }

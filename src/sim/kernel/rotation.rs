@@ -6,6 +6,7 @@
 
 use crate::sim::lanes::{Lanes, MOST, each};
 use crate::sim::rotation::davenport1968;
+use crate::sim::rotation::robust::{MOST_PASSES, SHORT, SOUND};
 use glam::{DMat3, DQuat};
 
 /// A vector in space, in every lane.
@@ -66,12 +67,8 @@ pub(super) struct Arctangent {
     pub(super) passes: u32,
 }
 
-/// The optimum to round-off, by passes of seventh order, as many as needed: one pass if an element rotates by less than
-/// about 1/80 rad from one evaluation to the next. Where convergence is not certain, the global solver is used.
-///
-/// The increment is the quaternion `(v, 1)`, up to its length, with `(2H + μ) v = g` and `μ = g·v`: Davenport's
-/// eigenvalue problem, relative to the last rotation. With `v0 = (2H)⁻¹ g` and `μ0 = g·v0`, one Newton step leads to
-/// `μ1 = μ0 (1 − |v0|²)`, and `v = v0 − μ1 (2H)⁻¹ v0 + μ0² (2H)⁻² v0` up to terms of seventh order.
+/// The optimum to round-off, by passes of seventh order, as many as needed: the same as
+/// [`robust::follow`](crate::sim::rotation::robust::follow), in lanes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Optimum;
 
@@ -124,19 +121,6 @@ impl Solver for Optimum {
         q
     }
 }
-
-/// The global solver is used after so many passes of [`Optimum`]. Most valid lanes converge in three.
-const MOST_PASSES: u32 = 4;
-
-/// A pass of [`Optimum`] is valid where `H` is positive definite and `det H` is at least this times `(tr H)³`; for a
-/// cube at rest the ratio is 1/27.
-const SOUND: f64 = 1e-5;
-
-/// A pass of [`Optimum`] is the last where `|v|²` is at most this, times the margin `m = 27 det H / (tr H)³`.
-///
-/// `|v|` is half the angle. From an angle of `τ √m` a pass leaves an error of at most `0.09 τ⁷` (rad; the worst of
-/// many, with m from 0.005 to 1), so after the last one the error is less than 5e-15.
-const SHORT: f64 = 4e-5;
 
 /// Keeps the squares of homogeneous coordinates within the range of doubles.
 const RANGE: (f64, f64) = (1e-200, 1e200);

@@ -11,7 +11,8 @@
 
 use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
 use crate::sim::body::{Body, Dimension};
-use crate::sim::rotation::{self, davenport1968, linear_update, linearised, planar};
+pub use crate::sim::rotation::RotationReading;
+use crate::sim::rotation::{self, davenport1968, linear_update, planar};
 use crate::sim::state::Nodes;
 use crate::sim::words;
 use glam::{DMat3, DQuat, DVec2, DVec3};
@@ -35,43 +36,19 @@ pub struct Parameters {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub damping_ratio: Option<f64>,
-    /// Number of passes, each of which solves Eq. (15), at each evaluation of the forces. The first pass starts from
-    /// the last rotation (paper, section 4). Default: 2, as the paper advises. If `rotation` is not given, it becomes
+    /// Number of passes, each of which solves Eq. (15) or takes one step of another iteration, at each evaluation of the
+    /// forces. The first pass starts from the last rotation (paper, section 4). Default: 2, as the paper advises. If `rotation` is not given, it becomes
     /// `arctangent`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 100))]
     pub passes: Option<u32>,
-    /// How the rotation of an element is computed. Default: `exact`; the paper's method is `arctangent`. In the plane
+    /// How the rotation of an element is computed. Default: `robust`; the paper's method is `arctangent`. In the plane
     /// all use Eq. (9), which is exact.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<RotationReading>,
     /// Which velocity the damping of Eq. (4) acts on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping_of: Option<DampingReading>,
-}
-
-/// How the rotation of an element is computed. There are three readings of the paper's Eqs. (15) and (16), and two more
-/// accurate methods.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum RotationReading {
-    /// Eq. (15), and a rotation about its solution `w` by the angle `atan |w|`, which is Eq. (9) about that axis;
-    /// rotations are accumulated as quaternions. With two passes the error is 5e-14 rad after an element has rotated by
-    /// 0.01 rad in a step, and 2e-9 rad after 0.1 rad.
-    Arctangent,
-    /// Rotation about `w` by the angle `|w|`, accumulated as quaternions. It overshoots and can make a free body spin
-    /// faster and faster.
-    VectorLength,
-    /// Eq. (16) as printed, `R + w × R`. The result is not a rotation: a spinning body grows.
-    LinearUpdate,
-    /// Like `arctangent`, with the symmetric part of the matrix of Eq. (15). It converges cubically instead of
-    /// quadratically. Not in the paper.
-    Symmetric,
-    /// The optimal rotation, to round-off, at every evaluation, without passes: one step of higher order from the last
-    /// rotation where its error is bounded by round-off, else an eigenvector. Faster than two passes of Eq. (15), and
-    /// its residual α is round-off. Not in the paper. The default.
-    #[default]
-    Exact,
 }
 
 /// Which velocity the damping of Eq. (4) acts on.
@@ -118,9 +95,12 @@ impl TypedModel for Parameters {
                 return Err(Misfit { key, message });
             }
         }
-        if self.rotation == Some(RotationReading::Exact) && self.passes.is_some() {
-            let message = "`passes` is about Eq. (15), which `rotation = \"exact\"` does without; take it out";
-            return Err(Misfit { key: "passes", message: message.into() });
+        if let Some(rotation) = self.rotation.filter(|rotation| self.passes.is_some() && !rotation.has_passes()) {
+            let rotation = words::typed(&rotation);
+            let message = format!(
+                "`passes` is the number of steps of an iteration, which `rotation = \"{rotation}\"` does without; take it out"
+            );
+            return Err(Misfit { key: "passes", message });
         }
         Ok(Arc::new(ShapeBased {
             stiffness: self.stiffness,
@@ -152,7 +132,11 @@ impl ElasticModel for ShapeBased {
             RotationReading::VectorLength => ", θ = |w|",
             RotationReading::LinearUpdate => ", Eq. (16)",
             RotationReading::Symmetric => ", symmetric Eq. (15)",
-            RotationReading::Exact => ", exact rotations",
+            RotationReading::Cayley => ", Cayley",
+            RotationReading::Quintic => ", quintic",
+            RotationReading::Mueller => ", Müller 2016",
+            RotationReading::Kugelstadt => ", Kugelstadt 2018",
+            RotationReading::ClosedForm | RotationReading::Davenport | RotationReading::Robust => ", exact rotations",
         });
         text
     }
@@ -161,10 +145,12 @@ impl ElasticModel for ShapeBased {
         let mut text = super::describe(&super::elements_in_words(body), self.stiffness, self.damping, body);
         match (body.dimension, self.rotation) {
             (Dimension::Plane, _) => text += ", rotations by Eq. (9)",
-            (Dimension::Space, RotationReading::Exact) => text += ", rotation exact",
             (Dimension::Space, rotation) => {
-                let plural = if self.passes == 1 { "" } else { "es" };
-                text += &format!(", rotation {} with {} pass{plural}", words::typed(&rotation), self.passes);
+                text += &format!(", rotation {}", words::typed(&rotation));
+                if rotation.has_passes() {
+                    let plural = if self.passes == 1 { "" } else { "es" };
+                    text += &format!(" with {} pass{plural}", self.passes);
+                }
             }
         }
         if self.damping > 0.0 {
@@ -175,7 +161,7 @@ impl ElasticModel for ShapeBased {
 
     /// The readings for comparison and the damping of deformation have the reference code only.
     fn known(&self) -> Option<Known<'_>> {
-        let is_known = matches!(self.rotation, RotationReading::Arctangent | RotationReading::Exact)
+        let is_known = matches!(self.rotation, RotationReading::Arctangent | RotationReading::Robust)
             && (self.damping == 0.0 || self.damping_of == DampingReading::RelativeMotion);
         is_known.then_some(Known::ShapeBased(self))
     }
@@ -229,25 +215,14 @@ impl ShapeBased {
     fn rotation(&self, solver: Solver, at_rest: DMat3, last: &[f64], next: &mut [f64]) -> DMat3 {
         match solver {
             Solver::Plane => planar::solve(at_rest, DVec2::from_slice(last)).write_to_slice(next),
-            Solver::Space => self.rotation_in_space(at_rest, DQuat::from_slice(last)).write_to_slice(next),
+            Solver::Space => {
+                self.rotation.follow(at_rest, DQuat::from_slice(last), self.passes).write_to_slice(next);
+            }
             Solver::Linear => {
                 linear_update::update(at_rest, DMat3::from_cols_slice(last), self.passes).write_cols_to_slice(next);
             }
         }
         solver.matrix(next)
-    }
-
-    /// The rotation of an element in space from its last one, by the method chosen.
-    fn rotation_in_space(&self, at_rest: DMat3, last: DQuat) -> DQuat {
-        use linearised::{iterate, rotation_by_arctangent, rotation_by_length, solve, solve_symmetric};
-        match self.rotation {
-            RotationReading::VectorLength => iterate(at_rest, last, self.passes, |a| rotation_by_length(solve(a))),
-            RotationReading::Symmetric => {
-                iterate(at_rest, last, self.passes, |a| rotation_by_arctangent(solve_symmetric(a)))
-            }
-            RotationReading::Exact => davenport1968::optimum(at_rest, last),
-            _ => iterate(at_rest, last, self.passes, |a| rotation_by_arctangent(solve(a))),
-        }
     }
 }
 
@@ -371,7 +346,7 @@ impl ForceModel for Elements {
 
     /// A fixed number of passes leaves an error that depends on the rotation from which they start.
     fn depends_on_history(&self) -> bool {
-        matches!(self.solver, Solver::Space | Solver::Linear) && self.model.rotation != RotationReading::Exact
+        matches!(self.solver, Solver::Space | Solver::Linear) && self.model.rotation.has_passes()
     }
 
     fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report {

@@ -3,7 +3,7 @@
 //! Components perpendicular to the axis grow by `√(1 + |w|²)` in each step, so a spinning element grows: by 22 % after
 //! 1000 steps of 0.02 rad. After one pass the torque of Eq. (5) is exactly zero, as Eq. (15) is then solved exactly.
 
-use super::linearised;
+use super::{linearised, size};
 use glam::{DMat3, DVec3};
 
 /// The least determinant of the matrix of Eq. (15) that counts as regular, relative to the third power of its size.
@@ -31,10 +31,6 @@ pub(crate) fn update(at_rest: DMat3, last: DMat3, passes: u32) -> DMat3 {
 /// `[w]×`, the off-diagonal part of Eq. (12).
 fn cross(w: DVec3) -> DMat3 {
     DMat3::from_cols_array(&[0.0, w.z, -w.y, -w.z, 0.0, w.x, w.y, -w.x, 0.0])
-}
-
-fn size(a: DMat3) -> f64 {
-    a.to_cols_array().iter().fold(0.0, |size: f64, entry| size + entry.abs())
 }
 
 #[cfg(test)]

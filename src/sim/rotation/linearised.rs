@@ -20,6 +20,23 @@ pub(crate) fn solve_symmetric(a: DMat3) -> DVec3 {
     cramer(columns((a + a.transpose()) * 0.5), -torque(a))
 }
 
+/// The increment of fifth order, a quaternion that is not normalised: with `v₀ = (2H)⁻¹ g` and `g = Σ R × r`, the vector
+/// part is `v = v₀ − (g·v₀) (2H)⁻¹ v₀` for a scalar part of 1. Its first term is [`rotation_by_cayley`].
+///
+/// It is Davenport's eigenvalue problem to the next order: [`robust`](super::robust) has one more term.
+pub(crate) fn quintic(a: DMat3) -> DQuat {
+    let hessian = columns(a + a.transpose());
+    let g = -torque(a);
+    let first = cramer(hessian, g);
+    let v = first - cramer(hessian, first) * g.dot(first);
+    DQuat::from_xyzw(v.x, v.y, v.z, 1.0)
+}
+
+/// The determinant of the symmetric matrix.
+pub(crate) fn symmetric_determinant(a: DMat3) -> f64 {
+    determinant((a + a.transpose()) * 0.5)
+}
+
 /// The solution of three equations by Cramer's rule, as three triple products.
 fn cramer([c0, c1, c2]: [DVec3; 3], right: DVec3) -> DVec3 {
     let c12 = c1.cross(c2);
@@ -58,6 +75,12 @@ pub(crate) fn rotation_by_length(w: DVec3) -> DQuat {
     let (sine, cosine) = libm::sincos(0.5 * angle);
     let axis = w * (sine / angle);
     DQuat::from_xyzw(axis.x, axis.y, axis.z, cosine)
+}
+
+/// The rotation with axis `u = w/|w|` and angle `θ = 2 atan(|w|/2)`, whose matrix is Cayley's transform of `[w]×/2`. It
+/// needs no root. It is not normalised.
+pub(crate) fn rotation_by_cayley(w: DVec3) -> DQuat {
+    DQuat::from_xyzw(w.x, w.y, w.z, 2.0)
 }
 
 /// The least value of the leading minors of the Hessian that counts as positive, relative to the size of `A`.

@@ -9,13 +9,23 @@
 //! | `w` | `θ u`, axis times angle (rad) |
 //!
 //! Rotating the equilibrium shape by `L` turns `A` into `L A`, so the corners are read only once for any number of
-//! passes. Except for one reading, for comparison, no function here uses a sine, a cosine or an arctangent: square
+//! passes. Except for two methods, for comparison, no function here uses a sine, a cosine or an arctangent: square
 //! roots and divisions are rounded identically on every machine.
+//!
+//! All methods in space are behind [`RotationReading::follow`]. `localshape study rotation` measures their errors and
+//! their cost; `docs/accuracy.md` has the results, and why [`robust`] is the default.
 
+pub(crate) mod closed_form;
 pub(crate) mod davenport1968;
+pub(crate) mod kugelstadt2018;
 pub(crate) mod linear_update;
 pub(crate) mod linearised;
+pub(crate) mod mueller2016;
 pub(crate) mod planar;
+mod reading;
+pub(crate) mod robust;
+
+pub use reading::RotationReading;
 
 use super::body::Dimension;
 use glam::{DMat3, DQuat, DVec2, DVec3};
@@ -39,6 +49,16 @@ pub(crate) fn best(dimension: Dimension, at_rest: DMat3) -> DMat3 {
         Dimension::Plane => planar::matrix(planar::solve(at_rest, DVec2::X)),
         Dimension::Space => DMat3::from_quat(davenport1968::optimum(at_rest, DQuat::IDENTITY)),
     }
+}
+
+/// `tr A`.
+fn trace(a: DMat3) -> f64 {
+    a.x_axis.x + a.y_axis.y + a.z_axis.z
+}
+
+/// The sum of the absolute values of all entries.
+fn size(a: DMat3) -> f64 {
+    a.to_cols_array().iter().fold(0.0, |size: f64, entry| size + entry.abs())
 }
 
 /// Eq. (5): `Σ r × R`, the torque of the elastic forces over `k` (m²). It is zero at an equilibrium shape.

@@ -1,0 +1,156 @@
+//! `study`: errors against computation time, measured on this machine, as tables and plots.
+
+mod rotation;
+
+use super::console::{print, print_json};
+use super::failure::{Failure, Status};
+#[cfg(feature = "render")]
+use super::options::DeviceOptions;
+use super::options::PrintOptions;
+use super::{interrupt, record};
+use crate::output::SheetFiles;
+#[cfg(feature = "render")]
+use crate::picture::Plots;
+use crate::table::Watch;
+use clap::{Args, Subcommand, ValueHint};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  localshape study rotation                    solvers of rotations in output/study-rotation/
+  localshape study rotation -o rotations       the same elsewhere
+
+The folder then has the results as Markdown, which is also printed, as CSV with all digits, and as plots in SVG and PNG. \
+Times are those of this machine, which should be idle otherwise.";
+
+/// Measure errors against computation time
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Study {
+    #[command(subcommand)]
+    subject: Subject,
+}
+
+/// What is studied.
+#[derive(Subcommand, Debug)]
+enum Subject {
+    Rotation(rotation::Rotation),
+}
+
+/// Options of all studies.
+#[derive(Args, Debug)]
+struct StudyOptions {
+    /// Output folder [default: output/study-NAME]
+    #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    out: Option<PathBuf>,
+
+    /// Replace a study in the output folder that was made with other options, or other files
+    #[arg(long)]
+    overwrite: bool,
+
+    // Pixels need it.
+    #[cfg(feature = "render")]
+    #[command(flatten)]
+    device: DeviceOptions,
+    #[command(flatten)]
+    printing: PrintOptions,
+}
+
+/// A study to be made.
+struct Plan<'a> {
+    /// Its name, which its folder and its files have.
+    name: &'a str,
+    /// The command that repeats it.
+    mark: String,
+    /// The names of its plots, without extensions.
+    plots: &'a [&'a str],
+    /// How much it reports as done in all.
+    work: u64,
+}
+
+/// What a study found.
+struct Findings {
+    /// For people; begins with the plan's mark in a comment.
+    markdown: String,
+    /// With all digits.
+    csv: String,
+    /// The plots, as many as the plan has.
+    #[cfg(feature = "render")]
+    plots: Vec<Plots>,
+    json: Value,
+}
+
+impl Study {
+    pub(super) fn run(self) -> Result<Status, Failure> {
+        match self.subject {
+            Subject::Rotation(rotation) => rotation.run(),
+        }
+    }
+}
+
+impl StudyOptions {
+    /// Makes a study; `measure` returns `None` if its argument says that the user wants to stop.
+    fn run(&self, plan: &Plan<'_>, measure: impl FnOnce(&Watch<'_>) -> Option<Findings>) -> Result<Status, Failure> {
+        interrupt::listen();
+        let folder = self.out.clone().unwrap_or_else(|| Path::new("output").join(format!("study-{}", plan.name)));
+        let mut names: Vec<_> = ["md", "csv"].map(|ending| format!("{}.{ending}", plan.name)).into();
+        if cfg!(feature = "render") {
+            names.extend(plan.plots.iter().flat_map(|plot| ["svg", "png"].map(|ending| format!("{plot}.{ending}"))));
+        }
+        let names: Vec<_> = names.iter().map(String::as_str).collect();
+        SheetFiles::inspect(&folder, &names, &plan.mark, self.overwrite)?;
+        #[cfg(feature = "render")]
+        let gpu = self.device.open([])?;
+        let files = SheetFiles::begin(&folder, &names, &plan.mark, self.overwrite)?;
+        let bar = self.printing.progress(plan.name, plan.work);
+        let found = measure(&|more| {
+            bar.inc(more);
+            !interrupt::requested()
+        });
+        bar.finish_and_clear();
+        let Some(found) = found else {
+            if self.printing.prints_text() {
+                print(&format!("interrupted; {} was not made\n", plan.name))?;
+            }
+            return Ok(Status::Interrupted);
+        };
+        #[allow(unused_mut, reason = "plots need the renderer")]
+        let mut contents = vec![found.markdown.clone().into_bytes(), found.csv.into_bytes()];
+        #[cfg(feature = "render")]
+        for plots in &found.plots {
+            contents.extend(drawn(plots, &plan.mark, &gpu, self.device.samples)?);
+        }
+        files.finish(&contents)?;
+        if self.printing.json {
+            let mut document = json!({ "study": plan.name, "folder": folder.to_string_lossy(), "files": names });
+            record::merge(&mut document, found.json);
+            print_json(&document)?;
+        } else if !self.printing.quiet {
+            print(&format!("{}\nIn {}: {}\n", found.markdown, folder.display(), names.join(", ")))?;
+        }
+        Ok(Status::Done)
+    }
+}
+
+/// Plots as SVG and as PNG.
+#[cfg(feature = "render")]
+fn drawn(plots: &Plots, mark: &str, gpu: &crate::gpu::Gpu, samples: u32) -> Result<[Vec<u8>; 2], Failure> {
+    use super::still::{Format, Still};
+    let (pictures, print) = ([plots.compose()], plots.print());
+    let comment = format!("{}{}", super::film::MARK, env!("CARGO_PKG_VERSION"));
+    let tags = [("comment", comment), ("study", mark.to_owned())];
+    let still = Still { pictures: &pictures, print: Some(&print), source: mark, title: &plots.title, tags: &tags };
+    let svg = still.file(Format::Vector(crate::vector::Format::Svg), None, samples)?;
+    Ok([svg, still.file(Format::Png, Some(gpu), samples)?])
+}
+
+/// The machine in a few words, for tables of times.
+fn machine() -> String {
+    // Only Linux has this file.
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    let name = name.map_or(String::new(), |(_, name)| format!("{}, ", name.trim()));
+    let bits = 64 * crate::sim::floor::lanes();
+    format!("{name}{} {}, vectors of {bits} bits", std::env::consts::ARCH, std::env::consts::OS)
+}
