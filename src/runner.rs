@@ -9,6 +9,7 @@ use crate::sim::apart;
 use crate::sim::body::Body;
 use crate::sim::crew::Crew;
 use crate::sim::diagnostics::Diagnostic;
+use crate::sim::integrate::Integrator;
 use crate::sim::snapshot::{Frame, RunFrame, Status};
 use crate::sim::state::State;
 use crate::sim::world::{Moment, Stepping, Surroundings, World};
@@ -518,7 +519,8 @@ impl Scene {
         let run = &self.runs[run];
         let surroundings =
             Surroundings { gravity: self.gravity, obstacles: self.obstacles.clone(), grips: self.grips.clone() };
-        let stepping = Stepping { integrator: run.integrator, step: run.step, kernel: run.kernel };
+        let tolerance = run.tolerance.unwrap_or(Integrator::TOLERANCE);
+        let stepping = Stepping { integrator: run.integrator, step: run.step, tolerance, kernel: run.kernel };
         let mut world = World::new(&self.body, self.initial.clone(), run.model.as_ref(), surroundings, stepping);
         world.show(self.view.colour.map(|scale| scale.field));
         world

@@ -95,8 +95,10 @@ pub struct Run {
     pub model: Arc<dyn ElasticModel>,
     /// How time is stepped.
     pub integrator: Integrator,
-    /// Time step ΔT (s).
+    /// Time step ΔT (s): the time between frames for an integrator that finds its own steps.
     pub step: f64,
+    /// The error that such an integrator allows in each of its steps, as a share of the size of the body; `None` for others.
+    pub tolerance: Option<f64>,
     /// How a step is computed.
     pub kernel: Kernel,
     /// Its place in the palette, which says what its lines look like ([`Self::line`]). In a figure of several scenes,

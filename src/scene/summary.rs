@@ -67,6 +67,9 @@ pub struct RunSummary {
     pub kernel: Kernel,
     /// Time step (s).
     pub step: f64,
+    /// The error allowed in each step of an integrator that finds its own, as a share of the size of the body.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
     /// Number of steps up to the last frame.
     pub steps: u64,
 }
@@ -88,6 +91,7 @@ impl Scene {
             integrator: typed(&run.integrator),
             kernel: run.kernel,
             step: run.step,
+            tolerance: run.tolerance,
             steps: self.frame_step(at, last),
         };
         SceneSummary {
@@ -231,7 +235,11 @@ impl fmt::Display for SceneSummary {
             let (step, part) = (short(run.step), short(self.cycle / run.step));
             let steps = count(run.steps.into());
             let kernel = if run.kernel == Kernel::Reference { ", kernel reference" } else { "" };
-            line("", &format!("ΔT = {step} s = T/{part}, {steps} steps, {}{kernel}", run.integrator))?;
+            let stepping = match run.tolerance {
+                Some(tolerance) => format!("tolerance {tolerance:e}"),
+                None => format!("ΔT = {step} s = T/{part}, {steps} steps"),
+            };
+            line("", &format!("{stepping}, {}{kernel}", run.integrator))?;
         }
         for obstacle in &self.obstacles {
             line("obstacle", obstacle)?;

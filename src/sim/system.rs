@@ -131,6 +131,13 @@ impl System {
         }
     }
 
+    /// Calls `each` with the nodes that grips hold at the end of a step.
+    pub(super) fn for_each_held(&self, interval: Interval, next: &State, mut each: impl FnMut(usize)) {
+        for (grip, memory) in self.grips(&next.memory.constraints) {
+            grip.moved(interval, memory).for_each(|(node, _, _)| each(node));
+        }
+    }
+
     /// Writes the velocities of the nodes that grips hold at the end of a step, after the integrator has changed them.
     pub(super) fn hold(&self, interval: Interval, after: &mut State) {
         let State { velocity, memory: Memory { constraints, .. }, .. } = after;

@@ -6,7 +6,7 @@ use super::diagnose::Diagnose;
 use super::diagnostics::{Diagnostic, Facts};
 use super::dynamics::{Dynamics, SpeedLimit};
 use super::field::Field;
-use super::integrate::{ByForces, Integrator};
+use super::integrate::{ByForces, Integrator, Scales};
 use super::kernel::{ByKernel, Scheme};
 use super::model::{ElasticModel, Known, Report};
 use super::part::{Forces, Part};
@@ -25,6 +25,8 @@ pub(crate) struct Stepping {
     pub integrator: Integrator,
     /// Time step ΔT (s).
     pub step: f64,
+    /// The error that an adaptive method allows in each of its substeps, as a share of the size of the body. Others ignore it.
+    pub tolerance: f64,
     /// Which code computes a step. The reference code is used for a model without vectorised steps
     /// ([`ElasticModel::known`]) and for several bodies together.
     pub kernel: Kernel,
@@ -34,7 +36,7 @@ impl Stepping {
     /// With the fastest code.
     #[cfg(test)]
     pub(crate) fn new(integrator: Integrator, step: f64) -> Self {
-        Self { integrator, step, kernel: Kernel::default() }
+        Self { integrator, step, tolerance: Integrator::TOLERANCE, kernel: Kernel::default() }
     }
 }
 
@@ -128,13 +130,14 @@ impl World {
             let memory = grip.start(&mut state);
             state.memory.constraints.extend(memory);
         }
-        let Stepping { integrator, step, kernel } = stepping;
+        let Stepping { integrator, step, tolerance, kernel } = stepping;
         let fast = match bodies {
             [(_, model)] if kernel == Kernel::Fast => model.known().zip(Scheme::of(integrator)),
             _ => None,
         };
         let (mut parts, mut limit) = (Vec::new(), None::<SpeedLimit>);
         let (mut first_node, mut mass) = (0, Vec::with_capacity(nodes));
+        let mut scales = Scales { length: 0.0, time: f64::INFINITY };
         for (body, model) in bodies {
             let forces = match fast {
                 Some((Known::ShapeBased(model), _)) => prepared_late(model.clone(), body),
@@ -152,6 +155,8 @@ impl World {
             let part = Part { body: Arc::clone(body), forces, nodes, memory, diagnose: Diagnose::new(body) };
             let period = model.shortest_period(body);
             let own = SpeedLimit::new(body, part.nodes_of(state.nodes()), period, &surroundings, step);
+            scales.length = scales.length.max(body.extent());
+            scales.time = scales.time.min(period / std::f64::consts::TAU);
             limit = Some(limit.map_or(own, |limit| limit.max(own)));
             mass.extend_from_slice(&body.mass);
             first_node = part.nodes.end;
@@ -161,7 +166,7 @@ impl World {
         let system = System { parts, mass, gravity, contact: Box::new(obstacles), grips, step };
         let dynamics: Box<dyn Dynamics> = match (fast, bodies) {
             (Some((model, scheme)), [(body, _)]) => Box::new(ByKernel::new(body, model, scheme, gravity, step)),
-            _ => Box::new(ByForces::new(integrator, &state)),
+            _ => Box::new(ByForces::new(integrator, tolerance, scales, &state)),
         };
         let (limit, wanted) = (limit.unwrap_or_default(), Diagnostic::ALL.to_vec());
         Self { system, dynamics, crew: Crew::new(1), limit, field: None, wanted, state }
@@ -264,10 +269,6 @@ impl World {
     pub fn set_state(&mut self, state: State) {
         assert!(self.takes(&state), "a state of the same bodies");
         self.state = state;
-        let Memory { model, integrator, .. } = &mut self.state.memory;
-        if integrator.len() != 3 * self.state.position.len() + model.len() {
-            integrator.clear();
-        }
         self.dynamics.restart();
     }
 

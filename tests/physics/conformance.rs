@@ -472,7 +472,10 @@ fn every_choice_of_the_scene_format_is_in_the_suites() {
             "pefrl",
             "forest-ruth",
             "blanes-moan",
-            "runge-kutta"
+            "runge-kutta",
+            "quinlan-tremaine",
+            "dormand-prince",
+            "backward-euler"
         ]
     );
 }

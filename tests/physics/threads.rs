@@ -52,6 +52,9 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
         (&spring, Integrator::SemiImplicitEuler, Kernel::Reference),
         (&length, Integrator::VelocityVerlet, Kernel::Reference),
         (&linear, Integrator::ExplicitEuler, Kernel::Reference),
+        (&exact, Integrator::QuinlanTremaine, Kernel::Reference),
+        (&exact, Integrator::DormandPrince, Kernel::Reference),
+        (&exact, Integrator::BackwardEuler, Kernel::Reference),
     ] {
         let ends = [1, 2, 8].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");

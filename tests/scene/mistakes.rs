@@ -318,6 +318,24 @@ fn keys_that_exclude_or_need_each_other() {
     let method = |to: &str| format!("duration = 3\nintegrator = '{to}'");
     let damped = SPACE.replace("1e4 }", "1e4, damping = 1 }");
     case(&damped, "duration = 3", &method("pefrl"), &[(4, 14, "\"pefrl\" has substeps backwards in time")]);
+    case(
+        &damped,
+        "duration = 3",
+        &method("quinlan-tremaine"),
+        &[(4, 14, "\"quinlan-tremaine\" needs forces that depend on positions alone")],
+    );
+    case(
+        SPACE,
+        "duration = 3",
+        "duration = 3\ntolerance = 1e-6",
+        &[(4, 13, "\"semi-implicit-euler\" has fixed steps and no tolerance give `step`")],
+    );
+    case(
+        SPACE,
+        "duration = 3",
+        &format!("{}\nstep = 'T/50'", method("dormand-prince")),
+        &[(5, 8, "\"dormand-prince\" finds its own steps give `tolerance` in place of `step`")],
+    );
     let passes = SPACE.replace("1e4 }", "1e4, passes = 2 }");
     case(
         &passes,

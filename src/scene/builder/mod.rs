@@ -9,7 +9,8 @@ pub use obstacle::ObstacleBuilder;
 
 use super::error::SceneError;
 use super::file::{
-    Coordinates, GrabFile, HoldFile, MotionPath, NodesFile, RegionFile, RunFile, SceneFile, StepFile, TimeFile,
+    Coordinates, GrabFile, HoldFile, MotionPath, NodesFile, Positive, RegionFile, RunFile, SceneFile, StepFile,
+    TimeFile,
 };
 use super::resolve::Unwritten;
 use super::step::FractionOfCycle;
@@ -71,7 +72,8 @@ impl Scene {
             gravity: None,
             time: TimeFile {
                 duration: 1.0,
-                step: StepFile::default(),
+                step: None,
+                tolerance: None,
                 frames_per_second: 60.0,
                 integrator: Integrator::default(),
             },
@@ -100,13 +102,20 @@ impl SceneBuilder {
 
     /// Time step ΔT of all runs that have none of their own (s).
     pub fn step(mut self, seconds: f64) -> Self {
-        self.0.time.step = StepFile::Seconds(seconds);
+        self.0.time.step = Some(StepFile::Seconds(seconds));
         self
     }
 
     /// So many steps in the shortest period T = 2π√(m/k) of all runs, instead of 50, for runs without a step of their own.
     pub fn steps_per_cycle(mut self, steps: f64) -> Self {
-        self.0.time.step = StepFile::Cycles(FractionOfCycle::Divided(steps));
+        self.0.time.step = Some(StepFile::Cycles(FractionOfCycle::Divided(steps)));
+        self
+    }
+
+    /// The error allowed in each step of an integrator that finds its own, as a share of the size of the body, for runs without a
+    /// tolerance of their own.
+    pub fn tolerance(mut self, share: f64) -> Self {
+        self.0.time.tolerance = Some(Positive(share));
         self
     }
 
@@ -251,7 +260,16 @@ impl RunBuilder {
     /// A run of a model.
     pub fn new(model: impl Into<ModelParameters>) -> Self {
         let (name, model) = (String::new(), model.into());
-        Self(RunFile { name, model, step: None, integrator: None, kernel: None, colour: None, own: None })
+        Self(RunFile {
+            name,
+            model,
+            step: None,
+            tolerance: None,
+            integrator: None,
+            kernel: None,
+            colour: None,
+            own: None,
+        })
     }
 
     /// A run of a model of your own. The scene then has no digest.
@@ -270,6 +288,12 @@ impl RunBuilder {
     /// So many steps of this run in the shortest period T = 2π√(m/k) of all runs.
     pub fn steps_per_cycle(mut self, steps: f64) -> Self {
         self.0.step = Some(StepFile::Cycles(FractionOfCycle::Divided(steps)));
+        self
+    }
+
+    /// The error allowed in each step of this run, for an integrator that finds its own, as a share of the size of the body.
+    pub fn tolerance(mut self, share: f64) -> Self {
+        self.0.tolerance = Some(Positive(share));
         self
     }
 

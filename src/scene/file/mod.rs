@@ -69,8 +69,11 @@ pub(in crate::scene) struct TimeFile {
     pub(in crate::scene) duration: f64,
     /// Time step ΔT: seconds, or a fraction of the cycle T such as `"T/50"` or `"0.02 T"`. T = 2π√(m/k), with the mass of
     /// the lightest node and the largest stiffness of all runs, so that one step suits every run.
-    #[serde(default)]
-    pub(in crate::scene) step: StepFile,
+    #[schemars(extend("default" = "T/50"))]
+    pub(in crate::scene) step: Option<StepFile>,
+    /// In place of `step`, for `integrator = "dormand-prince"`: the error allowed in each of its steps, as a share of the size of
+    /// the body. Default: 1e-6.
+    pub(in crate::scene) tolerance: Option<Positive>,
     /// Frames per second of simulated time (1/s).
     #[serde(default = "sixty")]
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -94,10 +97,9 @@ pub(in crate::scene) enum StepFile {
     Cycles(#[schemars(extend("format" = "fraction-of-T"))] FractionOfCycle),
 }
 
-impl Default for StepFile {
-    fn default() -> Self {
-        Self::Cycles(FractionOfCycle::Divided(50.0))
-    }
+impl StepFile {
+    /// The step of a scene that gives none.
+    pub(in crate::scene) const DEFAULT: Self = Self::Cycles(FractionOfCycle::Divided(50.0));
 }
 
 /// One run: a model on the scene's body.
@@ -111,6 +113,8 @@ pub(in crate::scene) struct RunFile {
     pub(in crate::scene) model: ModelParameters,
     /// Time step of this run, with the same T as in `[time]`. Default: that of `[time]`.
     pub(in crate::scene) step: Option<StepFile>,
+    /// Tolerance of this run, in place of `step`. Default: that of `[time]`.
+    pub(in crate::scene) tolerance: Option<Positive>,
     /// Integrator of this run. Default: that of `[time]`.
     pub(in crate::scene) integrator: Option<Integrator>,
     /// How a step is computed. Default: `fast` where the model has it, else `reference`. The choice moves states by round-off

@@ -194,7 +194,8 @@ pub(super) fn resolve(
     let physics = physics(&parts, beside, limits, report);
     let view = view(&parts, &physics, report);
     if let (0, Some(runs)) = (report.total(), &physics.runs) {
-        let longest = runs.iter().fold(0.0, |longest: f64, run| longest.max(run.step));
+        let fixed = runs.iter().filter(|run| run.tolerance.is_none());
+        let longest = fixed.fold(0.0, |longest: f64, run| longest.max(run.step));
         obstacles::check_steps(&parts.obstacles, longest, report);
         grips::check_steps(&parts.holds, &parts.grabs, longest, report);
     }

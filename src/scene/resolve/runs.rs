@@ -4,7 +4,8 @@ use super::body::ResolvedBody;
 use crate::reading::report::{Report, Way};
 use crate::reading::words;
 use crate::scene::Run;
-use crate::scene::file::{RunFile, StepFile, TimeFile};
+use crate::scene::file::{Positive, RunFile, StepFile, TimeFile};
+use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use crate::sim::world::Kernel;
 use std::sync::Arc;
@@ -37,19 +38,28 @@ pub(super) fn resolve(
     let mut runs = Vec::with_capacity(models.len());
     for (at, (run, model)) in typed.iter().zip(models).enumerate() {
         let (run, time) = (run.as_ref()?, time?);
+        let integrator = run.integrator.unwrap_or(time.integrator);
+        if let Some((path, message, hint)) = misplaced(at, run, time, integrator) {
+            report.at(&path, message, hint);
+            return None;
+        }
         let own = [Way::Key("run"), Way::Index(at), Way::Key("step")];
         let (step, path) = match &run.step {
             Some(step) => (step, &own[..]),
-            None => (&time.step, &[Way::Key("time"), Way::Key("step")][..]),
+            None => (time.step.as_ref().unwrap_or(&StepFile::DEFAULT), &[Way::Key("time"), Way::Key("step")][..]),
         };
-        let step = seconds(step, cycle);
+        let tolerance = integrator.is_adaptive().then(|| {
+            let typed = run.tolerance.or(time.tolerance);
+            typed.map_or(Integrator::TOLERANCE, |Positive(share)| share)
+        });
+        let step = if tolerance.is_some() { 1.0 / time.frames_per_second } else { seconds(step, cycle) };
         if !(step.is_normal() && step > 0.0 && time.duration / step <= MOST_STEPS) {
             let message =
                 format!("the time step comes out as {step:e} s with T = {cycle:.4e} s, which cannot be counted");
             report.at(path, message, "make it larger, or masses and stiffness less extreme".to_owned());
             return None;
         }
-        if step > time.duration && time.duration > 0.0 {
+        if step > time.duration && time.duration > 0.0 && tolerance.is_none() {
             let message = format!(
                 "the time step of {} is {} s, longer than the whole scene of {} s: nothing would move",
                 words::quoted(&run.name),
@@ -63,7 +73,6 @@ pub(super) fn resolve(
             );
             return None;
         }
-        let integrator = run.integrator.unwrap_or(time.integrator);
         if let Some(reason) = integrator.refusal(|| model.prepare(&Arc::new(body.body.clone()))) {
             let path = match run.integrator {
                 Some(_) => vec![Way::Key("run"), Way::Index(at), Way::Key("integrator")],
@@ -84,9 +93,31 @@ pub(super) fn resolve(
             report.at(&path, message, "remove it, or write \"reference\"".to_owned());
             return None;
         }
-        runs.push(Run { name: run.name.clone(), model, integrator, step, kernel, place: 0, colour });
+        runs.push(Run { name: run.name.clone(), model, integrator, step, tolerance, kernel, place: 0, colour });
     }
     Some(runs)
+}
+
+/// A step for an integrator that finds its own, or a tolerance for one that does not: where, what and what to do.
+fn misplaced(
+    at: usize,
+    run: &RunFile,
+    time: &TimeFile,
+    integrator: Integrator,
+) -> Option<(Vec<Way<'static>>, String, String)> {
+    let own = |key| vec![Way::Key("run"), Way::Index(at), Way::Key(key)];
+    let common = |key| vec![Way::Key("time"), Way::Key(key)];
+    let name = words::quoted(&crate::sim::words::typed(&integrator));
+    if integrator.is_adaptive() {
+        let path = if run.step.is_some() { own("step") } else { common("step") };
+        let is_typed = run.step.is_some() || time.step.is_some() && run.integrator.is_none();
+        let message = format!("{name} finds its own steps");
+        return is_typed.then(|| (path, message, "give `tolerance` in place of `step`, such as 1e-6".into()));
+    }
+    let path = if run.tolerance.is_some() { own("tolerance") } else { common("tolerance") };
+    let is_typed = run.tolerance.is_some() || time.tolerance.is_some() && run.integrator.is_none();
+    let message = format!("{name} has fixed steps and no tolerance");
+    is_typed.then(|| (path, message, "give `step`, or `integrator = \"dormand-prince\"`".into()))
 }
 
 fn seconds(step: &StepFile, cycle: f64) -> f64 {

@@ -15,7 +15,7 @@ pub(super) fn step(
     state: &State,
     trial: &mut Trial,
 ) -> Result<(), Runaway> {
-    let Trial { next, evaluations: [evaluation, sums], scratch } = trial;
+    let Trial { next, evaluations: [evaluation, sums], scratch, .. } = trial;
     let (nodes, step) = (state.position.len(), interval.step);
     sums.clear();
     sums.resize(6 * nodes, 0.0);

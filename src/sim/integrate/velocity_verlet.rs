@@ -23,13 +23,15 @@ pub(super) fn step(
     state: &State,
     trial: &mut Trial,
 ) -> Result<(), Runaway> {
-    let Trial { next, evaluations: [at_start, at_end], scratch } = trial;
+    let Trial { next, evaluations: [at_start, at_end], scratch, .. } = trial;
     let step = interval.step;
     let known = &state.memory.integrator;
-    if known.is_empty() {
+    // Anything else is the memory of another method.
+    let is_known = known.len() == 3 * state.position.len() + state.memory.model.len();
+    if !is_known {
         evaluate(system, state.nodes(), &state.memory.model, at_start, scratch);
     }
-    let (acceleration, model) = split(if known.is_empty() { at_start } else { known }, system);
+    let (acceleration, model) = split(if is_known { known } else { at_start }, system);
     next.memory.model.copy_from_slice(model);
     // The new positions, and the velocities predicted with constant acceleration.
     for (node, &acceleration) in acceleration.iter().enumerate() {

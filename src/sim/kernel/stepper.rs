@@ -37,7 +37,10 @@ impl Scheme {
             Integrator::Pefrl => Some(Self::Composition(&composition::PEFRL)),
             Integrator::ForestRuth => Some(Self::Composition(&composition::FOREST_RUTH)),
             Integrator::BlanesMoan => Some(Self::Composition(&composition::BLANES_MOAN)),
-            Integrator::RungeKutta => None,
+            Integrator::RungeKutta
+            | Integrator::QuinlanTremaine
+            | Integrator::DormandPrince
+            | Integrator::BackwardEuler => None,
         }
     }
 }

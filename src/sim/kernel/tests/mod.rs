@@ -196,7 +196,13 @@ pub(super) fn stepped_by_reference(
         Scheme::Composition(_) if scheme == FOREST_RUTH => Integrator::ForestRuth,
         Scheme::Composition(_) => Integrator::BlanesMoan,
     };
-    World::new(body, start.clone(), model, around, Stepping { integrator, step, kernel: Kernel::Reference })
+    World::new(
+        body,
+        start.clone(),
+        model,
+        around,
+        Stepping { kernel: Kernel::Reference, ..Stepping::new(integrator, step) },
+    )
 }
 
 fn reference(

@@ -125,7 +125,7 @@ fn what_holds_and_moves_is_that_of_the_reference() {
                     let world = |kernel, obstacles: &[Obstacle]| {
                         let (obstacles, grips) = (obstacles.to_vec(), grips.clone());
                         let around = Surroundings { gravity: GRAVITY, obstacles, grips };
-                        let stepping = Stepping { integrator, step: STEP, kernel };
+                        let stepping = Stepping { kernel, ..Stepping::new(integrator, STEP) };
                         World::new(body, start(body, 8), model.as_ref(), around, stepping)
                     };
                     let [mut fast, mut plain] =

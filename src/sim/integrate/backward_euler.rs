@@ -1,0 +1,178 @@
+//! Backward Euler: `V' = V + A(P', V') ΔT`, `P' = P + V' ΔT`: of first order and implicit. It is stable for any step and
+//! damps what it cannot resolve.
+//!
+//! The equation for `V'` is solved by Newton's method, and each linear system by conjugate gradients with products of
+//! matrix and vector from differences of forces: no matrix is stored, and any model will do. The residual is the negative
+//! gradient of `m|V' − V|²/2 + E(P')` with respect to `V'`, up to factors, and its minimum is sought: where that is not convex,
+//! conjugate gradients end with the direction found so far, and a step along it ends where the residual turns against it.
+//!
+//! D. Baraff, A. Witkin, SIGGRAPH 98, 43 (1998), with one Newton step; J. Nocedal, S. Wright, Numerical Optimization (2006),
+//! chapter 7.1: inexact Newton steps.
+//!
+//! Kinematic constraints hold nodes where they are at the end of the step. Contact acts at its end.
+
+use super::{Interval, Runaway, Scales, State, System, Trial, check, evaluate, split};
+use glam::DVec3;
+
+/// The most Newton steps. Most steps need three or four, those of many cycles T more.
+const MOST_NEWTON: usize = 50;
+/// The most iterations of conjugate gradients in a Newton step.
+const MOST_LINEAR: usize = 100;
+/// The residual of a linear system, as a share of that before.
+const LINEAR: f64 = 1e-3;
+/// Newton's method ends where the residual (m/s) times the step is less than this share of the size of the body.
+const RESIDUAL: f64 = 1e-10;
+/// The greatest displacement in a difference of forces, as a share of the size of the body.
+const DIFFERENCE: f64 = 1e-7;
+/// How often a Newton step is shortened.
+const MOST_CUTS: usize = 10;
+/// After so many Newton steps that do not halve the residual, what is left is round-off.
+const MOST_IDLE: usize = 3;
+
+/// Buffers, and the size of the body.
+pub(super) struct BackwardEuler {
+    scales: Scales,
+    is_held: Vec<bool>,
+    /// `V + A ΔT − V'` (m/s), where it is to become zero.
+    residual: Vec<DVec3>,
+    /// The residual of the linear system, its solution, the direction of search, and the matrix times it.
+    linear: [Vec<DVec3>; 4],
+    /// Velocities from which a Newton step starts (m/s).
+    from: Vec<DVec3>,
+}
+
+impl BackwardEuler {
+    pub(super) fn new(scales: Scales) -> Self {
+        let (is_held, residual, linear, from) = Default::default();
+        Self { scales, is_held, residual, linear, from }
+    }
+
+    /// Computes a step; `limit` (m/s) is the greatest speed.
+    pub(super) fn step(
+        &mut self,
+        system: &System,
+        interval: Interval,
+        limit: f64,
+        state: &State,
+        trial: &mut Trial,
+    ) -> Result<(), Runaway> {
+        self.is_held.clear();
+        self.is_held.resize(state.position.len(), false);
+        system.for_each_held(interval, &trial.next, |node| self.is_held[node] = true);
+        // A body at rest is the better start for steps in which it would turn or deform far.
+        trial.next.velocity.fill(DVec3::ZERO);
+        let still = self.residual(system, interval, state, trial);
+        trial.next.velocity.copy_from_slice(&state.velocity);
+        let mut size = self.residual(system, interval, state, trial);
+        if still < size || size.is_nan() {
+            trial.next.velocity.fill(DVec3::ZERO);
+            size = self.residual(system, interval, state, trial);
+        }
+        let (mut least, mut idle) = (size, 0);
+        for _ in 0..MOST_NEWTON {
+            let largest = self.residual.iter().map(|residual| residual.length_squared()).fold(0.0, f64::max);
+            let is_solved = largest.sqrt() * interval.step <= RESIDUAL * self.scales.length;
+            // What is not a number is found by the check of the speeds.
+            if is_solved || idle == MOST_IDLE || !size.is_finite() {
+                break;
+            }
+            self.solve(system, interval, state, trial);
+            self.from.clone_from(&trial.next.velocity);
+            let first = dot(system, &self.residual, &self.linear[1]);
+            let mut share = 1.0;
+            for cut in 0..=MOST_CUTS {
+                let starts = self.from.iter().zip(&self.linear[1]);
+                for (velocity, (&from, &change)) in trial.next.velocity.iter_mut().zip(starts) {
+                    *velocity = from + change * share;
+                }
+                size = self.residual(system, interval, state, trial);
+                let slope = dot(system, &self.residual, &self.linear[1]);
+                if slope >= -0.5 * first || cut == MOST_CUTS {
+                    break;
+                }
+                // Where the residual would be across the step, if it changed linearly.
+                share *= if slope.is_finite() { (first / (first - slope)).clamp(0.1, 0.5) } else { 0.1 };
+            }
+            idle = if size < 0.25 * least { 0 } else { idle + 1 };
+            least = least.min(size);
+        }
+        let Trial { next, evaluations: [evaluation, _], .. } = trial;
+        next.memory.model.copy_from_slice(split(evaluation, system).1);
+        next.memory.integrator.clear();
+        check(&next.velocity, limit)?;
+        system.constrain(interval, state, next, None);
+        Ok(())
+    }
+
+    /// Evaluates the forces at the end of a step with the velocities in `trial`, and the residual (m/s). Returns the sum of
+    /// its squares, weighted with the masses.
+    fn residual(&mut self, system: &System, interval: Interval, state: &State, trial: &mut Trial) -> f64 {
+        let Trial { next, evaluations: [evaluation, _], scratch, .. } = trial;
+        for ((position, &from), &velocity) in next.position.iter_mut().zip(&state.position).zip(&next.velocity) {
+            *position = from + velocity * interval.step;
+        }
+        system.place_held(interval, 1.0, next);
+        evaluate(system, next.nodes(), &state.memory.model, evaluation, scratch);
+        let (acceleration, _) = split(evaluation, system);
+        self.residual.clear();
+        self.residual.extend((0..acceleration.len()).map(|node| {
+            let residual = state.velocity[node] + acceleration[node] * interval.step - next.velocity[node];
+            if self.is_held[node] { DVec3::ZERO } else { residual }
+        }));
+        dot(system, &self.residual, &self.residual)
+    }
+
+    /// Solves `(1 − ∂A/∂V' ΔT) x = residual` by conjugate gradients with the masses as weights, in which the matrix is
+    /// symmetric. The solution is in `self.linear[1]`.
+    fn solve(&mut self, system: &System, interval: Interval, state: &State, trial: &mut Trial) {
+        let Self { scales, is_held, residual, linear: [rest, solution, direction, product], .. } = self;
+        let Trial { next, evaluations: [here, there], before_contact: moved, scratch } = trial;
+        let nodes = residual.len();
+        rest.clone_from(residual);
+        direction.clone_from(residual);
+        solution.clear();
+        solution.resize(nodes, DVec3::ZERO);
+        let first = dot(system, rest, rest);
+        let mut size = first;
+        for iteration in 0..MOST_LINEAR {
+            let largest = direction.iter().map(|vector| vector.length_squared()).fold(0.0, f64::max).sqrt();
+            let small = DIFFERENCE * scales.length / (largest * interval.step);
+            moved.clear();
+            moved.extend((0..nodes).map(|node| next.position[node] + direction[node] * (small * interval.step)));
+            moved.extend((0..nodes).map(|node| next.velocity[node] + direction[node] * small));
+            let (position, velocity) = moved.split_at(nodes);
+            evaluate(system, super::Nodes { position, velocity }, &state.memory.model, there, scratch);
+            let (here, there) = (split(here, system).0, split(there, system).0);
+            product.clear();
+            product.extend((0..nodes).map(|node| {
+                let change = (there[node] - here[node]) * (interval.step / small);
+                if is_held[node] { DVec3::ZERO } else { direction[node] - change }
+            }));
+            let curvature = dot(system, direction, product);
+            let is_convex = curvature > 0.0;
+            if !is_convex {
+                if iteration == 0 {
+                    solution.clone_from(direction);
+                }
+                return;
+            }
+            let length = size / curvature;
+            for node in 0..nodes {
+                solution[node] += direction[node] * length;
+                rest[node] -= product[node] * length;
+            }
+            let last = std::mem::replace(&mut size, dot(system, rest, rest));
+            if size <= LINEAR * LINEAR * first {
+                return;
+            }
+            for (direction, &rest) in direction.iter_mut().zip(&*rest) {
+                *direction = rest + *direction * (size / last);
+            }
+        }
+    }
+}
+
+/// The sum of `m a·b` over all nodes, in their order.
+fn dot(system: &System, one: &[DVec3], other: &[DVec3]) -> f64 {
+    system.mass.iter().zip(one).zip(other).map(|((mass, one), &other)| mass * one.dot(other)).sum()
+}
