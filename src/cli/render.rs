@@ -134,8 +134,14 @@ impl Render {
             run: jobs.first().and_then(|job| job.runs.first().copied()),
             stills: if self.options.frames.is_some() { usize::MAX } else { Sheet::FRAMES },
         });
-        let device =
-            Device { gpu, writers: threads.min(MOST_WRITERS), keep: !self.no_frames, resume: self.resume, shared, made: Mutex::default() };
+        let device = Device {
+            gpu,
+            writers: threads.min(MOST_WRITERS),
+            keep: !self.no_frames,
+            resume: self.resume,
+            shared,
+            made: Mutex::default(),
+        };
         let result = record::run_all(jobs, &self.options, words, self.timings, Some(&device));
         if self.options.printing.prints_text() {
             let made = device.made.into_inner().unwrap_or_else(PoisonError::into_inner);

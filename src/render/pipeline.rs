@@ -15,9 +15,9 @@ pub(super) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba
 /// The finished picture, written as sRGB values.
 pub(super) const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Surfaces are moved back by what their depth changes within about a pixel, so that lines on them, which are tested against
+/// Surfaces are moved back by what their depth changes within two pixels, so that lines on them, which are tested against
 /// the pixels around, lie before them however they are turned. Greater depths are nearer.
-const LINES_BEFORE: f32 = -1.0;
+const LINES_BEFORE: f32 = -2.0;
 
 /// The description of a pipeline, as far as pipelines differ.
 pub(super) struct Recipe<'a> {

@@ -341,10 +341,7 @@ fn shards_with_holes_or_of_other_sequences_are_not_merged() {
     other(" --only Mass-spring", &["differ in the runs"]);
     // Of other frames: 2 and 5, or 4 alone, instead of 1 and 4.
     other(" --frames 1-6", &["frame 2 is in shard 2/3 and in 3/3; shards of the same --frames"]);
-    other(
-        " --frames 0,4-6",
-        &["frame 2 is in shard 3/3 and should be in 2/3; shards of the same --frames"],
-    );
+    other(" --frames 0,4-6", &["frame 2 is in shard 3/3 and should be in 2/3; shards of the same --frames"]);
     place.write("edited.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.6"));
     place.run("render edited.toml --shard 2/3 -o edited").good();
     merge("shards/1 edited shards/3", &["differ in the scene"]);

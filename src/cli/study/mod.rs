@@ -119,7 +119,7 @@ impl StudyOptions {
         let mut contents = vec![found.markdown.clone().into_bytes(), found.csv.into_bytes()];
         #[cfg(feature = "render")]
         for plots in &found.plots {
-            contents.extend(drawn(plots, &plan.mark, &gpu, self.device.samples)?);
+            contents.extend(drawn(plots, &plan.mark, &gpu)?);
         }
         files.finish(&contents)?;
         if self.printing.json {
@@ -135,14 +135,14 @@ impl StudyOptions {
 
 /// Plots as SVG and as PNG.
 #[cfg(feature = "render")]
-fn drawn(plots: &Plots, mark: &str, gpu: &crate::gpu::Gpu, samples: u32) -> Result<[Vec<u8>; 2], Failure> {
+fn drawn(plots: &Plots, mark: &str, gpu: &crate::gpu::Gpu) -> Result<[Vec<u8>; 2], Failure> {
     use super::still::{Format, Still};
     let (pictures, print) = ([plots.compose()], plots.print());
     let comment = format!("{}{}", super::film::MARK, env!("CARGO_PKG_VERSION"));
     let tags = [("comment", comment), ("study", mark.to_owned())];
     let still = Still { pictures: &pictures, print: Some(&print), source: mark, title: &plots.title, tags: &tags };
-    let svg = still.file(Format::Vector(crate::vector::Format::Svg), None, samples)?;
-    Ok([svg, still.file(Format::Png, Some(gpu), samples)?])
+    let svg = still.draw(Format::Vector(crate::vector::Format::Svg), None)?.file();
+    Ok([svg, still.draw(Format::Png, Some(gpu))?.file()])
 }
 
 /// The machine in a few words, for tables of times.
