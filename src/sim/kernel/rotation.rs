@@ -291,7 +291,7 @@ fn global_of_arrays(a: &[[[f64; MOST]; 3]; 3], q: &mut [[f64; MOST]; 4], lanes: 
 mod tests {
     use super::*;
     use crate::sim::lanes::{Set, Work};
-    use crate::sim::rotation::linearised;
+    use crate::sim::rotation::{linearised, robust};
     use glam::DVec3;
 
     /// Computes the rotations of elements, one vector after the other.
@@ -417,6 +417,8 @@ mod tests {
                 assert!(trace(found) >= trace(optimum) - 1e-11 * size, "{at_rest} {last}");
                 if is_decided(at_rest) {
                     assert!(angle(found, optimum) < 1e-13, "{at_rest} {last}: {}", angle(found, optimum));
+                    let plain = robust::follow(at_rest, last).rotation;
+                    assert!(angle(found, plain) < 1e-13, "{at_rest} {last}: {}", angle(found, plain));
                 }
             }
         }
