@@ -11,8 +11,8 @@ const TIMES: u32 = 4;
 /// pixel, and where stripes are so fine that they are omitted on purpose.
 const SEEN: u8 = 64;
 const PART: f64 = 3e-4;
-/// The greatest root mean square difference of channels. With four samples each pixel on a border differs by up to an
-/// eighth of the step between its sides, which is 32.
+/// The greatest root mean square difference of channels: that of four samples a pixel, with which each pixel on a border differs
+/// by up to an eighth of the step between its sides, which is 32.
 const MEAN: f64 = 4.5;
 
 /// The same picture with every length scaled: lines, marks and glyphs, too.

@@ -10,13 +10,13 @@ use localshape::scene::{Limits, Scene};
 use localshape::sim::body::Dimension;
 use localshape::sim::snapshot::Frame;
 
-/// Frames of a film in which the fastest point moves by one pixel, and so past all samples of a pixel.
+/// Frames of a film in which the fastest point moves by one pixel, and so past all of a pixel.
 const FRAMES: u64 = 21;
 /// Motion between two frames (px).
 const SLOW: f64 = 0.05;
 
-/// Changes of the worst pixels of a film, relative to the step from black to white, in linear light: samples are
-/// averaged there, so one of four samples that changes sides is a quarter at most.
+/// Changes of the worst pixels of a film, relative to the step from black to white, in linear light. Lines
+/// are tested for visibility at four places, so one of these that changes sides is a quarter at most.
 #[derive(Debug, Default)]
 struct Unrest {
     /// The largest change from one frame to the next.
@@ -26,9 +26,9 @@ struct Unrest {
     fro: f64,
 }
 
-/// The bounds. A sample that changes sides on a white background is .24, and a line that begins or ends there adds to
-/// that; where elements are a few pixels large, two samples may change at once. Oscillations are less than one sample:
-/// an edge that stands still within the 1/256 px to which corners are rounded.
+/// The bounds. A place that changes sides on a white background is .24, and a line that begins or ends there adds to that;
+/// where elements are a few pixels large, two places may change at once. Oscillations are less than one of them: an edge that
+/// stands still within the 1/256 px to which corners are rounded.
 const MOST: Unrest = Unrest { jump: 0.30, fro: 0.24 };
 
 fn unrest(film: &[RgbImage]) -> Unrest {
