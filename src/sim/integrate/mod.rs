@@ -77,7 +77,7 @@ impl Integrator {
         match self {
             _ if forces.depends_on_history() => Some(
                 "evaluates forces several times a step, but a fixed number of passes gives forces that depend on the \
-                 evaluation before; use `rotation = \"exact\"` without `passes`, or \"velocity-verlet\"",
+                 evaluation before; use `rotation = \"robust\"` without `passes`, or \"velocity-verlet\"",
             ),
             Self::RungeKutta | Self::DormandPrince | Self::BackwardEuler => None,
             Self::QuinlanTremaine if forces.is_damped() => Some(
