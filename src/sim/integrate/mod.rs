@@ -47,7 +47,7 @@ pub enum Integrator {
     /// symplectic: in long runs its energy drifts.
     RungeKutta,
     /// Quinlan–Tremaine: a symmetric multistep method of eighth order with one evaluation a step. Of all methods it needs the
-    /// fewest evaluations for errors below 1e-2 in free motion. Its first seven steps, and the seven after each step in which a
+    /// fewest evaluations for errors below 1e-4 in free motion. Its first seven steps, and the seven after each step in which a
     /// node rebounds, are taken by a method of 18 evaluations: not for bodies that rest on something. Without damping only.
     QuinlanTremaine,
     /// Dormand–Prince: of fifth order, also with damping, with six evaluations in each substep. It finds its own substeps, from
