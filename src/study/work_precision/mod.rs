@@ -351,14 +351,15 @@ impl Study {
         Some(cost(libm::log(high / error) / libm::log(high / low.max(f64::MIN_POSITIVE)), coarse))
     }
 
-    /// The power with which the error of a method falls as evaluations grow: the median over those halvings in which the
-    /// error is neither large nor round-off.
+    /// The power of the step with which the error of a method falls, or for an adaptive one of evaluations: the median over those
+    /// halvings in which the error is neither large nor round-off.
     pub(crate) fn order(&self, integrator: Integrator) -> Option<f64> {
         let least = 30.0 * self.reference.as_ref().ok()?.error.max(1e-12);
-        let runs: Vec<_> = self.of(integrator).filter_map(|one| Some((one.evaluations as f64, one.error?))).collect();
+        let length = |one: &Measured| if integrator.is_adaptive() { 1.0 / one.evaluations as f64 } else { one.step };
+        let runs: Vec<_> = self.of(integrator).filter_map(|one| Some((length(one), one.error?))).collect();
         let is_usual = |(_, error): &(f64, f64)| (least..1e-2).contains(error);
         let pairs = runs.windows(2).filter(|two| two.iter().all(is_usual));
-        let slopes = pairs.map(|two| libm::log(two[0].1 / two[1].1) / libm::log(two[1].0 / two[0].0));
+        let slopes = pairs.map(|two| libm::log(two[0].1 / two[1].1) / libm::log(two[0].0 / two[1].0));
         let median = Spread::of(slopes).median;
         (!median.is_nan()).then_some(median)
     }
