@@ -91,7 +91,7 @@ fn plots(results: &Results, machine: &str) -> Plots {
             let axes = [axis.to_owned(), "position error, as a share of the body's size".to_owned()];
             Plot { name, axes, curves: study.integrators().map(curve).collect(), slopes }
         };
-        let slopes = Some(([3e4, 1e-6], vec![-1.0, -2.0, -4.0]));
+        let slopes = Some(([8e3, 0.5], vec![-1.0, -2.0, -4.0]));
         [
             plot(study.name.clone(), "evaluations of the forces", |one| one.evaluations as f64, slopes),
             plot("Time".to_owned(), "time (s)", |one| one.time.median, None),
