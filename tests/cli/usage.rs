@@ -22,7 +22,17 @@ fn help_and_version_are_results() {
         assert!(help.out.contains(word) || (word == "render" && cfg!(not(feature = "render"))), "{word}");
     }
     assert_eq!(place.run("--version").good().out, format!("localshape {}\n", env!("CARGO_PKG_VERSION")));
-    for command in ["simulate", "check", "table", "study", "study rotation", "info", "schema", "completions"] {
+    for command in [
+        "simulate",
+        "check",
+        "table",
+        "study",
+        "study rotation",
+        "study work-precision",
+        "info",
+        "schema",
+        "completions",
+    ] {
         place.run(&format!("{command} --help")).good();
     }
 }

@@ -67,6 +67,8 @@ fn every_model_goes_on_from_what_was_written_with_the_same_bits() {
     for body in bodies() {
         let grip = Grip { nodes: vec![0], from: 0.003, until: 0.008, motion: Motion::at(Offset::default()) };
         let ways = ALL.into_iter().flat_map(|way| [(way, Kernel::Fast), (way, Kernel::Reference)]);
+        // The last four have no vectorised steps.
+        let ways = ways.filter(|(way, kernel)| *kernel == Kernel::Reference || ALL[..4].contains(way));
         for (integrator, kernel) in ways {
             for (grips, damping) in [(vec![grip.clone()], 7.0), (vec![], 7.0), (vec![], 0.0)] {
                 let around = Surroundings { gravity: DVec3::Y * -9.8, obstacles: vec![floor(0.5, 0.3)], grips };

@@ -1,6 +1,7 @@
 //! `study`: errors against computation time, measured on this machine, as tables and plots.
 
 mod rotation;
+mod work_precision;
 
 use super::console::{print, print_json};
 use super::failure::{Failure, Status};
@@ -20,6 +21,8 @@ const EXAMPLES: &str = "\
 Examples:
   localshape study rotation                    solvers of rotations in output/study-rotation/
   localshape study rotation -o rotations       the same elsewhere
+  localshape study work-precision              integrators in output/study-work-precision/
+  localshape study work-precision scenes/fig4b.toml  on a scene
 
 The folder then has the results as Markdown, which is also printed, as CSV with all digits, and as plots in SVG and PNG. \
 Times are those of this machine, which should be idle otherwise.";
@@ -36,6 +39,7 @@ pub(super) struct Study {
 #[derive(Subcommand, Debug)]
 enum Subject {
     Rotation(rotation::Rotation),
+    WorkPrecision(work_precision::WorkPrecision),
 }
 
 /// Options of all studies.
@@ -85,6 +89,7 @@ impl Study {
     pub(super) fn run(self) -> Result<Status, Failure> {
         match self.subject {
             Subject::Rotation(rotation) => rotation.run(),
+            Subject::WorkPrecision(work_precision) => work_precision.run(),
         }
     }
 }

@@ -9,8 +9,7 @@ pub use obstacle::ObstacleBuilder;
 
 use super::error::SceneError;
 use super::file::{
-    Coordinates, GrabFile, HoldFile, MotionPath, NodesFile, Positive, RegionFile, RunFile, SceneFile, StepFile,
-    TimeFile,
+    Coordinates, GrabFile, HoldFile, MotionPath, NodesFile, RegionFile, RunFile, SceneFile, StepFile, TimeFile,
 };
 use super::resolve::Unwritten;
 use super::step::FractionOfCycle;
@@ -115,7 +114,7 @@ impl SceneBuilder {
     /// The error allowed in each step of an integrator that finds its own, as a share of the size of the body, for runs without a
     /// tolerance of their own.
     pub fn tolerance(mut self, share: f64) -> Self {
-        self.0.time.tolerance = Some(Positive(share));
+        self.0.time.tolerance = Some(share);
         self
     }
 
@@ -293,7 +292,7 @@ impl RunBuilder {
 
     /// The error allowed in each step of this run, for an integrator that finds its own, as a share of the size of the body.
     pub fn tolerance(mut self, share: f64) -> Self {
-        self.0.tolerance = Some(Positive(share));
+        self.0.tolerance = Some(share);
         self
     }
 

@@ -72,8 +72,9 @@ pub(in crate::scene) struct TimeFile {
     #[schemars(extend("default" = "T/50"))]
     pub(in crate::scene) step: Option<StepFile>,
     /// In place of `step`, for `integrator = "dormand-prince"`: the error allowed in each of its steps, as a share of the size of
-    /// the body. Default: 1e-6.
-    pub(in crate::scene) tolerance: Option<Positive>,
+    /// the body. Default: 1e-6. Below 1e-11 round-off is larger.
+    #[schemars(range(min = 1e-11, max = 0.1))]
+    pub(in crate::scene) tolerance: Option<f64>,
     /// Frames per second of simulated time (1/s).
     #[serde(default = "sixty")]
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -114,7 +115,8 @@ pub(in crate::scene) struct RunFile {
     /// Time step of this run, with the same T as in `[time]`. Default: that of `[time]`.
     pub(in crate::scene) step: Option<StepFile>,
     /// Tolerance of this run, in place of `step`. Default: that of `[time]`.
-    pub(in crate::scene) tolerance: Option<Positive>,
+    #[schemars(range(min = 1e-11, max = 0.1))]
+    pub(in crate::scene) tolerance: Option<f64>,
     /// Integrator of this run. Default: that of `[time]`.
     pub(in crate::scene) integrator: Option<Integrator>,
     /// How a step is computed. Default: `fast` where the model has it, else `reference`. The choice moves states by round-off

@@ -4,7 +4,7 @@ use super::body::ResolvedBody;
 use crate::reading::report::{Report, Way};
 use crate::reading::words;
 use crate::scene::Run;
-use crate::scene::file::{Positive, RunFile, StepFile, TimeFile};
+use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use crate::sim::world::Kernel;
@@ -48,10 +48,8 @@ pub(super) fn resolve(
             Some(step) => (step, &own[..]),
             None => (time.step.as_ref().unwrap_or(&StepFile::DEFAULT), &[Way::Key("time"), Way::Key("step")][..]),
         };
-        let tolerance = integrator.is_adaptive().then(|| {
-            let typed = run.tolerance.or(time.tolerance);
-            typed.map_or(Integrator::TOLERANCE, |Positive(share)| share)
-        });
+        let typed = run.tolerance.or(time.tolerance);
+        let tolerance = integrator.is_adaptive().then(|| typed.unwrap_or(Integrator::TOLERANCE));
         let step = if tolerance.is_some() { 1.0 / time.frames_per_second } else { seconds(step, cycle) };
         if !(step.is_normal() && step > 0.0 && time.duration / step <= MOST_STEPS) {
             let message =

@@ -213,7 +213,7 @@ impl DormandPrince {
                 longest = longest.max((moved - 0.5 * unit) / changed);
             }
         }
-        (longest > 0.0).then(|| if longest < 0.999 * step { step - longest } else { 0.5 * step })
+        (longest > 0.0).then_some(if longest < 0.999 * step { step - longest } else { 0.5 * step })
     }
 }
 

@@ -47,7 +47,7 @@ pub enum Integrator {
     /// symplectic: in long runs its energy drifts.
     RungeKutta,
     /// Quinlan–Tremaine: a symmetric multistep method of eighth order with one evaluation a step. Of all methods it needs the
-    /// fewest evaluations for errors below 1e-2 in free motion. Its first seven steps, and the seven after each step in which a
+    /// fewest evaluations for errors below 1e-4 in free motion. Its first seven steps, and the seven after each step in which a
     /// node rebounds, are taken by a method of 18 evaluations: not for bodies that rest on something. Without damping only.
     QuinlanTremaine,
     /// Dormand–Prince: of fifth order, also with damping, with six evaluations in each substep. It finds its own substeps, from
@@ -77,7 +77,7 @@ impl Integrator {
         match self {
             _ if forces.depends_on_history() => Some(
                 "evaluates forces several times a step, but a fixed number of passes gives forces that depend on the \
-                 evaluation before; use `rotation = \"exact\"` without `passes`, or \"velocity-verlet\"",
+                 evaluation before; use `rotation = \"robust\"` without `passes`, or \"velocity-verlet\"",
             ),
             Self::RungeKutta | Self::DormandPrince | Self::BackwardEuler => None,
             Self::QuinlanTremaine if forces.is_damped() => Some(
