@@ -98,7 +98,7 @@ fn rebounds_feed_energy_where_a_cycle_has_ten_steps() {
             body = {{ lattice = {{ cells = [1, 1, 1], side = 0.1 }}, lowest = 1, \
                       rotation = {{ axis = [{:?}, {:?}, {:?}], angle = {angle:?} }} }}
             obstacle = [{{ kind = 'floor', restitution = 1, friction = 0 }}]
-            run = [{{ name = 'exact', kernel = 'reference', model = {{ kind = 'shape-based', stiffness = 1e4, rotation = 'robust' }} }}]",
+            run = [{{ name = 'exact', kernel = 'reference', model = {{ kind = 'shape-based', stiffness = 1e4, rotation = 'davenport' }} }}]",
             axis.x, axis.y, axis.z
         );
         let scene = Scene::parse(&text, "energy", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
