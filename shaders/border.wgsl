@@ -1,10 +1,10 @@
 // Smooth borders of surfaces: where their colours change at a line, what a pixel that the line crosses gains from the area that
 // lies on the other side. What several lines add is summed, as each covers another part of the pixel.
 
-// A line is hidden by what is nearer by more than surfaces gain in depth within so many pixels at a slope of one.
-const HIDDEN_BY = 3.0;
+// A line is hidden by what lies before it by more than so many pixels are wide there.
+const HIDDEN_BY = 30.0;
 // From this distance (px) to the line on, rounding cannot make a pixel belong to the other side.
-const SURE = 0.02;
+const SURE = 0.004;
 
 // The part of a pixel that lies on the side of a line to which its normal points, if the middle of the pixel is so far on that
 // side (px).
@@ -32,11 +32,12 @@ fn border_colour(segment: Segment) -> @location(0) vec4<f32> {
     if abs(off) >= reach || within <= 0.0 {
         discard;
     }
-    // Colours are read beside the line, and not beside its ends, where another line begins.
-    let share = clamp(gone, min(1.0, 0.5 * extent), max(extent - 1.0, 0.5 * extent)) / max(extent, 1e-6);
-    let middle = start + share * difference;
-    let first = texel_of(middle - normal);
-    let second = texel_of(middle + normal);
+    // The neighbours across the line.
+    let is_steep = abs(normal.x) > abs(normal.y);
+    let across = select(vec2(0.0, sign(normal.y)), vec2(sign(normal.x), 0.0), is_steep);
+    let first = texel_of(segment.place.xy - across);
+    let second = texel_of(segment.place.xy + across);
+    let share = saturate(gone / max(extent, 1e-6));
     let of_alarm = segment.kind == ALARM_EDGE || segment.kind == ALARM_CONTOUR;
     let depths = select(
         vec2(load_depth(first), load_depth(second)),
@@ -47,7 +48,9 @@ fn border_colour(segment: Segment) -> @location(0) vec4<f32> {
     let is_crease = segment.kind == EDGE || segment.kind == ALARM_EDGE;
     let beside = select(min(depths.x, depths.y), max(depths.x, depths.y), is_crease);
     let distance = distance_of(mix(segment.depths.x, segment.depths.y, share));
-    if distance * (1.0 - HIDDEN_BY / panel.focal) > distance_of(beside) || (is_crease && min(depths.x, depths.y) <= 0.0) {
+    let is_hidden = distance * (1.0 - HIDDEN_BY / panel.focal) > distance_of(beside);
+    // Where a set is seen through others, its hidden edges would count, too, where they end at its outline.
+    if is_hidden || (segment.kind == ALARM_EDGE && min(depths.x, depths.y) <= 0.0) {
         discard;
     }
     let own_texel = texel_of(segment.place.xy);

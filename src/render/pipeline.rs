@@ -15,10 +15,6 @@ pub(super) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba
 /// The finished picture, written as sRGB values.
 pub(super) const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Surfaces are moved back by what their depth changes within two pixels, so that lines on them, which are tested against
-/// the pixels around, lie before them however they are turned. Greater depths are nearer.
-const LINES_BEFORE: f32 = -2.0;
-
 /// The description of a pipeline, as far as pipelines differ.
 pub(super) struct Recipe<'a> {
     pub(super) label: &'static str,
@@ -30,8 +26,6 @@ pub(super) struct Recipe<'a> {
     pub(super) target: wgpu::TextureFormat,
     pub(super) blend: Option<wgpu::BlendState>,
     pub(super) depth: bool,
-    /// How much farther depth is stored than it is, in parts of what it changes from pixel to pixel.
-    pub(super) slope: f32,
 }
 
 impl<'a> Recipe<'a> {
@@ -52,7 +46,6 @@ impl<'a> Recipe<'a> {
             target,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),
             depth: false,
-            slope: 0.0,
         }
     }
 
@@ -60,7 +53,7 @@ impl<'a> Recipe<'a> {
     pub(super) fn bodies(label: &'static str, shader: &'a wgpu::ShaderModule, entries: [&'static str; 2]) -> Self {
         let topology = wgpu::PrimitiveTopology::TriangleList;
         let rectangles = Self::rectangles(label, shader, entries, BODY_FORMAT);
-        Self { topology, blend: None, depth: true, slope: LINES_BEFORE, ..rectangles }
+        Self { topology, blend: None, depth: true, ..rectangles }
     }
 
     pub(super) fn build(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
@@ -85,7 +78,7 @@ impl<'a> Recipe<'a> {
                 depth_write_enabled: Some(true),
                 depth_compare: Some(wgpu::CompareFunction::Greater),
                 stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState { slope_scale: self.slope, ..Default::default() },
+                bias: wgpu::DepthBiasState::default(),
             }),
             multisample: wgpu::MultisampleState::default(),
             fragment: Some(wgpu::FragmentState {

@@ -38,6 +38,10 @@ impl ElasticModel for Counting {
         self.model.describe(body)
     }
 
+    fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
+        self.model.start(body, position)
+    }
+
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
         Box::new(CountingForces { forces: self.model.prepare(body), count: Arc::clone(&self.count) })
     }
@@ -49,10 +53,6 @@ struct CountingForces {
 }
 
 impl ForceModel for CountingForces {
-    fn start(&self, position: &[DVec3]) -> Vec<f64> {
-        self.forces.start(position)
-    }
-
     fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]) {
         self.count.fetch_add(1, Ordering::Relaxed);
         self.forces.add_forces(at, memory, next, scratch, forces);

@@ -174,7 +174,8 @@ fn general(body: &Body, start: &Whole, rotation: Rotation, damping: f64, scheme:
 pub(super) fn shape_based(rotation: Rotation, damping: f64) -> ShapeBased {
     let (rotation, passes) = match rotation {
         Rotation::Arctangent { passes } => (RotationReading::Arctangent, passes),
-        Rotation::Optimum => (RotationReading::Robust, 1),
+        // An independent method.
+        Rotation::Optimum => (RotationReading::Davenport, 1),
     };
     ShapeBased { stiffness: STIFFNESS, damping, passes, rotation, damping_of: DampingReading::RelativeMotion }
 }
