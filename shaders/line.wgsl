@@ -82,7 +82,12 @@ fn covered(distance: f32, width: f32) -> f32 {
 
 // The visibility of an edge, and how much of it lies behind a body.
 fn edge_shares(at: Beside, kind: u32, tap: u32) -> vec2<f32> {
-    let seen = visible_share(at.depth * (1.0 + OFFSET), tap_depth(at.middle, tap));
+    // Of a face seen at a grazing angle, what is a pixel nearer to the viewer lies before its edge. So the farther side counts.
+    let across = 0.75 * vec2(-at.along.y, at.along.x);
+    let here = tap_depth(at.middle, tap);
+    let sides = vec2(tap_depth(at.middle + across, tap), tap_depth(at.middle - across, tap));
+    let beside = select(sides, vec2(here), sides <= vec2(0.0));
+    let seen = visible_share(at.depth * (1.0 + OFFSET), min(here, min(beside.x, beside.y)));
     // Obstacles hide all edges; their own edges are seen through clear surfaces only.
     let through = !(seen < 1.0 && is_obstacle(at.middle, tap));
     return vec2(seen, select(0.0, 1.0 - seen, through));

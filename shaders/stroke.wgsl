@@ -68,7 +68,8 @@ fn disc_share(middle: vec2<f32>, pixel: vec2<f32>, before: f32, nearness: f32, t
         min(tap_depth(middle + vec2(0.0, 1.5), tap), tap_depth(middle - vec2(0.0, 1.5), tap)),
     );
     let seen = visible_share(before, min(tap_depth(middle, tap), beside));
-    let here = tap_depth(pixel, tap);
+    // The taps around the middle of a pixel are all in it, so the neighbours count, too.
+    let here = max(tap_depth(pixel, tap), tap_depth(pixel + 0.5 - tap_place(tap), tap));
     let front = before / (1.0 - FRONT * nearness);
     return seen * saturate(0.5 + 0.5 * (front - here) / (max(0.5 * FRONT * nearness, FADED_DEPTH) * max(here, 1e-9)));
 }
