@@ -18,7 +18,7 @@ use crate::history::History;
 use crate::look::Ghost;
 use crate::output::{
     AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Spent, StoredStates, Summary, Tags, Tap,
-    Timings, folder_of, frame_file_name, frame_files, is_drawn,
+    Texts, Timings, folder_of, frame_file_name, frame_files, is_drawn,
 };
 use crate::scene::Scene;
 use crate::shell;
@@ -394,7 +394,7 @@ struct Drawing<'a> {
     scene: &'a Scene,
     artist: Artist<'a>,
     /// The frame that is being drawn while the next one is simulated and composed, and its text chunks.
-    begun: Option<(u64, Vec<(&'static str, String)>, Begun)>,
+    begun: Option<(u64, Texts, Begun)>,
     /// The folder with frames that were drawn before and are kept if they are the same.
     drawn_before: Option<PathBuf>,
     /// The number of these.

@@ -1,6 +1,6 @@
 //! Compresses and writes frames on separate threads, in parallel to drawing.
 
-use super::{Clock, Compression, OutputError, Spent, encode_print, frame_file_name, write_whole};
+use super::{Clock, Compression, OutputError, Spent, Texts, encode_print, frame_file_name, write_whole};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -18,7 +18,7 @@ pub(crate) struct PixelFrame {
     /// The number of the frame.
     pub frame: u64,
     /// The text chunks of the file.
-    pub texts: Vec<(&'static str, String)>,
+    pub texts: Texts,
 }
 
 /// A second consumer of the frame files besides the disk: it gets their numbers and bytes, in any order.

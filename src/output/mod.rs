@@ -29,7 +29,7 @@ pub(crate) use frames::Tap;
 pub(crate) use frames::{FrameWriter, PixelFrame};
 pub(crate) use lock::FolderLock;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
-pub(crate) use png::{encode_print, is_drawn};
+pub(crate) use png::{Texts, encode_print, is_drawn};
 pub(crate) use sheets::SheetFiles;
 pub(crate) use states::{STATES_FILE, StatesWriter};
 pub(crate) use stored::StoredStates;

@@ -10,6 +10,9 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
+/// Text chunks of a picture: the last parts of their keywords, and the texts.
+pub(crate) type Texts = Vec<(&'static str, String)>;
+
 /// The metadata of a picture, in text chunks. They include no time of day: equal pictures are equal files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tags {
@@ -69,7 +72,7 @@ impl Tags {
     }
 
     /// The texts of the chunks, with the last part of their keywords.
-    pub fn texts(&self) -> Vec<(&'static str, String)> {
+    pub fn texts(&self) -> Texts {
         let states: Vec<_> = self.states.iter().map(|(digest, name)| format!("{digest} {name}")).collect();
         let [scene, state] = [("scene", self.scenes.join("\n")), ("state", states.join("\n"))];
         let mut texts = match &self.shows {

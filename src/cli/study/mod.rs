@@ -29,7 +29,7 @@ Times are those of this machine, which should be idle otherwise.";
 
 /// Measure errors against computation time
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, arg_required_else_help = false)]
 pub(super) struct Study {
     #[command(subcommand)]
     subject: Subject,
