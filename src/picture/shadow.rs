@@ -3,7 +3,7 @@
 //!
 //! Bodies are projected along many directions onto a grid of cells. Only the outlines of a projection are drawn: where
 //! triangles that turn towards the light meet others. Each of them begins or ends a layer, row by row, and a cell is in
-//! the shadow where there is at least one layer.
+//! the shadow where there is at least one layer. The file is long by its tests.
 
 use super::camera::{Framing, Lens};
 use super::narrow::narrow;

@@ -1,4 +1,5 @@
-//! Closed surfaces of sets of elements: triangles, edges and contours.
+//! Closed surfaces of sets of elements: triangles, edges and contours. All of these come from the pieces into which a face is
+//! cut, so they are in one file, though it is long.
 
 use super::camera::Lens;
 use super::ears::Ears;
