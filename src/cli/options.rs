@@ -5,7 +5,6 @@ use super::failure::Failure;
 use super::frames::FrameRanges;
 #[cfg(feature = "render")]
 use crate::gpu::{AdapterChoice, Gpu};
-#[cfg(feature = "render")]
 use clap::{Args, ValueHint};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
