@@ -2,7 +2,7 @@
 // lies on the other side. What several lines add is summed, as each covers another part of the pixel.
 
 // A line is hidden by what lies before it by more than so many pixels are wide there.
-const HIDDEN_BY = 30.0;
+const HIDDEN_BY = 6.0;
 // From this distance (px) to the line on, rounding cannot make a pixel belong to the other side.
 const SURE = 0.004;
 
@@ -37,23 +37,24 @@ fn border_colour(segment: Segment) -> @location(0) vec4<f32> {
     let across = select(vec2(0.0, sign(normal.y)), vec2(sign(normal.x), 0.0), is_steep);
     let first = texel_of(segment.place.xy - across);
     let second = texel_of(segment.place.xy + across);
+    let own_texel = texel_of(segment.place.xy);
     let share = saturate(gone / max(extent, 1e-6));
     let of_alarm = segment.kind == ALARM_EDGE || segment.kind == ALARM_CONTOUR;
     let depths = select(
-        vec2(load_depth(first), load_depth(second)),
-        vec2(load_alarm_depth(first), load_alarm_depth(second)),
+        vec3(load_depth(first), load_depth(second), load_depth(own_texel)),
+        vec3(load_alarm_depth(first), load_alarm_depth(second), load_alarm_depth(own_texel)),
         of_alarm,
     );
-    // Faces meet in a crease on both of its sides, a contour has the surface on one.
+    // Faces meet in a crease on both of its sides, so it is hidden by what is before the nearer one. A contour has the surface
+    // on one side: it is hidden if all that is around it is before it.
     let is_crease = segment.kind == EDGE || segment.kind == ALARM_EDGE;
-    let beside = select(min(depths.x, depths.y), max(depths.x, depths.y), is_crease);
+    let beside = select(min(min(depths.x, depths.y), depths.z), max(depths.x, depths.y), is_crease);
     let distance = distance_of(mix(segment.depths.x, segment.depths.y, share));
     let is_hidden = distance * (1.0 - HIDDEN_BY / panel.focal) > distance_of(beside);
     // Where a set is seen through others, its hidden edges would count, too, where they end at its outline.
     if is_hidden || (segment.kind == ALARM_EDGE && min(depths.x, depths.y) <= 0.0) {
         discard;
     }
-    let own_texel = texel_of(segment.place.xy);
     let own = decoded_body(textureLoad(body_colour, own_texel, 0));
     let one = decoded_body(textureLoad(body_colour, select(first, own_texel, off < -SURE), 0));
     let other = decoded_body(textureLoad(body_colour, select(second, own_texel, off > SURE), 0));

@@ -28,9 +28,8 @@ struct Unrest {
 
 /// The bounds. A place that changes sides on a white background is .24, and a line that begins or ends there adds to that;
 /// where elements are a few pixels large, two places may change at once. Oscillations are less than one of them: an edge that
-/// stands still within the 1/256 px to which corners are rounded. In gaps between elements that are narrower than a pixel,
-/// where one border hides another, pixels jump by up to .315.
-const MOST: Unrest = Unrest { jump: 0.32, fro: 0.24 };
+/// stands still within the 1/256 px to which corners are rounded.
+const MOST: Unrest = Unrest { jump: 0.30, fro: 0.24 };
 
 fn unrest(film: &[RgbImage]) -> Unrest {
     let light: [f64; 256] = std::array::from_fn(|byte| linear(byte as u8));
