@@ -62,8 +62,8 @@ fn taken(shade: vec4<f32>, layer: f32, on_floor: vec2<f32>) -> f32 {
     return select(0.0, shade.w * textureSampleLevel(shades, smooth_cells, at, i32(layer), 0.0).r, inside);
 }
 
-@fragment
-fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
+// The colour of the floor where so much of its light is left by the body.
+fn floor_light(corner: Corner, left: f32) -> vec4<f32> {
     let at = corner.on_floor;
     let pixel = corner.place.xy - ground.viewport.xy;
     let size = ground.viewport.zw;
@@ -85,9 +85,21 @@ fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
     let line = clamp(0.5 * thickness + 0.5 - off, vec2(0.0), vec2(1.0))
         * (panel.line_scale / thickness) * (1.0 - smoothstep(vec2(0.12), vec2(0.4), width));
     colour = mix(colour, ground.grid.rgb, GRID_ALPHA * max(line.x, line.y));
-    let left = (1.0 - taken(ground.key, ground.background.w, at)) * (1.0 - taken(ground.sky, ground.floor.w, at));
     colour = mix(ground.shadow.rgb, colour, left);
     let faded = mix(ground.background.rgb, colour, fade);
     // Without a dither, wide shadows show the borders of their 256 steps.
     return vec4(faded + dither(corner.place.xy) * byte_step(faded), 1.0);
+}
+
+@fragment
+fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
+    return floor_light(corner, 1.0);
+}
+
+// Reading shadows takes longer than all the rest. A software driver does it for each pixel, so it is a pipeline of its own.
+@fragment
+fn shadowed_colour(corner: Corner) -> @location(0) vec4<f32> {
+    let at = corner.on_floor;
+    let left = (1.0 - taken(ground.key, ground.background.w, at)) * (1.0 - taken(ground.sky, ground.floor.w, at));
+    return floor_light(corner, left);
 }

@@ -23,9 +23,12 @@ const OBSTACLE_CONTOUR = 9u;
 const HIDDEN = vec2<f32>(0.16, 0.62);
 const SEEN_THROUGH = vec2<f32>(0.70, 0.95);
 
-// Half the width of the widest line (px in the reference picture). Strips that are as narrow as each line leave a drawing
-// driver (llvmpipe of Mesa 22.3) with a megabyte a frame that it does not free, and are no quicker.
-const REACH = 1.25;
+// Widths of lines (px in the reference picture).
+const EDGE_WIDTH = 1.15;
+const FLAT_EDGE_WIDTH = 1.5;
+const ALARM_EDGE_WIDTH = 1.5;
+const CONTOUR_WIDTH = 2.2;
+const FLAT_CONTOUR_WIDTH = 2.5;
 // As for the surfaces of turned-over elements. Moving all lines as far would let stubs of hidden ones show at corners.
 const NEARER = 0.02;
 // A line lies this much before its surface, as a part of the distance.
@@ -48,6 +51,16 @@ fn alarm_depth_around(place: vec2<f32>, tap: u32) -> f32 {
     return load_alarm_depth(texel_around(place, tap));
 }
 
+// The width of the widest line of a kind (px in the reference picture).
+fn widest(kind: u32) -> f32 {
+    switch kind {
+        case EDGE, OBSTACLE_EDGE: { return select(EDGE_WIDTH, FLAT_EDGE_WIDTH, panel.flatness > 0.5); }
+        case ALARM_EDGE: { return ALARM_EDGE_WIDTH; }
+        case BAR: { return BAR_WIDTH; }
+        default: { return select(CONTOUR_WIDTH, FLAT_CONTOUR_WIDTH, panel.flatness > 0.5); }
+    }
+}
+
 @vertex
 fn segment(
     @builtin(vertex_index) corner: u32,
@@ -65,7 +78,7 @@ fn segment(
     let to_pixel = pixel_of(ends.b, size);
     let nearer = select(0.0, NEARER, kind == ALARM_EDGE || kind == ALARM_CONTOUR);
     let depths = vec2(ends.a.z / max(ends.a.w - nearer, panel.near), ends.b.z / max(ends.b.w - nearer, panel.near));
-    let place = strip_corner(corner, from_pixel, to_pixel, REACH * panel.line_scale + 1.0, size);
+    let place = strip_corner(corner, from_pixel, to_pixel, 0.5 * max(widest(kind) * panel.line_scale, 1.0) + 0.5, size);
     return Segment(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, kind, strength);
 }
 
@@ -154,76 +167,117 @@ fn beside(segment: Segment) -> Beside {
     return Beside(middle, along, length(pixel - middle), mix(segment.depths.x, segment.depths.y, share));
 }
 
-// Visibility is tested at the taps around the nearest point of the line, so that lines end smoothly. Edges and contours have separate pipelines, because contours need many more reads.
+// Visibility is tested at the taps around the nearest point of the line, so that lines end smoothly. Each kind of line that reads
+// more than others has a pipeline of its own: a software driver would read all of it for every line.
+
+struct EdgeLook {
+    // Opacity where the edge is seen, but for its width.
+    strength: f32,
+    // Visibility, and how much lies behind a body, of all taps.
+    shares: vec2<f32>,
+    // Opacity behind surfaces of elements that are not inverted, and of turned-over ones.
+    hidden_alpha: vec2<f32>,
+}
+
+fn edge_look(at: Beside, kind: u32) -> EdgeLook {
+    let element = panel.line_share * panel.element;
+    let strength = min(1.0, element / SMALL_ELEMENT) * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, element);
+    var shares = vec2(0.0);
+    for (var tap = 0u; tap < TAPS; tap++) {
+        shares += edge_shares(at, kind, tap) / f32(TAPS);
+    }
+    return EdgeLook(strength, shares, mix(SEEN_THROUGH, HIDDEN, panel.opacity));
+}
+
 @fragment
 fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let at = beside(segment);
     let kind = segment.kind;
     let scale = panel.line_scale;
-    let element = panel.line_share * panel.element;
-    let strength = min(1.0, element / SMALL_ELEMENT) * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, element);
-    let hidden_alpha = mix(SEEN_THROUGH, HIDDEN, panel.opacity);
-    var shares = vec2(0.0);
-    for (var tap = 0u; tap < TAPS; tap++) {
-        shares += edge_shares(at, kind, tap) / f32(TAPS);
-    }
-    if kind == ALARM_EDGE {
-        // Turned-over elements hide more of it than others.
-        var free = 0.0;
-        for (var tap = 0u; tap < TAPS; tap++) {
-            free += visible_share(at.depth * (1.0 + OFFSET), alarm_depth_around(at.middle, tap)) / f32(TAPS);
-        }
-        let behind = mix(0.15, hidden_alpha.y, free);
-        let alpha = select(0.95 * shares.x + behind * shares.y, 0.95, panel.flatness > 0.5);
-        return vec4(0.0, strength * alpha * covered(at.distance, 1.5 * scale * panel.contour_share), 0.0, 0.0);
-    }
+    let look = edge_look(at, kind);
+    let shares = look.shares;
     if kind == BAR {
         let seen = select(shares.x, 1.0, panel.flatness > 0.5);
-        return vec4((0.85 * seen + hidden_alpha.x * (1.0 - seen)) * covered(at.distance, BAR_WIDTH * scale), 0.0, 0.0, 0.0);
+        let alpha = 0.85 * seen + look.hidden_alpha.x * (1.0 - seen);
+        return vec4(alpha * covered(at.distance, BAR_WIDTH * scale), 0.0, 0.0, 0.0);
     }
     if panel.flatness > 0.5 {
-        return vec4(0.75 * strength * covered(at.distance, 1.5 * scale), 0.0, 0.0, 0.0);
+        return vec4(0.75 * look.strength * covered(at.distance, FLAT_EDGE_WIDTH * scale), 0.0, 0.0, 0.0);
     }
     let of_obstacle = kind == OBSTACLE_EDGE;
-    let seen = 0.80 * select(strength, 1.0, of_obstacle) * covered(at.distance, 1.15 * scale);
-    let weak = hidden_alpha.x * strength * strength * covered(at.distance, 0.9 * scale);
+    let seen = 0.80 * select(look.strength, 1.0, of_obstacle) * covered(at.distance, EDGE_WIDTH * scale);
+    let weak = look.hidden_alpha.x * look.strength * look.strength * covered(at.distance, 0.9 * scale);
     let hidden = select(weak, (1.0 - panel.opacity) * seen, of_obstacle);
     return vec4(shares.x * seen + segment.strength * shares.y * hidden, 0.0, 0.0, 0.0);
 }
 
 @fragment
-fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
+fn alarm_edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let at = beside(segment);
-    let of_alarm = segment.kind == ALARM_CONTOUR;
-    let scale = panel.line_scale;
-    if panel.flatness > 0.5 {
-        let outline = covered(at.distance, 2.5 * scale);
-        return select(vec4(0.0, 0.0, outline, 0.0), vec4(0.0, outline, 0.0, 0.0), of_alarm);
+    let look = edge_look(at, ALARM_EDGE);
+    // Turned-over elements hide more of it than others.
+    var free = 0.0;
+    for (var tap = 0u; tap < TAPS; tap++) {
+        free += visible_share(at.depth * (1.0 + OFFSET), alarm_depth_around(at.middle, tap)) / f32(TAPS);
     }
+    let behind = mix(0.15, look.hidden_alpha.y, free);
+    let alpha = select(0.95 * look.shares.x + behind * look.shares.y, 0.95, panel.flatness > 0.5);
+    let width = ALARM_EDGE_WIDTH * panel.line_scale * panel.contour_share;
+    return vec4(0.0, look.strength * alpha * covered(at.distance, width), 0.0, 0.0);
+}
+
+struct ContourLook {
+    // Opacities of the outline and of steps of depth.
+    outline: f32,
+    step: f32,
+    // How much of it is hidden.
+    hidden: f32,
+    // The scale of its width.
+    width: f32,
+}
+
+fn contour_look(at: Beside, segment: Segment) -> ContourLook {
     var shares = vec3(0.0);
     for (var tap = 0u; tap < TAPS; tap++) {
         shares += contour_shares(at, segment.kind, tap) / f32(TAPS);
     }
     shares *= segment.strength;
     // Small bodies would be mostly outline.
-    let width = scale * select(panel.contour_share, 1.0, segment.kind == OBSTACLE_CONTOUR);
-    let outline = shares.x * covered(at.distance, 2.2 * width);
-    let step = 0.85 * shares.y * covered(at.distance, 1.5 * width);
-    var through = 0.0;
-    if of_alarm {
-        // Where the set ends, its outline is drawn at full strength.
-        let across = vec2(-at.along.y, at.along.x) * (0.9 + 1.3 * scale);
-        var ends = 0.0;
-        for (var tap = 0u; tap < TAPS; tap++) {
-            let farther = min(
-                alarm_depth_around(at.middle + across, tap),
-                alarm_depth_around(at.middle - across, tap),
-            );
-            ends += select(0.0, 1.0, farther <= 0.0) / f32(TAPS);
-        }
-        let smallness = min(1.0, panel.line_share * panel.element / SMALL_FOLDED);
-        let fold = mix(smallness * smallness, 1.0, ends);
-        through = 0.80 * fold * shares.z * covered(at.distance, 1.7 * width);
+    let width = panel.line_scale * select(panel.contour_share, 1.0, segment.kind == OBSTACLE_CONTOUR);
+    let outline = shares.x * covered(at.distance, CONTOUR_WIDTH * width);
+    return ContourLook(outline, 0.85 * shares.y * covered(at.distance, 1.5 * width), shares.z, width);
+}
+
+@fragment
+fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    let at = beside(segment);
+    if panel.flatness > 0.5 {
+        return vec4(0.0, 0.0, covered(at.distance, FLAT_CONTOUR_WIDTH * panel.line_scale), 0.0);
     }
-    return select(vec4(0.0, 0.0, outline, step), vec4(0.0, step + through, outline, 0.0), of_alarm);
+    let look = contour_look(at, segment);
+    return vec4(0.0, 0.0, look.outline, look.step);
+}
+
+@fragment
+fn alarm_contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    let at = beside(segment);
+    let scale = panel.line_scale;
+    if panel.flatness > 0.5 {
+        return vec4(0.0, covered(at.distance, FLAT_CONTOUR_WIDTH * scale), 0.0, 0.0);
+    }
+    let look = contour_look(at, segment);
+    // Where the set ends, its outline is drawn at full strength.
+    let across = vec2(-at.along.y, at.along.x) * (0.9 + 1.3 * scale);
+    var ends = 0.0;
+    for (var tap = 0u; tap < TAPS; tap++) {
+        let farther = min(
+            alarm_depth_around(at.middle + across, tap),
+            alarm_depth_around(at.middle - across, tap),
+        );
+        ends += select(0.0, 1.0, farther <= 0.0) / f32(TAPS);
+    }
+    let smallness = min(1.0, panel.line_share * panel.element / SMALL_FOLDED);
+    let fold = mix(smallness * smallness, 1.0, ends);
+    let through = 0.80 * fold * look.hidden * covered(at.distance, 1.7 * look.width);
+    return vec4(0.0, look.step + through, look.outline, 0.0);
 }

@@ -255,6 +255,9 @@ impl Surroundings<'_> {
             && self.opacity == 1.0
             && total > VERY_MANY_FACES
             && !self.lens.orthographic;
+        // Faces on the side of the body that is turned away are drawn last: the others hide them, so that they need no light.
+        let mut last = Vec::new();
+        let is_inside_out = kinds.edge != LineKind::Edge;
         let (mut patch, mut borders) = (Patch::default(), FaceSides::default());
         borders.sides.reserve(4 * faces.len());
         borders.facing.reserve(4 * (cut + 1) * faces.len());
@@ -269,10 +272,13 @@ impl Surroundings<'_> {
                 mesh.vertices.truncate(before[0]);
                 mesh.shades.truncate(before[1]);
                 mesh.triangles.truncate(before[2]);
+            } else if patch.facing.iter().all(|&seen| (seen < 0.0) != is_inside_out) {
+                last.extend(mesh.triangles.drain(before[2]..));
             }
             self.inner_contours(&patch, kinds, lines);
             note_borders(&patch, ears, cut, &mut borders);
         }
+        mesh.triangles.append(&mut last);
         let sides = borders.sorted(self.body.len());
         for edge in sides.chunk_by(|one, other| ordered(one.0) == ordered(other.0)) {
             self.edge(edge, &mut borders, cut, kinds, lines);

@@ -1,11 +1,11 @@
 //! The floor with its grid and the soft shadows on it.
 
-use super::panel::{Panels, limit, linear};
+use super::panel::{Panels, is_visible, limit, linear};
 use super::pipeline::{PICTURE_FORMAT, Recipe, bind, element, group_layout, shader, uniform_entry, written_texture};
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{CELLS, Floor, Panel, Picture, Shade};
+use crate::picture::{CELLS, Floor, Panel, Picture, Rectangle, Shade};
 use bytemuck::{Pod, Zeroable};
-use glam::Vec4;
+use glam::{UVec2, Vec2, Vec4};
 
 pub(super) const SHADER: &str = include_str!("../../shaders/ground.wgsl");
 
@@ -34,7 +34,8 @@ const MOST_PANELS: usize = 128;
 /// The pipeline of the floor, and the floors of one picture.
 #[derive(Debug)]
 pub(super) struct Grounds {
-    pipeline: wgpu::RenderPipeline,
+    /// Without shadows and with them.
+    pipelines: [wgpu::RenderPipeline; 2],
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
     uniforms: GrowingBuffer<u8>,
@@ -59,10 +60,13 @@ impl Grounds {
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let entries = [uniform_entry(0, size_of::<GroundUniform>(), true), entry(1, shades), entry(2, sampler)];
         let layout = group_layout(gpu, "ground", &entries);
-        let recipe = Recipe {
-            groups: &[&panels.layout, &layout],
-            blend: None,
-            ..Recipe::rectangles("ground", &module, ["corner", "floor_colour"], PICTURE_FORMAT)
+        let build = |fragment| {
+            let recipe = Recipe {
+                groups: &[&panels.layout, &layout],
+                blend: None,
+                ..Recipe::rectangles("ground", &module, ["corner", fragment], PICTURE_FORMAT)
+            };
+            recipe.build(gpu)
         };
         let sampler = gpu.device().create_sampler(&wgpu::SamplerDescriptor {
             label: Some("shades"),
@@ -71,7 +75,7 @@ impl Grounds {
             ..Default::default()
         });
         Self {
-            pipeline: recipe.build(gpu),
+            pipelines: ["floor_colour", "shadowed_colour"].map(build),
             layout,
             sampler,
             uniforms: GrowingBuffer::new(gpu, "grounds", wgpu::BufferUsages::UNIFORM, 4 * STRIDE),
@@ -126,16 +130,57 @@ impl Grounds {
 
     /// Draws the floors of all panels that have one.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture) {
-        pass.set_pipeline(&self.pipeline);
         for (at, panel) in picture.panels.iter().enumerate() {
-            if panel.floor.is_some() {
-                limit(pass, panel.viewport);
-                panels.bind_whole(pass, at);
-                pass.set_bind_group(1, self.bind_group.as_ref(), &[(at * STRIDE) as u32]);
-                pass.draw(0..4, 0..1);
+            let Some(floor) = &panel.floor else { continue };
+            limit(pass, panel.viewport);
+            panels.bind_whole(pass, at);
+            pass.set_bind_group(1, self.bind_group.as_ref(), &[(at * STRIDE) as u32]);
+            let shadowed = if has_layer(at) { shadowed(panel, floor) } else { None };
+            let lit = shadowed.map_or(vec![panel.viewport], |inner| around(panel.viewport, inner));
+            for (pipeline, parts) in self.pipelines.iter().zip([lit, shadowed.into_iter().collect()]) {
+                pass.set_pipeline(pipeline);
+                for [left, top, width, height] in parts {
+                    pass.set_scissor_rect(left, top, width, height);
+                    pass.draw(0..4, 0..1);
+                }
             }
         }
     }
+}
+
+/// The part of a panel in which shadows may lie.
+fn shadowed(panel: &Panel, floor: &Floor) -> Option<Rectangle> {
+    let [left, top, width, height] = panel.viewport;
+    let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+    for shade in floor.shades.iter().filter(|shade| !shade.cells.is_empty()) {
+        for corner in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]] {
+            let on_floor = Vec2::from(shade.corner) + shade.length * Vec2::from(corner);
+            let point = floor.normal * floor.height + floor.axes[0] * on_floor.x + floor.axes[1] * on_floor.y;
+            let at = panel.sight.clip * point.extend(1.0);
+            if at.w < panel.sight.near {
+                // Behind the eye.
+                return Some(panel.viewport);
+            }
+            let pixel = (Vec2::new(at.x, -at.y) / at.w * 0.5 + 0.5) * Vec2::new(width as f32, height as f32);
+            (low, high) = (low.min(pixel), high.max(pixel));
+        }
+    }
+    let most = UVec2::new(width, height);
+    let [low, high] = [(low - 1.0).floor(), (high + 1.0).ceil()].map(|at| at.max(Vec2::ZERO).as_uvec2().min(most));
+    let size = high.saturating_sub(low);
+    (size.min_element() > 0).then_some([left + low.x, top + low.y, size.x, size.y])
+}
+
+/// What is left of a rectangle around another one in it.
+fn around([left, top, width, height]: Rectangle, [x, y, wide, high]: Rectangle) -> Vec<Rectangle> {
+    let [right, bottom] = [left + width - x - wide, top + height - y - high];
+    let parts = [
+        [left, top, width, y - top],
+        [left, y, x - left, high],
+        [x + wide, y, right, high],
+        [left, y + high, width, bottom],
+    ];
+    parts.into_iter().filter(|&part| is_visible(part)).collect()
 }
 
 fn has_layer(panel: usize) -> bool {
@@ -168,4 +213,23 @@ fn uniform(picture: &Picture, panel: &Panel, floor: &Floor, at: usize) -> Ground
 
 fn create_shades(gpu: &Gpu, layers: u32) -> wgpu::Texture {
     written_texture(gpu, "shades", [CELLS as u32, CELLS as u32, layers])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_parts_around_a_rectangle_and_itself_cover_each_pixel_once() {
+        let outer = [3, 5, 7, 6];
+        for inner in [[3, 5, 7, 6], [3, 5, 1, 1], [9, 10, 1, 1], [5, 7, 2, 3], [3, 6, 7, 1]] {
+            let parts = [around(outer, inner), vec![inner]].concat();
+            for (x, y) in (3..10).flat_map(|x| (5..11).map(move |y| (x, y))) {
+                let holds = |[left, top, width, height]: &&Rectangle| {
+                    (*left..left + width).contains(&x) && (*top..top + height).contains(&y)
+                };
+                assert_eq!(parts.iter().filter(holds).count(), 1, "{inner:?} {x} {y}");
+            }
+        }
+    }
 }

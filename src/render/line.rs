@@ -45,12 +45,26 @@ pub(super) fn has_alarm(panel: &Panel) -> bool {
     panel.lines.iter().any(|line| matches!(line.kind, LineKind::AlarmEdge | LineKind::AlarmContour))
 }
 
+/// What the shader calls the kinds of lines that have pipelines of their own.
+const ENTRIES: [&str; 4] = ["edge_opacity", "alarm_edge_opacity", "contour_opacity", "alarm_contour_opacity"];
+
+/// The kind of a line, by its place in [`ENTRIES`].
+fn entry(kind: LineKind) -> usize {
+    match kind {
+        LineKind::AlarmEdge => 1,
+        LineKind::Contour | LineKind::ObstacleContour => 2,
+        LineKind::AlarmContour => 3,
+        _ => 0,
+    }
+}
+
 /// Pipelines and their bindings.
 #[derive(Debug)]
 struct Variant {
     among: bool,
-    /// For edges and for contours.
-    pipelines: [wgpu::RenderPipeline; 2],
+    module: wgpu::ShaderModule,
+    /// For each kind of [`ENTRIES`], made when it is first needed.
+    pipelines: [Option<wgpu::RenderPipeline>; 4],
     layout: wgpu::BindGroupLayout,
     textures: Option<wgpu::BindGroup>,
 }
@@ -62,47 +76,41 @@ pub(super) struct Lines {
     /// Among solid obstacles, as soon as there are any.
     among: Option<Variant>,
     segments: GrowingBuffer<Segment>,
-    /// The edges and the contours of each panel.
-    ranges: Vec<[Range<u32>; 2]>,
+    /// The lines of each panel, by kinds.
+    ranges: Vec<[Range<u32>; 4]>,
 }
 
 impl Lines {
-    pub(super) fn new(gpu: &Gpu, panels: &Panels) -> Self {
+    pub(super) fn new(gpu: &Gpu) -> Self {
         Self {
-            alone: Variant::new(gpu, panels, false),
+            alone: Variant::new(gpu, false),
             among: None,
             segments: GrowingBuffer::new(gpu, "lines", wgpu::BufferUsages::VERTEX, 1024),
             ranges: Vec::new(),
         }
     }
 
-    /// Prepares to draw lines among solid obstacles.
-    pub(super) fn prepare_among(&mut self, gpu: &Gpu, panels: &Panels, bodies: &Bodies) {
-        if self.among.is_none() {
-            let mut among = Variant::new(gpu, panels, true);
-            among.retarget(gpu, bodies);
-            self.among = Some(among);
-        }
-    }
-
-    /// Uploads the lines of a picture.
-    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
+    /// Uploads the lines of a picture, and prepares to draw them, among solid obstacles or without any.
+    pub(super) fn write(&mut self, gpu: &Gpu, panels: &Panels, bodies: &Bodies, picture: &Picture, among: bool) {
         let mut segments = Vec::new();
         self.ranges.clear();
         for panel in &picture.panels {
-            let contour = |line: &&Line| {
-                let kinds = [LineKind::Contour, LineKind::AlarmContour, LineKind::ObstacleContour];
-                kinds.contains(&line.kind)
-            };
-            let mut add = |lines: &mut dyn Iterator<Item = &Line>| {
+            self.ranges.push(std::array::from_fn(|at| {
                 let start = segments.len() as u32;
+                let lines = panel.lines.iter().filter(|line| entry(line.kind) == at);
                 segments.extend(lines.map(Segment::new));
                 start..segments.len() as u32
-            };
-            let edges = add(&mut panel.lines.iter().filter(|line| !contour(line)));
-            self.ranges.push([edges, add(&mut panel.lines.iter().filter(contour))]);
+            }));
         }
         self.segments.write(gpu, &segments);
+        if among && self.among.is_none() {
+            let mut variant = Variant::new(gpu, true);
+            variant.retarget(gpu, bodies);
+            self.among = Some(variant);
+        }
+        let variant = if among { self.among.as_mut().expect("made above") } else { &mut self.alone };
+        let is_drawn = |at: usize| self.ranges.iter().any(|ranges| !ranges[at].is_empty());
+        (0..ENTRIES.len()).filter(|&at| is_drawn(at)).for_each(|at| variant.prepare(gpu, panels, at));
     }
 
     /// Binds new textures.
@@ -119,6 +127,7 @@ impl Lines {
         pass.set_bind_group(1, variant.textures.as_ref(), &[]);
         pass.set_vertex_buffer(0, self.segments.buffer().slice(..));
         for (at, pipeline) in variant.pipelines.iter().enumerate() {
+            let Some(pipeline) = pipeline else { continue };
             pass.set_pipeline(pipeline);
             panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
                 pass.draw(0..4, self.ranges[panel][at].clone());
@@ -128,29 +137,37 @@ impl Lines {
 }
 
 impl Variant {
-    fn new(gpu: &Gpu, panels: &Panels, among: bool) -> Self {
-        let module = shader(gpu, "line", &parts(among));
+    fn new(gpu: &Gpu, among: bool) -> Self {
         let mut entries = vec![texture_entry(1, true), texture_entry(2, true)];
         if among {
             entries.push(texture_entry(0, false));
         }
-        let layout = group_layout(gpu, "depth", &entries);
+        Self {
+            among,
+            module: shader(gpu, "line", &parts(among)),
+            pipelines: [const { None }; 4],
+            layout: group_layout(gpu, "depth", &entries),
+            textures: None,
+        }
+    }
+
+    /// Makes the pipeline of a kind.
+    fn prepare(&mut self, gpu: &Gpu, panels: &Panels, kind: usize) {
         let largest = wgpu::BlendComponent {
             src_factor: wgpu::BlendFactor::One,
             dst_factor: wgpu::BlendFactor::One,
             operation: wgpu::BlendOperation::Max,
         };
-        let build = |label, fragment| {
+        let build = || {
             let recipe = Recipe {
-                groups: &[&panels.layout, &layout],
+                groups: &[&panels.layout, &self.layout],
                 vertices: &[Some(for_instances::<Segment>(&ATTRIBUTES))],
                 blend: Some(wgpu::BlendState { color: largest, alpha: largest }),
-                ..Recipe::rectangles(label, &module, ["segment", fragment], LINE_FORMAT)
+                ..Recipe::rectangles("lines", &self.module, ["segment", ENTRIES[kind]], LINE_FORMAT)
             };
             recipe.build(gpu)
         };
-        let pipelines = [build("edges", "edge_opacity"), build("contours", "contour_opacity")];
-        Self { among, pipelines, layout, textures: None }
+        self.pipelines[kind].get_or_insert_with(build);
     }
 
     fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {

@@ -116,7 +116,7 @@ impl Renderer {
         let renderer = Self {
             size,
             surfaces: surface::Surfaces::new(gpu),
-            lines: line::Lines::new(gpu, &panels),
+            lines: line::Lines::new(gpu),
             borders: border::Borders::new(gpu, &panels),
             solids: None,
             slabs: None,
@@ -204,7 +204,6 @@ impl Renderer {
         };
         self.panels.write(&gpu, picture, &places);
         self.surfaces.write(&gpu, picture);
-        self.lines.write(&gpu, picture);
         self.borders.write(&gpu, picture);
         self.grounds.write(&gpu, picture);
         self.overlay.write(&gpu, picture);
@@ -213,9 +212,9 @@ impl Renderer {
         }
         let curves = self.curves.as_ref().filter(|_| !picture.curves.is_empty());
         let [with_solids, with_slabs] = [Solids::are_in(picture), Slabs::are_in(picture)];
+        self.lines.write(&gpu, &self.panels, &bodies, picture, with_solids);
         let with_clear = picture.panels.iter().any(|panel| panel.opacity < 1.0);
         if with_solids {
-            self.lines.prepare_among(&gpu, &self.panels, &bodies);
             let new = || Solids::new(&gpu, &self.panels);
             let solids = self.solids.get_or_insert_with(new);
             solids.write(&gpu, picture);
