@@ -101,6 +101,7 @@ pub(super) struct Render {
 
 impl Render {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
+        self.options.out.as_deref().map_or(Ok(()), FileFormat::check_name)?;
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
         if let Some(size) = self.size {
             scenes.iter_mut().for_each(|scene| (scene.view.size, scene.view.print) = (size, None));
@@ -248,7 +249,8 @@ fn check_compared(Job { scene, runs, .. }: &Job) -> Result<(), Failure> {
         _ => None,
     };
     let difference = scene.view.difference.iter().flat_map(|difference| difference.runs.map(|run| ("difference", run)));
-    match ghost.into_iter().chain(difference).find(|(_, run)| !runs.contains(run)) {
+    let points = scene.view.points.as_ref().and_then(|points| points.run.map(|run| ("points", run)));
+    match ghost.into_iter().chain(difference).chain(points).find(|(_, run)| !runs.contains(run)) {
         None => Ok(()),
         Some((key, run)) => {
             let (title, name) = (&scene.title, &scene.runs[run].name);

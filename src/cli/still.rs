@@ -32,6 +32,21 @@ impl Format {
         if is_png { Some(Self::Png) } else { vector::Format::of(path).map(Self::Vector) }
     }
 
+    /// Refuses names that are hardly meant for folders: those of other formats of pictures.
+    pub(super) fn check_name(path: &Path) -> Result<(), Failure> {
+        const OTHERS: [&str; 11] = ["jpg", "jpeg", "gif", "apng", "webp", "tif", "tiff", "bmp", "eps", "mp4", "webm"];
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+        if path.is_dir() || !OTHERS.contains(&&*ending) {
+            return Ok(());
+        }
+        let message = format!(
+            "-o {}: a picture is written as .png, .svg or .pdf; expected one of these, or the name of a folder (films: \
+             `localshape animate`)",
+            path.display()
+        );
+        Err(Failure::usage(message))
+    }
+
     /// Whether pictures of scenes need a graphics device: vectors only where bodies are lit.
     pub(super) fn needs_device<'a>(self, scenes: impl IntoIterator<Item = &'a Scene>) -> bool {
         self == Self::Png || scenes.into_iter().any(|scene| scene.body.dimension == Dimension::Space)
