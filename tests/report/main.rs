@@ -56,6 +56,7 @@ fn sheet(name: &str, frame: Option<u64>, passes: bool) -> PicturePair {
         expected: Some(square_at(LEFT)),
         actual: Some(square_at(if passes { LEFT } else { RIGHT })),
         difference: Some(png(SIZE, |x, _| if x < 32 { [255; 3] } else { [226, 102, 28] })),
+        distances: (!passes).then(|| square_at(RIGHT)),
     }
 }
 

@@ -57,6 +57,12 @@
       image.src = picture[side];
       view.replaceChildren(image);
     }
+    const [distances, map] = [the("distances"), the("distances").querySelector("img")];
+    distances.hidden = picture.distances === null;
+    if (picture.distances !== null) {
+      map.src = picture.distances;
+      map.alt = `Distance of each node from its expected place: ${picture.name}`;
+    }
     the("difference-key").hidden = picture.difference === null || picture.verdict === "identical";
     layout();
   }
