@@ -121,7 +121,7 @@ impl Render {
         }
         let states = self.from_states.as_deref();
         let mut jobs = self.options.jobs(scenes, !self.no_frames, self.shard, states, words)?;
-        jobs.iter().try_for_each(check_compared)?;
+        jobs.iter().try_for_each(|Job { scene, runs, .. }| check_compared(scene, runs))?;
         if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {
             job.stored = Some(StoredStates::open(file, &job.scene, &job.runs, &job.frames)?);
         }
@@ -165,6 +165,7 @@ impl Render {
             return Err(Failure::usage(message));
         }
         let (runs, frames) = (self.options.runs(scene)?, self.options.frames(scene)?);
+        check_compared(scene, &runs)?;
         let &[frame] = &frames[..] else {
             let count = frames.len();
             let message =
@@ -243,7 +244,7 @@ struct Device {
 }
 
 /// Whether all runs are there that pictures compare others with.
-fn check_compared(Job { scene, runs, .. }: &Job) -> Result<(), Failure> {
+fn check_compared(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
     let ghost = match scene.view.ghost {
         Some(Ghost::Run(run)) => Some(("ghost", run)),
         _ => None,

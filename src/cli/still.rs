@@ -6,7 +6,7 @@ use crate::artist::{compose_frame, draw_bodies, draw_pictures};
 use crate::gpu::Gpu;
 use crate::look::Print;
 use crate::output::{Compression, encode_print, read_tags};
-use crate::picture::Picture;
+use crate::picture::{Picture, type_left_out};
 use crate::runner::Runner;
 use crate::scene::Scene;
 use crate::sim::body::Dimension;
@@ -82,7 +82,8 @@ pub(super) fn too_small(scene: &Scene, runs: &[usize]) -> Option<String> {
     let print = scene.view.print.as_ref()?;
     let mut runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
     let first = compose_frame(scene, &runner.frame(0), None);
-    print.too_small(f64::from(smallest_type(&first[0])), &source_of(scene))
+    let smallest = type_left_out(scene).unwrap_or(f64::INFINITY).min(smallest_type(&first[0]).into());
+    print.too_small(smallest, &source_of(scene))
 }
 
 /// The file of a scene, for messages.

@@ -51,7 +51,7 @@ pub(crate) use crate::colour::Colour;
 pub(crate) use crate::look::{Palette, SHADES};
 pub(crate) use camera::Framing;
 pub use compose::{Composer, compose};
-pub(crate) use compose::{NoRoom, compose_figure, left_out};
+pub(crate) use compose::{NoRoom, compose_figure, left_out, type_left_out};
 pub(crate) use layout::Rectangle;
 pub(crate) use plot::{Plot, PlotCurve, Plots};
 pub(crate) use ranges::{RangeRow, Ranges, SIZE_MM as RANGES_SIZE_MM, power_of_ten};

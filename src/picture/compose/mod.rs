@@ -45,8 +45,8 @@ use inset::Sinks;
 use panel::Draft;
 use std::borrow::Cow;
 use std::sync::OnceLock;
-pub(crate) use words::left_out;
 use words::{Around, Clock, Words};
+pub(crate) use words::{left_out, type_left_out};
 
 /// Bodies with more elements than this along a side get softer light, as if their elements were larger.
 const SOFT_SHARE: f64 = 4.5;

@@ -225,7 +225,23 @@ impl<'a> Words<'a> {
 pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
     let composer = Composer::new(scene);
     let runs: Vec<_> = (0..scene.runs.len()).collect();
-    composer.words().left_out(&runs, composer.columns(&runs))
+    let words = composer.words();
+    let mut told = words.left_out(&runs, composer.columns(&runs));
+    if scene.view.columns.is_none() {
+        // How panels stand follows from the course of the scene, too: what finds no room side by side, either, is certain.
+        let side_by_side = words.left_out(&runs, words.panels(&runs));
+        told.retain(|one| side_by_side.contains(one));
+    }
+    told
+}
+
+/// The size of the words of a scene (px) if they are left out because nobody could read them in any picture.
+pub(crate) fn type_left_out(scene: &Scene) -> Option<f64> {
+    let view = &scene.view;
+    let Labels { name, model, clock, count, number, .. } = view.labels;
+    let has_words = [name, model, clock, count, number, view.strip.is_some(), !view.title.is_empty()].contains(&true);
+    let usual = Layout::around(view).caption();
+    (has_words && !Scale::legible(usual)).then_some(usual)
 }
 
 /// The panel with the clock, of so many in columns: upper right.
