@@ -325,4 +325,11 @@ fn what_finds_no_room_is_known_beside_a_difference() {
     let (mut scene, _) = fig4b(0);
     scene.view.difference = Some(Difference { runs: [0, 1], after_fit: false });
     assert_eq!(localshape::picture::left_out(&scene), Vec::<String>::new());
+    // A title has at most four lines.
+    scene.view.title = "A title that goes on and on ".repeat(20);
+    assert_eq!(localshape::picture::left_out(&scene), ["the title is cut off"]);
+    let title =
+        |picture: &Picture| picture.words.iter().filter(|run| run.size > 28.0).map(|run| run.text.clone()).collect();
+    let lines: Vec<String> = title(&Composer::new(&scene).compose(&Runner::new(&scene, &[0, 1]).frame(0)));
+    assert!(lines.last().is_some_and(|line| line.ends_with('…')), "{lines:?}");
 }

@@ -382,9 +382,14 @@ impl<'a> Composer<'a> {
             let margin = writer.scale.margin();
             let mut from = f64::from(viewport[0]) + margin;
             let to = f64::from(viewport[0] + viewport[2]) - margin;
-            // A state from before a divergence would say how many have turned over by then.
-            if labels.count && run.shown().status == Status::Ok {
+            if labels.count {
+                let before = (writer.marks.len(), writer.words.len());
                 from = writer.count(viewport, &self.tally, run.shown());
+                // The state that is shown of a run that diverges does not say how many have turned over since; its room stays.
+                if run.shown().status != Status::Ok {
+                    writer.marks.truncate(before.0);
+                    writer.words.truncate(before.1);
+                }
             }
             let usual = caption::number(self.extent, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
             let to = to.min(writer.left_of_numbers(viewport, &usual));
