@@ -2,7 +2,7 @@
 
 use crate::scene::Scene;
 use crate::sim::crew::Crew;
-use crate::sim::snapshot::{LastFit, Status};
+use crate::sim::snapshot::{Divergence, LastFit, Status};
 use crate::sim::state::State;
 use crate::sim::world::World;
 use glam::DVec3;
@@ -35,30 +35,61 @@ pub(crate) fn fits(scene: &Scene, position: &[DVec3]) -> bool {
     radius(position) <= FITS * radius(&scene.body.rest).max(radius(&scene.initial.position))
 }
 
-/// The last state that fits of a run that diverges before the scene ends; `None` for one that does not. Simulates the run
-/// once more, which only runs pay for that diverge or have a state that does not fit.
-pub(crate) fn last_fit(scene: &Scene, run: usize, threads: usize) -> Option<Fitting> {
-    let mut world = scene.world(run);
-    world.set_crew(Crew::new(threads));
-    let mut last = world.steps_at(scene.moment(scene.last_frame()));
-    let (mut fitting, mut end) = (world.state().clone(), None);
-    for stride in [STRIDE, 1] {
-        world.set_state(fitting.clone());
-        while world.steps() < last {
-            world.advance(stride.min(last - world.steps()));
-            if let Status::Diverged(divergence) = world.status() {
-                last = divergence.step - 1;
-                end = Some((divergence, radius(&world.state().position)));
-            } else if fits(scene, &world.state().position) {
-                fitting.clone_from(world.state());
-            }
-        }
-        end?;
+/// The search for the last state that fits of a run that diverges before the scene ends. It simulates the run once more, which
+/// only runs pay for that diverge or have a state that does not fit.
+pub(crate) struct Search {
+    world: World,
+    /// The last step looked at.
+    last: u64,
+    stride: u64,
+    /// The last state that fits so far.
+    fitting: State,
+    /// Where the run diverges, and its radius there (m).
+    end: Option<(Divergence, f64)>,
+}
+
+impl Search {
+    /// The search in a run of a scene, with threads of its own.
+    pub(crate) fn new(scene: &Scene, run: usize, threads: usize) -> Self {
+        let mut world = scene.world(run);
+        world.set_crew(Crew::new(threads));
+        let last = world.steps_at(scene.moment(scene.last_frame()));
+        let fitting = world.state().clone();
+        Self { world, last, stride: STRIDE, fitting, end: None }
     }
-    let (divergence, widest) = end?;
-    let times_wider = widest / radius(&fitting.position);
-    fitting.status = Status::Diverged(divergence);
-    Some(Fitting::new(&mut world, fitting, times_wider))
+
+    /// Searches on through about so many steps, and returns what it has found if it is at its end: `None` inside for a run that
+    /// does not diverge.
+    pub(crate) fn advance(&mut self, scene: &Scene, most_steps: u64) -> Option<Option<Fitting>> {
+        let mut left = most_steps;
+        loop {
+            let Self { world, last, stride, fitting, end } = self;
+            if world.steps() < *last {
+                if left == 0 {
+                    return None;
+                }
+                let steps = (*stride).min(*last - world.steps());
+                left = left.saturating_sub(steps);
+                world.advance(steps);
+                if let Status::Diverged(divergence) = world.status() {
+                    *last = divergence.step - 1;
+                    *end = Some((divergence, radius(&world.state().position)));
+                } else if fits(scene, &world.state().position) {
+                    fitting.clone_from(world.state());
+                }
+                continue;
+            }
+            let Some((divergence, widest)) = *end else { return Some(None) };
+            if *stride == 1 {
+                let times_wider = widest / radius(&fitting.position);
+                fitting.status = Status::Diverged(divergence);
+                let fitting = fitting.clone();
+                return Some(Some(Fitting::new(world, fitting, times_wider)));
+            }
+            *stride = 1;
+            world.set_state(fitting.clone());
+        }
+    }
 }
 
 /// The distance of the farthest point from the mean of all (m): the same however a body is turned.
@@ -108,6 +139,28 @@ mod tests {
         }
         assert_eq!(snapshot.status, world.status());
         assert_eq!(*times_wider, widest / radius(&snapshot.position));
+    }
+
+    #[test]
+    fn the_search_finds_the_same_in_any_slices() {
+        let scene = scene();
+        let found = |slice: u64| {
+            let mut search = Search::new(&scene, 2, 1);
+            let mut slices = 0;
+            loop {
+                slices += 1;
+                if let Some(found) = search.advance(&scene, slice) {
+                    let found = found.expect("it diverges");
+                    return (slices, (found.state, found.shown));
+                }
+            }
+        };
+        let (slices, whole) = found(u64::MAX);
+        assert_eq!(slices, 1);
+        for slice in [7, 100] {
+            let (slices, found) = found(slice);
+            assert!(slices > 2 && found == whole, "{slice}");
+        }
     }
 
     #[test]

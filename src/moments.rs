@@ -18,8 +18,9 @@ pub struct Moments {
     pub cells: Vec<Vec<RunFrame>>,
     /// For each of them the run that is outlined over it, at the same moment, if there is one.
     pub others: Vec<Vec<Option<RunFrame>>>,
-    /// The time series of the first scene, if strips are shown.
-    pub history: Option<History>,
+    /// The time series of each scene, of the runs that rows show in the order of the scene: over the whole scene where charts
+    /// show them, up to the last cell where only paths need them, and empty for other scenes. Empty for other figures.
+    pub histories: Vec<History>,
     /// The forces of each run of each scene, for a diagram of forces; empty for other figures.
     pub forces: Vec<Vec<Forces>>,
 }
@@ -95,8 +96,8 @@ pub(crate) struct Taking<'a> {
     /// The diagnostics of its states.
     wanted: Vec<Diagnostic>,
     parts: Vec<Part<'a>>,
-    /// The parts with the time series of the first scene's runs, if strips are shown.
-    series: Option<Vec<usize>>,
+    /// For each scene the parts with the time series of its runs, if these are shown.
+    series: Vec<Vec<usize>>,
 }
 
 /// One run, advanced through the moments of it that are shown.
@@ -118,7 +119,7 @@ impl<'a> Taking<'a> {
         let wanted = Diagnostic::within(reach);
         match &figure.content {
             Content::Sheet(sheet) => Self::of_sheet(figure, sheet, wanted.chain(sheet.number).collect()),
-            Content::Forces(_) => Self { figure, wanted: wanted.collect(), parts: Vec::new(), series: None },
+            Content::Forces(_) => Self { figure, wanted: wanted.collect(), parts: Vec::new(), series: Vec::new() },
         }
     }
 
@@ -136,13 +137,14 @@ impl<'a> Taking<'a> {
         let (rows, columns) = (sheet.rows.len(), sheet.columns.len());
         let cells = (0..rows * columns).map(|at| sheet.cell(at / columns, at % columns));
         let shown: Vec<_> = cells.clone().map(|(scene, run, time)| (part([scene, run]), Moment::at(time))).collect();
-        let scene = &sheet.scenes[0];
-        let series = (!sheet.strips.is_empty()).then(|| {
-            // The runs shown, in the order of the scene.
-            let runs =
-                (0..scene.runs.len()).filter(|&run| sheet.rows.iter().any(|row| row.run == scene.runs[run].name));
-            runs.map(|run| part([0, run])).collect::<Vec<_>>()
-        });
+        let has_charts = !sheet.strips.is_empty();
+        let of_scene = |(at, scene): (usize, &Scene)| {
+            let is_shown = |run: &usize| sheet.rows.iter().any(|row| row.run == scene.runs[*run].name);
+            let has_series = has_charts || !scene.view.paths.is_empty();
+            let runs = (0..scene.runs.len()).filter(|run| has_series && is_shown(run));
+            runs.map(|run| part([at, run])).collect::<Vec<_>>()
+        };
+        let series: Vec<_> = sheet.scenes.iter().enumerate().map(of_scene).collect();
         // After the cells come the runs outlined over them.
         let ghost = |(scene, run, time): (usize, usize, f64)| match sheet.scenes[scene].view.ghost {
             Some(Ghost::Run(other)) if other != run => Some((scene, other, time)),
@@ -164,10 +166,11 @@ impl<'a> Taking<'a> {
         let times: Vec<_> = sheet.columns.iter().filter_map(|column| column.time).collect();
         let closer = sheet.split.map(|split| [sheet.from, split]);
         let parts = parts.into_iter().enumerate().map(|(at, mut part)| {
-            if series.as_ref().is_some_and(|series| series.contains(&at)) {
+            if series[part.of[0]].contains(&at) {
                 part.runner = part.runner.with_closer_time_series(&sheet.strips, closer, &times);
+                let scene = &sheet.scenes[part.of[0]];
                 let last = scene.moment(scene.last_frame());
-                if part.runner.steps_at(last) > part.runner.steps_at(part.end) {
+                if has_charts && part.runner.steps_at(last) > part.runner.steps_at(part.end) {
                     part.end = last;
                 }
             }
@@ -210,13 +213,13 @@ impl<'a> Taking<'a> {
                 let others = others.chunks(columns).map(<[_]>::to_vec).collect();
                 let cells: Vec<_> = cells.into_iter().map(|cell| cell.expect("each cell has a run")).collect();
                 let rows = cells.chunks(columns).map(<[RunFrame]>::to_vec).collect();
-                let history = self.series.map(|series| {
+                let histories = self.series.into_iter().map(|series| {
                     let mut all = series.into_iter().map(|part| self.parts[part].runner.take_history());
                     let mut history = all.next().unwrap_or_default();
                     history.series.extend(all.flat_map(|one| one.series));
                     history
                 });
-                Moments { cells: rows, others, history, forces: Vec::new() }
+                Moments { cells: rows, others, histories: histories.collect(), forces: Vec::new() }
             }
             Content::Forces(forces) => {
                 let of_run = |scene: &Scene, run: usize| {
@@ -269,6 +272,6 @@ mod tests {
         let time = Some(sheet.scenes[0].frame_time(last));
         let column = sheet.columns.iter().position(|column| column.time == time).expect("the last moment is shown");
         assert_eq!(whole.cells[1][column].snapshot.position, frame.runs[1].snapshot.position);
-        assert_eq!(whole.history.unwrap().series.len(), 2);
+        assert_eq!(whole.histories[0].series.len(), 2);
     }
 }

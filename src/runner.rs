@@ -2,7 +2,7 @@
 //! All other code simulates through this one, which makes it long: runs, their time series and their stored frames share one state.
 
 pub use crate::history::{History, TimeSeries};
-use crate::last_fit::{Fitting, fits};
+use crate::last_fit::{Fitting, Search, fits};
 use crate::look::Traced;
 use crate::scene::Scene;
 use crate::sim::apart;
@@ -59,6 +59,8 @@ struct Running {
     is_drawn: bool,
     /// What pictures show of it from there on if it diverges, known as soon as it is needed.
     last_fit: OnceLock<Option<Fitting>>,
+    /// The search for that, while it goes on.
+    search: Option<Search>,
 }
 
 impl<'a> Runner<'a> {
@@ -90,6 +92,7 @@ impl<'a> Runner<'a> {
                 threads,
                 is_drawn: true,
                 last_fit: OnceLock::new(),
+                search: None,
             }
         };
         Self { scene, runs: runs.iter().map(running).collect(), apart: None }
@@ -251,12 +254,30 @@ impl Running {
     fn frame(&self, scene: &Scene) -> RunFrame {
         let Self { run, world, threads, is_drawn, last_fit, .. } = self;
         let frame = RunFrame::new(*run, world.snapshot());
-        if !is_drawn || world.status() == Status::Ok && fits(scene, &frame.snapshot.position) {
+        if !is_drawn || self.shows_itself(scene) {
             return frame;
         }
-        let found = last_fit.get_or_init(|| crate::last_fit::last_fit(scene, *run, *threads));
+        let search = || Search::new(scene, *run, *threads).advance(scene, u64::MAX).flatten();
+        let found = last_fit.get_or_init(search);
         let shown = found.as_ref().map(|found| &found.shown).filter(|shown| shown.snapshot.step < frame.snapshot.step);
         RunFrame { last_fit: shown.cloned().map(Box::new), ..frame }
+    }
+
+    /// Whether pictures show its present state.
+    fn shows_itself(&self, scene: &Scene) -> bool {
+        self.world.status() == Status::Ok && fits(scene, &self.world.state().position)
+    }
+
+    /// Looks for what pictures show instead, through about so many steps; returns whether it is known or not needed.
+    fn find_last_fit(&mut self, scene: &Scene, most_steps: u64) -> bool {
+        if !self.is_drawn || self.last_fit.get().is_some() || self.shows_itself(scene) {
+            return true;
+        }
+        let search = self.search.get_or_insert_with(|| Search::new(scene, self.run, self.threads));
+        let Some(found) = search.advance(scene, most_steps) else { return false };
+        self.search = None;
+        self.last_fit = found.into();
+        true
     }
 
     fn advance_towards(&mut self, scene: &Scene, moment: Moment, most_steps: u64) -> bool {
@@ -302,6 +323,8 @@ pub(crate) struct Frames<'a> {
     frames: Vec<u64>,
     /// Number of frames returned.
     taken: usize,
+    /// Whether the runs have the states of the next frame.
+    is_set: bool,
     source: Source<'a>,
 }
 
@@ -358,7 +381,7 @@ impl<'a> Frames<'a> {
     pub(crate) fn new(runner: Runner<'a>, frames: &[u64], whole_series: bool, folder: &Path) -> Self {
         let waiting = || Source::Waiting(Waiting { states: Store::new(folder), reached: 0, is_known: false });
         let source = if whole_series { waiting() } else { Source::Simulated };
-        Self { runner, frames: frames.to_vec(), taken: 0, source }
+        Self { runner, frames: frames.to_vec(), taken: 0, is_set: false, source }
     }
 
     /// Frames of a runner, in rising order, that an earlier simulation has stored.
@@ -375,7 +398,8 @@ impl<'a> Frames<'a> {
             running.last_fit = found.into();
         }
         let history = stored.take_history();
-        Ok(Self { runner, frames: frames.to_vec(), taken: 0, source: Source::Stored(Box::new(stored), history) })
+        let source = Source::Stored(Box::new(stored), history);
+        Ok(Self { runner, frames: frames.to_vec(), taken: 0, is_set: false, source })
     }
 
     /// Advances each run by at most `most_steps`.
@@ -383,7 +407,7 @@ impl<'a> Frames<'a> {
     /// # Errors
     /// If stored states cannot be written or read.
     pub(crate) fn next(&mut self, most_steps: u64) -> io::Result<Next> {
-        let Self { runner, frames, taken, source } = self;
+        let Self { runner, frames, taken, is_set, source } = self;
         if let Source::Stored(_, history) = source
             && let Some(history) = history.take()
         {
@@ -410,8 +434,8 @@ impl<'a> Frames<'a> {
         if matches!(source, Source::Simulated) && !runner.advance_towards(moment, most_steps) {
             return Ok(Next::Working);
         }
-        let first = *taken * runner.runs.len();
-        for (place, running) in runner.runs.iter_mut().enumerate() {
+        let (first, scene) = (*taken * runner.runs.len(), runner.scene);
+        for (place, running) in runner.runs.iter_mut().enumerate().filter(|_| !*is_set) {
             let state = match source {
                 Source::Simulated => continue,
                 Source::Waiting(waiting) => State::from_bytes(&waiting.states.get(first + place)?),
@@ -419,6 +443,11 @@ impl<'a> Frames<'a> {
             };
             let state = state.filter(|state| running.world.takes(state));
             running.world.set_state(state.ok_or(io::ErrorKind::InvalidData)?);
+        }
+        let found = runner.runs.par_iter_mut().map(|running| running.find_last_fit(scene, most_steps));
+        *is_set = !found.reduce(|| true, |one, other| one && other);
+        if *is_set {
+            return Ok(Next::Working);
         }
         *taken += 1;
         Ok(Next::Frame(runner.taken(frame)))

@@ -220,7 +220,7 @@ impl Compare {
                 return Err(Failure::usage("--frames is for scenes; a figure is one picture"));
             }
         };
-        let wish = DrawOptions { frames, size: *size, ..DrawOptions::default() };
+        let wish = DrawOptions { frames, size: *size, distances: self.report.is_some(), ..DrawOptions::default() };
         let gpu =
             adapter.as_ref().map_or_else(|| usual_gpu(expected), Gpu::new).map_err(|error| Failure::adapter(&error))?;
         interrupt::listen();

@@ -101,6 +101,7 @@ pub(super) struct Render {
 
 impl Render {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
+        self.options.out.as_deref().map_or(Ok(()), FileFormat::check_name)?;
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
         if let Some(size) = self.size {
             scenes.iter_mut().for_each(|scene| (scene.view.size, scene.view.print) = (size, None));
@@ -120,7 +121,7 @@ impl Render {
         }
         let states = self.from_states.as_deref();
         let mut jobs = self.options.jobs(scenes, !self.no_frames, self.shard, states, words)?;
-        jobs.iter().try_for_each(check_compared)?;
+        jobs.iter().try_for_each(|Job { scene, runs, .. }| check_compared(scene, runs))?;
         if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {
             job.stored = Some(StoredStates::open(file, &job.scene, &job.runs, &job.frames)?);
         }
@@ -164,6 +165,7 @@ impl Render {
             return Err(Failure::usage(message));
         }
         let (runs, frames) = (self.options.runs(scene)?, self.options.frames(scene)?);
+        check_compared(scene, &runs)?;
         let &[frame] = &frames[..] else {
             let count = frames.len();
             let message =
@@ -242,13 +244,14 @@ struct Device {
 }
 
 /// Whether all runs are there that pictures compare others with.
-fn check_compared(Job { scene, runs, .. }: &Job) -> Result<(), Failure> {
+fn check_compared(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
     let ghost = match scene.view.ghost {
         Some(Ghost::Run(run)) => Some(("ghost", run)),
         _ => None,
     };
     let difference = scene.view.difference.iter().flat_map(|difference| difference.runs.map(|run| ("difference", run)));
-    match ghost.into_iter().chain(difference).find(|(_, run)| !runs.contains(run)) {
+    let points = scene.view.points.as_ref().and_then(|points| points.run.map(|run| ("points", run)));
+    match ghost.into_iter().chain(difference).chain(points).find(|(_, run)| !runs.contains(run)) {
         None => Ok(()),
         Some((key, run)) => {
             let (title, name) = (&scene.title, &scene.runs[run].name);

@@ -6,7 +6,7 @@ use crate::artist::{compose_frame, draw_bodies, draw_pictures};
 use crate::gpu::Gpu;
 use crate::look::Print;
 use crate::output::{Compression, encode_print, read_tags};
-use crate::picture::Picture;
+use crate::picture::{Picture, type_left_out};
 use crate::runner::Runner;
 use crate::scene::Scene;
 use crate::sim::body::Dimension;
@@ -30,6 +30,21 @@ impl Format {
         }
         let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
         if is_png { Some(Self::Png) } else { vector::Format::of(path).map(Self::Vector) }
+    }
+
+    /// Refuses names that are hardly meant for folders: those of other formats of pictures.
+    pub(super) fn check_name(path: &Path) -> Result<(), Failure> {
+        const OTHERS: [&str; 11] = ["jpg", "jpeg", "gif", "apng", "webp", "tif", "tiff", "bmp", "eps", "mp4", "webm"];
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+        if path.is_dir() || !OTHERS.contains(&&*ending) {
+            return Ok(());
+        }
+        let message = format!(
+            "-o {}: a picture is written as .png, .svg or .pdf; expected one of these, or the name of a folder (films: \
+             `localshape animate`)",
+            path.display()
+        );
+        Err(Failure::usage(message))
     }
 
     /// Whether pictures of scenes need a graphics device: vectors only where bodies are lit.
@@ -67,7 +82,8 @@ pub(super) fn too_small(scene: &Scene, runs: &[usize]) -> Option<String> {
     let print = scene.view.print.as_ref()?;
     let mut runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
     let first = compose_frame(scene, &runner.frame(0), None);
-    print.too_small(f64::from(smallest_type(&first[0])), &source_of(scene))
+    let smallest = type_left_out(scene).unwrap_or(f64::INFINITY).min(smallest_type(&first[0]).into());
+    print.too_small(smallest, &source_of(scene))
 }
 
 /// The file of a scene, for messages.

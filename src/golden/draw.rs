@@ -1,6 +1,7 @@
 //! A scene or figure, simulated and drawn to be compared with its golden, or to become one.
 
 use super::distance::kind;
+use super::moved::{distances_of, draw_distances};
 use super::plan::Plan;
 use super::record::{Drawn, Record};
 use super::side::{Kind, Side, Source};
@@ -58,6 +59,8 @@ pub(crate) struct DrawOptions {
     pub(crate) size: Option<[u32; 2]>,
     /// Width of a new golden (px).
     pub(crate) width: Option<u32>,
+    /// Whether states that moved are drawn once more, coloured by how far their nodes have moved.
+    pub(crate) distances: bool,
 }
 
 impl DrawOptions {
@@ -116,7 +119,7 @@ pub(crate) fn draw(
         Subject::Scene(scene) => draw_scene(scene, options, old.record.as_ref(), gpu, go_on)?,
         Subject::Figure(figure) => draw_figure(figure, options, old.record.as_ref(), gpu, go_on)?,
     };
-    Ok(drawn.map(|Made { mut record, pictures, notes }| {
+    Ok(drawn.map(|Made { mut record, pictures, distances, notes }| {
         record.subject = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let pictures: BTreeMap<_, _> =
             pictures.into_iter().map(|(name, bytes)| (name, Source::Memory(bytes))).collect();
@@ -127,6 +130,7 @@ pub(crate) fn draw(
             record: Some(record),
             is_undrawn: gpu.is_none(),
             options: options.command_line(),
+            distances,
             notes,
         }
     }))
@@ -137,6 +141,8 @@ struct Made {
     record: Record,
     /// PNG files by name.
     pictures: BTreeMap<String, Vec<u8>>,
+    /// The same of states that moved, coloured by how far.
+    distances: BTreeMap<String, Vec<u8>>,
     notes: Vec<String>,
 }
 
@@ -169,8 +175,8 @@ fn draw_scene(
     let mut artist = gpu.map(|gpu| Artist::new(gpu, &scene)).transpose()?;
     let adapter = gpu.map_or_else(String::new, |gpu| gpu.description().to_string());
     let (mut states, mut pictures, mut drawn) = (States::default(), BTreeMap::new(), Vec::new());
-    let mut stopped = BTreeMap::new();
-    // Strips show the whole time series, which is simulated before the first frame is drawn.
+    let (mut stopped, mut distances, mut course) = (BTreeMap::new(), BTreeMap::new(), None);
+    // Charts, paths and cameras need the whole time series, which is simulated before the first frame is drawn.
     let wanted = scene.time_series().filter(|_| artist.is_some());
     let runner = Runner::new(&scene, &runs);
     let runner = match wanted {
@@ -187,6 +193,7 @@ fn draw_scene(
             Next::Working => continue,
             Next::TimeSeries(history) => {
                 artist.iter_mut().for_each(|artist| artist.set_history(&history));
+                course = Some(history);
                 continue;
             }
             Next::Frame(frame) => frame,
@@ -210,6 +217,12 @@ fn draw_scene(
             let bytes = encode(size, &pixels, &label.texts(), Compression::High);
             let file = frame_file_name(index);
             drawn.push(Drawn::new(&file, &label));
+            let moved = old.filter(|_| options.distances).and_then(|old| distances_of(&scene, &frame, old));
+            if let (Some(gpu), Some(moved)) = (gpu, moved) {
+                let larger = size.map(|side| (2 * side).min(gpu.longest_side()));
+                let pixels = draw_distances(gpu, &scene, larger, &frame, &moved, course.as_ref())?;
+                distances.insert(file.clone(), encode(larger, &pixels, &[], Compression::High));
+            }
             pictures.insert(file, bytes);
         }
     }
@@ -217,7 +230,7 @@ fn draw_scene(
     states.set_steps(scene.runs.iter().map(|run| (run.name.as_str(), Step { step: run.step, cycle })));
     let scenes = vec![scene.digest.clone()];
     let record = Record { subject: String::new(), scenes, size, pictures: drawn, states };
-    Ok(Some(Made { record, pictures, notes: stopped.into_values().collect() }))
+    Ok(Some(Made { record, pictures, distances, notes: stopped.into_values().collect() }))
 }
 
 fn draw_figure(
@@ -260,7 +273,7 @@ fn draw_figure(
     }
     let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
     let record = Record { subject: String::new(), scenes, size: figure.size, pictures: drawn, states };
-    Ok(Some(Made { record, pictures, notes: Vec::new() }))
+    Ok(Some(Made { record, pictures, distances: BTreeMap::new(), notes: Vec::new() }))
 }
 
 /// The size to draw in (px).
@@ -308,7 +321,8 @@ mod tests {
     fn side(record: Record, kind: Kind) -> Side {
         let (origin, pictures) = ("golden".into(), BTreeMap::new());
         let is_undrawn = kind == Kind::Drawn;
-        Side { origin, kind, pictures, record: Some(record), is_undrawn, options: String::new(), notes: Vec::new() }
+        let (options, distances, notes) = Default::default();
+        Side { origin, kind, pictures, record: Some(record), is_undrawn, options, distances, notes }
     }
 
     /// A small scene, its golden, and both compared after a change of its states.

@@ -10,6 +10,8 @@ mod bless;
 mod distance;
 #[cfg(feature = "render")]
 pub(crate) mod draw;
+#[cfg(feature = "render")]
+mod moved;
 mod page;
 mod pair;
 mod picture;

@@ -121,6 +121,7 @@ impl Comparison {
             expected,
             actual,
             difference,
+            distances: self.sides[1].distances.get(&picture.name).filter(|_| is_shown).cloned(),
         };
         (pair, adapters)
     }

@@ -64,6 +64,8 @@ pub(crate) struct Side {
     pub(super) is_undrawn: bool,
     /// The options of the command line by which it was drawn.
     pub(crate) options: String,
+    /// PNG files by the name of the picture: its state, coloured by how far it moved.
+    pub(super) distances: BTreeMap<String, Vec<u8>>,
     /// Remarks on it.
     pub(super) notes: Vec<String>,
 }
@@ -112,6 +114,7 @@ impl Side {
             record: None,
             is_undrawn: false,
             options: String::new(),
+            distances: BTreeMap::new(),
             notes: Vec::new(),
         }
     }

@@ -1,9 +1,9 @@
-//! Resolves what bodies are compared with: ghosts, differences, their own paths, and points measured elsewhere.
+//! Resolves what stands over and beside bodies: ghosts, differences, their own paths, points measured elsewhere, and insets.
 
 use super::file::{DifferenceOfFile, PathFile, PathPointFile, PointsFile, ViewFile};
 use super::points::PointsRead;
 use super::subject::Subject;
-use super::view::{Difference, Ghost, Points, Traced};
+use super::view::{Difference, Ghost, Inset, Points, Traced};
 use crate::reading::report::{Report, Way};
 use crate::reading::words::{list, nearest, quoted, short};
 use crate::sim::body::Dimension;
@@ -68,18 +68,38 @@ pub(super) fn difference(typed: &ViewFile, scene: &Subject<'_>, report: &mut Rep
 pub(super) fn paths(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Vec<Traced> {
     let Some(paths) = &typed.paths else { return Vec::new() };
     check_whole(typed, "paths", report);
-    let nodes = scene.body.len();
+    if let Some(at) = (1..paths.len()).find(|&at| paths[..at].contains(&paths[at])) {
+        let path = [Way::Key("view"), Way::Key("paths"), Way::Index(at)];
+        report.at(&path, "this path is asked for a second time".to_owned(), "remove it".to_owned());
+    }
     let one = |(at, path): (usize, &PathFile)| match *path {
         PathFile::Point(PathPointFile::Centre) => Some(Traced::Centre),
-        PathFile::Node(node) if (node as usize) < nodes => Some(Traced::Node(node)),
         PathFile::Node(node) => {
             let path = [Way::Key("view"), Way::Key("paths"), Way::Index(at)];
-            let message = format!("there is no node {node}; the body has {nodes}, counted from 0");
-            report.at(&path, message, None);
-            None
+            known_node(node, &path, scene, report).map(Traced::Node)
         }
     };
     paths.iter().enumerate().filter_map(one).collect()
+}
+
+/// What is enlarged; `None` also after a mistake.
+pub(super) fn inset(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<Inset> {
+    let inset = typed.inset.as_ref()?;
+    check_whole(typed, "inset", report);
+    let path = [Way::Key("view"), Way::Key("inset"), Way::Key("node")];
+    let node = known_node(inset.node, &path, scene, report)?;
+    Some(Inset { node, times: inset.times })
+}
+
+/// A node, or `None` after reporting that there is none of this number.
+fn known_node(node: u32, path: &[Way<'_>], scene: &Subject<'_>, report: &mut Report<'_>) -> Option<u32> {
+    let nodes = scene.body.len();
+    if (node as usize) < nodes {
+        return Some(node);
+    }
+    let message = format!("there is no node {node}; the body has {nodes}, counted from 0");
+    report.at(path, message, None);
+    None
 }
 
 /// Points that were measured elsewhere, if they fit the scene.
@@ -110,6 +130,13 @@ pub(super) fn points(
             "the points of `{file}` were measured from {first} s to {last} s, the scene goes from 0 to {end} s"
         );
         report.at(&at("file"), message, "let their times count from the start of the scene".to_owned());
+    }
+    let late = read.samples.iter().filter(|(time, _)| *time > scene.duration).count();
+    if late > 0 && late < read.samples.len() {
+        let (all, end) = (read.samples.len(), short(scene.duration));
+        let message =
+            format!("{late} of the {all} points of `{file}` were measured after the end of the scene at {end} s");
+        report.warn(&at("file"), message, "they are not drawn; make `time.duration` longer".to_owned());
     }
     let run = match run {
         None => None,

@@ -74,6 +74,13 @@ fn parse(bytes: &[u8]) -> Result<PointsRead, Mistake> {
         let all: Vec<_> = headers.iter().collect();
         let found =
             if all.is_empty() { "no columns".to_owned() } else { format!("the columns {}", list(&all, "and", quoted)) };
+        if let [one] = all[..]
+            && let Some((sign, name)) =
+                [(';', "semicolons"), ('\t', "tabs")].into_iter().find(|(sign, _)| one.contains(*sign))
+        {
+            let help = format!("write commas in place of `{}`, and points in decimal numbers", sign.escape_default());
+            return Err((format!("separates its columns with {name}; expected commas"), Some(help)));
+        }
         let help = "write `time,x,y,z`, or `time,x,y` for the plane, in the first line (s and m)".to_owned();
         return Err((format!("has {found}; expected time, x and y, and z in space"), Some(help)));
     };
@@ -117,6 +124,7 @@ mod tests {
         for (text, expected) in [
             ("", "has no columns; expected time, x and y"),
             ("t,x,y\n0,0,0\n", "has the columns \"t\", \"x\" and \"y\"; expected time, x and y, and z in space"),
+            ("time;x;y\n0;0,5;0\n", "separates its columns with semicolons; expected commas"),
             ("time,x,y\n", "has no points"),
             ("time,x,y\n0,1,2\n0.1,one,2\n", "has \"one\" as `x` in line 3; expected a number"),
             ("time,x,y\n0,1,inf\n", "has \"inf\" as `y` in line 2"),

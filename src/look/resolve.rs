@@ -78,6 +78,7 @@ pub(crate) fn resolve(
     let (ghost, difference) = (compared::ghost(typed, scene, report), compared::difference(typed, scene, report));
     let paths = compared::paths(typed, scene, report);
     let points = points.and_then(|points| compared::points(typed, points, scene, report));
+    let inset = compared::inset(typed, scene, report);
     let at = |key| [Way::Key("view"), Way::Key(key)];
     if typed.explode > 0.0 && (visible.springs || visible.displacements) {
         let what = if visible.springs { "springs" } else { "displacements" };
@@ -130,6 +131,7 @@ pub(crate) fn resolve(
         difference,
         paths,
         points,
+        inset,
         light: typed.light,
         shadow: typed.shadow,
         floor: typed.floor,

@@ -62,6 +62,8 @@ pub struct View {
     pub paths: Vec<Traced>,
     /// Points that were measured elsewhere, if they are shown.
     pub points: Option<Points>,
+    /// What is enlarged beside each body, if anything.
+    pub inset: Option<Inset>,
     /// From where the light falls.
     pub light: Light,
     /// Whether there are shadows.
@@ -77,7 +79,7 @@ pub struct View {
 }
 
 impl View {
-    /// Whether frames show something of the whole course of the scene besides strips.
+    /// Whether frames show something of the whole course of the scene besides the chart.
     pub(crate) fn looks_ahead(&self) -> bool {
         self.difference.is_some() || !self.paths.is_empty()
     }
@@ -120,6 +122,7 @@ impl Default for View {
             difference: None,
             paths: Vec::new(),
             points: None,
+            inset: None,
             light: Light::default(),
             shadow: true,
             floor: FloorStyle::default(),
@@ -345,6 +348,15 @@ pub struct Points {
     pub run: Option<usize>,
     /// Times (s), rising, and places (m).
     pub samples: Arc<[(f64, DVec3)]>,
+}
+
+/// A part of each body that is enlarged beside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inset {
+    /// The node in its middle.
+    pub node: u32,
+    /// How many times larger it is drawn.
+    pub times: f64,
 }
 
 /// A perspective camera that looks at a point.

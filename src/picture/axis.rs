@@ -54,7 +54,12 @@ impl Axis {
         let span = high - low;
         if !(span > 0.0 && span.is_finite()) {
             // The value is constant.
-            let (ticks, texts) = if low == 0.0 { (vec![0.0], vec!["0".to_owned()]) } else { Default::default() };
+            let ticks = match (kind, low) {
+                (Kind::Count, 0.0) => vec![0.0, 1.0],
+                (_, 0.0) => vec![0.0],
+                _ => Vec::new(),
+            };
+            let texts = ticks.iter().map(f64::to_string).collect();
             return Self { range: [low * factor, low * factor + (low * factor).abs().max(1.0)], ticks, texts, unit };
         }
         let division = divide(kind, [low, high], most.max(2));

@@ -97,7 +97,15 @@ mod tests {
 
     fn series(run: usize, is_count: bool, points: &[[f64; 2]]) -> Series {
         let style = LineStyle { colour: [0; 3], dash: &[] };
-        Series { run, name: String::new(), style, is_count, points: points.to_vec(), diverged: None }
+        Series {
+            run,
+            name: String::new(),
+            style,
+            is_count,
+            points: points.to_vec(),
+            members: Vec::new(),
+            diverged: None,
+        }
     }
 
     fn words(diagnostic: Diagnostic, series: &[Series]) -> Vec<String> {

@@ -100,6 +100,22 @@ pub(super) fn ring(
 }
 
 impl Writer<'_> {
+    /// How many of the events of a run, from the first on, have room for their words in a panel.
+    pub(super) fn explained(&self, panel: Rectangle, events: &[&Event]) -> usize {
+        let room = Room::new(panel, self.scale).width();
+        let fits = |count: &usize| self.events_width(events[..*count].iter().copied(), 1) <= room;
+        (0..=events.len()).rev().find(fits).filter(|_| Scale::legible(self.scale.caption())).unwrap_or(0)
+    }
+
+    /// How wide events are with their words, with or without their times (px).
+    fn events_width<'e>(&self, events: impl Iterator<Item = &'e Event>, at: usize) -> f64 {
+        let (unit, size) = (self.scale.type_unit(), self.scale.caption());
+        let [beside, apart] = [EVENT_BESIDE, EVENTS_APART].map(|length| length * unit);
+        let one = 2.0 * EVENT_RING * self.scale.small() + beside + apart;
+        let all: f64 = events.map(|event| one + self.fonts.width(&event.words[at], Weight::Regular, size)).sum();
+        (all - apart).max(0.0)
+    }
+
     /// What happens to a run of a colour, each with a number in a ring, in a line below its heading: as many words as there is
     /// room for. Rings are filled as soon as it has happened.
     pub(super) fn events<'e>(
@@ -115,16 +131,9 @@ impl Writer<'_> {
         let number_size = self.scale.small();
         let radius = EVENT_RING * number_size;
         let [beside, apart] = [EVENT_BESIDE, EVENTS_APART].map(|length| length * unit);
-        let wide = |words: &str| {
-            let words = if words.is_empty() { 0.0 } else { beside + self.fonts.width(words, Weight::Regular, size) };
-            2.0 * radius + words
-        };
-        let words = |event: &'e Event, at: usize| event.words.get(at).map_or("", String::as_str);
-        let width = |at: usize| {
-            let widths = events.iter().map(|(_, event)| wide(words(event, at)));
-            widths.sum::<f64>() + apart * events.len().saturating_sub(1) as f64
-        };
-        let Some(at) = (0..=2).find(|&at| width(at) <= room.width()).filter(|_| Scale::legible(size)) else { return };
+        let wide = |words: &str| 2.0 * radius + beside + self.fonts.width(words, Weight::Regular, size);
+        let width = |at: usize| self.events_width(events.iter().map(|(_, event)| *event), at);
+        let Some(at) = (0..=1).find(|&at| width(at) <= room.width()) else { return };
         let (mut left, baseline) = (room.left, room.top + lines.events);
         let palette = self.palette;
         for (number, event) in &events {
@@ -132,7 +141,7 @@ impl Writer<'_> {
                 if event.time <= now { [colour, palette.background] } else { [palette.background, palette.text] };
             let middle = [left + radius, baseline - 0.36 * size];
             ring(self, middle, [radius, number_size], [colour, ground, letter], &number.to_string());
-            let text = words(event, at);
+            let text = &event.words[at];
             self.left(text, Weight::Regular, size, palette.second_text, left + 2.0 * radius + beside, baseline);
             left += wide(text) + apart;
         }

@@ -3,7 +3,7 @@
 use super::arrows;
 use super::axis::{Axis, Kind};
 use super::caption::Writer;
-use super::chart::filled;
+use super::chart::{NUMBERS, filled};
 use super::ghost;
 use super::layout::Scale;
 use super::narrow::narrow;
@@ -25,8 +25,6 @@ const MOST_HEIGHT: f64 = 0.1;
 const ARROW_ROOM: f64 = 250.0;
 const SAMPLE_ROOM: f64 = 220.0;
 const BAR_ROOM: f64 = 365.0;
-/// Size of the numbers at the ticks (px in the reference picture).
-const NUMBERS: f64 = 14.0;
 /// Height of the bar, its least and largest length, and the length of a tick (px in the reference picture).
 const BAR: f64 = 12.0;
 const LENGTHS: [f64; 2] = [190.0, 340.0];

@@ -26,6 +26,7 @@ mod grip;
 mod layout;
 mod legend;
 mod locator;
+mod members;
 mod narrow;
 mod number;
 mod obstacle;
@@ -50,7 +51,7 @@ pub(crate) use crate::colour::Colour;
 pub(crate) use crate::look::{Palette, SHADES};
 pub(crate) use camera::Framing;
 pub use compose::{Composer, compose};
-pub(crate) use compose::{NoRoom, compose_figure, left_out};
+pub(crate) use compose::{NoRoom, compose_figure, left_out, type_left_out};
 pub(crate) use layout::Rectangle;
 pub(crate) use plot::{Plot, PlotCurve, Plots};
 pub(crate) use ranges::{RangeRow, Ranges, SIZE_MM as RANGES_SIZE_MM, power_of_ten};
@@ -364,6 +365,16 @@ pub(crate) struct Curve {
     pub colour: Colour,
     /// Its opacity, from 0 to 1.
     pub alpha: f32,
+}
+
+impl Curve {
+    /// Whether a piece of it may cross a box: left, top, right and bottom (px).
+    fn crosses(&self, [left, top, right, bottom]: [f32; 4]) -> bool {
+        self.points.windows(2).any(|two| {
+            let [x, y] = [0, 1].map(|axis| [two[0][axis].min(two[1][axis]), two[0][axis].max(two[1][axis])]);
+            x[0] <= right && x[1] >= left && y[0] <= bottom && y[1] >= top
+        })
+    }
 }
 
 /// A flat mark on the picture.

@@ -6,6 +6,7 @@ use super::ends::spread;
 use super::layout::{Rectangle, Scale};
 use super::narrow::narrow;
 use super::obstacle::half_space;
+use super::tracking::NEARER;
 use super::{Mark, MarkShape};
 use crate::colour::Colour;
 use crate::look::Palette;
@@ -148,9 +149,9 @@ impl Flat<'_> {
         let [left, top, width, height] = self.viewport.map(f64::from);
         let (y, margin, unit) = (sharpened(pixel[1] + alignment), self.scale.margin(), self.scale.unit);
         let length = width - 2.0 * margin;
-        // Below the captions it would look like an underline.
+        // Below the captions it would look like an underline; but under a body it is drawn in any case.
         let [_, clear, _, room] = self.clear.map(f64::from);
-        if y < top || y > clear + room || length <= 0.0 {
+        if y < top || y > clear + room + NEARER[1] * unit || length <= 0.0 {
             return;
         }
         let depth = (FLOOR_DEPTH * unit).min(top + height - y);

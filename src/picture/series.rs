@@ -43,6 +43,8 @@ pub(super) struct Series {
     pub(super) is_count: bool,
     /// Times (s) and values, as far as they are numbers.
     pub(super) points: Vec<[f64; 2]>,
+    /// Where it is the mean of several scenes, the time series of each: a band shows their least and greatest values. Else empty.
+    pub(super) members: Vec<Vec<[f64; 2]>>,
     /// When the run diverged (s).
     pub(super) diverged: Option<f64>,
 }
@@ -59,24 +61,23 @@ impl Series {
             style: run.line(palette),
             is_count: diagnostic == Diagnostic::TurnedOver,
             points: points.filter(|[_, value]| value.is_finite()).collect(),
+            members: Vec::new(),
             diverged: of_run.divergence.map(|divergence| divergence.time),
         }
     }
 
     /// The part of it between two moments (s).
     pub(super) fn between(&self, [start, end]: [f64; 2]) -> Self {
-        let (points, is_count) = (&self.points, self.is_count);
-        let at = |moment: f64| {
-            let after = points.partition_point(|&[time, _]| time <= moment);
-            let (&[from, one], &[to, other]) = (points.get(after.checked_sub(1)?)?, points.get(after)?);
-            let share = if is_count { 0.0 } else { (moment - from) / (to - from) };
-            Some([moment, one + share * (other - one)])
+        let between = |points: &Vec<[f64; 2]>| {
+            let inside = points.iter().copied().filter(|[time, _]| (start..=end).contains(time));
+            let is_new = |moment: &f64| points.iter().all(|&[time, _]| time != *moment);
+            let ends = [start, end].map(|moment| Some(moment).filter(is_new));
+            let ends = ends.map(|moment| Some([moment?, value(points, moment?, self.is_count)?]));
+            ends[0].into_iter().chain(inside).chain(ends[1]).collect::<Vec<_>>()
         };
-        let inside = points.iter().copied().filter(|[time, _]| (start..=end).contains(time));
-        let ends = [start, end].map(|moment| at(moment).filter(|_| points.iter().all(|&[time, _]| time != moment)));
-        let points = ends[0].into_iter().chain(inside).chain(ends[1]).collect();
+        let (points, members) = (between(&self.points), self.members.iter().map(between).collect());
         let diverged = self.diverged.filter(|time| (start..=end).contains(time));
-        Self { points, diverged, name: self.name.clone(), ..*self }
+        Self { points, members, diverged, name: self.name.clone(), ..*self }
     }
 
     /// Where the curve ends in a chart (px); `None` if it has no values.
@@ -88,6 +89,7 @@ impl Series {
     /// Draws the curve, with a cross where the run diverged. Counts are solid steps; where they go up and down too densely for
     /// a line, their least and greatest values enclose a band. Other curves have no dashes there, which would be a hatch.
     pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: Chart, [times, values]: [&Axis; 2]) {
+        self.draw_range(writer, chart, [times, values]);
         let points = self.points.iter().map(|&[time, value]| [chart.x(times, time), chart.y(values, value)]);
         let mut points: Vec<_> = points.collect();
         if self.is_count {
@@ -133,6 +135,15 @@ impl Series {
     }
 }
 
+/// A value of a time series at a time (s); `None` before its start and after its end. Counts keep their value up to the next one.
+pub(super) fn value(points: &[[f64; 2]], at: f64, is_count: bool) -> Option<f64> {
+    let after = points.partition_point(|&[time, _]| time <= at);
+    let &[from, one] = points.get(after.checked_sub(1)?)?;
+    let Some(&[to, other]) = points.get(after) else { return (from == at).then_some(one) };
+    let share = if is_count { 0.0 } else { (at - from) / (to - from) };
+    Some(one + share * (other - one))
+}
+
 /// The name of a diagnostic of a scene in a picture.
 pub(super) fn name(diagnostic: Diagnostic, scene: &Scene) -> &'static str {
     match (diagnostic, scene.body.dimension) {
@@ -142,27 +153,27 @@ pub(super) fn name(diagnostic: Diagnostic, scene: &Scene) -> &'static str {
 }
 
 /// The largest absolute value.
-fn peak(points: &[[f64; 2]]) -> f64 {
-    points.iter().fold(0.0, |most, [_, value]| value.abs().max(most))
+fn peak(one: &Series) -> f64 {
+    one.all().fold(0.0, |most, [_, value]| value.abs().max(most))
 }
 
 /// The range of values to show: all values of runs that did not diverge, and those of diverged runs that are not far larger.
 pub(super) fn range(series: &[Series], may_diverge: bool) -> Option<[f64; 2]> {
     let with_values = || series.iter().filter(|one| !one.points.is_empty());
     let is_wild = |one: &Series| may_diverge && one.diverged.is_some();
-    let calm = with_values().filter(|one| !is_wild(one)).map(|one| peak(&one.points)).reduce(f64::max);
+    let calm = with_values().filter(|one| !is_wild(one)).map(peak).reduce(f64::max);
     let limit = match calm {
         Some(calm) if calm > 0.0 => BEYOND * calm,
         // Without runs to compare with, the median is ordinary.
         _ => {
-            let mut sizes: Vec<_> = with_values().flat_map(|one| &one.points).map(|[_, value]| value.abs()).collect();
+            let mut sizes: Vec<_> = with_values().flat_map(Series::all).map(|[_, value]| value.abs()).collect();
             sizes.sort_by(f64::total_cmp);
             BEYOND * sizes.get(sizes.len() / 2).copied()?
         }
     };
     let shown = |one: &Series, value: f64| value.abs() <= limit || !is_wild(one);
     let values = with_values().flat_map(|one| {
-        let shown = one.points.iter().filter(|[_, value]| shown(one, *value));
+        let shown = one.all().filter(|[_, value]| shown(one, *value));
         shown.map(|&[_, value]| value).collect::<Vec<_>>()
     });
     let ends = values.fold(None, |ends: Option<[f64; 2]>, value| {
@@ -183,7 +194,7 @@ fn widened([low, high]: [f64; 2]) -> [f64; 2] {
 }
 
 /// A count as steps: level until it changes, then straight up or down.
-fn steps(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+pub(super) fn steps(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut steps: Vec<[f64; 2]> = Vec::new();
     for &[x, y] in points {
         if let Some(&[_, before]) = steps.last().filter(|&&[_, before]| before != y) {
@@ -320,7 +331,7 @@ mod tests {
         let points = values.iter().enumerate().map(|(at, &value)| [at as f64, value]).collect();
         let style = LineStyle { colour: [0; 3], dash: &[] };
         let diverged = diverged.then_some(values.len() as f64);
-        Series { run: 0, name: String::new(), style, is_count: false, points, diverged }
+        Series { run: 0, name: String::new(), style, is_count: false, points, members: Vec::new(), diverged }
     }
 
     #[test]

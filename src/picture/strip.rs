@@ -34,6 +34,8 @@ pub(super) struct Strip {
     unit: String,
     /// One for each run shown.
     pub(super) series: Vec<Series>,
+    /// What curves stand for, if there are several scenes; else empty.
+    note: String,
     /// The values shown; `None` if there are none.
     range: Option<[f64; 2]>,
     /// The size of the body (m).
@@ -41,19 +43,28 @@ pub(super) struct Strip {
 }
 
 impl Strip {
-    /// A diagnostic of all runs of a history, in the colours of a picture; `label` replaces names of runs.
+    /// A diagnostic of all runs of scenes with runs of the same names, as their mean, in the colours of a picture; `label` replaces
+    /// names of runs.
+    ///
+    /// # Panics
+    /// If there is no scene.
     pub(super) fn new(
         diagnostic: Diagnostic,
-        history: &History,
-        scene: &Scene,
+        of_scenes: &[(&Scene, &History)],
         palette: &Palette,
         label: impl Fn(&str) -> String,
     ) -> Self {
-        let one = |of_run| {
-            let one = Series::new(diagnostic, of_run, scene, palette);
-            Series { name: label(&one.name), ..one }
+        let scene = of_scenes[0].0;
+        let one = |(scene, history): &(&Scene, &History), name: &str| {
+            let own = history.series.iter().find(|series| scene.runs[series.run].name == name);
+            own.map(|own| Series::new(diagnostic, own, scene, palette))
         };
-        let series: Vec<_> = history.series.iter().map(one).collect();
+        let of_run = |run: usize| {
+            let name = &scene.runs[run].name;
+            let mean = Series::mean(of_scenes.iter().filter_map(|of_scene| one(of_scene, name)).collect());
+            mean.map(|mean| Series { name: label(&mean.name), ..mean })
+        };
+        let series: Vec<_> = of_scenes[0].1.series.iter().filter_map(|series| of_run(series.run)).collect();
         let is_count = diagnostic == Diagnostic::TurnedOver;
         // Counts are bounded by the number of elements, so diverged runs are shown whole.
         let range = series::range(&series, !is_count);
@@ -61,9 +72,16 @@ impl Strip {
         if let Some(first) = name.get_mut(..1) {
             first.make_ascii_uppercase();
         }
-        let one = Self { diagnostic, name, unit: String::new(), series, range, extent: scene.body.extent() };
+        let note = match of_scenes.len() {
+            1 => String::new(),
+            count => format!("{count} scenes: mean, range"),
+        };
+        let one = Self { diagnostic, name, unit: String::new(), note, series, range, extent: scene.body.extent() };
         let unit = match one.values(MOST_TICKS) {
             _ if is_count => match elements(&scene.body)[..] {
+                _ if of_scenes.iter().any(|(other, _)| elements(&other.body) != elements(&scene.body)) => {
+                    "elements".to_owned()
+                }
                 [(count, name)] => format!("of {} {name}", number::count(count)),
                 _ => format!("of {} elements", number::count(scene.body.elements.len())),
             },
@@ -93,19 +111,22 @@ impl Strip {
 
     /// The room that its name takes (px).
     pub(super) fn name_width(&self, fonts: &Fonts, scale: Scale) -> f64 {
-        let unit = fonts.width(&self.unit, Weight::Regular, UNIT * scale.type_unit());
-        fonts.width(&self.name, Weight::SemiBold, scale.caption()).max(unit)
+        let below = |text: &str| fonts.width(text, Weight::Regular, UNIT * scale.type_unit());
+        fonts.width(&self.name, Weight::SemiBold, scale.caption()).max(below(&self.unit)).max(below(&self.note))
     }
 
     /// Writes name and unit from a left end around a height (px).
     pub(super) fn write_name(&self, writer: &mut Writer<'_>, [left, middle]: [f64; 2]) {
         let (scale, palette) = (writer.scale, writer.palette);
         let unit = scale.type_unit();
-        let has_unit = !self.unit.is_empty() && Scale::legible(UNIT * unit);
-        let baseline = middle + 0.36 * scale.caption() - if has_unit { 0.5 * UNIT_BELOW * unit } else { 0.0 };
+        let below = [&self.unit, &self.note].into_iter().filter(|text| !text.is_empty() && Scale::legible(UNIT * unit));
+        let below: Vec<_> = below.collect();
+        let baseline = middle + 0.36 * scale.caption() - 0.5 * below.len() as f64 * UNIT_BELOW * unit;
         writer.left(&self.name, Weight::SemiBold, scale.caption(), palette.text, left, baseline);
-        let below = baseline + UNIT_BELOW * unit;
-        writer.left(&self.unit, Weight::Regular, UNIT * unit, palette.second_text, left, below);
+        for (text, line) in below.into_iter().zip(1..) {
+            let baseline = baseline + f64::from(line) * UNIT_BELOW * unit;
+            writer.left(text, Weight::Regular, UNIT * unit, palette.second_text, left, baseline);
+        }
     }
 
     /// Draws it, optionally with times below, and with names at the ends of its curves between two heights (px).

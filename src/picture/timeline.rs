@@ -42,16 +42,28 @@ pub(super) struct Timeline {
 }
 
 impl Timeline {
-    /// The chart of a diagnostic of all runs of a history, in a room of the picture of a writer (px).
+    /// The chart of a diagnostic of all runs of a history, in a room of the picture of a writer (px). `explained` says how
+    /// many of the events of a run have room for their words in its panel.
     pub(super) fn new(
         diagnostic: Diagnostic,
         history: &History,
         scene: &Scene,
         mut writer: Writer<'_>,
         room: Option<Rectangle>,
+        explained: impl Fn(&[&Event]) -> usize,
     ) -> Self {
-        let strip = Strip::new(diagnostic, history, scene, writer.palette, str::to_owned);
-        let events = event::events(diagnostic, &strip.series, scene.body.extent(), history.end);
+        let strip = Strip::new(diagnostic, &[(scene, history)], writer.palette, str::to_owned);
+        let mut events = event::events(diagnostic, &strip.series, scene.body.extent(), history.end);
+        // A number that its panel does not explain says nothing.
+        for one in &strip.series {
+            let own: Vec<_> = events.iter().filter(|event| event.run == one.run).collect();
+            let mut left = explained(&own);
+            events.retain(|event| {
+                let is_kept = event.run != one.run || left > 0;
+                left -= usize::from(event.run == one.run && left > 0);
+                is_kept
+            });
+        }
         let room = room.filter(|_| history.end > 0.0);
         let parts = room.and_then(|room| still(&strip, &events, &mut writer, room.map(f64::from), history.end));
         let Writer { marks, curves, words, .. } = writer;

@@ -21,7 +21,7 @@ const FILLED: f64 = 0.55;
 const LEAST_FILLED: f64 = 0.45;
 /// At the highest moment bodies come this much nearer to the words than other things that words are kept clear of, above
 /// and below (px in the reference picture).
-const NEARER: [f64; 2] = [5.0, 11.0];
+pub(super) const NEARER: [f64; 2] = [5.0, 11.0];
 /// Moments of diverged runs count while they are no larger than the largest moment of the others, or than this many times
 /// the start if there are no others.
 const BEYOND: f64 = 2.0;
@@ -167,7 +167,12 @@ impl Tracking {
         let least = least.min(following);
         let standing = |[low, high]: [DVec3; 2]| (fit(0.5 * (high - low)).min(following), low.midpoint(high));
         let [body, with_near] = self.all;
-        let standing = [with_near, body].map(standing).into_iter().find(|(pixels, _)| *pixels >= least);
+        let all = [with_near, body].map(standing);
+        let standing = all.into_iter().find(|(pixels, _)| *pixels >= least).map(|(pixels, middle)| {
+            // Room that bodies leave above and below is for what comes near them.
+            let spare = (0.5 * (room[3] / pixels - (body[1].y - body[0].y))).max(0.0);
+            (pixels, middle + DVec3::Y * (all[0].1.y - middle.y).clamp(-spare, spare))
+        });
         let standing = standing.filter(|_| !self.paths.is_empty());
         let is_still = standing.is_some();
         // The middle of the box stands in the middle of the room.

@@ -131,7 +131,8 @@ impl Scene {
     fn picture(&self) -> String {
         let view = &self.view;
         let [width, height] = view.size;
-        let panels = match (self.runs.len(), view.columns) {
+        // A difference has a panel of its own.
+        let panels = match (self.runs.len() + usize::from(view.difference.is_some()), view.columns) {
             (1, _) => "one panel".to_owned(),
             (runs, None) => format!("{runs} panels"),
             (runs, Some(columns)) if columns >= runs => format!("{runs} panels in a row"),

@@ -359,6 +359,17 @@ fn a_frame_that_cannot_be_written() {
     assert_eq!(place.names("out").iter().filter(|name| name.starts_with('.')).count(), 0);
 }
 
+/// A name in another format of pictures is hardly meant for a folder.
+#[test]
+fn formats_that_are_not_written_are_refused() {
+    let place = Place::new();
+    place.write("small.toml", SMALL);
+    for name in ["frame.jpg", "frame.JPEG", "film.mp4"] {
+        let told = format!("-o {name}: a picture is written as .png, .svg or .pdf; expected one of these");
+        place.run(&format!("render small.toml --frames 0 -o {name}")).bad(2, &[&told]);
+    }
+}
+
 /// Pictures cannot compare with a run that is left out; simulating needs no other run.
 #[test]
 fn runs_that_others_are_compared_with_cannot_be_left_out() {
@@ -369,6 +380,12 @@ fn runs_that_others_are_compared_with_cannot_be_left_out() {
     place.run("render ghost.toml --only Mass-spring").bad(2, &[told]);
     place.write("apart.toml", &format!("{SMALL}difference = [\"Mass-spring\", \"Local shape\"]\n"));
     place.run("render apart.toml --only Mass-spring").bad(2, &["which `view.difference` of “Two cubes” needs"]);
+    place.write("camera.csv", "time,x,y,z\n0,0,0,0\n");
+    place.write("points.toml", &format!("{SMALL}points = {{ file = \"camera.csv\", run = \"Local shape\" }}\n"));
+    for out in ["", " --frames 0 -o one.png"] {
+        let told = "which `view.points` of “Two cubes” needs";
+        place.run(&format!("render points.toml --only Mass-spring{out}")).bad(2, &[told]);
+    }
     place.run("simulate ghost.toml --only Mass-spring").good();
     if can_draw() {
         place.run("render ghost.toml apart.toml --frames 2").good();

@@ -143,7 +143,7 @@ fn figures_ask_for_energies_only_where_they_show_them() {
         let mut taking = Taking::new(&figure, reach);
         while !taking.advance(u64::MAX) {}
         let moments = taking.finish();
-        let series = moments.history.expect("a strip").series;
+        let series = &moments.histories[0].series;
         let noted: usize = series.iter().map(|run| run.times.len()).sum();
         let expected = asked + if strip == elastic { noted } else { 0 };
         assert_eq!(reports.swap(0, Ordering::Relaxed), expected, "{reach:?}, {number:?}, {strip:?}");

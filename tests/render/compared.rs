@@ -3,7 +3,7 @@
 use super::{fig4b, gpu};
 use glam::DVec3;
 use localshape::history::History;
-use localshape::look::{Difference, Ghost, Points, Style, Theme, Traced};
+use localshape::look::{Difference, Ghost, Inset, Points, Style, Theme, Traced};
 use localshape::moments::Moments;
 use localshape::picture::{Composer, Curve, MarkShape, Panel, Picture};
 use localshape::render::Renderer;
@@ -247,6 +247,64 @@ fn measured_points_are_rings_now_and_dots_before() {
     }
 }
 
+#[test]
+fn sheets_have_paths_and_measured_points() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let view = "[view]\npaths = ['centre']\npoints = { file = 'camera.csv' }\n";
+    let scene = include_str!("../../scenes/fig4b.toml").replace("[view]\n", view);
+    std::fs::write(folder.path().join("scene.toml"), scene).expect("a file");
+    std::fs::write(folder.path().join("camera.csv"), "time,x,y,z\n0,0,0.1,0\n0.05,0,0.1,0\n").expect("a file");
+    let text = "[sheet]\nscene = 'scene.toml'\nmoments = [0.0, 0.05]\n";
+    std::fs::write(folder.path().join("figure.toml"), text).expect("a file");
+    let figure = Figure::load(&folder.path().join("figure.toml"), &Limits::default());
+    let figure = figure.unwrap_or_else(|error| panic!("{error}"));
+    let moments = Moments::new(&figure);
+    let ends = moments.histories[0].series.iter().map(|series| *series.times.last().expect("a start"));
+    assert!(ends.into_iter().all(|end| (0.04..0.06).contains(&end)), "paths end with the last cell");
+    let picture = localshape::picture::compose_figure(&figure, &moments).expect("there is room");
+    for (at, panel) in picture.panels.iter().enumerate() {
+        let colour = figure.scenes()[0].runs[at / 2].line(&picture.palette).colour;
+        let here = |curve: &&Curve| curve.colour == colour && inside(panel.viewport, curve.points[0]);
+        let (dots, lines): (Vec<_>, Vec<_>) = picture.curves.iter().filter(here).partition(|one| one.points.len() == 1);
+        assert_eq!((dots.len(), lines.is_empty()), (1, at % 2 == 0), "{at}");
+        let rings = picture.marks.iter().filter(|mark| {
+            let [x, y, width, height] = mark.rectangle;
+            mark.shape == MarkShape::Node && inside(panel.viewport, [x + width / 2.0, y + height / 2.0])
+        });
+        assert_eq!(rings.count(), 1 + at % 2, "{at}");
+    }
+    assert!(["path of the centre", "measured"].iter().all(|name| picture.words.iter().any(|run| run.text == *name)));
+}
+
+#[test]
+fn an_inset_shows_its_node_in_its_middle_larger_than_beside() {
+    let (mut scene, frame) = fig4b(4);
+    scene.view.inset = Some(Inset { node: 3, times: 3.0 });
+    scene.view.paths = vec![Traced::Node(3)];
+    let history = History::new(&scene, &[0, 1]);
+    let mut composer = Composer::new(&scene);
+    composer.set_history(&history);
+    let picture = composer.compose(&frame);
+    let [one, two, insets @ ..] = &picture.panels[..] else { panic!("panels") };
+    assert_eq!(insets.len(), 2);
+    for (body, inset) in [one, two].into_iter().zip(insets) {
+        let [left, top, width, height] = inset.viewport;
+        assert!(body.viewport[0] + body.viewport[2] <= left, "they stand side by side");
+        assert_eq!(width, height);
+        assert!((inset.sight.element / body.sight.element - 3.0).abs() < 1e-6);
+        // The path of the node ends in the middle of the inset.
+        let middle = [left + width / 2, top + height / 2].map(|at| at as f32);
+        let ends_there = |curve: &Curve| {
+            curve.points.len() == 1 && curve.points[0].iter().zip(middle).all(|(at, middle)| (at - middle).abs() < 1.0)
+        };
+        assert!(picture.curves.iter().any(ends_there), "{:?}", inset.viewport);
+    }
+    assert_eq!(picture.words.iter().filter(|run| run.text == "×\u{2009}3").count(), 2);
+    // Where there is no room, the body has all of the panel, and `check` says so.
+    scene.view.size = [120, 400];
+    assert_eq!(Composer::new(&scene).compose(&frame).panels.len(), 2);
+}
+
 /// Bars have no faces: each is a dashed line.
 #[test]
 fn bodies_of_bars_have_ghosts() {
@@ -267,4 +325,11 @@ fn what_finds_no_room_is_known_beside_a_difference() {
     let (mut scene, _) = fig4b(0);
     scene.view.difference = Some(Difference { runs: [0, 1], after_fit: false });
     assert_eq!(localshape::picture::left_out(&scene), Vec::<String>::new());
+    // A title has at most four lines.
+    scene.view.title = "A title that goes on and on ".repeat(20);
+    assert_eq!(localshape::picture::left_out(&scene), ["the title is cut off"]);
+    let title =
+        |picture: &Picture| picture.words.iter().filter(|run| run.size > 28.0).map(|run| run.text.clone()).collect();
+    let lines: Vec<String> = title(&Composer::new(&scene).compose(&Runner::new(&scene, &[0, 1]).frame(0)));
+    assert!(lines.last().is_some_and(|line| line.ends_with('…')), "{lines:?}");
 }

@@ -154,6 +154,27 @@ fn a_short_story_has_a_scale_of_its_own_and_its_events_recur_in_the_panels() {
     assert_ne!(ring(&after, "1"), ground);
 }
 
+/// Where panels have no room for what a number means, there is no number in the chart, either.
+#[test]
+fn flags_are_those_that_panels_explain() {
+    let (mut scene, _) = with_strip(Diagnostic::TurnedOver, [0]);
+    let mut counts = Vec::new();
+    for size in [[1280, 720], [500, 720], [300, 720], [1280, 260]] {
+        scene.view.size = size;
+        scene.view.columns = Some(2);
+        let mut composer = Composer::new(&scene);
+        composer.set_history(&History::new(&scene, &[0, 1]));
+        let picture = composer.compose(&Runner::new(&scene, &[0, 1]).frame(0));
+        let is_number = |word: &&TextRun| ["1", "2"].contains(&&*word.text) && word.weight == Weight::SemiBold;
+        let explained = |word: &&TextRun| word.text.starts_with("first turned") || word.text.starts_with("settles");
+        let [numbers, words] = [&is_number as &dyn Fn(&&TextRun) -> bool, &explained]
+            .map(|one| picture.words.iter().filter(|word| one(word)).count());
+        assert_eq!(numbers, 2 * words, "{size:?}");
+        counts.push(words);
+    }
+    assert!(counts[0] == 2 && counts.iter().any(|&count| count < 2), "{counts:?}");
+}
+
 /// A count that goes up and down in every second moment.
 #[test]
 fn what_chatters_is_a_band() {

@@ -56,6 +56,7 @@ fn sheet(name: &str, frame: Option<u64>, passes: bool) -> PicturePair {
         expected: Some(square_at(LEFT)),
         actual: Some(square_at(if passes { LEFT } else { RIGHT })),
         difference: Some(png(SIZE, |x, _| if x < 32 { [255; 3] } else { [226, 102, 28] })),
+        distances: None,
     }
 }
 
@@ -451,18 +452,25 @@ fn what_is_not_there_is_said_and_nothing_is_too_much() {
     two.actual = Some(b"no picture".into());
     (three.expected, three.actual, three.difference) = (None, None, None);
     four.actual = Some(png([32, 96], |_, _| INK));
+    two.distances = Some(square_at(RIGHT));
     let Some((mut browser, _)) = browser_with(&report, "#picture=000.png") else { return };
     let captions = "[...document.querySelectorAll('figure')].map((figure) => figure.innerText.replace(/\\s+/g, ' '))";
     let seen = browser.value(captions);
     assert_eq!(seen, json!(["Expected 64 × 48", "Difference nothing to compare", "Actual missing"]));
     assert_eq!(browser.value("document.getElementById('difference-key').hidden"), true);
+    let distances =
+        "[document.getElementById('distances').hidden, document.querySelector('#distances img')?.naturalWidth ?? 0]";
+    assert_eq!(browser.value(distances), json!([true, 0]));
     browser.press("ArrowRight", PLAIN);
     browser.until("the pictures", LOADED);
+    browser.until("a state coloured by distances", "document.querySelector('#distances img').naturalWidth === 64");
+    assert_eq!(browser.value(distances), json!([false, 64]));
     let seen = browser.value(captions);
     assert_eq!(seen[0], "Expected missing: nothing like it was expected");
     assert_eq!(seen[2], "Actual this picture cannot be shown");
     browser.press("ArrowRight", PLAIN);
     assert_eq!(browser.value(captions)[2], "Actual not embedded in this report");
+    assert_eq!(browser.value(distances), json!([true, 0]));
     browser.press("ArrowRight", PLAIN);
     browser.until("the pictures", LOADED);
     browser.until("sizes", "document.querySelectorAll('.size')[2].textContent === '32 × 96'");

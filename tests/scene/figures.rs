@@ -97,7 +97,7 @@ fn every_mistake_is_said_where_it_is() {
              scene = 'fig4a.toml'\ntime = 0",
             2,
             1,
-            "strips are of one scene, but the columns show several",
+            "strips over several scenes have one axis of time, but “3×3×3 cubes dropped on a floor” ends at 3 s",
         ),
         (
             "[sheet]\nscene = 'fig4b.toml'\nmoments = [0, 1]\nstrips = ['energy']\nfrom = 0.5",

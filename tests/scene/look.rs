@@ -525,6 +525,9 @@ fn paths_and_points_are_read() {
     assert_eq!(good.view.paths, [Traced::Centre, Traced::Node(3)]);
     let read = good.view.points.as_ref().expect("points");
     assert_eq!((read.run, read.samples.len(), read.samples[1].1.y), (Some(1), 2, 4.0));
+    let late = scene(points, "time,x,y\n0,1,2\n9,3,4\n").unwrap_or_else(|error| panic!("{error}"));
+    let [warning] = &late.warnings[..] else { panic!("{:?}", late.warnings) };
+    assert!(warning.message.contains("1 of the 2 points of `camera.csv` were measured after the end"), "{warning:?}");
     // What is in the file counts, not its name.
     let other = scene(points, &csv.replace('4', "5")).unwrap_or_else(|error| panic!("{error}"));
     assert_ne!(good.digest, other.digest);
@@ -534,6 +537,11 @@ fn paths_and_points_are_read() {
     for (view, csv, column, expected) in [
         ("paths = ['middle']", csv, 10, "\"middle\""),
         ("paths = [0, 4]", csv, 13, "there is no node 4; the body has 4, counted from 0"),
+        ("paths = [1, 'centre', 1]", csv, 23, "this path is asked for a second time"),
+        ("inset = { node = 4, times = 3 }", csv, 18, "there is no node 4; the body has 4, counted from 0"),
+        ("inset = { node = 3, times = 1 }", csv, 29, "expected a number from 1.5 to 50"),
+        ("inset = { node = 3, times = 2 }\nexplode = 1", csv, 1, "so `inset` cannot be shown"),
+        ("points = { file = 'camera.csv' }", "time;x;y\n0;1;2\n", 19, "separates its columns with semicolons"),
         ("paths = ['centre']\nexplode = 1", csv, 1, "so `paths` cannot be shown"),
         ("points = { file = 'camara.csv' }", csv, 19, "is not there"),
         ("points = { file = 'camera.csv' }", "time,x,y\n0,1,b\n", 19, "has \"b\" as `y` in line 2"),

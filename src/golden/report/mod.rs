@@ -82,6 +82,10 @@ pub struct PicturePair {
     /// A picture of their differences as a PNG file; `None` if there is none or it is not embedded.
     #[serde(serialize_with = "address")]
     pub difference: Option<Vec<u8>>,
+    /// The actual state, coloured by the distance of each node from its expected place, as a PNG file; `None` if it has not moved,
+    /// or where the expected nodes are not known.
+    #[serde(serialize_with = "address")]
+    pub distances: Option<Vec<u8>>,
 }
 
 /// A PNG file as a data URL.

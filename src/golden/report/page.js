@@ -57,6 +57,15 @@
       image.src = picture[side];
       view.replaceChildren(image);
     }
+    const distances = the("distances");
+    distances.querySelector("img")?.remove();
+    distances.hidden = picture.distances === null;
+    if (picture.distances !== null) {
+      const map = new Image();
+      map.alt = `Distance of each node from its expected place: ${picture.name}`;
+      map.src = picture.distances;
+      distances.append(map);
+    }
     the("difference-key").hidden = picture.difference === null || picture.verdict === "identical";
     layout();
   }

@@ -22,7 +22,7 @@ impl Composer<'_> {
         let (view, words) = (&self.scene.view, self.words());
         let pixels = |columns: usize| {
             let layout = words.around(runs, columns).layout;
-            let viewport = *layout.panels.first()?;
+            let viewport = self.body_room(*layout.panels.first()?, layout.scale).0;
             let shot = self.shot(viewport, layout.scale, f64::INFINITY).map(|shot| shot.pixels);
             let still = || self.pixels_a_metre(viewport, &Framing::still(&view.camera), layout.scale);
             Some(shot.unwrap_or_else(still))

@@ -7,8 +7,8 @@ use crate::history::History;
 use crate::look::ColourScale;
 use crate::picture::axis::{Axis, Kind};
 use crate::picture::caption::{self, Heading, Writer};
-use crate::picture::chart::{BELOW, Chart, GAP, MOST_TICKS, ROWS_APART, dot, wide};
-use crate::picture::layout::{Rectangle, Scale};
+use crate::picture::chart::{BELOW, Chart, GAP, MOST_TICKS, NUMBERS, ROWS_APART, dot, wide};
+use crate::picture::layout::{self, Rectangle, Scale};
 use crate::picture::narrow::narrow;
 use crate::picture::series::{EXACT, OWN, simplified};
 use crate::picture::text::Weight;
@@ -33,23 +33,18 @@ const HALO: f64 = 2.2;
 /// The lowest and the narrowest chart (px).
 const LEAST: [f64; 2] = [14.0, 40.0];
 
-/// The chart is no smaller than this part of the reference, so that its numbers stay legible.
-const LEAST_STRIP_UNIT: f64 = 0.5;
-
 /// The largest distance over the time of a scene.
 #[derive(Debug)]
-pub(super) struct Course {
+pub(super) struct LargestDistance {
     /// The last time shown (s).
     end: f64,
     /// Times (s) and distances (m).
     points: Vec<[f64; 2]>,
-    /// The size of the body (m).
-    extent: f64,
 }
 
-impl Course {
-    pub(super) fn new(history: &History, extent: f64) -> Self {
-        Self { end: history.end, points: history.difference.clone(), extent }
+impl LargestDistance {
+    pub(super) fn new(history: &History) -> Self {
+        Self { end: history.end, points: history.difference.clone() }
     }
 }
 
@@ -90,11 +85,17 @@ impl Composer<'_> {
 
     /// The colours of distances: up to the largest of the whole scene, so that they mean the same in all frames.
     pub(super) fn distance_scale(&self) -> ColourScale {
-        let points = self.course.iter().flat_map(|course| &course.points);
+        let points = self.largest_distance.iter().flat_map(|largest| &largest.points);
         let largest = points.fold(0.0, |largest: f64, [_, distance]| distance.max(largest));
         let high = if largest > 0.0 { largest } else { 0.5 * self.scene.view.side };
         let map = self.scene.view.colour.map(|colour| colour.map).unwrap_or_default();
         ColourScale { field: Field::Displacement, range: [0.0, high], map }
+    }
+
+    /// The size (m) of bodies whose lengths have the unit of distances: small ones have a unit of their own.
+    pub(super) fn unit_of_distances(&self) -> f64 {
+        const SIZE: f64 = 30.0;
+        (SIZE * self.distance_scale().range[1]).min(self.extent)
     }
 
     /// The values of the colour bar.
@@ -105,7 +106,7 @@ impl Composer<'_> {
     /// The part of a panel's room for the body, and that for the chart, if there is one.
     pub(super) fn rooms(&self, panel: Rectangle, scale: Scale) -> (Rectangle, Option<Rectangle>) {
         let [left, top, width, height] = panel;
-        let unit = scale.of_type(scale.unit.max(LEAST_STRIP_UNIT));
+        let unit = unit_of_chart(scale);
         let taken = ((STRIP + BELOW_STRIP) * unit).round() as u32;
         if f64::from(taken) > MOST * f64::from(height) {
             return (panel, None);
@@ -125,13 +126,20 @@ impl Composer<'_> {
         writer: &mut Writer<'_>,
     ) {
         let view = &self.scene.view;
-        let labels = view.labels;
         let (viewport, strip) = self.rooms(panel, writer.scale);
-        let taken = if time.is_some() { writer.clock_room(viewport, &view.clock) } else { [0.0; 2] };
+        let written = layout::written(view, f64::from(viewport[3]), writer.scale.unit);
+        let (labels, clock_label) = (written.labels, self.words().clock_label(written));
+        let taken = if time.is_some() { writer.clock_room(viewport, clock_label) } else { [0.0; 2] };
         let [one, other] = [compared.one.run, compared.other].map(|run| &self.scene.runs[run].name[..]);
         let is_fitted = view.difference.is_some_and(|difference| difference.after_fit);
         let name = if is_fitted { "Difference of shapes" } else { "Difference" };
-        let second = format!("{one} to {other} (dashed)");
+        // Which of them is dashed is said in any case.
+        let free = f64::from(viewport[2]) - 2.0 * writer.scale.margin();
+        let free = free - if taken[1] > 0.0 { taken[1] + writer.scale.gap() } else { 0.0 };
+        let wide = |text: &String| writer.fonts.width(text, Weight::Regular, writer.scale.caption());
+        let wordings =
+            [format!("{one} to {other} (dashed)"), format!("to {other} (dashed)"), format!("dashed: {other}")];
+        let second = wordings.into_iter().find(|text| wide(text) <= free).unwrap_or_default();
         let heading = Heading {
             letter: if labels.letter { caption::letter(at) } else { String::new() },
             name: if labels.name { name } else { "" },
@@ -140,14 +148,15 @@ impl Composer<'_> {
             names: &[],
         };
         writer.heading(viewport, &heading, taken);
-        time.iter().for_each(|&time| writer.clock(viewport, time, &view.clock));
+        time.iter().for_each(|&time| writer.clock(viewport, time, clock_label));
         if let Some(largest) = compared.largest().filter(|_| labels.number) {
             let left = f64::from(viewport[0]) + writer.scale.margin();
-            let number = caption::distance(largest, self.distance_scale().range[1], self.extent);
+            let number = caption::distance(largest, self.distance_scale().range[1], self.unit_of_distances());
             writer.number(viewport, left, &number);
         }
-        if let (Some(course), Some(strip)) = (&self.course, strip) {
-            course.draw(writer, strip, compared.one.snapshot.time, compared.largest());
+        if let (Some(largest), Some(strip)) = (&self.largest_distance, strip) {
+            let shown = (compared.one.snapshot.time, compared.largest());
+            largest.draw(writer, strip, self.unit_of_distances(), shown);
         }
     }
 
@@ -164,28 +173,35 @@ impl Composer<'_> {
         let mut draft = Draft::new(self, self.rooms(panel, scale).0, compared.one, framing, scale);
         draft.colour_by(&self.distance_scale(), &compared.distances);
         let colour = self.scene.runs[compared.other].line(&self.palette).colour;
-        draft.outline(&compared.outlined, colour, draft.between_words(), curves);
+        // Wherever the other body is, it is not cut off at rows of words.
+        draft.outline(&compared.outlined, colour, draft.viewport, curves);
         draft.panel(under, above)
     }
 }
 
-impl Course {
-    /// Draws it into a rectangle, with a mark at a time (s) and a distance (m); nothing if the rectangle is too small.
-    fn draw(&self, writer: &mut Writer<'_>, room: Rectangle, time: f64, distance: Option<f64>) {
-        let unit = writer.scale.of_type(writer.scale.unit.max(LEAST_STRIP_UNIT));
+/// Pixels of the chart for one pixel of type in the reference picture: its numbers are no smaller than others.
+fn unit_of_chart(scale: Scale) -> f64 {
+    scale.small() / NUMBERS
+}
+
+impl LargestDistance {
+    /// Draws it into a rectangle, with a mark at a time (s) and a distance (m), in the unit for bodies of a size (m); nothing if
+    /// the rectangle is too small.
+    fn draw(&self, writer: &mut Writer<'_>, room: Rectangle, extent: f64, (time, distance): (f64, Option<f64>)) {
+        let unit = unit_of_chart(writer.scale);
         let [left, top, width, height] = room.map(f64::from);
         let (name_baseline, palette) = (top + NAME_BASELINE * unit, writer.palette);
         let [top, bottom] = [top + (ABOVE * unit).round(), top + height - (BELOW * unit).round()];
         let largest = self.points.iter().fold(0.0, |largest: f64, [_, distance]| distance.max(largest));
         let rows = ((bottom - top) / (ROWS_APART * unit)).max(0.0) as usize + 1;
-        let values = Axis::new(Kind::Value, [0.0, largest], "m", self.extent, rows.min(MOST_TICKS));
+        let values = Axis::new(Kind::Value, [0.0, largest], "m", extent, rows.min(MOST_TICKS));
         let numbers = values.texts.iter().map(|text| wide(writer.fonts, text, unit)).fold(0.0, f64::max);
         let indent = (numbers + GAP * unit).round();
         let [lowest, narrowest] = LEAST;
         if bottom - top < lowest || width - indent < narrowest || self.end <= 0.0 || !Scale::legible(NAME * unit) {
             return;
         }
-        let line = writer.scale.line_factor * writer.scale.unit.max(LEAST_STRIP_UNIT);
+        let line = writer.scale.line();
         let thin = writer.scale.line_factor * unit;
         let chart = Chart { left: left + indent, right: left + width, top, bottom, unit, line, thin };
         let times = chart.times(writer.fonts, [0.0, self.end]);

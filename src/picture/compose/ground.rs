@@ -50,6 +50,8 @@ impl Draft<'_> {
         let cell = self.cell();
         let grid = plane.axes.map(|axis| narrow(((self.origin - anchor) / self.side).dot(axis).rem_euclid(cell)));
         let [_, below] = layout::rooms(view, f64::from(self.viewport[3]), self.scale.unit);
+        // Where there are no words, as in insets, it goes on to the border.
+        let fade_above = if self.clear == self.viewport { 1.0 } else { (below + FADE_ABOVE) * self.scale.unit };
         Some(Floor {
             normal: narrow_point(plane.normal),
             axes: plane.axes.map(narrow_point),
@@ -58,7 +60,7 @@ impl Draft<'_> {
             cell: narrow(cell),
             grid,
             fade: fade.map(narrow),
-            fade_above: narrow((below + FADE_ABOVE) * self.scale.unit),
+            fade_above: narrow(fade_above),
             is_filled: view.floor != FloorStyle::None,
             has_grid: view.floor == FloorStyle::Grid,
             shades: self.shadows(staged, &plane, middle, fade[1]),

@@ -6,6 +6,8 @@ mod difference;
 mod figure;
 mod ghost;
 mod ground;
+mod inset;
+mod key;
 mod panel;
 mod paths;
 mod region;
@@ -15,9 +17,9 @@ use super::arrows;
 use super::camera::Lens;
 use super::caption::{self, Writer};
 use super::ears::{Ears, bare_elements};
+use super::event::Event;
 use super::exploded::Exploded;
 use super::layout::{self, Layout, Rectangle, Scale};
-use super::legend::{Bar, Legend, Sample, SampleKind};
 use super::locator::Locator;
 use super::shadow;
 use super::shell::Shell;
@@ -26,25 +28,25 @@ use super::tally::Tally;
 use super::text::Fonts;
 use super::timeline::Timeline;
 use super::tracking::{Shot, Tracking};
-use super::wire::{Edges, spring_strain};
-use super::{Framing, Picture, number};
+use super::wire::Edges;
+use super::{Curve, Framing, Picture, number};
 use crate::colour::Colour;
 use crate::history::{History, Reach, TimeSeries};
 use crate::look::ramp::ramp;
-use crate::look::{ColourMap, Palette, StrainScale};
+use crate::look::{ColourMap, Palette};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::contact;
 use crate::sim::grip::Grip;
-use crate::sim::snapshot::{Frame, Snapshot};
-use difference::Compared;
+use crate::sim::snapshot::{Frame, Snapshot, Status};
 pub(crate) use figure::{NoRoom, compose_figure};
 use glam::DVec3;
+use inset::Sinks;
 use panel::Draft;
 use std::borrow::Cow;
 use std::sync::OnceLock;
-pub(crate) use words::left_out;
 use words::{Around, Clock, Words};
+pub(crate) use words::{left_out, type_left_out};
 
 /// Bodies with more elements than this along a side get softer light, as if their elements were larger.
 const SOFT_SHARE: f64 = 4.5;
@@ -72,6 +74,8 @@ pub struct Composer<'a> {
     ears: Ears,
     /// Elements without faces.
     bare: Vec<usize>,
+    /// What the field is called in keys, and its definition there, if not as usual.
+    field_name: Option<[&'static str; 2]>,
     /// The colours of a field, if one is shown.
     ramp: Vec<Colour>,
     /// The colours of the strain of springs, if it is shown.
@@ -95,7 +99,7 @@ pub struct Composer<'a> {
     /// The chart below the panels, once the time series are set.
     timeline: Option<Timeline>,
     /// The difference of two runs over time, and the paths of all runs, likewise.
-    course: Option<difference::Course>,
+    largest_distance: Option<difference::LargestDistance>,
     traced: Vec<TimeSeries>,
     /// How the camera follows, if it does.
     tracking: Option<Tracking>,
@@ -177,6 +181,7 @@ impl<'a> Composer<'a> {
         Self {
             scene,
             ramp: map.map_or_else(Vec::new, |map| ramp(map, scene.view.look.theme)),
+            field_name: None,
             spring_ramp: scene.view.spring_strain.map_or_else(Vec::new, |scale| ramp(scale.map, scene.view.look.theme)),
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
@@ -195,7 +200,7 @@ impl<'a> Composer<'a> {
             start_box: bounds(&start).into(),
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
             timeline: None,
-            course: None,
+            largest_distance: None,
             traced: Vec::new(),
             tracking: scene.view.camera.follow.then(|| Tracking::new(scene, &History::default())).flatten(),
             locator: None,
@@ -204,6 +209,11 @@ impl<'a> Composer<'a> {
             grips,
             exploded,
         }
+    }
+
+    /// The same with another name and definition for the field that it shows.
+    pub(crate) fn naming_field(self, name: &'static str, definition: &'static str) -> Self {
+        Self { field_name: Some([name, definition]), ..self }
     }
 
     /// Sets the time series: those of all runs to be shown, over the whole scene. The chart, paths and a difference show them,
@@ -215,13 +225,17 @@ impl<'a> Composer<'a> {
         self.locator = self.tracking.as_ref().and_then(|tracking| Locator::new(scene, tracking));
         self.reach = Reach::default();
         history.series.iter().for_each(|series| self.reach.merge(&series.reach));
-        self.course = scene.view.difference.map(|_| difference::Course::new(history, self.extent));
+        self.largest_distance = scene.view.difference.map(|_| difference::LargestDistance::new(history));
         self.traced = if scene.view.paths.is_empty() { Vec::new() } else { history.series.clone() };
         let Some(diagnostic) = scene.view.strip else { return };
         let runs: Vec<_> = history.series.iter().map(|series| series.run).collect();
         let layout = self.words().around(&runs, self.columns(&runs)).layout;
         let writer = self.writer(layout.around);
-        let timeline = Timeline::new(diagnostic, history, scene, writer, layout.chart);
+        let panel = layout.panels.first().copied();
+        let panel = panel.filter(|panel| layout::written(&scene.view, panel[3].into(), layout.scale.unit).events);
+        let in_panel = self.writer(layout.scale);
+        let explained = |events: &[&Event]| panel.map_or(0, |panel| in_panel.explained(panel, events));
+        let timeline = Timeline::new(diagnostic, history, scene, writer, layout.chart, explained);
         self.timeline = Some(timeline);
     }
 
@@ -253,8 +267,10 @@ impl<'a> Composer<'a> {
         let Arranged { columns, around, shot, shot_of_difference, .. } = arranged;
         let (columns, Around { layout, title, caption, legend, clock }) = (*columns, around);
         let scale = layout.scale;
-        let places = layout.panels.iter().zip(&frame.runs);
-        let framings: Vec<_> = places.map(|(&panel, run)| self.framing(shot.as_ref(), run, (panel, scale))).collect();
+        let rooms: Vec<_> = layout.panels.iter().take(runs.len()).map(|&panel| self.body_room(panel, scale)).collect();
+        let places = rooms.iter().zip(&frame.runs);
+        let framings = places.map(|((room, _), run)| self.framing(shot.as_ref(), run, (*room, scale)));
+        let framings: Vec<_> = framings.collect();
         let mut writer = self.writer(scale);
         writer.hairlines(layout);
         let hairlines = std::mem::take(&mut writer.marks);
@@ -273,20 +289,27 @@ impl<'a> Composer<'a> {
             writer.clock_alone(layout.around, [f64::from(size[0]), baseline], frame.time, &view.clock);
         }
         writer.caption(layout.around, caption, layout.caption);
-        if let Some(((legend, &panel), framing)) = (*legend).zip(layout.panels.first()).zip(framings.first()) {
-            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, panel, framing, scale));
+        if let Some(((legend, (room, _)), framing)) = (*legend).zip(rooms.first()).zip(framings.first()) {
+            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, *room, framing, scale));
             let bars = self.bars(frame, compared.map(|(compared, _)| compared));
             legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &self.samples(), &bars);
         }
         let (mut under, mut marks, mut panels) = (Vec::new(), hairlines, Vec::with_capacity(runs.len()));
-        let mut ghosts = Vec::new();
-        for ((&panel, run), framing) in layout.panels.iter().zip(&frame.runs).zip(&framings) {
-            let draft = Draft::new(self, panel, run, framing, scale);
-            let room = draft.between_words();
-            draft.ghost(&frame.runs, room, &mut ghosts);
-            draft.paths(&self.traced, room, &mut ghosts);
+        let (mut ghosts, mut insets) = (Vec::new(), Vec::new());
+        let over = |draft: &Draft<'_>, curves: &mut Vec<Curve>| {
+            draft.ghost(&frame.runs, draft.between_words(), curves);
+            draft.paths(&self.traced, draft.between_words(), curves);
+        };
+        for (((room, enlarged), run), framing) in rooms.iter().zip(&frame.runs).zip(&framings) {
+            let draft = Draft::new(self, *room, run, framing, scale);
+            over(&draft, &mut ghosts);
             panels.push(draft.panel(&mut under, &mut marks));
-            draft.points(room, &mut marks);
+            draft.points(draft.between_words(), &mut marks);
+            if let Some(enlarged) = enlarged {
+                let sinks =
+                    Sinks { under: &mut under, above: &mut marks, curves: &mut ghosts, words: &mut writer.words };
+                insets.extend(Draft::new(self, *room, run, framing, scale).enlarged(enlarged, over, sinks));
+            }
             if let Some((shot, tracking)) = shot.as_ref().zip(self.tracking.as_ref()) {
                 self.locate(&draft, shot, tracking, &mut writer);
             }
@@ -297,13 +320,16 @@ impl<'a> Composer<'a> {
             let marks = [&mut under, &mut marks];
             panels.push(self.draw_difference(compared, place, &framing, scale, marks, &mut ghosts));
         }
+        panels.extend(insets);
         let Writer { marks: above, curves: in_front, mut words, .. } = writer;
-        let mut curves = ghosts;
+        let (outlines, mut curves) = (ghosts.len(), ghosts);
         curves.extend(in_front);
         // Text and tallies lie above bodies; text over a body gets a halo.
         marks.extend(above);
         for word in &mut words {
-            word.has_halo = panels.iter().any(|panel| word.touches(panel.region));
+            let is_crossed =
+                || compared.is_some() && curves[..outlines].iter().any(|curve| curve.crosses(word.bounds()));
+            word.has_halo = panels.iter().any(|panel| word.touches(panel.region)) || is_crossed();
         }
         let (fonts, ramp) = (self.fonts.clone(), self.ramp.clone());
         Picture { size, palette: self.palette, fonts, ramp, panels, under, marks, curves, words }
@@ -318,7 +344,7 @@ impl<'a> Composer<'a> {
         let difference = layout.panels.get(runs.len()).map(|&panel| self.rooms(panel, scale).0);
         let largest = |room: Option<Rectangle>, most: f64| room.and_then(|room| self.shot(room, scale, most));
         let most = largest(difference, f64::INFINITY).map_or(f64::INFINITY, |shot| shot.pixels);
-        let shot = largest(layout.panels.first().copied(), most);
+        let shot = largest(layout.panels.first().map(|&panel| self.body_room(panel, scale).0), most);
         let shot_of_difference = largest(difference, shot.map_or(f64::INFINITY, |shot| shot.pixels));
         Arranged { runs: runs.to_vec(), columns, around, shot, shot_of_difference }
     }
@@ -357,14 +383,21 @@ impl<'a> Composer<'a> {
             let mut from = f64::from(viewport[0]) + margin;
             let to = f64::from(viewport[0] + viewport[2]) - margin;
             if labels.count {
+                let before = (writer.marks.len(), writer.words.len());
                 from = writer.count(viewport, &self.tally, run.shown());
+                // The state that is shown of a run that diverges does not say how many have turned over since; its room stays.
+                if run.shown().status != Status::Ok {
+                    writer.marks.truncate(before.0);
+                    writer.words.truncate(before.1);
+                }
             }
             let usual = caption::number(self.extent, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
             let to = to.min(writer.left_of_numbers(viewport, &usual));
             // One scale for all panels, and so one bar.
             if let Some(framing) = framing.filter(|_| scale_bar && at == 0) {
                 let room = to - from - 2.0 * writer.scale.gap();
-                let (metres, pixels) = self.scale_bar(viewport, framing, writer.scale, room);
+                let (metres, pixels) =
+                    self.scale_bar(self.body_room(viewport, writer.scale).0, framing, writer.scale, room);
                 from = writer
                     .scale_bar(viewport, [from, to], &number::round_length(metres, self.extent), pixels)
                     .unwrap_or(from);
@@ -389,62 +422,6 @@ impl<'a> Composer<'a> {
         let Self { scene, .. } = self;
         let lens = Lens::new(&scene.view, framing, scene.body.dimension, viewport.map(f64::from), scale.unit);
         lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
-    }
-
-    /// What lines and marks mean.
-    fn samples(&self) -> Vec<Sample<'_>> {
-        let ghost = self.ghost().map(|(name, colour)| Sample { name: name.into(), colour, kind: SampleKind::Ghost });
-        let path = Some(self.path_name()).filter(|name| !name.is_empty());
-        let colour = self.palette.text;
-        let path = path.map(|name| Sample { name: name.into(), colour, kind: SampleKind::Path });
-        let points = self.scene.view.points.as_ref();
-        let points = points.map(|_| Sample { name: "measured".into(), colour, kind: SampleKind::Ring });
-        ghost.into_iter().chain(path).chain(points).collect()
-    }
-
-    /// The scales of colours in a frame.
-    fn bars(&self, frame: &Frame, compared: Option<&Compared<'_>>) -> Vec<Bar<'_>> {
-        let view = &self.scene.view;
-        let of_field = view.colour.as_ref().map(|colour| {
-            let values = frame.runs.iter().flat_map(|run| &run.shown().field).copied();
-            let field = colour.field;
-            Bar::new([field.name(), field.unit(), field.definition()], colour.range, self.extent, &self.ramp, values)
-        });
-        let body = &*self.scene.body;
-        let of_springs = view.spring_strain.map(|StrainScale { range, .. }| {
-            let whole = frame.runs.iter().filter(|run| run.shown().position.len() == body.len());
-            let strains = whole.flat_map(|run| {
-                let springs = self.scene.runs.get(run.run).map_or(&[][..], |run| run.model.springs());
-                springs.iter().map(|&ends| spring_strain(body, &run.shown().position, ends))
-            });
-            Bar::new(
-                ["spring strain", "", "change of length over length at rest"],
-                range,
-                self.extent,
-                &self.spring_ramp,
-                strains,
-            )
-        });
-        let of_difference = view.difference.map(|_| {
-            let values = self.distances(compared).iter().copied();
-            Bar::new(
-                ["distance", "m", "of the same node of the two runs"],
-                self.distance_scale().range,
-                self.extent,
-                &self.ramp,
-                values,
-            )
-        });
-        of_field.into_iter().chain(of_springs).chain(of_difference).collect()
-    }
-
-    /// What the arrow of the key stands for, in words, its length (px), and how large it is beside those of the reference picture.
-    fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> (String, [f64; 2]) {
-        let pixels = self.pixels_a_metre(viewport, seen, scale);
-        let times = self.scene.view.arrow_scale;
-        let metres = legend.arrow_metres(pixels * times);
-        let size = arrows::size(pixels * self.scene.view.side, scale.unit) * scale.line_factor;
-        (number::round_length(metres, self.extent), [metres * pixels * times, size])
     }
 
     /// The smallest signed area of a polygon over its area at rest, for bodies in the plane.

@@ -39,6 +39,8 @@ pub(super) struct Draft<'a> {
     pub(super) run: Shown<'a>,
     pub(super) framing: &'a Framing,
     pub(super) viewport: Rectangle,
+    /// The part of it that words leave free.
+    pub(super) clear: Rectangle,
     pub(super) scale: Scale,
     pub(super) lens: Lens,
     /// Unit vector towards the key light.
@@ -117,6 +119,7 @@ impl<'a> Draft<'a> {
             run,
             framing,
             viewport,
+            clear: layout::clear_of_words(viewport, view, scale),
             scale,
             key: key_light(&lens, framing, view.light),
             origin: framing.target,
@@ -226,7 +229,7 @@ impl<'a> Draft<'a> {
             lens: &self.lens,
             moves: self.framing.moves,
             viewport: self.viewport,
-            clear: self.clear_of_words(),
+            clear: self.clear,
             floors: [self.scene.view.floor != FloorStyle::None, self.scene.view.shadow],
             scale: self.scale,
             palette: &self.palette,
@@ -305,7 +308,7 @@ impl<'a> Draft<'a> {
         }
         let arrows = Arrows {
             lens: &self.lens,
-            room: self.clear_of_words(),
+            room: self.clear,
             size: arrows::size(self.element, self.scale.unit),
             thickness: self.scale.line_factor,
             node: if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 },
@@ -332,14 +335,9 @@ impl<'a> Draft<'a> {
         bearers.iter().map(|&node| (node, visible[node as usize])).collect()
     }
 
-    /// The part of the panel that words leave free.
-    pub(super) fn clear_of_words(&self) -> Rectangle {
-        layout::clear_of_words(self.viewport, &self.scene.view, self.scale)
-    }
-
-    /// The same as wide as the panel.
+    /// The part of the panel that words leave free, as wide as the panel.
     pub(super) fn between_words(&self) -> Rectangle {
-        let ([left, _, width, _], [_, top, _, height]) = (self.viewport, self.clear_of_words());
+        let ([left, _, width, _], [_, top, _, height]) = (self.viewport, self.clear);
         [left, top, width, height]
     }
 

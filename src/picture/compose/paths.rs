@@ -21,10 +21,9 @@ const HALO: f64 = 2.0;
 const HALO_ALPHA: f64 = 0.6;
 /// Radius of the dot at the end of a path, in widths.
 const DOT: f64 = 1.7;
-/// Radius of a measured point of the present moment and of earlier ones (px in the reference picture), and their opacity.
+/// Radius of a measured point of the present moment and of earlier ones (px in the reference picture).
 const RING: f64 = 5.0;
-const PAST: f64 = 2.0;
-const PAST_ALPHA: f64 = 0.6;
+const PAST: f64 = 2.6;
 
 impl Composer<'_> {
     /// What the paths are called in the key; empty if there are none.
@@ -88,8 +87,7 @@ impl Draft<'_> {
                 continue;
             }
             let disc = Mark::around(pixel, radius, MarkShape::Node, if is_now { palette.halo } else { palette.text });
-            let part = if is_now { 1.0 } else { PAST_ALPHA };
-            marks.extend(Mark { second: palette.text, ..disc }.faded(part));
+            marks.push(Mark { second: if is_now { palette.text } else { palette.halo }, ..disc });
         }
     }
 }

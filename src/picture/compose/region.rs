@@ -1,6 +1,7 @@
 //! The part of a panel that the body and its lines may touch.
 
 use super::panel::Draft;
+use crate::look::Labels;
 use crate::picture::camera::Lens;
 use crate::picture::layout::Rectangle;
 use glam::{DVec2, DVec3};
@@ -15,11 +16,14 @@ impl Draft<'_> {
         if let Some(radius) = self.bead_radius() {
             room = room.max(radius + 2.0);
         }
-        let touched = self.position.iter().chain(around_obstacles);
-        let region = region(self.viewport, touched, &self.lens, room);
+        let [body, around] =
+            [&self.position[..], around_obstacles].map(|points| region(self.viewport, points.iter(), &self.lens, room));
+        // Obstacles go under the rows of words, where there are any.
+        let has_words = self.scene.view.labels != Labels::default();
+        let region = union(body, if has_words { overlap(around, self.between_words()) } else { around });
         // Everything ends at the panel, with its words above it; but a diverged body may cover everything, and the words
         // report it.
-        if self.diverged { overlap(region, self.clear_of_words()) } else { region }
+        if self.diverged { overlap(region, self.clear) } else { region }
     }
 
     /// Whether the body leaves the panel, if the camera does not follow it.
@@ -31,6 +35,18 @@ impl Draft<'_> {
         };
         !self.framing.moves && !self.diverged && !self.position.iter().all(is_inside)
     }
+}
+
+/// The smallest rectangle that holds two, of which one may be empty.
+fn union(one: Rectangle, other: Rectangle) -> Rectangle {
+    let is_empty = |[_, _, width, height]: Rectangle| width == 0 || height == 0;
+    if is_empty(one) || is_empty(other) {
+        return if is_empty(one) { other } else { one };
+    }
+    let [left, top] = [one[0].min(other[0]), one[1].min(other[1])];
+    let right = (one[0] + one[2]).max(other[0] + other[2]);
+    let bottom = (one[1] + one[3]).max(other[1] + other[3]);
+    [left, top, right - left, bottom - top]
 }
 
 /// What two rectangles share.

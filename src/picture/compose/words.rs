@@ -1,6 +1,6 @@
 //! The words of a scene's pictures: what stands where, whatever the frame, and what finds no room.
 
-use super::cut;
+use super::{Composer, cut, inset};
 use crate::look::{Difference, Ghost, Labels, LineStyle, Palette, View};
 use crate::picture::caption::{self, Heading, Writer, wrapped};
 use crate::picture::layout::{self, Layout, Scale, Wanted, Written};
@@ -63,10 +63,10 @@ impl<'a> Words<'a> {
         let [title, caption] = self.lines(scale);
         let legend = self.legend(scale);
         let wanted = Wanted {
-            title_lines: title.len(),
+            title_lines: title.len().min(MOST_LINES[0]),
             clock: false,
             legend: legend.map_or(0, |legend| legend.height),
-            caption_lines: caption.len(),
+            caption_lines: caption.len().min(MOST_LINES[1]),
         };
         let layout = Layout::new(view, panels, columns, wanted);
         // Where names are so long or type is so large that they would be in each other's way, the clock stands alone.
@@ -92,11 +92,9 @@ impl<'a> Words<'a> {
         let room = f64::from(view.size[0]) - 2.0 * around.margin();
         let title = (&view.title, Weight::SemiBold, caption::title_size(around));
         let caption = (&view.caption, Weight::Regular, around.caption());
-        let mut all = [title, caption].map(|(text, weight, size)| {
+        [title, caption].map(|(text, weight, size)| {
             if Scale::legible(size) { wrapped(self.fonts, text, weight, size, room) } else { Vec::new() }
-        });
-        all.iter_mut().zip(MOST_LINES).for_each(|(lines, most)| lines.truncate(most));
-        all
+        })
     }
 
     /// The key of colours and arrows, if there are any.
@@ -199,6 +197,8 @@ impl<'a> Words<'a> {
         tell(view.strip.is_some() && layout.chart.is_none(), "the chart is left out");
         tell(around.clock == Clock::Above(None), "the clock is left out");
         let Some(panel) = layout.panels.first() else { return told };
+        let has_inset = inset::rooms(view, *panel, layout.scale).1.is_some();
+        tell(view.inset.is_some() && !has_inset, "insets are left out");
         let written = layout::written(view, f64::from(panel[3]), layout.scale.unit);
         let has = |one: fn(Labels) -> bool| one(view.labels) && !one(written.labels);
         tell(view.strip.is_some() && !written.events, "panels do not say what happens in the chart");
@@ -223,12 +223,25 @@ impl<'a> Words<'a> {
 
 /// What finds no room in the pictures of a scene.
 pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
-    let descriptions: Vec<_> = scene.runs.iter().map(|run| run.model.describe(&scene.body)).collect();
-    let (fonts, look) = (Fonts::new(&scene.view.look.font), &scene.view.look);
-    let words = Words { scene, fonts: &fonts, palette: &look.palette, descriptions: &descriptions };
+    let composer = Composer::new(scene);
     let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let columns = scene.view.columns.unwrap_or(words.panels(&runs));
-    words.left_out(&runs, columns)
+    let words = composer.words();
+    let mut told = words.left_out(&runs, composer.columns(&runs));
+    if scene.view.columns.is_none() {
+        // How panels stand follows from the course of the scene, too: what finds no room side by side, either, is certain.
+        let side_by_side = words.left_out(&runs, words.panels(&runs));
+        told.retain(|one| side_by_side.contains(one));
+    }
+    told
+}
+
+/// The size of the words of a scene (px) if they are left out because nobody could read them in any picture.
+pub(crate) fn type_left_out(scene: &Scene) -> Option<f64> {
+    let view = &scene.view;
+    let Labels { name, model, clock, count, number, .. } = view.labels;
+    let has_words = [name, model, clock, count, number, view.strip.is_some(), !view.title.is_empty()].contains(&true);
+    let usual = Layout::around(view).caption();
+    (has_words && !Scale::legible(usual)).then_some(usual)
 }
 
 /// The panel with the clock, of so many in columns: upper right.

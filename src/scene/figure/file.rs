@@ -55,8 +55,9 @@ pub(super) struct SheetFile {
     #[serde(default)]
     #[schemars(length(max = 20))]
     pub(super) row: Vec<RowFile>,
-    /// Diagnostics plotted over time below the pictures, with marks at the moments shown, such as `["turned_over"]`. All
-    /// columns must then show one scene. Default: none.
+    /// Diagnostics plotted over time below the pictures, with marks at the moments shown, such as `["turned_over"]`. If columns
+    /// show several scenes, such as one body with several seeds, each curve is the mean of a run over these, in a band from the
+    /// least to the greatest value; the scenes then have the same duration. Default: none.
     #[serde(default)]
     #[schemars(length(max = 6))]
     pub(super) strips: Vec<Diagnostic>,

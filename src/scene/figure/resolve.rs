@@ -162,8 +162,11 @@ impl Scenes<'_, '_, '_> {
             file.row
         };
         self.check_cells(&rows, &resolved, are_moments);
-        if !file.strips.is_empty() && self.scenes.len() > 1 {
-            self.report.at_key(&at("strips"), "strips are of one scene, but the columns show several", None);
+        let ends: Vec<_> = self.scenes.iter().map(end).collect();
+        if let Some(other) = ends.iter().position(|end| *end != ends[0]).filter(|_| !file.strips.is_empty()) {
+            let [one, two] = [0, other].map(|at| format!("“{}” ends at {} s", self.scenes[at].title, ends[at]));
+            let message = format!("strips over several scenes have one axis of time, but {one} and {two}");
+            self.report.at_key(&at("strips"), message, "give the scenes the same duration and frame rate".to_owned());
         }
         self.check_times(&file.strips, file.from, file.split, &resolved);
         if let Some(index) = rows.iter().position(|row| row.time.is_some()).filter(|_| !file.strips.is_empty()) {

@@ -5,7 +5,7 @@ use super::marks::{GHOST_LINE, ghost_colour, outlined};
 use crate::colour::Colour;
 use crate::picture::arrows::arrow;
 use crate::picture::caption::Writer;
-use crate::picture::chart::dot;
+use crate::picture::chart::{NUMBERS, dot};
 use crate::picture::compose::figure::labels::Labels;
 use crate::picture::compose::panel::Draft;
 use crate::picture::layout::Scale;
@@ -17,8 +17,7 @@ use crate::picture::{Curve, Mark, MarkShape, Mesh, Panel, Second, Solid, Stroke,
 use crate::scene::figure::{Figure, Forces};
 use glam::{DVec2, DVec3};
 
-/// Type of numbers at arrows, and the distance of two lines of it (px in the reference picture).
-const NUMBERS: f64 = 14.0;
+/// The distance of two lines of numbers at arrows (px in the reference picture).
 const LINE: f64 = 18.0;
 /// Width of the vectors (px in the reference picture).
 const VECTOR: f64 = 1.5;

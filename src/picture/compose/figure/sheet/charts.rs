@@ -42,15 +42,16 @@ pub(super) struct Charts<'a> {
 }
 
 impl<'a> Charts<'a> {
-    /// The charts of a sheet.
-    pub(super) fn new(sheet: &'a Sheet, history: &History, writer: &Writer<'_>, width: f64) -> Self {
+    /// The charts of a sheet, with the time series of each of its scenes.
+    pub(super) fn new(sheet: &'a Sheet, histories: &[History], writer: &Writer<'_>, width: f64) -> Self {
         let (fonts, scale) = (writer.fonts, writer.scale);
         // A label shared by all rows of a run replaces its name.
         let label = |run: &str| {
             let mut labels = sheet.rows.iter().filter(|row| row.run == run).map(|row| &row.label);
             labels.next().filter(|first| labels.all(|label| label == *first)).map_or(run, |label| label).to_owned()
         };
-        let one = |&diagnostic| Strip::new(diagnostic, history, &sheet.scenes[0], writer.palette, label);
+        let of_scenes: Vec<_> = sheet.scenes.iter().zip(histories).collect();
+        let one = |&diagnostic| Strip::new(diagnostic, &of_scenes, writer.palette, label);
         let charts: Vec<_> = sheet.strips.iter().map(one).collect();
         // The lines of all charts have the same names.
         let room = [NAMES * width, f64::INFINITY];
@@ -58,7 +59,7 @@ impl<'a> Charts<'a> {
         let ends = charts.iter().find_map(|one| Ends::new(fonts, &one.series, type_unit, room));
         let numbers_width = charts.iter().map(|one| one.numbers_width(fonts, type_unit)).fold(0.0, f64::max);
         let names_width = charts.iter().map(|one| one.name_width(fonts, scale)).fold(0.0, f64::max);
-        Self { sheet, end: history.end, charts, ends, names_width, numbers_width }
+        Self { sheet, end: histories[0].end, charts, ends, names_width, numbers_width }
     }
 
     /// The width of the names right of the charts (px).

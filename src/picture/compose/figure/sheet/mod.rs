@@ -55,8 +55,10 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let has_flat = moments.cells.iter().flatten().any(|run| run.snapshot.flat.contains(&true));
     let header = header::write(&mut writer, figure, &below::key(&scenes), has_flat);
     let legend = legend(&scenes, size, scale);
-    let charts = moments.history.as_ref().map(|history| Charts::new(sheet, history, &writer, f64::from(size[0])));
-    let with_sample = charts.is_some() || scenes.iter().any(|scene| matches!(scene.view.ghost, Some(Ghost::Run(_))));
+    let has_charts = !sheet.strips.is_empty();
+    let charts = has_charts.then(|| Charts::new(sheet, &moments.histories, &writer, f64::from(size[0])));
+    let shows_runs = |scene: &Scene| matches!(scene.view.ghost, Some(Ghost::Run(_))) || !scene.view.paths.is_empty();
+    let with_sample = has_charts || scenes.iter().any(shows_runs);
     let labels = RowLabels::new(sheet, &fonts, scale, with_sample, f64::from(size[0]));
     let bottom = size[1] - legend.map_or(0, |legend| legend.height.min(size[1] / 2));
     let plan = Plan::new(sheet, &writer, [size[0], bottom], header, labels.width, charts.as_ref());
@@ -74,8 +76,10 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let framings = cameras::framings(&scenes, &cells, &plan);
     // The tiles of a scene share what is computed for the first of them.
     let scenes: Vec<_> = scenes.iter().enumerate().map(|(at, scene)| seen(scene, at, sheet, &framings)).collect();
+    let traced = |scene: usize| moments.histories.get(scene).map_or_else(Vec::new, |history| history.series.clone());
+    let composers = scenes.iter().zip(reaches).enumerate();
     let composers: Vec<_> =
-        scenes.iter().zip(reaches).map(|(scene, reach)| Composer { reach, ..Composer::new(scene) }).collect();
+        composers.map(|(at, (scene, reach))| Composer { reach, traced: traced(at), ..Composer::new(scene) }).collect();
     let mut below = Vec::new();
     for (row, cells) in moments.cells.iter().enumerate() {
         for (column, run) in cells.iter().enumerate() {
@@ -111,7 +115,9 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
             let [left, top, width, height] = draft.viewport;
             let room = [left, top, width, height - (plan.below_body.ceil() as u32).min(height)];
             draft.ghost(moments.others[row][column].as_slice(), room, &mut curves);
+            draft.paths(&composer.traced, room, &mut curves);
             panels.push(draft.panel(&mut under, &mut marks));
+            draft.points(room, &mut marks);
             // Surfaces without width do not show.
             let ends = cameras::collapsed(&scenes[sheet.columns[column].scene], &plan, [row, column], framing, run);
             curves.extend(ends.map(|ends| collapsed(ends, plan.tile_scale, palette.outline)));
@@ -139,8 +145,7 @@ fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
         view.look = figure.look.clone();
         view.labels = Labels::default();
         view.scale_bar = false;
-        (view.strip, view.difference) = (None, None);
-        (view.paths, view.points) = (Vec::new(), None);
+        (view.strip, view.difference, view.inset) = (None, None, None);
         // One scale of colours for all, or none.
         view.colour = view.colour.filter(|_| is_shared);
         view.spring_strain = view.spring_strain.filter(|_| is_shared);
@@ -172,7 +177,9 @@ fn collapsed(ends: [DVec2; 2], scale: Scale, colour: Colour) -> Curve {
 fn legend(scenes: &[Scene], size: [u32; 2], scale: Scale) -> Option<Legend> {
     let view = &scenes.first()?.view;
     let bars = usize::from(view.colour.is_some()) + usize::from(view.spring_strain.is_some());
-    let (arrow, samples) = (view.visible.displacements, usize::from(view.ghost.is_some()));
+    let arrow = view.visible.displacements;
+    let samples = [view.ghost.is_some(), !view.paths.is_empty(), view.points.is_some()];
+    let samples = samples.into_iter().filter(|&is_shown| is_shown).count();
     let any = view.legend && (arrow || samples + bars > 0);
     any.then(|| Legend::new(size, scale, arrow, samples, bars)).flatten()
 }

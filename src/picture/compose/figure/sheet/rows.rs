@@ -9,8 +9,9 @@ use crate::picture::text::{Fonts, Weight};
 use crate::scene::Scene;
 use crate::scene::figure::{Row, Sheet};
 
-/// Names and notes are at most this part of the picture wide, and have at most so many lines.
-const WIDEST: f64 = 0.125;
+/// Names and notes are at most this part of the picture wide, or the second one where a word is as long, and have at most so
+/// many lines.
+const WIDEST: [f64; 2] = [0.125, 0.25];
 const NAME_LINES: usize = 2;
 const NOTE_LINES: usize = 3;
 /// Size of notes, distances of the lines of names and notes, and from a name to the sample of its line and on to the
@@ -34,7 +35,10 @@ pub(super) struct RowLabels {
 impl RowLabels {
     /// The words beside the rows of a sheet in a picture of a width (px).
     pub(super) fn new(sheet: &Sheet, fonts: &Fonts, scale: Scale, with_sample: bool, picture: f64) -> Self {
-        let room = WIDEST * picture;
+        let words = sheet.rows.iter().flat_map(|row| row.label.split_whitespace());
+        let longest = words.map(|word| fonts.width(word, Weight::SemiBold, scale.caption())).fold(0.0, f64::max);
+        let [usual, widest] = WIDEST.map(|share| share * picture);
+        let room = usual.max(longest.ceil()).min(widest.max(usual));
         let note_size = NOTE * scale.type_unit();
         let lines = |text: &str, weight, size, most: usize| {
             let all = wrapped(fonts, text, weight, size, room);

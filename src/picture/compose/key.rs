@@ -1,0 +1,75 @@
+//! What the key of a picture says: colours, lines, marks and arrows.
+
+use super::Composer;
+use super::difference::Compared;
+use crate::look::StrainScale;
+use crate::picture::layout::{Rectangle, Scale};
+use crate::picture::legend::{Bar, Legend, Sample, SampleKind};
+use crate::picture::wire::spring_strain;
+use crate::picture::{Framing, arrows, number};
+use crate::sim::snapshot::Frame;
+
+impl Composer<'_> {
+    /// What lines and marks mean.
+    pub(super) fn samples(&self) -> Vec<Sample<'_>> {
+        let ghost = self.ghost().map(|(name, colour)| Sample { name: name.into(), colour, kind: SampleKind::Ghost });
+        let path = Some(self.path_name()).filter(|name| !name.is_empty());
+        let colour = self.palette.text;
+        let path = path.map(|name| Sample { name: name.into(), colour, kind: SampleKind::Path });
+        let points = self.scene.view.points.as_ref();
+        let points = points.map(|_| Sample { name: "measured".into(), colour, kind: SampleKind::Ring });
+        ghost.into_iter().chain(path).chain(points).collect()
+    }
+
+    /// The scales of colours in a frame.
+    pub(super) fn bars(&self, frame: &Frame, compared: Option<&Compared<'_>>) -> Vec<Bar<'_>> {
+        let view = &self.scene.view;
+        let of_field = view.colour.as_ref().map(|colour| {
+            let values = frame.runs.iter().flat_map(|run| &run.shown().field).copied();
+            let field = colour.field;
+            let [name, definition] = self.field_name.unwrap_or([field.name(), field.definition()]);
+            Bar::new([name, field.unit(), definition], colour.range, self.extent, &self.ramp, values)
+        });
+        let body = &*self.scene.body;
+        let of_springs = view.spring_strain.map(|StrainScale { range, .. }| {
+            let whole = frame.runs.iter().filter(|run| run.shown().position.len() == body.len());
+            let strains = whole.flat_map(|run| {
+                let springs = self.scene.runs.get(run.run).map_or(&[][..], |run| run.model.springs());
+                springs.iter().map(|&ends| spring_strain(body, &run.shown().position, ends))
+            });
+            Bar::new(
+                ["spring strain", "", "change of length over length at rest"],
+                range,
+                self.extent,
+                &self.spring_ramp,
+                strains,
+            )
+        });
+        let of_difference = view.difference.map(|_| {
+            let values = self.distances(compared).iter().copied();
+            Bar::new(
+                ["distance", "m", "of the same node of the two runs"],
+                self.distance_scale().range,
+                self.unit_of_distances(),
+                &self.ramp,
+                values,
+            )
+        });
+        of_field.into_iter().chain(of_springs).chain(of_difference).collect()
+    }
+
+    /// What the arrow of the key stands for, in words, its length (px), and how large it is beside those of the reference picture.
+    pub(super) fn key_arrow(
+        &self,
+        legend: Legend,
+        viewport: Rectangle,
+        seen: &Framing,
+        scale: Scale,
+    ) -> (String, [f64; 2]) {
+        let pixels = self.pixels_a_metre(viewport, seen, scale);
+        let times = self.scene.view.arrow_scale;
+        let metres = legend.arrow_metres(pixels * times);
+        let size = arrows::size(pixels * self.scene.view.side, scale.unit) * scale.line_factor;
+        (number::round_length(metres, self.extent), [metres * pixels * times, size])
+    }
+}
