@@ -79,6 +79,9 @@ pub struct RunSummary {
     /// The largest step (s) that is stable however far springs are stretched. Absent for models without springs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_stretched_step: Option<f64>,
+    /// How much each rebound adds to the energy, about, as a share. Absent unless the run is undamped and an obstacle has `e = 1`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rebound_gain: Option<f64>,
 }
 
 impl Scene {
@@ -104,6 +107,7 @@ impl Scene {
                 steps: self.frame_step(at, last),
                 largest_step: largest.is_finite().then_some(largest),
                 largest_stretched_step: stretched.filter(|limit| limit.is_finite()),
+                rebound_gain: self.rebound_gain(at, largest),
             }
         };
         SceneSummary {
@@ -258,6 +262,7 @@ impl fmt::Display for SceneSummary {
             line("", &format!("{stepping}, {}{kernel}", run.integrator))?;
             if run.tolerance.is_none() {
                 line("", &stability::in_words(run))?;
+                stability::rebounds_in_words(run).iter().try_for_each(|text| line("", text))?;
             }
         }
         for obstacle in &self.obstacles {

@@ -40,7 +40,8 @@ fn eigenvalues_of_the_lattice() {
         assert!((own / at_rest - 1.0).abs() < 3e-4, "{springs}: {own} {at_rest}");
         let bound = bound.expect("springs can be stretched");
         assert!(stretched.is_nan() || (bound / stretched - 1.0).abs() < 1e-4, "{springs}: {bound} {stretched}");
-        assert!(own < bound && bound < own * 3.0_f64.sqrt(), "{springs}: {own} {bound}");
+        // With edges alone it is √3 exactly.
+        assert!(own < bound && bound < own * 3.0_f64.sqrt() * 1.0001, "{springs}: {own} {bound}");
     }
 }
 

@@ -1,8 +1,8 @@
 //! `study stability`: the runs of a scene, from small steps to beyond the predicted limit.
 
 use super::{Findings, OfScene, Plan};
-use crate::cli::failure::Failure;
-use crate::cli::failure::Status;
+use crate::cli::console::print;
+use crate::cli::failure::{Failure, Status};
 use crate::cli::options::ThreadOptions;
 use crate::cli::record;
 #[cfg(feature = "render")]
@@ -40,7 +40,7 @@ impl Stability {
             &self.of.options.folder(&plan),
             &format!("{mark} {} {}", env!("CARGO_PKG_VERSION"), scene.digest),
         );
-        self.of.options.run(&plan, |watch| {
+        let status = self.of.options.run(&plan, |watch| {
             let known = made.read();
             let done = |cell: &Cell| made.add(cell);
             let results =
@@ -53,7 +53,11 @@ impl Stability {
                 plots: vec![Box::new(maps(&results))],
                 json: results.json(),
             })
-        })
+        })?;
+        if status == Status::Interrupted && self.of.options.printing.prints_text() {
+            print("the same command goes on from here\n")?;
+        }
+        Ok(status)
     }
 }
 
@@ -136,5 +140,39 @@ fn maps(results: &Results) -> Maps {
         ],
         maps: results.maps().map(map).collect(),
         columns: 2,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finished_cells_are_found_again() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let cell = |share: f64| Cell {
+            run: 1,
+            rate: 1e4,
+            speed: 1.0,
+            damping: 0.1,
+            share,
+            step: 1e-3,
+            outcome: if share > 0.5 { Outcome::Diverged } else { Outcome::TurnedOver(9) },
+        };
+        let made = Made::new(folder.path(), "study 1");
+        assert!(made.read().is_empty());
+        [0.2, 0.4, 0.8].map(cell).iter().for_each(|cell| made.add(cell));
+        // As if the program was killed while it wrote.
+        let path = folder.path().join("stability.unfinished");
+        let text = fs::read_to_string(&path).expect("cells");
+        fs::write(&path, &text[..text.len() - 3]).expect("to cut it");
+        let again = Made::new(folder.path(), "study 1");
+        let known = again.read();
+        assert_eq!(known, HashMap::from([0.2, 0.4].map(|share| (cell(share).key(), Outcome::TurnedOver(9)))));
+        again.add(&cell(0.8));
+        assert_eq!(Made::new(folder.path(), "study 1").read().len(), 3);
+        assert!(Made::new(folder.path(), "study 2").read().is_empty(), "of other settings");
+        again.remove();
+        assert!(!path.exists());
     }
 }

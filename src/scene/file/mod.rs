@@ -94,7 +94,7 @@ fn sixty() -> f64 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(in crate::scene) enum StepFile {
-    /// A time step in seconds.
+    /// A time step in seconds, or a fraction of the cycle T such as `"T/50"`.
     Seconds(#[schemars(extend("exclusiveMinimum" = 0))] f64),
     /// A fraction of the cycle T, or `auto`.
     Named(#[schemars(extend("format" = "fraction-of-T"))] NamedStep),

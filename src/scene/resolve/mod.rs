@@ -303,7 +303,7 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
 /// Warns of steps that are nearly as large as the largest stable one, or larger.
 fn warn_of_steps(scene: &Scene, report: &mut Report<'_>) {
     for run in 0..scene.runs.len() {
-        if let Some((message, help)) = scene.near_limit(run) {
+        if let Some((_, [message, help])) = scene.near_limit(run) {
             let own = [Way::Key("run"), Way::Index(run), Way::Key("step")];
             let path = if report.is_typed(&own) { &own[..] } else { &[Way::Key("time"), Way::Key("step")] };
             report.warn(path, message, help);

@@ -301,7 +301,7 @@ mod tests {
     fn small() -> (Protocol, Scene) {
         let text = "
             gravity = [0, -9.8, 0]
-            time.duration = 0.3
+            time.duration = 2
             body = { lattice = { cells = [1, 1, 1], side = 0.1 }, velocity = [0, -3, 0] }
             obstacle = [{ kind = 'floor' }]
             run = [
