@@ -24,7 +24,7 @@ pub(super) fn largest(
     mut product: impl FnMut(&[DVec3], &mut [DVec3]),
 ) -> (f64, Option<Vec<DVec3>>) {
     /// How much less than this share of the eigenvalue the residual is in the end, where `most` permits.
-    const RESIDUAL: f64 = 1e-4;
+    const RESIDUAL: f64 = 3e-4;
     let mut found = Tridiagonal::default();
     let (mut value, mut last) = (0.0, Vec::new());
     run(start, most, &mut product, |_, _, alpha, beta| {

@@ -49,7 +49,8 @@ impl Stability {
             return Self { largest: f64::INFINITY, stretched: None };
         }
         let corners = body.elements.indices().len().max(2 * model.springs().len());
-        if let Some(step) = Self::certain(body, model, integrator).filter(|_| corners > MOST_CORNERS) {
+        let certain = Self::certain(body, model, integrator);
+        if let Some(step) = certain.filter(|&step| corners > MOST_CORNERS && step > 0.0) {
             return Self { largest: step, stretched: None };
         }
         let mut is_free = vec![true; body.len()];

@@ -8,11 +8,10 @@ mod text;
 
 pub(crate) use text::read;
 
-use crate::reading::words::short;
 use crate::scene::{Limits, Scene};
 use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::Status;
-use crate::sim::words::typed;
+use crate::sim::words::{rounded, typed};
 use crate::table::Watch;
 use rayon::prelude::*;
 
@@ -277,10 +276,10 @@ impl Results {
         let [name, model, _] = &self.told.runs[grid.run];
         let mut more = model.clone();
         if self.protocol.dampings.len() > 1 {
-            more = format!("{} × the damping, {more}", short(grid.damping));
+            more = format!("{} × the damping, {more}", rounded(grid.damping, 3));
         }
         if self.protocol.speeds.len() > 1 {
-            more = format!("impacts {} × as fast, {more}", short(speed));
+            more = format!("impacts {} × as fast, {more}", rounded(speed, 3));
         }
         [name.clone(), more]
     }

@@ -125,7 +125,7 @@ impl Results {
     }
 }
 
-/// A number with two or three digits.
+/// A number with at most four digits.
 fn short(number: f64) -> String {
-    crate::reading::words::short((number * 1000.0).round() / 1000.0)
+    crate::sim::words::rounded(number, 4).to_string()
 }
