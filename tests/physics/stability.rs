@@ -66,7 +66,8 @@ fn stays(scene: &Scene, step: f64, steps: u64) -> bool {
     };
     for _ in 0..100 {
         world.advance(steps.div_ceil(100));
-        if !(away(&world) < 100.0 * small) {
+        let away = away(&world);
+        if away.is_nan() || away > 100.0 * small {
             return false;
         }
     }
