@@ -221,7 +221,7 @@ fn a_run_that_diverges_is_a_result() {
     let place = Place::new();
     // Far beyond the largest stable step.
     place.write("wild.toml", &SMALL.replace("step = \"T/50\"", "step = \"T/2\"").replace("0.1\n", "5.0\n"));
-    let ran = place.run("simulate wild.toml").good();
+    let ran = place.run("simulate wild.toml").too_large_steps();
     assert!(ran.out.contains("diverged at"), "{}", ran.out);
     let run = &place.json("output/wild/run.json")["runs"][1];
     assert_eq!(run["status"], "diverged");
@@ -256,7 +256,7 @@ fn everything_in_the_files_is_documented() {
     let place = Place::new();
     let own = "springs = \"edges+one-diagonal\" }\nstep = \"T/7\"";
     place.write("small.toml", &SMALL.replace("springs = \"edges+one-diagonal\" }", own));
-    place.run("simulate small.toml --states").good();
+    place.run("simulate small.toml --states").too_large_steps();
     let heads: Vec<_> = HEADS.split(',').collect();
     assert_eq!(documented("diagnostics.csv"), heads);
     // The page gives for each diagnostic the meaning in the table of the code.
@@ -294,7 +294,7 @@ fn everything_in_the_files_is_documented() {
 
     // A run that diverges has more keys, and so have pictures, and bodies that leave their panels.
     place.write("wild.toml", &SMALL.replace("step = \"T/50\"", "step = \"T/2\"").replace("0.1\n", "5.0\n"));
-    place.run("simulate wild.toml").good();
+    place.run("simulate wild.toml").too_large_steps();
     let mut run = place.json("output/wild/run.json");
     let spent = Some(Spent::default());
     let times = Timings { compose: spent, draw: spent, encode: spent, ..Timings::default() };
@@ -430,7 +430,7 @@ fn states_of_runs_with_steps_of_their_own() {
     let place = Place::new();
     let own = "springs = \"edges+one-diagonal\" }\nstep = \"T/7\"";
     place.write("own.toml", &SMALL.replace("springs = \"edges+one-diagonal\" }", own));
-    place.run("simulate own.toml --states").good();
+    place.run("simulate own.toml --states").too_large_steps();
     let file = "output/own/states.npz";
     let (head, times) = array(&place, file, "Mass-spring.time");
     assert_eq!(head, "{'descr': '<f8', 'fortran_order': False, 'shape': (7,), }");
@@ -441,7 +441,7 @@ fn states_of_runs_with_steps_of_their_own() {
     assert_eq!(array(&place, file, "Mass-spring.position").1.len(), 7 * 12 * 3);
 
     // Alone, it is the first run shown.
-    place.run("simulate own.toml --states --only Mass-spring").good();
+    place.run("simulate own.toml --states --only Mass-spring").too_large_steps();
     assert_eq!(array(&place, file, "time").1, recorded);
     let archive = zip::ZipArchive::new(std::fs::File::open(place.path(file)).unwrap()).unwrap();
     assert_eq!(archive.len(), 4 + 5, "it has no second time");

@@ -220,6 +220,14 @@ impl Ran {
         self
     }
 
+    /// Expects success, and on standard error only warnings of steps that are too large.
+    #[track_caller]
+    pub(crate) fn too_large_steps(self) -> Self {
+        let is_told = self.err.starts_with("warning: ") && self.err.contains("of the largest that is stable at rest");
+        assert!(self.status == Some(0) && is_told && !self.err.contains("error"), "{self:?}");
+        self
+    }
+
     /// Expects an exit status and one error message that contains all of `words`.
     #[track_caller]
     pub(crate) fn bad(self, status: i32, words: &[&str]) -> Self {

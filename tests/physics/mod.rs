@@ -18,6 +18,7 @@ mod masses;
 mod readings;
 mod restore;
 mod runaway;
+mod stability;
 mod state;
 mod support;
 mod table1;

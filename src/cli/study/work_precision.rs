@@ -1,41 +1,29 @@
 //! `study work-precision`: the integrators.
 
-use super::{Findings, Plan, StudyOptions, machine};
+use super::{Findings, OfScene, Plan, machine};
 use crate::cli::failure::{Failure, Status};
 use crate::cli::record;
-use crate::cli::scenes::status_of;
 #[cfg(feature = "render")]
 use crate::picture::{Plot, PlotCurve, Plots};
-use crate::scene::{Limits, Scene};
 #[cfg(feature = "render")]
 use crate::sim::integrate::Integrator;
 #[cfg(feature = "render")]
 use crate::study::work_precision::{Measured, Results, Study};
-use crate::study::work_precision::{Protocol, Subject, measure, usual};
-use clap::{Args, ValueHint};
-use std::path::PathBuf;
+use crate::study::work_precision::{Protocol, measure, usual};
+use clap::Args;
 
-/// The integrators: error of the positions against evaluations of the forces and time
+/// The integrators: error of the positions of a scene's first run against evaluations of the forces and time
 #[derive(Args, Debug)]
 pub(super) struct WorkPrecision {
-    /// The scene, of which the first run is measured [default: a free lattice, a drop onto a floor and a disc in the plane]
-    #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
-    scene: Option<PathBuf>,
-
-    /// Measure smaller steps and more turns, which takes ten times as long
-    #[arg(long)]
-    full: bool,
-
     #[command(flatten)]
-    options: StudyOptions,
+    of: OfScene,
 }
 
 impl WorkPrecision {
     pub(super) fn run(self) -> Result<Status, Failure> {
-        let protocol = if self.full { Protocol::FULL } else { Protocol::USUAL };
-        let subjects = self.subjects()?;
-        let scene = self.scene.as_ref().map_or_else(String::new, |path| format!(" {}", path.display()));
-        let mark = format!("localshape study work-precision{scene}{}", if self.full { " --full" } else { "" });
+        let protocol = if self.of.full { Protocol::FULL } else { Protocol::USUAL };
+        let subjects = self.of.subject()?.map_or_else(usual, |scene| vec![(scene.title.clone(), scene)]);
+        let mark = self.of.mark("work-precision");
         let plan = Plan {
             name: "work-precision",
             mark: mark.clone(),
@@ -43,32 +31,17 @@ impl WorkPrecision {
             work: protocol.work(subjects.len()),
         };
         let pool = record::pool(1)?;
-        self.options.run(&plan, |watch| {
+        self.of.options.run(&plan, |watch| {
             let results = pool.install(|| measure(protocol, &subjects, watch))?;
             let machine = machine();
             Some(Findings {
                 markdown: results.markdown(&mark, &machine),
                 csv: results.csv(),
                 #[cfg(feature = "render")]
-                plots: vec![plots(&results, &machine)],
+                plots: vec![Box::new(plots(&results, &machine))],
                 json: results.json(&machine),
             })
         })
-    }
-
-    fn subjects(&self) -> Result<Vec<Subject>, Failure> {
-        let Some(path) = &self.scene else { return Ok(usual()) };
-        let scene = Scene::load(path, &Limits::default()).map_err(|error| {
-            crate::cli::failure::complain(&error.to_string());
-            Failure::silent(status_of(&error))
-        })?;
-        if scene.duration == 0.0 {
-            return Err(Failure::usage(format!(
-                "{}: `time.duration` is 0: nothing moves, and there is nothing to measure; make it longer",
-                path.display()
-            )));
-        }
-        Ok(vec![(scene.title.clone(), scene)])
     }
 }
 
