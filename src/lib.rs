@@ -86,6 +86,7 @@ pub use scene::{
 pub mod animation;
 #[cfg(feature = "render")]
 mod artist;
+mod cause;
 mod cli;
 mod colour;
 pub mod golden;

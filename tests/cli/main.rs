@@ -16,7 +16,9 @@ mod interrupt;
 mod parts;
 #[cfg(feature = "render")]
 mod render;
+mod resume;
 mod simulate;
 mod support;
+mod sweep;
 mod table;
 mod usage;
