@@ -279,9 +279,9 @@ impl<'a> Recording<'a> {
         };
         let states = options.states.then(begin).transpose()?;
 
-        let mut results = Results { diagnostics, states, pictures };
+        let mut results = Results { diagnostics, states, pictures, warned: false };
         let made = self.simulate(pool, options.printing, &mut simulation, &mut results);
-        let Results { diagnostics, mut states, pictures } = results;
+        let Results { diagnostics, mut states, pictures, .. } = results;
         if let Some(states) = &mut states {
             (0..self.runs.len()).for_each(|place| states.set_last_fit(place, simulation.frames.last_fit(place)));
         }

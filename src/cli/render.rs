@@ -160,6 +160,10 @@ impl Render {
 
     /// Draws variants of a scene.
     fn sweep(&self, file: &Path, words: &[OsString]) -> Result<Status, Failure> {
+        if let Some(name) = self.options.out.as_deref().filter(|out| FileFormat::of(out).is_some()) {
+            let message = format!("{} is a file for one frame; with --sweep name a folder", name.display());
+            return Err(Failure::usage(message));
+        }
         let sizes = Mutex::new(Vec::new());
         let check = |scene: &Scene| {
             let mut scene = scene.clone();

@@ -11,12 +11,14 @@ pub(super) struct Results<'a> {
     pub(super) diagnostics: DiagnosticsWriter,
     pub(super) states: Option<StatesWriter>,
     pub(super) pictures: Option<Box<dyn Pictures + 'a>>,
+    /// Whether the user was told that no checkpoint can be written.
+    pub(super) warned: bool,
 }
 
 impl Results<'_> {
     /// Takes what comes next of the frames.
     pub(super) fn take(&mut self, next: &Next, frames: &Frames<'_>) -> Result<(), Failure> {
-        let Self { diagnostics, states, pictures } = self;
+        let Self { diagnostics, states, pictures, .. } = self;
         match next {
             Next::TimeSeries(history) => {
                 pictures.iter_mut().for_each(|pictures| pictures.take_history(history));
@@ -47,7 +49,7 @@ impl Results<'_> {
         folder: &Claimed,
         words: &[String],
     ) -> Result<(), Failure> {
-        let Self { diagnostics, states, pictures } = self;
+        let Self { diagnostics, states, pictures, warned } = self;
         if let Some(pictures) = pictures {
             pictures.flush()?;
         }
@@ -62,8 +64,12 @@ impl Results<'_> {
             }
             checkpoint.write(path, whose)
         };
-        let warn = |error: OutputError| note(&format!("no checkpoint is written: {}", with_causes(&error)));
-        write().unwrap_or_else(warn);
+        let result: Result<(), OutputError> = write();
+        if let Err(error) = &result
+            && !std::mem::replace(warned, true)
+        {
+            note(&format!("no checkpoint is written: {}", with_causes(error)));
+        }
         Ok(())
     }
 }

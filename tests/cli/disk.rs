@@ -50,6 +50,22 @@ fn states_on_a_full_disk() {
     assert_eq!(ran.out.lines().collect::<Vec<_>>(), ["diagnostics.csv", "run.json"]);
 }
 
+/// When there is room again, the same command goes on.
+#[test]
+fn after_a_full_disk_it_goes_on() {
+    let place = Place::new();
+    place.write("long.toml", &lasting("20"));
+    place.run("simulate long.toml -o whole --states").good();
+    let program = env!("CARGO_BIN_EXE_localshape");
+    let after = format!(
+        "mount -o remount,size=64m none out && '{program}' simulate long.toml -o out --states --resume -q && \
+         cmp out/diagnostics.csv whole/diagnostics.csv && cmp out/states.npz whole/states.npz && ls -A out"
+    );
+    let Some(ran) = on_small_disk(&place, "300k", "simulate long.toml -o out --states", &after) else { return };
+    assert_eq!(ran.status, Some(4), "{ran:?}");
+    assert_eq!(ran.out.lines().collect::<Vec<_>>(), ["diagnostics.csv", "run.json", "states.npz"], "{ran:?}");
+}
+
 #[cfg(feature = "render")]
 #[test]
 fn frames_on_a_full_disk() {

@@ -99,5 +99,6 @@ fn variants_are_drawn() {
     let place = place();
     place.run("render small.toml --sweep sweep.csv --frames 3 --size 80x60 -o out").good();
     assert!(FOLDERS.iter().all(|folder| place.path("out").join(folder).join("frame_00003.png").exists()));
+    place.run("render small.toml --sweep sweep.csv -o a.png").bad(2, &["a.png is a file for one frame"]);
     place.run("render small.toml --sweep sweep.csv --animate a.gif").bad(2, &["--sweep", "--animate"]);
 }
