@@ -121,3 +121,25 @@ fn no_damage_ends_the_program() {
         }
     }
 }
+
+/// Nothing is allocated for numbers that are not in the file.
+#[cfg(feature = "render")]
+#[test]
+fn states_that_unfold_to_more_than_their_file_are_refused() {
+    use std::io::Write;
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("scene.toml"), SCENE).expect("a file");
+    let length = 1 << 24;
+    let text = format!("{{'descr': '|u1', 'fortran_order': False, 'shape': ({length},), }}\n");
+    let mut archive = zip::ZipWriter::new(fs::File::create(folder.path().join("packed.npz")).expect("a file"));
+    archive.start_file("localshape.npy", zip::write::SimpleFileOptions::default()).expect("a file");
+    let head = [b"\x93NUMPY\x01\x00", &(text.len() as u16).to_le_bytes()[..], text.as_bytes()].concat();
+    archive.write_all(&[head, vec![0; length]].concat()).expect("a file");
+    archive.finish().expect("a file");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_localshape"));
+    let made = command.current_dir(folder.path()).args("render scene.toml --from-states packed.npz -o out".split(' '));
+    let made = made.output().expect("the program");
+    let message = String::from_utf8_lossy(&made.stderr).into_owned();
+    assert_eq!(made.status.code(), Some(2), "{message}");
+    assert!(message.contains("packed.npz `localshape` is longer than the file"), "{message}");
+}

@@ -212,7 +212,13 @@ fn rows(text: &str) -> Result<(Vec<String>, Vec<Row>), String> {
         ));
     }
     let rows = reader.into_records().map(|row| {
-        let row = row.map_err(|error| error.to_string())?;
+        let row = row.map_err(|error| match error.kind() {
+            csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+                let line = error.position().map_or(0, csv::Position::line);
+                format!("line {line} has {len} values; expected {expected_len}, one for each key")
+            }
+            _ => "is no table of comma-separated values".to_owned(),
+        })?;
         let start = row.position().map_or(0, |position| position.byte() as usize);
         Ok((row, start))
     });

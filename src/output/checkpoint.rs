@@ -113,3 +113,56 @@ pub(crate) fn waiting_states(folder: &Path) -> PathBuf {
 fn digest(plan: &Plan) -> [u8; 32] {
     Sha256::digest(postcard::to_allocvec(plan).expect("plain data")).into()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn whose() -> Whose {
+        Whose { digest: "ab".repeat(32), title: "Cubes".to_owned(), file: None }
+    }
+
+    fn plan() -> Plan {
+        Plan { runs: vec!["one".to_owned()], frames: vec![0, 1, 2], states: false, size: None }
+    }
+
+    #[test]
+    fn it_comes_back_and_is_refused_when_cut_short_or_changed() {
+        let folder = tempfile::tempdir().unwrap();
+        let read = || Checkpoint::read(folder.path(), &whose(), &plan());
+        assert!(read().unwrap().is_none());
+        let words = vec!["localshape".to_owned(), "render".to_owned()];
+        Checkpoint::new(words.clone(), &plan(), Progress::default()).write(folder.path(), &whose()).unwrap();
+        assert_eq!(read().unwrap().expect("a checkpoint").command, words);
+        let path = folder.path().join(CHECKPOINT_FILE);
+        let bytes = std::fs::read(&path).unwrap();
+        for cut in 0..bytes.len() {
+            assert!(Checkpoint::parse(&bytes[..cut], &whose(), &plan()).unwrap_err().contains("damaged"), "{cut}");
+        }
+        for at in 0..bytes.len() {
+            let mut changed = bytes.clone();
+            changed[at] ^= 1;
+            assert!(Checkpoint::parse(&changed, &whose(), &plan()).unwrap_err().contains("damaged"), "{at}");
+        }
+        let other = Plan { frames: vec![0, 1], ..plan() };
+        let what = Checkpoint::parse(&bytes, &whose(), &other).unwrap_err();
+        assert_eq!(what, "belongs to a command with other frames, runs, states or size: localshape render");
+        Checkpoint::remove(folder.path()).unwrap();
+        assert!(!Checkpoint::is_in(folder.path()));
+    }
+
+    #[test]
+    fn one_of_another_version_or_scene_is_refused() {
+        let of = |origin: Origin| {
+            let rest = postcard::to_allocvec(&origin).unwrap();
+            Checkpoint::parse(&[MARK, &Sha256::digest(&rest), &rest].concat(), &whose(), &plan()).unwrap_err()
+        };
+        let older = Origin { version: "0.0.1".to_owned(), ..Origin::of(&whose()) };
+        assert!(of(older).starts_with("was written by localshape 0.0.1, and this is "));
+        let edited = Whose { digest: "cd".repeat(32), ..whose() };
+        assert_eq!(of(Origin::of(&edited)), "belongs to another version of “Cubes”; expected “Cubes” as it is now");
+        let other = Whose { title: "Springs".to_owned(), ..edited };
+        assert_eq!(of(Origin::of(&other)), "belongs to another scene, “Springs”; expected “Cubes” as it is now");
+        assert_eq!(of(Origin::of(&whose())), "is damaged or cut short", "nothing follows");
+    }
+}

@@ -93,20 +93,23 @@ fn pictures_go_on_too() {
         return;
     }
     let place = Place::new();
-    let (still, follows) = (lasting("6"), crate::support::SMALL.replace("duration = 0.1", "duration = 6"));
-    for (name, scene, sign) in [("still", still, "frame_00020.png"), ("follows", follows, "run.json")] {
+    let (still, follows) = (lasting("6"), crate::support::SMALL.replace("duration = 0.1", "duration = 600"));
+    for (name, scene, sign, frames) in
+        [("still", still, "frame_00020.png", "0-360x20"), ("follows", follows, "run.json", "0-36000x2000")]
+    {
         place.write(&format!("{name}.toml"), &scene);
-        let typed = format!("render {name}.toml --frames 0-360x20 --states -o {name}");
+        let typed = format!("render {name}.toml --frames {frames} --states -o {name}");
         let ran = stopped(&place, &typed, &format!("{name}/{sign}"), "INT");
         assert!(ran.status == Some(130) && ran.out.contains("to go on: "), "{ran:?}");
         assert!(place.path(name).join(CHECKPOINT).exists(), "{name}");
         let kept = place.names(name).iter().filter(|name| name.ends_with(".png")).count() as u64;
+        let before = steps(&place, name);
         let ran = place.run(&format!("{typed} --resume")).good();
         assert!(ran.out.contains("19 frames of 96×64"), "{ran:?}");
         let (again, resumed) = (crate::parts::drawn_and_kept(&place, name), steps(&place, name));
         assert_eq!(again, [19 - kept, kept], "{name}");
-        place.run(&format!("render {name}.toml --frames 0-360x20 --states -o whole --overwrite")).good();
-        assert!(resumed < steps(&place, "whole"), "{name} has not begun anew");
+        place.run(&format!("render {name}.toml --frames {frames} --states -o whole --overwrite")).good();
+        assert_eq!(before + resumed, steps(&place, "whole"), "{name}: no step is taken twice");
         assert!(files(&place, name) == files(&place, "whole"), "{name}");
         assert!(place.names(name).iter().all(|name| !name.starts_with('.')), "nothing else is left");
     }
