@@ -141,5 +141,5 @@ fn states_that_unfold_to_more_than_their_file_are_refused() {
     let made = made.output().expect("the program");
     let message = String::from_utf8_lossy(&made.stderr).into_owned();
     assert_eq!(made.status.code(), Some(2), "{message}");
-    assert!(message.contains("packed.npz `localshape` is longer than the file"), "{message}");
+    assert!(message.contains("packed.npz `localshape` is packed, or longer than the file"), "{message}");
 }

@@ -71,7 +71,7 @@ fn course(npz: &mut Npz, scene: &Scene) -> Result<Course, String> {
             // What is packed could unfold to any size, and this program packs nothing.
             let fits = |array: Array| match npz.has_room_for(&array) {
                 true => npz.values(&array),
-                false => Err("is longer than the file".to_owned()),
+                false => Err(format!("is packed, or longer than the file; {again}")),
             };
             array.and_then(fits).map_err(|what| format!("`{COURSE}` {what}"))?
         }
@@ -105,7 +105,7 @@ fn place(npz: &mut Npz, course: &Course, scene: &Scene, run: usize) -> Result<Pl
         let array = npz.array(&format!("{name}.{quantity}")).ok_or_else(|| damaged("is missing"))?;
         let array = array.map_err(|what| damaged(&what))?;
         if !npz.has_room_for(&array) {
-            return Err(damaged("is longer than the file"));
+            return Err(damaged("is packed, or longer than the file"));
         }
         let is_right = array.is_plain() && array.shape.strip_prefix(&[frames]).is_some_and(is_row);
         if is_right { Ok(array) } else { Err(damaged("has another shape or type")) }
