@@ -57,6 +57,15 @@ impl TimeSeries {
         Self { run, times, diagnostics, paths, places, reach, divergence: None }
     }
 
+    /// Whether it is one of the same run and the same quantities as an empty one.
+    pub(crate) fn fits(&self, empty: &Self) -> bool {
+        let moments = self.times.len();
+        self.run == empty.run
+            && self.diagnostics.len() == moments
+            && self.paths.len() == empty.paths.len()
+            && self.paths.iter().all(|path| path.len() == moments)
+    }
+
     /// Records the state at a time (s): diagnostics, and nodes at positions (m).
     pub(crate) fn note(&mut self, scene: &Scene, time: f64, diagnostics: Diagnostics, position: &[DVec3]) {
         self.times.push(time);

@@ -86,6 +86,7 @@ pub use scene::{
 pub mod animation;
 #[cfg(feature = "render")]
 mod artist;
+mod cause;
 mod cli;
 mod colour;
 pub mod golden;
@@ -109,6 +110,7 @@ mod shell;
 pub mod sim;
 mod study;
 mod table;
+mod untrusted;
 #[cfg(feature = "render")]
 mod vector;
 
@@ -125,6 +127,10 @@ pub mod internals {
     pub use crate::output::{Compression, Shown, Spent, Tags, Timings, encode, read_tags};
     pub use crate::sim::floor::{lanes, limit_lanes, multiply_adds};
     pub use crate::table::ratio;
+    /// Readers of files, to be tested with any bytes.
+    pub mod untrusted {
+        pub use crate::untrusted::{READERS, Reader, SCENE, checkpoint_of_scene, read};
+    }
 }
 
 // Tests of what is inside, as large as other crates.

@@ -8,3 +8,8 @@ pub(crate) fn word(word: &str) -> String {
         false => format!("'{}'", word.replace('\'', "'\\''")),
     }
 }
+
+/// A command line of such words.
+pub(crate) fn line(words: &[String]) -> String {
+    words.iter().map(|one| word(one)).collect::<Vec<_>>().join(" ")
+}

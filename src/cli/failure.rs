@@ -79,7 +79,7 @@ impl From<OutputError> for Failure {
         let status = match &error {
             // Another folder must be chosen; nothing was written.
             OutputError::Occupied { .. } | OutputError::NoFile { .. } | OutputError::InUse { .. } => Status::Usage,
-            OutputError::States { .. } => Status::Usage,
+            OutputError::States { .. } | OutputError::Checkpoint { .. } => Status::Usage,
             OutputError::NoFolder { .. } | OutputError::Write { .. } | OutputError::Read { .. } => Status::Files,
         };
         Self { status, message: Some(with_causes(&error)) }

@@ -1,5 +1,5 @@
-//! Ctrl-C and requests to terminate: the frame in progress is abandoned, the files of earlier frames are finished, and the
-//! command ends.
+//! Ctrl-C and requests to terminate: frames that are being drawn are finished, the state between frames goes into a
+//! checkpoint, and the command ends.
 
 use super::failure::Status;
 use std::sync::Once;

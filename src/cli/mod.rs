@@ -27,12 +27,14 @@ mod record;
 #[cfg(feature = "render")]
 mod render;
 mod report;
+mod results;
 mod scenes;
 mod schema;
 mod simulate;
 #[cfg(feature = "render")]
 mod still;
 mod study;
+mod sweep;
 mod table;
 #[cfg(feature = "render")]
 mod table_figure;

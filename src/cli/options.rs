@@ -48,6 +48,18 @@ pub(super) struct RunOptions {
     #[arg(long)]
     pub(super) states: bool,
 
+    /// Go on after an interruption, with the results of a command without one: from its last checkpoint, or from the start if
+    /// there is none. Frames that are there already, with the same scene, states, version, adapter and size, are not drawn
+    /// again
+    #[arg(long)]
+    pub(super) resume: bool,
+
+    /// Run variants of the scene: a table of comma-separated values, with keys of the scene in its first line, such as
+    /// run[0].model.stiffness, and their values for one variant in each line below. An empty cell leaves the value of the
+    /// scene. Each variant has a folder of its own in DIR [default: output/NAME-sweep], and variants.csv lists them
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(super) sweep: Option<PathBuf>,
+
     #[command(flatten)]
     pub(super) threads: ThreadOptions,
     #[command(flatten)]

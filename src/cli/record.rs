@@ -1,23 +1,28 @@
 //! The way of one scene through the program: simulate, show, write down.
 
 use super::console;
-use super::failure::{Failure, Status};
+use super::failure::{Failure, Status, note, with_causes};
 use super::interrupt;
 use super::options::{PrintOptions, RunOptions};
 use super::report;
-use super::scenes::Job;
+use super::results::{Pace, Results};
+use super::scenes::{Job, with_option};
+use crate::cause::Cause;
 use crate::history::History;
 use crate::output::{
-    Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, OutputError, STATES_FILE, Spent, StatesWriter,
-    StoredStates, Summary, Timings, thread_time,
+    Checkpoint, Claimed, Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, OutputError, STATES_FILE,
+    SUMMARY_FILE, Spent, StatesWriter, StoredStates, Summary, Timings, frame_file_name, open_growing, read_file,
+    thread_time, waiting_states,
 };
-use crate::runner::{Frames, Next, Runner};
+use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::Scene;
 use crate::sim::body::Body;
 use crate::sim::diagnostics::Diagnostic;
-use crate::sim::snapshot::Frame;
+use crate::sim::snapshot::{self, Frame};
+use crate::sim::state::State;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Value, json};
+use std::error::Error;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -33,6 +38,10 @@ pub(super) trait Pictures {
     fn take_history(&mut self, history: &History);
     /// Draws a frame and sees to it that it is written, now or a little later.
     fn draw(&mut self, frame: &Frame) -> Result<(), Failure>;
+    /// Waits until all frames so far are written.
+    fn flush(&mut self) -> Result<(), Failure>;
+    /// Leaves frames as an earlier command has drawn them, unless one of them is missing, which it returns.
+    fn keep(&mut self, frames: &[u64]) -> Result<Option<u64>, Failure>;
     /// Waits until all frames are written, and writes down how many and how long it took.
     fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure>;
 }
@@ -45,7 +54,7 @@ pub(super) trait Studio {
 
 /// Runs all scenes, one after the other, and reports on each.
 pub(super) fn run_all(
-    jobs: Vec<Job>,
+    jobs: impl IntoIterator<Item = Result<Job, Failure>>,
     options: &RunOptions,
     words: &[OsString],
     timings: bool,
@@ -62,7 +71,26 @@ pub(super) fn run_all(
             interrupted = true;
             break;
         }
+        let job = match job {
+            Ok(job) => job,
+            Err(failure) => {
+                result = Err(failure);
+                break;
+            }
+        };
         let path = job.folder.path().to_owned();
+        if job.once
+            && let Some(before) = done_before(&job)?
+        {
+            if options.printing.json {
+                let mut document = json!({ "folder": path.to_string_lossy() });
+                merge(&mut document, before);
+                documents.push(document);
+            } else if !options.printing.quiet {
+                console::print(&format!("{} is complete\n", path.display()))?;
+            }
+            continue;
+        }
         let mut blank = if number > 0 { "\n" } else { "" };
         if let Some(replaced) = job.folder.replaced().filter(|_| options.printing.prints_text()) {
             console::print(&format!("{blank}{}: replacing {replaced}\n", path.display()))?;
@@ -77,6 +105,10 @@ pub(super) fn run_all(
             documents.push(document);
         } else if !options.printing.quiet && result.is_ok() {
             console::print(&format!("{blank}{}", report::report(&summary, &path, timings)))?;
+            // Frames that are not kept cannot be gone on with.
+            if summary.outcome == Outcome::Interrupted && (studio.is_none() || summary.frames.size.is_some()) {
+                console::print(&format!("to go on: {}\n", with_option(words, "--resume")))?;
+            }
         }
         if result.is_err() {
             break;
@@ -89,6 +121,28 @@ pub(super) fn run_all(
     Ok(if interrupted { Status::Interrupted } else { Status::Done })
 }
 
+/// The summary in the folder of a job, if all its results are there.
+fn done_before(job: &Job) -> Result<Option<Value>, Failure> {
+    let folder = job.folder.path();
+    let Some(bytes) = read_file(&folder.join(SUMMARY_FILE))? else { return Ok(None) };
+    let Ok(found) = serde_json::from_slice::<Value>(&bytes) else { return Ok(None) };
+    let names: Vec<_> = job.runs.iter().map(|&run| &job.scene.runs[run].name).collect();
+    let found_names: Vec<_> = found["runs"].as_array().into_iter().flatten().map(|run| &run["name"]).collect();
+    let is_same = found["outcome"] == "done"
+        && found["localshape"] == env!("CARGO_PKG_VERSION")
+        && found["scene"]["digest"] == job.scene.digest.as_str()
+        && found["frames"]["asked"] == job.frames.len()
+        && found["runs"][0]["last"]["frame"] == json!(job.frames.last())
+        && found_names == names;
+    let is_there = |name: &str| folder.join(name).is_file();
+    let (plan, _) = job.folder.contents();
+    let are_there = is_there(DIAGNOSTICS_FILE)
+        && (!plan.states || is_there(STATES_FILE))
+        && (plan.size.is_none() || found["frames"]["size"] == json!(plan.size))
+        && (plan.size.is_none() || job.frames.iter().all(|&frame| is_there(&frame_file_name(frame))));
+    Ok((is_same && are_there).then_some(found))
+}
+
 /// Runs one scene. However it ends, the summary says so.
 fn record(
     job: Job,
@@ -99,15 +153,16 @@ fn record(
 ) -> Result<(), Failure> {
     let Job { scene, runs, frames, folder, stored, .. } = job;
     let begin = || -> Result<_, Failure> {
-        let folder = folder.prepare()?;
+        let folder = folder.prepare(options.resume && stored.is_none())?;
         let pictures = studio.map(|studio| studio.begin(&scene, folder.path(), &frames)).transpose()?;
         Ok((folder, pictures))
     };
-    let result = begin().and_then(|(folder, pictures)| {
+    let result = begin().and_then(|(mut folder, pictures)| {
         let times = Timings::default();
-        let path = folder.path();
-        let recording = Recording { scene: &scene, runs, frames, folder: path, summary, last: None, times };
-        recording.run(pool, options, pictures, stored)
+        let checkpoint = folder.take_checkpoint();
+        let recording =
+            Recording { scene: &scene, runs, frames, folder: &folder, summary, last: None, sound: Vec::new(), times };
+        recording.run(pool, options, pictures, stored, checkpoint)
     });
     if result.is_err() {
         summary.outcome = Outcome::Failed;
@@ -127,13 +182,14 @@ pub(super) fn one_frame(
     folder: &Path,
 ) -> Result<Option<(Frame, Option<History>)>, Failure> {
     let wanted = scene.time_series();
+    let waiting = wanted.map(|_| tempfile::tempfile_in(folder)).transpose().map_err(OutputError::writing(folder))?;
     let mut frames = pool.install(|| {
         let runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
         let runner = match wanted {
             Some(wanted) => runner.with_time_series(wanted).with_difference(),
             None => runner,
         };
-        Frames::new(runner, &[frame], wanted.is_some(), folder)
+        Frames::new(runner, &[frame], waiting)
     });
     let bar = options.printing.progress(&scene.title, frames.steps()[1]);
     let (slice, mut history) = (slice(&scene.body), None);
@@ -172,47 +228,60 @@ struct Recording<'a> {
     scene: &'a Scene,
     runs: Vec<usize>,
     frames: Vec<u64>,
-    folder: &'a Path,
+    folder: &'a Claimed,
     summary: &'a mut Summary,
     last: Option<Frame>,
+    /// The last state of each run in a frame before it diverged, from which its way into that is looked at.
+    sound: Vec<State>,
     times: Timings,
 }
 
 impl<'a> Recording<'a> {
-    /// Makes all frames. Whatever happens on the way, what was made until then is finished and kept.
+    /// Makes all frames, or those after a checkpoint. Whatever happens on the way, what was made until then is finished and
+    /// kept.
     fn run(
         mut self,
         pool: &ThreadPool,
         options: &RunOptions,
         mut pictures: Option<Box<dyn Pictures + '_>>,
         stored: Option<StoredStates>,
+        mut checkpoint: Option<Checkpoint>,
     ) -> Result<(), Failure> {
         let (total, simulating) = (Clock::process(), processor_time(pool));
+        let (folder, scene) = (self.folder.path(), self.scene);
         if let Some(pictures) = &pictures {
             pictures.describe(self.summary);
         }
+        if let (Some(found), Some(pictures)) = (&checkpoint, &mut pictures)
+            && let Some(missing) = pictures.keep(self.frames.get(..found.progress.taken).unwrap_or_default())?
+        {
+            let missing = frame_file_name(missing);
+            note(&format!("{missing} is not the one that was drawn before the checkpoint; simulating from the start"));
+            self.folder.forget()?;
+            checkpoint = None;
+        }
         // Written before the first frame, so that the folder is known as this scene's even if the program is killed.
-        self.summary.write(self.folder)?;
-        let mut diagnostics = DiagnosticsWriter::create(self.folder, self.scene)?;
-        let mut simulation = self.simulation(pool, options, pictures.as_deref(), stored)?;
-        let begin = || StatesWriter::create(self.folder, self.scene, &self.runs, simulation.frames.states());
-        let mut states = options.states.then(begin).transpose()?;
+        self.summary.write(folder)?;
+        let (progress, rows, course) = match checkpoint {
+            Some(Checkpoint { progress, rows, course, .. }) => (Some(progress), rows, course),
+            None => (None, None, None),
+        };
+        let diagnostics = match rows {
+            Some(rows) => DiagnosticsWriter::resume(folder, scene, rows).map_err(|error| self.unusable(&error))?,
+            None => DiagnosticsWriter::create(folder, scene)?,
+        };
+        self.summary.frames.recorded = progress.as_ref().map_or(0, |progress| progress.taken);
+        let mut simulation = self.simulation(pool, options, pictures.as_deref(), stored, progress)?;
+        let goes_on = course.is_some();
+        let begin = || {
+            let made = StatesWriter::create(folder, scene, &self.runs, simulation.frames.states(), course);
+            made.map_err(|error| if goes_on { self.unusable(&error) } else { error })
+        };
+        let states = options.states.then(begin).transpose()?;
 
-        let made = self.simulate(pool, options.printing, &mut simulation, |next, frames| match next {
-            Next::TimeSeries(history) => {
-                pictures.as_deref_mut().into_iter().for_each(|pictures| pictures.take_history(history));
-                states.as_mut().into_iter().for_each(|states| states.set_history(history));
-                Ok(())
-            }
-            Next::Frame(frame) => {
-                diagnostics.write(frame)?;
-                if let Some(states) = &mut states {
-                    states.write(frame, frames.states())?;
-                }
-                pictures.as_deref_mut().map_or(Ok(()), |pictures| pictures.draw(frame))
-            }
-            Next::Working | Next::Done => Ok(()),
-        });
+        let mut results = Results { diagnostics, states, pictures, warned: false };
+        let made = self.simulate(pool, options.printing, &mut simulation, &mut results);
+        let Results { diagnostics, mut states, pictures, .. } = results;
         if let Some(states) = &mut states {
             (0..self.runs.len()).for_each(|place| states.set_last_fit(place, simulation.frames.last_fit(place)));
         }
@@ -248,8 +317,32 @@ impl<'a> Recording<'a> {
             draw.cpu = drawing;
         }
         summary.times = Some(self.times);
-        let written = summary.write(self.folder).map_err(Failure::from);
+        let written = summary.write(folder).map_err(Failure::from);
+        if summary.outcome == Outcome::Done && written.is_ok() {
+            Checkpoint::remove(folder)?;
+        }
         result.and(written)
+    }
+
+    /// Finds out why runs have diverged since the last frame.
+    fn find_causes(&mut self, states: &[&State]) {
+        let runs = self.summary.runs.iter_mut().zip(&self.runs).zip(&mut self.sound);
+        for (((summary, &run), sound), state) in runs.zip(states) {
+            match state.status {
+                snapshot::Status::Ok => sound.clone_from(state),
+                snapshot::Status::Diverged(divergence) if sound.status == snapshot::Status::Ok => {
+                    summary.cause = Cause::find(self.scene, run, sound, divergence, rayon::current_num_threads());
+                    sound.clone_from(state);
+                }
+                snapshot::Status::Diverged(_) => {}
+            }
+        }
+    }
+
+    /// The error for a checkpoint that lacks what belongs to it.
+    fn unusable(&self, error: &dyn Error) -> OutputError {
+        let what = format!("cannot be used ({})", with_causes(error)).into();
+        OutputError::Checkpoint { path: self.folder.path().to_owned(), what }
     }
 
     /// Where the frames come from. Only pictures, now or from the states that are written, need the scene's field, and some of
@@ -260,15 +353,16 @@ impl<'a> Recording<'a> {
         options: &RunOptions,
         pictures: Option<&dyn Pictures>,
         stored: Option<StoredStates>,
+        progress: Option<Progress>,
     ) -> Result<Simulation<'a>, Failure> {
-        let scene = self.scene;
+        let (scene, folder) = (self.scene, self.folder.path());
         let is_whole = self.frames.last() == Some(&scene.last_frame());
         let wanted = match pictures {
             Some(pictures) => pictures.time_series(),
             None => scene.time_series().filter(|_| options.states && is_whole),
         };
         let is_drawn = pictures.is_some();
-        let ahead = wanted.is_some() && is_drawn;
+        let (ahead, goes_on) = (wanted.is_some() && is_drawn, progress.is_some());
         pool.install(|| {
             let mut runner = Runner::new(scene, &self.runs);
             if let Some(stored) = stored {
@@ -282,7 +376,17 @@ impl<'a> Recording<'a> {
             if let Some(wanted) = &wanted {
                 runner = runner.with_time_series(wanted).with_difference();
             }
-            let frames = Frames::new(runner, &self.frames, ahead, self.folder);
+            let length = progress.as_ref().map_or(0, Progress::waiting_length);
+            let open = || open_growing(&waiting_states(folder), length);
+            let waiting = ahead.then(open).transpose();
+            let frames = waiting.and_then(|waiting| {
+                let mut frames = Frames::new(runner, &self.frames, waiting);
+                progress.map_or(Ok(()), |progress| frames.resume(progress)).map(|()| frames)
+            });
+            let frames = frames.map_err(|error| match goes_on {
+                true => self.unusable(&error),
+                false => OutputError::writing(folder)(error),
+            })?;
             Ok(Simulation { frames, ahead, notes: wanted.is_some() && !ahead, read_from: None })
         })
     }
@@ -293,42 +397,61 @@ impl<'a> Recording<'a> {
         pool: &ThreadPool,
         printing: PrintOptions,
         simulation: &mut Simulation<'_>,
-        mut take: impl FnMut(&Next, &Frames<'_>) -> Result<(), Failure>,
+        results: &mut Results<'_>,
     ) -> Result<(), Failure> {
-        let Simulation { frames, ahead, notes, read_from } = simulation;
-        let bar = printing.progress(&self.scene.title, frames.steps()[1]);
-        if *ahead {
+        let bar = printing.progress(&self.scene.title, simulation.frames.steps()[1]);
+        if simulation.ahead {
             bar.set_message("simulating ahead");
         }
         let slice = slice(&self.scene.body);
+        self.sound = simulation.frames.states().cloned().collect();
+        // Frames that are not kept cannot be continued, and states that are read need not be.
+        let can_resume =
+            simulation.read_from.is_none() && (results.pictures.is_none() || self.summary.frames.size.is_some());
+        let (mut pace, command) = (Pace::new(), &self.summary.command.clone()[..]);
         while !interrupt::requested() {
+            if can_resume && pace.is_due() {
+                pace.take(|| results.save(&mut simulation.frames, simulation.ahead, self.folder, command))?;
+            }
+            let Simulation { frames, notes, read_from, .. } = simulation;
             let clock = Clock::thread();
             let next = pool.install(|| frames.next(slice));
             self.times.simulate += Spent { cpu: None, ..clock.spent() };
             bar.set_position(frames.steps()[0]);
             let next = next.map_err(|error| match read_from {
                 Some(file) => OutputError::reading(file)(error),
-                None => OutputError::writing(self.folder)(error),
+                None => OutputError::writing(self.folder.path())(error),
             })?;
             if let Next::Frame(_) = next {
                 bar.set_message(format!("frame {} of {}", frames.taken(), self.frames.len()));
             }
-            take(&next, frames)?;
+            results.take(&next, frames)?;
             match next {
                 Next::Working | Next::TimeSeries(_) => {}
                 Next::Frame(frame) => {
                     self.summary.frames.recorded += 1;
+                    if read_from.is_none() {
+                        let states: Vec<_> = frames.states().collect();
+                        pool.install(|| self.find_causes(&states));
+                    }
                     self.last = Some(frame);
                 }
                 Next::Done => {
                     if *notes {
                         let history = frames.take_history();
-                        take(&Next::TimeSeries(history), frames)?;
+                        results.take(&Next::TimeSeries(history), frames)?;
                     }
                     break;
                 }
             }
         }
+        if interrupt::requested() {
+            self.summary.reached = simulation.frames.on_the_way();
+        }
+        if can_resume && interrupt::requested() {
+            results.save(&mut simulation.frames, simulation.ahead, self.folder, command)?;
+        }
+        let frames = &mut simulation.frames;
         for (run, steps) in self.summary.runs.iter_mut().zip(frames.simulated()) {
             run.steps = steps;
         }

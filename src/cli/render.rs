@@ -2,23 +2,23 @@
 
 use super::console;
 use super::failure::{Failure, Status};
-use super::film::{comment, replaceable, summary};
+use super::film::{Films, Shared, replaceable};
 use super::frames::Shard;
 use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, size};
 use super::record::{self, Pictures, Studio};
-use super::scenes::Job;
 use super::still::{
     Format as FileFormat, NO_ADAPTER, Still, check_type, replaceable as replaceable_still, source_of, too_small,
 };
-use crate::animation::{Animation, AnimationError, Format, Sheet, Spool, Timeline, Written};
+use super::sweep::Sweep;
+use crate::animation::{Format, Sheet, Spool};
 use crate::artist::{Artist, Begun, compose_frame};
 use crate::gpu::Gpu;
 use crate::history::History;
 use crate::look::Ghost;
 use crate::output::{
     AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Spent, StoredStates, Summary, Tags, Tap,
-    Texts, Timings, folder_of, frame_file_name, frame_files, is_drawn,
+    Texts, Timings, folder_of, frame_file_name, is_drawn,
 };
 use crate::scene::Scene;
 use crate::shell;
@@ -28,7 +28,6 @@ use clap::{Args, ValueHint};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::JoinHandle;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -37,7 +36,8 @@ Examples:
   localshape render scenes/*.toml -o pictures --size 640x360
   localshape render scenes/fig4b.toml --animate fig4b.gif --no-frames
   localshape render scenes/fig4b.toml --only Mass-spring --frames 30 -o one
-  localshape render scenes/fig4b.toml --resume             after an interruption: draws the frames that are missing
+  localshape render scenes/fig4b.toml --resume             after an interruption: goes on from there
+  localshape render scenes/fig4b.toml --sweep stiffness.csv    variants: one folder for each line of the table
   localshape render scenes/fig4b.toml --frames 30 -o frame.pdf   one frame for print, with text that can be searched
 
 With --shard, many processes draw a scene: docs/clusters.md has scripts for them.
@@ -73,26 +73,21 @@ pub(super) struct Render {
 
     /// Also make an animation or a contact sheet of the frames. The extension of FILE chooses the format, as with
     /// `localshape animate`, which has more options. Can be repeated
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "sweep")]
     animate: Vec<PathBuf>,
 
     /// Do not keep the frames of the animation
-    #[arg(long, requires = "animate")]
+    #[arg(long, requires = "animate", conflicts_with = "resume")]
     no_frames: bool,
 
     /// Draw states.npz, which `simulate --states` has written for the same scene, and simulate nothing
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "states")]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["states", "sweep"])]
     from_states: Option<PathBuf>,
 
     /// Make only a share of the frames: 2/4 the second one and every fourth one after it. `localshape merge` joins all shards
-    /// [default folder: output/NAME-2-of-4]
-    #[arg(long, value_name = "I/N", conflicts_with_all = ["states", "animate"])]
+    /// [default folder: output/NAME-2-of-4]. With --sweep a share of its variants, all of whose folders may be in one
+    #[arg(long, value_name = "I/N", conflicts_with = "animate")]
     shard: Option<Shard>,
-
-    /// Do not draw frames again that are in the folder already, with the same scene, states, version, adapter and
-    /// size. All are simulated
-    #[arg(long, conflicts_with = "no_frames")]
-    resume: bool,
 
     /// Also print how long each stage took
     #[arg(long)]
@@ -102,15 +97,17 @@ pub(super) struct Render {
 impl Render {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
         self.options.out.as_deref().map_or(Ok(()), FileFormat::check_name)?;
+        if let Some(file) = &self.options.sweep {
+            return self.sweep(file, words);
+        }
+        if self.shard.is_some() && self.options.states {
+            let message =
+                "--shard and --states exclude each other, but for shards of a sweep; simulate the states once";
+            return Err(Failure::usage(message));
+        }
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
-        if let Some(size) = self.size {
-            scenes.iter_mut().for_each(|scene| (scene.view.size, scene.view.print) = (size, None));
-        }
-        for scene in &scenes {
-            if let Some(message) = too_small(scene, &self.options.runs(scene)?) {
-                return Err(Failure::usage(message));
-            }
-        }
+        scenes.iter_mut().for_each(|scene| self.resize(scene));
+        scenes.iter().try_for_each(|scene| self.check(scene))?;
         if let Some((path, format)) = self.options.out.as_ref().and_then(|out| Some((out, FileFormat::of(out)?))) {
             return self.still(path, format, &scenes);
         }
@@ -121,7 +118,7 @@ impl Render {
         }
         let states = self.from_states.as_deref();
         let mut jobs = self.options.jobs(scenes, !self.no_frames, self.shard, states, words)?;
-        jobs.iter().try_for_each(|Job { scene, runs, .. }| check_compared(scene, runs))?;
+        jobs.iter().try_for_each(|job| check_compared(&job.scene, &job.runs))?;
         if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {
             job.stored = Some(StoredStates::open(file, &job.scene, &job.runs, &job.frames)?);
         }
@@ -135,20 +132,54 @@ impl Render {
             run: jobs.first().and_then(|job| job.runs.first().copied()),
             stills: if self.options.frames.is_some() { usize::MAX } else { Sheet::FRAMES },
         });
-        let device = Device {
-            gpu,
-            writers: threads.min(MOST_WRITERS),
-            keep: !self.no_frames,
-            resume: self.resume,
-            shared,
-            made: Mutex::default(),
-        };
-        let result = record::run_all(jobs, &self.options, words, self.timings, Some(&device));
+        let device = self.studio(gpu, shared);
+        let result = record::run_all(jobs.into_iter().map(Ok), &self.options, words, self.timings, Some(&device));
         if self.options.printing.prints_text() {
             let made = device.made.into_inner().unwrap_or_else(PoisonError::into_inner);
             made.iter().try_for_each(|line| console::print(line))?;
         }
         result
+    }
+
+    /// What draws all scenes.
+    fn studio(&self, gpu: Gpu, shared: Option<Shared>) -> Device {
+        let writers = self.options.threads.count().min(MOST_WRITERS);
+        Device { gpu, writers, keep: !self.no_frames, resume: self.options.resume, shared, made: Mutex::default() }
+    }
+
+    /// Gives a scene the size that the user wants.
+    fn resize(&self, scene: &mut Scene) {
+        if let Some(size) = self.size {
+            (scene.view.size, scene.view.print) = (size, None);
+        }
+    }
+
+    /// Whether a scene can be drawn as it is wanted.
+    fn check(&self, scene: &Scene) -> Result<(), Failure> {
+        too_small(scene, &self.options.runs(scene)?).map_or(Ok(()), |message| Err(Failure::usage(message)))
+    }
+
+    /// Draws variants of a scene.
+    fn sweep(&self, file: &Path, words: &[OsString]) -> Result<Status, Failure> {
+        if let Some(name) = self.options.out.as_deref().filter(|out| FileFormat::of(out).is_some()) {
+            let message = format!("{} is a file for one frame; with --sweep name a folder", name.display());
+            return Err(Failure::usage(message));
+        }
+        let sizes = Mutex::new(Vec::new());
+        let check = |scene: &Scene| {
+            let mut scene = scene.clone();
+            self.resize(&mut scene);
+            self.check(&scene)?;
+            check_compared(&scene, &self.options.runs(&scene)?)?;
+            self.options.frames(&scene)?;
+            sizes.lock().unwrap_or_else(PoisonError::into_inner).push(scene.view.size);
+            Ok(())
+        };
+        let sweep = Sweep::read(file, &self.scenes, self.options.out.as_deref(), self.shard, check)?;
+        let gpu = self.device.open(sizes.into_inner().unwrap_or_else(PoisonError::into_inner))?;
+        let device = self.studio(gpu, None);
+        let jobs = self.options.variants(&sweep, true, |scene| self.resize(scene), words)?;
+        record::run_all(jobs, &self.options, words, self.timings, Some(&device))
     }
 
     /// Draws one frame into a file of its own.
@@ -158,7 +189,7 @@ impl Render {
             let message = format!("{name} is a file for one frame; render the scenes one at a time, or into a folder");
             return Err(Failure::usage(message));
         };
-        let is_part = self.resume || self.shard.is_some() || self.from_states.is_some();
+        let is_part = self.options.resume || self.shard.is_some() || self.from_states.is_some();
         if self.options.states || is_part || !self.animate.is_empty() || self.options.printing.json {
             let others = "--states, --from-states, --shard, --resume, --animate or --json";
             let message = format!("{name} gets one frame and nothing else; with {others} name a folder");
@@ -261,105 +292,6 @@ fn check_compared(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
     }
 }
 
-/// What animations of one scene share.
-struct Shared {
-    films: Vec<(Format, PathBuf)>,
-    words: Vec<OsString>,
-    threads: usize,
-    /// The run whose times those of frames are.
-    run: Option<usize>,
-    /// Frames on a sheet, at most: all those that the user has chosen, if they were.
-    stills: usize,
-}
-
-/// Animations on their way, on threads of their own.
-struct Films<'a> {
-    spool: Arc<Spool>,
-    frames: usize,
-    /// Where frames are kept, if they are.
-    kept: Option<PathBuf>,
-    threads: Vec<(PathBuf, JoinHandle<Result<Written, AnimationError>>)>,
-    made: &'a Mutex<Vec<String>>,
-}
-
-impl<'a> Films<'a> {
-    fn start(
-        shared: &Shared,
-        made: &'a Mutex<Vec<String>>,
-        spool: Spool,
-        kept: Option<PathBuf>,
-        scene: &Scene,
-        frames: &[u64],
-    ) -> Self {
-        let spool = Arc::new(spool);
-        // As the frames themselves say it: at the end of a step.
-        let time = |frame: u64| match shared.run {
-            Some(run) => scene.frame_step(run, frame) as f64 * scene.runs[run].step,
-            None => scene.frame_time(frame),
-        };
-        let moments: Vec<_> = frames.iter().map(|&frame| (frame, time(frame))).collect();
-        let comment = comment(&shared.words, std::slice::from_ref(&scene.digest));
-        let threads = shared.films.iter().map(|(format, path)| {
-            let (spool, moments, comment) = (Arc::clone(&spool), moments.clone(), comment.clone());
-            let (format, path, threads, stills) = (*format, path.clone(), shared.threads, shared.stills);
-            let name = path.clone();
-            let thread = std::thread::spawn(move || {
-                let sheet = Sheet { times: moments.iter().map(|(_, time)| *time).collect(), ..Sheet::default() };
-                let timeline = Timeline::of(&moments);
-                let timeline = if format == Format::Sheet { timeline.stills(stills) } else { timeline };
-                Animation {
-                    reel: spool.as_ref(),
-                    timeline: &timeline,
-                    plays: 0,
-                    sheet: &sheet,
-                    comment: &comment,
-                    threads,
-                    progress: &|_| {},
-                    go_on: &|| !interrupt::requested(),
-                }
-                .write(format, &path)
-            });
-            (name, thread)
-        });
-        let threads = threads.collect();
-        Self { spool, frames: frames.len(), kept, threads, made }
-    }
-
-    /// Waits for all. If frames are missing there is no animation; the message then says how to make one of the others.
-    fn finish(mut self) -> Result<(), Failure> {
-        self.spool.end();
-        let mut result = Ok(());
-        for (path, thread) in self.threads.drain(..) {
-            match thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)) {
-                Ok(written) => {
-                    let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-                    made.push(summary(&path, self.frames, &written));
-                }
-                // Whatever stopped it reports the reason.
-                Err(AnimationError::Stopped) => {
-                    let kept =
-                        self.kept.as_ref().filter(|folder| frame_files(folder).is_ok_and(|files| !files.is_empty()));
-                    let path = path.display();
-                    let how = kept.map_or(String::new(), |folder| {
-                        format!("; to make it from the others: localshape animate {} -o {path}", folder.display())
-                    });
-                    let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-                    made.push(format!("{path}  not made, because frames are missing{how}\n"));
-                }
-                Err(error) => result = result.and(Err(error.into())),
-            }
-        }
-        result
-    }
-}
-
-/// Ends the sequence in any case, so that no reader blocks.
-impl Drop for Films<'_> {
-    fn drop(&mut self) {
-        self.spool.end();
-    }
-}
-
 impl Studio for Device {
     fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure> {
         let films = match &self.shared {
@@ -425,6 +357,12 @@ impl Drawing<'_> {
         let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
         Ok(self.writer.write(PixelFrame { size, dpi, pixels, frame, texts })?)
     }
+
+    /// Passes on a frame that was drawn before.
+    fn pass(&self, frame: u64, path: &Path) -> Result<(), Failure> {
+        let pass = |tap: &Tap| tap(frame, &std::fs::read(path).map_err(OutputError::reading(path))?);
+        Ok(self.tap.as_ref().map_or(Ok(()), pass)?)
+    }
 }
 
 impl Pictures for Drawing<'_> {
@@ -452,8 +390,7 @@ impl Pictures for Drawing<'_> {
             let path = folder.join(frame_file_name(frame.index));
             if is_drawn(&path, size, &texts, dpi)? {
                 self.kept += 1;
-                let pass = |tap: &Tap| tap(frame.index, &std::fs::read(&path).map_err(OutputError::reading(&path))?);
-                return Ok(self.tap.as_ref().map_or(Ok(()), pass)?);
+                return self.pass(frame.index, &path);
             }
         }
         let clock = Clock::thread();
@@ -468,6 +405,31 @@ impl Pictures for Drawing<'_> {
         self.draw += clock.spent();
         self.begun = Some((frame.index, texts, begun));
         Ok(())
+    }
+
+    fn flush(&mut self) -> Result<(), Failure> {
+        self.hand_on()?;
+        Ok(self.writer.flush()?)
+    }
+
+    fn keep(&mut self, frames: &[u64]) -> Result<Option<u64>, Failure> {
+        let Some(folder) = self.drawn_before.clone() else { return Ok(frames.first().copied()) };
+        let path = |frame: u64| folder.join(frame_file_name(frame));
+        let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
+        for &frame in frames {
+            let texts = [
+                ("scene", self.scene.digest.clone()),
+                ("frame", frame.to_string()),
+                ("version", env!("CARGO_PKG_VERSION").to_owned()),
+                ("adapter", self.adapter.clone()),
+            ];
+            if !is_drawn(&path(frame), size, &texts, dpi)? {
+                return Ok(Some(frame));
+            }
+        }
+        self.kept += frames.len();
+        frames.iter().try_for_each(|&frame| self.pass(frame, &path(frame)))?;
+        Ok(None)
     }
 
     fn finish(mut self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure> {

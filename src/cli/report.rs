@@ -14,6 +14,7 @@ pub(super) fn report(summary: &Summary, folder: &Path, timings: bool) -> String 
     let heads = ["run", "status", "turned over", "shape error"].map(str::to_owned);
     let rows: Vec<_> = std::iter::once(heads).chain(summary.runs.iter().map(row)).collect();
     text += &columns(&rows, [false, false, true, true]);
+    text += &causes(summary);
     text += &cut(summary);
     text += &times(summary);
     if timings {
@@ -36,6 +37,9 @@ fn made(summary: &Summary, folder: &Path) -> String {
     }
     .expect("writing to a string");
     write!(text, " in {}", folder.display()).expect("writing to a string");
+    if let Some([reached, end]) = summary.reached {
+        write!(text, ", simulated to {} s of {} s", short(reached), short(end)).expect("writing to a string");
+    }
     match frames.kept {
         0 => text,
         kept => text + &format!(", {kept} of them drawn before"),
@@ -59,6 +63,12 @@ fn row(run: &RunSummary) -> [String; 4] {
         None => Default::default(),
     };
     [run.name.clone(), status, turned_over, shape_error]
+}
+
+/// Why runs diverged, one line each.
+fn causes(summary: &Summary) -> String {
+    let line = |run: &RunSummary| Some(format!("{} diverged: {}\n", run.name, run.cause.as_ref()?.words));
+    summary.runs.iter().filter_map(line).collect()
 }
 
 /// A warning for each run whose body leaves its panel.

@@ -3,6 +3,7 @@
 use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::{FrameRanges, Shard};
 use super::options::{RunOptions, SceneOptions};
+use super::sweep::Sweep;
 use crate::output::{Folder, OutputError, Plan, Replace, STATES_FILE, StoredStates, Whose};
 use crate::scene::{Limits, Scene, SceneError};
 use crate::shell;
@@ -11,10 +12,14 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 impl SceneOptions {
+    /// How large scenes may be.
+    pub(super) fn limits(&self) -> Limits {
+        if self.allow_large { Limits::NONE } else { Limits::default() }
+    }
+
     /// Reads one scene.
     pub(super) fn load(&self, path: &Path) -> Result<Scene, SceneError> {
-        let limits = if self.allow_large { Limits::NONE } else { Limits::default() };
-        Scene::load(path, &limits)
+        Scene::load(path, &self.limits())
     }
 
     /// Reads all scenes. The mistakes in all of them are reported before this fails; warnings unless `quiet`.
@@ -65,6 +70,8 @@ pub(super) struct Job {
     pub(super) shard: Option<Shard>,
     /// The states of the frames, if they were simulated before.
     pub(super) stored: Option<StoredStates>,
+    /// Whether it is left out if its results are complete.
+    pub(super) once: bool,
 }
 
 impl RunOptions {
@@ -98,21 +105,51 @@ impl RunOptions {
                     format!("“{first}” and “{second}” would both be written to {path}; run them one at a time with -o");
                 return Err(Failure::usage(message));
             }
-            let runs = self.runs(&scene)?;
-            let mut frames = self.frames(&scene)?;
-            if let Some(shard) = shard {
-                frames = shard.select(&frames).map_err(|message| Failure::usage(format!("--shard: {message}")))?;
-            }
-            let names = runs.iter().map(|&run| scene.runs[run].name.clone()).collect();
-            let size = pictures.then_some(scene.view.size);
-            // States that are read are not replaced by their own pictures.
-            let is_read = states_read.is_some() && path.join(STATES_FILE).canonicalize().ok() == states_read;
-            let plan = Plan { runs: names, frames: frames.clone(), states: self.states || is_read, size };
-            let folder = Folder::inspect(&path, Whose::of(&scene), plan, self.replace());
-            let folder = folder.map_err(|error| occupied(error, words))?;
-            jobs.push(Job { runs, frames, folder, scene, shard, stored: None });
+            jobs.push(self.job(scene, &path, pictures, shard, states_read.as_deref(), words)?);
         }
         Ok(jobs)
+    }
+
+    /// What is to be done for one scene in a folder; see [`Self::jobs`].
+    fn job(
+        &self,
+        scene: Scene,
+        path: &Path,
+        pictures: bool,
+        shard: Option<Shard>,
+        states_read: Option<&Path>,
+        words: &[OsString],
+    ) -> Result<Job, Failure> {
+        let runs = self.runs(&scene)?;
+        let mut frames = self.frames(&scene)?;
+        if let Some(shard) = shard {
+            frames =
+                shard.select(&frames, "frames").map_err(|message| Failure::usage(format!("--shard: {message}")))?;
+        }
+        let names = runs.iter().map(|&run| scene.runs[run].name.clone()).collect();
+        let size = pictures.then_some(scene.view.size);
+        // States that are read are not replaced by their own pictures.
+        let is_read = states_read.is_some() && path.join(STATES_FILE).canonicalize().ok().as_deref() == states_read;
+        let plan = Plan { runs: names, frames: frames.clone(), states: self.states || is_read, size };
+        let folder = Folder::inspect(path, Whose::of(&scene), plan, self.replace());
+        let folder = folder.map_err(|error| occupied(error, words))?;
+        Ok(Job { runs, frames, folder, scene, shard, stored: None, once: false })
+    }
+
+    /// What is to be done for the variants of a scene, each read when its turn comes and then changed by `adjust`.
+    pub(super) fn variants(
+        &self,
+        sweep: &Sweep,
+        pictures: bool,
+        adjust: impl Fn(&mut Scene),
+        words: &[OsString],
+    ) -> Result<impl Iterator<Item = Result<Job, Failure>>, Failure> {
+        Ok(sweep.variants()?.map(move |variant| {
+            let (mut scene, path) = variant?;
+            adjust(&mut scene);
+            let job = self.job(scene, &path, pictures, None, None, words)?;
+            Ok(Job { once: self.resume, ..job })
+        }))
     }
 
     /// A folder named after the scene follows its file. A folder named by the user keeps its contents, which may be
@@ -146,14 +183,16 @@ impl RunOptions {
 /// Why a folder cannot be used, with the command of these `words` that replaces what is there.
 pub(super) fn occupied(error: OutputError, words: &[OsString]) -> Failure {
     match error {
-        OutputError::Occupied { .. } => Failure::usage(format!("{error}: {}", overwriting(words))),
+        OutputError::Occupied { .. } => Failure::usage(format!("{error}: {}", with_option(words, "--overwrite"))),
         error => error.into(),
     }
 }
 
-/// The same command with `--overwrite`, placed where it cannot be the value of another option.
-fn overwriting(words: &[OsString]) -> String {
-    let words: Vec<_> = words.iter().map(|word| shell::word(&word.to_string_lossy())).collect();
-    let (program, rest) = words.split_at(words.len().min(2));
-    [program, &["--overwrite".to_owned()], rest].concat().join(" ")
+/// The same command with another option, placed where it cannot be the value of one.
+pub(super) fn with_option(words: &[OsString], option: &str) -> String {
+    let mut words: Vec<_> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    if !words.iter().any(|word| word == option) {
+        words.insert(words.len().min(2), option.to_owned());
+    }
+    shell::line(&words)
 }

@@ -184,7 +184,8 @@ fn draw_scene(
         None => runner,
     };
     let frames: Vec<_> = plan.frames().into_iter().collect();
-    let mut frames = Frames::new(runner, &frames, wanted.is_some(), &std::env::temp_dir());
+    let waiting = wanted.map(|_| tempfile::tempfile()).transpose()?;
+    let mut frames = Frames::new(runner, &frames, waiting);
     loop {
         if !go_on() {
             return Ok(None);

@@ -2,7 +2,7 @@
 
 use super::OutputError;
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -78,6 +78,27 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> 
     let mut file = AtomicFile::create(path)?;
     file.append(bytes)?;
     file.commit()
+}
+
+/// Opens a file with a fixed hidden name in a folder, which grows and outlives its process, so that another one can go on
+/// with it. What lies behind the first `length` bytes is cut off; with 0 the file is new.
+///
+/// # Errors
+/// If it cannot be opened, or is shorter.
+pub(crate) fn open_growing(path: &Path, length: u64) -> io::Result<File> {
+    let mut file = File::options().read(true).write(true).create(length == 0).truncate(false).open(path)?;
+    if file.metadata()?.len() < length {
+        return Err(io::ErrorKind::UnexpectedEof.into());
+    }
+    file.set_len(length)?;
+    file.seek(SeekFrom::End(0))?;
+    Ok(file)
+}
+
+/// Makes new names in a folder survive a power failure, where the system can do so.
+pub(super) fn sync_folder(folder: &Path) {
+    // Some systems cannot open folders; their names are durable at once, or cannot be made so.
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
 
 /// Removes the files that killed processes left unfinished in a folder, and nothing else. No other process may be

@@ -1,21 +1,41 @@
 //! `diagnostics.csv`: one row for each run and frame.
 
-use super::{AtomicFile, OutputError, exact};
+use super::atomic::open_growing;
+use super::{OutputError, exact};
 use crate::scene::Scene;
 use crate::sim::diagnostics::{Diagnostic, Value};
 use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
-use std::path::Path;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, Seek, Write};
+use std::path::{Path, PathBuf};
 
 /// The name of the file in its folder.
 pub(crate) const DIAGNOSTICS_FILE: &str = "diagnostics.csv";
 
+/// Its name until it is finished.
+const UNFINISHED: &str = ".localshape-diagnostics.partial";
+
 /// Writes the diagnostics of frames, one after the other. The file gets its name in [`Self::finish`].
 #[derive(Debug)]
 pub(crate) struct DiagnosticsWriter {
-    file: AtomicFile,
+    file: File,
+    hidden: PathBuf,
+    path: PathBuf,
     names: Vec<String>,
-    /// Length of the completely written rows (bytes).
+    written: Rows,
+    /// The digest of what is written.
+    digest: Sha256,
+}
+
+/// Completely written rows, with the heading.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Rows {
+    /// Their length (bytes).
     length: u64,
+    /// Their SHA-256.
+    digest: [u8; 32],
 }
 
 impl DiagnosticsWriter {
@@ -24,11 +44,34 @@ impl DiagnosticsWriter {
     /// # Errors
     /// If it cannot be written.
     pub(crate) fn create(folder: &Path, scene: &Scene) -> Result<Self, OutputError> {
-        let file = AtomicFile::create(&folder.join(DIAGNOSTICS_FILE))?;
-        let names = scene.runs.iter().map(|run| run.name.clone()).collect();
-        let mut writer = Self { file, names, length: 0 };
+        let mut writer = Self::open(folder, scene, Rows::default())?;
         writer.append(&rows([cells("", 0, &Snapshot::default()).into_iter().map(|(head, _)| head)]))?;
         Ok(writer)
+    }
+
+    /// Goes on after rows that another process has written, whether it has finished the file or not.
+    ///
+    /// # Errors
+    /// If they are not there.
+    pub(crate) fn resume(folder: &Path, scene: &Scene, before: Rows) -> Result<Self, OutputError> {
+        let [hidden, path] = [UNFINISHED, DIAGNOSTICS_FILE].map(|name| folder.join(name));
+        // A finished file has lost its hidden name.
+        if !hidden.metadata().is_ok_and(|found| found.len() >= before.length) {
+            fs::copy(&path, &hidden).map_err(OutputError::reading(&path))?;
+        }
+        let mut writer = Self::open(folder, scene, before)?;
+        writer.digest = digest_of(&mut writer.file).map_err(OutputError::reading(&path))?;
+        match writer.written() == before {
+            true => Ok(writer),
+            false => Err(OutputError::reading(&path)(io::ErrorKind::InvalidData.into())),
+        }
+    }
+
+    fn open(folder: &Path, scene: &Scene, before: Rows) -> Result<Self, OutputError> {
+        let [hidden, path] = [UNFINISHED, DIAGNOSTICS_FILE].map(|name| folder.join(name));
+        let file = open_growing(&hidden, before.length).map_err(OutputError::writing(&path))?;
+        let names = scene.runs.iter().map(|run| run.name.clone()).collect();
+        Ok(Self { file, hidden, path, names, written: before, digest: Sha256::new() })
     }
 
     /// Appends the rows of one frame, one for each run in it.
@@ -42,9 +85,24 @@ impl DiagnosticsWriter {
     }
 
     fn append(&mut self, text: &[u8]) -> Result<(), OutputError> {
-        self.file.append(text)?;
-        self.length += text.len() as u64;
+        self.file.write_all(text).map_err(OutputError::writing(&self.path))?;
+        self.digest.update(text);
+        self.written.length += text.len() as u64;
         Ok(())
+    }
+
+    /// What is written so far.
+    fn written(&self) -> Rows {
+        Rows { digest: self.digest.clone().finalize().into(), ..self.written }
+    }
+
+    /// Makes what is written so far survive a power failure.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub(crate) fn sync(&mut self) -> io::Result<Rows> {
+        self.file.sync_data()?;
+        Ok(self.written())
     }
 
     /// Renames the file to its final name. Also after a failed [`Self::write`]: the file then ends with the last
@@ -52,10 +110,26 @@ impl DiagnosticsWriter {
     ///
     /// # Errors
     /// If it cannot be renamed.
-    pub(crate) fn finish(mut self) -> Result<(), OutputError> {
-        let length = self.length;
-        self.file.file().set_len(length).map_err(OutputError::writing(self.file.path()))?;
-        self.file.commit()
+    pub(crate) fn finish(self) -> Result<(), OutputError> {
+        let Self { file, hidden, path, written, .. } = self;
+        let renamed =
+            file.set_len(written.length).and_then(|()| file.sync_data()).and_then(|()| fs::rename(hidden, &path));
+        renamed.map_err(OutputError::writing(&path))
+    }
+}
+
+/// The digest of a whole file, which is then at its end.
+fn digest_of(file: &mut File) -> io::Result<Sha256> {
+    file.rewind()?;
+    let (mut digest, mut reader) = (Sha256::new(), BufReader::new(file));
+    loop {
+        let bytes = reader.fill_buf()?;
+        if bytes.is_empty() {
+            return Ok(digest);
+        }
+        digest.update(bytes);
+        let length = bytes.len();
+        reader.consume(length);
     }
 }
 

@@ -55,6 +55,14 @@ pub enum OutputError {
         /// What is wrong, and what to do.
         what: Box<str>,
     },
+    /// A checkpoint is not one of this command.
+    #[error("the checkpoint in {} {what}; to begin anew, leave out --resume", path.display())]
+    Checkpoint {
+        /// The folder.
+        path: PathBuf,
+        /// What is wrong.
+        what: Box<str>,
+    },
     /// The folder has files that belong to something else.
     #[error("{} holds {what}; choose another folder with -o, or replace what is there with --overwrite", path.display())]
     Occupied {

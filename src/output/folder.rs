@@ -1,10 +1,11 @@
 //! Ownership of output folders: frames of different scenes are never mixed, and files of other programs never removed.
 
-use super::atomic::remove;
+use super::atomic::{remove, remove_leftovers};
+use super::checkpoint::Checkpoint;
 use super::error::kind_of;
 use super::{DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, is_folder, read_file, read_tags};
 use crate::scene::Scene;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -40,7 +41,7 @@ pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputEr
 }
 
 /// What a command writes into the folder of a scene.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Plan {
     /// Names of the runs, in the scene's order.
     pub runs: Vec<String>,
@@ -128,6 +129,11 @@ impl Folder {
         &self.path
     }
 
+    /// What is written there, and for which scene.
+    pub(crate) fn contents(&self) -> (&Plan, &Whose) {
+        (&self.plan, &self.scene)
+    }
+
     /// What is replaced although the command does not make it again, in words: `31 frames made by an earlier version of
     /// sag.toml`.
     pub(crate) fn replaced(&self) -> Option<&str> {
@@ -135,21 +141,27 @@ impl Folder {
     }
 
     /// Creates the folder if necessary, locks it, and removes leftovers of killed processes and the results of another
-    /// scene. Unless new states are written, earlier ones are removed, too, as they would not match the diagnostics.
+    /// scene. Unless new states are written, earlier ones are removed, too, as they would not match the diagnostics. With
+    /// `resume` a checkpoint and what belongs to it stay.
     ///
     /// # Errors
-    /// If the folder cannot be created or written to; and the errors of [`Self::inspect`], which is repeated because
-    /// the folder may have changed before it was locked.
-    pub(crate) fn prepare(self) -> Result<Claimed, OutputError> {
+    /// If the folder cannot be created or written to, or has a checkpoint to resume that does not belong to the plan; and
+    /// the errors of [`Self::inspect`], which is repeated because the folder may have changed before it was locked.
+    pub(crate) fn prepare(self, resume: bool) -> Result<Claimed, OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
-        let lock = FolderLock::alone(&self.path)?;
+        let lock = FolderLock::alone_with_leftovers(&self.path)?;
+        let read = || Checkpoint::read(&self.path, &self.scene, &self.plan);
+        let checkpoint = if resume { read()? } else { None };
         let found = self.find()?;
+        if checkpoint.is_none() {
+            forget(&self.path)?;
+        }
         // The summary is removed last: until then it identifies the owner of the other files.
         let stale = [found.frames, found.earlier_frames, found.unlike, found.records, found.earlier_records].concat();
         for path in stale.iter().chain(found.states.iter().filter(|_| !self.plan.states)) {
             remove(path)?;
         }
-        Ok(Claimed { path: self.path, _lock: lock })
+        Ok(Claimed { path: self.path, scene: self.scene, plan: self.plan, checkpoint, _lock: lock })
     }
 }
 
@@ -157,6 +169,9 @@ impl Folder {
 #[derive(Debug)]
 pub(crate) struct Claimed {
     path: PathBuf,
+    scene: Whose,
+    plan: Plan,
+    checkpoint: Option<Checkpoint>,
     _lock: FolderLock,
 }
 
@@ -164,6 +179,40 @@ impl Claimed {
     /// The path of the folder.
     pub(crate) fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// What is written there, and for which scene.
+    pub(crate) fn contents(&self) -> (&Plan, &Whose) {
+        (&self.plan, &self.scene)
+    }
+
+    /// Takes the checkpoint from which to go on, if there is one.
+    pub(crate) fn take_checkpoint(&mut self) -> Option<Checkpoint> {
+        self.checkpoint.take()
+    }
+
+    /// Removes the checkpoint and what belongs to it: the next command begins anew.
+    ///
+    /// # Errors
+    /// If it cannot be removed.
+    pub(crate) fn forget(&self) -> Result<(), OutputError> {
+        forget(&self.path)
+    }
+}
+
+/// Removes a checkpoint first, so that none is left without what belongs to it.
+fn forget(path: &Path) -> Result<(), OutputError> {
+    Checkpoint::remove(path)?;
+    remove_leftovers(path)
+}
+
+/// Without a checkpoint, unfinished files are of no use.
+impl Drop for Claimed {
+    fn drop(&mut self) {
+        if !Checkpoint::is_in(&self.path) {
+            // The next command tries again.
+            let _ = remove_leftovers(&self.path);
+        }
     }
 }
 
@@ -387,7 +436,7 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let plan = Plan { runs: Vec::new(), frames: Vec::new(), states: false, size: None };
         let inspect = |scene, replace| Folder::inspect(place.path(), Whose::of(scene), plan.clone(), replace);
-        inspect(&one, Replace::Nothing).unwrap().prepare().unwrap();
+        inspect(&one, Replace::Nothing).unwrap().prepare(false).unwrap();
         Summary::new(&one, &[0], 0, &[]).write(place.path()).unwrap();
         for replace in [Replace::Nothing, Replace::Own] {
             let message = inspect(&other, replace).unwrap_err().to_string();

@@ -82,6 +82,17 @@ impl FrameWriter {
         if queue.send(frame).is_ok() { Ok(()) } else { self.wait() }
     }
 
+    /// Waits until all frames so far are written.
+    ///
+    /// # Errors
+    /// If one could not be written and [`Self::write`] did not report it.
+    pub(crate) fn flush(&mut self) -> Result<(), OutputError> {
+        self.wait()?;
+        let (queue, frames) = sync_channel(0);
+        (self.queue, self.frames) = (Some(queue), Arc::new(Mutex::new(Some(frames))));
+        Ok(())
+    }
+
     /// Waits until all frames are written. Returns their number and the time spent, summed over threads.
     ///
     /// # Errors

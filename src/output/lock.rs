@@ -25,12 +25,18 @@ impl FolderLock {
     /// # Errors
     /// If another process writes to it, or it cannot be written to.
     pub(crate) fn alone(path: &Path) -> Result<Self, OutputError> {
-        let lock = Self::open(path);
-        if !lock.take(true) {
-            return Err(in_use(path));
-        }
+        let lock = Self::alone_with_leftovers(path)?;
         remove_leftovers(path)?;
         Ok(lock)
+    }
+
+    /// The same, leaving leftovers, which may be the way to go on.
+    ///
+    /// # Errors
+    /// If another process writes to it.
+    pub(super) fn alone_with_leftovers(path: &Path) -> Result<Self, OutputError> {
+        let lock = Self::open(path);
+        if lock.take(true) { Ok(lock) } else { Err(in_use(path)) }
     }
 
     /// Locks an existing folder for writing single files beside those of other processes. Leftovers are kept, as they

@@ -5,6 +5,7 @@
 //! in `run.json`.
 
 mod atomic;
+mod checkpoint;
 mod diagnostics;
 mod digest;
 mod error;
@@ -19,11 +20,12 @@ mod stored;
 mod summary;
 mod timing;
 
-pub(crate) use atomic::{AtomicFile, folder_of, write_whole};
+pub(crate) use atomic::{AtomicFile, folder_of, open_growing, write_whole};
+pub(crate) use checkpoint::{Checkpoint, waiting_states};
 pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub(crate) use digest::state_digest;
 pub(crate) use error::{OutputError, is_folder, read_file};
-pub(crate) use folder::{FRAME_FILES, Folder, Plan, Replace, Whose, frame_file_name, frame_files};
+pub(crate) use folder::{Claimed, FRAME_FILES, Folder, Plan, Replace, Whose, frame_file_name, frame_files};
 #[cfg(feature = "render")]
 pub(crate) use frames::Tap;
 pub(crate) use frames::{FrameWriter, PixelFrame};

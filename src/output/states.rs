@@ -1,7 +1,7 @@
 //! `states.npz`: a body, and its positions and velocities in every frame, for analysis in other programs.
 
-use super::atomic::folder_of;
-use super::{AtomicFile, OutputError};
+use super::atomic::open_growing;
+use super::{AtomicFile, OutputError, Whose};
 use crate::history::History;
 use crate::scene::Scene;
 use crate::sim::body::Body;
@@ -20,6 +20,9 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 /// The name of the file in its folder.
 pub(crate) const STATES_FILE: &str = "states.npz";
 
+/// Its frames until they are arranged.
+const SPOOL: &str = ".localshape-states.partial";
+
 /// The name of the array of bytes that only this program reads.
 pub(super) const COURSE: &str = "localshape";
 
@@ -37,8 +40,8 @@ pub(super) const COURSE: &str = "localshape";
 /// (F × M), and `localshape`, bytes with an [`Origin`] and a [`Course`].
 ///
 /// Arrays are consecutive in the archive but all grow with each frame, and the number of frames is known only at the
-/// end. So frames are first written to an unnamed temporary file, one record each, and rearranged at the end, which
-/// temporarily needs twice the disk space.
+/// end. So frames are first written to a hidden file, one record each, and rearranged at the end, which temporarily needs
+/// twice the disk space.
 #[derive(Debug)]
 pub(crate) struct StatesWriter {
     path: PathBuf,
@@ -64,9 +67,9 @@ pub(super) struct Origin {
     pub(super) title: String,
 }
 
-/// What pictures of states need besides the arrays.
+/// What pictures of states need besides the arrays; it grows with each frame.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(super) struct Course {
+pub(crate) struct Course {
     /// Numbers of the frames, rising.
     pub(super) frames: Vec<u64>,
     /// The runs, in the scene's order.
@@ -103,20 +106,36 @@ struct Array {
     length: usize,
 }
 
+impl Origin {
+    /// What this program makes of a scene.
+    pub(super) fn of(whose: &Whose) -> Self {
+        let version = env!("CARGO_PKG_VERSION").to_owned();
+        Self { version, digest: whose.digest.clone(), title: whose.title.clone() }
+    }
+}
+
+impl Course {
+    /// Whether it goes on with these runs.
+    fn fits(&self, runs: &[StoredRun]) -> bool {
+        let kinds = |runs: &[StoredRun]| runs.iter().map(|run| (run.name.clone(), run.model)).collect::<Vec<_>>();
+        kinds(&self.runs) == kinds(runs) && self.runs.iter().all(|run| run.digests.len() == self.frames.len())
+    }
+}
+
 impl StatesWriter {
-    /// Creates the file in `folder`, for frames that show `runs`, indices into the scene's runs, which have these states at the
-    /// start.
+    /// Creates the file in `folder`, for frames that show `runs`, indices into the scene's runs, which have states of this kind.
+    /// It goes on after the frames `before` that another process has written.
     ///
     /// # Errors
-    /// If the folder cannot be written to.
+    /// If the folder cannot be written to, or these frames are not there.
     pub(crate) fn create<'s>(
         folder: &Path,
         scene: &Scene,
         runs: &[usize],
         states: impl Iterator<Item = &'s State>,
+        before: Option<Course>,
     ) -> Result<Self, OutputError> {
         let path = folder.join(STATES_FILE);
-        let spool = tempfile::tempfile_in(folder_of(&path)).map_err(OutputError::writing(&path))?;
         let nodes = scene.body.len();
         let mut arrays = vec![Array { name: "time".to_owned(), shape: String::new(), offset: 0, length: 8 }];
         let mut record = 8;
@@ -144,9 +163,14 @@ impl StatesWriter {
             let name = scene.runs[run].name.clone();
             stored.push(StoredRun { name, model, divergence: None, last_fit: None, digests: Vec::new() });
         }
-        let version = env!("CARGO_PKG_VERSION").to_owned();
-        let origin = Origin { version, digest: scene.digest.clone(), title: scene.title.clone() };
-        let course = Course { runs: stored, ..Course::default() };
+        let origin = Origin::of(&Whose::of(scene));
+        let course = match before {
+            Some(before) if before.fits(&stored) => before,
+            Some(_) => return Err(OutputError::reading(&path)(io::ErrorKind::InvalidData.into())),
+            None => Course { runs: stored, ..Course::default() },
+        };
+        let length = course.frames.len() as u64 * record;
+        let spool = open_growing(&folder.join(SPOOL), length).map_err(OutputError::writing(&path))?;
         Ok(Self { path, spool, body: Arc::clone(&scene.body), arrays, record, own_time, origin, course })
     }
 
@@ -194,6 +218,15 @@ impl StatesWriter {
     /// Adds the time series of the scene.
     pub(crate) fn set_history(&mut self, history: &History) {
         self.course.history = Some(history.clone());
+    }
+
+    /// Makes the frames written so far survive a power failure.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub(crate) fn sync(&mut self) -> io::Result<Course> {
+        self.spool.sync_data()?;
+        Ok(self.course.clone())
     }
 
     /// Rearranges the frames written so far and renames the file to its final name.

@@ -67,7 +67,14 @@ fn course(npz: &mut Npz, scene: &Scene) -> Result<Course, String> {
     let again = "simulate the scene again with --states";
     let bytes = match npz.array(COURSE) {
         None => return Err(format!("has no array `{COURSE}`, which `localshape simulate --states` writes; {again}")),
-        Some(array) => array.and_then(|array| npz.values(&array)).map_err(|what| format!("`{COURSE}` {what}"))?,
+        Some(array) => {
+            // What is packed could unfold to any size, and this program packs nothing.
+            let fits = |array: Array| match npz.has_room_for(&array) {
+                true => npz.values(&array),
+                false => Err(format!("is packed, or longer than the file; {again}")),
+            };
+            array.and_then(fits).map_err(|what| format!("`{COURSE}` {what}"))?
+        }
     };
     let damaged = |_| format!("is damaged: `{COURSE}` is not what this program writes; {again}");
     let (origin, rest): (Origin, _) = postcard::take_from_bytes(bytes.bytes()).map_err(damaged)?;
@@ -97,6 +104,9 @@ fn place(npz: &mut Npz, course: &Course, scene: &Scene, run: usize) -> Result<Pl
         let damaged = |what: &str| format!("is damaged: `{name}.{quantity}` {what}");
         let array = npz.array(&format!("{name}.{quantity}")).ok_or_else(|| damaged("is missing"))?;
         let array = array.map_err(|what| damaged(&what))?;
+        if !npz.has_room_for(&array) {
+            return Err(damaged("is packed, or longer than the file"));
+        }
         let is_right = array.is_plain() && array.shape.strip_prefix(&[frames]).is_some_and(is_row);
         if is_right { Ok(array) } else { Err(damaged("has another shape or type")) }
     };

@@ -1,6 +1,7 @@
 //! `run.json`: what was made, how, and with what outcome.
 
 use super::{OutputError, Timings, state_digest, write_whole};
+use crate::cause::Cause;
 use crate::scene::Scene;
 use crate::sim::diagnostics::{Chosen, Reach};
 use crate::sim::snapshot::{Frame, Status};
@@ -29,6 +30,9 @@ pub(crate) struct Summary {
     pub adapter: Option<String>,
     /// The requested runs, in the scene's order.
     pub runs: Vec<RunSummary>,
+    /// How far all runs are simulated, and the time of the last frame (s), if the user stopped it on the way.
+    #[serde(skip)]
+    pub reached: Option<[f64; 2]>,
     /// Times by stage (s); `null` before the end.
     pub times: Option<Timings>,
 }
@@ -94,6 +98,9 @@ pub(crate) struct RunSummary {
     /// `ok` or `diverged`.
     #[serde(flatten)]
     pub status: RunStatus,
+    /// Why it diverged; absent if it did not, or was not simulated by this command.
+    #[serde(flatten)]
+    pub cause: Option<Cause>,
     /// The frames drawn by this command in which its body leaves its panel; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cut: Vec<u64>,
@@ -142,6 +149,7 @@ impl Summary {
                 time_step: run.step,
                 steps: 0,
                 status: RunStatus::Ok,
+                cause: None,
                 cut: Vec::new(),
                 last: None,
             }
@@ -161,6 +169,7 @@ impl Summary {
             files: Vec::new(),
             adapter: None,
             runs: runs.iter().map(run).collect(),
+            reached: None,
             times: None,
         }
     }

@@ -23,9 +23,24 @@ impl Scene {
     /// # Errors
     /// Whatever keeps the file from being a scene, with all mistakes in it; see [`SceneError`].
     pub fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
-        let text = text_of(path, limits)?;
+        Self::load_text(&text_of(path, limits)?, path, limits)
+    }
+
+    /// The text of a scene file.
+    ///
+    /// # Errors
+    /// If it cannot be read, is too long or is no text.
+    pub(crate) fn text(path: &Path, limits: &Limits) -> Result<String, SceneError> {
+        text_of(path, limits)
+    }
+
+    /// Reads a scene from a text in the place of its file.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub(crate) fn load_text(text: &str, path: &Path, limits: &Limits) -> Result<Self, SceneError> {
         let folder = path.parent().unwrap_or(Path::new(""));
-        let scene = Self::read(&text, &path.display().to_string(), folder, limits, Unwritten::default())?;
+        let scene = Self::read(text, &path.display().to_string(), folder, limits, Unwritten::default())?;
         Ok(Self { file: path.canonicalize().ok(), ..scene })
     }
 

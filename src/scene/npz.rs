@@ -23,6 +23,8 @@ const MOST_RESERVED: u64 = 1 << 26;
 #[derive(Debug)]
 pub(crate) struct Npz {
     zip: ZipArchive<BufReader<File>>,
+    /// Length of the file (bytes).
+    length: u64,
 }
 
 /// The header of an array in an archive.
@@ -171,7 +173,13 @@ impl Npz {
             _ => return Err("is not a NumPy archive (.npz); expected one written by numpy.savez".to_owned()),
         }
         let broken = |error| format!("is a damaged NumPy archive, or is cut short ({error})");
-        Ok(Self { zip: ZipArchive::new(BufReader::new(file)).map_err(broken)? })
+        let length = file.metadata().map_err(|error| format!("cannot be read: {error}"))?.len();
+        Ok(Self { zip: ZipArchive::new(BufReader::new(file)).map_err(broken)?, length })
+    }
+
+    /// Whether an array can be in the file as it is: no longer than that, and so not packed.
+    pub(crate) fn has_room_for(&self, array: &Array) -> bool {
+        array.bytes().is_some_and(|bytes| bytes <= self.length)
     }
 
     /// The names of the arrays, in their order.

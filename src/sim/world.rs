@@ -223,6 +223,11 @@ impl World {
         moment.step(self.system.step)
     }
 
+    /// Makes [`Self::state`] the present state, also between moments. It changes no bit of later states.
+    pub(crate) fn settle(&mut self) {
+        self.dynamics.settle(&mut self.state);
+    }
+
     fn advance_steps(&mut self, steps: u64) {
         let Self { system, dynamics, crew, limit, state, .. } = self;
         if state.status == Status::Ok {
@@ -237,6 +242,18 @@ impl World {
         } else {
             state.steps = state.steps.saturating_add(steps);
         }
+    }
+
+    /// The first node whose speed was too high in the step in which this world diverged, and the limit (m/s); `None` if it
+    /// has not.
+    pub(crate) fn runaway(&mut self) -> Option<(usize, f64)> {
+        let Status::Diverged(Divergence { step, .. }) = self.state.status else { return None };
+        let Self { system, dynamics, crew, limit, state, .. } = self;
+        let mut before = State { steps: step - 1, status: Status::Ok, ..state.clone() };
+        dynamics.restart();
+        let again = dynamics.advance(system, limit, &mut before, 1, crew);
+        dynamics.restart();
+        Some((again.err()?.node, limit.at(system.interval(step - 1).end)))
     }
 
     /// Number of steps taken, also between moments.

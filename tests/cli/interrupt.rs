@@ -52,11 +52,16 @@ pub(crate) fn signal(running: &Running, names: &[&str]) {
     assert_eq!(run(Command::new("sh").args(["-c", &line])).status, Some(0), "{line}");
 }
 
+/// The names in a folder but those of hidden files, with which another command goes on.
+pub(crate) fn results(place: &Place, folder: &str) -> Vec<String> {
+    place.names(folder).into_iter().filter(|name| !name.starts_with(".localshape-")).collect()
+}
+
 /// Checks that all files exist and record that the program was stopped.
 #[track_caller]
 fn is_whole(place: &Place, folder: &str, ran: &Ran) {
     assert!(ran.status == Some(130) && ran.out.contains("interrupted after"), "{ran:?}");
-    assert_eq!(place.names(folder), ["diagnostics.csv", "run.json", "states.npz"]);
+    assert_eq!(results(place, folder), ["diagnostics.csv", "run.json", "states.npz"]);
     let run = place.json(&format!("{folder}/run.json"));
     assert_eq!(run["outcome"], "interrupted");
     let rows = place.read(&format!("{folder}/diagnostics.csv")).lines().count() as u64;
@@ -125,7 +130,7 @@ fn a_later_ctrl_c_ends_at_once() {
     assert!(running.is_running(), "other programs only ask");
     signal(&running, &["INT"]);
     assert_eq!(running.wait().status, Some(130));
-    assert_eq!(place.names("out"), ["diagnostics.csv", "run.json"]);
+    assert_eq!(results(&place, "out"), ["diagnostics.csv", "run.json"]);
     drop(reader);
 }
 
@@ -166,7 +171,7 @@ fn within_a_frame() {
     let running = start(&place, "simulate long.toml --frames 1", "output/long/run.json");
     signal(&running, &["INT"]);
     assert_eq!(running.wait().status, Some(130));
-    assert_eq!(place.names("output/long"), ["diagnostics.csv", "run.json"]);
+    assert_eq!(results(&place, "output/long"), ["diagnostics.csv", "run.json"]);
     let run = place.json("output/long/run.json");
     assert_eq!((&run["outcome"], run["frames"]["recorded"].as_u64()), (&"interrupted".into(), Some(0)));
 }

@@ -16,8 +16,10 @@ mod interrupt;
 mod parts;
 #[cfg(feature = "render")]
 mod render;
+mod resume;
 mod simulate;
 mod study;
 mod support;
+mod sweep;
 mod table;
 mod usage;

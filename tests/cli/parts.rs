@@ -16,7 +16,7 @@ fn files(place: &Place, folder: &str) -> BTreeMap<String, Vec<u8>> {
 }
 
 /// The numbers of frames that were drawn and that were there already.
-fn drawn_and_kept(place: &Place, folder: &str) -> [u64; 2] {
+pub(crate) fn drawn_and_kept(place: &Place, folder: &str) -> [u64; 2] {
     let frames: &Value = &place.json(&format!("{folder}/run.json"))["frames"];
     [&frames["written"], &frames["kept"]].map(|count| count.as_u64().unwrap_or(0))
 }
@@ -262,7 +262,7 @@ fn states_that_numpy_has_written_are_refused() {
                   numpy.savez_compressed('packed.npz', **states); del states['localshape']; numpy.savez('bare.npz', **states)";
     assert_eq!(python(&place.path("."), script).trim(), "uint8");
     let ran = place.run("render small.toml --from-states packed.npz -o out");
-    ran.bad(4, &["cannot read packed.npz: frame 0 of “Local shape” cannot be read, the file is damaged or packed"]);
+    ran.bad(2, &["packed.npz `localshape` is packed, or longer than the file; simulate the scene again with --states"]);
     let ran = place.run("render small.toml --from-states bare.npz -o out");
     ran.bad(2, &["bare.npz has no array `localshape`, which `localshape simulate --states` writes"]);
 }
@@ -305,7 +305,10 @@ fn merged_shards_are_the_whole() {
     for run in [&mut whole, &mut merged] {
         // What one process simulated, the others have read.
         (run["command"], run["times"]) = (Value::Null, Value::Null);
-        run["runs"].as_array_mut().unwrap().iter_mut().for_each(|run| run["steps"] = 0.into());
+        for run in run["runs"].as_array_mut().unwrap() {
+            run["steps"] = 0.into();
+            run.as_object_mut().unwrap().retain(|key, _| !["node", "cause"].contains(&key.as_str()));
+        }
     }
     assert_eq!(merged, whole);
     // Again, and of another scene.

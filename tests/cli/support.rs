@@ -116,6 +116,11 @@ impl Place {
         command
     }
 
+    /// The command line with these arguments, as messages show it.
+    pub(crate) fn shown(&self, arguments: &str) -> String {
+        format!("{} {arguments}", env!("CARGO_BIN_EXE_localshape"))
+    }
+
     /// Runs the program with arguments, written with spaces between.
     pub(crate) fn run(&self, arguments: &str) -> Ran {
         run(&mut self.command(arguments.split(' ')))

@@ -1,6 +1,7 @@
 //! The physics compared with the paper and with closed forms, without files and without a graphics device.
 
 mod asked;
+mod checkpoints;
 mod closed_forms;
 mod conformance;
 mod contact;

@@ -1,0 +1,166 @@
+//! Why a run diverges: found by simulating the way into it once more, also with smaller steps.
+
+use crate::last_fit::fits;
+use crate::scene::Scene;
+use crate::sim::body::bounds;
+use crate::sim::crew::Crew;
+use crate::sim::integrate::Integrator;
+use crate::sim::motion::Pose;
+use crate::sim::snapshot::{Divergence, Status};
+use crate::sim::state::State;
+use crate::sim::words::quantity;
+use crate::sim::world::World;
+use glam::DVec3;
+use serde::Serialize;
+
+/// Where and why a run diverged.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Cause {
+    /// The first node that would have become too fast, or not a number.
+    pub(crate) node: usize,
+    /// What made it so and what to do, as sentences in one line.
+    #[serde(rename = "cause")]
+    pub(crate) words: String,
+}
+
+/// Number of steps after which it is tested whether a state fits.
+const STRIDE: u64 = 64;
+/// Steps are halved so many times.
+const HALVINGS: u32 = 5;
+
+impl Cause {
+    /// Of a run that diverges after a sound state of it, with so many threads. It takes as long as the run from there to the
+    /// divergence, and a little more.
+    pub(crate) fn find(
+        scene: &Scene,
+        run: usize,
+        sound: &State,
+        divergence: Divergence,
+        threads: usize,
+    ) -> Option<Self> {
+        let mut world = scene.world(run);
+        world.set_crew(Crew::new(threads));
+        world.set_state(sound.clone());
+        // The way begins at least a stride before the last state that fits.
+        let (mut begin, mut fitting) = (sound.clone(), sound.clone());
+        while world.status() == Status::Ok && world.steps() < divergence.step {
+            world.advance(STRIDE.min(divergence.step - world.steps()));
+            if world.status() == Status::Ok && fits(scene, &world.state().position) {
+                begin = std::mem::replace(&mut fitting, world.state().clone());
+            }
+        }
+        let (node, fastest) = world.runaway()?;
+        let speed = quantity(fastest, "m/s");
+        let element = divergence.element.map_or(String::new(), |element| format!(" of element {element}"));
+        let what = format!("node {node}{element} would move faster than {speed}");
+        let why = Self::too_fast(scene, run, &world, node, divergence);
+        let why = why.unwrap_or_else(|| Self::by_steps(scene, run, &begin, divergence, threads));
+        Some(Self { node, words: format!("{what}: {why}") })
+    }
+
+    /// What moves so far in a step that the step cannot follow it, if anything does.
+    fn too_fast(scene: &Scene, run: usize, world: &World, node: usize, divergence: Divergence) -> Option<String> {
+        /// In sizes of an element.
+        const FAR: f64 = 0.5;
+        let (end, at) = (divergence.time, world.state().position[node]);
+        let begin = end - scene.runs[run].step;
+        let body = &scene.body;
+        let size = |element: usize| {
+            let nodes: Vec<_> =
+                body.elements.iter().nth(element).into_iter().flatten().map(|&node| body.rest[node as usize]).collect();
+            let (low, high) = bounds(&nodes);
+            (high - low).max_element()
+        };
+        let size = divergence.element.map_or(body.extent(), size);
+        let way = |from: Pose, to: Pose, pivot: DVec3| to.apply(pivot, from.undo(pivot, at)).distance(at);
+        let obstacles = scene.obstacles.iter().enumerate().map(|(number, obstacle)| {
+            (format!("obstacle[{number}]"), way(obstacle.pose(begin), obstacle.pose(end), obstacle.pivot))
+        });
+        let grips = scene.grips.iter().filter(|grip| grip.holds(begin) && grip.holds(end));
+        let grips = grips.map(|grip| ("what is grabbed".to_owned(), way(grip.way(begin), grip.way(end), at)));
+        let (name, way) = obstacles.chain(grips).max_by(|one, other| one.1.total_cmp(&other.1))?;
+        (way > FAR * size).then(|| {
+            let [way, size] = [way, size].map(|length| quantity(length, "m"));
+            format!("{name} moves {way} in a step, and an element is {size} wide; move it more slowly, or take smaller steps")
+        })
+    }
+
+    /// Whether smaller steps from the beginning of the way get past the divergence.
+    fn by_steps(scene: &Scene, run: usize, begin: &State, divergence: Divergence, threads: usize) -> String {
+        let step = scene.runs[run].step;
+        let mut finer = scene.clone();
+        for halving in 1..=HALVINGS {
+            let parts = 1_u64 << halving;
+            finer.runs[run].step = step / parts as f64;
+            let mut world = finer.world(run);
+            world.set_crew(Crew::new(threads));
+            let mut state = State { steps: begin.steps.saturating_mul(parts), ..begin.clone() };
+            // The integrator begins anew with other steps.
+            state.memory.integrator.clear();
+            world.set_state(state);
+            // Twice as far.
+            world.advance((divergence.step - begin.steps).saturating_mul(2 * parts));
+            if world.status() == Status::Ok && fits(scene, &world.state().position) {
+                let [long, short] = [step, step / parts as f64].map(|step| quantity(step, "s"));
+                let adds = match scene.runs[run].integrator {
+                    Integrator::ExplicitEuler => ", but `explicit-euler` adds energy in each step",
+                    _ => "",
+                };
+                return format!("steps of {long} are too long; with steps of {short} it does not diverge there{adds}");
+            }
+        }
+        format!("steps of 1/{} do not help; look at the motion before it", 1_u64 << HALVINGS)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Limits;
+
+    fn cause(more: &str, run: &str) -> (Cause, Divergence) {
+        let text = format!(
+            "gravity = [0, -9.8, 0]
+            time = {{ duration = 1, frames_per_second = 20 }}
+            body.lattice = {{ cells = [2, 1, 1], side = 0.1 }}
+            {more}
+            [[run]]
+            name = 'run'
+            {run}"
+        );
+        let scene = Scene::parse(&text, "small.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let mut world = scene.world(0);
+        let mut sound = world.state().clone();
+        while world.status() == Status::Ok {
+            sound.clone_from(world.state());
+            world.advance(100);
+            assert!(world.steps() < 1_000_000, "it diverges");
+        }
+        let Status::Diverged(divergence) = world.status() else { panic!("it diverges") };
+        (Cause::find(&scene, 0, &sound, divergence, 1).expect("it diverges again"), divergence)
+    }
+
+    #[test]
+    fn a_step_that_is_too_long_is_named_with_one_that_is_not() {
+        let (Cause { node, words }, divergence) = cause(
+            "body.velocity = [0, -2, 0]\nobstacle = [{ kind = 'floor', restitution = 0.5 }]",
+            "model = { kind = 'mass-spring', stiffness = 1e4, springs = 'edges' }\nstep = 'T/2'",
+        );
+        let element = divergence.element.expect("all nodes are in elements");
+        assert!(words.starts_with(&format!("node {node} of element {element} would move faster than ")), "{words}");
+        // T is 62.8 ms.
+        assert!(
+            words.contains("m/s: steps of 31.4 ms are too long; with steps of 7.85 ms it does not diverge"),
+            "{words}"
+        );
+    }
+
+    #[test]
+    fn explicit_euler_is_told_that_it_adds_energy() {
+        let (Cause { words, .. }, _) = cause(
+            "body.spin = { axis = [0, 0, 1], rate = 3 }",
+            "model = { kind = 'shape-based', stiffness = 1e4 }\nintegrator = 'explicit-euler'\nstep = 'T/10'",
+        );
+        assert!(words.contains("`explicit-euler` adds energy in each step"), "{words}");
+    }
+}

@@ -1,0 +1,168 @@
+//! Checkpoints: a simulation on its way, with exact states, from which another process goes on after an interruption.
+//!
+//! A checkpoint is a hidden file beside the results, replaced as a whole. What grows with the frames, such as
+//! `diagnostics.csv`, lies in hidden files of its own, and the checkpoint says how much of them it goes with.
+
+use super::atomic::{remove, sync_folder};
+use super::diagnostics::Rows;
+use super::folder::{Plan, Whose};
+use super::states::{Course, Origin};
+use super::{OutputError, read_file, write_whole};
+use crate::runner::Progress;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
+
+/// The name of the file in its folder. A command that does not go on from it removes it as a leftover.
+const CHECKPOINT_FILE: &str = ".localshape-checkpoint.partial";
+
+/// The first bytes of the file; a digest of the rest follows.
+const MARK: &[u8] = b"localshape checkpoint 1\n";
+
+/// Where a command has come to.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Checkpoint {
+    /// The command line that wrote it.
+    pub(crate) command: Vec<String>,
+    /// Digest of what it makes.
+    plan: [u8; 32],
+    /// The simulation.
+    pub(crate) progress: Progress,
+    /// The rows of frames that are written; `None` if no frame is written before the end of the simulation.
+    pub(crate) rows: Option<Rows>,
+    /// The states that are written with them, if states are.
+    pub(crate) course: Option<Course>,
+}
+
+impl Checkpoint {
+    /// Of a command that makes what a `plan` says.
+    pub(crate) fn new(command: Vec<String>, plan: &Plan, progress: Progress) -> Self {
+        Self { command, plan: digest(plan), progress, rows: None, course: None }
+    }
+
+    /// Replaces the one in a folder, if there is one. What it refers to has to be on the disk.
+    ///
+    /// # Errors
+    /// If it cannot be written; an earlier one is then unchanged.
+    pub(crate) fn write(&self, folder: &Path, whose: &Whose) -> Result<(), OutputError> {
+        let origin = Origin::of(whose);
+        let mut rest = postcard::to_allocvec(&origin).expect("plain data");
+        rest.extend(postcard::to_allocvec(self).expect("plain data"));
+        // The names of frames and of hidden files must be on the disk before this one says that they are.
+        sync_folder(folder);
+        write_whole(&folder.join(CHECKPOINT_FILE), &[MARK, &Sha256::digest(&rest), &rest].concat())
+    }
+
+    /// Reads the one in a folder, if there is one.
+    ///
+    /// # Errors
+    /// If it cannot be read, is damaged, or belongs to another version, scene or command.
+    pub(super) fn read(folder: &Path, whose: &Whose, plan: &Plan) -> Result<Option<Self>, OutputError> {
+        let path = folder.join(CHECKPOINT_FILE);
+        let Some(bytes) = read_file(&path)? else { return Ok(None) };
+        let found = Self::parse(&bytes, whose, plan);
+        found.map(Some).map_err(|what| OutputError::Checkpoint { path: folder.to_owned(), what: what.into() })
+    }
+
+    fn parse(bytes: &[u8], whose: &Whose, plan: &Plan) -> Result<Self, String> {
+        let damaged = || "is damaged or cut short".to_owned();
+        let (digest_found, rest) =
+            bytes.strip_prefix(MARK).and_then(|rest| rest.split_at_checked(32)).ok_or_else(damaged)?;
+        if Sha256::digest(rest)[..] != *digest_found {
+            return Err(damaged());
+        }
+        let (origin, rest): (Origin, _) = postcard::take_from_bytes(rest).map_err(|_| damaged())?;
+        let version = env!("CARGO_PKG_VERSION");
+        if origin.version != version {
+            return Err(format!("was written by localshape {}, and this is {version}", origin.version));
+        }
+        if origin.digest != whose.digest || whose.digest.is_empty() {
+            let (found, expected) = (origin.title, &whose.title);
+            let other = if found == *expected { "another version of" } else { "another scene," };
+            return Err(format!("belongs to {other} “{found}”; expected “{expected}” as it is now"));
+        }
+        let found: Self = postcard::from_bytes(rest).map_err(|_| damaged())?;
+        if found.plan != digest(plan) {
+            return Err(format!(
+                "belongs to a command with other frames, runs, states or size: {}",
+                crate::shell::line(&found.command)
+            ));
+        }
+        Ok(found)
+    }
+
+    /// Removes the one in a folder, after all is done.
+    ///
+    /// # Errors
+    /// If it cannot be removed.
+    pub(crate) fn remove(folder: &Path) -> Result<(), OutputError> {
+        remove(&folder.join(CHECKPOINT_FILE))
+    }
+
+    /// Whether there is one in a folder.
+    pub(crate) fn is_in(folder: &Path) -> bool {
+        folder.join(CHECKPOINT_FILE).is_file()
+    }
+}
+
+/// The name of the hidden file in a folder in which states wait to be drawn.
+pub(crate) fn waiting_states(folder: &Path) -> PathBuf {
+    folder.join(".localshape-frames.partial")
+}
+
+fn digest(plan: &Plan) -> [u8; 32] {
+    Sha256::digest(postcard::to_allocvec(plan).expect("plain data")).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn whose() -> Whose {
+        Whose { digest: "ab".repeat(32), title: "Cubes".to_owned(), file: None }
+    }
+
+    fn plan() -> Plan {
+        Plan { runs: vec!["one".to_owned()], frames: vec![0, 1, 2], states: false, size: None }
+    }
+
+    #[test]
+    fn it_comes_back_and_is_refused_when_cut_short_or_changed() {
+        let folder = tempfile::tempdir().unwrap();
+        let read = || Checkpoint::read(folder.path(), &whose(), &plan());
+        assert!(read().unwrap().is_none());
+        let words = vec!["localshape".to_owned(), "render".to_owned()];
+        Checkpoint::new(words.clone(), &plan(), Progress::default()).write(folder.path(), &whose()).unwrap();
+        assert_eq!(read().unwrap().expect("a checkpoint").command, words);
+        let path = folder.path().join(CHECKPOINT_FILE);
+        let bytes = std::fs::read(&path).unwrap();
+        for cut in 0..bytes.len() {
+            assert!(Checkpoint::parse(&bytes[..cut], &whose(), &plan()).unwrap_err().contains("damaged"), "{cut}");
+        }
+        for at in 0..bytes.len() {
+            let mut changed = bytes.clone();
+            changed[at] ^= 1;
+            assert!(Checkpoint::parse(&changed, &whose(), &plan()).unwrap_err().contains("damaged"), "{at}");
+        }
+        let other = Plan { frames: vec![0, 1], ..plan() };
+        let what = Checkpoint::parse(&bytes, &whose(), &other).unwrap_err();
+        assert_eq!(what, "belongs to a command with other frames, runs, states or size: localshape render");
+        Checkpoint::remove(folder.path()).unwrap();
+        assert!(!Checkpoint::is_in(folder.path()));
+    }
+
+    #[test]
+    fn one_of_another_version_or_scene_is_refused() {
+        let of = |origin: Origin| {
+            let rest = postcard::to_allocvec(&origin).unwrap();
+            Checkpoint::parse(&[MARK, &Sha256::digest(&rest), &rest].concat(), &whose(), &plan()).unwrap_err()
+        };
+        let older = Origin { version: "0.0.1".to_owned(), ..Origin::of(&whose()) };
+        assert!(of(older).starts_with("was written by localshape 0.0.1, and this is "));
+        let edited = Whose { digest: "cd".repeat(32), ..whose() };
+        assert_eq!(of(Origin::of(&edited)), "belongs to another version of “Cubes”; expected “Cubes” as it is now");
+        let other = Whose { title: "Springs".to_owned(), ..edited };
+        assert_eq!(of(Origin::of(&other)), "belongs to another scene, “Springs”; expected “Cubes” as it is now");
+        assert_eq!(of(Origin::of(&whose())), "is damaged or cut short", "nothing follows");
+    }
+}

@@ -1,0 +1,175 @@
+//! `--resume`: what an interrupted command has left out, with the bytes of one without interruption.
+#![cfg(unix)]
+
+use crate::interrupt::{results, signal, start};
+use crate::support::{Place, Ran, Running, lasting};
+use std::collections::BTreeMap;
+
+const CHECKPOINT: &str = ".localshape-checkpoint.partial";
+
+/// All results in a folder but `run.json`, which has times.
+fn files(place: &Place, folder: &str) -> BTreeMap<String, Vec<u8>> {
+    let names = results(place, folder).into_iter().filter(|name| name != "run.json");
+    names.map(|name| (name.clone(), std::fs::read(place.path(folder).join(name)).unwrap())).collect()
+}
+
+/// Steps of the first run that the last command has simulated.
+fn steps(place: &Place, folder: &str) -> u64 {
+    place.json(&format!("{folder}/run.json"))["runs"][0]["steps"].as_u64().unwrap()
+}
+
+/// Starts a command that makes a folder, and ends it by a signal after a while, at the earliest when a file exists.
+fn stopped(place: &Place, arguments: &str, sign: &str, name: &str) -> Ran {
+    let running = start(place, arguments, sign);
+    signal(&running, &[name]);
+    running.wait()
+}
+
+/// Starts the command of a folder `out` again and waits until it simulates.
+fn again(place: &Place, arguments: &str) -> Running {
+    let mut running = start(place, arguments, "out/run.json");
+    let is_new =
+        |run: &serde_json::Value| run["command"].as_array().and_then(|words| words.last()) == Some(&"--resume".into());
+    running.until("its summary", |_| is_new(&place.json("out/run.json")));
+    running
+}
+
+/// A scene that takes some seconds, so that a killed command leaves a checkpoint.
+fn seconds() -> String {
+    lasting("400").replace("cells = [2, 1, 1]", "cells = [4, 4, 4]")
+}
+
+#[test]
+fn after_ctrl_c_it_goes_on_from_there() {
+    let place = Place::new();
+    place.write("scene.toml", &lasting("60"));
+    place.run("simulate scene.toml --states -o whole").good();
+    let typed = "simulate scene.toml --states -o out";
+    let ran = stopped(&place, typed, "out/run.json", "INT");
+    let how = "to go on: ".to_owned() + &place.shown("simulate --resume scene.toml --states -o out");
+    assert!(ran.status == Some(130) && ran.out.lines().any(|line| line == how), "{how}: {ran:?}");
+    let line = ran.out.lines().find(|line| line.starts_with("interrupted after ")).expect("where it stopped");
+    assert!(line.contains(" of 3601 frames simulated in out, simulated to ") && line.ends_with(" s of 60 s"), "{line}");
+    assert!(place.path("out").join(CHECKPOINT).exists());
+    let before = steps(&place, "out");
+    // Again, on the way.
+    let typed = format!("{typed} --resume");
+    let running = again(&place, &typed);
+    signal(&running, &["TERM"]);
+    let ran = running.wait();
+    assert!([Some(130), Some(0)].contains(&ran.status), "{ran:?}");
+    let between = steps(&place, "out");
+    if ran.status == Some(130) {
+        place.run(&typed).good();
+        assert_eq!(before + between + steps(&place, "out"), steps(&place, "whole"), "no step is taken twice");
+    }
+    assert!(files(&place, "out") == files(&place, "whole"));
+    assert_eq!(place.names("out"), ["diagnostics.csv", "run.json", "states.npz"], "nothing else is left");
+}
+
+#[test]
+fn after_a_kill_it_goes_on_from_the_last_checkpoint() {
+    let place = Place::new();
+    place.write("scene.toml", &seconds());
+    let typed = "simulate scene.toml --states -o out";
+    let ran = stopped(&place, typed, &format!("out/{CHECKPOINT}"), "KILL");
+    assert_eq!(ran.status, None, "killed");
+    assert_eq!(place.json("out/run.json")["outcome"], "unfinished");
+    // The lock has gone with its process; while another one runs it holds.
+    let running = again(&place, &format!("{typed} --resume"));
+    place.run(&format!("{typed} --resume")).bad(2, &["out is in use: process ", "is writing there"]);
+    running.wait().good();
+    place.run("simulate scene.toml --states -o whole").good();
+    assert!(steps(&place, "out") < steps(&place, "whole"), "it has not begun anew");
+    assert!(files(&place, "out") == files(&place, "whole"));
+    assert_eq!(place.names("out"), ["diagnostics.csv", "run.json", "states.npz"], "nothing else is left");
+}
+
+/// With charts and cameras that follow, which wait for the end of the simulation, and without.
+#[cfg(feature = "render")]
+#[test]
+fn pictures_go_on_too() {
+    if !crate::render::can_draw() {
+        return;
+    }
+    let place = Place::new();
+    let (still, follows) = (lasting("6"), crate::support::SMALL.replace("duration = 0.1", "duration = 600"));
+    for (name, scene, sign, frames) in
+        [("still", still, "frame_00020.png", "0-360x20"), ("follows", follows, "run.json", "0-36000x2000")]
+    {
+        place.write(&format!("{name}.toml"), &scene);
+        let typed = format!("render {name}.toml --frames {frames} --states -o {name}");
+        let ran = stopped(&place, &typed, &format!("{name}/{sign}"), "INT");
+        assert!(ran.status == Some(130) && ran.out.contains("to go on: "), "{ran:?}");
+        assert!(place.path(name).join(CHECKPOINT).exists(), "{name}");
+        let kept = place.names(name).iter().filter(|name| name.ends_with(".png")).count() as u64;
+        let before = steps(&place, name);
+        let ran = place.run(&format!("{typed} --resume")).good();
+        assert!(ran.out.contains("19 frames of 96×64"), "{ran:?}");
+        let (again, resumed) = (crate::parts::drawn_and_kept(&place, name), steps(&place, name));
+        assert_eq!(again, [19 - kept, kept], "{name}");
+        place.run(&format!("render {name}.toml --frames {frames} --states -o whole --overwrite")).good();
+        assert_eq!(before + resumed, steps(&place, "whole"), "{name}: no step is taken twice");
+        assert!(files(&place, name) == files(&place, "whole"), "{name}");
+        assert!(place.names(name).iter().all(|name| !name.starts_with('.')), "nothing else is left");
+    }
+}
+
+#[test]
+fn a_checkpoint_of_something_else_is_refused() {
+    let place = Place::new();
+    place.write("scene.toml", &lasting("100000"));
+    stopped(&place, "simulate scene.toml", "output/scene/run.json", "INT");
+    let all = |folder: &str| {
+        place
+            .names(folder)
+            .into_iter()
+            .map(|name| std::fs::read(place.path(folder).join(name)).unwrap())
+            .collect::<Vec<_>>()
+    };
+    let before = all("output/scene");
+    let refused = |options: &str, words: &[&str]| {
+        let ran = place.run(&format!("simulate scene.toml --resume{options}"));
+        ran.bad(2, &[&["the checkpoint in output/scene ", "to begin anew, leave out --resume"], words].concat());
+        assert!(all("output/scene") == before, "nothing is lost");
+    };
+    refused(
+        " --only Mass-spring --overwrite",
+        &["belongs to a command with other frames, runs, states or size: ", "simulate scene.toml;"],
+    );
+    refused(" --frames 0-3", &["belongs to a command with other frames"]);
+    refused(" --states", &["belongs to a command with other frames, runs, states"]);
+    place.write("scene.toml", &lasting("100001"));
+    refused("", &["belongs to another version of “Two cubes”; expected “Two cubes” as it is now"]);
+    place.write("scene.toml", &lasting("100000"));
+    let path = place.path("output/scene").join(CHECKPOINT);
+    let bytes = std::fs::read(&path).unwrap();
+    std::fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
+    let ran = place.run("simulate scene.toml --resume");
+    ran.bad(2, &["the checkpoint in output/scene is damaged or cut short; to begin anew, leave out --resume"]);
+    std::fs::write(&path, &bytes).unwrap();
+    std::fs::write(place.path("output/scene/diagnostics.csv"), "run,frame\n").unwrap();
+    let ran = place.run("simulate scene.toml --resume");
+    ran.bad(2, &["the checkpoint in output/scene cannot be used (", "diagnostics.csv", "leave out --resume"]);
+    place.run("simulate scene.toml --frames 0-1 --overwrite").good();
+    assert_eq!(place.names("output/scene"), ["diagnostics.csv", "run.json"], "another command begins anew");
+}
+
+/// A frame that has been removed since cannot be drawn from a later state.
+#[cfg(feature = "render")]
+#[test]
+fn without_its_frames_a_checkpoint_is_of_no_use() {
+    if !crate::render::can_draw() {
+        return;
+    }
+    let place = Place::new();
+    place.write("scene.toml", &lasting("5"));
+    stopped(&place, "render scene.toml -o out", "out/frame_00003.png", "INT");
+    std::fs::remove_file(place.path("out/frame_00002.png")).unwrap();
+    let ran = place.run("render scene.toml -o out --resume");
+    let warning =
+        "warning: frame_00002.png is not the one that was drawn before the checkpoint; simulating from the start\n";
+    assert_eq!((ran.status, ran.err.as_str()), (Some(0), warning), "{ran:?}");
+    place.run("render scene.toml -o whole").good();
+    assert!(files(&place, "out") == files(&place, "whole"));
+}

@@ -1,0 +1,104 @@
+//! `--sweep`: variants of a scene.
+
+use crate::support::{Place, SMALL};
+
+const TABLE: &str = "run[0].model.stiffness,run[1].step,body.lattice.cells\n2e4,T/60,\n1e4,,\"[1, 1, 1]\"\n,,\n";
+const FOLDERS: [&str; 3] = ["1_stiffness=2e4_step=T-60", "2_stiffness=1e4_cells=-1--1--1-", "3"];
+
+fn place() -> Place {
+    let place = Place::with_small();
+    place.write("sweep.csv", TABLE);
+    place
+}
+
+fn same(place: &Place, one: &str, other: &str) -> bool {
+    let bytes = |folder: &str, name: &str| std::fs::read(place.path(folder).join(name)).unwrap();
+    ["diagnostics.csv", "states.npz"].iter().all(|name| bytes(one, name) == bytes(other, name))
+}
+
+/// Each variant is what the edited scene would give, in a folder of its own.
+#[test]
+fn each_line_is_a_variant() {
+    let place = place();
+    let ran = place.run("simulate small.toml --sweep sweep.csv --states").good();
+    assert_eq!(place.names("output/small-sweep"), [&FOLDERS[..], &["variants.csv"]].concat(), "{ran:?}");
+    let table = place.read("output/small-sweep/variants.csv");
+    assert!(
+        table.starts_with(&format!("folder,{}", TABLE.lines().next().unwrap())) && table.contains(FOLDERS[1]),
+        "{table}"
+    );
+    let first = SMALL
+        .replacen("stiffness = 1e4", "stiffness = 2e4", 1)
+        .replace("one-diagonal\" }\n", "one-diagonal\" }\nstep = \"T/60\"\n");
+    for (folder, edited) in FOLDERS.iter().zip([first, SMALL.replace("[2, 1, 1]", "[1, 1, 1]"), SMALL.to_owned()]) {
+        place.write("small.toml", &edited);
+        place.run("simulate small.toml --states -o edited --overwrite").good();
+        assert!(same(&place, "edited", &format!("output/small-sweep/{folder}")), "{folder}");
+    }
+}
+
+#[test]
+fn shards_have_the_folders_of_the_whole() {
+    let place = place();
+    place.run("simulate small.toml --sweep sweep.csv --states -o whole").good();
+    for shard in ["1/2", "2/2"] {
+        place.run(&format!("simulate small.toml --sweep sweep.csv --states --shard {shard} -o shards")).good();
+    }
+    assert_eq!(place.names("whole"), place.names("shards"));
+    assert!(FOLDERS.iter().all(|folder| same(&place, &format!("whole/{folder}"), &format!("shards/{folder}"))));
+    place.run("simulate small.toml --sweep sweep.csv --shard 4/4").bad(2, &["shard 4/4 of 3 variants is empty"]);
+    place.run("simulate small.toml --shard 1/2").bad(2, &["--sweep"]);
+}
+
+#[test]
+fn complete_variants_are_left_out() {
+    let place = place();
+    let typed = "simulate small.toml --sweep sweep.csv --states -o out --resume";
+    place.run(typed).good();
+    std::fs::remove_file(place.path("out").join(FOLDERS[1]).join("states.npz")).unwrap();
+    let ran = place.run(typed).good();
+    let complete = |number: usize| ran.out.contains(&format!("out/{} is complete", FOLDERS[number]));
+    assert_eq!([0, 1, 2].map(complete), [true, false, true], "{ran:?}");
+    assert!(place.path("out").join(FOLDERS[1]).join("states.npz").exists());
+    let ran = place.run(&format!("{typed} --json")).good();
+    assert_eq!(ran.json()["scenes"].as_array().map(Vec::len), Some(3));
+}
+
+#[test]
+fn mistakes_are_found_in_their_cells_before_anything_is_made() {
+    let place = place();
+    let refused = |table: &str, words: &[&str]| {
+        place.write("sweep.csv", table);
+        place.run("simulate small.toml --sweep sweep.csv -o out").bad(2, words);
+        assert!(!place.path("out").exists());
+    };
+    refused(
+        "run[0].model.stifness\n1\n2\n",
+        &["sweep.csv:1:1: unknown key `stifness` in `run[0].model`", "did you mean `stiffness`"],
+    );
+    refused(
+        "body.mass,run[0].model.stiffness\n1,2e4\n1,-5\n",
+        &["sweep.csv:3:3: `run[0].model.stiffness` is -5", "  3 | 1,-5\n"],
+    );
+    refused("body.mass\nmuch\n", &["sweep.csv:2:1: ", "\"much\""]);
+    refused("run[2].step\n1\n", &["sweep.csv:1:1: the scene has no `run[2]`; it has 2, counted from 0"]);
+    refused("body.mass,body.mass\n1,1\n", &["sweep.csv: the key of column 2 is given a second time"]);
+    refused("body.mass\n", &["sweep.csv: has no variants"]);
+    refused("", &["sweep.csv: has no variants"]);
+    refused("body.mass\n1,2\n", &["sweep.csv: line 2 has 2 values; expected 1, one for each key"]);
+    place.run("simulate small.toml --sweep none.csv").bad(4, &["cannot read none.csv"]);
+    place.run("simulate small.toml small.toml --sweep sweep.csv").bad(2, &["--sweep has the variants of one scene"]);
+}
+
+#[cfg(feature = "render")]
+#[test]
+fn variants_are_drawn() {
+    if !crate::render::can_draw() {
+        return;
+    }
+    let place = place();
+    place.run("render small.toml --sweep sweep.csv --frames 3 --size 80x60 -o out").good();
+    assert!(FOLDERS.iter().all(|folder| place.path("out").join(folder).join("frame_00003.png").exists()));
+    place.run("render small.toml --sweep sweep.csv -o a.png").bad(2, &["a.png is a file for one frame"]);
+    place.run("render small.toml --sweep sweep.csv --animate a.gif").bad(2, &["--sweep", "--animate"]);
+}

@@ -1,0 +1,145 @@
+//! Damaged files of every kind are refused or read, and never end the program. `fuzz/` looks for more of them.
+
+use localshape::internals::untrusted::{READERS, SCENE, checkpoint_of_scene};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// Random numbers, the same in every run.
+struct Noise(u64);
+
+impl Noise {
+    fn below(&mut self, end: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) as usize) % end.max(1)
+    }
+}
+
+/// What damages take the place of bytes: ends of ranges, and what means something in some format.
+const HOSTILE: [&[u8]; 18] = [
+    b"0",
+    b"-1",
+    b"1e308",
+    b"-1e30",
+    b"nan",
+    b"inf",
+    b"9223372036854775807",
+    b"18446744073709551615",
+    b"''",
+    b"[]",
+    b"{}",
+    b"[[]]",
+    b"\0",
+    b"\xff\xff\xff\xff",
+    b"\xff\xff\xff\xff\xff\xff\xff\x7f",
+    b"\xc3",
+    b"\"",
+    b"\n",
+];
+
+/// A file with some bytes changed, inserted, removed or repeated.
+fn damaged(seed: &[u8], noise: &mut Noise) -> Vec<u8> {
+    let mut bytes = seed.to_vec();
+    for _ in 0..=noise.below(4) {
+        let at = noise.below(bytes.len());
+        let end = at + noise.below((bytes.len() - at).min(24) + 1);
+        match noise.below(6) {
+            0 => bytes.truncate(at),
+            1 => drop(bytes.drain(at..end)),
+            2 => drop(bytes.splice(at..end, HOSTILE[noise.below(HOSTILE.len())].iter().copied())),
+            3 => drop(bytes.splice(at..at, seed[at.min(seed.len())..end.min(seed.len())].to_vec())),
+            4 => {
+                // A number in a text: its digits are replaced as a whole.
+                let is_digit = |byte: &u8| byte.is_ascii_digit();
+                if let Some(first) = bytes[at..].iter().position(is_digit).map(|first| at + first) {
+                    let last = first + bytes[first..].iter().take_while(|byte| is_digit(byte)).count();
+                    bytes.splice(first..last, HOSTILE[noise.below(8)].iter().copied());
+                }
+            }
+            _ => {
+                if let Some(byte) = bytes.get_mut(at) {
+                    *byte ^= 1 << noise.below(8);
+                }
+            }
+        }
+    }
+    bytes
+}
+
+/// Sound files of a reader, as `fuzz/seed` collects them, too.
+fn seeds(name: &str) -> Vec<Vec<u8>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let files = |folder: &str, ending: &str| -> Vec<Vec<u8>> {
+        let entries = fs::read_dir(root.join(folder))
+            .expect("a folder of the project")
+            .map(|entry| entry.expect("an entry").path());
+        let mut paths: Vec<_> = entries.filter(|path| path.extension().is_some_and(|found| found == ending)).collect();
+        paths.sort();
+        paths.iter().map(|path| fs::read(path).expect("a file")).collect()
+    };
+    match name {
+        "scene" => [files("scenes", "toml"), files("scenes/elements", "toml")].concat(),
+        "figure" => files("figures", "toml"),
+        "body" => files("tests/cli", "npz"),
+        "points" => vec![b"time,x,y,z\n0,0,0.1,0\n0.1,0,0.2,0\n".to_vec()],
+        "states" => vec![states()],
+        "checkpoint" => vec![checkpoint_of_scene()],
+        "state" => vec![localshape::sim::State::at_rest(vec![glam::DVec3::ONE; 3]).to_bytes()],
+        "picture" => {
+            let tags: Vec<(&'static str, String)> = vec![("version", "0.1.0".to_owned())];
+            vec![localshape::internals::encode([3, 2], &[7; 18], &tags, localshape::internals::Compression::Fast)]
+        }
+        _ => panic!("{name} has no seeds"),
+    }
+}
+
+/// `states.npz` of the scene of these tests.
+fn states() -> Vec<u8> {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("scene.toml"), SCENE).expect("a file");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_localshape"));
+    let made = command.current_dir(folder.path()).args("simulate scene.toml --states -q -o out".split(' ')).status();
+    assert!(made.expect("the program").success());
+    fs::read(folder.path().join("out/states.npz")).expect("states")
+}
+
+#[test]
+fn no_damage_ends_the_program() {
+    for reader in &READERS {
+        let (seeds, mut noise) = (seeds(reader.name), Noise(7));
+        assert!(!seeds.is_empty(), "{}", reader.name);
+        if let Some(corpus) = std::env::var_os("LOCALSHAPE_SEEDS") {
+            let path = |at: usize| Path::new(&corpus).join(reader.name).join(format!("seed-{at}"));
+            seeds.iter().enumerate().for_each(|(at, seed)| fs::write(path(at), seed).expect("a folder for the corpus"));
+        }
+        for round in 0..200 {
+            let bytes = damaged(&seeds[round % seeds.len()], &mut noise);
+            let read = || (reader.read)(&bytes);
+            if std::panic::catch_unwind(read).is_err() {
+                panic!("{}, round {round}: {:?}", reader.name, String::from_utf8_lossy(&bytes));
+            }
+        }
+    }
+}
+
+/// Nothing is allocated for numbers that are not in the file.
+#[cfg(feature = "render")]
+#[test]
+fn states_that_unfold_to_more_than_their_file_are_refused() {
+    use std::io::Write;
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("scene.toml"), SCENE).expect("a file");
+    let length = 1 << 24;
+    let text = format!("{{'descr': '|u1', 'fortran_order': False, 'shape': ({length},), }}\n");
+    let mut archive = zip::ZipWriter::new(fs::File::create(folder.path().join("packed.npz")).expect("a file"));
+    archive.start_file("localshape.npy", zip::write::SimpleFileOptions::default()).expect("a file");
+    let head = [b"\x93NUMPY\x01\x00", &(text.len() as u16).to_le_bytes()[..], text.as_bytes()].concat();
+    archive.write_all(&[head, vec![0; length]].concat()).expect("a file");
+    archive.finish().expect("a file");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_localshape"));
+    let made = command.current_dir(folder.path()).args("render scene.toml --from-states packed.npz -o out".split(' '));
+    let made = made.output().expect("the program");
+    let message = String::from_utf8_lossy(&made.stderr).into_owned();
+    assert_eq!(made.status.code(), Some(2), "{message}");
+    assert!(message.contains("packed.npz `localshape` is packed, or longer than the file"), "{message}");
+}
