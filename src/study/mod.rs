@@ -4,4 +4,5 @@
 //! on files nor on the command line nor on drawing. Clocks are here, and not in [`sim`](crate::sim).
 
 pub(crate) mod rotation;
+pub(crate) mod stress;
 pub(crate) mod work_precision;

@@ -1,6 +1,7 @@
-//! `study`: errors against computation time, measured on this machine, as tables and plots.
+//! `study`: what methods can do, measured on this machine: errors against computation time, and robustness, as tables and plots.
 
 mod rotation;
+mod stress;
 mod work_precision;
 
 use super::console::{print, print_json};
@@ -23,11 +24,12 @@ Examples:
   localshape study rotation -o rotations       the same elsewhere
   localshape study work-precision              integrators in output/study-work-precision/
   localshape study work-precision scenes/fig4b.toml  on a scene
+  localshape study stress                      what breaks which model in output/study-stress/
 
-The folder then has the results as Markdown, which is also printed, as CSV with all digits, and as plots in SVG and PNG. \
-Times are those of this machine, which should be idle otherwise.";
+The folder then has the results as Markdown, which is also printed, as CSV with all digits, and, but for stress, as plots in SVG and \
+PNG. Times are those of this machine, which should be idle otherwise.";
 
-/// Measure errors against computation time
+/// Measure errors against computation time, and robustness
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES, arg_required_else_help = false)]
 pub(super) struct Study {
@@ -39,6 +41,7 @@ pub(super) struct Study {
 #[derive(Subcommand, Debug)]
 enum Subject {
     Rotation(rotation::Rotation),
+    Stress(stress::Stress),
     WorkPrecision(work_precision::WorkPrecision),
 }
 
@@ -89,6 +92,7 @@ impl Study {
     pub(super) fn run(self) -> Result<Status, Failure> {
         match self.subject {
             Subject::Rotation(rotation) => rotation.run(),
+            Subject::Stress(stress) => stress.run(),
             Subject::WorkPrecision(work_precision) => work_precision.run(),
         }
     }
@@ -106,7 +110,7 @@ impl StudyOptions {
         let names: Vec<_> = names.iter().map(String::as_str).collect();
         SheetFiles::inspect(&folder, &names, &plan.mark, self.overwrite)?;
         #[cfg(feature = "render")]
-        let gpu = self.device.open([])?;
+        let gpu = if plan.plots.is_empty() { None } else { Some(self.device.open([])?) };
         let files = SheetFiles::begin(&folder, &names, &plan.mark, self.overwrite)?;
         let bar = self.printing.progress(plan.name, plan.work);
         let found = measure(&|more| {
@@ -123,8 +127,8 @@ impl StudyOptions {
         #[allow(unused_mut, reason = "plots need the renderer")]
         let mut contents = vec![found.markdown.clone().into_bytes(), found.csv.into_bytes()];
         #[cfg(feature = "render")]
-        for plots in &found.plots {
-            contents.extend(drawn(plots, &plan.mark, &gpu)?);
+        for (plots, gpu) in found.plots.iter().zip(gpu.iter().cycle()) {
+            contents.extend(drawn(plots, &plan.mark, gpu)?);
         }
         files.finish(&contents)?;
         if self.printing.json {
