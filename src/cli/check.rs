@@ -55,8 +55,16 @@ impl Check {
                         complain(&message);
                     }
                 }
-                Ok(_) if self.printing.quiet && !self.printing.json => {}
+                Ok(scene) if self.printing.quiet && !self.printing.json => {
+                    for message in scene.too_large_steps() {
+                        failed = failed.or(Some(Status::Difference));
+                        complain(&format!("{file}: {message}"));
+                    }
+                }
                 Ok(mut scene) => {
+                    if !scene.too_large_steps().is_empty() {
+                        failed = failed.or(Some(Status::Difference));
+                    }
                     scene.warnings.extend(cut(&scene));
                     if self.printing.json {
                         let no_room = no_room(&scene);

@@ -28,7 +28,7 @@ const BAR_HEIGHT: f64 = 7.0;
 const BAR_TICK: f64 = 9.0;
 
 /// Collects the text and the flat marks of a picture.
-pub(super) struct Writer<'a> {
+pub(crate) struct Writer<'a> {
     pub(super) palette: &'a Palette,
     pub(super) fonts: &'a Fonts,
     pub(super) scale: Scale,

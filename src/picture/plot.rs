@@ -19,6 +19,44 @@ use super::text::{Fonts, Weight};
 use super::{Colour, Curve, Mark, MarkShape, Picture};
 use crate::look::{Print, Style, Theme};
 
+/// A page of plots or maps below a title and a caption.
+pub(crate) trait Page {
+    /// The title.
+    fn title(&self) -> &str;
+
+    /// Lines below it.
+    fn caption(&self) -> &[String];
+
+    /// Width and height of the page (px).
+    fn size(&self) -> [u32; 2];
+
+    /// Draws what stands below the caption.
+    fn draw(&self, writer: &mut Writer<'_>);
+
+    /// The size in print.
+    fn print(&self) -> Print {
+        let [wide, high] = self.size().map(f64::from);
+        Print { mm: [WIDE_MM, WIDE_MM * high / wide], dpi: wide / WIDE_MM * 25.4, file: String::new(), at: (0, 0) }
+    }
+
+    /// Composes the page.
+    fn compose(&self) -> Picture {
+        let look = Style::of(Theme::Light);
+        let fonts = Fonts::new(&look.font);
+        let (palette, scale) = (look.palette, Scale::REFERENCE);
+        let (marks, curves, words) = Default::default();
+        let mut writer = Writer { palette: &palette, fonts: &fonts, scale, marks, curves, words };
+        writer.left(self.title(), Weight::SemiBold, HEADING, palette.text, MARGIN, TITLE);
+        for (at, line) in self.caption().iter().enumerate() {
+            writer.left(line, Weight::Regular, USUAL, palette.second_text, MARGIN, CAPTION + LINE * at as f64);
+        }
+        self.draw(&mut writer);
+        let Writer { marks, curves, words, .. } = writer;
+        let (ramp, panels, under) = Default::default();
+        Picture { size: self.size(), palette, fonts, ramp, panels, under, marks, curves, words }
+    }
+}
+
 /// Several plots on one page.
 pub(crate) struct Plots {
     /// The title.
@@ -57,27 +95,27 @@ pub(crate) struct PlotCurve {
 
 /// Width of the page in print (mm), and in pixels.
 const WIDE_MM: f64 = 180.0;
-const WIDE: f64 = 1280.0;
+pub(super) const WIDE: f64 = 1280.0;
 /// Room at the left and the right of the page, between plots, and for what is written at the left of a plot (px).
-const MARGIN: f64 = 40.0;
+pub(super) const MARGIN: f64 = 40.0;
 const BETWEEN: f64 = 34.0;
 const NUMBERS: f64 = 58.0;
 /// Where title and caption stand, the distance of their lines, and from there to the first plots (px).
-const TITLE: f64 = 56.0;
-const CAPTION: f64 = 84.0;
-const LINE: f64 = 21.0;
+pub(super) const TITLE: f64 = 56.0;
+pub(super) const CAPTION: f64 = 84.0;
+pub(super) const LINE: f64 = 21.0;
 const BELOW_CAPTION: f64 = 14.0;
 /// Above a plot for its name and that of its axis, its height in parts of its width, and room below it (px).
 const NAMES: f64 = 54.0;
 const SHAPE: f64 = 0.78;
 const BELOW: f64 = 62.0;
 /// Sizes of type (px).
-const HEADING: f64 = 26.0;
-const USUAL: f64 = 16.0;
-const SMALL: f64 = 14.5;
+pub(super) const HEADING: f64 = 26.0;
+pub(super) const USUAL: f64 = 16.0;
+pub(super) const SMALL: f64 = 14.5;
 /// How far the middle of small letters lies above their baseline, and how much a line takes up, in parts of the type's
 /// size.
-const MIDDLE: f64 = 0.34;
+pub(super) const MIDDLE: f64 = 0.34;
 const HIGH: f64 = 1.08;
 /// Widths of curves, of strong ones, of slopes and of hairlines, and radii of dots (px).
 const CURVE: f64 = 1.8;
@@ -98,44 +136,34 @@ const REACH: f64 = 0.8;
 /// A rectangle: left, top, right, bottom (px).
 type Area = [f64; 4];
 
-impl Plots {
-    /// Width and height of the page (px).
-    pub(crate) fn size(&self) -> [u32; 2] {
+impl Page for Plots {
+    fn title(&self) -> &str {
+        &self.title
+    }
+
+    fn caption(&self) -> &[String] {
+        &self.caption
+    }
+
+    fn size(&self) -> [u32; 2] {
         let rows = self.plots.len().div_ceil(self.columns) as f64;
         let high = self.top() + rows * (NAMES + SHAPE * self.wide() + BELOW);
         [WIDE as u32, high.round() as u32]
     }
 
-    /// The size in print.
-    pub(crate) fn print(&self) -> Print {
-        let [wide, high] = self.size().map(f64::from);
-        Print { mm: [WIDE_MM, WIDE_MM * high / wide], dpi: wide / WIDE_MM * 25.4, file: String::new(), at: (0, 0) }
-    }
-
-    /// Composes the page.
-    pub(crate) fn compose(&self) -> Picture {
-        let look = Style::of(Theme::Light);
-        let fonts = Fonts::new(&look.font);
-        let (palette, scale) = (look.palette, Scale::REFERENCE);
-        let (marks, curves, words) = Default::default();
-        let mut writer = Writer { palette: &palette, fonts: &fonts, scale, marks, curves, words };
-        writer.left(&self.title, Weight::SemiBold, HEADING, palette.text, MARGIN, TITLE);
-        for (at, line) in self.caption.iter().enumerate() {
-            writer.left(line, Weight::Regular, USUAL, palette.second_text, MARGIN, CAPTION + LINE * at as f64);
-        }
+    fn draw(&self, writer: &mut Writer<'_>) {
         let (wide, high) = (self.wide(), SHAPE * self.wide());
         for (at, plot) in self.plots.iter().enumerate() {
             let (column, row) = ((at % self.columns) as f64, (at / self.columns) as f64);
             let left = MARGIN + NUMBERS + column * (wide + BETWEEN + NUMBERS);
             let top = self.top() + NAMES + row * (NAMES + high + BELOW);
             let ranges = [0, 1].map(|axis| self.range(axis, &plot.axes[axis]));
-            Room { area: [left, top, left + wide, top + high], ranges }.draw(&mut writer, plot);
+            Room { area: [left, top, left + wide, top + high], ranges }.draw(writer, plot);
         }
-        let Writer { marks, curves, words, .. } = writer;
-        let (ramp, panels, under) = Default::default();
-        Picture { size: self.size(), palette, fonts, ramp, panels, under, marks, curves, words }
     }
+}
 
+impl Plots {
     /// Where the plots begin (px).
     fn top(&self) -> f64 {
         CAPTION + LINE * (self.caption.len() as f64 - 1.0) + BELOW_CAPTION
@@ -363,12 +391,12 @@ fn covered(area: Area, line: &[[f64; 2]]) -> f64 {
     3.0 * dots + on_way.sum::<f64>()
 }
 
-fn curve(points: &[[f64; 2]], width: f64, colour: Colour) -> Curve {
+pub(super) fn curve(points: &[[f64; 2]], width: f64, colour: Colour) -> Curve {
     let points = points.iter().map(|point| point.map(narrow)).collect();
     Curve { points, width: narrow(width), dash: Vec::new(), colour, alpha: 1.0 }
 }
 
-fn filled(rectangle: [f64; 4], colour: Colour) -> Mark {
+pub(super) fn filled(rectangle: [f64; 4], colour: Colour) -> Mark {
     Mark::upright(rectangle, MarkShape::Filled, colour)
 }
 

@@ -21,6 +21,7 @@ pub(crate) mod npz;
 pub(crate) mod reference;
 mod resolve;
 mod schema;
+mod stability;
 mod step;
 mod structure;
 mod summary;

@@ -163,7 +163,7 @@ fn kind(schema: &Value) -> String {
         (Some("boolean"), _) => "`true` or `false`".into(),
         (Some("string"), Some("colour")) => "colour".into(),
         (Some("string"), Some("colour-or-transparent")) => "colour or `\"transparent\"`".into(),
-        (Some("string"), Some("fraction-of-T")) => "fraction of T".into(),
+        (Some("string"), Some("fraction-of-T")) => "fraction of T or `\"auto\"`".into(),
         (Some("string"), _) => "string".into(),
         (Some("array"), _) => {
             let entries = match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {

@@ -1,31 +1,35 @@
-//! The notation for time steps: a fraction of the cycle T.
+//! Time steps that are typed as a text: a fraction of the cycle T, or `auto`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// A fraction of the cycle T, `"T/50"` or `"0.02 T"`. The two are kept apart because they may differ in the last bit.
+/// A step as a text: `"auto"`, or a fraction of the cycle T, `"T/50"` or `"0.02 T"`, which are kept apart because they may differ in
+/// the last bit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "String", into = "String")]
-pub(super) enum FractionOfCycle {
+pub(super) enum NamedStep {
+    /// From the predicted largest stable one.
+    Auto,
     /// T over this number.
     Divided(f64),
     /// T times this number.
     Times(f64),
 }
 
-impl FractionOfCycle {
-    /// The time step (s) for a cycle T (s).
-    pub(super) fn of(self, cycle: f64) -> f64 {
+impl NamedStep {
+    /// The time step (s) for a cycle T (s); `None` if it does not depend on that.
+    pub(super) fn of(self, cycle: f64) -> Option<f64> {
         match self {
-            Self::Divided(parts) => cycle / parts,
-            Self::Times(factor) => cycle * factor,
+            Self::Auto => None,
+            Self::Divided(parts) => Some(cycle / parts),
+            Self::Times(factor) => Some(cycle * factor),
         }
     }
 }
 
-impl FromStr for FractionOfCycle {
+impl FromStr for NamedStep {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -36,42 +40,45 @@ impl FromStr for FractionOfCycle {
             (text.starts_with(|c: char| c.is_ascii_digit() || c == '.') && value > 0.0 && value.is_finite())
                 .then_some(value)
         };
-        let read = if text == "T" {
+        let read = if text == "auto" {
+            Some(Self::Auto)
+        } else if text == "T" {
             Some(Self::Times(1.0))
         } else if let Some(parts) = text.strip_prefix('T').and_then(|rest| rest.trim_start().strip_prefix('/')) {
             number(parts).map(Self::Divided)
         } else {
             text.strip_suffix('T').and_then(number).map(Self::Times)
         };
-        read.ok_or_else(|| "expected a fraction of the cycle T such as \"T/50\" or \"0.02 T\"".into())
+        read.ok_or_else(|| "expected a fraction of the cycle T such as \"T/50\" or \"0.02 T\", \"auto\"".into())
     }
 }
 
-impl fmt::Display for FractionOfCycle {
+impl fmt::Display for NamedStep {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Auto => write!(f, "auto"),
             Self::Divided(parts) => write!(f, "T/{parts}"),
             Self::Times(factor) => write!(f, "{factor} T"),
         }
     }
 }
 
-impl TryFrom<String> for FractionOfCycle {
+impl TryFrom<String> for NamedStep {
     type Error = String;
     fn try_from(text: String) -> Result<Self, String> {
         text.parse()
     }
 }
 
-impl From<FractionOfCycle> for String {
-    fn from(fraction: FractionOfCycle) -> Self {
+impl From<NamedStep> for String {
+    fn from(fraction: NamedStep) -> Self {
         fraction.to_string()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::FractionOfCycle::{self, Divided, Times};
+    use super::NamedStep::{self, Auto, Divided, Times};
 
     #[test]
     fn fractions_are_read_in_either_order_and_with_any_spaces() {
@@ -81,16 +88,20 @@ mod tests {
             ("0.02 T", Times(0.02)),
             ("2e-2T", Times(0.02)),
             ("T", Times(1.0)),
+            ("auto", Auto),
         ] {
-            assert_eq!(text.parse::<FractionOfCycle>(), Ok(expected), "{text}");
-            assert_eq!(expected.to_string().parse::<FractionOfCycle>(), Ok(expected), "{expected}");
+            assert_eq!(text.parse::<NamedStep>(), Ok(expected), "{text}");
+            assert_eq!(expected.to_string().parse::<NamedStep>(), Ok(expected), "{expected}");
         }
     }
 
     #[test]
     fn anything_else_is_refused() {
-        for text in ["", "T/", "T/0", "T/-3", "-1 T", "0 T", "t/50", "50", "T*2", "TT", "inf T", "T/nan", "T/50 s"] {
-            assert!(text.parse::<FractionOfCycle>().is_err(), "{text}");
+        for text in [
+            "", "T/", "T/0", "T/-3", "-1 T", "0 T", "t/50", "50", "T*2", "TT", "inf T", "T/nan", "T/50 s", "Auto",
+            "auto/2",
+        ] {
+            assert!(text.parse::<NamedStep>().is_err(), "{text}");
         }
     }
 }

@@ -1,10 +1,11 @@
 //! What a scene contains, in words and numbers, as `check` prints it.
 
-use super::Scene;
+use super::{Scene, stability};
 use crate::reading::words::{count, fine, list, short};
 use crate::sim::body::{Dimension, bounds};
-use crate::sim::contact::{Motion, Obstacle, Shape};
+use crate::sim::contact::{FrictionOf, Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
+use crate::sim::stability::Stability;
 use crate::sim::words::{self, typed};
 use crate::sim::world::Kernel;
 use glam::DVec3;
@@ -72,6 +73,15 @@ pub struct RunSummary {
     pub tolerance: Option<f64>,
     /// Number of steps up to the last frame.
     pub steps: u64,
+    /// The largest stable step (s), at rest; 0 if none is stable. Absent if nothing limits the steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_step: Option<f64>,
+    /// The largest step (s) that is stable however far springs are stretched. Absent for models without springs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_stretched_step: Option<f64>,
+    /// How much each rebound adds to the energy, about, as a share. Absent unless the run is undamped and an obstacle has `e = 1`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rebound_gain: Option<f64>,
 }
 
 impl Scene {
@@ -85,14 +95,20 @@ impl Scene {
         let (low, high) = bounds(&body.rest);
         let of_kind = |(number, name): (usize, &str)| format!("{} {name}", count(number as u128));
         let last = self.last_frame();
-        let run = |(at, run): (usize, &super::Run)| RunSummary {
-            name: run.name.clone(),
-            model: run.model.describe_fully(body),
-            integrator: typed(&run.integrator),
-            kernel: run.kernel,
-            step: run.step,
-            tolerance: run.tolerance,
-            steps: self.frame_step(at, last),
+        let run = |(at, run): (usize, &super::Run)| {
+            let Stability { largest, stretched } = self.stability(at);
+            RunSummary {
+                name: run.name.clone(),
+                model: run.model.describe_fully(body),
+                integrator: typed(&run.integrator),
+                kernel: run.kernel,
+                step: run.step,
+                tolerance: run.tolerance,
+                steps: self.frame_step(at, last),
+                largest_step: largest.is_finite().then_some(largest),
+                largest_stretched_step: stretched.filter(|limit| limit.is_finite()),
+                rebound_gain: self.rebound_gain(at, largest),
+            }
         };
         SceneSummary {
             title: self.title.clone(),
@@ -178,7 +194,11 @@ fn describe(obstacle: &Obstacle, coordinates: &impl Fn(DVec3) -> Vec<f64>) -> St
         Shape::Box { centre, half, .. } => format!("box at {} m, sides {} m", vector(centre), vector(2.0 * half)),
     };
     let (e, friction) = (short(obstacle.restitution), short(obstacle.friction));
-    format!("{shape}, e = {e}, μ = {friction}{}", path(&obstacle.motion))
+    let of = match obstacle.friction_of {
+        FrictionOf::Velocity => String::new(),
+        FrictionOf::Path => format!(" of the {}", typed(&obstacle.friction_of)),
+    };
+    format!("{shape}, e = {e}, μ = {friction}{of}{}", path(&obstacle.motion))
 }
 
 /// What follows the words for something that moves.
@@ -240,6 +260,10 @@ impl fmt::Display for SceneSummary {
                 None => format!("ΔT = {step} s = T/{part}, {steps} steps"),
             };
             line("", &format!("{stepping}, {}{kernel}", run.integrator))?;
+            if run.tolerance.is_none() {
+                line("", &stability::in_words(run))?;
+                stability::rebounds_in_words(run).iter().try_for_each(|text| line("", text))?;
+            }
         }
         for obstacle in &self.obstacles {
             line("obstacle", obstacle)?;

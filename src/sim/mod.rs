@@ -25,6 +25,7 @@ pub(crate) mod motion;
 pub(crate) mod part;
 pub(crate) mod rotation;
 pub(crate) mod snapshot;
+pub(crate) mod stability;
 pub(crate) mod state;
 pub(crate) mod system;
 pub(crate) mod topology;
@@ -32,7 +33,7 @@ pub(crate) mod words;
 pub(crate) mod world;
 
 pub use body::Body;
-pub use contact::{Obstacle, Shape};
+pub use contact::{FrictionOf, Obstacle, Shape};
 pub use crew::Crew;
 pub use diagnostics::Diagnostic;
 pub use element::{Dimension, ElementKind};

@@ -157,3 +157,57 @@ fn a_scene_that_cannot_be_read() {
     std::os::unix::fs::symlink("loop.toml", place.path("loop.toml")).unwrap();
     place.run("check loop.toml").bad(4, &["loop.toml", "cannot be read"]);
 }
+
+/// The prediction is printed for each run; a step above it is reported by every command that runs the scene, and by the status of
+/// `check`.
+#[test]
+fn says_which_step_is_stable() {
+    let place = Place::with_small();
+    let document = place.run("check small.toml --json").good().json();
+    let run = &document["scenes"][0]["scene"]["runs"][1];
+    let [step, largest, stretched] =
+        ["step", "largest_step", "largest_stretched_step"].map(|key| run[key].as_f64().expect(key));
+    assert!(step < stretched && stretched < largest, "{run}");
+    let text = place.run("check small.toml").good().out;
+    assert!(text.contains("largest stable step 0.0") && text.contains(" with stretched springs\n"), "{text}");
+
+    place.write("near.toml", &SMALL.replacen("\"T/50\"", &(0.95 * largest).to_string(), 1));
+    let ran = place.run("check near.toml");
+    let told = "\"Mass-spring\" is 0.0";
+    assert!(ran.err.contains(told) && ran.err.contains(" s, 95 % of the largest that is stable at rest"), "{ran:?}");
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    assert!(place.run("simulate near.toml").err.contains("or `step = \"auto\"`"));
+
+    place.write("above.toml", &SMALL.replacen("\"T/50\"", &(1.05 * largest).to_string(), 1));
+    for command in ["check above.toml", "check small.toml above.toml --quiet", "check above.toml --json"] {
+        assert_eq!(place.run(command).status, Some(1), "{command}");
+    }
+    let ran = place.run("check above.toml --quiet");
+    assert!(
+        ran.err.starts_with("error: above.toml: the time step of \"") && ran.err.contains("would diverge"),
+        "{ran:?}"
+    );
+    place.write("wrong.toml", &SMALL.replace("mass = 1.0", "mass = 0"));
+    assert_eq!(place.run("check above.toml wrong.toml --quiet").status, Some(2));
+
+    place.write("auto.toml", &SMALL.replacen("T/50", "auto", 1));
+    let document = place.run("check auto.toml --json").good().json();
+    let runs = document["scenes"][0]["scene"]["runs"].as_array().expect("two runs");
+    let steps: Vec<_> = runs.iter().map(|run| run["step"].as_f64().expect("a step")).collect();
+    let least = runs.iter().map(|run| run["largest_step"].as_f64().expect("a limit")).fold(f64::INFINITY, f64::min);
+    assert_eq!(steps[0], steps[1]);
+    let per_frame = 1.0 / 60.0 / steps[0];
+    assert!(per_frame.fract() == 0.0 && steps[0] <= 0.5 * least && steps[0] > 0.4 * least, "{steps:?} {least}");
+}
+
+/// Undamped bodies gain energy in rebounds that take none.
+#[test]
+fn says_what_rebounds_add() {
+    let place = Place::new();
+    let undamped = SMALL.replace(", damping_ratio = 0.1", "");
+    place.write("plain.toml", &undamped);
+    place.write("elastic.toml", &undamped.replace("restitution = 0.5", "restitution = 1"));
+    assert!(!place.run("check plain.toml").good().out.contains("each rebound"));
+    let text = place.run("check elastic.toml").good().out;
+    assert_eq!(text.matches("undamped, e = 1: each rebound adds about 0.").count(), 2, "{text}");
+}

@@ -17,6 +17,7 @@ mod parts;
 #[cfg(feature = "render")]
 mod render;
 mod simulate;
+mod study;
 mod support;
 mod table;
 mod usage;

@@ -28,6 +28,7 @@ fn help_and_version_are_results() {
         "table",
         "study",
         "study rotation",
+        "study stability",
         "study stress",
         "study work-precision",
         "info",

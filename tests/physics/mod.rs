@@ -19,6 +19,7 @@ mod readings;
 mod rest;
 mod restore;
 mod runaway;
+mod stability;
 mod state;
 mod stress;
 mod support;

@@ -41,7 +41,14 @@ fn a_body_may_fall_for_long() {
 #[test]
 fn a_body_may_be_hit_by_a_fast_plate() {
     let shape = Shape::Plate { point: DVec3::X * -0.5, normal: DVec3::X };
-    let plate = Obstacle { shape, motion: path(), pivot: DVec3::ZERO, restitution: 0.5, friction: 0.0 };
+    let plate = Obstacle {
+        shape,
+        motion: path(),
+        pivot: DVec3::ZERO,
+        restitution: 0.5,
+        friction: 0.0,
+        friction_of: Default::default(),
+    };
     assert!(fastest(Surroundings { obstacles: vec![plate], ..Surroundings::default() }, 0.108) > 250.0);
 }
 

@@ -51,7 +51,14 @@ pub(crate) fn mass_spring(body: &Body, stiffness: f64, damping: f64, named: Spri
 
 pub(crate) fn floor(restitution: f64, friction: f64) -> Obstacle {
     let shape = Shape::Floor { normal: DVec3::Y, height: 0.0 };
-    Obstacle { shape, motion: Motion::Still, pivot: DVec3::ZERO, restitution, friction }
+    Obstacle {
+        shape,
+        motion: Motion::Still,
+        pivot: DVec3::ZERO,
+        restitution,
+        friction,
+        friction_of: Default::default(),
+    }
 }
 
 /// A world without gravity and obstacles.

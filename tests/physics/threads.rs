@@ -28,6 +28,7 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
         motion: Motion::Swing { period: 0.05, phase: 0.0, amplitude },
         restitution: 0.3,
         friction: 0.5,
+        friction_of: Default::default(),
     };
     let around = Surroundings {
         gravity: DVec3::new(0.0, -9.8, 0.0),

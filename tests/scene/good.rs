@@ -47,7 +47,9 @@ fn shipped_scenes_have_no_warnings() {
         for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
             if path.extension().is_some_and(|ending| ending == "toml") {
                 let warnings = Scene::load(&path, &Limits::default()).unwrap().warnings;
-                assert_eq!(warnings, [], "{}", path.display());
+                // One scene diverges because it is meant to.
+                let expected = usize::from(path.ends_with("diverged.toml"));
+                assert_eq!(warnings.len(), expected, "{}: {warnings:?}", path.display());
                 read += 1;
             }
         }
@@ -297,8 +299,10 @@ fn a_summary_says_what_a_scene_holds() {
   cycle     T = 0.06283 s
   run       Local shape: 27 cubes, k = 10 kN/m, ζ = 0.1, rotation arctangent with 2 passes, damping of relative-motion
             ΔT = 0.001257 s = T/50, 2 387 steps, semi-implicit-euler
+            largest stable step 0.005472 s (23 % used)
   run       Mass-spring: 306 springs, k = 10 kN/m, ζ = 0.1
             ΔT = 0.001257 s = T/50, 2 387 steps, semi-implicit-euler
+            largest stable step 0.00478 s (26.3 % used), 0.002842 s (44.2 % used) with stretched springs
   obstacle  floor at 0 m along (0, 1, 0), e = 0.5, μ = 0.3
   picture   1280 × 840 px, light, 2 panels, seen from 31° right and 17° up, following the body
   digest    {}",

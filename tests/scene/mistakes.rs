@@ -341,6 +341,14 @@ fn keys_that_exclude_or_need_each_other() {
         &format!("{}\nstep = 'T/50'", method("dormand-prince")),
         &[(5, 8, "\"dormand-prince\" finds its own steps give `tolerance` in place of `step`")],
     );
+    for (method, words) in [
+        ("explicit-euler", "`step = \"auto\"`: \"explicit-euler\" has no stable step without damping give a step"),
+        ("backward-euler", "\"backward-euler\" is stable with any step give a step"),
+        ("dormand-prince", "\"dormand-prince\" finds its own steps"),
+    ] {
+        let text = format!("duration = 3\nstep = 'auto'\nintegrator = '{method}'");
+        case(SPACE, "duration = 3", &text, &[(4, 8, words)]);
+    }
     let passes = SPACE.replace("1e4 }", "1e4, passes = 2 }");
     case(
         &passes,

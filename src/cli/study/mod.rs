@@ -1,18 +1,21 @@
-//! `study`: what methods can do, measured on this machine: errors against computation time, and robustness, as tables and plots.
+//! `study`: what methods can do, as tables and plots: errors against computation time on this machine, limits of stability, robustness.
 
 mod rotation;
+mod stability;
 mod stress;
 mod work_precision;
 
 use super::console::{print, print_json};
-use super::failure::{Failure, Status};
+use super::failure::{Failure, Status, complain};
 #[cfg(feature = "render")]
 use super::options::DeviceOptions;
 use super::options::PrintOptions;
+use super::scenes::status_of;
 use super::{interrupt, record};
 use crate::output::SheetFiles;
 #[cfg(feature = "render")]
-use crate::picture::Plots;
+use crate::picture::Page;
+use crate::scene::{Limits, Scene};
 use crate::table::Watch;
 use clap::{Args, Subcommand, ValueHint};
 use serde_json::{Value, json};
@@ -24,12 +27,13 @@ Examples:
   localshape study rotation -o rotations       the same elsewhere
   localshape study work-precision              integrators in output/study-work-precision/
   localshape study work-precision scenes/fig4b.toml  on a scene
+  localshape study stability                   the largest stable steps in output/study-stability/
   localshape study stress                      what breaks which model in output/study-stress/
 
 The folder then has the results as Markdown, which is also printed, as CSV with all digits, and, but for stress, as plots in SVG and \
 PNG. Times are those of this machine, which should be idle otherwise.";
 
-/// Measure errors against computation time, and robustness
+/// Measure errors against computation time, limits of stability and robustness
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES, arg_required_else_help = false)]
 pub(super) struct Study {
@@ -41,6 +45,7 @@ pub(super) struct Study {
 #[derive(Subcommand, Debug)]
 enum Subject {
     Rotation(rotation::Rotation),
+    Stability(stability::Stability),
     Stress(stress::Stress),
     WorkPrecision(work_precision::WorkPrecision),
 }
@@ -64,6 +69,21 @@ struct StudyOptions {
     printing: PrintOptions,
 }
 
+/// Options of studies of a scene.
+#[derive(Args, Debug)]
+struct OfScene {
+    /// The scene [default: built-in ones]
+    #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
+    scene: Option<PathBuf>,
+
+    /// Measure more, which takes ten times as long or longer
+    #[arg(long)]
+    full: bool,
+
+    #[command(flatten)]
+    options: StudyOptions,
+}
+
 /// A study to be made.
 struct Plan<'a> {
     /// Its name, which its folder and its files have.
@@ -84,7 +104,7 @@ struct Findings {
     csv: String,
     /// The plots, as many as the plan has.
     #[cfg(feature = "render")]
-    plots: Vec<Plots>,
+    plots: Vec<Box<dyn Page>>,
     json: Value,
 }
 
@@ -92,17 +112,47 @@ impl Study {
     pub(super) fn run(self) -> Result<Status, Failure> {
         match self.subject {
             Subject::Rotation(rotation) => rotation.run(),
+            Subject::Stability(stability) => stability.run(),
             Subject::Stress(stress) => stress.run(),
             Subject::WorkPrecision(work_precision) => work_precision.run(),
         }
     }
 }
 
+impl OfScene {
+    /// The command that repeats the study.
+    fn mark(&self, name: &str) -> String {
+        let scene = self.scene.as_ref().map_or_else(String::new, |path| format!(" {}", path.display()));
+        format!("localshape study {name}{scene}{}", if self.full { " --full" } else { "" })
+    }
+
+    /// The scene, if one is given.
+    fn subject(&self) -> Result<Option<Scene>, Failure> {
+        let Some(path) = &self.scene else { return Ok(None) };
+        let scene = Scene::load(path, &Limits::default()).map_err(|error| {
+            complain(&error.to_string());
+            Failure::silent(status_of(&error))
+        })?;
+        if scene.duration == 0.0 {
+            return Err(Failure::usage(format!(
+                "{}: `time.duration` is 0: nothing moves, and there is nothing to measure; make it longer",
+                path.display()
+            )));
+        }
+        Ok(Some(scene))
+    }
+}
+
 impl StudyOptions {
+    /// The output folder.
+    fn folder(&self, plan: &Plan<'_>) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| Path::new("output").join(format!("study-{}", plan.name)))
+    }
+
     /// Makes a study; `measure` returns `None` if its argument says that the user wants to stop.
     fn run(&self, plan: &Plan<'_>, measure: impl FnOnce(&Watch<'_>) -> Option<Findings>) -> Result<Status, Failure> {
         interrupt::listen();
-        let folder = self.out.clone().unwrap_or_else(|| Path::new("output").join(format!("study-{}", plan.name)));
+        let folder = self.folder(plan);
         let mut names: Vec<_> = ["md", "csv"].map(|ending| format!("{}.{ending}", plan.name)).into();
         if cfg!(feature = "render") {
             names.extend(plan.plots.iter().flat_map(|plot| ["svg", "png"].map(|ending| format!("{plot}.{ending}"))));
@@ -128,7 +178,7 @@ impl StudyOptions {
         let mut contents = vec![found.markdown.clone().into_bytes(), found.csv.into_bytes()];
         #[cfg(feature = "render")]
         for (plots, gpu) in found.plots.iter().zip(gpu.iter().cycle()) {
-            contents.extend(drawn(plots, &plan.mark, gpu)?);
+            contents.extend(drawn(&**plots, &plan.mark, gpu)?);
         }
         files.finish(&contents)?;
         if self.printing.json {
@@ -144,12 +194,12 @@ impl StudyOptions {
 
 /// Plots as SVG and as PNG.
 #[cfg(feature = "render")]
-fn drawn(plots: &Plots, mark: &str, gpu: &crate::gpu::Gpu) -> Result<[Vec<u8>; 2], Failure> {
+fn drawn(plots: &dyn Page, mark: &str, gpu: &crate::gpu::Gpu) -> Result<[Vec<u8>; 2], Failure> {
     use super::still::{Format, Still};
     let (pictures, print) = ([plots.compose()], plots.print());
     let comment = format!("{}{}", super::film::MARK, env!("CARGO_PKG_VERSION"));
     let tags = [("comment", comment), ("study", mark.to_owned())];
-    let still = Still { pictures: &pictures, print: Some(&print), source: mark, title: &plots.title, tags: &tags };
+    let still = Still { pictures: &pictures, print: Some(&print), source: mark, title: plots.title(), tags: &tags };
     let svg = still.draw(Format::Vector(crate::vector::Format::Svg), None)?.file();
     Ok([svg, still.draw(Format::Png, Some(gpu))?.file()])
 }

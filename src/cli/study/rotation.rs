@@ -26,7 +26,7 @@ impl Rotation {
                 markdown: results.markdown(&mark, &machine),
                 csv: results.csv(),
                 #[cfg(feature = "render")]
-                plots: vec![plots(&results, &machine)],
+                plots: vec![Box::new(plots(&results, &machine))],
                 json: results.json(&machine),
             })
         })

@@ -1,12 +1,11 @@
 //! `study work-precision`: the integrators.
 
-use super::{Findings, Plan, StudyOptions, machine};
+use super::{Findings, OfScene, Plan, machine};
 use crate::cli::failure::{Failure, Status};
 use crate::cli::record;
-use crate::cli::scenes::{runs_of, status_of};
+use crate::cli::scenes::runs_of;
 #[cfg(feature = "render")]
-use crate::picture::{Plot, PlotCurve, Plots};
-use crate::scene::{Limits, Scene};
+use crate::picture::{Page, Plot, PlotCurve, Plots};
 #[cfg(feature = "render")]
 use crate::sim::integrate::Integrator;
 #[cfg(feature = "render")]
@@ -16,40 +15,25 @@ use crate::study::rotation::method::family as family_of_rotation;
 #[cfg(feature = "render")]
 use crate::study::work_precision::{Measured, Results, Study};
 use crate::study::work_precision::{Protocol, Subject, measure, usual};
-use clap::{Args, ValueHint};
-use std::path::PathBuf;
+use clap::Args;
 
 /// The integrators: error of the positions against evaluations of the forces and time
 #[derive(Args, Debug)]
 pub(super) struct WorkPrecision {
-    /// The scene [default: a free lattice, a drop onto a floor and a disc in the plane]
-    #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
-    scene: Option<PathBuf>,
-
     /// Only this run of the scene; can be repeated [default: all]
     #[arg(long, value_name = "RUN", requires = "scene")]
     only: Vec<String>,
 
-    /// Measure smaller steps and more turns, which takes ten times as long
-    #[arg(long)]
-    full: bool,
-
     #[command(flatten)]
-    options: StudyOptions,
+    of: OfScene,
 }
 
 impl WorkPrecision {
     pub(super) fn run(self) -> Result<Status, Failure> {
-        let protocol = if self.full { Protocol::FULL } else { Protocol::USUAL };
+        let protocol = if self.of.full { Protocol::FULL } else { Protocol::USUAL };
         let subjects = self.subjects()?;
-        let mut mark = "localshape study work-precision".to_owned();
-        if let Some(path) = &self.scene {
-            mark += &format!(" {}", path.display());
-        }
+        let mut mark = self.of.mark("work-precision");
         self.only.iter().for_each(|run| mark += &format!(" --only \"{run}\""));
-        if self.full {
-            mark += " --full";
-        }
         let all = ["work-precision", "work-precision-rotations"];
         let has_solvers = subjects.iter().any(Subject::has_solvers);
         let plan = Plan {
@@ -59,7 +43,7 @@ impl WorkPrecision {
             work: protocol.work(&subjects),
         };
         let pool = record::pool(1)?;
-        self.options.run(&plan, |watch| {
+        self.of.options.run(&plan, |watch| {
             let results = pool.install(|| measure(protocol, &subjects, watch))?;
             let machine = machine();
             Some(Findings {
@@ -69,6 +53,7 @@ impl WorkPrecision {
                 plots: [Some(plots(&results, &machine)), has_solvers.then(|| rotations(&results, &machine))]
                     .into_iter()
                     .flatten()
+                    .map(|page| Box::new(page) as Box<dyn Page>)
                     .collect(),
                 json: results.json(&machine),
             })
@@ -76,17 +61,7 @@ impl WorkPrecision {
     }
 
     fn subjects(&self) -> Result<Vec<Subject>, Failure> {
-        let Some(path) = &self.scene else { return Ok(usual()) };
-        let scene = Scene::load(path, &Limits::default()).map_err(|error| {
-            crate::cli::failure::complain(&error.to_string());
-            Failure::silent(status_of(&error))
-        })?;
-        if scene.duration == 0.0 {
-            return Err(Failure::usage(format!(
-                "{}: `time.duration` is 0: nothing moves, and there is nothing to measure; make it longer",
-                path.display()
-            )));
-        }
+        let Some(scene) = self.of.subject()? else { return Ok(usual()) };
         let runs = runs_of(&self.only, &scene)?;
         let subject = |run: usize| {
             let name = match scene.runs.len() {

@@ -76,6 +76,7 @@ mod tests {
             pivot: DVec3::Y,
             restitution: 0.0,
             friction: 0.0,
+            friction_of: Default::default(),
         };
         let (normal, height) = half_space(&plate, 0.0).unwrap();
         assert!(normal.distance(DVec3::X) < 1e-12 && height.abs() < 1e-12, "{normal} {height}");

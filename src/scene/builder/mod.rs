@@ -12,7 +12,7 @@ use super::file::{
     Coordinates, GrabFile, HoldFile, MotionPath, NodesFile, RegionFile, RunFile, SceneFile, StepFile, TimeFile,
 };
 use super::resolve::Unwritten;
-use super::step::FractionOfCycle;
+use super::step::NamedStep;
 use super::{Limits, Scene};
 use crate::look::file::{ColourFile, ViewFile};
 use crate::look::print::SizeFile;
@@ -107,7 +107,7 @@ impl SceneBuilder {
 
     /// So many steps in the shortest period T = 2π√(m/k) of all runs, instead of 50, for runs without a step of their own.
     pub fn steps_per_cycle(mut self, steps: f64) -> Self {
-        self.0.time.step = Some(StepFile::Cycles(FractionOfCycle::Divided(steps)));
+        self.0.time.step = Some(StepFile::Named(NamedStep::Divided(steps)));
         self
     }
 
@@ -286,7 +286,7 @@ impl RunBuilder {
 
     /// So many steps of this run in the shortest period T = 2π√(m/k) of all runs.
     pub fn steps_per_cycle(mut self, steps: f64) -> Self {
-        self.0.step = Some(StepFile::Cycles(FractionOfCycle::Divided(steps)));
+        self.0.step = Some(StepFile::Named(NamedStep::Divided(steps)));
         self
     }
 

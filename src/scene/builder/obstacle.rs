@@ -1,6 +1,7 @@
 //! Obstacles and motions made in code.
 
 use crate::scene::file::{Coordinates, KeyFile, MotionPath, ObstacleFile, Rotation, ShapeFile, Swing};
+use crate::sim::contact::FrictionOf;
 use crate::sim::motion::Ease;
 
 /// Makes something rigid that nodes bounce off. It stays where it is unless a path or a swing moves it.
@@ -11,7 +12,7 @@ pub struct ObstacleBuilder(pub(super) ObstacleFile);
 impl ObstacleBuilder {
     fn new(shape: ShapeFile) -> Self {
         let (about, path, swing) = (None, None, None);
-        Self(ObstacleFile { shape, restitution: 0.0, friction: 0.0, about, path, swing })
+        Self(ObstacleFile { shape, restitution: 0.0, friction: 0.0, friction_of: None, about, path, swing })
     }
 
     /// A level floor at a height (m).
@@ -58,6 +59,12 @@ impl ObstacleBuilder {
     /// Friction coefficient μ.
     pub fn friction(mut self, coefficient: f64) -> Self {
         self.0.friction = coefficient;
+        self
+    }
+
+    /// What friction acts on.
+    pub fn friction_of(mut self, what: FrictionOf) -> Self {
+        self.0.friction_of = Some(what);
         self
     }
 

@@ -14,7 +14,7 @@ pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, Region
 pub use motion::{MotionPath, Swing};
 pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};
 
-use super::step::FractionOfCycle;
+use super::step::NamedStep;
 use crate::look::file::ViewFile;
 use crate::look::typed::TypedColour;
 pub use crate::reading::coordinates::Coordinates;
@@ -67,8 +67,10 @@ pub(in crate::scene) struct TimeFile {
     /// Simulated time (s); 0 shows only the start.
     #[schemars(range(min = 0.0))]
     pub(in crate::scene) duration: f64,
-    /// Time step ΔT: seconds, or a fraction of the cycle T such as `"T/50"` or `"0.02 T"`. T = 2π√(m/k), with the mass of
-    /// the lightest node and the largest stiffness of all runs, so that one step suits every run.
+    /// Time step ΔT: seconds, a fraction of the cycle T such as `"T/50"` or `"0.02 T"`, or `"auto"`. T = 2π√(m/k), with the mass of
+    /// the lightest node and the largest stiffness of all runs, so that one step suits every run. `"auto"` is at most half of the
+    /// largest step that is predicted to be stable for every run without a step of its own, and divides the time between two frames
+    /// into equal steps. `localshape check` prints that prediction.
     #[schemars(extend("default" = "T/50"))]
     pub(in crate::scene) step: Option<StepFile>,
     /// In place of `step`, for `integrator = "dormand-prince"`: the error allowed in each of its steps, as a share of the size of
@@ -95,13 +97,13 @@ fn sixty() -> f64 {
 pub(in crate::scene) enum StepFile {
     /// A time step in seconds, or a fraction of the cycle T such as `"T/50"`.
     Seconds(#[schemars(extend("exclusiveMinimum" = 0))] f64),
-    /// A fraction of the cycle T.
-    Cycles(#[schemars(extend("format" = "fraction-of-T"))] FractionOfCycle),
+    /// A fraction of the cycle T, or `auto`.
+    Named(#[schemars(extend("format" = "fraction-of-T"))] NamedStep),
 }
 
 impl StepFile {
     /// The step of a scene that gives none.
-    pub(in crate::scene) const DEFAULT: Self = Self::Cycles(FractionOfCycle::Divided(50.0));
+    pub(in crate::scene) const DEFAULT: Self = Self::Named(NamedStep::Divided(50.0));
 }
 
 /// One run: a model on the scene's body.
@@ -113,7 +115,7 @@ pub(in crate::scene) struct RunFile {
     pub(in crate::scene) name: String,
     /// The elastic model and its parameters.
     pub(in crate::scene) model: ModelParameters,
-    /// Time step of this run, with the same T as in `[time]`. Default: that of `[time]`.
+    /// Time step of this run, with the same T as in `[time]`; `"auto"` is from its own prediction. Default: that of `[time]`.
     pub(in crate::scene) step: Option<StepFile>,
     /// Tolerance of this run, in place of `step`. Default: that of `[time]`.
     #[schemars(range(min = 1e-11, max = 0.1))]

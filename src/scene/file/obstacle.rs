@@ -1,6 +1,7 @@
 //! Obstacles as typed.
 
 use super::{Coordinates, MotionPath, Rotation, Swing};
+use crate::sim::contact::FrictionOf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -18,6 +19,9 @@ pub(in crate::scene) struct ObstacleFile {
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub(in crate::scene) friction: f64,
+    /// What friction acts on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(in crate::scene) friction_of: Option<FrictionOf>,
     /// The point about which `path` and `swing` rotate (m): a sphere swings like a pendulum about a point above it. Default:
     /// as said for this kind.
     pub(in crate::scene) about: Option<Coordinates>,

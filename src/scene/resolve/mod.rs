@@ -221,6 +221,7 @@ pub(super) fn resolve(
     };
     scene.place_runs();
     warn_of_time(&scene, report);
+    warn_of_steps(&scene, report);
     Some(scene)
 }
 
@@ -237,7 +238,7 @@ fn physics(parts: &Parts, beside: Option<Lists>, limits: &Limits, report: &mut R
     if let Some(time) = parts.time.as_ref().filter(|_| !parts.flawed.contains("time")) {
         check_frames(time, report);
     }
-    let runs = runs::resolve(&parts.runs, parts.time.as_ref(), body.as_ref(), report);
+    let runs = runs::resolve(&parts.runs, parts.time.as_ref(), body.as_ref(), grips.as_deref(), report);
     Physics { gravity, body, obstacles, grips, runs }
 }
 
@@ -296,6 +297,17 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
         );
         let help = "make `duration` shorter, `step` larger or the body smaller, unless you can wait".to_owned();
         report.warn(&[Way::Key("time"), Way::Key("duration")], message, help);
+    }
+}
+
+/// Warns of steps that are nearly as large as the largest stable one, or larger.
+fn warn_of_steps(scene: &Scene, report: &mut Report<'_>) {
+    for run in 0..scene.runs.len() {
+        if let Some((_, [message, help])) = scene.near_limit(run) {
+            let own = [Way::Key("run"), Way::Index(run), Way::Key("step")];
+            let path = if report.is_typed(&own) { &own[..] } else { &[Way::Key("time"), Way::Key("step")] };
+            report.warn(path, message, help);
+        }
     }
 }
 

@@ -46,7 +46,14 @@ fn one(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &mu
         Some(typed) => typed?,
         None => shape.middle(),
     };
-    Some(Obstacle { shape, motion, pivot, restitution: typed.restitution, friction: typed.friction })
+    Some(Obstacle {
+        shape,
+        motion,
+        pivot,
+        restitution: typed.restitution,
+        friction: typed.friction,
+        friction_of: typed.friction_of.unwrap_or_default(),
+    })
 }
 
 fn shape(typed: &ShapeFile, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Shape> {

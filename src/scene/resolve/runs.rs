@@ -5,8 +5,11 @@ use crate::reading::report::{Report, Way};
 use crate::reading::words;
 use crate::scene::Run;
 use crate::scene::file::{RunFile, StepFile, TimeFile};
+use crate::scene::step::NamedStep;
+use crate::sim::grip::Grip;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
+use crate::sim::stability::Stability;
 use crate::sim::world::Kernel;
 use std::sync::Arc;
 
@@ -18,6 +21,7 @@ pub(super) fn resolve(
     typed: &[Option<RunFile>],
     time: Option<&TimeFile>,
     body: Option<&ResolvedBody>,
+    grips: Option<&[Grip]>,
     report: &mut Report<'_>,
 ) -> Option<Vec<Run>> {
     check_names(typed, report);
@@ -35,6 +39,7 @@ pub(super) fn resolve(
     // Without one of the models T would differ, and steps would be reported wrongly.
     let models: Vec<Arc<dyn ElasticModel>> = models.into_iter().collect::<Option<_>>()?;
     let cycle = models.iter().map(|model| model.shortest_period(&body.body)).reduce(f64::min)?;
+    let limits = limits(typed, time?, body, &models, grips.unwrap_or_default());
     let mut runs = Vec::with_capacity(models.len());
     for (at, (run, model)) in typed.iter().zip(models).enumerate() {
         let (run, time) = (run.as_ref()?, time?);
@@ -50,7 +55,21 @@ pub(super) fn resolve(
         };
         let typed = run.tolerance.or(time.tolerance);
         let tolerance = integrator.is_adaptive().then(|| typed.unwrap_or(Integrator::TOLERANCE));
-        let step = if tolerance.is_some() { 1.0 / time.frames_per_second } else { seconds(step, cycle) };
+        let step = match step {
+            _ if tolerance.is_some() => 1.0 / time.frames_per_second,
+            StepFile::Seconds(seconds) => *seconds,
+            StepFile::Named(named) => match named.of(cycle) {
+                Some(step) => step,
+                None => match automatic(limits[at], time) {
+                    Some(step) => step,
+                    None => {
+                        let (message, help) = no_limit(run, integrator, limits[at]);
+                        report.at(path, message, help);
+                        return None;
+                    }
+                },
+            },
+        };
         if !(step.is_normal() && step > 0.0 && time.duration / step <= MOST_STEPS) {
             let message =
                 format!("the time step comes out as {step:e} s with T = {cycle:.4e} s, which cannot be counted");
@@ -118,10 +137,53 @@ fn misplaced(
     is_typed.then(|| (path, message, "give `step`, or `integrator = \"dormand-prince\"`".into()))
 }
 
-fn seconds(step: &StepFile, cycle: f64) -> f64 {
-    match step {
-        StepFile::Seconds(seconds) => *seconds,
-        StepFile::Cycles(fraction) => fraction.of(cycle),
+/// The largest stable step (s) of each run with `step = "auto"`: its own, or the least of all that take the scene's.
+fn limits(
+    typed: &[Option<RunFile>],
+    time: &TimeFile,
+    body: &ResolvedBody,
+    models: &[Arc<dyn ElasticModel>],
+    grips: &[Grip],
+) -> Vec<f64> {
+    let is_auto = |step: &Option<StepFile>| matches!(step, Some(StepFile::Named(NamedStep::Auto)));
+    let takes_scenes = |run: &RunFile| run.step.is_none() && is_auto(&time.step);
+    let shared = std::cell::OnceCell::new();
+    let limit = |(run, model): (&Option<RunFile>, &Arc<dyn ElasticModel>)| {
+        let Some(run) = run.as_ref().filter(|run| is_auto(&run.step) || takes_scenes(run)) else {
+            return f64::INFINITY;
+        };
+        let body = shared.get_or_init(|| Arc::new(body.body.clone()));
+        let integrator = run.integrator.unwrap_or(time.integrator);
+        Stability::of(body, model.as_ref(), integrator, grips, time.duration).largest
+    };
+    let mut limits: Vec<f64> = typed.iter().zip(models).map(limit).collect();
+    let takers: Vec<_> = (0..limits.len()).filter(|&at| typed[at].as_ref().is_some_and(takes_scenes)).collect();
+    let least = takers.iter().map(|&at| limits[at]).fold(f64::INFINITY, f64::min);
+    takers.into_iter().for_each(|at| limits[at] = least);
+    limits
+}
+
+/// The longest step (s) of which a whole number fills the time between two frames, and which is at most the share of the largest
+/// stable one (s) that is documented; `None` if there is none.
+fn automatic(limit: f64, time: &TimeFile) -> Option<f64> {
+    let frame = 1.0 / time.frames_per_second;
+    // In a scene without a second frame steps fill its duration.
+    let frame = if time.duration > 0.0 { frame.min(time.duration) } else { frame };
+    (limit > 0.0 && limit.is_finite()).then(|| frame / (frame / (Stability::SHARE * limit)).ceil())
+}
+
+/// Why there is no `step = "auto"`, and what to do.
+fn no_limit(run: &RunFile, integrator: Integrator, limit: f64) -> (String, String) {
+    let (name, method) = (words::quoted(&run.name), words::quoted(&crate::sim::words::typed(&integrator)));
+    match limit > 0.0 {
+        true => (
+            format!("`step = \"auto\"`: for {name} {method} is stable with any step"),
+            "give a step that resolves the motion wanted".into(),
+        ),
+        false => (
+            format!("`step = \"auto\"`: {method} has no stable step without damping"),
+            "give a step, or take another integrator".into(),
+        ),
     }
 }
 

@@ -7,7 +7,7 @@ pub(super) mod expect;
 mod keys;
 
 use super::schema::{choices, variants};
-use super::step::FractionOfCycle;
+use super::step::NamedStep;
 use crate::look::typed::{BackgroundFile, TypedColour};
 use crate::reading::report::{Report, Way, written};
 use crate::reading::words::{self, list, nearest, quoted};
@@ -165,7 +165,7 @@ impl<'p> Walk<'_, '_, 'p> {
                 );
             }
         } else if schema["format"] == "fraction-of-T" {
-            if let Err(expected) = text.parse::<FractionOfCycle>() {
+            if let Err(expected) = text.parse::<NamedStep>() {
                 let message = format!("`{}` is {}; {expected}, or seconds as a number", self.here(), quoted(text));
                 self.mistake(span, message, None);
             }

@@ -13,6 +13,8 @@ use super::motion::Interval;
 use super::part::Part;
 use super::state::Nodes;
 use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// A rigid obstacle off which nodes bounce.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +29,21 @@ pub struct Obstacle {
     pub restitution: f64,
     /// Friction coefficient `μ`, 0 or more.
     pub friction: f64,
+    /// What friction acts on.
+    pub friction_of: FrictionOf,
+}
+
+/// What friction acts on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FrictionOf {
+    /// The velocity after the step, as in the paper. What a node moved in the step remains: a body that rests on a slope creeps
+    /// down with any friction. The default.
+    #[default]
+    Velocity,
+    /// The way since the node touched the obstacle, too, by the same factor as the velocity. A body at rest does not creep, with a
+    /// restitution up to 0.3, and with velocity Verlet up to 0.8; above, less than with `velocity`.
+    Path,
 }
 
 /// The treatment of contact at the end of each step.
@@ -110,7 +127,7 @@ impl Obstacle {
             before: self.pose((time - step).max(0.0)),
             step,
         });
-        Placed { obstacle: self, moving }
+        Placed { obstacle: self, moving, step }
     }
 }
 
@@ -119,6 +136,8 @@ impl Obstacle {
 pub(crate) struct Placed<'a> {
     obstacle: &'a Obstacle,
     moving: Option<Moving>,
+    /// The step (s).
+    step: f64,
 }
 
 /// The motion of an obstacle in a step.
@@ -174,11 +193,11 @@ impl Placed<'_> {
         }
     }
 
-    /// This obstacle as a [`Floor`], if it is one and does not move.
+    /// This obstacle as a [`Floor`], if it is one, does not move, and acts on velocities only.
     pub(super) fn still_floor(&self) -> Option<Floor> {
-        let &Obstacle { ref shape, restitution, friction, .. } = self.obstacle;
+        let &Obstacle { ref shape, restitution, friction, friction_of, .. } = self.obstacle;
         match *shape {
-            Shape::Floor { normal, height } if self.moving.is_none() => {
+            Shape::Floor { normal, height } if self.moving.is_none() && friction_of == FrictionOf::Velocity => {
                 Some(Floor { normal, height, restitution, friction })
             }
             _ => None,
@@ -196,7 +215,7 @@ impl Placed<'_> {
                 let depth = height - normal.dot(*position);
                 if depth > -shape.round_off(position.abs().max_element()) {
                     let contact = Contact { depth, normal };
-                    self.obstacle.push_out(contact, DVec3::ZERO, acceleration(node), position, velocity);
+                    self.push_out(contact, DVec3::ZERO, acceleration(node), position, velocity);
                 }
             }),
             _ => nodes.for_each(|(node, (position, velocity))| self.rebound(position, velocity, acceleration(node))),
@@ -208,17 +227,16 @@ impl Placed<'_> {
     /// approaches.
     pub(crate) fn rebound(&self, position: &mut DVec3, velocity: &mut DVec3, acceleration: DVec3) {
         if let Some((contact, own)) = self.surface(*position) {
-            self.obstacle.push_out(contact, own, acceleration, position, velocity);
+            self.push_out(contact, own, acceleration, position, velocity);
         }
     }
-}
 
-impl Obstacle {
     /// The rebound of a node inside.
     ///
     /// A node at depth `d` is moved to height `e d`. Only if it is approaching, its normal velocity `v_n` becomes `−e
     /// v_n`. Friction is proportional to that change: it reduces the tangential velocity by at most `μ |Δv_n|` and
-    /// never reverses it. All velocities are relative to that of the obstacle (m/s).
+    /// never reverses it; with [`FrictionOf::Path`] also the way along the surface since the node touched it. All velocities are
+    /// relative to that of the obstacle (m/s).
     fn push_out(
         &self,
         Contact { depth, normal }: Contact,
@@ -227,21 +245,37 @@ impl Obstacle {
         position: &mut DVec3,
         velocity: &mut DVec3,
     ) {
-        let Self { restitution, friction, .. } = *self;
+        let &Obstacle { restitution, friction, friction_of, .. } = self.obstacle;
         let relative = *velocity - own;
         let approach = -normal.dot(relative);
         if approach > 0.0 {
-            let Bounce { height, speed } = Bounce::new(restitution, depth, approach, -normal.dot(acceleration));
+            let pressing = -normal.dot(acceleration);
+            let Bounce { height, speed } = Bounce::new(restitution, depth, approach, pressing);
             *position += normal * (depth + height);
             let change = approach + speed;
             let slip = relative + normal * approach;
             let slip_speed = slip.length();
             let kept = if slip_speed > 0.0 { (1.0 - friction * change / slip_speed).max(0.0) } else { 0.0 };
             *velocity = slip * kept + normal * speed + own;
+            if friction_of == FrictionOf::Path {
+                let time = touching(restitution, depth, approach, pressing).min(self.step);
+                let along = acceleration + normal * pressing;
+                *position -= (slip * time - along * (0.5 * time * time)) * (1.0 - kept);
+            }
         } else if depth > 0.0 {
             *position += normal * (depth * (1.0 + restitution));
         }
     }
+}
+
+/// How long a node has touched an obstacle (s), for [`FrictionOf::Path`]; the arguments are those of [`Bounce::new`].
+///
+/// It is counted from the height `e d` to which the node rebounds: `(1 + e) d/v`, or with an acceleration, which it has had since it
+/// met the surface with the speed `√(v² − 2 a d)`, `(1 + e)` times `2 d` over the sum of both speeds. A node that rests on a surface
+/// rebounds in each step, `g ΔT²/(1 + e)²` deep at `g ΔT/(1 + e)`, and so touches it for exactly the step.
+fn touching(e: f64, depth: f64, approach: f64, pressing: f64) -> f64 {
+    let met = (approach * approach - 2.0 * pressing * depth).max(0.0).sqrt();
+    (1.0 + e) * (2.0 * depth.max(0.0) / (approach + met))
 }
 
 /// Height and speed of an approaching node after its rebound.

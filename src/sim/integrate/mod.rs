@@ -4,7 +4,7 @@ mod backward_euler;
 pub(in crate::sim) mod composition;
 mod dormand_prince;
 mod explicit_euler;
-mod quinlan_tremaine;
+pub(in crate::sim) mod quinlan_tremaine;
 mod runge_kutta;
 mod semi_implicit_euler;
 mod velocity_verlet;

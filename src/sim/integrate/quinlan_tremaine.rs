@@ -121,6 +121,16 @@ fn predict(known: &[DVec3], step: f64, state: &State, next: &mut State) {
     }
 }
 
+/// The coefficients of the characteristic polynomial for `(ωΔT)²`, from the lowest power.
+#[cfg(test)]
+pub(in crate::sim) fn characteristic(phase_squared: f64) -> [f64; 9] {
+    // The weight of the newest step is 1, those of the others are on the other side of the equation.
+    let weights: Vec<f64> = OLD.iter().map(|weight| -weight).chain([1.0]).collect();
+    let at = |step: Option<usize>| step.and_then(|step| weights.get(step)).copied().unwrap_or(0.0);
+    let force = |point: usize| point.checked_sub(1).and_then(|at| FORCE.get(at)).copied().unwrap_or(0.0);
+    std::array::from_fn(|power| at(power.checked_sub(1)) - at(Some(power)) + phase_squared * force(power))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -350,7 +350,14 @@ mod tests {
             let (height, restitution, friction) = (noise(), pick([0.0, 0.5, 1.0]), pick([0.3, 0.0, 10.0]));
             let floor = Floor { normal, height, restitution, friction };
             let shape = Shape::Floor { normal, height };
-            let obstacle = Obstacle { shape, motion: Path::Still, pivot: DVec3::ZERO, restitution, friction };
+            let obstacle = Obstacle {
+                shape,
+                motion: Path::Still,
+                pivot: DVec3::ZERO,
+                restitution,
+                friction,
+                friction_of: Default::default(),
+            };
             let mut vector = || DVec3::new(noise(), noise(), noise());
             let position: [DVec3; MOST] = std::array::from_fn(|lane| {
                 let free = vector() * 0.1 + normal * height;

@@ -7,6 +7,7 @@
 
 use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
 use crate::sim::body::Body;
+use crate::sim::stability::Mode;
 use crate::sim::state::Nodes;
 use crate::sim::topology::Springs;
 use crate::sim::words;
@@ -97,6 +98,11 @@ impl ElasticModel for MassSpring {
         self.stiffness
     }
 
+    fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
+        let (stiffness, damping) = (self.stiffness * stiffness, self.damping * damping);
+        Some(Arc::new(MassSpring { stiffness, damping, ..self.clone() }))
+    }
+
     fn describe(&self, body: &Body) -> String {
         let count = self.springs.len();
         let springs = format!("{count} spring{}", if count == 1 { "" } else { "s" });
@@ -105,6 +111,19 @@ impl ElasticModel for MassSpring {
 
     fn springs(&self) -> &[[u32; 2]] {
         &self.springs
+    }
+
+    /// With displacements `u` the energy of a spring is at most `k/2 |uᵢ − uⱼ|²`, in which `|uᵢ − uⱼ|² ≤ (1/mᵢ + 1/mⱼ) (mᵢ |uᵢ|² +
+    /// mⱼ |uⱼ|²)`.
+    fn bound(&self, body: &Body) -> Option<Mode> {
+        let mut sums = vec![0.0; body.len()];
+        for ends in &*self.springs {
+            let [i, j] = ends.map(|node| node as usize);
+            let sum = 1.0 / body.mass[i] + 1.0 / body.mass[j];
+            (sums[i], sums[j]) = (sums[i] + sum, sums[j] + sum);
+        }
+        let most = sums.into_iter().fold(0.0, f64::max);
+        Some(Mode { stiffness: self.stiffness * most, damping: self.damping * most })
     }
 
     fn known(&self) -> Option<Known<'_>> {

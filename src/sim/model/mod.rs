@@ -9,6 +9,8 @@ pub mod mass_spring;
 pub mod shape_based;
 
 use super::body::Body;
+#[doc(hidden)]
+pub use super::stability::Mode;
 use super::state::{Nodes, State};
 use super::words;
 use glam::DVec3;
@@ -101,6 +103,21 @@ pub trait ElasticModel: Debug + Send + Sync {
     /// can give time steps as a fraction of it.
     fn shortest_period(&self, body: &Body) -> f64 {
         std::f64::consts::TAU * (body.lightest() / self.stiffness()).sqrt()
+    }
+
+    /// An upper bound of the stiffness and the damping of any mode in any state, divided by the masses; `None` if none is known.
+    /// Where it suffices to show that a step is stable, no eigenvalue is computed.
+    #[doc(hidden)]
+    fn bound(&self, body: &Body) -> Option<Mode> {
+        let _ = body;
+        None
+    }
+
+    /// The same model with its stiffness and its damping multiplied; `None` for a model that cannot be scaled.
+    #[doc(hidden)]
+    fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
+        let _ = (stiffness, damping);
+        None
     }
 
     /// A short description for the second line of a picture, such as `27 cubes, k = 10 kN/m, ζ = 0.1`.

@@ -13,6 +13,7 @@ use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, Typ
 use crate::sim::body::{Body, Dimension};
 pub use crate::sim::rotation::RotationReading;
 use crate::sim::rotation::{self, davenport1968, linear_update, planar};
+use crate::sim::stability::Mode;
 use crate::sim::state::Nodes;
 use crate::sim::words;
 use glam::{DMat3, DQuat, DVec2, DVec3};
@@ -120,6 +121,11 @@ impl ElasticModel for ShapeBased {
         self.stiffness
     }
 
+    fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
+        let (stiffness, damping) = (self.stiffness * stiffness, self.damping * damping);
+        Some(Arc::new(ShapeBased { stiffness, damping, ..self.clone() }))
+    }
+
     fn describe(&self, body: &Body) -> String {
         let mut text = super::describe(&super::elements_in_words(body), self.stiffness, self.damping, body);
         if self.damping > 0.0 && self.damping_of == DampingReading::Deformation {
@@ -157,6 +163,14 @@ impl ElasticModel for ShapeBased {
             text += &format!(", damping of {}", words::typed(&self.damping_of));
         }
         text
+    }
+
+    /// An element adds no more to a node than `k` and `D`: its forces are those of a projection.
+    fn bound(&self, body: &Body) -> Option<Mode> {
+        let mut elements = vec![0.0; body.len()];
+        body.elements.indices().iter().for_each(|&node| elements[node as usize] += 1.0);
+        let most = elements.iter().zip(&body.mass).map(|(elements, mass)| elements / mass).fold(0.0, f64::max);
+        Some(Mode { stiffness: self.stiffness * most, damping: self.damping * most })
     }
 
     /// The readings for comparison and the damping of deformation have the reference code only.

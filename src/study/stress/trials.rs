@@ -2,7 +2,7 @@
 
 use super::{Promise, Protocol};
 use crate::sim::body::{Body, Dimension, IndexLists, Solids};
-use crate::sim::contact::{Motion, Obstacle, Shape};
+use crate::sim::contact::{FrictionOf, Motion, Obstacle, Shape};
 use crate::sim::motion::{Ease, Key, Offset};
 use crate::sim::state::State;
 use crate::sim::world::Surroundings;
@@ -133,6 +133,7 @@ fn pressed() -> Trial {
         pivot: DVec3::ZERO,
         restitution: 0.0,
         friction: 0.5,
+        friction_of: FrictionOf::default(),
     };
     let elastic = Elastic { over_mass: 1e5, ..USUAL };
     let name = "to a tenth of the height".to_owned();
@@ -276,7 +277,8 @@ fn lattice(cells: u32, side: f64, mass: f64) -> Body {
 
 fn floor(height: f64, restitution: f64, friction: f64) -> Obstacle {
     let shape = Shape::Floor { normal: DVec3::Y, height };
-    Obstacle { shape, motion: Motion::Still, pivot: DVec3::ZERO, restitution, friction }
+    let friction_of = FrictionOf::default();
+    Obstacle { shape, motion: Motion::Still, pivot: DVec3::ZERO, restitution, friction, friction_of }
 }
 
 /// The most elements that share a node.

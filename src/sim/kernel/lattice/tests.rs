@@ -57,7 +57,14 @@ fn parameters(damping: f64, rotation: Rotation) -> Parameters {
 fn floor() -> Obstacle {
     let normal = DVec3::new(0.1, 1.0, 0.0).normalize();
     let shape = Shape::Floor { normal, height: 0.02 };
-    Obstacle { shape, motion: contact::Motion::Still, pivot: DVec3::ZERO, restitution: 0.5, friction: 0.3 }
+    Obstacle {
+        shape,
+        motion: contact::Motion::Still,
+        pivot: DVec3::ZERO,
+        restitution: 0.5,
+        friction: 0.3,
+        friction_of: Default::default(),
+    }
 }
 
 fn bound(floor: &Obstacle) -> Bound {

@@ -14,6 +14,7 @@ fn nodes_rebound_as_in_the_reference() {
         pivot: DVec3::ZERO,
         restitution: 0.5,
         friction: 0.3,
+        friction_of: Default::default(),
     };
     for scheme in [Scheme::SemiImplicitEuler, Scheme::VelocityVerlet, PEFRL] {
         let model = shape_based(TWICE, 10.0);
@@ -101,6 +102,7 @@ fn what_holds_and_moves_is_that_of_the_reference() {
         pivot: DVec3::ZERO,
         restitution: 0.0,
         friction: 0.0,
+        friction_of: Default::default(),
     };
     let random = &mut Random(21);
     let (lattice, any) = (whole([4, 2, 3], 0.0, 22), pieces([3, 2, 2], &[4, 6, 8], 23));

@@ -1,0 +1,162 @@
+//! Predictions against known values, and against runs just below and just above them.
+
+use glam::DVec3;
+use localshape::scene::{Limits, Scene};
+use localshape::sim::body::Dimension;
+use localshape::sim::stability::Stability;
+use localshape::sim::state::State;
+use localshape::sim::world::{Stepping, Surroundings, World};
+
+fn scene(text: &str) -> Scene {
+    let text = format!("time.duration = 1\n{text}");
+    Scene::parse(&text, "stability", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn predicted(scene: &Scene) -> Stability {
+    scene.stability(0)
+}
+
+/// `ω_max/ω` of the free lattice of 3×3×3 cubes, from dense matrices of an independent program, and of the bounds for stretched
+/// springs.
+#[test]
+fn eigenvalues_of_the_lattice() {
+    let of = |model: &str| {
+        let lattice = "body = { lattice = { cells = [3, 3, 3], side = 0.1 } }";
+        let Stability { largest, stretched } =
+            predicted(&scene(&format!("{lattice}\nrun = [{{ name = 'a', model = {{ stiffness = 1e4, {model} }} }}]")));
+        let ratio = |step: f64| 2.0 / step / 100.0;
+        (ratio(largest), stretched.map(ratio))
+    };
+    let (shape, none) = of("kind = 'shape-based'");
+    assert!((shape / 2.7585 - 1.0).abs() < 1e-4 && none.is_none(), "{shape}");
+    for (springs, at_rest, stretched) in [
+        ("edges", 1.848, 3.2004),
+        ("edges+face-diagonals", 3.099, 4.5484),
+        ("edges+body-diagonals", 2.686, 4.5291),
+        ("edges+one-diagonal", 3.087, f64::NAN),
+        ("all", 3.6795, 5.3365),
+    ] {
+        let (own, bound) = of(&format!("kind = 'mass-spring', springs = '{springs}'"));
+        assert!((own / at_rest - 1.0).abs() < 3e-4, "{springs}: {own} {at_rest}");
+        let bound = bound.expect("springs can be stretched");
+        assert!(stretched.is_nan() || (bound / stretched - 1.0).abs() < 1e-4, "{springs}: {bound} {stretched}");
+        // With edges alone it is √3 exactly.
+        assert!(own < bound && bound < own * 3.0_f64.sqrt() * 1.0001, "{springs}: {own} {bound}");
+    }
+}
+
+/// Whether small displacements of all nodes stay small for so many steps (s).
+fn stays(scene: &Scene, step: f64, steps: u64) -> bool {
+    let run = &scene.runs[0];
+    let small = 1e-9 * scene.body.extent();
+    let mut seed = 5_u64;
+    let mut noise = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let across = if scene.body.dimension == Dimension::Plane { 0.0 } else { small };
+    let mut shaken = |rest: &DVec3| *rest + DVec3::new(small * noise(), small * noise(), across * noise());
+    let position = scene.body.rest.iter().map(&mut shaken).collect();
+    let surroundings = Surroundings { grips: scene.grips.clone(), ..Surroundings::default() };
+    let stepping = Stepping { kernel: run.kernel, ..Stepping::new(run.integrator, step) };
+    let mut world = World::new(&scene.body, State::at_rest(position), run.model.as_ref(), surroundings, stepping);
+    let away = |world: &World| {
+        let position = &world.state().position;
+        position.iter().zip(&scene.body.rest).map(|(at, rest)| at.distance(*rest)).fold(0.0, f64::max)
+    };
+    for _ in 0..100 {
+        world.advance(steps.div_ceil(100));
+        let away = away(&world);
+        if away.is_nan() || away > 100.0 * small {
+            return false;
+        }
+    }
+    true
+}
+
+const CUBES: &str = "body = { lattice = { cells = [2, 2, 1], side = 0.1 } }";
+const MASSES: &str = "body = { nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], \
+    elements = [[0, 1, 2, 3], [1, 2, 3, 4]], masses = [1, 0.01, 3, 1000, 0.2] }";
+const PLANE: &str = "body = { nodes = [[0, 0], [1, 0], [1.3, 0.9], [0.5, 1.6], [-0.3, 0.9]], elements = [[0, 1, 2, 3], [0, 3, 4], [0, 1]] }";
+const HELD: &str = "body = { lattice = { cells = [3, 1, 1], side = 0.1 } }\nhold = [{ nodes = [0, 4, 8, 12] }]";
+
+/// 1 % below the limit a run stays where it is, 1 % above it departs.
+#[test]
+fn runs_stay_just_below_and_depart_just_above() {
+    let shape = "kind = 'shape-based', stiffness = 100";
+    let springs = "kind = 'mass-spring', springs = 'all', stiffness = 100";
+    let undamped =
+        ["semi-implicit-euler", "velocity-verlet", "pefrl", "forest-ruth", "runge-kutta", "quinlan-tremaine"];
+    let undamped = undamped.map(|one| (one, ""));
+    let damped = [
+        ("semi-implicit-euler", ", damping_ratio = 0.2"),
+        ("semi-implicit-euler", ", damping_ratio = 1.5"),
+        ("velocity-verlet", ", damping_ratio = 0.2"),
+        ("velocity-verlet", ", damping_ratio = 1.5"),
+        ("runge-kutta", ", damping_ratio = 0.2"),
+        ("runge-kutta", ", damping_ratio = 1.5"),
+        ("explicit-euler", ", damping_ratio = 0.4"),
+    ];
+    let mut wrong = Vec::new();
+    for body in [CUBES, MASSES, PLANE, HELD] {
+        for (integrator, damping) in undamped.into_iter().chain(damped) {
+            for model in [shape, springs] {
+                let text = format!(
+                    "{body}\nrun = [{{ name = 'a', integrator = '{integrator}', model = {{ {model}{damping} }} }}]"
+                );
+                let scene = scene(&text);
+                let Stability { largest, .. } = predicted(&scene);
+                // Where damping has modes of its own, the limit is a lower bound.
+                let is_exact = damping.is_empty() || model == springs || integrator == "semi-implicit-euler";
+                for (share, stable) in [(0.99, true), (if is_exact { 1.01 } else { 1.12 }, false)] {
+                    if stays(&scene, share * largest, 4000) != stable {
+                        wrong.push(format!("{integrator} {model}{damping} {body}: {share} × {largest}"));
+                    }
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The first unstable steps of Blanes–Moan are few, and what grows there grows slowly.
+#[test]
+fn blanes_moan_is_unstable_in_a_narrow_band() {
+    let scene = scene(
+        "body = { lattice = { cells = [1, 1, 1], side = 0.1 } }
+        run = [{ name = 'a', integrator = 'blanes-moan', model = { kind = 'shape-based', stiffness = 100 } }]",
+    );
+    let Stability { largest, .. } = predicted(&scene);
+    assert!(stays(&scene, 0.9999 * largest, 20_000));
+    assert!(!stays(&scene, 1.0002 * largest, 20_000));
+}
+
+#[test]
+fn implicit_and_adaptive_methods_have_no_limit_and_explicit_euler_has_no_stable_step() {
+    for (integrator, limit) in
+        [("backward-euler", f64::INFINITY), ("dormand-prince", f64::INFINITY), ("explicit-euler", 0.0)]
+    {
+        let model = "model = { kind = 'shape-based', stiffness = 100 }";
+        let scene = scene(&format!("{CUBES}\nrun = [{{ name = 'a', integrator = '{integrator}', {model} }}]"));
+        assert_eq!(predicted(&scene), Stability { largest: limit, stretched: None });
+    }
+}
+
+/// What is certain without eigenvalues is not more than the limit.
+#[test]
+fn certain_steps_are_stable() {
+    for (body, damping) in [CUBES, MASSES, PLANE].into_iter().flat_map(|body| [0.0, 0.3].map(|damping| (body, damping)))
+    {
+        for integrator in ["semi-implicit-euler", "velocity-verlet", "runge-kutta"] {
+            for kind in ["shape-based", "mass-spring"] {
+                let model = format!("model = {{ kind = '{kind}', stiffness = 100, damping_ratio = {damping} }}");
+                let scene = scene(&format!("{body}\nrun = [{{ name = 'a', integrator = '{integrator}', {model} }}]"));
+                let Stability { largest, stretched } = predicted(&scene);
+                let run = &scene.runs[0];
+                let certain =
+                    Stability::certain(&scene.body, run.model.as_ref(), run.integrator).expect("both models know");
+                assert!(certain > 0.0 && certain <= stretched.unwrap_or(largest) * 1.0001, "{certain} {largest}");
+            }
+        }
+    }
+}
