@@ -163,14 +163,7 @@ impl RunOptions {
     }
 
     pub(super) fn runs(&self, scene: &Scene) -> Result<Vec<usize>, Failure> {
-        let names: Vec<_> = scene.runs.iter().map(|run| run.name.as_str()).collect();
-        if let Some(unknown) = self.only.iter().find(|wanted| !names.contains(&wanted.as_str())) {
-            let (message, help) = scene.no_run(unknown);
-            let help = help.map_or(String::new(), |help| format!("; {help}"));
-            return Err(Failure::usage(format!("--only: {message}{help}")));
-        }
-        let wanted = |name: &str| self.only.is_empty() || self.only.iter().any(|only| only == name);
-        Ok((0..names.len()).filter(|&run| wanted(names[run])).collect())
+        runs_of(&self.only, scene)
     }
 
     pub(super) fn frames(&self, scene: &Scene) -> Result<Vec<u64>, Failure> {
@@ -178,6 +171,18 @@ impl RunOptions {
         let ranges = self.frames.clone().unwrap_or_else(|| FrameRanges::all(last));
         ranges.select(last).map_err(|message| Failure::usage(format!("frames of “{}”: {message}", scene.title)))
     }
+}
+
+/// The numbers of a scene's runs with the names of `--only`, or of all of them.
+pub(super) fn runs_of(only: &[String], scene: &Scene) -> Result<Vec<usize>, Failure> {
+    let names: Vec<_> = scene.runs.iter().map(|run| run.name.as_str()).collect();
+    if let Some(unknown) = only.iter().find(|wanted| !names.contains(&wanted.as_str())) {
+        let (message, help) = scene.no_run(unknown);
+        let help = help.map_or(String::new(), |help| format!("; {help}"));
+        return Err(Failure::usage(format!("--only: {message}{help}")));
+    }
+    let is_wanted = |name: &str| only.is_empty() || only.iter().any(|only| only == name);
+    Ok((0..names.len()).filter(|&run| is_wanted(names[run])).collect())
 }
 
 /// Why a folder cannot be used, with the command of these `words` that replaces what is there.

@@ -29,6 +29,7 @@ fn help_and_version_are_results() {
         "study",
         "study rotation",
         "study stability",
+        "study stress",
         "study work-precision",
         "info",
         "schema",
@@ -47,6 +48,8 @@ fn unknown_words() {
     place.run("study").bad(2, &["study <COMMAND>", "rotation"]);
     place.run("study rotations").bad(2, &["rotations", "'rotation'"]);
     place.run("study rotation --json --quiet").bad(2, &["--json", "--quiet"]);
+    place.run("study work-precision --only a").bad(2, &["--only", "<SCENE>"]);
+    place.run("study work-precision small.toml --only nobody").bad(2, &["--only", "nobody"]);
     place.run("simulate small.toml --json --quiet").bad(2, &["--json", "--quiet"]);
     for threads in ["0", "-1", "many", "100000"] {
         place.run(&format!("simulate small.toml --threads={threads}")).bad(2, &["--threads", threads]);

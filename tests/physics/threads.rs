@@ -44,10 +44,18 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
     };
     let spring = mass_spring(&body, 1e4, 20.0, Springs::EdgesOneDiagonal);
     let exact = ShapeBased { rotation: RotationReading::Robust, ..shape.clone() };
+    let undamped = ShapeBased { damping: 0.0, ..exact.clone() };
     for (model, integrator, kernel) in [
         (&shape as &dyn ElasticModel, Integrator::SemiImplicitEuler, Kernel::Fast),
         (&exact, Integrator::SemiImplicitEuler, Kernel::Fast),
         (&exact, Integrator::ExplicitEuler, Kernel::Fast),
+        (&exact, Integrator::VelocityVerlet, Kernel::Fast),
+        (&undamped, Integrator::VelocityVerlet, Kernel::Fast),
+        (&undamped, Integrator::ForestRuth, Kernel::Fast),
+        (&undamped, Integrator::Pefrl, Kernel::Fast),
+        (&undamped, Integrator::BlanesMoan, Kernel::Fast),
+        (&exact, Integrator::RungeKutta, Kernel::Reference),
+        (&undamped, Integrator::BlanesMoan, Kernel::Reference),
         (&spring, Integrator::SemiImplicitEuler, Kernel::Fast),
         (&shape, Integrator::SemiImplicitEuler, Kernel::Reference),
         (&spring, Integrator::SemiImplicitEuler, Kernel::Reference),

@@ -270,7 +270,12 @@ fn wrong_choices() {
             "`run[0].model.rotation` is \"davenprt\"; expected \"arctangent\", \"vector-length\", \"linear-update\", \"symmetric\", \"cayley\", \"quintic\", \"mueller\", \"kugelstadt\", \"closed-form\", \"davenport\" or \"robust\" did you mean \"davenport\"?",
         )],
     );
-    case(PLANE, "step", "integrator = 'euler'\nstep", &[(4, 14, "`time.integrator` is \"euler\"")]);
+    case(
+        PLANE,
+        "step",
+        "integrator = 'euler'\nstep",
+        &[(4, 14, "`time.integrator` is \"euler\"; expected \"semi-implicit-euler\", \"explicit-euler\", ")],
+    );
 }
 
 #[test]

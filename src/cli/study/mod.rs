@@ -1,7 +1,8 @@
-//! `study`: errors against computation time, measured on this machine, and limits of stability, as tables and plots.
+//! `study`: what methods can do, as tables and plots: errors against computation time on this machine, limits of stability, robustness.
 
 mod rotation;
 mod stability;
+mod stress;
 mod work_precision;
 
 use super::console::{print, print_json};
@@ -27,11 +28,12 @@ Examples:
   localshape study work-precision              integrators in output/study-work-precision/
   localshape study work-precision scenes/fig4b.toml  on a scene
   localshape study stability                   the largest stable steps in output/study-stability/
+  localshape study stress                      what breaks which model in output/study-stress/
 
-The folder then has the results as Markdown, which is also printed, as CSV with all digits, and as plots in SVG and PNG. \
-Times are those of this machine, which should be idle otherwise.";
+The folder then has the results as Markdown, which is also printed, as CSV with all digits, and, but for stress, as plots in SVG and \
+PNG. Times are those of this machine, which should be idle otherwise.";
 
-/// Measure errors against computation time, and limits of stability
+/// Measure errors against computation time, limits of stability and robustness
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES, arg_required_else_help = false)]
 pub(super) struct Study {
@@ -44,6 +46,7 @@ pub(super) struct Study {
 enum Subject {
     Rotation(rotation::Rotation),
     Stability(stability::Stability),
+    Stress(stress::Stress),
     WorkPrecision(work_precision::WorkPrecision),
 }
 
@@ -110,6 +113,7 @@ impl Study {
         match self.subject {
             Subject::Rotation(rotation) => rotation.run(),
             Subject::Stability(stability) => stability.run(),
+            Subject::Stress(stress) => stress.run(),
             Subject::WorkPrecision(work_precision) => work_precision.run(),
         }
     }
@@ -156,7 +160,7 @@ impl StudyOptions {
         let names: Vec<_> = names.iter().map(String::as_str).collect();
         SheetFiles::inspect(&folder, &names, &plan.mark, self.overwrite)?;
         #[cfg(feature = "render")]
-        let gpu = self.device.open([])?;
+        let gpu = if plan.plots.is_empty() { None } else { Some(self.device.open([])?) };
         let files = SheetFiles::begin(&folder, &names, &plan.mark, self.overwrite)?;
         let bar = self.printing.progress(plan.name, plan.work);
         let found = measure(&|more| {
@@ -173,8 +177,8 @@ impl StudyOptions {
         #[allow(unused_mut, reason = "plots need the renderer")]
         let mut contents = vec![found.markdown.clone().into_bytes(), found.csv.into_bytes()];
         #[cfg(feature = "render")]
-        for plots in &found.plots {
-            contents.extend(drawn(&**plots, &plan.mark, &gpu)?);
+        for (plots, gpu) in found.plots.iter().zip(gpu.iter().cycle()) {
+            contents.extend(drawn(&**plots, &plan.mark, gpu)?);
         }
         files.finish(&contents)?;
         if self.printing.json {

@@ -52,7 +52,8 @@ pub enum Integrator {
     QuinlanTremaine,
     /// Dormand–Prince: of fifth order, also with damping, with six evaluations in each substep. It finds its own substeps, from
     /// a `tolerance` that takes the place of `step`, between the times of frames, and the moment of each rebound. Not
-    /// symplectic.
+    /// symplectic. Not for bodies that rest on something: there nodes rebound again and again, and substeps are no longer than
+    /// about `√(tolerance · size / g)`, 0.1 ms for a body of 0.1 m and a tolerance of 1e-6; use `velocity-verlet`.
     DormandPrince,
     /// Backward Euler, implicit: of first order, and stable for any step, also with damping. For stiff bodies whose oscillations
     /// need not be resolved: it damps those faster than the step. It evaluates the forces some ten to a hundred times a step.

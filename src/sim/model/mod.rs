@@ -139,6 +139,12 @@ pub trait ElasticModel: Debug + Send + Sync {
         None
     }
 
+    /// The model of section 3 of the paper, if it is that one, with all its choices.
+    #[doc(hidden)]
+    fn shape_based(&self) -> Option<&shape_based::ShapeBased> {
+        None
+    }
+
     /// The memory at the start, with the nodes of `body` at `position` (m). Its length never changes.
     fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
         let _ = (body, position);

@@ -180,6 +180,10 @@ impl ElasticModel for ShapeBased {
         is_known.then_some(Known::ShapeBased(self))
     }
 
+    fn shape_based(&self) -> Option<&ShapeBased> {
+        Some(self)
+    }
+
     /// The rotations that are optimal for the initial positions, which need not be the identity.
     fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
         let solver = self.solver(body.dimension);

@@ -42,6 +42,21 @@ pub(crate) fn all() -> Vec<Method> {
     methods
 }
 
+/// The number of a solver's family: the paper's readings, Newton's methods, relaxation, global solvers, the default.
+pub(crate) fn family(reading: RotationReading) -> usize {
+    use RotationReading::{
+        Arctangent, Cayley, ClosedForm, Davenport, Kugelstadt, LinearUpdate, Mueller, Quintic, Robust, Symmetric,
+        VectorLength,
+    };
+    match reading {
+        Arctangent | VectorLength | LinearUpdate => 0,
+        Symmetric | Cayley | Quintic | Kugelstadt => 1,
+        Mueller => 2,
+        ClosedForm | Davenport => 3,
+        Robust => 4,
+    }
+}
+
 impl Method {
     fn of(reading: RotationReading, passes: Option<u32>) -> Self {
         Self { name: typed(&reading), passes, solver: Solver::Reading(reading) }
@@ -76,18 +91,11 @@ impl Method {
         self.solver == Solver::Reading(RotationReading::Arctangent) && self.passes == Some(2)
     }
 
-    /// The number of its family: the paper's readings, Newton's methods, relaxation, global solvers, the default.
+    /// The number of its family.
     pub(crate) fn family(&self) -> usize {
-        use RotationReading::{
-            Arctangent, Cayley, ClosedForm, Davenport, Kugelstadt, LinearUpdate, Mueller, Quintic, Robust, Symmetric,
-            VectorLength,
-        };
         match self.solver {
-            Solver::Reading(Arctangent | VectorLength | LinearUpdate) => 0,
-            Solver::Reading(Symmetric | Cayley | Quintic | Kugelstadt) => 1,
-            Solver::Reading(Mueller) => 2,
-            Solver::Reading(ClosedForm | Davenport) | Solver::Svd => 3,
-            Solver::Reading(Robust) => 4,
+            Solver::Reading(reading) => family(reading),
+            Solver::Svd => family(RotationReading::Davenport),
         }
     }
 

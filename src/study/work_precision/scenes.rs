@@ -23,8 +23,8 @@ pub(super) fn all() -> Vec<Subject> {
             "Drop of 8 cubes onto a floor",
             "gravity = [0, -9.8, 0]
             time.duration = 0.06
-            body = { lattice = { cells = [2, 2, 2], side = 0.1 }, velocity = [0, -1, 0], lowest = 0.03 }
-            body.rotation = { axis = [1, 0.3, 2], angle = 0.4 }
+            body = { lattice = { cells = [2, 2, 2], side = 0.1 }, velocity = [0, -1, 0], lowest = 0.03, \
+                     rotation = { axis = [1, 0.3, 2], angle = 0.4 } }
             obstacle = [{ kind = 'floor', restitution = 0.5, friction = 0.3 }]
             run = [{ name = 'shape', model = { kind = 'shape-based', stiffness = 1e4 } }]",
             None,
@@ -48,5 +48,5 @@ fn subject(name: &str, text: &str, deform: Option<&dyn Fn(DVec3) -> DVec3>) -> S
         let middle = position.iter().sum::<DVec3>() / position.len() as f64;
         position.iter_mut().for_each(|at| *at = middle + deform(*at - middle));
     }
-    (name.to_owned(), scene)
+    Subject { name: name.to_owned(), scene, run: 0 }
 }

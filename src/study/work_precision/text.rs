@@ -3,12 +3,16 @@
 use super::{Cost, Measured, Results, Study};
 use crate::output::exact;
 use crate::sim::integrate::Integrator;
+use crate::sim::rotation::RotationReading;
 use crate::sim::words::typed;
 use crate::table::Sheet;
 use serde_json::{Value, json};
 
 /// The errors for which a method is recommended.
 const WANTED: [f64; 7] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9];
+
+/// The error for which solvers of rotations are compared.
+const SOLVERS_FOR: f64 = 1e-2;
 
 impl Results {
     /// The results for people; `mark` is the command that repeats them.
@@ -18,7 +22,7 @@ impl Results {
             "<!-- {mark} -->\n\
             # Integrators: error against work\n\n\
             Errors are the greatest distances of nodes from the reference at the end of the scene, as shares of the body's size. \
-            Evaluations of the forces include those of the start. {time} time of one thread on {machine}: medians of {} turn{} in \
+            Rotations are those of `robust`, if nothing else is said. Evaluations of the forces include those of the start. {time} time of one thread on {machine}: medians of {} turn{} in \
             which all runs take turns. Other machines give other times.\n",
             self.protocol.rounds,
             if self.protocol.rounds == 1 { "" } else { "s" },
@@ -38,6 +42,7 @@ impl Results {
             [
                 ("scene", study.name.clone()),
                 ("integrator", typed(&one.integrator)),
+                ("rotation", one.rotation.map_or_else(String::new, |rotation| typed(&rotation))),
                 ("kernel", if one.is_fast { "fast" } else { "reference" }.to_owned()),
                 ("step_s", if is_adaptive { String::new() } else { exact(one.step) }),
                 ("tolerance", if is_adaptive { exact(one.step) } else { String::new() }),
@@ -59,6 +64,7 @@ impl Results {
         let run = |one: &Measured| {
             json!({
                 "integrator": one.integrator,
+                "rotation": one.rotation,
                 "kernel": if one.is_fast { "fast" } else { "reference" },
                 "step": (!one.integrator.is_adaptive()).then_some(one.step),
                 "tolerance": one.integrator.is_adaptive().then_some(one.step),
@@ -96,6 +102,14 @@ impl Study {
                 text += &self.recommendations().markdown(1);
                 text += "\n### Orders, and the least errors\n\n";
                 text += &self.orders().markdown(1);
+                if self.solvers().next().is_some() {
+                    text += &format!(
+                        "\n### Solvers of rotations\n\nTime (ms) for an error of {SOLVERS_FOR:e}, and the least error \
+                         with any of these integrators. Solvers with a fixed number of passes give forces that depend on the \
+                         evaluation before, which methods of several evaluations a step cannot use.\n\n",
+                    );
+                    text += &self.rotations().markdown(1);
+                }
             }
             Err(why) => text += &format!("\n\n{why}.\n"),
         }
@@ -127,6 +141,27 @@ impl Study {
             ])
         });
         Sheet::of(rows)
+    }
+
+    /// A row for each solver of rotations.
+    fn rotations(&self) -> Sheet {
+        let columns = [
+            ("semi-implicit-euler", Integrator::SemiImplicitEuler),
+            ("velocity-verlet", Integrator::VelocityVerlet),
+            ("pefrl", Integrator::Pefrl),
+            ("runge-kutta", Integrator::RungeKutta),
+        ];
+        let row = |rotation: RotationReading| {
+            let times = columns.map(|(head, integrator)| {
+                let time = self.cost_with(integrator, rotation, SOLVERS_FOR).map(|cost| short(1e3 * cost.time));
+                (head, time.unwrap_or_else(|| "–".to_owned()))
+            });
+            let of_all = columns.iter().flat_map(|&(_, one)| self.with(one, rotation)).filter_map(|one| one.error);
+            let [one, two, three, four] = times;
+            let least = of_all.fold(f64::INFINITY, f64::min);
+            [("solver", typed(&rotation)), one, two, three, four, ("least error", format!("{least:.0e}"))]
+        };
+        Sheet::of(self.solvers().map(row))
     }
 
     /// The step or the tolerance in words.
