@@ -175,7 +175,7 @@ impl Render {
             sizes.lock().unwrap_or_else(PoisonError::into_inner).push(scene.view.size);
             Ok(())
         };
-        let sweep = Sweep::read(file, &self.scenes, self.options.out.as_deref(), self.shard, check)?;
+        let sweep = Sweep::read(file, &self.scenes, &self.options, self.shard, check)?;
         let gpu = self.device.open(sizes.into_inner().unwrap_or_else(PoisonError::into_inner))?;
         let device = self.studio(gpu, None);
         let jobs = self.options.variants(&sweep, true, |scene| self.resize(scene), words)?;

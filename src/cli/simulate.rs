@@ -43,7 +43,7 @@ impl Simulate {
         let options = &self.options;
         if let Some(file) = &options.sweep {
             let check = |scene: &Scene| options.runs(scene).and_then(|_| options.frames(scene)).map(drop);
-            let sweep = Sweep::read(file, &self.scenes, options.out.as_deref(), self.shard, check)?;
+            let sweep = Sweep::read(file, &self.scenes, options, self.shard, check)?;
             return record::run_all(options.variants(&sweep, false, |_| {}, words)?, options, words, false, None);
         }
         let jobs = options.jobs(self.scenes.load_all(options.printing.quiet)?, false, None, None, words)?;

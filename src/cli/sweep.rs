@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::frames::Shard;
-use super::options::SceneOptions;
+use super::options::{RunOptions, SceneOptions};
 use crate::output::{OutputError, read_file, write_whole};
 use crate::reading::Mistakes;
 use crate::reading::report::mistake;
@@ -47,7 +47,7 @@ impl Sweep {
     pub(super) fn read(
         file: &Path,
         scenes: &SceneOptions,
-        out: Option<&Path>,
+        options: &RunOptions,
         shard: Option<Shard>,
         check: impl Fn(&Scene) -> Result<(), Failure>,
     ) -> Result<Self, Failure> {
@@ -56,7 +56,7 @@ impl Sweep {
         };
         let name = file.display();
         let limits = scenes.limits();
-        let base = Scene::load(path, &limits).map_err(|error| Failure::usage(error.to_string()))?;
+        let base = scenes.load_all(options.printing.quiet)?.pop().expect("one was named");
         let found = fs::metadata(file).map_err(OutputError::reading(file))?;
         if found.is_file() && found.len() > LONGEST {
             return Err(Failure::usage(format!("{name} is longer than {LONGEST} bytes; split the sweep")));
@@ -68,7 +68,10 @@ impl Sweep {
         let (keys, rows) = rows(text).map_err(|error| Failure::usage(format!("{name}: {error}")))?;
         let mut sweep =
             Self { scene: path.clone(), limits, variants: Vec::new(), folder: PathBuf::new(), table: Vec::new() };
-        sweep.folder = out.map_or_else(|| Path::new("output").join(format!("{}-sweep", base.name)), Path::to_owned);
+        sweep.folder = options
+            .out
+            .as_deref()
+            .map_or_else(|| Path::new("output").join(format!("{}-sweep", base.name)), Path::to_owned);
         let names = short_names(&keys);
         let digits = rows.len().to_string().len();
         for (number, (row, _)) in rows.iter().enumerate() {

@@ -87,6 +87,7 @@ fn mistakes_are_found_in_their_cells_before_anything_is_made() {
     refused("", &["sweep.csv: has no variants"]);
     refused("body.mass\n1,2\n", &["sweep.csv: line 2 has 2 values; expected 1, one for each key"]);
     place.run("simulate small.toml --sweep none.csv").bad(4, &["cannot read none.csv"]);
+    place.run("simulate none.toml --sweep sweep.csv").bad(2, &["none.toml: there is no such file"]);
     place.run("simulate small.toml small.toml --sweep sweep.csv").bad(2, &["--sweep has the variants of one scene"]);
 }
 
