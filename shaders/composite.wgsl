@@ -14,11 +14,31 @@ fn over(colour: vec4<f32>, above: vec3<f32>, alpha: f32) -> vec4<f32> {
     return mix(colour, vec4(above, 1.0), alpha);
 }
 
+// What was drawn of the bodies at a texel of the panel's region, or at the nearest one to it there.
+fn body_at(at: vec2<i32>) -> vec4<f32> {
+    let low = vec2<i32>(panel.region.xy);
+    let high = low + vec2<i32>(panel.region.zw) - 1;
+    return decoded_body(textureLoad(body_colour, clamp(at, low, high), 0));
+}
+
+// The colour of a pixel with what borders add to it. Each border mixes the pixel with a neighbour, so many of them in one pixel
+// cannot lead beyond the colours of all neighbours.
+fn with_borders(at: vec2<i32>) -> vec4<f32> {
+    let own = body_at(at);
+    let left = body_at(at - vec2(1, 0));
+    let right = body_at(at + vec2(1, 0));
+    let above = body_at(at - vec2(0, 1));
+    let below = body_at(at + vec2(0, 1));
+    let least = min(own, min(min(left, right), min(above, below)));
+    let most = max(own, max(max(left, right), max(above, below)));
+    return clamp(own + textureLoad(borders, at, 0), least, most);
+}
+
 @fragment
 fn layered(@builtin(position) place: vec4<f32>) -> @location(0) vec4<f32> {
     let at = vec2<i32>(place.xy - panel.place.xy);
     let opacity = textureLoad(lines, at, 0);
-    var colour = saturate(decoded_body(textureLoad(body_colour, at, 0)) + textureLoad(borders, at, 0));
+    var colour = with_borders(at);
     colour = over(colour, panel.edge, opacity.r);
     colour = over(colour, panel.alarm_line, opacity.g);
     colour = over(colour, panel.edge, opacity.a);
