@@ -1,0 +1,373 @@
+//! Frames in rising order: simulated as they are asked for, all before the first one, or read from stored states; and where their
+//! simulation has come to, so that another process can go on from there.
+
+use super::{History, Runner, Running};
+use crate::last_fit::Fitting;
+use crate::sim::snapshot::{Frame, Status};
+use crate::sim::state::State;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+
+/// Frames of a scene in rising order, simulated once, also if the time series of the whole scene have to be known
+/// before the first frame is drawn, or not at all if their states are stored.
+pub(crate) struct Frames<'a> {
+    runner: Runner<'a>,
+    frames: Vec<u64>,
+    /// Number of frames returned, or that need not be.
+    taken: usize,
+    /// Whether the runs have the states of the next frame.
+    is_set: bool,
+    /// Steps that each run had taken in an earlier process.
+    before: Vec<u64>,
+    source: Source<'a>,
+}
+
+/// How far a simulation has come, with all that it needs to go on with the same bits.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Progress {
+    /// The present state of each run, as bytes.
+    states: Vec<Vec<u8>>,
+    /// The time series so far.
+    history: History,
+    /// What [`Frames::last_fit`] returns of each run, with states as bytes.
+    last_fits: Vec<Option<StoredFit>>,
+    /// Number of frames returned.
+    pub(crate) taken: usize,
+    /// If states wait until the end of the simulation, where each of those that do so ends in their file.
+    waiting: Option<Vec<u64>>,
+}
+
+/// A last state that fits, as bytes, and how many times wider the body is at the end; `None` if a run does not diverge.
+type StoredFit = Option<(Vec<u8>, f64)>;
+
+impl Progress {
+    /// Length of the file with waiting states (bytes).
+    pub(crate) fn waiting_length(&self) -> u64 {
+        self.waiting.as_ref().and_then(|ends| ends.last()).copied().unwrap_or(0)
+    }
+}
+
+/// Where the states of frames come from.
+enum Source<'a> {
+    /// From the simulation, one after the other.
+    Simulated,
+    /// From the simulation, after all of it: they wait until the time series are known.
+    Waiting(Waiting),
+    /// From an earlier simulation, with its time series until they are returned.
+    Stored(Box<dyn Stored + 'a>, Option<History>),
+}
+
+/// What an earlier simulation of the same runs of the same scene has stored.
+pub(crate) trait Stored: Send {
+    /// The state of the run at this place among the runs, in a frame, which it reaches after so many steps.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    fn state(&mut self, place: usize, frame: u64, steps: u64) -> io::Result<State>;
+
+    /// Takes the time series, if there are any.
+    fn take_history(&mut self) -> Option<History>;
+
+    /// What [`Frames::last_fit`] returned of a run.
+    fn last_fit(&self, place: usize) -> Option<Option<(State, f64)>>;
+}
+
+/// The states of frames, stored until they are drawn.
+struct Waiting {
+    states: Store,
+    /// Number of frames reached by the simulation.
+    reached: usize,
+    is_known: bool,
+}
+
+/// The next result.
+#[derive(Debug)]
+pub(crate) enum Next {
+    /// Some more steps were taken.
+    Working,
+    /// The time series of the scene from start to end, before the first frame.
+    TimeSeries(History),
+    /// The next frame.
+    Frame(Frame),
+    /// There are no more.
+    Done,
+}
+
+impl<'a> Frames<'a> {
+    /// Frames of a runner at its start, in rising order. With a file for `waiting` states the runner has to record time
+    /// series, and everything is simulated before the first frame is returned.
+    pub(crate) fn new(runner: Runner<'a>, frames: &[u64], waiting: Option<File>) -> Self {
+        let source = match waiting {
+            Some(file) => Source::Waiting(Waiting { states: Store::new(file), reached: 0, is_known: false }),
+            None => Source::Simulated,
+        };
+        let before = vec![0; runner.runs.len()];
+        Self { runner, frames: frames.to_vec(), taken: 0, is_set: false, before, source }
+    }
+
+    /// Where the simulation has come to; `None` if there is nothing left to simulate. Waiting states are on the disk then.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub(crate) fn progress(&mut self) -> io::Result<Option<Progress>> {
+        let Self { runner, frames, taken, source, .. } = self;
+        let waiting = match source {
+            Source::Simulated if *taken < frames.len() => None,
+            Source::Waiting(Waiting { states, is_known: false, .. }) => {
+                states.file.sync_data()?;
+                Some(states.ends.clone())
+            }
+            _ => return Ok(None),
+        };
+        let states = runner.runs.iter_mut().map(|running| {
+            running.world.settle();
+            running.world.state().to_bytes()
+        });
+        let states = states.collect();
+        let series = runner.runs.iter().map(|running| running.series.clone()).collect();
+        let difference = runner.apart.as_ref().map_or_else(Vec::new, |apart| apart.course.clone());
+        let history = History { end: 0.0, series, difference };
+        let (taken, runs) = (*taken, 0..runner.runs.len());
+        let last_fit = |place| Some(self.last_fit(place)?.map(|(state, wider)| (state.to_bytes(), wider)));
+        let last_fits = runs.map(last_fit).collect();
+        Ok(Some(Progress { states, history, last_fits, taken, waiting }))
+    }
+
+    /// Goes on where another process has come to with the same runs and frames, before the first call of [`Self::next`].
+    ///
+    /// # Errors
+    /// If it was not with these.
+    pub(crate) fn resume(&mut self, progress: Progress) -> io::Result<()> {
+        let Self { runner, frames, taken, before, source, .. } = self;
+        let Progress { states, history, last_fits, taken: returned, waiting } = progress;
+        let runs = runner.runs.len();
+        let reached = match (source, waiting) {
+            (Source::Simulated, None) => Some(returned),
+            (Source::Waiting(to_fill), Some(ends)) if returned == 0 && ends.is_sorted() => {
+                (to_fill.reached, to_fill.states.ends) = (ends.len() / runs.max(1), ends);
+                Some(to_fill.reached)
+            }
+            _ => None,
+        };
+        let reached = reached.filter(|&reached| reached <= frames.len()).ok_or(io::ErrorKind::InvalidData)?;
+        let end = runner.scene.last_frame();
+        // Neither the next frame nor the next moment of a time series may have passed.
+        let next = runner.scene.moment(frames.get(reached).copied().unwrap_or(end));
+        let fit = [states.len(), history.series.len(), last_fits.len()] == [runs; 3];
+        if !fit || !history.series.iter().zip(&runner.runs).all(|(series, running)| series.fits(&running.series)) {
+            return Err(io::ErrorKind::InvalidData.into());
+        }
+        let found = runner.runs.iter_mut().zip(states).zip(history.series).zip(last_fits);
+        for (((running, state), series), last_fit) in found {
+            let state = State::from_bytes(&state).filter(|state| running.world.takes(state));
+            running.world.set_state(state.ok_or(io::ErrorKind::InvalidData)?);
+            running.series = series;
+            if let Some(found) = last_fit {
+                let read = |(bytes, wider): (Vec<u8>, f64)| {
+                    let state = State::from_bytes(&bytes).filter(|state| running.world.takes(state));
+                    Ok::<_, io::Error>((state.ok_or(io::ErrorKind::InvalidData)?, wider))
+                };
+                let found = found.map(read).transpose()?;
+                let present = running.world.state().clone();
+                let found = found.map(|(state, wider)| Fitting::new(&mut running.world, state, wider));
+                running.world.set_state(present);
+                running.last_fit = found.into();
+            }
+            let note = running.notes.get(running.series.times.len()).filter(|_| running.series.divergence.is_none());
+            let first = note.map_or(u64::MAX, |&note| running.world.steps_at(note)).min(running.world.steps_at(next));
+            if running.world.steps() > first {
+                return Err(io::ErrorKind::InvalidData.into());
+            }
+        }
+        if let Some(apart) = &mut runner.apart {
+            apart.course = history.difference;
+            let note = apart.notes.get(apart.course.len());
+            let is_late =
+                |running: &Running| note.is_some_and(|&note| running.world.steps() > running.world.steps_at(note));
+            if apart.runs.iter().any(|&at| runner.runs[at].world.status() == Status::Ok && is_late(&runner.runs[at])) {
+                return Err(io::ErrorKind::InvalidData.into());
+            }
+        }
+        *taken = returned;
+        *before = runner.runs.iter().map(|running| running.world.steps()).collect();
+        Ok(())
+    }
+
+    /// Frames of a runner, in rising order, that an earlier simulation has stored.
+    ///
+    /// # Errors
+    /// If what is stored does not belong to these runs.
+    pub(crate) fn stored(mut runner: Runner<'a>, frames: &[u64], mut stored: impl Stored + 'a) -> io::Result<Self> {
+        for (place, running) in runner.runs.iter_mut().enumerate() {
+            let Some(found) = stored.last_fit(place) else { continue };
+            if found.as_ref().is_some_and(|(state, _)| !running.world.takes(state)) {
+                return Err(io::ErrorKind::InvalidData.into());
+            }
+            let found = found.map(|(state, times_wider)| Fitting::new(&mut running.world, state, times_wider));
+            running.last_fit = found.into();
+        }
+        let history = stored.take_history();
+        let source = Source::Stored(Box::new(stored), history);
+        Ok(Self { source, ..Self::new(runner, frames, None) })
+    }
+
+    /// Advances each run by at most `most_steps`.
+    ///
+    /// # Errors
+    /// If stored states cannot be written or read.
+    pub(crate) fn next(&mut self, most_steps: u64) -> io::Result<Next> {
+        let Self { runner, frames, taken, is_set, source, .. } = self;
+        if let Source::Stored(_, history) = source
+            && let Some(history) = history.take()
+        {
+            return Ok(Next::TimeSeries(history));
+        }
+        if let Source::Waiting(waiting) = source
+            && !waiting.is_known
+        {
+            let frame = frames.get(waiting.reached).copied();
+            let moment = runner.scene.moment(frame.unwrap_or(runner.scene.last_frame()));
+            if !runner.advance_towards(moment, most_steps) {
+                return Ok(Next::Working);
+            }
+            if frame.is_some() {
+                runner.runs.iter().try_for_each(|running| waiting.states.put(&running.world.state().to_bytes()))?;
+                waiting.reached += 1;
+                return Ok(Next::Working);
+            }
+            waiting.is_known = true;
+            return Ok(Next::TimeSeries(runner.take_history()));
+        }
+        let Some(&frame) = frames.get(*taken) else { return Ok(Next::Done) };
+        let moment = runner.scene.moment(frame);
+        if matches!(source, Source::Simulated) && !runner.advance_towards(moment, most_steps) {
+            return Ok(Next::Working);
+        }
+        let (first, scene) = (*taken * runner.runs.len(), runner.scene);
+        for (place, running) in runner.runs.iter_mut().enumerate().filter(|_| !*is_set) {
+            let state = match source {
+                Source::Simulated => continue,
+                Source::Waiting(waiting) => State::from_bytes(&waiting.states.get(first + place)?),
+                Source::Stored(stored, _) => Some(stored.state(place, frame, running.world.steps_at(moment))?),
+            };
+            let state = state.filter(|state| running.world.takes(state));
+            running.world.set_state(state.ok_or(io::ErrorKind::InvalidData)?);
+        }
+        let found = runner.runs.par_iter_mut().map(|running| running.find_last_fit(scene, most_steps));
+        *is_set = !found.reduce(|| true, |one, other| one && other);
+        if *is_set {
+            return Ok(Next::Working);
+        }
+        *taken += 1;
+        Ok(Next::Frame(runner.taken(frame)))
+    }
+
+    /// Steps taken so far, and steps at the end, of all runs together.
+    pub(crate) fn steps(&self) -> [u64; 2] {
+        let scene = self.runner.scene;
+        let last = match self.source {
+            Source::Stored(..) => return [0; 2],
+            Source::Waiting(_) => scene.last_frame(),
+            Source::Simulated => self.frames.last().copied().unwrap_or(0),
+        };
+        [self.reached().into_iter().fold(0, u64::saturating_add), self.runner.steps_at(scene.moment(last))]
+    }
+
+    /// The time that all runs have reached, and that of the last frame (s); `None` if nothing is left to simulate.
+    pub(crate) fn on_the_way(&self) -> Option<[f64; 2]> {
+        let end = match &self.source {
+            Source::Simulated => *self.frames.get(self.taken..)?.last()?,
+            Source::Waiting(waiting) if !waiting.is_known => self.runner.scene.last_frame(),
+            _ => return None,
+        };
+        let times = self.runner.runs.iter().map(|running| running.world.steps() as f64 * running.step);
+        Some([times.fold(f64::INFINITY, f64::min), self.runner.scene.frame_time(end)])
+    }
+
+    /// Steps that each run has taken so far in this process.
+    pub(crate) fn simulated(&self) -> Vec<u64> {
+        self.reached().into_iter().zip(&self.before).map(|(steps, before)| steps - before).collect()
+    }
+
+    /// Steps that each run has taken so far.
+    fn reached(&self) -> Vec<u64> {
+        let end = self.runner.scene.moment(self.runner.scene.last_frame());
+        let steps = |running: &Running| match &self.source {
+            Source::Stored(..) => 0,
+            // Runs that have gone all the way are then set back to each frame.
+            Source::Waiting(waiting) if waiting.is_known => running.world.steps_at(end),
+            _ => running.world.steps(),
+        };
+        self.runner.runs.iter().map(steps).collect()
+    }
+
+    /// The states of all runs in the last frame that was returned; before the first, those at the start.
+    pub(crate) fn states(&self) -> impl Iterator<Item = &State> {
+        self.runner.runs.iter().map(|running| running.world.state())
+    }
+
+    /// What pictures of the frames returned so far show of a run that diverges, if they show anything but its states: the
+    /// last state that fits, and how many times wider the body is at the end. `None` inside if it does not diverge.
+    pub(crate) fn last_fit(&self, place: usize) -> Option<Option<(&State, f64)>> {
+        let found = self.runner.runs[place].last_fit.get()?;
+        Some(found.as_ref().map(|found| (&found.state, found.shown.times_wider)))
+    }
+
+    /// The time series recorded so far, if they were not returned.
+    pub(crate) fn take_history(&mut self) -> History {
+        self.runner.take_history()
+    }
+
+    /// Number of frames returned.
+    pub(crate) fn taken(&self) -> usize {
+        self.taken
+    }
+
+    /// Calls `ask` on each helper thread of the runs; these do not belong to the rayon pool.
+    pub(crate) fn ask_helpers(&mut self, ask: &(dyn Fn() + Sync)) {
+        self.runner.ask_helpers(ask);
+    }
+}
+
+/// Blocks of bytes in a file.
+struct Store {
+    file: File,
+    /// Where each block ends.
+    ends: Vec<u64>,
+}
+
+impl Store {
+    fn new(file: File) -> Self {
+        Self { file, ends: Vec::new() }
+    }
+
+    fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let end = self.file.seek(SeekFrom::End(0))?;
+        self.file.write_all(bytes)?;
+        self.ends.push(end + bytes.len() as u64);
+        Ok(())
+    }
+
+    fn get(&mut self, piece: usize) -> io::Result<Vec<u8>> {
+        let (start, end) = (piece.checked_sub(1).map_or(0, |before| self.ends[before]), self.ends[piece]);
+        let mut bytes = vec![0; (end - start) as usize];
+        self.file.seek(SeekFrom::Start(start))?;
+        self.file.read_exact(&mut bytes)?;
+        Ok(bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_come_back() {
+        let mut store = Store::new(tempfile::tempfile().unwrap());
+        let piece = |at: usize| vec![at as u8; [300, 30, 9000, 0, 1][at]];
+        (0..5).for_each(|at| store.put(&piece(at)).unwrap());
+        assert!([4, 0, 2, 3, 1].into_iter().all(|at| store.get(at).unwrap() == piece(at)));
+    }
+}
