@@ -1,7 +1,7 @@
 //! Why a run diverges: found by simulating the way into it once more, also with smaller steps.
 
 use crate::last_fit::fits;
-use crate::scene::Scene;
+use crate::scene::{Run, Scene};
 use crate::sim::body::bounds;
 use crate::sim::crew::Crew;
 use crate::sim::integrate::Integrator;
@@ -27,10 +27,12 @@ pub(crate) struct Cause {
 const STRIDE: u64 = 64;
 /// Steps are halved so many times.
 const HALVINGS: u32 = 5;
+/// The most steps of an element that are simulated again for each part of the search: about a second.
+const MOST_ELEMENT_STEPS: u64 = 10_000_000;
 
 impl Cause {
-    /// Of a run that diverges after a sound state of it, with so many threads. It takes as long as the run from there to the
-    /// divergence, and a little more.
+    /// Of a run that diverges after a sound state of it, with so many threads. `None` where the way from there is too long to be
+    /// simulated again.
     pub(crate) fn find(
         scene: &Scene,
         run: usize,
@@ -38,6 +40,9 @@ impl Cause {
         divergence: Divergence,
         threads: usize,
     ) -> Option<Self> {
+        if divergence.step - sound.steps > most_steps(scene) {
+            return None;
+        }
         let mut world = scene.world(run);
         world.set_crew(Crew::new(threads));
         world.set_state(sound.clone());
@@ -87,10 +92,22 @@ impl Cause {
 
     /// Whether smaller steps from the beginning of the way get past the divergence.
     fn by_steps(scene: &Scene, run: usize, begin: &State, divergence: Divergence, threads: usize) -> String {
-        let step = scene.runs[run].step;
+        let Run { step, integrator, .. } = scene.runs[run];
+        let hint = match integrator {
+            Integrator::ExplicitEuler => ", but `explicit-euler` adds energy in each step",
+            _ => "",
+        };
         let mut finer = scene.clone();
-        for halving in 1..=HALVINGS {
+        let mut left = most_steps(scene);
+        let mut tried = None;
+        for halving in (1..=HALVINGS).filter(|_| !integrator.is_adaptive()) {
             let parts = 1_u64 << halving;
+            // Twice as far.
+            let steps = (divergence.step - begin.steps).saturating_mul(2 * parts);
+            if steps > left {
+                break;
+            }
+            left -= steps;
             finer.runs[run].step = step / parts as f64;
             let mut world = finer.world(run);
             world.set_crew(Crew::new(threads));
@@ -98,19 +115,21 @@ impl Cause {
             // The integrator begins anew with other steps.
             state.memory.integrator.clear();
             world.set_state(state);
-            // Twice as far.
-            world.advance((divergence.step - begin.steps).saturating_mul(2 * parts));
+            world.advance(steps);
             if world.status() == Status::Ok && fits(scene, &world.state().position) {
                 let [long, short] = [step, step / parts as f64].map(|step| quantity(step, "s"));
-                let adds = match scene.runs[run].integrator {
-                    Integrator::ExplicitEuler => ", but `explicit-euler` adds energy in each step",
-                    _ => "",
-                };
-                return format!("steps of {long} are too long; with steps of {short} it does not diverge there{adds}");
+                return format!("steps of {long} are too long; with steps of {short} it does not diverge there{hint}");
             }
+            tried = Some(parts);
         }
-        format!("steps of 1/{} do not help; look at the motion before it", 1_u64 << HALVINGS)
+        let tried = tried.map_or(String::new(), |parts| format!("steps of 1/{parts} do not help{hint}; "));
+        format!("{tried}look at the motion before it")
     }
+}
+
+/// The most steps of a scene that are simulated again for each part of the search.
+fn most_steps(scene: &Scene) -> u64 {
+    MOST_ELEMENT_STEPS / (scene.body.elements.len() as u64).max(1)
 }
 
 #[cfg(test)]

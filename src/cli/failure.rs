@@ -5,7 +5,7 @@ use crate::output::OutputError;
 use crate::render::RenderError;
 #[cfg(feature = "render")]
 use crate::scene::figure::Figure;
-use crate::scene::{Mistakes, Scene};
+use crate::scene::{Mistake, Mistakes, Scene};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -65,6 +65,17 @@ impl Failure {
         Self { status, message: None }
     }
 
+    /// The message, if it is one of wrong usage.
+    ///
+    /// # Errors
+    /// Itself, if it is not.
+    pub(super) fn mistake(self) -> Result<String, Self> {
+        match self {
+            Self { status: Status::Usage, message: Some(message) } => Ok(message),
+            other => Err(other),
+        }
+    }
+
     /// Prints the message and returns the exit status.
     pub(super) fn report(self) -> Status {
         if let Some(message) = &self.message {
@@ -107,8 +118,13 @@ pub(super) fn with_causes(error: &dyn Error) -> String {
 
 /// Prints the warnings of a scene.
 pub(super) fn warn(file: &Path, scene: &Scene) {
-    if !scene.warnings.is_empty() {
-        let (found, total) = (scene.warnings.clone(), scene.warnings.len());
+    warn_of(file, scene.warnings.clone());
+}
+
+/// Prints warnings at places of a file, if there are any.
+pub(super) fn warn_of(file: &Path, found: Vec<Mistake>) {
+    if !found.is_empty() {
+        let total = found.len();
         let _ = writeln!(std::io::stderr(), "warning: {}", Mistakes { file: file.display().to_string(), found, total });
     }
 }

@@ -79,8 +79,8 @@ impl Merge {
         frames.sort_unstable();
         let plan = Plan { runs: parts[0].runs(), frames: frames.clone(), states: false, size: Some(size) };
         let replace = if self.overwrite { Replace::All } else { Replace::Nothing };
-        let folder = Folder::inspect(&self.out, parts[0].whose(), plan, replace);
-        let folder = folder.map_err(|error| occupied(error, words))?.prepare(false)?;
+        let folder = Folder::inspect(&self.out, parts[0].whose(), plan, replace, false);
+        let folder = folder.map_err(|error| occupied(error, words))?.prepare()?;
         interrupt::listen();
         let mut summary = whole(&parts, frames.len(), words, folder.path(), self.quiet);
         write_summary(folder.path(), &summary)?;

@@ -1,7 +1,7 @@
 //! The way of one scene through the program: simulate, show, write down.
 
 use super::console;
-use super::failure::{Failure, Status, note, with_causes};
+use super::failure::{Failure, Status, with_causes};
 use super::interrupt;
 use super::options::{PrintOptions, RunOptions};
 use super::report;
@@ -40,8 +40,8 @@ pub(super) trait Pictures {
     fn draw(&mut self, frame: &Frame) -> Result<(), Failure>;
     /// Waits until all frames so far are written.
     fn flush(&mut self) -> Result<(), Failure>;
-    /// Leaves frames as an earlier command has drawn them, unless one of them is missing, which it returns.
-    fn keep(&mut self, frames: &[u64]) -> Result<Option<u64>, Failure>;
+    /// Leaves frames as an earlier command has drawn them, unless one of them is no longer so: what is wrong with it, in words.
+    fn keep(&mut self, frames: &[u64]) -> Result<Option<String>, Failure>;
     /// Waits until all frames are written, and writes down how many and how long it took.
     fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure>;
 }
@@ -50,6 +50,8 @@ pub(super) trait Pictures {
 pub(super) trait Studio {
     /// Begins the pictures of some frames of a scene in a folder.
     fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure>;
+    /// The graphics adapter that draws, as in summaries.
+    fn adapter(&self) -> String;
 }
 
 /// Runs all scenes, one after the other, and reports on each.
@@ -80,7 +82,7 @@ pub(super) fn run_all(
         };
         let path = job.folder.path().to_owned();
         if job.once
-            && let Some(before) = done_before(&job)?
+            && let Some(before) = done_before(&job, studio)?
         {
             if options.printing.json {
                 let mut document = json!({ "folder": path.to_string_lossy() });
@@ -122,7 +124,7 @@ pub(super) fn run_all(
 }
 
 /// The summary in the folder of a job, if all its results are there.
-fn done_before(job: &Job) -> Result<Option<Value>, Failure> {
+fn done_before(job: &Job, studio: Option<&dyn Studio>) -> Result<Option<Value>, Failure> {
     let folder = job.folder.path();
     let Some(bytes) = read_file(&folder.join(SUMMARY_FILE))? else { return Ok(None) };
     let Ok(found) = serde_json::from_slice::<Value>(&bytes) else { return Ok(None) };
@@ -132,11 +134,11 @@ fn done_before(job: &Job) -> Result<Option<Value>, Failure> {
         && found["localshape"] == env!("CARGO_PKG_VERSION")
         && found["scene"]["digest"] == job.scene.digest.as_str()
         && found["frames"]["asked"] == job.frames.len()
-        && found["runs"][0]["last"]["frame"] == json!(job.frames.last())
+        && found["adapter"] == json!(studio.map(Studio::adapter))
         && found_names == names;
     let is_there = |name: &str| folder.join(name).is_file();
     let (plan, _) = job.folder.contents();
-    let are_there = is_there(DIAGNOSTICS_FILE)
+    let are_there = plan.is_all_of(&folder.join(DIAGNOSTICS_FILE))
         && (!plan.states || is_there(STATES_FILE))
         && (plan.size.is_none() || found["frames"]["size"] == json!(plan.size))
         && (plan.size.is_none() || job.frames.iter().all(|&frame| is_there(&frame_file_name(frame))));
@@ -153,7 +155,7 @@ fn record(
 ) -> Result<(), Failure> {
     let Job { scene, runs, frames, folder, stored, .. } = job;
     let begin = || -> Result<_, Failure> {
-        let folder = folder.prepare(options.resume && stored.is_none())?;
+        let folder = folder.prepare()?;
         let pictures = studio.map(|studio| studio.begin(&scene, folder.path(), &frames)).transpose()?;
         Ok((folder, pictures))
     };
@@ -245,7 +247,7 @@ impl<'a> Recording<'a> {
         options: &RunOptions,
         mut pictures: Option<Box<dyn Pictures + '_>>,
         stored: Option<StoredStates>,
-        mut checkpoint: Option<Checkpoint>,
+        checkpoint: Option<Checkpoint>,
     ) -> Result<(), Failure> {
         let (total, simulating) = (Clock::process(), processor_time(pool));
         let (folder, scene) = (self.folder.path(), self.scene);
@@ -253,12 +255,10 @@ impl<'a> Recording<'a> {
             pictures.describe(self.summary);
         }
         if let (Some(found), Some(pictures)) = (&checkpoint, &mut pictures)
-            && let Some(missing) = pictures.keep(self.frames.get(..found.progress.taken).unwrap_or_default())?
+            && let Some(wrong) = pictures.keep(self.frames.get(..found.progress.taken).unwrap_or_default())?
         {
-            let missing = frame_file_name(missing);
-            note(&format!("{missing} is not the one that was drawn before the checkpoint; simulating from the start"));
-            self.folder.forget()?;
-            checkpoint = None;
+            let what = format!("counts on {wrong}").into();
+            return Err(OutputError::Checkpoint { path: folder.to_owned(), what }.into());
         }
         // Written before the first frame, so that the folder is known as this scene's even if the program is killed.
         self.summary.write(folder)?;
@@ -279,7 +279,7 @@ impl<'a> Recording<'a> {
         };
         let states = options.states.then(begin).transpose()?;
 
-        let mut results = Results { diagnostics, states, pictures, warned: false };
+        let mut results = Results { diagnostics, states, pictures, warned: options.printing.quiet };
         let made = self.simulate(pool, options.printing, &mut simulation, &mut results);
         let Results { diagnostics, mut states, pictures, .. } = results;
         if let Some(states) = &mut states {

@@ -18,7 +18,7 @@ use crate::history::History;
 use crate::look::Ghost;
 use crate::output::{
     AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Spent, StoredStates, Summary, Tags, Tap,
-    Texts, Timings, folder_of, frame_file_name, is_drawn,
+    Texts, Timings, folder_of, frame_file_name, is_drawn, read_tags,
 };
 use crate::scene::Scene;
 use crate::shell;
@@ -293,6 +293,10 @@ fn check_compared(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
 }
 
 impl Studio for Device {
+    fn adapter(&self) -> String {
+        self.gpu.description().to_string()
+    }
+
     fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure> {
         let films = match &self.shared {
             Some(shared) => {
@@ -358,6 +362,21 @@ impl Drawing<'_> {
         Ok(self.writer.write(PixelFrame { size, dpi, pixels, frame, texts })?)
     }
 
+    /// What is wrong with a frame that was drawn before, and what to do, in words.
+    fn wrong(&self, frame: u64, path: &Path) -> Result<String, Failure> {
+        let name = frame_file_name(frame);
+        if !path.is_file() {
+            return Ok(format!("{name}, which is missing; restore it"));
+        }
+        let own = &self.adapter;
+        Ok(match read_tags(path)? {
+            Some((_, tags)) if tags.adapter != *own => {
+                format!("{name}, which {} has drawn, and this is {own}; choose that with --adapter", tags.adapter)
+            }
+            _ => format!("{name}, which has been replaced since; restore it"),
+        })
+    }
+
     /// Passes on a frame that was drawn before.
     fn pass(&self, frame: u64, path: &Path) -> Result<(), Failure> {
         let pass = |tap: &Tap| tap(frame, &std::fs::read(path).map_err(OutputError::reading(path))?);
@@ -412,8 +431,8 @@ impl Pictures for Drawing<'_> {
         Ok(self.writer.flush()?)
     }
 
-    fn keep(&mut self, frames: &[u64]) -> Result<Option<u64>, Failure> {
-        let Some(folder) = self.drawn_before.clone() else { return Ok(frames.first().copied()) };
+    fn keep(&mut self, frames: &[u64]) -> Result<Option<String>, Failure> {
+        let Some(folder) = self.drawn_before.clone() else { return Ok(None) };
         let path = |frame: u64| folder.join(frame_file_name(frame));
         let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
         for &frame in frames {
@@ -424,7 +443,7 @@ impl Pictures for Drawing<'_> {
                 ("adapter", self.adapter.clone()),
             ];
             if !is_drawn(&path(frame), size, &texts, dpi)? {
-                return Ok(Some(frame));
+                return Ok(Some(self.wrong(frame, &path(frame))?));
             }
         }
         self.kept += frames.len();

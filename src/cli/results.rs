@@ -11,7 +11,7 @@ pub(super) struct Results<'a> {
     pub(super) diagnostics: DiagnosticsWriter,
     pub(super) states: Option<StatesWriter>,
     pub(super) pictures: Option<Box<dyn Pictures + 'a>>,
-    /// Whether the user was told that no checkpoint can be written.
+    /// Whether the user was told that no checkpoint can be written, or wants no warnings.
     pub(super) warned: bool,
 }
 

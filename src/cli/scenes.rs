@@ -131,7 +131,8 @@ impl RunOptions {
         // States that are read are not replaced by their own pictures.
         let is_read = states_read.is_some() && path.join(STATES_FILE).canonicalize().ok().as_deref() == states_read;
         let plan = Plan { runs: names, frames: frames.clone(), states: self.states || is_read, size };
-        let folder = Folder::inspect(path, Whose::of(&scene), plan, self.replace());
+        let resume = self.resume && states_read.is_none();
+        let folder = Folder::inspect(path, Whose::of(&scene), plan, self.replace(), resume);
         let folder = folder.map_err(|error| occupied(error, words))?;
         Ok(Job { runs, frames, folder, scene, shard, stored: None, once: false })
     }

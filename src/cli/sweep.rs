@@ -1,12 +1,12 @@
 //! `--sweep`: variants of a scene, one for each line of a table, each in a folder of its own.
 
-use super::failure::Failure;
+use super::failure::{Failure, warn_of};
 use super::frames::Shard;
 use super::options::{RunOptions, SceneOptions};
 use crate::output::{OutputError, read_file, write_whole};
-use crate::reading::Mistakes;
 use crate::reading::report::mistake;
 use crate::reading::source::Source;
+use crate::reading::{Mistake, Mistakes};
 use crate::scene::{Limits, Scene, SceneError};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::collections::HashSet;
@@ -73,7 +73,6 @@ impl Sweep {
             .as_deref()
             .map_or_else(|| Path::new("output").join(format!("{}-sweep", base.name)), Path::to_owned);
         let names = short_names(&keys);
-        let digits = rows.len().to_string().len();
         for (number, (row, _)) in rows.iter().enumerate() {
             let cells = keys.iter().zip(row).filter(|(_, cell)| !cell.is_empty());
             let changes = cells.map(|(key, cell)| (key.clone(), value(cell))).collect();
@@ -81,10 +80,13 @@ impl Sweep {
             let values: Vec<_> = values.map(|(name, cell)| format!("{name}={cell}")).collect();
             let plain = |c: char| if c.is_alphanumeric() || "._=+-".contains(c) { c } else { '-' };
             let values: String = values.join("_").chars().map(plain).take(MOST_CHARACTERS).collect();
-            let folder = format!("{:0digits$}_{values}", number + 1);
+            let folder = format!("{:04}_{values}", number + 1);
             sweep.variants.push(Variant { changes, folder: folder.trim_end_matches(['_', '.']).to_owned() });
         }
-        sweep.check(file, text, &keys, &rows, check)?;
+        let warnings = sweep.check(file, text, &keys, &rows, check)?;
+        if !options.printing.quiet {
+            warn_of(file, warnings);
+        }
         sweep.table = sweep.table(&keys, &rows);
         if let Some(shard) = shard {
             let numbers: Vec<u64> = (0..sweep.variants.len() as u64).collect();
@@ -99,7 +101,7 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// Reads all variants, so that nothing is made before all mistakes are known.
+    /// Reads all variants, so that nothing is made before all mistakes are known, and returns the warnings, each at its cell.
     fn check(
         &self,
         file: &Path,
@@ -107,8 +109,16 @@ impl Sweep {
         keys: &[String],
         rows: &[Row],
         check: impl Fn(&Scene) -> Result<(), Failure>,
-    ) -> Result<(), Failure> {
+    ) -> Result<Vec<Mistake>, Failure> {
         let source = Source::new(text);
+        let mut warnings = Vec::new();
+        let column_of = |place: &str| {
+            let is_below = |long: &str, short: &str| {
+                long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+            };
+            let fits = |key: &str| is_below(place, key) || is_below(key, place);
+            (0..keys.len()).filter(|&at| fits(&keys[at])).max_by_key(|&at| keys[at].len()).unwrap_or(0)
+        };
         let (mut found, mut total, mut known) = (Vec::new(), 0, HashSet::new());
         let mut add = |cell: Range<usize>, message: String, help: Option<String>| {
             // What is wrong with a key is so in all lines.
@@ -120,7 +130,12 @@ impl Sweep {
         for (number, (_, start)) in rows.iter().enumerate() {
             let mistakes = match self.scene(number) {
                 Ok(scene) => {
-                    check(&scene)?;
+                    if let Err(failure) = check(&scene) {
+                        add(cell(text, *start, 0), failure.mistake()?, None);
+                    }
+                    warnings.extend(scene.warnings.into_iter().map(|one| {
+                        mistake(&source, cell(text, *start, column_of(&one.place)), &[], one.message, one.help)
+                    }));
                     continue;
                 }
                 Err(Wrong::Key(key, message)) => {
@@ -132,20 +147,13 @@ impl Sweep {
                 Err(Wrong::Scene(error)) => return Err(Failure::usage(error.to_string())),
             };
             for one in mistakes.found {
-                let fits = |key: &str| {
-                    let is_below = |long: &str, short: &str| {
-                        long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-                    };
-                    is_below(&one.place, key) || is_below(key, &one.place)
-                };
-                let column = (0..keys.len()).filter(|&at| fits(&keys[at])).max_by_key(|&at| keys[at].len());
                 let is_key = one.message.starts_with("unknown key");
                 let start = if is_key { 0 } else { *start };
-                add(cell(text, start, column.unwrap_or(0)), one.message, one.help);
+                add(cell(text, start, column_of(&one.place)), one.message, one.help);
             }
         }
         match total {
-            0 => Ok(()),
+            0 => Ok(warnings),
             _ => Err(Failure::usage(Mistakes { file: file.display().to_string(), found, total }.to_string())),
         }
     }

@@ -56,7 +56,7 @@ pub enum OutputError {
         what: Box<str>,
     },
     /// A checkpoint is not one of this command.
-    #[error("the checkpoint in {} {what}; to begin anew, leave out --resume", path.display())]
+    #[error("the checkpoint in {} {what}; to begin anew, leave out --resume and add --overwrite", path.display())]
     Checkpoint {
         /// The folder.
         path: PathBuf,

@@ -71,6 +71,8 @@ pub(crate) struct Folder {
     scene: Whose,
     plan: Plan,
     replace: Replace,
+    /// Whether a checkpoint there is gone on from.
+    resume: bool,
     /// What is replaced although the command does not make it again, in words.
     replaced: Option<String>,
 }
@@ -101,12 +103,19 @@ impl Folder {
     /// is always refused. Results of the same scene are replaced one by one, and its other frames are kept, so that a
     /// scene can be drawn in parts. But the existing frames must have the size and runs of new ones, so that the folder
     /// has one sequence; and unless `replace` permits it, the tables must not have rows or states that the `plan` lacks.
-    /// A folder to which another process writes is always refused.
+    /// A checkpoint from which the command does not go on with `resume` counts as such a row. A folder to which another
+    /// process writes is always refused.
     ///
     /// # Errors
     /// If the folder cannot be read, is refused or is not a folder.
-    pub(crate) fn inspect(path: &Path, scene: Whose, plan: Plan, replace: Replace) -> Result<Self, OutputError> {
-        let mut folder = Self { path: path.to_owned(), scene, plan, replace, replaced: None };
+    pub(crate) fn inspect(
+        path: &Path,
+        scene: Whose,
+        plan: Plan,
+        replace: Replace,
+        resume: bool,
+    ) -> Result<Self, OutputError> {
+        let mut folder = Self { path: path.to_owned(), scene, plan, replace, resume, replaced: None };
         if is_folder(path)? {
             FolderLock::check(path)?;
             let found = folder.find()?;
@@ -117,7 +126,11 @@ impl Folder {
 
     /// The results in the folder, if they do not prevent its use.
     fn find(&self) -> Result<Found, OutputError> {
-        let found = Found::in_folder(&self.path, &self.scene, &self.plan)?;
+        let mut found = Found::in_folder(&self.path, &self.scene, &self.plan)?;
+        if !self.resume && Checkpoint::is_in(&self.path) {
+            let rows = found.lost.take().map_or(String::new(), |rows| format!("{rows}, and "));
+            found.lost = Some(format!("{rows}the checkpoint of an interrupted command, from which --resume goes on"));
+        }
         match found.describe(self.replace == Replace::Own) {
             Some(what) if self.replace != Replace::All => Err(OutputError::Occupied { path: self.path.clone(), what }),
             _ => Ok(found),
@@ -141,17 +154,17 @@ impl Folder {
     }
 
     /// Creates the folder if necessary, locks it, and removes leftovers of killed processes and the results of another
-    /// scene. Unless new states are written, earlier ones are removed, too, as they would not match the diagnostics. With
-    /// `resume` a checkpoint and what belongs to it stay.
+    /// scene. Unless new states are written, earlier ones are removed, too, as they would not match the diagnostics. A
+    /// checkpoint to go on from stays, and what belongs to it.
     ///
     /// # Errors
     /// If the folder cannot be created or written to, or has a checkpoint to resume that does not belong to the plan; and
     /// the errors of [`Self::inspect`], which is repeated because the folder may have changed before it was locked.
-    pub(crate) fn prepare(self, resume: bool) -> Result<Claimed, OutputError> {
+    pub(crate) fn prepare(self) -> Result<Claimed, OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
         let lock = FolderLock::alone_with_leftovers(&self.path)?;
         let read = || Checkpoint::read(&self.path, &self.scene, &self.plan);
-        let checkpoint = if resume { read()? } else { None };
+        let checkpoint = if self.resume { read()? } else { None };
         let found = self.find()?;
         if checkpoint.is_none() {
             forget(&self.path)?;
@@ -190,14 +203,6 @@ impl Claimed {
     pub(crate) fn take_checkpoint(&mut self) -> Option<Checkpoint> {
         self.checkpoint.take()
     }
-
-    /// Removes the checkpoint and what belongs to it: the next command begins anew.
-    ///
-    /// # Errors
-    /// If it cannot be removed.
-    pub(crate) fn forget(&self) -> Result<(), OutputError> {
-        forget(&self.path)
-    }
 }
 
 /// Removes a checkpoint first, so that none is left without what belongs to it.
@@ -217,11 +222,17 @@ impl Drop for Claimed {
 }
 
 impl Plan {
+    /// Whether the diagnostics at a path have the rows of all its runs and frames, and no others.
+    pub(crate) fn is_all_of(&self, diagnostics: &Path) -> bool {
+        let found: BTreeSet<_> = rows_of(diagnostics).collect();
+        found.len() == self.runs.len() * self.frames.len()
+            && found.iter().all(|(run, frame)| self.runs.contains(run) && self.frames.binary_search(frame).is_ok())
+    }
+
     /// What the diagnostics and states of the same scene at these paths have that the plan does not make again, in words.
     fn lacks(&self, diagnostics: &Path, states: Option<&PathBuf>) -> Option<String> {
         // A table that cannot be read has nothing to lose.
-        let rows = csv::Reader::from_path(diagnostics).into_iter().flat_map(csv::Reader::into_deserialize);
-        let rows: Vec<(String, u64)> = rows.filter_map(Result::ok).map(|Row { run, frame }| (run, frame)).collect();
+        let rows: Vec<_> = rows_of(diagnostics).collect();
         let lost: BTreeSet<u64> = rows
             .iter()
             .filter(|(run, frame)| !self.runs.contains(run) || self.frames.binary_search(frame).is_err())
@@ -239,6 +250,12 @@ impl Plan {
         let lost: Vec<_> = rows.into_iter().chain(states).collect();
         (!lost.is_empty()).then(|| format!("{} of this scene, which this command does not make", lost.join(" and ")))
     }
+}
+
+/// Runs and frames of the diagnostics at a path.
+fn rows_of(diagnostics: &Path) -> impl Iterator<Item = (String, u64)> + use<> {
+    let rows = csv::Reader::from_path(diagnostics).into_iter().flat_map(csv::Reader::into_deserialize);
+    rows.filter_map(Result::ok).map(|Row { run, frame }| (run, frame))
 }
 
 /// The columns that identify a row of the diagnostics.
@@ -435,8 +452,8 @@ mod tests {
         let (one, other) = (scene("one", 1.0), scene("other", 2.0));
         let place = tempfile::tempdir().unwrap();
         let plan = Plan { runs: Vec::new(), frames: Vec::new(), states: false, size: None };
-        let inspect = |scene, replace| Folder::inspect(place.path(), Whose::of(scene), plan.clone(), replace);
-        inspect(&one, Replace::Nothing).unwrap().prepare(false).unwrap();
+        let inspect = |scene, replace| Folder::inspect(place.path(), Whose::of(scene), plan.clone(), replace, false);
+        inspect(&one, Replace::Nothing).unwrap().prepare().unwrap();
         Summary::new(&one, &[0], 0, &[]).write(place.path()).unwrap();
         for replace in [Replace::Nothing, Replace::Own] {
             let message = inspect(&other, replace).unwrap_err().to_string();

@@ -28,7 +28,7 @@ impl Scene {
         }
         let (name, step, limit) = (quoted(&run.name), short(run.step), short(largest));
         let percent = (100.0 * share).round();
-        let outcome = if share > 1.0 { "; the run would diverge" } else { "" };
+        let outcome = if share > 1.0 { "; the run may diverge" } else { "" };
         let message = format!(
             "the time step of {name} is {step} s, {percent} % of the largest that is stable at rest, {limit} s{outcome}"
         );

@@ -197,7 +197,7 @@ fn describe(obstacle: &Obstacle, coordinates: &impl Fn(DVec3) -> Vec<f64>) -> St
     let (e, friction) = (short(obstacle.restitution), short(obstacle.friction));
     let of = match obstacle.friction_of {
         FrictionOf::Velocity => String::new(),
-        FrictionOf::Path => format!(" of the {}", typed(&obstacle.friction_of)),
+        FrictionOf::Path => format!(" on the {}", typed(&obstacle.friction_of)),
     };
     format!("{shape}, e = {e}, μ = {friction}{of}{}", path(&obstacle.motion))
 }

@@ -3,7 +3,7 @@
 use crate::support::{Place, SMALL};
 
 const TABLE: &str = "run[0].model.stiffness,run[1].step,body.lattice.cells\n2e4,T/60,\n1e4,,\"[1, 1, 1]\"\n,,\n";
-const FOLDERS: [&str; 3] = ["1_stiffness=2e4_step=T-60", "2_stiffness=1e4_cells=-1--1--1-", "3"];
+const FOLDERS: [&str; 3] = ["0001_stiffness=2e4_step=T-60", "0002_stiffness=1e4_cells=-1--1--1-", "0003"];
 
 fn place() -> Place {
     let place = Place::with_small();

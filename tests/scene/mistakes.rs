@@ -342,7 +342,10 @@ fn keys_that_exclude_or_need_each_other() {
         &[(5, 8, "\"dormand-prince\" finds its own steps give `tolerance` in place of `step`")],
     );
     for (method, words) in [
-        ("explicit-euler", "`step = \"auto\"`: \"explicit-euler\" has no stable step without damping give a step"),
+        (
+            "explicit-euler",
+            "`step = \"auto\"`: for \"Local shape\" \"explicit-euler\" has no stable step without damping give a step",
+        ),
         ("backward-euler", "\"backward-euler\" is stable with any step give a step"),
         ("dormand-prince", "\"dormand-prince\" finds its own steps"),
     ] {

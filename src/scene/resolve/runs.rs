@@ -53,17 +53,19 @@ pub(super) fn resolve(
             Some(step) => (step, &own[..]),
             None => (time.step.as_ref().unwrap_or(&StepFile::DEFAULT), &[Way::Key("time"), Way::Key("step")][..]),
         };
-        let typed = run.tolerance.or(time.tolerance);
-        let tolerance = integrator.is_adaptive().then(|| typed.unwrap_or(Integrator::TOLERANCE));
+        let tolerance = run.tolerance.or(time.tolerance).unwrap_or(Integrator::TOLERANCE);
+        let tolerance = integrator.is_adaptive().then_some(tolerance);
         let step = match step {
             _ if tolerance.is_some() => 1.0 / time.frames_per_second,
             StepFile::Seconds(seconds) => *seconds,
             StepFile::Named(named) => match named.of(cycle) {
                 Some(step) => step,
-                None => match automatic(limits[at], time) {
+                None => match automatic(limits[at].0, time) {
                     Some(step) => step,
                     None => {
-                        let (message, help) = no_limit(run, integrator, limits[at]);
+                        let (limit, of) = limits[at];
+                        let of = typed[of].as_ref()?;
+                        let (message, help) = no_limit(of, of.integrator.unwrap_or(time.integrator), limit);
                         report.at(path, message, help);
                         return None;
                     }
@@ -137,14 +139,15 @@ fn misplaced(
     is_typed.then(|| (path, message, "give `step`, or `integrator = \"dormand-prince\"`".into()))
 }
 
-/// The largest stable step (s) of each run with `step = "auto"`: its own, or the least of all that take the scene's.
+/// The largest stable step (s) of each run with `step = "auto"`, and the run that it is of: its own, or the least of all that take
+/// the scene's.
 fn limits(
     typed: &[Option<RunFile>],
     time: &TimeFile,
     body: &ResolvedBody,
     models: &[Arc<dyn ElasticModel>],
     grips: &[Grip],
-) -> Vec<f64> {
+) -> Vec<(f64, usize)> {
     let is_auto = |step: &Option<StepFile>| matches!(step, Some(StepFile::Named(NamedStep::Auto)));
     let takes_scenes = |run: &RunFile| run.step.is_none() && is_auto(&time.step);
     let shared = std::cell::OnceCell::new();
@@ -156,10 +159,11 @@ fn limits(
         let integrator = run.integrator.unwrap_or(time.integrator);
         Stability::of(body, model.as_ref(), integrator, grips, time.duration).largest
     };
-    let mut limits: Vec<f64> = typed.iter().zip(models).map(limit).collect();
+    let limits: Vec<f64> = typed.iter().zip(models).map(limit).collect();
+    let mut limits: Vec<_> = limits.into_iter().zip(0..).collect();
     let takers: Vec<_> = (0..limits.len()).filter(|&at| typed[at].as_ref().is_some_and(takes_scenes)).collect();
-    let least = takers.iter().map(|&at| limits[at]).fold(f64::INFINITY, f64::min);
-    takers.into_iter().for_each(|at| limits[at] = least);
+    let least = takers.iter().map(|&at| limits[at]).min_by(|one, other| one.0.total_cmp(&other.0));
+    takers.into_iter().zip(least.into_iter().cycle()).for_each(|(at, least)| limits[at] = least);
     limits
 }
 
@@ -181,7 +185,7 @@ fn no_limit(run: &RunFile, integrator: Integrator, limit: f64) -> (String, Strin
             "give a step that resolves the motion wanted".into(),
         ),
         false => (
-            format!("`step = \"auto\"`: {method} has no stable step without damping"),
+            format!("`step = \"auto\"`: for {name} {method} has no stable step without damping"),
             "give a step, or take another integrator".into(),
         ),
     }

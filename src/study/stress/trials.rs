@@ -1,12 +1,12 @@
 //! The trials.
 
+use super::super::rotation::sample::Random;
 use super::{Promise, Protocol};
 use crate::sim::body::{Body, Dimension, IndexLists, Solids};
 use crate::sim::contact::{FrictionOf, Motion, Obstacle, Shape};
 use crate::sim::motion::{Ease, Key, Offset};
 use crate::sim::state::State;
 use crate::sim::world::Surroundings;
-use crate::study::rotation::sample::Random;
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
