@@ -48,7 +48,7 @@ each run and frame) and run.json (command, outcome and files). A folder never mi
 
 Results in output/NAME of an earlier version of the scene file are replaced. With -o, results of \
 another scene, or of another version of it, are replaced only with --overwrite, as are tables of the same scene with frames, \
-runs or states that the command does not make.
+runs or states that the command does not make, and checkpoints without --resume.
 
 Without a GPU, pictures are drawn by a software driver; `localshape info` names it.";
 

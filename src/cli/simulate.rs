@@ -22,7 +22,7 @@ The folder then has diagnostics.csv (energies, momenta, turned-over elements and
 
 Results in output/NAME of an earlier version of the scene file are replaced. With -o, results of \
 another scene, or of another version of it, are replaced only with --overwrite, as are tables of the same scene with frames, \
-runs or states that the command does not make.";
+runs or states that the command does not make, and checkpoints without --resume.";
 
 /// Simulate scenes without drawing them; needs no graphics adapter
 #[derive(Args, Debug)]

@@ -83,7 +83,9 @@ impl Sweep {
             let folder = format!("{:04}_{values}", number + 1);
             sweep.variants.push(Variant { changes, folder: folder.trim_end_matches(['_', '.']).to_owned() });
         }
-        let warnings = sweep.check(file, text, &keys, &rows, check)?;
+        let mut warnings = sweep.check(file, text, &keys, &rows, check)?;
+        // Those of the scene itself are told already.
+        warnings.retain(|one| base.warnings.iter().all(|known| known.message != one.message));
         if !options.printing.quiet {
             warn_of(file, warnings);
         }

@@ -151,25 +151,46 @@ fn a_checkpoint_of_something_else_is_refused() {
     std::fs::write(place.path("output/scene/diagnostics.csv"), "run,frame\n").unwrap();
     let ran = place.run("simulate scene.toml --resume");
     ran.bad(2, &["the checkpoint in output/scene cannot be used (", "diagnostics.csv", "leave out --resume"]);
-    place.run("simulate scene.toml --frames 0-1 --overwrite").good();
+    let ran = place.run("simulate scene.toml --frames 0-1 -o output/scene");
+    ran.bad(2, &["output/scene holds the checkpoint of an interrupted command, from which --resume", "--overwrite"]);
+    assert_eq!(std::fs::read(&path).unwrap(), bytes, "it stays");
+    let ran = place.run("simulate scene.toml --frames 0-1").good();
+    assert!(ran.out.starts_with("output/scene: replacing the checkpoint of an interrupted command"), "{ran:?}");
     assert_eq!(place.names("output/scene"), ["diagnostics.csv", "run.json"], "another command begins anew");
 }
 
-/// A frame that has been removed since cannot be drawn from a later state.
+/// A frame that has been removed since cannot be drawn from a later state. All stays until the user decides.
 #[cfg(feature = "render")]
 #[test]
-fn without_its_frames_a_checkpoint_is_of_no_use() {
+fn without_its_frames_a_checkpoint_is_refused() {
     if !crate::render::can_draw() {
         return;
     }
     let place = Place::new();
     place.write("scene.toml", &lasting("5"));
     stopped(&place, "render scene.toml -o out", "out/frame_00003.png", "INT");
-    std::fs::remove_file(place.path("out/frame_00002.png")).unwrap();
-    let ran = place.run("render scene.toml -o out --resume");
-    let warning =
-        "warning: frame_00002.png is not the one that was drawn before the checkpoint; simulating from the start\n";
-    assert_eq!((ran.status, ran.err.as_str()), (Some(0), warning), "{ran:?}");
+    let (frame, other) = (place.path("out/frame_00002.png"), place.path("out/frame_00001.png"));
+    let bytes = std::fs::read(&frame).unwrap();
+    std::fs::remove_file(&frame).unwrap();
+    let before = files(&place, "out");
+    let refused = |words: &[&str]| {
+        place.run("render scene.toml -o out --resume").bad(2, words);
+        assert!(place.path("out").join(CHECKPOINT).exists());
+    };
+    let way_out = "; to begin anew, leave out --resume and add --overwrite";
+    refused(&["the checkpoint in out counts on frame_00002.png, which is missing; restore it", way_out]);
+    assert!(files(&place, "out") == before, "nothing is lost");
+    std::fs::copy(&other, &frame).unwrap();
+    refused(&["the checkpoint in out counts on frame_00002.png, which has been replaced since; restore it", way_out]);
+    let (size, tags) = localshape::internals::read_tags(&other).unwrap().expect("a frame of ours");
+    let drawn = std::fs::read(&other).unwrap();
+    let tags = localshape::internals::Tags { adapter: "Another one".to_owned(), ..tags };
+    let pixels = vec![0; size[0] as usize * size[1] as usize * 4];
+    std::fs::write(&other, crate::support::frame_file(size, &pixels, &tags)).unwrap();
+    refused(&["frame_00001.png, which Another one has drawn, and this is ", "; choose that with --adapter", way_out]);
+    std::fs::write(&other, drawn).unwrap();
+    std::fs::write(&frame, &bytes).unwrap();
+    place.run("render scene.toml -o out --resume").good();
     place.run("render scene.toml -o whole").good();
     assert!(files(&place, "out") == files(&place, "whole"));
 }

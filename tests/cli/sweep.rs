@@ -64,6 +64,31 @@ fn complete_variants_are_left_out() {
     assert_eq!(ran.json()["scenes"].as_array().map(Vec::len), Some(3));
 }
 
+/// Neither the number of frames nor the last one says which they are.
+#[test]
+fn variants_with_other_frames_are_not_complete() {
+    let place = place();
+    place.run("simulate small.toml --sweep sweep.csv --frames 0,2,6").good();
+    let ran = place.run("simulate small.toml --sweep sweep.csv --frames 0,3,6 --resume").good();
+    assert!(!ran.out.contains("is complete"), "{ran:?}");
+    let table = place.read(&format!("output/small-sweep/{}/diagnostics.csv", FOLDERS[2]));
+    let frames: Vec<_> = table.lines().skip(1).filter_map(|line| line.split(',').nth(1)).collect();
+    assert!(frames.contains(&"3") && !frames.contains(&"2"), "{table}");
+    let ran = place.run("simulate small.toml --sweep sweep.csv --frames 0,3,6 --resume").good();
+    assert_eq!(ran.out.matches("is complete").count(), 3, "{ran:?}");
+}
+
+#[test]
+fn warnings_are_given_with_their_lines() {
+    let place = place();
+    place.write("sweep.csv", "run[0].step\nT/50\nT/2\n");
+    let typed = "simulate small.toml --sweep sweep.csv --frames 0-1";
+    let ran = place.run(typed);
+    let warning = ran.err.starts_with("warning: sweep.csv:3:1: ") && ran.err.contains("  3 | T/2\n");
+    assert!(warning && !ran.err.contains("sweep.csv:2:"), "{ran:?}");
+    assert_eq!(place.run(&format!("{typed} --quiet")).err, "");
+}
+
 #[test]
 fn mistakes_are_found_in_their_cells_before_anything_is_made() {
     let place = place();
@@ -86,6 +111,9 @@ fn mistakes_are_found_in_their_cells_before_anything_is_made() {
     refused("body.mass\n", &["sweep.csv: has no variants"]);
     refused("", &["sweep.csv: has no variants"]);
     refused("body.mass\n1,2\n", &["sweep.csv: line 2 has 2 values; expected 1, one for each key"]);
+    place.write("sweep.csv", "time.duration\n0.1\n0.05\n");
+    let ran = place.run("simulate small.toml --sweep sweep.csv --frames 6");
+    ran.bad(2, &["sweep.csv:3:1: frames of “", "  3 | 0.05\n"]);
     place.run("simulate small.toml --sweep none.csv").bad(4, &["cannot read none.csv"]);
     place.run("simulate none.toml --sweep sweep.csv").bad(2, &["none.toml: there is no such file"]);
     place.run("simulate small.toml small.toml --sweep sweep.csv").bad(2, &["--sweep has the variants of one scene"]);
