@@ -5,7 +5,7 @@ use super::failure::{Failure, Status, with_causes};
 use super::interrupt;
 use super::options::{PrintOptions, RunOptions};
 use super::report;
-use super::results::{Pace, Results};
+use super::results::{Pace, Pictures, Results};
 use super::scenes::{Job, with_option};
 use crate::cause::Cause;
 use crate::history::History;
@@ -17,7 +17,6 @@ use crate::output::{
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::Scene;
 use crate::sim::body::Body;
-use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::{self, Frame};
 use crate::sim::state::State;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -27,24 +26,6 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
-
-/// What turns frames into pictures, for one scene.
-pub(super) trait Pictures {
-    /// Writes down in the summary how the pictures are made.
-    fn describe(&self, summary: &mut Summary);
-    /// The diagnostics whose time series over the whole scene are needed before the first frame, if its course is.
-    fn time_series(&self) -> Option<&[Diagnostic]>;
-    /// Sets the time series of the scene.
-    fn take_history(&mut self, history: &History);
-    /// Draws a frame and sees to it that it is written, now or a little later.
-    fn draw(&mut self, frame: &Frame) -> Result<(), Failure>;
-    /// Waits until all frames so far are written.
-    fn flush(&mut self) -> Result<(), Failure>;
-    /// Leaves frames as an earlier command has drawn them, unless one of them is no longer so: what is wrong with it, in words.
-    fn keep(&mut self, frames: &[u64]) -> Result<Option<String>, Failure>;
-    /// Waits until all frames are written, and writes down how many and how long it took.
-    fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure>;
-}
 
 /// What makes pictures of scenes.
 pub(super) trait Studio {

@@ -6,7 +6,8 @@ use super::film::{Films, Shared, replaceable};
 use super::frames::Shard;
 use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, size};
-use super::record::{self, Pictures, Studio};
+use super::record::{self, Studio};
+use super::results::Pictures;
 use super::still::{
     Format as FileFormat, NO_ADAPTER, Still, check_type, replaceable as replaceable_still, source_of, too_small,
 };

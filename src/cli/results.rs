@@ -1,10 +1,30 @@
 //! What becomes of frames, and the checkpoints from which an interrupted command goes on.
 
 use super::failure::{Failure, note, with_causes};
-use super::record::Pictures;
-use crate::output::{Checkpoint, Claimed, DiagnosticsWriter, OutputError, StatesWriter};
+use crate::history::History;
+use crate::output::{Checkpoint, Claimed, DiagnosticsWriter, OutputError, StatesWriter, Summary, Timings};
 use crate::runner::{Frames, Next};
+use crate::sim::diagnostics::Diagnostic;
+use crate::sim::snapshot::Frame;
 use std::time::{Duration, Instant};
+
+/// What turns frames into pictures, for one scene.
+pub(super) trait Pictures {
+    /// Writes down in the summary how the pictures are made.
+    fn describe(&self, summary: &mut Summary);
+    /// The diagnostics whose time series over the whole scene are needed before the first frame, if its course is.
+    fn time_series(&self) -> Option<&[Diagnostic]>;
+    /// Sets the time series of the scene.
+    fn take_history(&mut self, history: &History);
+    /// Draws a frame and sees to it that it is written, now or a little later.
+    fn draw(&mut self, frame: &Frame) -> Result<(), Failure>;
+    /// Waits until all frames so far are written.
+    fn flush(&mut self) -> Result<(), Failure>;
+    /// Leaves frames as an earlier command has drawn them, unless one of them is no longer so: what is wrong with it, in words.
+    fn keep(&mut self, frames: &[u64]) -> Result<Option<String>, Failure>;
+    /// Waits until all frames are written, and writes down how many and how long it took.
+    fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure>;
+}
 
 /// The results of one scene, frame by frame.
 pub(super) struct Results<'a> {

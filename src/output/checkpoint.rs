@@ -5,7 +5,7 @@
 
 use super::atomic::{remove, sync_folder};
 use super::diagnostics::Rows;
-use super::folder::{Plan, Whose};
+use super::plan::{Plan, Whose};
 use super::states::{Course, Origin};
 use super::{OutputError, read_file, write_whole};
 use crate::runner::Progress;

@@ -20,6 +20,7 @@ pub(crate) mod integrate;
 mod kernel;
 mod lanes;
 pub(crate) mod lists;
+pub(crate) mod mode;
 pub mod model;
 pub(crate) mod motion;
 pub(crate) mod part;

@@ -7,7 +7,7 @@
 
 use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
 use crate::sim::body::Body;
-use crate::sim::stability::Mode;
+use crate::sim::mode::Mode;
 use crate::sim::state::Nodes;
 use crate::sim::topology::Springs;
 use crate::sim::words;

@@ -10,7 +10,7 @@ pub mod shape_based;
 
 use super::body::Body;
 #[doc(hidden)]
-pub use super::stability::Mode;
+pub use super::mode::Mode;
 use super::state::{Nodes, State};
 use super::words;
 use glam::DVec3;

@@ -11,9 +11,9 @@
 
 use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
 use crate::sim::body::{Body, Dimension};
+use crate::sim::mode::Mode;
 pub use crate::sim::rotation::RotationReading;
 use crate::sim::rotation::{self, davenport1968, linear_update, planar};
-use crate::sim::stability::Mode;
 use crate::sim::state::Nodes;
 use crate::sim::words;
 use glam::{DMat3, DQuat, DVec2, DVec3};

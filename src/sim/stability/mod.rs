@@ -6,13 +6,12 @@
 //! also resists across its direction, with a stiffness that approaches its own; a second limit allows for that.
 
 mod lanczos;
-mod mode;
-
-pub use mode::Mode;
+mod limits;
 
 use super::body::{Body, Dimension};
 use super::grip::Grip;
 use super::integrate::Integrator;
+use super::mode::Mode;
 use super::model::mass_spring::MassSpring;
 use super::model::{ElasticModel, ForceModel, Known, Scratch};
 use super::state::Nodes;

@@ -4,16 +4,7 @@
 //! own Rayleigh quotients `a` and `c`, so a step that is stable for all of these is stable for the system.
 
 use crate::sim::integrate::Integrator;
-
-/// Stiffness and damping of a mode, divided by its mass.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[doc(hidden)]
-pub struct Mode {
-    /// `a` (1/s²), the square of the angular frequency without damping.
-    pub stiffness: f64,
-    /// `c` (1/s).
-    pub damping: f64,
-}
+use crate::sim::mode::Mode;
 
 /// `ωΔT` up to which an undamped oscillation is stable. [`tests`] compute these numbers from the coefficients of the methods.
 ///
