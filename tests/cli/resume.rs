@@ -51,6 +51,8 @@ fn after_ctrl_c_it_goes_on_from_there() {
     let line = ran.out.lines().find(|line| line.starts_with("interrupted after ")).expect("where it stopped");
     assert!(line.contains(" of 3601 frames simulated in out, simulated to ") && line.ends_with(" s of 60 s"), "{line}");
     assert!(place.path("out").join(CHECKPOINT).exists());
+    let ran = place.run("simulate scene.toml -o out --resume");
+    ran.bad(2, &["to go on from it, type that command with --resume: ", "simulate scene.toml --states -o out"]);
     let before = steps(&place, "out");
     // Again, on the way.
     let typed = format!("{typed} --resume");
@@ -135,7 +137,10 @@ fn a_checkpoint_of_something_else_is_refused() {
     };
     refused(
         " --only Mass-spring --overwrite",
-        &["belongs to a command with other frames, runs, states or size: ", "simulate scene.toml;"],
+        &[
+            "belongs to a command with other frames, runs, states or size; to go on from it, type that command with --resume: ",
+            "simulate scene.toml;",
+        ],
     );
     refused(" --frames 0-3", &["belongs to a command with other frames"]);
     refused(" --states", &["belongs to a command with other frames, runs, states"]);
