@@ -69,6 +69,20 @@ fn after_ctrl_c_it_goes_on_from_there() {
     assert_eq!(place.names("out"), ["diagnostics.csv", "run.json", "states.npz"], "nothing else is left");
 }
 
+/// What was found out before an interruption is not simulated again, and not forgotten.
+#[test]
+fn causes_of_divergences_are_kept() {
+    let place = Place::new();
+    let scene = seconds().replace("one-diagonal\" }", "one-diagonal\" }\nstep = \"T/2\"");
+    place.write("scene.toml", &scene);
+    let typed = "simulate scene.toml -q -o out";
+    stopped(&place, typed, &format!("out/{CHECKPOINT}"), "KILL");
+    place.run(&format!("{typed} --resume")).good();
+    let run = place.json("out/run.json")["runs"][1].clone();
+    assert_eq!(run["status"], "diverged");
+    assert!(run["cause"].is_string() && run["node"].is_u64(), "{run}");
+}
+
 #[test]
 fn after_a_kill_it_goes_on_from_the_last_checkpoint() {
     let place = Place::new();

@@ -80,8 +80,7 @@ fn a_body_at_rest_sleeps_within_the_bound_of_one_that_is_awake() {
 #[test]
 fn what_vibrates_far_does_not_sleep() {
     for (share, sleeps) in [(0.2, true), (3.0, false)] {
-        let scene = scene("gravity = [0, 0, 0]").clone();
-        let mut scene = Scene { gravity: DVec3::ZERO, ..scene };
+        let mut scene = Scene { gravity: DVec3::ZERO, ..scene("") };
         let stretch = 1.0 + share * DISTANCE / 0.1;
         scene.initial.position.iter_mut().for_each(|position| *position *= stretch);
         scene.runs.truncate(1);
@@ -121,10 +120,10 @@ fn what_touches_a_body_wakes_it() {
         (
             "a corner is lifted",
             "obstacle = [{ kind = 'floor' }]
-            grab = [{ nodes = [0], keys = [{ time = 3, shift = [0, 0, 0] }, { time = 4, shift = [0, 0.3, 0] }] }]",
+            grab = [{ nodes = [0], path = { keys = [{ time = 3, shift = [0, 0, 0] }, { time = 4, shift = [0, 0.3, 0] }] } }]",
             Some(3.0),
         ),
-        ("held nodes are let go", "hold = [{ nodes = [0, 1, 2], until = 3 }]", Some(3.0)),
+        ("held nodes are let go", "hold = [{ nodes = [6, 7, 8, 15, 16, 17, 24, 25, 26], until = 4.5 }]", Some(4.5)),
     ];
     for (name, more, wakes) in cases {
         let scene = scene(more);
@@ -133,7 +132,7 @@ fn what_touches_a_body_wakes_it() {
             let mut world = scene.world(run);
             let mut woken = None;
             let mut slept = false;
-            while (world.steps() as f64) * step < 5.0 {
+            while (world.steps() as f64) * step < 5.5 {
                 world.advance(1);
                 let sleeps = world.state().asleep_since().is_some();
                 if slept && !sleeps && woken.is_none() {
@@ -163,7 +162,7 @@ fn sleep_does_not_depend_on_how_steps_are_divided() {
         let steps = (5.0 / scene.runs[run].step) as u64;
         let mut whole = scene.world(run);
         whole.advance(steps);
-        for stretch in [1, 7, 97, 400] {
+        for stretch in [7, 97, 400] {
             let (mut cut, mut slept) = (scene.world(run), false);
             while cut.steps() < steps {
                 cut.advance(stretch.min(steps - cut.steps()));
