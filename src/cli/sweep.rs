@@ -75,7 +75,7 @@ impl Sweep {
         let text = String::from_utf8(bytes).map_err(|_| Failure::usage(format!("{name} is not text in UTF-8")))?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         let Variants { keys, rows } = Variants::parse(text).map_err(|found| {
-            Failure::usage(Mistakes { file: name.to_string(), found: vec![found], total: 1 }.to_string())
+            Failure::usage(Mistakes { file: name.to_string(), found: vec![*found], total: 1 }.to_string())
         })?;
         let mut sweep =
             Self { scene: path.clone(), limits, variants: Vec::new(), folder: PathBuf::new(), table: Vec::new() };
@@ -206,8 +206,8 @@ impl Sweep {
             return occupied(format!("variants of another table, such as {name}"));
         }
         let ours = |name: &String| self.variants.iter().any(|variant| variant.folder == *name);
-        let names = others.iter().filter_map(|line| line.first());
-        if let Some(name) = names.filter(|name| !ours(name) && self.folder.join(name).is_dir()).last() {
+        let mut names = others.iter().filter_map(|line| line.first());
+        if let Some(name) = names.rfind(|name| !ours(name) && self.folder.join(name).is_dir()) {
             note(&format!("{} keeps variants of an earlier table, such as {name}", self.folder.display()));
         }
         Ok(())

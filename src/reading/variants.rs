@@ -23,10 +23,11 @@ impl Variants {
     ///
     /// # Errors
     /// The first mistake in it.
-    pub(crate) fn parse(text: &str) -> Result<Self, Mistake> {
+    pub(crate) fn parse(text: &str) -> Result<Self, Box<Mistake>> {
         let source = Source::new(text);
-        let wrong =
-            |span: Range<usize>, message: String, help: Option<String>| mistake(&source, span, &[], message, help);
+        let wrong = |span: Range<usize>, message: String, help: Option<String>| {
+            Box::new(mistake(&source, span, &[], message, help))
+        };
         let no_table = |error: csv::Error| {
             let at = error.position().map_or(0, |position| position.byte() as usize);
             wrong(at..at, "this is no table of comma-separated values".to_owned(), None)
