@@ -11,10 +11,10 @@ use crate::sim::state::State;
 use crate::sim::words::quantity;
 use crate::sim::world::World;
 use glam::DVec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Where and why a run diverged.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Cause {
     /// The first node that would have become too fast, or not a number.
     pub(crate) node: usize,

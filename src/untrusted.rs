@@ -5,6 +5,7 @@
 
 use crate::golden::Pixels;
 use crate::output::StoredStates;
+use crate::reading::variants::{self, Variants};
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene};
@@ -22,7 +23,7 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 8] = [
+pub const READERS: [Reader; 10] = [
     Reader { name: "scene", read: scene },
     Reader { name: "figure", read: figure },
     Reader { name: "body", read: body },
@@ -30,6 +31,8 @@ pub const READERS: [Reader; 8] = [
     Reader { name: "states", read: states },
     Reader { name: "checkpoint", read: checkpoint },
     Reader { name: "state", read: |bytes| drop(State::from_bytes(bytes)) },
+    Reader { name: "sweep", read: sweep },
+    Reader { name: "cells", read: cells },
     Reader { name: "picture", read: |bytes| drop(Pixels::from_bytes(bytes)) },
 ];
 
@@ -120,6 +123,28 @@ fn checkpoint(bytes: &[u8]) {
                 return;
             }
         }
+    }
+}
+
+/// A table of variants of [`SCENE`], each of which is read.
+fn sweep(bytes: &[u8]) {
+    /// Variants that are read.
+    const MOST: usize = 4;
+    let Some(Ok(table)) = std::str::from_utf8(bytes).ok().map(Variants::parse) else { return };
+    for (row, start) in table.rows.iter().take(MOST) {
+        let mut root: toml::Table = SCENE.parse().expect("sound");
+        for (column, key) in table.keys.iter().enumerate() {
+            variants::cell(std::str::from_utf8(bytes).unwrap_or_default(), *start, column);
+            drop(variants::set(&mut root, key, variants::value(&row[column])));
+        }
+        begin(Scene::parse(&root.to_string(), "scene.toml", &LIMITS));
+    }
+}
+
+/// The finished cells of a study of stability.
+fn cells(bytes: &[u8]) {
+    if let Ok(text) = std::str::from_utf8(bytes) {
+        crate::study::stability::read(text).for_each(drop);
     }
 }
 

@@ -84,6 +84,10 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
         "points" => vec![b"time,x,y,z\n0,0,0.1,0\n0.1,0,0.2,0\n".to_vec()],
         "states" => vec![states()],
         "checkpoint" => vec![checkpoint_of_scene()],
+        "sweep" => {
+            vec![b"run[0].model.stiffness,run[1].step,body.lattice.cells\n2e4,T/60,\n1e4,,\"[1, 1, 1]\"\n".to_vec()]
+        }
+        "cells" => vec![b"0 4652007308841189376 0 12 3;\n1 4652007308841189376 0 12 diverged;\n".to_vec()],
         "state" => vec![localshape::sim::State::at_rest(vec![glam::DVec3::ONE; 3]).to_bytes()],
         "picture" => {
             let tags: Vec<(&'static str, String)> = vec![("version", "0.1.0".to_owned())];

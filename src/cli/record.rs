@@ -244,7 +244,10 @@ impl<'a> Recording<'a> {
         // Written before the first frame, so that the folder is known as this scene's even if the program is killed.
         self.summary.write(folder)?;
         let (progress, rows, course) = match checkpoint {
-            Some(Checkpoint { progress, rows, course, .. }) => (Some(progress), rows, course),
+            Some(Checkpoint { progress, causes, rows, course, .. }) => {
+                self.summary.runs.iter_mut().zip(causes).for_each(|(run, cause)| run.cause = cause);
+                (Some(progress), rows, course)
+            }
             None => (None, None, None),
         };
         let diagnostics = match rows {
@@ -320,6 +323,13 @@ impl<'a> Recording<'a> {
         }
     }
 
+    /// Notes since when bodies sleep.
+    fn note_sleep(&mut self, states: &[&State]) {
+        for (summary, state) in self.summary.runs.iter_mut().zip(states) {
+            summary.asleep_since = state.asleep_since().map(|step| step as f64 * summary.time_step);
+        }
+    }
+
     /// The error for a checkpoint that lacks what belongs to it.
     fn unusable(&self, error: &dyn Error) -> OutputError {
         let what = format!("cannot be used ({})", with_causes(error)).into();
@@ -389,10 +399,10 @@ impl<'a> Recording<'a> {
         // Frames that are not kept cannot be continued, and states that are read need not be.
         let can_resume =
             simulation.read_from.is_none() && (results.pictures.is_none() || self.summary.frames.size.is_some());
-        let (mut pace, command) = (Pace::new(), &self.summary.command.clone()[..]);
+        let mut pace = Pace::new();
         while !interrupt::requested() {
             if can_resume && pace.is_due() {
-                pace.take(|| results.save(&mut simulation.frames, simulation.ahead, self.folder, command))?;
+                pace.take(|| results.save(&mut simulation.frames, simulation.ahead, self.folder, self.summary))?;
             }
             let Simulation { frames, notes, read_from, .. } = simulation;
             let clock = Clock::thread();
@@ -414,6 +424,7 @@ impl<'a> Recording<'a> {
                     if read_from.is_none() {
                         let states: Vec<_> = frames.states().collect();
                         pool.install(|| self.find_causes(&states));
+                        self.note_sleep(&states);
                     }
                     self.last = Some(frame);
                 }
@@ -430,7 +441,7 @@ impl<'a> Recording<'a> {
             self.summary.reached = simulation.frames.on_the_way();
         }
         if can_resume && interrupt::requested() {
-            results.save(&mut simulation.frames, simulation.ahead, self.folder, command)?;
+            results.save(&mut simulation.frames, simulation.ahead, self.folder, self.summary)?;
         }
         let frames = &mut simulation.frames;
         for (run, steps) in self.summary.runs.iter_mut().zip(frames.simulated()) {

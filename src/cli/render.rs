@@ -180,7 +180,8 @@ impl Render {
         let gpu = self.device.open(sizes.into_inner().unwrap_or_else(PoisonError::into_inner))?;
         let device = self.studio(gpu, None);
         let jobs = self.options.variants(&sweep, true, |scene| self.resize(scene), words)?;
-        record::run_all(jobs, &self.options, words, self.timings, Some(&device))
+        let status = record::run_all(jobs, &self.options, words, self.timings, Some(&device))?;
+        sweep.end(status, self.options.printing)
     }
 
     /// Draws one frame into a file of its own.

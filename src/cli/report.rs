@@ -48,7 +48,10 @@ fn made(summary: &Summary, folder: &Path) -> String {
 
 fn row(run: &RunSummary) -> [String; 4] {
     let status = match run.status {
-        RunStatus::Ok => "ok".to_owned(),
+        RunStatus::Ok => match run.asleep_since {
+            Some(time) => format!("ok, asleep since {} s", short(time)),
+            None => "ok".to_owned(),
+        },
         RunStatus::Diverged { time, step, element } => {
             let element = element.map(|element| format!(", element {element}")).unwrap_or_default();
             format!("diverged at {} s (step {step}{element})", short(time))

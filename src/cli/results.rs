@@ -56,8 +56,8 @@ impl Results<'_> {
         }
     }
 
-    /// Writes a checkpoint, if anything is left to simulate, by the command of these words. With `ahead` all is simulated
-    /// before the first frame.
+    /// Writes a checkpoint, if anything is left to simulate, by the command of the summary, with what that knows of divergences.
+    /// With `ahead` all is simulated before the first frame.
     ///
     /// # Errors
     /// If frames cannot be drawn or written. A checkpoint that cannot be written is only warned of: a disk without room
@@ -67,7 +67,7 @@ impl Results<'_> {
         frames: &mut Frames<'_>,
         ahead: bool,
         folder: &Claimed,
-        words: &[String],
+        summary: &Summary,
     ) -> Result<(), Failure> {
         let Self { diagnostics, states, pictures, warned } = self;
         if let Some(pictures) = pictures {
@@ -77,7 +77,8 @@ impl Results<'_> {
         let failed = |error| OutputError::writing(path)(error);
         let mut write = || {
             let Some(progress) = frames.progress().map_err(failed)? else { return Ok(()) };
-            let mut checkpoint = Checkpoint::new(words.to_vec(), plan, progress);
+            let mut checkpoint = Checkpoint::new(summary.command.clone(), plan, progress);
+            checkpoint.causes = summary.runs.iter().map(|run| run.cause.clone()).collect();
             if !ahead {
                 checkpoint.rows = Some(diagnostics.sync().map_err(failed)?);
                 checkpoint.course = states.as_mut().map(StatesWriter::sync).transpose().map_err(failed)?;

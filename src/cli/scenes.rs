@@ -145,12 +145,17 @@ impl RunOptions {
         adjust: impl Fn(&mut Scene),
         words: &[OsString],
     ) -> Result<impl Iterator<Item = Result<Job, Failure>>, Failure> {
-        Ok(sweep.variants()?.map(move |variant| {
+        let job = move |variant: Result<(Scene, PathBuf), Failure>| {
             let (mut scene, path) = variant?;
             adjust(&mut scene);
             let job = self.job(scene, &path, pictures, None, None, words)?;
             Ok(Job { once: self.resume, ..job })
-        }))
+        };
+        // Nothing is made before all folders are known to be free.
+        sweep.check_folder(self.overwrite).map_err(|error| occupied(error, words))?;
+        sweep.variants().try_for_each(|variant| job(variant).map(drop))?;
+        sweep.write_table()?;
+        Ok(sweep.variants().map(job))
     }
 
     /// A folder named after the scene follows its file. A folder named by the user keeps its contents, which may be

@@ -44,7 +44,9 @@ impl Simulate {
         if let Some(file) = &options.sweep {
             let check = |scene: &Scene| options.runs(scene).and_then(|_| options.frames(scene)).map(drop);
             let sweep = Sweep::read(file, &self.scenes, options, self.shard, check)?;
-            return record::run_all(options.variants(&sweep, false, |_| {}, words)?, options, words, false, None);
+            let jobs = options.variants(&sweep, false, |_| {}, words)?;
+            let status = record::run_all(jobs, options, words, false, None)?;
+            return sweep.end(status, options.printing);
         }
         let jobs = options.jobs(self.scenes.load_all(options.printing.quiet)?, false, None, None, words)?;
         record::run_all(jobs.into_iter().map(Ok), options, words, false, None)

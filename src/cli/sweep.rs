@@ -1,16 +1,23 @@
 //! `--sweep`: variants of a scene, one for each line of a table, each in a folder of its own.
 
-use super::failure::{Failure, warn_of};
+use super::console::{self, columns};
+use super::failure::{Failure, Status, note, warn_of};
 use super::frames::Shard;
-use super::options::{RunOptions, SceneOptions};
-use crate::output::{OutputError, read_file, write_whole};
+use super::options::{PrintOptions, RunOptions, SceneOptions};
+use crate::output::{OutputError, SUMMARY_FILE, exact, read_file, write_whole};
+use crate::reading::beside::similar;
 use crate::reading::report::mistake;
 use crate::reading::source::Source;
+use crate::reading::variants::{Row, Variants, cell, decimal_comma, set, value};
+use crate::reading::words::short;
 use crate::reading::{Mistake, Mistakes};
 use crate::scene::{Limits, Scene, SceneError};
-use csv::{ReaderBuilder, StringRecord, Trim};
+use crate::sim::words::quantity;
+use csv::ReaderBuilder;
+use serde_json::Value;
 use std::collections::HashSet;
 use std::fs;
+use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -20,6 +27,8 @@ const LONGEST: u64 = 8 << 20;
 const MOST_CHARACTERS: usize = 80;
 /// The table of all variants with their folders.
 const VARIANTS_FILE: &str = "variants.csv";
+/// The table of how their runs fare.
+const COMPARISON_FILE: &str = "comparison.csv";
 
 /// Variants of a scene.
 #[derive(Debug)]
@@ -57,7 +66,7 @@ impl Sweep {
         let name = file.display();
         let limits = scenes.limits();
         let base = scenes.load_all(options.printing.quiet)?.pop().expect("one was named");
-        let found = fs::metadata(file).map_err(OutputError::reading(file))?;
+        let found = fs::metadata(file).map_err(|error| missing(file, error))?;
         if found.is_file() && found.len() > LONGEST {
             return Err(Failure::usage(format!("{name} is longer than {LONGEST} bytes; split the sweep")));
         }
@@ -65,7 +74,9 @@ impl Sweep {
             .ok_or_else(|| Failure::usage(format!("{name} is no file; expected a table, such as sweep.csv")))?;
         let text = String::from_utf8(bytes).map_err(|_| Failure::usage(format!("{name} is not text in UTF-8")))?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-        let (keys, rows) = rows(text).map_err(|error| Failure::usage(format!("{name}: {error}")))?;
+        let Variants { keys, rows } = Variants::parse(text).map_err(|found| {
+            Failure::usage(Mistakes { file: name.to_string(), found: vec![*found], total: 1 }.to_string())
+        })?;
         let mut sweep =
             Self { scene: path.clone(), limits, variants: Vec::new(), folder: PathBuf::new(), table: Vec::new() };
         sweep.folder = options
@@ -150,8 +161,9 @@ impl Sweep {
             };
             for one in mistakes.found {
                 let is_key = one.message.starts_with("unknown key");
-                let start = if is_key { 0 } else { *start };
-                add(cell(text, start, column_of(&one.place)), one.message, one.help);
+                let (start, column) = (if is_key { 0 } else { *start }, column_of(&one.place));
+                let help = decimal_comma(&rows[number].0[column]).filter(|_| !is_key).or(one.help);
+                add(cell(text, start, column), one.message, help);
             }
         }
         match total {
@@ -171,22 +183,95 @@ impl Sweep {
         Scene::load_text(&text, &self.scene, &self.limits).map_err(Wrong::Scene)
     }
 
-    /// Writes the table of all variants with their folders, and returns the variants, each with its folder, read one at a time.
-    pub(super) fn variants(&self) -> Result<impl Iterator<Item = Result<(Scene, PathBuf), Failure>>, Failure> {
+    /// Refuses a folder with variants of a table that has other lines, unless these may be lost. More lines are no other table.
+    ///
+    /// # Errors
+    /// If it is refused or cannot be read.
+    pub(super) fn check_folder(&self, overwrite: bool) -> Result<(), OutputError> {
         let path = self.folder.join(VARIANTS_FILE);
-        if read_file(&path)?.is_some_and(|bytes| !bytes.starts_with(b"folder,")) {
-            return Err(Failure::usage(format!(
-                "{} was not written by localshape; choose another folder with -o",
-                path.display()
-            )));
+        let Some(bytes) = read_file(&path)? else { return Ok(()) };
+        let occupied = |what: String| Err(OutputError::Occupied { path: self.folder.clone(), what });
+        if !bytes.starts_with(b"folder,") {
+            return occupied(format!("{VARIANTS_FILE}, which was not written by localshape"));
         }
+        let lines = |table: &[u8]| -> Vec<Vec<String>> {
+            let lines = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(table).into_records();
+            lines.flatten().map(|line| line.iter().map(str::to_owned).collect()).collect()
+        };
+        let (found, known) = (lines(&bytes), lines(&self.table).into_iter().collect::<HashSet<_>>());
+        let others: Vec<_> = found.iter().filter(|line| !known.contains(*line)).collect();
+        // Where the keys differ, so do all lines.
+        let Some(name) = others.last().and_then(|line| line.first()) else { return Ok(()) };
+        if !overwrite {
+            return occupied(format!("variants of another table, such as {name}"));
+        }
+        let ours = |name: &String| self.variants.iter().any(|variant| variant.folder == *name);
+        let mut names = others.iter().filter_map(|line| line.first());
+        if let Some(name) = names.rfind(|name| !ours(name) && self.folder.join(name).is_dir()) {
+            note(&format!("{} keeps variants of an earlier table, such as {name}", self.folder.display()));
+        }
+        Ok(())
+    }
+
+    /// Writes the table of all variants with their folders.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub(super) fn write_table(&self) -> Result<(), OutputError> {
         fs::create_dir_all(&self.folder).map_err(OutputError::writing(&self.folder))?;
-        write_whole(&path, &self.table)?;
-        Ok((0..self.variants.len()).map(|number| match self.scene(number) {
+        write_whole(&self.folder.join(VARIANTS_FILE), &self.table)
+    }
+
+    /// The variants, each with its folder, read one at a time.
+    pub(super) fn variants(&self) -> impl Iterator<Item = Result<(Scene, PathBuf), Failure>> {
+        (0..self.variants.len()).map(|number| match self.scene(number) {
             Ok(scene) => Ok((scene, self.folder.join(&self.variants[number].folder))),
             Err(Wrong::Scene(error)) => Err(Failure::usage(error.to_string())),
             Err(Wrong::Key(_, message)) => Err(Failure::usage(message)),
-        }))
+        })
+    }
+
+    /// Ends a sweep that was not interrupted: writes a table of how the runs of all variants fare that are complete, also of other
+    /// shards, and prints the beginning of it if that is wanted.
+    ///
+    /// # Errors
+    /// If a summary cannot be read, or the table cannot be written.
+    pub(super) fn end(&self, status: Status, printing: PrintOptions) -> Result<Status, Failure> {
+        /// The most lines that are printed.
+        const MOST: usize = 60;
+        if status != Status::Done {
+            return Ok(status);
+        }
+        let mut table = csv::Writer::from_writer(Vec::new());
+        let mut write = |line: &[&str]| table.write_record(line).expect("rows of equal length into memory");
+        write(&["folder", "run", "status", "diverged_at_s", "turned_over", "shape_error_m"]);
+        let mut shown = vec![["variant", "run", "status", "turned over", "shape error"].map(str::to_owned)];
+        let mut lines = ReaderBuilder::new().from_reader(&self.table[..]);
+        for line in lines.records().flatten() {
+            let name = line.get(0).unwrap_or_default();
+            let bytes = read_file(&self.folder.join(name).join(SUMMARY_FILE))?.unwrap_or_default();
+            let summary: Value = serde_json::from_slice(&bytes).unwrap_or_default();
+            let is_done = summary["outcome"] == "done";
+            for run in summary["runs"].as_array().filter(|_| is_done).into_iter().flatten() {
+                let number = |value: &Value| value.as_f64().map_or_else(String::new, exact);
+                let [run_name, status] = ["name", "status"].map(|key| run[key].as_str().unwrap_or_default());
+                let [over, error] = ["turned_over", "shape_error"].map(|key| &run["last"][key]);
+                write(&[name, run_name, status, &number(&run["time"]), &number(over), &number(error)]);
+                let at = run["time"].as_f64().map_or_else(String::new, |time| format!(" at {} s", short(time)));
+                let error = error.as_f64().map_or_else(String::new, |error| quantity(error, "m"));
+                shown.push([name.to_owned(), run_name.to_owned(), format!("{status}{at}"), number(over), error]);
+            }
+        }
+        let path = self.folder.join(COMPARISON_FILE);
+        write_whole(&path, &table.into_inner().expect("memory takes all"))?;
+        if printing.prints_text() {
+            let more = shown.len().saturating_sub(MOST + 1);
+            shown.truncate(MOST + 1);
+            let text = columns(&shown, [false, false, false, true, true]);
+            let more = if more > 0 { format!("{more} more ") } else { String::new() };
+            console::print(&format!("\n{text}{more}in {}\n", path.display()))?;
+        }
+        Ok(status)
     }
 
     fn table(&self, keys: &[String], rows: &[Row]) -> Vec<u8> {
@@ -203,107 +288,20 @@ impl Sweep {
     }
 }
 
+/// Why there is no table.
+fn missing(file: &Path, error: io::Error) -> Failure {
+    if error.kind() != io::ErrorKind::NotFound {
+        return OutputError::reading(file)(error).into();
+    }
+    let near = similar(file, &["csv"]).map_or_else(String::new, |name| format!("; did you mean {name}?"));
+    Failure::usage(format!("{}: there is no such file{near}", file.display()))
+}
+
 /// Why a variant is no scene.
 enum Wrong {
     /// A key cannot be changed.
     Key(String, String),
     Scene(SceneError),
-}
-
-/// The cells of a line, and the place of its first byte.
-type Row = (StringRecord, usize);
-
-/// The keys and the lines of a table.
-fn rows(text: &str) -> Result<(Vec<String>, Vec<Row>), String> {
-    let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(text.as_bytes());
-    let keys: Vec<String> = reader.headers().map_err(|error| error.to_string())?.iter().map(str::to_owned).collect();
-    if let Some(at) = (0..keys.len()).find(|&at| keys[at].is_empty() || keys[..at].contains(&keys[at])) {
-        return Err(format!(
-            "the key of column {} is {}; expected one such as run[0].model.stiffness",
-            at + 1,
-            if keys[at].is_empty() { "missing" } else { "given a second time" }
-        ));
-    }
-    let rows = reader.into_records().map(|row| {
-        let row = row.map_err(|error| match error.kind() {
-            csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-                let line = error.position().map_or(0, csv::Position::line);
-                format!("line {line} has {len} values; expected {expected_len}, one for each key")
-            }
-            _ => "is no table of comma-separated values".to_owned(),
-        })?;
-        let start = row.position().map_or(0, |position| position.byte() as usize);
-        Ok((row, start))
-    });
-    let rows: Vec<_> = rows.collect::<Result<_, String>>()?;
-    if keys.is_empty() || rows.is_empty() {
-        return Err(
-            "has no variants; expected a line of keys, such as body.lattice.side, and one line of values for each"
-                .to_owned(),
-        );
-    }
-    Ok((keys, rows))
-}
-
-/// The span of a cell in the line that begins at a byte.
-fn cell(text: &str, start: usize, column: usize) -> Range<usize> {
-    let (mut begin, mut at, mut left, mut is_quoted) = (start, start, column, false);
-    for byte in text.as_bytes().get(start..).unwrap_or_default() {
-        match byte {
-            b'"' => is_quoted = !is_quoted,
-            b',' if !is_quoted && left > 0 => (left, begin) = (left - 1, at + 1),
-            b',' | b'\r' | b'\n' if !is_quoted => break,
-            _ => {}
-        }
-        at += 1;
-    }
-    begin..at.max(begin)
-}
-
-/// The value of a cell: as in a scene file, or a text without quotation marks.
-fn value(cell: &str) -> toml::Value {
-    let typed = toml::from_str::<toml::Table>(&format!("value = {cell}")).ok();
-    let typed = typed.filter(|table| table.len() == 1).and_then(|mut table| table.remove("value"));
-    typed.unwrap_or_else(|| toml::Value::String(cell.to_owned()))
-}
-
-/// Sets the value of a key such as `run[0].model.stiffness`.
-fn set(root: &mut toml::Table, key: &str, value: toml::Value) -> Result<(), String> {
-    let expected = || format!("`{key}` is no key; expected one such as body.lattice.side or run[0].model.stiffness");
-    let mut parts = Vec::new();
-    for part in key.split('.') {
-        let (name, indices) = part.split_at(part.find('[').unwrap_or(part.len()));
-        let indices = indices.split_terminator(']').map(|index| index.strip_prefix('[')?.trim().parse().ok());
-        parts.push((name, indices.collect::<Option<Vec<usize>>>().filter(|_| !name.is_empty()).ok_or_else(expected)?));
-    }
-    let (last, before) = parts.split_last().ok_or_else(expected)?;
-    let mut table = root;
-    for (name, indices) in before {
-        let entry = table.entry(*name).or_insert_with(|| toml::Value::Table(toml::Table::new()));
-        table = within(entry, name, indices)?
-            .as_table_mut()
-            .ok_or_else(|| format!("`{name}` in `{key}` is not a table in the scene"))?;
-    }
-    let (name, indices) = last;
-    if indices.is_empty() {
-        table.insert((*name).to_owned(), value);
-    } else {
-        let entry = table.get_mut(*name).ok_or_else(|| format!("the scene has no `{key}`"))?;
-        *within(entry, name, indices)? = value;
-    }
-    Ok(())
-}
-
-/// An entry of nested arrays.
-fn within<'a>(mut value: &'a mut toml::Value, name: &str, indices: &[usize]) -> Result<&'a mut toml::Value, String> {
-    for &index in indices {
-        let items = value.as_array_mut().ok_or_else(|| format!("`{name}` is not an array in the scene"))?;
-        let count = items.len();
-        value = items
-            .get_mut(index)
-            .ok_or_else(|| format!("the scene has no `{name}[{index}]`; it has {count}, counted from 0"))?;
-    }
-    Ok(value)
 }
 
 /// The last parts of keys where they differ, else whole keys.
@@ -312,45 +310,4 @@ fn short_names(keys: &[String]) -> Vec<String> {
     let is_alone = |key: &String| keys.iter().filter(|other| last(other) == last(key)).count() == 1;
     let whole = |key: &String| key.chars().filter(|c| !"[]".contains(*c)).collect();
     keys.iter().map(|key| if is_alone(key) { last(key) } else { whole(key) }).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_are_typed_as_in_scenes_and_texts_need_no_quotation_marks() {
-        let text = |text: &str| toml::Value::String(text.to_owned());
-        assert_eq!(value("1e4"), toml::Value::Float(1e4));
-        assert_eq!(value("[3, 3]"), toml::Value::Array(vec![3.into(), 3.into()]));
-        assert_eq!(value("true"), toml::Value::Boolean(true));
-        assert_eq!((value("T/50"), value("\"T/50\"")), (text("T/50"), text("T/50")));
-        assert_eq!(value("1\nother = 2"), text("1\nother = 2"));
-    }
-
-    #[test]
-    fn keys_are_those_of_messages() {
-        let mut root: toml::Table = "run = [{ step = 1 }, { step = 2 }]\nbody.side = 1".parse().unwrap();
-        set(&mut root, "run[1].step", 7.into()).unwrap();
-        set(&mut root, "body.spin.axis", 8.into()).unwrap();
-        assert_eq!(root, "run = [{ step = 1 }, { step = 7 }]\nbody.side = 1\nbody.spin.axis = 8".parse().unwrap());
-        for (key, message) in [
-            ("run[2].step", "the scene has no `run[2]`; it has 2, counted from 0"),
-            ("body[0].side", "`body` is not an array in the scene"),
-            ("body.side.x", "`side` in `body.side.x` is not a table in the scene"),
-            ("run[x].step", "`run[x].step` is no key"),
-            ("run..step", "`run..step` is no key"),
-            ("grab[0]", "the scene has no `grab[0]`"),
-        ] {
-            let error = set(&mut root, key, 1.into()).unwrap_err();
-            assert!(error.contains(message), "{key}: {error}");
-        }
-    }
-
-    #[test]
-    fn cells_are_found_in_their_lines() {
-        let text = "a,b\n1,\"x, y\",3\n";
-        let at = |start, column| &text[cell(text, start, column)];
-        assert_eq!([at(0, 1), at(4, 0), at(4, 1), at(4, 2)], ["b", "1", "\"x, y\"", "3"]);
-    }
 }

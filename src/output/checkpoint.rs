@@ -8,6 +8,7 @@ use super::diagnostics::Rows;
 use super::plan::{Plan, Whose};
 use super::states::{Course, Origin};
 use super::{OutputError, read_file, write_whole};
+use crate::cause::Cause;
 use crate::runner::Progress;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -28,6 +29,8 @@ pub(crate) struct Checkpoint {
     plan: [u8; 32],
     /// The simulation.
     pub(crate) progress: Progress,
+    /// Why runs have diverged, as far as that is known: one for each run.
+    pub(crate) causes: Vec<Option<Cause>>,
     /// The rows of frames that are written; `None` if no frame is written before the end of the simulation.
     pub(crate) rows: Option<Rows>,
     /// The states that are written with them, if states are.
@@ -37,7 +40,7 @@ pub(crate) struct Checkpoint {
 impl Checkpoint {
     /// Of a command that makes what a `plan` says.
     pub(crate) fn new(command: Vec<String>, plan: &Plan, progress: Progress) -> Self {
-        Self { command, plan: digest(plan), progress, rows: None, course: None }
+        Self { command, plan: digest(plan), progress, causes: Vec::new(), rows: None, course: None }
     }
 
     /// Replaces the one in a folder, if there is one. What it refers to has to be on the disk.
@@ -84,7 +87,7 @@ impl Checkpoint {
         let found: Self = postcard::from_bytes(rest).map_err(|_| damaged())?;
         if found.plan != digest(plan) {
             return Err(format!(
-                "belongs to a command with other frames, runs, states or size: {}",
+                "belongs to a command with other frames, runs, states or size; to go on from it, type that command with --resume: {}",
                 crate::shell::line(&found.command)
             ));
         }
@@ -146,7 +149,8 @@ mod tests {
         }
         let other = Plan { frames: vec![0, 1], ..plan() };
         let what = Checkpoint::parse(&bytes, &whose(), &other).unwrap_err();
-        assert_eq!(what, "belongs to a command with other frames, runs, states or size: localshape render");
+        assert!(what.starts_with("belongs to a command with other frames, runs, states or size; to go on"), "{what}");
+        assert!(what.ends_with("with --resume: localshape render"), "{what}");
         Checkpoint::remove(folder.path()).unwrap();
         assert!(!Checkpoint::is_in(folder.path()));
     }

@@ -94,7 +94,10 @@ impl Folder {
     /// The results in the folder, if they do not prevent its use.
     fn find(&self) -> Result<Found, OutputError> {
         let mut found = Found::in_folder(&self.path, &self.scene, &self.plan)?;
-        if !self.resume && Checkpoint::is_in(&self.path) {
+        if Checkpoint::is_in(&self.path) && self.resume {
+            // One that fits the plan loses nothing, and another one is refused with the command that it is of.
+            found.lost = None;
+        } else if Checkpoint::is_in(&self.path) {
             let rows = found.lost.take().map_or(String::new(), |rows| format!("{rows}, and "));
             found.lost = Some(format!("{rows}the checkpoint of an interrupted command, from which --resume goes on"));
         }

@@ -98,9 +98,12 @@ pub(crate) struct RunSummary {
     /// `ok` or `diverged`.
     #[serde(flatten)]
     pub status: RunStatus,
-    /// Why it diverged; absent if it did not, or was not simulated by this command.
+    /// Why it diverged; absent if it did not, or its states are read.
     #[serde(flatten)]
     pub cause: Option<Cause>,
+    /// Since when its body sleeps in the last recorded frame (s); absent if it does not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub asleep_since: Option<f64>,
     /// The frames drawn by this command in which its body leaves its panel; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cut: Vec<u64>,
@@ -150,6 +153,7 @@ impl Summary {
                 steps: 0,
                 status: RunStatus::Ok,
                 cause: None,
+                asleep_since: None,
                 cut: Vec::new(),
                 last: None,
             }

@@ -5,6 +5,7 @@ pub(crate) mod coordinates;
 mod mistake;
 pub(crate) mod report;
 pub(crate) mod source;
+pub(crate) mod variants;
 pub(crate) mod words;
 
 pub use mistake::{Mistake, Mistakes};

@@ -17,8 +17,8 @@ pub(crate) struct Frames<'a> {
     frames: Vec<u64>,
     /// Number of frames returned, or that need not be.
     taken: usize,
-    /// Whether the runs have the states of the next frame.
-    is_set: bool,
+    /// Whether the runs have the states of the next frame, and what pictures show of those that diverge is looked for.
+    is_searching: bool,
     /// Steps that each run had taken in an earlier process.
     before: Vec<u64>,
     source: Source<'a>,
@@ -104,7 +104,7 @@ impl<'a> Frames<'a> {
             None => Source::Simulated,
         };
         let before = vec![0; runner.runs.len()];
-        Self { runner, frames: frames.to_vec(), taken: 0, is_set: false, before, source }
+        Self { runner, frames: frames.to_vec(), taken: 0, is_searching: false, before, source }
     }
 
     /// Where the simulation has come to; `None` if there is nothing left to simulate. Waiting states are on the disk then.
@@ -218,7 +218,7 @@ impl<'a> Frames<'a> {
     /// # Errors
     /// If stored states cannot be written or read.
     pub(crate) fn next(&mut self, most_steps: u64) -> io::Result<Next> {
-        let Self { runner, frames, taken, is_set, source, .. } = self;
+        let Self { runner, frames, taken, is_searching, source, .. } = self;
         if let Source::Stored(_, history) = source
             && let Some(history) = history.take()
         {
@@ -246,7 +246,7 @@ impl<'a> Frames<'a> {
             return Ok(Next::Working);
         }
         let (first, scene) = (*taken * runner.runs.len(), runner.scene);
-        for (place, running) in runner.runs.iter_mut().enumerate().filter(|_| !*is_set) {
+        for (place, running) in runner.runs.iter_mut().enumerate().filter(|_| !*is_searching) {
             let state = match source {
                 Source::Simulated => continue,
                 Source::Waiting(waiting) => State::from_bytes(&waiting.states.get(first + place)?),
@@ -256,8 +256,8 @@ impl<'a> Frames<'a> {
             running.world.set_state(state.ok_or(io::ErrorKind::InvalidData)?);
         }
         let found = runner.runs.par_iter_mut().map(|running| running.find_last_fit(scene, most_steps));
-        *is_set = !found.reduce(|| true, |one, other| one && other);
-        if *is_set {
+        *is_searching = !found.reduce(|| true, |one, other| one && other);
+        if *is_searching {
             return Ok(Next::Working);
         }
         *taken += 1;

@@ -171,7 +171,9 @@ fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistak
             let (found, text) = (error.message(), source.text().get(span.clone()).unwrap_or_default());
             let not_toml = || format!("this is not TOML: {found}");
             let (message, help) = if found == "duplicate key" {
-                (format!("`{text}` is given a second time"), None)
+                let is_list = ["run", "obstacle", "hold", "grab"].contains(&text);
+                let help = is_list.then(|| format!("write `[[{text}]]` before each of several"));
+                (format!("`{text}` is given a second time"), help)
             } else if let Some(key) = key_without_value(source.text(), span.start) {
                 (format!("`{key}` has no value"), Some("write one after `=`, or remove the key".to_owned()))
             } else if found.contains("array") {

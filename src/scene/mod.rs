@@ -46,6 +46,7 @@ use crate::sim::contact::{self, Obstacle, Shape};
 use crate::sim::grip::Grip;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
+use crate::sim::sleep::Sleep;
 use crate::sim::snapshot::Diagnostic;
 use crate::sim::state::State;
 use crate::sim::world::{Kernel, Moment};
@@ -81,6 +82,8 @@ pub struct Scene {
     pub obstacles: Vec<Obstacle>,
     /// What holds and drags nodes.
     pub grips: Vec<Grip>,
+    /// When bodies that have come to rest fall asleep; `None` if they never do.
+    pub sleep: Option<Sleep>,
     /// How it is drawn.
     pub view: View,
     /// What is allowed in its file and probably not meant.

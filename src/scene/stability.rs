@@ -2,6 +2,7 @@
 
 use super::{RunSummary, Scene};
 use crate::reading::words::{quoted, short};
+use crate::sim::integrate::Integrator;
 use crate::sim::stability::Stability;
 
 impl Scene {
@@ -12,8 +13,8 @@ impl Scene {
     }
 
     /// The share of the largest stable step that the step of a run is, if that is more than 0.9, what to say of it, and what to do. No
-    /// eigenvalue is computed for runs that are far below, as nearly all are. Nothing is said of explicit Euler without damping,
-    /// which no step makes stable, and of models of the caller's own.
+    /// eigenvalue is computed for runs that are far below, as nearly all are. Nothing is said of explicit Euler without damping, see
+    /// [`Self::never_stable`], and of models of the caller's own.
     pub(super) fn near_limit(&self, number: usize) -> Option<(f64, [String; 2])> {
         const NEAR: f64 = 0.9;
         let run = &self.runs[number];
@@ -34,6 +35,19 @@ impl Scene {
         );
         let half = short(Stability::SHARE * largest);
         Some((share, [message, format!("use {half} s or less, or `step = \"auto\"`")]))
+    }
+
+    /// What to say of a run that no step makes stable, and what to do: explicit Euler without damping.
+    pub(super) fn never_stable(&self, number: usize) -> Option<[String; 2]> {
+        let run = &self.runs[number];
+        let is_undamped = run.model.bound(&self.body).is_some_and(|bound| bound.damping == 0.0);
+        (run.integrator == Integrator::ExplicitEuler && is_undamped).then(|| {
+            let name = quoted(&run.name);
+            [
+                format!("`explicit-euler` adds energy to {name} in each step, however small, as it has no damping"),
+                "use \"semi-implicit-euler\", or give it `damping_ratio`".to_owned(),
+            ]
+        })
     }
 
     /// How much each rebound adds to the energy of an undamped run whose obstacles take none, about, as a share: elastic forces change

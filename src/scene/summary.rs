@@ -1,10 +1,11 @@
 //! What a scene contains, in words and numbers, as `check` prints it.
 
 use super::{Scene, stability};
-use crate::reading::words::{count, fine, list, short};
+use crate::reading::words::{count, list, short};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{FrictionOf, Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
+use crate::sim::sleep::Sleep;
 use crate::sim::stability::Stability;
 use crate::sim::words::{self, typed};
 use crate::sim::world::Kernel;
@@ -51,6 +52,9 @@ pub struct SceneSummary {
     pub holds: Vec<String>,
     /// Each `[[grab]]` in a few words.
     pub grabs: Vec<String>,
+    /// When bodies that have come to rest fall asleep; absent if they never do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sleep: Option<Sleep>,
     /// The picture in a few words.
     pub picture: String,
 }
@@ -129,6 +133,7 @@ impl Scene {
             obstacles: self.obstacles.iter().map(|one| describe(one, &coordinates)).collect(),
             holds: self.constraints(true),
             grabs: self.constraints(false),
+            sleep: self.sleep,
             picture: self.picture(),
         }
     }
@@ -156,11 +161,12 @@ impl Scene {
         };
         let from = match self.body.dimension {
             Dimension::Plane => "from the front".to_owned(),
-            Dimension::Space => format!(
-                "from {}° right and {}° up",
-                short(view.camera.azimuth.to_degrees()),
-                short(view.camera.elevation.to_degrees())
-            ),
+            Dimension::Space => {
+                let [across, up] = [view.camera.azimuth, view.camera.elevation].map(|angle| angle.to_degrees().round());
+                let side = if across < 0.0 { "left" } else { "right" };
+                let height = if up < 0.0 { "down" } else { "up" };
+                format!("from {}° {side} and {}° {height}", across.abs(), up.abs())
+            }
         };
         let theme = typed(&view.look.theme);
         let distance = match view.camera.follow {
@@ -244,8 +250,7 @@ impl fmt::Display for SceneSummary {
         };
         line("body", &format!("{nodes} nodes, {elements}, {extent} m, {} kg", short(self.mass)))?;
         let [low, high] = &self.start;
-        let corner = |corner: &[f64]| corner.iter().copied().map(fine).collect::<Vec<_>>().join(", ");
-        line("start", &format!("between ({}) and ({}) m", corner(low), corner(high)))?;
+        line("start", &format!("between {} and {} m", vector(low), vector(high)))?;
         line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
         let (duration, rate) = (short(self.duration), short(self.frames_per_second));
         let plural = if self.frames == 1 { "" } else { "s" };
@@ -271,6 +276,12 @@ impl fmt::Display for SceneSummary {
         }
         for (name, constraints) in [("hold", &self.holds), ("grab", &self.grabs)] {
             constraints.iter().try_for_each(|constraint| line(name, constraint))?;
+        }
+        if let Some(Sleep { distance, after }) = self.sleep {
+            line(
+                "sleep",
+                &format!("after {} s in which no node moves farther than {} m", short(after), short(distance)),
+            )?;
         }
         line("picture", &self.picture)?;
         write!(f, "  {:<9} {}", "digest", self.digest)

@@ -19,6 +19,9 @@ pub struct State {
     pub status: Status,
     /// The memory of models, constraints and the integrator.
     pub memory: Memory,
+    /// Of bodies that may [`Sleep`](super::Sleep): nothing while they move, the positions of all nodes (m) when they were last
+    /// seen to rest, or, while they sleep, the number of steps after which they fell asleep.
+    pub sleep: Vec<f64>,
 }
 
 /// What persists from one step to the next besides positions and velocities. The model, the constraint or the
@@ -55,6 +58,14 @@ impl State {
         Self::new(position, velocity)
     }
 
+    /// The number of steps after which the bodies fell asleep; `None` if they do not sleep.
+    pub fn asleep_since(&self) -> Option<u64> {
+        match self.sleep[..] {
+            [step] => Some(step as u64),
+            _ => None,
+        }
+    }
+
     /// All nodes.
     pub fn nodes(&self) -> Nodes<'_> {
         Nodes { position: &self.position, velocity: &self.velocity }
@@ -69,10 +80,10 @@ impl State {
                 (1, [time.to_bits(), step, part as u64, element.map_or(0, |element| element as u64 + 1)])
             }
         };
-        let lengths = [self.position.len(), model.len(), constraints.len(), integrator.len()].map(|len| len as u64);
-        let header = [self.steps, diverged, time, step, part, element].into_iter().chain(lengths);
+        let lengths = [self.position.len(), model.len(), constraints.len(), integrator.len(), self.sleep.len()];
+        let header = [self.steps, diverged, time, step, part, element].into_iter().chain(lengths.map(|len| len as u64));
         let vectors = self.position.iter().chain(&self.velocity).flat_map(|vector| vector.to_array());
-        let memory = model.iter().chain(constraints).chain(integrator).copied();
+        let memory = model.iter().chain(constraints).chain(integrator).chain(&self.sleep).copied();
         let words = header.chain(vectors.chain(memory).map(f64::to_bits)).map(u64::to_le_bytes);
         MARK.iter().copied().chain(words.flatten()).collect()
     }
@@ -83,8 +94,8 @@ impl State {
         let (header, words) = words.split_at_checked(HEADER)?;
         let [steps, diverged, time, step, part, element, lengths @ ..]: [u64; HEADER] =
             std::array::from_fn(|at| u64::from_le_bytes(header[at]));
-        let [nodes, model, constraints, integrator] = lengths.map(|length| usize::try_from(length).ok());
-        let (nodes, memory) = (nodes?.checked_mul(3)?, [model?, constraints?, integrator?]);
+        let [nodes, model, constraints, integrator, sleep] = lengths.map(|length| usize::try_from(length).ok());
+        let (nodes, memory, sleep) = (nodes?.checked_mul(3)?, [model?, constraints?, integrator?], sleep?);
         // The counts are untrusted: they are checked against the length of the input before anything is allocated.
         let mut rest = words;
         let mut take = |count: usize| -> Option<Vec<f64>> {
@@ -95,6 +106,7 @@ impl State {
         let vectors = |numbers: Vec<f64>| numbers.as_chunks::<3>().0.iter().map(|&v| DVec3::from_array(v)).collect();
         let (position, velocity) = (vectors(take(nodes)?), vectors(take(nodes)?));
         let memory = Memory { model: take(memory[0])?, constraints: take(memory[1])?, integrator: take(memory[2])? };
+        let sleep = take(sleep)?;
         let status = match diverged {
             0 => Status::Ok,
             1 => {
@@ -103,14 +115,14 @@ impl State {
             }
             _ => return None,
         };
-        rest.is_empty().then_some(Self { position, velocity, steps, status, memory })
+        rest.is_empty().then_some(Self { position, velocity, steps, status, memory, sleep })
     }
 }
 
 /// The first bytes of every state.
-const MARK: &[u8] = b"localshape state 2\n";
+const MARK: &[u8] = b"localshape state 3\n";
 /// Number of 64-bit words in the header.
-const HEADER: usize = 10;
+const HEADER: usize = 11;
 
 #[cfg(test)]
 mod tests {
@@ -120,7 +132,7 @@ mod tests {
         let memory = Memory { model: vec![1.0, f64::NAN], constraints: vec![], integrator: vec![-0.0] };
         let status = Status::Diverged(Divergence { time: 0.3, step: 7, part: 1, element: Some(0) });
         let (position, velocity) = (vec![DVec3::X, DVec3::splat(-0.0)], vec![DVec3::Y, DVec3::splat(1e-310)]);
-        State { position, velocity, steps: 9, status, memory }
+        State { position, velocity, steps: 9, status, memory, sleep: vec![8.0] }
     }
 
     #[test]

@@ -10,6 +10,7 @@ use super::integrate::{ByForces, Integrator, Scales};
 use super::kernel::{ByKernel, Scheme};
 use super::model::{ElasticModel, Known, Report};
 use super::part::{Forces, Part};
+use super::sleep::{Next, Sleep};
 use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
 use super::state::{Memory, State};
 pub(crate) use super::system::Surroundings;
@@ -90,6 +91,8 @@ pub struct World {
     dynamics: Box<dyn Dynamics>,
     crew: Crew,
     limit: SpeedLimit,
+    /// When the bodies fall asleep; `None` if they do not.
+    sleep: Option<Sleep>,
     /// The field in snapshots.
     field: Option<Field>,
     /// The diagnostics in snapshots.
@@ -169,7 +172,7 @@ impl World {
             _ => Box::new(ByForces::new(integrator, tolerance, scales, &state)),
         };
         let (limit, wanted) = (limit.unwrap_or_default(), Diagnostic::ALL.to_vec());
-        Self { system, dynamics, crew: Crew::new(1), limit, field: None, wanted, state }
+        Self { system, dynamics, crew: Crew::new(1), limit, sleep: None, field: None, wanted, state }
     }
 
     /// Sets the threads for vectorised steps and for diagnostics, which use as many as the body is large enough for. They
@@ -182,6 +185,11 @@ impl World {
     /// The threads for vectorised steps.
     pub fn crew(&mut self) -> &mut Crew {
         &mut self.crew
+    }
+
+    /// Sets when the bodies fall asleep, before the first step; by default they never do.
+    pub(crate) fn may_sleep(&mut self, sleep: Option<Sleep>) {
+        self.sleep = sleep;
     }
 
     /// Sets the field that snapshots contain from now on; `None` for no field.
@@ -229,6 +237,30 @@ impl World {
     }
 
     fn advance_steps(&mut self, steps: u64) {
+        let Some(sleep) = self.sleep else { return self.take_steps(steps) };
+        let end = self.steps().saturating_add(steps);
+        while self.state.status == Status::Ok {
+            let (now, Self { system, dynamics, state, .. }) = (self.steps(), &mut *self);
+            match sleep.next(system, state, now, end, |state| dynamics.settle(state)) {
+                Next::Steps(steps) => self.take_steps(steps),
+                Next::Look => {
+                    self.take_steps(1);
+                    let Self { system, dynamics, state, .. } = self;
+                    dynamics.settle(state);
+                    if state.status != Status::Ok {
+                        state.sleep.clear();
+                    } else if sleep.look(system, state) {
+                        dynamics.restart();
+                    }
+                }
+                Next::Skipped => {}
+                Next::Done => return,
+            }
+        }
+        self.take_steps(end - self.steps());
+    }
+
+    fn take_steps(&mut self, steps: u64) {
         let Self { system, dynamics, crew, limit, state, .. } = self;
         if state.status == Status::Ok {
             let last = dynamics.steps(state).saturating_add(steps);
@@ -275,7 +307,8 @@ impl World {
             let Memory { model, constraints, .. } = &state.memory;
             [state.position.len(), state.velocity.len(), model.len(), constraints.len()]
         };
-        lengths(state) == lengths(&self.state)
+        let sleep = [0, 1, 3 * state.position.len()].contains(&state.sleep.len());
+        lengths(state) == lengths(&self.state) && sleep && (self.sleep.is_some() || state.sleep.is_empty())
     }
 
     /// Continues from another state of the same bodies under the same conditions. The time step has to be the same, as

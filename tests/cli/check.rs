@@ -211,3 +211,37 @@ fn says_what_rebounds_add() {
     let text = place.run("check elastic.toml").good().out;
     assert_eq!(text.matches("undamped, e = 1: each rebound adds about 0.").count(), 2, "{text}");
 }
+
+#[test]
+fn what_cannot_be_meant_is_told() {
+    let place = Place::new();
+    let euler = SMALL.replacen(", damping_ratio = 0.1 }", " }\nintegrator = \"explicit-euler\"", 1);
+    place.write("euler.toml", &euler);
+    for command in ["check euler.toml", "simulate euler.toml --frames 0-1"] {
+        let ran = place.run(command);
+        let words = "warning: euler.toml:16:14: `explicit-euler` adds energy to \"Local shape\" in each step";
+        assert!(ran.status == Some(0) && ran.err.starts_with(words), "{ran:?}");
+    }
+    place.write("of.toml", &SMALL.replace("friction = 0.3", "friction_of = \"path\""));
+    place.run("check of.toml").bad(2, &["of.toml:22:1: `friction_of` needs `friction`"]);
+    place.write("twice.toml", &SMALL.replace("[[run]]", "[run]"));
+    place.run("check twice.toml").bad(2, &["write `[[run]]` before each of several"]);
+}
+
+#[test]
+fn what_sleeps_is_told() {
+    let place = Place::new();
+    let sleep = "sleep = { distance = 1e-4, after = 0.02 }\n[body]";
+    place.write(
+        "sleep.toml",
+        &SMALL.replace("[body]", sleep).replace("velocity = [0, -2, 0]\n", "").replace("gravity = [0, -9.8, 0]\n", ""),
+    );
+    let ran = place.run("check sleep.toml").good();
+    assert!(ran.out.contains("\n  sleep     after 0.02 s in which no node moves farther than 0.0001 m\n"), "{ran:?}");
+    let ran = place.run("simulate sleep.toml -o out").good();
+    assert!(ran.out.contains("ok, asleep since 0.02"), "{ran:?}");
+    let since = place.json("out/run.json")["runs"][0]["asleep_since"].as_f64().expect("a time");
+    assert!((0.02..0.03).contains(&since), "{since}");
+    place.write("never.toml", &SMALL.replace("[body]", "sleep = { distance = 0, after = 1 }\n[body]"));
+    place.run("check never.toml").bad(2, &["`time.sleep.distance` is 0", "greater than 0"]);
+}

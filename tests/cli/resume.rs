@@ -51,6 +51,8 @@ fn after_ctrl_c_it_goes_on_from_there() {
     let line = ran.out.lines().find(|line| line.starts_with("interrupted after ")).expect("where it stopped");
     assert!(line.contains(" of 3601 frames simulated in out, simulated to ") && line.ends_with(" s of 60 s"), "{line}");
     assert!(place.path("out").join(CHECKPOINT).exists());
+    let ran = place.run("simulate scene.toml -o out --resume");
+    ran.bad(2, &["to go on from it, type that command with --resume: ", "simulate scene.toml --states -o out"]);
     let before = steps(&place, "out");
     // Again, on the way.
     let typed = format!("{typed} --resume");
@@ -65,6 +67,20 @@ fn after_ctrl_c_it_goes_on_from_there() {
     }
     assert!(files(&place, "out") == files(&place, "whole"));
     assert_eq!(place.names("out"), ["diagnostics.csv", "run.json", "states.npz"], "nothing else is left");
+}
+
+/// What was found out before an interruption is not simulated again, and not forgotten.
+#[test]
+fn causes_of_divergences_are_kept() {
+    let place = Place::new();
+    let scene = seconds().replace("one-diagonal\" }", "one-diagonal\" }\nstep = \"T/2\"");
+    place.write("scene.toml", &scene);
+    let typed = "simulate scene.toml -q -o out";
+    stopped(&place, typed, &format!("out/{CHECKPOINT}"), "KILL");
+    place.run(&format!("{typed} --resume")).good();
+    let run = place.json("out/run.json")["runs"][1].clone();
+    assert_eq!(run["status"], "diverged");
+    assert!(run["cause"].is_string() && run["node"].is_u64(), "{run}");
 }
 
 #[test]
@@ -135,7 +151,10 @@ fn a_checkpoint_of_something_else_is_refused() {
     };
     refused(
         " --only Mass-spring --overwrite",
-        &["belongs to a command with other frames, runs, states or size: ", "simulate scene.toml;"],
+        &[
+            "belongs to a command with other frames, runs, states or size; to go on from it, type that command with --resume: ",
+            "simulate scene.toml;",
+        ],
     );
     refused(" --frames 0-3", &["belongs to a command with other frames"]);
     refused(" --states", &["belongs to a command with other frames, runs, states"]);

@@ -28,4 +28,14 @@ fn maps_the_stability_of_a_scene() {
     place.run(&format!("{command} --full")).bad(2, &["maps", "study stability small.toml"]);
     place.write("still.toml", &SMALL.replace("duration = 0.1", "duration = 0"));
     place.run("study stability still.toml").bad(2, &["`time.duration` is 0"]);
+    let adaptive = SMALL.replace("[[run]]\n", "[[run]]\nintegrator = \"dormand-prince\"\n");
+    place.write("adaptive.toml", &adaptive);
+    place.run("study stability adaptive.toml").bad(2, &["find their own steps: there is nothing to map"]);
+    // What another command has made until it was interrupted is not lost.
+    let cells = "localshape study stability other.toml 0.1.0 ab\n";
+    place.write("begun/stability.unfinished", cells);
+    place
+        .run("study stability small.toml -o begun")
+        .bad(2, &["`localshape study stability other.toml`", "--overwrite"]);
+    assert_eq!(place.read("begun/stability.unfinished"), cells);
 }

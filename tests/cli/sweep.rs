@@ -21,7 +21,16 @@ fn same(place: &Place, one: &str, other: &str) -> bool {
 fn each_line_is_a_variant() {
     let place = place();
     let ran = place.run("simulate small.toml --sweep sweep.csv --states").good();
-    assert_eq!(place.names("output/small-sweep"), [&FOLDERS[..], &["variants.csv"]].concat(), "{ran:?}");
+    assert_eq!(
+        place.names("output/small-sweep"),
+        [&FOLDERS[..], &["comparison.csv", "variants.csv"]].concat(),
+        "{ran:?}"
+    );
+    assert!(ran.out.ends_with("in output/small-sweep/comparison.csv\n"), "{ran:?}");
+    let compared = place.read("output/small-sweep/comparison.csv");
+    assert_eq!(compared.lines().next(), Some("folder,run,status,diverged_at_s,turned_over,shape_error_m"));
+    let of = |folder: &str| compared.lines().filter(|line| line.starts_with(&format!("{folder},"))).count();
+    assert_eq!(FOLDERS.map(of), [2, 2, 2], "{compared}");
     let table = place.read("output/small-sweep/variants.csv");
     assert!(
         table.starts_with(&format!("folder,{}", TABLE.lines().next().unwrap())) && table.contains(FOLDERS[1]),
@@ -107,16 +116,48 @@ fn mistakes_are_found_in_their_cells_before_anything_is_made() {
     );
     refused("body.mass\nmuch\n", &["sweep.csv:2:1: ", "\"much\""]);
     refused("run[2].step\n1\n", &["sweep.csv:1:1: the scene has no `run[2]`; it has 2, counted from 0"]);
-    refused("body.mass,body.mass\n1,1\n", &["sweep.csv: the key of column 2 is given a second time"]);
-    refused("body.mass\n", &["sweep.csv: has no variants"]);
-    refused("", &["sweep.csv: has no variants"]);
-    refused("body.mass\n1,2\n", &["sweep.csv: line 2 has 2 values; expected 1, one for each key"]);
+    refused("body.mass,body.mass\n1,1\n", &["sweep.csv:1:11: the key of column 2 is given a second time"]);
+    refused("body.mass\n", &["sweep.csv:1:1: there are no variants"]);
+    refused("", &["sweep.csv:1:1: there are no variants"]);
+    refused(
+        "body.mass\n1,2\n",
+        &["sweep.csv:2:3: this line has 2 values; expected 1", "decimals have a point", "  2 | 1,2\n"],
+    );
+    refused("body.mass;run[0].step\n1;2\n", &["sweep.csv:1:1: the keys are separated by semicolons"]);
+    refused("run.model.stiffness\n1\n", &["sweep.csv:1:1: `run` in ", "write `run[0]`"]);
+    refused("body.mass\n\"0,5\"\n", &["sweep.csv:2:1: ", "decimals have a point: 0.5"]);
     place.write("sweep.csv", "time.duration\n0.1\n0.05\n");
     let ran = place.run("simulate small.toml --sweep sweep.csv --frames 6");
     ran.bad(2, &["sweep.csv:3:1: frames of “", "  3 | 0.05\n"]);
-    place.run("simulate small.toml --sweep none.csv").bad(4, &["cannot read none.csv"]);
+    place
+        .run("simulate small.toml --sweep swep.csv")
+        .bad(2, &["swep.csv: there is no such file; did you mean sweep.csv?"]);
     place.run("simulate none.toml --sweep sweep.csv").bad(2, &["none.toml: there is no such file"]);
     place.run("simulate small.toml small.toml --sweep sweep.csv").bad(2, &["--sweep has the variants of one scene"]);
+}
+
+/// Nothing of another table, or in a folder of any variant, is mixed with the new ones.
+#[test]
+fn folders_of_other_tables_are_refused_before_anything_is_made() {
+    let place = place();
+    let typed = "simulate small.toml --sweep sweep.csv --frames 0-1 -o out";
+    place.run(typed).good();
+    // A longer table goes on with the same folders.
+    place.write("sweep.csv", &format!("{TABLE}3e4,,\n"));
+    place.run(&format!("{typed} --resume")).good();
+    let table = place.read("out/variants.csv");
+    place.write("sweep.csv", TABLE);
+    place.run(typed).bad(2, &["out holds variants of another table, such as 0004_stiffness=3e4", "--overwrite"]);
+    assert_eq!(place.read("out/variants.csv"), table);
+    let ran = place.run(&format!("{typed} --overwrite"));
+    assert!(
+        ran.status == Some(0) && ran.err.contains("out keeps variants of an earlier table, such as 0004_stiffness=3e4"),
+        "{ran:?}"
+    );
+    // The last folder is occupied: the first is not made.
+    place.write(&format!("new/{}/frame_00000.png", FOLDERS[2]), "mine");
+    place.run("simulate small.toml --sweep sweep.csv -o new").bad(2, &[FOLDERS[2]]);
+    assert_eq!(place.names("new"), [FOLDERS[2]]);
 }
 
 #[cfg(feature = "render")]

@@ -20,6 +20,7 @@ mod readings;
 mod rest;
 mod restore;
 mod runaway;
+mod sleep;
 mod stability;
 mod state;
 mod stress;

@@ -61,12 +61,17 @@ struct StudyOptions {
     #[arg(long)]
     overwrite: bool,
 
+    #[command(flatten)]
+    printing: PrintOptions,
+}
+
+/// Options of studies with plots.
+#[derive(Args, Debug)]
+struct PlotOptions {
     // Pixels need it.
     #[cfg(feature = "render")]
     #[command(flatten)]
     device: DeviceOptions,
-    #[command(flatten)]
-    printing: PrintOptions,
 }
 
 /// Options of studies of a scene.
@@ -82,6 +87,8 @@ struct OfScene {
 
     #[command(flatten)]
     options: StudyOptions,
+    #[command(flatten)]
+    plots: PlotOptions,
 }
 
 /// A study to be made.
@@ -149,8 +156,14 @@ impl StudyOptions {
         self.out.clone().unwrap_or_else(|| Path::new("output").join(format!("study-{}", plan.name)))
     }
 
-    /// Makes a study; `measure` returns `None` if its argument says that the user wants to stop.
-    fn run(&self, plan: &Plan<'_>, measure: impl FnOnce(&Watch<'_>) -> Option<Findings>) -> Result<Status, Failure> {
+    /// Makes a study, with options for its plots if it has any; `measure` returns `None` if its argument says that the user wants to
+    /// stop.
+    fn run(
+        &self,
+        plan: &Plan<'_>,
+        plots: Option<&PlotOptions>,
+        measure: impl FnOnce(&Watch<'_>) -> Option<Findings>,
+    ) -> Result<Status, Failure> {
         interrupt::listen();
         let folder = self.folder(plan);
         let mut names: Vec<_> = ["md", "csv"].map(|ending| format!("{}.{ending}", plan.name)).into();
@@ -160,7 +173,9 @@ impl StudyOptions {
         let names: Vec<_> = names.iter().map(String::as_str).collect();
         SheetFiles::inspect(&folder, &names, &plan.mark, self.overwrite)?;
         #[cfg(feature = "render")]
-        let gpu = if plan.plots.is_empty() { None } else { Some(self.device.open([])?) };
+        let gpu = plots.map(|plots| plots.device.open([])).transpose()?;
+        #[cfg(not(feature = "render"))]
+        let _ = plots;
         let files = SheetFiles::begin(&folder, &names, &plan.mark, self.overwrite)?;
         let bar = self.printing.progress(plan.name, plan.work);
         let found = measure(&|more| {

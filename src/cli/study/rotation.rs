@@ -1,6 +1,6 @@
 //! `study rotation`: the solvers of rotations.
 
-use super::{Findings, Plan, StudyOptions, machine};
+use super::{Findings, Plan, PlotOptions, StudyOptions, machine};
 use crate::cli::failure::{Failure, Status};
 #[cfg(feature = "render")]
 use crate::picture::{Plot, PlotCurve, Plots};
@@ -12,6 +12,8 @@ use clap::Args;
 pub(super) struct Rotation {
     #[command(flatten)]
     options: StudyOptions,
+    #[command(flatten)]
+    plots: PlotOptions,
 }
 
 impl Rotation {
@@ -19,7 +21,7 @@ impl Rotation {
         let protocol = Protocol::default();
         let mark = "localshape study rotation".to_owned();
         let plan = Plan { name: "rotation", mark: mark.clone(), plots: &["rotation"], work: protocol.work() };
-        self.options.run(&plan, |watch| {
+        self.options.run(&plan, Some(&self.plots), |watch| {
             let results = measure(&protocol, watch)?;
             let machine = machine();
             Some(Findings {

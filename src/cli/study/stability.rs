@@ -5,6 +5,7 @@ use crate::cli::console::print;
 use crate::cli::failure::{Failure, Status};
 use crate::cli::options::ThreadOptions;
 use crate::cli::record;
+use crate::output::OutputError;
 #[cfg(feature = "render")]
 use crate::picture::{Map, Maps, Tile};
 #[cfg(feature = "render")]
@@ -34,18 +35,22 @@ impl Stability {
         let protocol = if self.of.full { Protocol::full() } else { Protocol::usual() };
         let scene = self.of.subject()?.unwrap_or_else(usual);
         let mark = self.of.mark("stability");
+        if protocol.work(&scene) == 0 {
+            let message = format!(
+                "all runs of “{}” find their own steps: there is nothing to map; give one a `step`",
+                scene.title
+            );
+            return Err(Failure::usage(message));
+        }
         let plan = Plan { name: "stability", mark: mark.clone(), plots: &["stability"], work: protocol.work(&scene) };
         let pool = record::pool(self.threads.count())?;
-        let made = Made::new(
-            &self.of.options.folder(&plan),
-            &format!("{mark} {} {}", env!("CARGO_PKG_VERSION"), scene.digest),
-        );
-        let status = self.of.options.run(&plan, |watch| {
+        let made = Made::new(&self.of.options.folder(&plan), &mark, &scene.digest);
+        made.check(self.of.options.overwrite)?;
+        let status = self.of.options.run(&plan, Some(&self.of.plots), |watch| {
             let known = made.read();
             let done = |cell: &Cell| made.add(cell);
             let results =
                 pool.install(|| measure(protocol, &scene, &|cell| known.get(&cell.key()).copied(), &done, watch))?;
-            made.remove();
             Some(Findings {
                 markdown: results.markdown(&mark),
                 csv: results.csv(),
@@ -54,6 +59,9 @@ impl Stability {
                 json: results.json(),
             })
         })?;
+        if status == Status::Done {
+            made.remove();
+        }
         if status == Status::Interrupted && self.of.options.printing.prints_text() {
             print("the same command goes on from here\n")?;
         }
@@ -64,35 +72,51 @@ impl Stability {
 /// The cells that are made, in a file beside the results, from which an interrupted study goes on. It is removed at the end. Errors of
 /// that file are ignored: it only saves time.
 struct Made {
+    folder: PathBuf,
     path: PathBuf,
+    /// The command that makes the study.
+    mark: String,
     /// The first line, which says of which study the cells are.
     head: String,
     file: Mutex<Option<File>>,
 }
 
 impl Made {
-    fn new(folder: &Path, head: &str) -> Self {
-        Self { path: folder.join("stability.unfinished"), head: format!("{head}\n"), file: Mutex::new(None) }
+    fn new(folder: &Path, mark: &str, digest: &str) -> Self {
+        let head = format!("{mark} {} {digest}\n", env!("CARGO_PKG_VERSION"));
+        let path = folder.join("stability.unfinished");
+        Self { folder: folder.to_owned(), path, mark: mark.to_owned(), head, file: Mutex::new(None) }
+    }
+
+    /// Refuses a folder with the cells of a study by another command, unless they may be lost.
+    fn check(&self, overwrite: bool) -> Result<(), Failure> {
+        let text = fs::read_to_string(&self.path).unwrap_or_default();
+        let head = text.lines().next().unwrap_or_default();
+        match head.rsplitn(3, ' ').last() {
+            Some(other) if !head.is_empty() && other != self.mark && !overwrite => {
+                let what = format!("what `{other}` has made until it was interrupted");
+                Err(OutputError::Occupied { path: self.folder.clone(), what }.into())
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The cells of an interrupted study of the same settings. Those that are added follow them.
     fn read(&self) -> HashMap<String, Outcome> {
         let text = fs::read_to_string(&self.path).unwrap_or_default();
-        let lines = text.strip_prefix(&self.head).unwrap_or_default();
-        // The last line may have been cut.
-        let known: Vec<_> = lines.split_inclusive('\n').filter_map(|line| Some((line, read(line)?))).collect();
-        let kept: String = known.iter().map(|(line, _)| *line).collect();
+        let known: HashMap<_, _> = read(text.strip_prefix(&self.head).unwrap_or_default()).collect();
+        let kept: String = known.iter().map(|(key, outcome)| outcome.line(key)).collect();
         let open = || {
             fs::write(&self.path, format!("{}{kept}", self.head))?;
             File::options().append(true).open(&self.path)
         };
         *self.file.lock().unwrap_or_else(PoisonError::into_inner) = open().ok();
-        known.into_iter().map(|(_, cell)| cell).collect()
+        known
     }
 
     fn add(&self, cell: &Cell) {
         if let Some(file) = self.file.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
-            let _ = file.write_all(cell.line().as_bytes());
+            let _ = file.write_all(cell.outcome.line(&cell.key()).as_bytes());
         }
     }
 
@@ -159,19 +183,22 @@ mod tests {
             step: 1e-3,
             outcome: if share > 0.5 { Outcome::Diverged } else { Outcome::TurnedOver(9) },
         };
-        let made = Made::new(folder.path(), "study 1");
+        let made = Made::new(folder.path(), "study 1", "ab");
         assert!(made.read().is_empty());
         [0.2, 0.4, 0.8].map(cell).iter().for_each(|cell| made.add(cell));
         // As if the program was killed while it wrote.
         let path = folder.path().join("stability.unfinished");
         let text = fs::read_to_string(&path).expect("cells");
         fs::write(&path, &text[..text.len() - 3]).expect("to cut it");
-        let again = Made::new(folder.path(), "study 1");
+        let again = Made::new(folder.path(), "study 1", "ab");
         let known = again.read();
         assert_eq!(known, HashMap::from([0.2, 0.4].map(|share| (cell(share).key(), Outcome::TurnedOver(9)))));
         again.add(&cell(0.8));
-        assert_eq!(Made::new(folder.path(), "study 1").read().len(), 3);
-        assert!(Made::new(folder.path(), "study 2").read().is_empty(), "of other settings");
+        assert_eq!(Made::new(folder.path(), "study 1", "ab").read().len(), 3);
+        let other = Made::new(folder.path(), "study 2", "ab");
+        assert!(other.check(false).is_err() && other.check(true).is_ok(), "of another command");
+        let edited = Made::new(folder.path(), "study 1", "cd");
+        assert!(edited.check(false).is_ok() && edited.read().is_empty(), "of an edited scene");
         again.remove();
         assert!(!path.exists());
     }

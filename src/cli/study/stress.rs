@@ -21,7 +21,7 @@ impl Stress {
         let mark = "localshape study stress".to_owned();
         let plan = Plan { name: "stress", mark: mark.clone(), plots: &[], work: Protocol::FULL.work() };
         let pool = record::pool(self.threads.count())?;
-        self.options.run(&plan, |watch| {
+        self.options.run(&plan, None, |watch| {
             let results = pool.install(|| measure(Protocol::FULL, watch))?;
             Some(Findings {
                 markdown: results.markdown(&mark),

@@ -43,7 +43,7 @@ impl WorkPrecision {
             work: protocol.work(&subjects),
         };
         let pool = record::pool(1)?;
-        self.of.options.run(&plan, |watch| {
+        self.of.options.run(&plan, Some(&self.of.plots), |watch| {
             let results = pool.install(|| measure(protocol, &subjects, watch))?;
             let machine = machine();
             Some(Findings {

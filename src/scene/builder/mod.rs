@@ -9,7 +9,8 @@ pub use obstacle::ObstacleBuilder;
 
 use super::error::SceneError;
 use super::file::{
-    Coordinates, GrabFile, HoldFile, MotionPath, NodesFile, RegionFile, RunFile, SceneFile, StepFile, TimeFile,
+    Coordinates, GrabFile, HoldFile, MotionPath, NodesFile, Positive, RegionFile, RunFile, SceneFile, SleepFile,
+    StepFile, TimeFile,
 };
 use super::resolve::Unwritten;
 use super::step::NamedStep;
@@ -75,6 +76,7 @@ impl Scene {
                 tolerance: None,
                 frames_per_second: 60.0,
                 integrator: Integrator::default(),
+                sleep: None,
             },
             body: body.0,
             run: Vec::new(),
@@ -121,6 +123,13 @@ impl SceneBuilder {
     /// How positions and velocities move from one step to the next, in all runs that do not say it themselves.
     pub fn integrator(mut self, integrator: Integrator) -> Self {
         self.0.time.integrator = integrator;
+        self
+    }
+
+    /// Lets the body of each run sleep after a time (s) in which no node has moved farther than a distance (m); see
+    /// [`Sleep`](crate::sim::Sleep).
+    pub fn sleep(mut self, distance: f64, after: f64) -> Self {
+        self.0.time.sleep = Some(SleepFile { distance: Positive(distance), after: Positive(after) });
         self
     }
 

@@ -24,6 +24,7 @@ use crate::reading::words::{count, short};
 use crate::sim::contact::Obstacle;
 use crate::sim::grip::Grip;
 use crate::sim::model::ElasticModel;
+use crate::sim::sleep::Sleep;
 use body::ResolvedBody;
 use glam::DVec3;
 use lists::Lists;
@@ -216,6 +217,7 @@ pub(super) fn resolve(
         runs: physics.runs?,
         obstacles: physics.obstacles?,
         grips: physics.grips?,
+        sleep: time.sleep.as_ref().map(|typed| Sleep { distance: typed.distance.0, after: typed.after.0 }),
         view: view?,
         warnings: Vec::new(),
     };
@@ -300,12 +302,17 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
     }
 }
 
-/// Warns of steps that are nearly as large as the largest stable one, or larger.
+/// Warns of steps that are nearly as large as the largest stable one, or larger, and of integrators that are stable with none.
 fn warn_of_steps(scene: &Scene, report: &mut Report<'_>) {
     for run in 0..scene.runs.len() {
         if let Some((_, [message, help])) = scene.near_limit(run) {
             let own = [Way::Key("run"), Way::Index(run), Way::Key("step")];
             let path = if report.is_typed(&own) { &own[..] } else { &[Way::Key("time"), Way::Key("step")] };
+            report.warn(path, message, help);
+        }
+        if let Some([message, help]) = scene.never_stable(run) {
+            let own = [Way::Key("run"), Way::Index(run), Way::Key("integrator")];
+            let path = if report.is_typed(&own) { &own[..] } else { &[Way::Key("time"), Way::Key("integrator")] };
             report.warn(path, message, help);
         }
     }

@@ -41,6 +41,11 @@ fn one(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &mu
     };
     let about =
         typed.about.as_ref().map(|typed| vector(typed, dimension, &[path, &[Way::Key("about")]].concat(), report));
+    let of = [path, &[Way::Key("friction_of")]].concat();
+    if typed.friction_of.is_some() && !report.is_typed(&[path, &[Way::Key("friction")]].concat()) {
+        let help = "give `friction`, or remove `friction_of`".to_owned();
+        report.at_key(&of, "`friction_of` needs `friction`", help);
+    }
     let (shape, motion) = (shape?, motion?);
     let pivot = match about {
         Some(typed) => typed?,

@@ -32,23 +32,27 @@ impl Cell {
             [self.rate, self.speed, self.damping, self.share, self.step].map(|number| number.to_bits().to_string());
         format!("{} {}", self.run, numbers.join(" "))
     }
+}
 
-    /// A line from which [`read`] reads key and outcome again.
-    pub(crate) fn line(&self) -> String {
-        let outcome = self.outcome.turned_over().map_or_else(|| "diverged".to_owned(), |count| count.to_string());
-        format!("{} {outcome};\n", self.key())
+impl Outcome {
+    /// A line from which [`read`] reads the key of a cell and its outcome again.
+    pub(crate) fn line(self, key: &str) -> String {
+        let outcome = self.turned_over().map_or_else(|| "diverged".to_owned(), |count| count.to_string());
+        format!("{key} {outcome};\n")
     }
 }
 
-/// The key and the outcome of a cell from its line; `None` if it is not complete.
-pub(crate) fn read(line: &str) -> Option<(String, Outcome)> {
-    let (key, outcome) = line.strip_suffix(";\n")?.rsplit_once(' ')?;
-    let outcome = match outcome {
-        "diverged" => Outcome::Diverged,
-        "0" => Outcome::Whole,
-        count => Outcome::TurnedOver(count.parse().ok()?),
-    };
-    Some((key.to_owned(), outcome))
+/// The keys and outcomes of cells from their lines. Lines that are not complete, as the last one may be, are left out.
+pub(crate) fn read(lines: &str) -> impl Iterator<Item = (String, Outcome)> {
+    lines.split_inclusive('\n').filter_map(|line| {
+        let (key, outcome) = line.strip_suffix(";\n")?.rsplit_once(' ')?;
+        let outcome = match outcome {
+            "diverged" => Outcome::Diverged,
+            "0" => Outcome::Whole,
+            count => Outcome::TurnedOver(count.parse().ok()?),
+        };
+        Some((key.to_owned(), outcome))
+    })
 }
 
 impl Results {
