@@ -84,9 +84,11 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
     }
 }
 
-/// A gentle motion needs no global solver; elements that are pressed flat and turned over do, and both codes count the same ones.
+/// A gentle motion needs no global solver; mirrored elements do, and all codes count the same ones.
 #[test]
 fn rotations_that_need_the_global_solver_are_counted_by_every_code_alike() {
+    /// Of a mirrored cube all rotations about many axes are nearly as good as the best one.
+    const MIRRORED: f64 = -0.999_999;
     let whole = lattice(6, 0.1);
     // The general code for the second body, which lacks one corner of a cube.
     let short = whole.elements.iter().enumerate().map(|(at, nodes)| &nodes[usize::from(at == 7)..]).collect();
@@ -95,14 +97,13 @@ fn rotations_that_need_the_global_solver_are_counted_by_every_code_alike() {
     for (body, crush, rotation) in [
         (&whole, 0.9, RotationReading::Robust),
         (&whole, 0.9, RotationReading::Arctangent),
-        (&whole, -0.5, RotationReading::Robust),
-        (&whole, -0.5, RotationReading::Arctangent),
+        (&whole, MIRRORED, RotationReading::Robust),
+        (&whole, MIRRORED, RotationReading::Arctangent),
         (&short, 0.9, RotationReading::Robust),
-        (&short, -0.5, RotationReading::Robust),
-        (&short, -0.5, RotationReading::Arctangent),
+        (&short, MIRRORED, RotationReading::Robust),
+        (&short, MIRRORED, RotationReading::Arctangent),
     ] {
-        let mut noise = Noise(3);
-        let position = body.rest.iter().map(|rest| *rest * DVec3::new(1.0, 1.0, crush) + noise.vector() * 0.004);
+        let position = body.rest.iter().map(|rest| *rest * DVec3::new(1.0, 1.0, crush));
         let start = State::at_rest(position.collect());
         let model = ShapeBased { rotation, ..shape_based(1e4, 20.0) };
         let count = |kernel: Kernel, threads: usize, calls: u64| {

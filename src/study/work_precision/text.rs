@@ -70,6 +70,7 @@ impl Results {
                 "tolerance": one.integrator.is_adaptive().then_some(one.step),
                 "evaluations": one.evaluations,
                 "error": one.error,
+                "status": status(one),
                 "seconds": one.time,
             })
         };
