@@ -21,7 +21,6 @@ use crate::sim::model::shape_based::{RotationReading, ShapeBased};
 use crate::sim::world::Kernel;
 use crate::table::{Spread, Watch};
 use count::Counting;
-use glam::DVec3;
 use reference::{farthest, reference};
 use std::sync::Arc;
 use way::{End, Way};
