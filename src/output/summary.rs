@@ -138,6 +138,8 @@ pub(crate) struct LastState {
     /// The diagnostics.
     #[serde(flatten)]
     pub diagnostics: Chosen,
+    /// Another diagnostic, which is not in goldens.
+    pub global_rotations: f64,
     /// Digest of the state.
     pub state: String,
 }
@@ -190,6 +192,7 @@ impl Summary {
                 frame: frame.index,
                 time: snapshot.time,
                 diagnostics: Chosen::within(Reach::Summaries, &snapshot.diagnostics),
+                global_rotations: snapshot.diagnostics.global_rotations,
                 state: state_digest(snapshot),
             });
         }

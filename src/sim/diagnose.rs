@@ -62,6 +62,7 @@ impl Diagnose {
         &'a self,
         state: Nodes<'a>,
         gravity: DVec3,
+        global_rotations: f64,
         report: impl FnOnce() -> Report + 'a,
         crew: &'a Crew,
     ) -> Facts<'a> {
@@ -69,6 +70,7 @@ impl Diagnose {
             mass: &self.body.mass,
             state,
             gravity,
+            global_rotations,
             report: Lazy::new(Box::new(report)),
             volumes: Lazy::new(Box::new(move || self.volumes(state.position, crew))),
             volumes_at_rest: &self.volumes_at_rest,
@@ -297,7 +299,7 @@ mod tests {
 
     fn diagnostics(diagnose: &Diagnose, state: &State) -> Diagnostics {
         let crew = Crew::new(1);
-        Diagnostics::of(&diagnose.facts(state.nodes(), DVec3::ZERO, Report::default, &crew), Diagnostic::ALL)
+        Diagnostics::of(&diagnose.facts(state.nodes(), DVec3::ZERO, 0.0, Report::default, &crew), Diagnostic::ALL)
     }
 
     /// An element with seven corners has no table of faces: its volume is the affine estimate.

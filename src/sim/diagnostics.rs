@@ -21,6 +21,8 @@ pub(super) struct Facts<'a> {
     pub(super) state: Nodes<'a>,
     /// Acceleration of gravity (m/s²).
     pub(super) gravity: DVec3,
+    /// Rotations that the global solver has computed.
+    pub(super) global_rotations: f64,
     /// Energy and residuals from the model.
     pub(super) report: Lazy<'a, Report>,
     /// Signed volume of each element (m³, in the plane m²).
@@ -143,7 +145,7 @@ macro_rules! diagnostics {
         $variant:ident, $key:ident: $type:ty, $name:literal, $unit:literal, $reach:ident = $value:expr;
     )+) => {
         /// Numbers that describe a state, in SI units; in the plane volumes are areas. A number that the model or the
-        /// body does not have is NaN: the elastic energy and `residual` of some models, the volume ratio of a cloth.
+        /// body does not have is NaN: the elastic energy, `residual` and `global_rotations` of some models, the volume ratio of a cloth.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
         pub struct Diagnostics {
             $($(#[doc = $meaning])+ pub $key: $type,)+
@@ -250,6 +252,10 @@ diagnostics! { facts:
 
     /// Total energy (J): kinetic, elastic and gravitational.
     Energy, energy: f64, "total energy", "J", Frames = kinetic + elastic + gravitational;
+
+    /// Number of rotations since the start that took the global solver: of elements that are pressed flat, are turned inside
+    /// out, or have turned far in one step.
+    GlobalRotations, global_rotations: f64, "global rotations", "", Frames = facts.global_rotations;
 }
 
 impl Diagnostic {

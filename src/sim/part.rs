@@ -2,6 +2,8 @@
 
 use super::body::Body;
 use super::diagnose::Diagnose;
+#[cfg(doc)]
+use super::diagnostics::Diagnostics;
 use super::model::ForceModel;
 use super::state::Nodes;
 use std::ops::Range;
@@ -21,6 +23,8 @@ pub(crate) struct Part {
     pub nodes: Range<usize>,
     /// The range of its model's memory in [`Memory::model`](super::state::Memory::model).
     pub memory: Range<usize>,
+    /// Whether the last number of that memory is the one of [`Diagnostics::global_rotations`].
+    pub(super) counts_global: bool,
     pub(super) diagnose: Diagnose,
 }
 
@@ -28,5 +32,10 @@ impl Part {
     /// The nodes of the part.
     pub(super) fn nodes_of<'a>(&self, all: Nodes<'a>) -> Nodes<'a> {
         Nodes { position: &all.position[self.nodes.clone()], velocity: &all.velocity[self.nodes.clone()] }
+    }
+
+    /// [`Diagnostics::global_rotations`] by the memory of all models.
+    pub(super) fn global_rotations(&self, memory: &[f64]) -> f64 {
+        memory[self.memory.clone()].last().copied().filter(|_| self.counts_global).unwrap_or(f64::NAN)
     }
 }

@@ -155,7 +155,9 @@ impl World {
             let first = state.memory.model.len();
             state.memory.model.extend(start);
             let memory = first..state.memory.model.len();
-            let part = Part { body: Arc::clone(body), forces, nodes, memory, diagnose: Diagnose::new(body) };
+            let counts_global = model.shape_based().is_some_and(|model| model.counts_global(body));
+            let diagnose = Diagnose::new(body);
+            let part = Part { body: Arc::clone(body), forces, nodes, memory, counts_global, diagnose };
             let period = model.shortest_period(body);
             let own = SpeedLimit::new(body, part.nodes_of(state.nodes()), period, &surroundings, step);
             scales.length = scales.length.max(body.extent());
@@ -357,7 +359,14 @@ impl World {
     }
 
     fn facts<'a>(&'a self, part: &'a Part, report: impl FnOnce() -> Report + 'a) -> Facts<'a> {
-        part.diagnose.facts(part.nodes_of(self.state.nodes()), self.system.gravity, report, &self.crew)
+        let global_rotations = part.global_rotations(&self.state.memory.model);
+        part.diagnose.facts(
+            part.nodes_of(self.state.nodes()),
+            self.system.gravity,
+            global_rotations,
+            report,
+            &self.crew,
+        )
     }
 
     /// The present state of the first part with its diagnostics.

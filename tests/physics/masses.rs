@@ -69,9 +69,9 @@ fn the_residual_is_the_torque_over_the_moment_of_inertia() {
     let solve = |a| linearised::rotation_by_arctangent(linearised::solve(a));
     let at_rest = |world: &World| moment(&rest, centred(&world.state().position));
     let exact = localshape::sim::rotation::davenport1968::optimum(at_rest(&world), DQuat::IDENTITY);
-    let first = linearised::iterate(at_rest(&world), exact, 1, solve);
+    let first = linearised::iterate(at_rest(&world), exact, 1, solve).rotation;
     world.advance(1);
-    let second = linearised::iterate(at_rest(&world), first, 1, solve);
+    let second = linearised::iterate(at_rest(&world), first, 1, solve).rotation;
     let inertia: f64 = body.mass.iter().zip(&rest).map(|(m, r)| m * r.dot(*r)).sum();
     let expected = stiffness * torque(glam::DMat3::from_quat(second) * at_rest(&world)).length() / inertia;
     let found = world.report(0).residual(Report::ROTATION).expect("the shape model has one");

@@ -2,6 +2,7 @@
 
 use super::support::{Noise, floor, lattice, mass_spring, shape_based};
 use glam::DVec3;
+use localshape::sim::body::{Body, Dimension, Solids};
 use localshape::sim::contact::{Motion, Obstacle, Shape};
 use localshape::sim::crew::Crew;
 use localshape::sim::grip::Grip;
@@ -12,6 +13,7 @@ use localshape::sim::motion::Offset;
 use localshape::sim::state::State;
 use localshape::sim::topology::Springs;
 use localshape::sim::world::{Kernel, Stepping, Surroundings, World};
+use std::sync::Arc;
 
 #[test]
 fn states_have_the_same_bits_for_1_2_and_8_threads() {
@@ -79,5 +81,42 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
         });
         assert!(ends[0] == ends[1] && ends[0] == ends[2], "{model:?} {kernel:?}");
         assert!(ends[0] != start);
+    }
+}
+
+/// A gentle motion needs no global solver; mirrored elements do, and all codes count the same ones.
+#[test]
+fn rotations_that_need_the_global_solver_are_counted_by_every_code_alike() {
+    /// Of a mirrored cube all rotations about many axes are nearly as good as the best one.
+    const MIRRORED: f64 = -0.999_999;
+    let whole = lattice(6, 0.1);
+    // The general code for the second body, which lacks one corner of a cube.
+    let short = whole.elements.iter().enumerate().map(|(at, nodes)| &nodes[usize::from(at == 7)..]).collect();
+    let (rest, mass) = (whole.rest.clone(), whole.mass.clone());
+    let short = Arc::new(Body::new(Dimension::Space, rest, mass, short, Solids::Ordered, None));
+    for (body, crush, rotation) in [
+        (&whole, 0.9, RotationReading::Robust),
+        (&whole, 0.9, RotationReading::Arctangent),
+        (&whole, MIRRORED, RotationReading::Robust),
+        (&whole, MIRRORED, RotationReading::Arctangent),
+        (&short, 0.9, RotationReading::Robust),
+        (&short, MIRRORED, RotationReading::Robust),
+        (&short, MIRRORED, RotationReading::Arctangent),
+    ] {
+        let position = body.rest.iter().map(|rest| *rest * DVec3::new(1.0, 1.0, crush));
+        let start = State::at_rest(position.collect());
+        let model = ShapeBased { rotation, ..shape_based(1e4, 20.0) };
+        let count = |kernel: Kernel, threads: usize, calls: u64| {
+            let stepping = Stepping { kernel, ..Stepping::new(Integrator::VelocityVerlet, 1e-4) };
+            let mut world = World::new(body, start.clone(), &model, Surroundings::default(), stepping);
+            world.set_crew(Crew::new(threads));
+            (0..calls).for_each(|_| world.advance(12 / calls));
+            world.diagnostics().global_rotations
+        };
+        let found = count(Kernel::Fast, 1, 1);
+        for (kernel, threads, calls) in [(Kernel::Fast, 2, 1), (Kernel::Fast, 1, 4), (Kernel::Reference, 1, 3)] {
+            assert_eq!(count(kernel, threads, calls), found, "{crush} {rotation:?} {kernel:?} {threads} {calls}");
+        }
+        assert_eq!(found > 0.0, crush < 0.0, "{rotation:?}: {found}");
     }
 }

@@ -16,6 +16,7 @@ mod report;
 mod rotation;
 pub(in crate::sim) mod springs;
 pub(in crate::sim) mod stepper;
+mod tally;
 
 #[cfg(test)]
 mod tests;

@@ -283,11 +283,10 @@ impl<L: Lanes> Shapes<L> {
             Dimension::Space => {
                 let last = each!(4, entry => L::from_array(last[entry]));
                 let scale = one.div(self.squares).select(zero.lt(self.squares), one);
+                let of = rotation::Moments { a: &self.a, scale, tally: None };
                 let turn = match rotation {
-                    Rotation::Arctangent { passes } => {
-                        rotation::Arctangent { passes }.follow(&self.a, scale, last, L::ALL)
-                    }
-                    Rotation::Optimum => rotation::Optimum.follow(&self.a, scale, last, L::ALL),
+                    Rotation::Arctangent { passes } => rotation::Arctangent { passes }.follow(of, last, L::ALL),
+                    Rotation::Optimum => rotation::Optimum.follow(of, last, L::ALL),
                 };
                 matrix(turn, one)
             }

@@ -4,6 +4,7 @@
 //! of the matrix of Eq. (15) in the frame of the element: `g = (B32 − B23, B13 − B31, B21 − B12)` is the torque divided
 //! by `k`, and `H = tr(B) I − (B + Bᵀ)/2` the Hessian of the energy. Quaternions are (x, y, z, w) and normalised.
 
+use super::tally::Tally;
 use crate::sim::lanes::{Lanes, MOST, each};
 use crate::sim::rotation::davenport1968;
 use crate::sim::rotation::robust::{MOST_PASSES, SERIES, SHORT, SOUND};
@@ -14,18 +15,25 @@ pub(super) type Vector<L> = [L; 3];
 /// The columns of a matrix, in every lane.
 pub(super) type Matrix<L> = [[L; 3]; 3];
 
+/// What rotations follow from, besides the last ones.
+#[derive(Clone, Copy)]
+pub(super) struct Moments<'a, L> {
+    /// `Σ r R0ᵀ`.
+    pub(super) a: &'a Matrix<L>,
+    /// Makes the entries of `a` at rest about 1, such as `1 / Σ |R0|²`. The result depends on it in round-off only.
+    pub(super) scale: L,
+    /// Counts the rotations that need the global solver.
+    pub(super) tally: Option<&'a Tally>,
+}
+
 /// A method that computes rotations in lanes.
 pub(super) trait Solver: Copy + Send + Sync + 'static {
-    /// The rotations of elements from their last ones, for `a = Σ r R0ᵀ`. Elements whose bit is not in `live` keep
-    /// theirs.
-    ///
-    /// `scale` is any number that makes the entries of `a` at rest about 1, such as `1 / Σ |R0|²`. The result depends
-    /// on it in round-off only.
+    /// The rotations of elements from their last ones. Elements whose bit is not in `live` keep theirs.
     #[inline(always)]
-    fn follow<L: Lanes>(self, a: &Matrix<L>, scale: L, last: [L; 4], live: u32) -> [L; 4] {
+    fn follow<L: Lanes>(self, of: Moments<'_, L>, last: [L; 4], live: u32) -> [L; 4] {
         let (mut q, mut open) = (last, live);
         for pass in 1..=self.passes() {
-            (q, open) = self.step(a, scale, q, open, pass == self.passes());
+            (q, open) = self.step(of, q, open, pass == self.passes());
         }
         q
     }
@@ -34,15 +42,15 @@ pub(super) trait Solver: Copy + Send + Sync + 'static {
     /// the next pass, too. A caller with several vectors computes each pass for all of them before the next one: a pass
     /// is a long chain of dependent operations, and the processor overlaps those of several vectors.
     #[inline(always)]
-    fn step<L: Lanes>(self, a: &Matrix<L>, scale: L, q: [L; 4], open: u32, is_last: bool) -> ([L; 4], u32) {
-        let ([x, y, z, s], sound, done) = self.pass(&turned_back(a, &matrix(q, scale)));
+    fn step<L: Lanes>(self, of: Moments<'_, L>, q: [L; 4], open: u32, is_last: bool) -> ([L; 4], u32) {
+        let ([x, y, z, s], sound, done) = self.pass(&turned_back(of.a, &matrix(q, of.scale)));
         let (next, in_range) = turn(q, [x, y, z], s);
         let sound = open & L::bits(L::both(sound, in_range));
         let failed = open & !sound;
         let mut q = choose(L::mask(sound), next, q);
         let late = if is_last { sound & !L::bits(done) } else { 0 };
         if failed | late != 0 {
-            q = self.go_on(a, scale, q, late, failed);
+            q = self.go_on(of, q, late, failed);
         }
         (q, sound)
     }
@@ -56,7 +64,7 @@ pub(super) trait Solver: Copy + Send + Sync + 'static {
 
     /// What remains to be done after these passes, which led to `q`: lanes that are `open` need more passes, lanes that
     /// have `failed` need the global solver.
-    fn go_on<L: Lanes>(self, a: &Matrix<L>, scale: L, q: [L; 4], open: u32, failed: u32) -> [L; 4];
+    fn go_on<L: Lanes>(self, of: Moments<'_, L>, q: [L; 4], open: u32, failed: u32) -> [L; 4];
 }
 
 /// Eq. (15) as printed, solved in a number of passes, each solution a rotation by `atan |w|`: the same as
@@ -84,8 +92,8 @@ impl Solver for Arctangent {
     }
 
     #[inline(always)]
-    fn go_on<L: Lanes>(self, a: &Matrix<L>, _: L, q: [L; 4], _: u32, failed: u32) -> [L; 4] {
-        global(a, q, failed)
+    fn go_on<L: Lanes>(self, of: Moments<'_, L>, q: [L; 4], _: u32, failed: u32) -> [L; 4] {
+        global(of, q, failed)
     }
 }
 
@@ -101,10 +109,10 @@ impl Solver for Optimum {
     }
 
     #[inline(always)]
-    fn go_on<L: Lanes>(self, a: &Matrix<L>, scale: L, mut q: [L; 4], open: u32, failed: u32) -> [L; 4] {
+    fn go_on<L: Lanes>(self, of: Moments<'_, L>, mut q: [L; 4], open: u32, failed: u32) -> [L; 4] {
         let (mut open, mut failed) = (open | failed, 0);
         for _ in 1..MOST_PASSES {
-            let b = turned_back(a, &matrix(q, scale));
+            let b = turned_back(of.a, &matrix(q, of.scale));
             let (next, sound, last) = optimum_pass(&b, q);
             let sound = L::bits(sound);
             failed |= open & !sound;
@@ -117,7 +125,7 @@ impl Solver for Optimum {
             }
         }
         if failed | open != 0 {
-            q = global(a, q, failed | open);
+            q = global(of, q, failed | open);
         }
         q
     }
@@ -282,16 +290,17 @@ pub(super) fn choose<L: Lanes>(mask: L::Mask, a: [L; 4], b: [L; 4]) -> [L; 4] {
 
 /// The optimum nearest to `last` in those lanes whose bits are set.
 #[inline(always)]
-fn global<L: Lanes>(a: &Matrix<L>, last: [L; 4], lanes: u32) -> [L; 4] {
-    let moments = each!(3, column => each!(3, row => a[column][row].to_array()));
+fn global<L: Lanes>(of: Moments<'_, L>, last: [L; 4], lanes: u32) -> [L; 4] {
+    let a = each!(3, column => each!(3, row => of.a[column][row].to_array()));
     let mut q = each!(4, part => last[part].to_array());
-    global_of_arrays(&moments, &mut q, lanes);
+    global_of_arrays(&a, &mut q, lanes, of.tally);
     each!(4, part => L::from_array(q[part]))
 }
 
 #[cold]
 #[inline(never)]
-fn global_of_arrays(a: &[[[f64; MOST]; 3]; 3], q: &mut [[f64; MOST]; 4], lanes: u32) {
+fn global_of_arrays(a: &[[[f64; MOST]; 3]; 3], q: &mut [[f64; MOST]; 4], lanes: u32, tally: Option<&Tally>) {
+    tally.inspect(|tally| tally.add(lanes));
     for lane in (0..MOST).filter(|lane| lanes >> lane & 1 == 1) {
         // The solver takes the transpose of `a`.
         let at_rest = DMat3::from_cols_array_2d(&[0, 1, 2].map(|row| [0, 1, 2].map(|column| a[column][row][lane])));
@@ -309,7 +318,7 @@ mod tests {
     use glam::DVec3;
 
     /// Computes the rotations of elements, one vector after the other.
-    struct Follow<'a, S>(S, &'a [(DMat3, DQuat)]);
+    struct Follow<'a, S>(S, &'a [(DMat3, DQuat)], &'a Tally);
 
     impl<S: Solver> Work for Follow<'_, S> {
         type Output = Vec<DQuat>;
@@ -323,7 +332,8 @@ mod tests {
                 // The columns of `Σ R0 rᵀ` are the rows of `a`.
                 let a = [0, 1, 2].map(|column: usize| [0, 1, 2].map(|row: usize| lane(&|one| one.0.col(row)[column])));
                 let q = [0, 1, 2, 3].map(|part: usize| lane(&|one| one.1.to_array()[part]));
-                let q = self.0.follow(&a, L::splat(1.0), q, (1 << some.len()) - 1).map(L::to_array);
+                let of = Moments { a: &a, scale: L::splat(1.0), tally: Some(self.2) };
+                let q = self.0.follow(of, q, (1 << some.len()) - 1).map(L::to_array);
                 found.extend((0..some.len()).map(|at| DQuat::from_array([0, 1, 2, 3].map(|part: usize| q[part][at]))));
             }
             found
@@ -385,17 +395,22 @@ mod tests {
         hessian.determinant() > 1e-3 * trace * trace * trace
     }
 
-    fn assert_same_bits_for_all<S: Solver>(solver: S, elements: &[(DMat3, DQuat)]) -> Vec<DQuat> {
-        let found = Set::best().run(Follow(solver, elements));
+    /// The rotations, and how many of them needed the global solver.
+    fn assert_same_for_all<S: Solver>(solver: S, elements: &[(DMat3, DQuat)]) -> (Vec<DQuat>, u64) {
+        let run = |set: Set, elements: &[(DMat3, DQuat)]| {
+            let tally = Tally::default();
+            (set.run(Follow(solver, elements, &tally)), tally.get())
+        };
+        let found = run(Set::best(), elements);
         for set in Set::all() {
-            assert_eq!(set.run(Follow(solver, elements)), found, "{set:?}");
+            assert_eq!(run(set, elements), found, "{set:?}");
         }
         // Neighbours have no influence either.
         let backwards: Vec<_> = elements.iter().copied().rev().collect();
-        let mut again = Set::best().run(Follow(solver, &backwards));
-        again.reverse();
+        let mut again = run(Set::best(), &backwards);
+        again.0.reverse();
         assert_eq!(again, found);
-        assert!(found.iter().all(|q| (q.length_squared() - 1.0).abs() < 1e-15));
+        assert!(found.0.iter().all(|q| (q.length_squared() - 1.0).abs() < 1e-15));
         found
     }
 
@@ -404,11 +419,10 @@ mod tests {
         for largest_turn in [0.01, 0.3, 3.0] {
             let elements = all_sorts(largest_turn);
             for passes in [1, 2, 3] {
-                let found = assert_same_bits_for_all(Arctangent { passes }, &elements);
+                let (found, _) = assert_same_for_all(Arctangent { passes }, &elements);
                 for (&(at_rest, last), found) in elements.iter().zip(found) {
-                    let reference = linearised::iterate(at_rest, last, passes, |a| {
-                        linearised::rotation_by_arctangent(linearised::solve(a))
-                    });
+                    let of = |a| linearised::rotation_by_arctangent(linearised::solve(a));
+                    let reference = linearised::iterate(at_rest, last, passes, of).rotation;
                     let tolerance = if is_decided(at_rest) { 1e-13 } else { continue };
                     assert!(angle(found, reference) < tolerance, "{at_rest} {last}: {}", angle(found, reference));
                 }
@@ -420,7 +434,8 @@ mod tests {
     fn the_optimum_is_found_from_anywhere() {
         for largest_turn in [0.001, 0.003, 0.01, 0.1, 0.5, 3.0] {
             let elements = all_sorts(largest_turn);
-            let found = assert_same_bits_for_all(Optimum, &elements);
+            let (found, globals) = assert_same_for_all(Optimum, &elements);
+            assert!(globals > 0);
             for (&(at_rest, last), found) in elements.iter().zip(found) {
                 let optimum = davenport1968::optimum(at_rest, last);
                 let trace = |q| {
@@ -473,8 +488,8 @@ mod tests {
             fn run<L: Lanes>(self) {
                 let nan = [[L::splat(f64::NAN); 3]; 3];
                 let q = [0.5, -0.5, 0.1, 0.7].map(L::splat);
-                let one = L::splat(1.0);
-                let found = [Optimum.follow(&nan, one, q, 0), Arctangent { passes: 2 }.follow(&nan, one, q, 0)];
+                let of = Moments { a: &nan, scale: L::splat(1.0), tally: None };
+                let found = [Optimum.follow(of, q, 0), Arctangent { passes: 2 }.follow(of, q, 0)];
                 for found in found {
                     assert_eq!(found.map(L::to_array), q.map(L::to_array));
                 }

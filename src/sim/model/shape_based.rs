@@ -20,6 +20,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The parameters of the model in a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -184,10 +185,11 @@ impl ElasticModel for ShapeBased {
         Some(self)
     }
 
-    /// The rotations that are optimal for the initial positions, which need not be the identity.
+    /// The rotations that are optimal for the initial positions, which need not be the identity. In space they are followed by the
+    /// number of rotations that the global solver has computed since then.
     fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
         let solver = self.solver(body.dimension);
-        let mut memory = vec![0.0; solver.width() * body.elements.len()];
+        let mut memory = vec![0.0; solver.width() * body.elements.len() + usize::from(solver.counts())];
         let mut rest = Vec::new();
         for (nodes, memory) in body.elements.iter().zip(memory.chunks_exact_mut(solver.width())) {
             rest.clear();
@@ -229,6 +231,11 @@ impl Solver {
         }
     }
 
+    /// Whether the rotations that the global solver has computed are counted.
+    fn counts(self) -> bool {
+        matches!(self, Self::Space)
+    }
+
     /// The stored rotation as a matrix.
     fn matrix(self, memory: &[f64]) -> DMat3 {
         match self {
@@ -240,6 +247,11 @@ impl Solver {
 }
 
 impl ShapeBased {
+    /// Whether the last number of the memory is that of the rotations that the global solver has computed.
+    pub(crate) fn counts_global(&self, body: &Body) -> bool {
+        self.solver(body.dimension).counts()
+    }
+
     fn solver(&self, dimension: Dimension) -> Solver {
         match (dimension, self.rotation) {
             (Dimension::Plane, _) => Solver::Plane,
@@ -248,18 +260,22 @@ impl ShapeBased {
         }
     }
 
-    /// The rotation of an element from its last one, by the method chosen. `at_rest` is `Σ R0 rᵀ` (m²).
-    fn rotation(&self, solver: Solver, at_rest: DMat3, last: &[f64], next: &mut [f64]) -> DMat3 {
+    /// The rotation of an element from its last one, by the method chosen, and whether the global solver computed it.
+    /// `at_rest` is `Σ R0 rᵀ` (m²).
+    fn rotation(&self, solver: Solver, at_rest: DMat3, last: &[f64], next: &mut [f64]) -> (DMat3, bool) {
+        let mut is_global = false;
         match solver {
             Solver::Plane => planar::solve(at_rest, DVec2::from_slice(last)).write_to_slice(next),
             Solver::Space => {
-                self.rotation.follow(at_rest, DQuat::from_slice(last), self.passes).write_to_slice(next);
+                let found = self.rotation.follow(at_rest, DQuat::from_slice(last), self.passes);
+                found.rotation.write_to_slice(next);
+                is_global = found.is_global;
             }
             Solver::Linear => {
                 linear_update::update(at_rest, DMat3::from_cols_slice(last), self.passes).write_cols_to_slice(next);
             }
         }
-        solver.matrix(next)
+        (solver.matrix(next), is_global)
     }
 }
 
@@ -284,6 +300,8 @@ struct Fit {
     at_rest: DMat3,
     /// The rotation.
     rotation: DMat3,
+    /// Whether the global solver computed it.
+    is_global: bool,
 }
 
 impl Elements {
@@ -314,7 +332,8 @@ impl Elements {
         let (nodes, rest) = self.element(element);
         let centre = mean(nodes, position);
         let at_rest = moment_at_rest(rest, nodes, centre, position);
-        Fit { centre, at_rest, rotation: self.model.rotation(self.solver, at_rest, last, next) }
+        let (rotation, is_global) = self.model.rotation(self.solver, at_rest, last, next);
+        Fit { centre, at_rest, rotation, is_global }
     }
 
     /// α of Eq. (18) of an element with a rotation (rad/s²), from its `Σ R0 rᵀ` (m²).
@@ -322,12 +341,13 @@ impl Elements {
         angular_acceleration(rotation * at_rest, self.model.stiffness, self.inertia[element])
     }
 
-    /// Eq. (4) for one element: writes the force on each of its corners (N).
+    /// Eq. (4) for one element: writes the force on each of its corners (N). Returns whether the global solver computed its
+    /// rotation.
     #[doc(alias = "Eq. 4")]
-    fn forces(&self, element: usize, at: Nodes<'_>, last: &[f64], next: &mut [f64], forces: &mut [DVec3]) {
+    fn forces(&self, element: usize, at: Nodes<'_>, last: &[f64], next: &mut [f64], forces: &mut [DVec3]) -> bool {
         let ShapeBased { stiffness: k, damping: d, damping_of, .. } = self.model;
         let (nodes, rest) = self.element(element);
-        let Fit { centre, rotation, .. } = self.fit(element, at.position, last, next);
+        let Fit { centre, rotation, is_global, .. } = self.fit(element, at.position, last, next);
         let drift = mean(nodes, at.velocity);
         let spin = match damping_of {
             DampingReading::RelativeMotion => None,
@@ -346,15 +366,23 @@ impl Elements {
             }
             *force = -(displacement * k + relative_velocity * d);
         }
+        is_global
     }
 }
 
 impl ForceModel for Elements {
     fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]) {
-        let corners = scratch.vectors(self.rest.len());
+        let (corners, globals) = (scratch.vectors(self.rest.len()), AtomicU64::new(0));
         blocks::for_each(&self.body.elements, self.solver.width(), next, corners, &|element, next, corners| {
-            self.forces(element, at, self.of(element, memory), next, corners);
+            if self.forces(element, at, self.of(element, memory), next, corners) {
+                globals.fetch_add(1, Ordering::Relaxed);
+            }
         });
+        if self.solver.counts()
+            && let (Some(before), Some(after)) = (memory.last(), next.last_mut())
+        {
+            *after = before + globals.into_inner() as f64;
+        }
         self.gather.add(corners, forces);
     }
 
@@ -373,7 +401,7 @@ impl ForceModel for Elements {
         blocks::for_each(&self.body.elements, 1, &mut alphas, &mut shares, &|element, alpha, shares| {
             let (nodes, rest) = self.element(element);
             let (last, mut next) = (self.of(element, memory), [0.0; 9]);
-            let Fit { centre, at_rest, rotation } = self.fit(element, at.position, last, &mut next[..last.len()]);
+            let Fit { centre, at_rest, rotation, .. } = self.fit(element, at.position, last, &mut next[..last.len()]);
             for ((share, &node), &rest) in shares.iter_mut().zip(nodes).zip(rest) {
                 let squared = (at.position[node as usize] - centre - rotation * rest).length_squared();
                 *share = 0.5 * self.model.stiffness * squared;

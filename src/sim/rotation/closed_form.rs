@@ -8,10 +8,10 @@
 //! observations", J. Astronaut. Sci. 48(2), 2000, p. 359.
 //!
 //! Guarantee: the true optimum from any start. Errors grow with the inverse square of the gap `s₂ ± s₃` of the singular
-//! values; where the divisor, which is the product of the sums of two of them, is too small, [`davenport1968`] takes
+//! values; where the divisor, which is the product of the sums of two of them, is too small, [`davenport1968`](super::davenport1968) takes
 //! over. Cost: some three steps for the root, then matrices and one quaternion, the same for any last rotation.
 
-use super::davenport1968;
+use super::Followed;
 use glam::{DMat3, DQuat};
 
 /// The least divisor, relative to `λ³`; it is 8/27 for a cube at rest.
@@ -23,11 +23,8 @@ const SHORT: f64 = 1e-9;
 
 /// The rotation that maximises `tr(M Σ R0 rᵀ)`; `last` is used where the divisor is too small only. `at_rest` is
 /// `Σ R0 rᵀ`.
-pub(crate) fn optimum(at_rest: DMat3, last: DQuat) -> DQuat {
-    match regular(at_rest) {
-        Some(rotation) => rotation,
-        None => davenport1968::optimum(at_rest, last),
-    }
+pub(crate) fn optimum(at_rest: DMat3, last: DQuat) -> Followed {
+    regular(at_rest).map_or_else(|| Followed::global(at_rest, last), Followed::from)
 }
 
 fn regular(at_rest: DMat3) -> Option<DQuat> {

@@ -1,6 +1,6 @@
 //! The paper's solver in space: Eq. (15), solved a fixed number of times, starting from the last rotation.
 
-use super::{davenport1968, torque};
+use super::{Followed, torque};
 use glam::{DMat3, DQuat, DVec3};
 
 /// Eq. (15): `(tr(A) I − A) w = Σ R × r`, the rotation vector that balances the torque to first order.
@@ -112,16 +112,16 @@ pub(crate) fn is_well_posed(a: DMat3) -> bool {
 ///
 /// `at_rest` is `Σ R0 rᵀ`. Where Eq. (15) is not well posed (turned inside out, flattened to a line or a point, more
 /// than a quarter turn away) the exact optimum nearest to `last` is used instead.
-pub(crate) fn iterate(at_rest: DMat3, last: DQuat, passes: u32, rotation_of: impl Fn(DMat3) -> DQuat) -> DQuat {
+pub(crate) fn iterate(at_rest: DMat3, last: DQuat, passes: u32, rotation_of: impl Fn(DMat3) -> DQuat) -> Followed {
     let mut rotation = last;
     for _ in 0..passes {
         let a = DMat3::from_quat(rotation) * at_rest;
         if !is_well_posed(a) {
-            return davenport1968::optimum(at_rest, rotation);
+            return Followed::global(at_rest, rotation);
         }
         rotation = (rotation_of(a) * rotation).normalize();
     }
-    rotation
+    rotation.into()
 }
 
 #[cfg(test)]
@@ -150,8 +150,10 @@ mod tests {
             let turned = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), degrees.to_radians());
             let a = moment(&rest, rest.iter().map(|&r| turned * r));
             for (passes, expected) in (1..).zip(independent) {
-                let error =
-                    angle_error(turned, iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_arctangent(solve(a))));
+                let error = angle_error(
+                    turned,
+                    iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_arctangent(solve(a))).rotation,
+                );
                 // Each pass squares the error, so a factor in the first one is squared as well.
                 let factor = 2f64.powi(1 << (passes - 1));
                 assert!((expected / factor..expected * factor).contains(&error), "{degrees}°, {passes}: {error:e}");
@@ -166,7 +168,8 @@ mod tests {
             let turned = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), degrees.to_radians());
             let a = moment(&rest, rest.iter().map(|&r| turned * r));
             for (passes, expected) in (1..).zip(independent) {
-                let error = angle_error(turned, iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_length(solve(a))));
+                let error =
+                    angle_error(turned, iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_length(solve(a))).rotation);
                 let factor = 2f64.powi(1 << (passes - 1));
                 assert!((expected / factor..expected * factor).contains(&error), "{degrees}°, {passes}: {error:e}");
             }
@@ -176,7 +179,8 @@ mod tests {
         let turned = DQuat::from_axis_angle(DVec3::Y, 10f64.to_radians());
         let a = moment(&rest, rest.iter().map(|&r| turned * r));
         for (passes, expected) in [(1, 1.8e-3), (2, 1.9e-9)] {
-            let error = angle_error(turned, iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_length(solve(a))));
+            let error =
+                angle_error(turned, iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_length(solve(a))).rotation);
             assert!((error / expected - 1.0).abs() < 0.05, "{passes}: {error:e}");
         }
     }
@@ -190,7 +194,7 @@ mod tests {
             for (passes, expected) in (1..).zip(independent) {
                 let error = angle_error(
                     turned,
-                    iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_arctangent(solve_symmetric(a))),
+                    iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_arctangent(solve_symmetric(a))).rotation,
                 );
                 // The independent values are for another axis; each pass raises a factor to its third power.
                 let factor = 2f64.powi(3i32.pow(passes - 1));
@@ -205,7 +209,8 @@ mod tests {
         for degrees in [1.0f64, 10.0, 45.0, 80.0, 89.0] {
             let turned = DQuat::from_axis_angle(DVec3::new(0.3, -0.5, 0.7).normalize(), degrees.to_radians());
             let a = moment(&rest, rest.iter().map(|&r| turned * r));
-            let error = angle_error(turned, iterate(a, DQuat::IDENTITY, 1, |a| rotation_by_arctangent(solve(a))));
+            let error =
+                angle_error(turned, iterate(a, DQuat::IDENTITY, 1, |a| rotation_by_arctangent(solve(a))).rotation);
             assert!(error < 1e-13, "{degrees}°: {error:e}");
         }
     }
@@ -228,7 +233,7 @@ mod tests {
         for degrees in [91.0f64, 120.0, 179.0, 180.0] {
             let turned = DQuat::from_axis_angle(DVec3::new(0.3, -0.5, 0.7).normalize(), degrees.to_radians());
             let a = moment(&rest, rest.iter().map(|&r| turned * r));
-            let found = iterate(a, DQuat::IDENTITY, 4, |a| rotation_by_arctangent(solve(a)));
+            let found = iterate(a, DQuat::IDENTITY, 4, |a| rotation_by_arctangent(solve(a))).rotation;
             assert!(angle_error(turned, found) < 1e-9, "{degrees}°: {found}");
         }
     }

@@ -30,6 +30,29 @@ pub use reading::RotationReading;
 use super::body::Dimension;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
+/// A rotation that a method has found, and whether it needed the [global solver](davenport1968).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Followed {
+    /// The rotation.
+    pub(crate) rotation: DQuat,
+    /// Whether the global solver computed it.
+    pub(crate) is_global: bool,
+}
+
+impl Followed {
+    /// The optimum nearest to the `last` rotation, by the global solver. `at_rest` is `Σ R0 rᵀ` (m²).
+    fn global(at_rest: DMat3, last: DQuat) -> Self {
+        Self { rotation: davenport1968::optimum(at_rest, last), is_global: true }
+    }
+}
+
+impl From<DQuat> for Followed {
+    /// Found without the global solver.
+    fn from(rotation: DQuat) -> Self {
+        Self { rotation, is_global: false }
+    }
+}
+
 /// `A = Σ R rᵀ` of an element: `shape` has its equilibrium (or rest) corners, `now` its present ones (m), both relative
 /// to their own mean.
 pub(crate) fn moment(shape: &[DVec3], now: impl IntoIterator<Item = DVec3>) -> DMat3 {

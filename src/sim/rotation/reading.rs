@@ -3,7 +3,7 @@
 use super::linearised::{
     iterate, quintic, rotation_by_arctangent, rotation_by_cayley, rotation_by_length, solve, solve_symmetric,
 };
-use super::{closed_form, davenport1968, kugelstadt2018, linear_update, mueller2016, robust};
+use super::{Followed, closed_form, davenport1968, kugelstadt2018, linear_update, mueller2016, robust};
 use glam::{DMat3, DQuat};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -53,22 +53,22 @@ impl RotationReading {
 
     /// The rotation of an element from its last one, for `at_rest` = `Σ R0 rᵀ` (m²); methods without passes ignore their
     /// number. The result of Eq. (16), which is not a rotation, is replaced by the rotation nearest to it.
-    pub(crate) fn follow(self, at_rest: DMat3, last: DQuat, passes: u32) -> DQuat {
+    pub(crate) fn follow(self, at_rest: DMat3, last: DQuat, passes: u32) -> Followed {
         match self {
             Self::Arctangent => iterate(at_rest, last, passes, |a| rotation_by_arctangent(solve(a))),
             Self::VectorLength => iterate(at_rest, last, passes, |a| rotation_by_length(solve(a))),
             Self::LinearUpdate => {
                 let matrix = linear_update::update(at_rest, DMat3::from_quat(last), passes);
-                davenport1968::optimum(matrix.transpose(), last)
+                davenport1968::optimum(matrix.transpose(), last).into()
             }
             Self::Symmetric => iterate(at_rest, last, passes, |a| rotation_by_arctangent(solve_symmetric(a))),
             Self::Cayley => iterate(at_rest, last, passes, |a| rotation_by_cayley(solve_symmetric(a))),
             Self::Quintic => iterate(at_rest, last, passes, quintic),
-            Self::Mueller => mueller2016::iterate(at_rest, last, passes),
-            Self::Kugelstadt => kugelstadt2018::iterate(at_rest, last, passes),
+            Self::Mueller => mueller2016::iterate(at_rest, last, passes).into(),
+            Self::Kugelstadt => kugelstadt2018::iterate(at_rest, last, passes).into(),
             Self::ClosedForm => closed_form::optimum(at_rest, last),
-            Self::Davenport => davenport1968::optimum(at_rest, last),
-            Self::Robust => robust::follow(at_rest, last).rotation,
+            Self::Davenport => Followed::global(at_rest, last),
+            Self::Robust => robust::follow(at_rest, last),
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! From the last rotation, passes of ninth order with the Hessian `H = tr(A) I − (A + Aᵀ)/2` of the energy. The
 //! increment is the quaternion `(v, 1)`, up to its length, with `(2H + μ) v = g`, `μ = g·v` and `g = Σ R × r`: the
-//! eigenvalue problem of [`davenport1968`], relative to the last rotation. With `v₀ = (2H)⁻¹ g`, `x = (2H)⁻¹ v₀`,
+//! eigenvalue problem of [`davenport1968`](super::davenport1968), relative to the last rotation. With `v₀ = (2H)⁻¹ g`, `x = (2H)⁻¹ v₀`,
 //! `y = (2H)⁻¹ x`, `z = (2H)⁻¹ y` and `m = g·v₀` the series for small `μ` are `μ = m (1 − |v₀|² + |v₀|⁴ + m v₀·x)` and
 //! `v = v₀ − μ x + μ² y − μ³ z`, up to terms of ninth order in the angle. They diverge above 45°, where `|v₀| = ½`; there the pass
 //! is `v₀ (1 + |v₀|²)/(1 + 2|v₀|²)`, within a tenth of the right angle for a cube turned by up to 63°.
@@ -16,7 +16,7 @@
 //! Cost: one division and one square root for each pass; one pass for increments up to 1/80 rad, two up to about 0.3.
 //! `Optimum` in `sim/kernel/rotation.rs` is the same in lanes.
 
-use super::{davenport1968, torque, trace};
+use super::{Followed, torque, trace};
 use glam::{DMat3, DQuat, DVec3};
 
 /// A pass is valid where `H` is positive definite and `det H` is at least this times `(tr H)³`; for a cube at rest the
@@ -39,15 +39,6 @@ pub(crate) const MOST_PASSES: u32 = 4;
 /// The range of `(tr 2H)³` in which all intermediate results are normal numbers.
 const RANGE: std::ops::Range<f64> = 1e-200..1e200;
 
-/// What [`follow`] found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Followed {
-    /// The rotation.
-    pub(crate) rotation: DQuat,
-    /// Whether the global solver was needed.
-    pub(crate) is_global: bool,
-}
-
 /// The rotation that maximises `tr(M Σ R0 rᵀ)`, starting from the last one. `at_rest` is `Σ R0 rᵀ`.
 pub(crate) fn follow(at_rest: DMat3, last: DQuat) -> Followed {
     let mut rotation = last;
@@ -55,10 +46,10 @@ pub(crate) fn follow(at_rest: DMat3, last: DQuat) -> Followed {
         let Some((v, is_last)) = pass(DMat3::from_quat(rotation) * at_rest) else { break };
         rotation = (DQuat::from_xyzw(v.x, v.y, v.z, 1.0) * rotation).normalize();
         if is_last {
-            return Followed { rotation, is_global: false };
+            return rotation.into();
         }
     }
-    Followed { rotation: davenport1968::optimum(at_rest, rotation), is_global: true }
+    Followed::global(at_rest, rotation)
 }
 
 /// The vector part `v` of the increment `(v, 1)`, and whether this pass is the last; `None` where a pass is not valid.

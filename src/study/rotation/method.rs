@@ -103,7 +103,7 @@ impl Method {
     #[inline]
     pub(super) fn rotation(&self, sample: &Sample) -> DQuat {
         match self.solver {
-            Solver::Reading(reading) => reading.follow(sample.at_rest, sample.last, self.passes.unwrap_or(0)),
+            Solver::Reading(reading) => reading.follow(sample.at_rest, sample.last, self.passes.unwrap_or(0)).rotation,
             Solver::Svd => by_svd(sample.at_rest).unwrap_or(DQuat::NAN),
         }
     }

@@ -88,7 +88,7 @@ fn the_default_is_the_maximum_for_moments_of_every_rank_and_sign() {
         assert!(objective(at_rest, found) >= best - 1e-13 * size(at_rest), "{number}: {at_rest} {last}");
         // Closed form and eigenvectors are global, too.
         for reading in [RotationReading::Davenport, RotationReading::ClosedForm] {
-            let other = reading.follow(at_rest, last, 0);
+            let other = reading.follow(at_rest, last, 0).rotation;
             assert!(other.is_normalized(), "{number}: {reading:?} {other}");
             let lost = objective(at_rest, found) - objective(at_rest, other);
             assert!(lost.abs() <= 1e-11 * size(at_rest), "{number}: {reading:?} {lost:e} {at_rest}");

@@ -10,6 +10,7 @@ mod count;
 mod reference;
 mod scenes;
 mod text;
+mod way;
 
 use crate::output::Clock;
 use crate::scene::Scene;
@@ -17,14 +18,12 @@ use crate::sim::body::Dimension;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use crate::sim::model::shape_based::{RotationReading, ShapeBased};
-use crate::sim::snapshot::Status;
-use crate::sim::state::State;
-use crate::sim::world::{Kernel, Stepping, Surroundings, World};
+use crate::sim::world::Kernel;
 use crate::table::{Spread, Watch};
 use count::Counting;
-use glam::DVec3;
 use reference::{farthest, reference};
 use std::sync::Arc;
+use way::{End, Way};
 
 /// What is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,9 +149,12 @@ pub(crate) struct Measured {
     pub(crate) step: f64,
     /// Evaluations of the forces of the whole body, those of the start included.
     pub(crate) evaluations: u64,
-    /// The greatest distance of a node from the reference at the end, as a share of the body's size; `None` if the run diverges.
+    /// The greatest distance of a node from the reference at the end, as a share of the body's size; `None` if the run diverges or
+    /// is given up.
     pub(crate) error: Option<f64>,
-    /// Time of the run (s); NaN if it diverges.
+    /// Whether it was given up after too many evaluations.
+    pub(crate) is_given_up: bool,
+    /// Time of the run (s); NaN without an error.
     pub(crate) time: Spread,
     /// Whether the steps are vectorised.
     pub(crate) is_fast: bool,
@@ -196,43 +198,6 @@ pub(crate) fn measure(protocol: Protocol, subjects: &[Subject], watch: &Watch<'_
     let is_processor_time = Clock::thread().spent().cpu.is_some();
     let studies = subjects.iter().map(|subject| study(protocol, subject, watch)).collect::<Option<_>>()?;
     Some(Results { protocol, studies, is_processor_time })
-}
-
-/// One way to advance a scene from its start to its end.
-#[derive(Clone, Copy)]
-struct Way {
-    integrator: Integrator,
-    /// The number of steps, 1 for an adaptive method.
-    steps: u64,
-    tolerance: f64,
-}
-
-impl Way {
-    /// With about so many evaluations, or the tolerance of an adaptive method.
-    fn new((integrator, stages): (Integrator, f64), evaluations: f64, tolerance: f64) -> Self {
-        let steps = if integrator.is_adaptive() { 1 } else { (evaluations / stages).ceil().max(1.0) as u64 };
-        Self { integrator, steps, tolerance }
-    }
-
-    /// The run of a scene at its start, with another model.
-    fn world(self, subject: &Subject, model: &dyn ElasticModel) -> World {
-        let scene = &subject.scene;
-        let surroundings =
-            Surroundings { gravity: scene.gravity, obstacles: scene.obstacles.clone(), grips: scene.grips.clone() };
-        let Self { integrator, steps, tolerance } = self;
-        let step = scene.duration / steps as f64;
-        let stepping = Stepping { integrator, step, tolerance, kernel: Kernel::of(model, integrator) };
-        World::new(&scene.body, scene.initial.clone(), model, surroundings, stepping)
-    }
-
-    /// The positions at the end (m), `None` if the run diverges, and the number of evaluations.
-    fn run(self, subject: &Subject, model: &Arc<dyn ElasticModel>) -> (Option<Vec<DVec3>>, u64) {
-        let counting = Counting::new(Arc::clone(model));
-        let mut world = self.world(subject, &counting);
-        world.advance(self.steps);
-        let State { position, .. } = world.state();
-        ((world.status() == Status::Ok).then(|| position.clone()), counting.count())
-    }
 }
 
 /// Why an integrator cannot advance a model; `None` if it can.
@@ -281,8 +246,12 @@ fn study(protocol: Protocol, subject: &Subject, watch: &Watch<'_>) -> Option<Stu
             for at in 0..count {
                 let coarser = f64::from(ratio.pow((count - 1 - at) as u32));
                 let way = Way::new(method, most / coarser, libm::pow(10.0, -1.0 - (at as u32 * ratio / 2) as f64));
-                let (end, evaluations) = way.run(subject, model);
-                let error = end.map(|end| farthest(&end, &exact) / size);
+                let (end, evaluations) = way.run(subject, model, most);
+                let is_given_up = matches!(end, End::GivenUp);
+                let error = match end {
+                    End::Reached(positions) => Some(farthest(&positions, &exact) / size),
+                    End::Diverged | End::GivenUp => None,
+                };
                 if !watch(1) {
                     return None;
                 }
@@ -297,6 +266,7 @@ fn study(protocol: Protocol, subject: &Subject, watch: &Watch<'_>) -> Option<Stu
                     step: if method.0.is_adaptive() { way.tolerance } else { scene.duration / way.steps as f64 },
                     evaluations,
                     error,
+                    is_given_up,
                     time: Spread::of([]),
                     is_fast: Kernel::of(model.as_ref(), method.0) == Kernel::Fast,
                 });
@@ -332,7 +302,7 @@ fn study(protocol: Protocol, subject: &Subject, watch: &Watch<'_>) -> Option<Stu
 /// The time of an evaluation by the reference code (s), about.
 fn seconds_per_evaluation(subject: &Subject, model: &Arc<dyn ElasticModel>) -> f64 {
     let way = Way { integrator: Integrator::SemiImplicitEuler, steps: 1 << 20, tolerance: reference::TOLERANCE };
-    let mut world = way.world(subject, &Counting::new(Arc::clone(model)));
+    let mut world = way.world(subject, &Counting::new(Arc::clone(model), u64::MAX));
     world.advance(1);
     let clock = Clock::thread();
     world.advance(100);

@@ -1,6 +1,7 @@
 //! The positions at the end of a run that errors are measured against.
 
-use super::{Reference, Subject, Way};
+use super::way::{End, Way};
+use super::{Reference, Subject};
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use glam::DVec3;
@@ -27,7 +28,7 @@ pub(super) fn reference(
     };
     let rest = [Integrator::VelocityVerlet, Integrator::SemiImplicitEuler];
     let methods = best.iter().chain(&rest).filter_map(|wanted| accepted.iter().find(|(one, _)| one == wanted));
-    let mut ends = methods.map(|&method| (method.0, finest(subject, model, method, FINER * most)));
+    let mut ends = methods.filter_map(|&method| Some((method.0, finest(subject, model, method, FINER * most)?)));
     let mut next = || ends.next().unwrap_or((Integrator::default(), None));
     let ((first, one), (second, other)) = (next(), next());
     let (Some(one), Some(other)) = (one, other) else {
@@ -46,19 +47,27 @@ pub(super) fn reference(
     Ok((one, Reference { integrators: [first, second], error }))
 }
 
-/// The positions at the end (m) with about so many evaluations, or the tolerance of an adaptive method that leads to them.
+/// The positions at the end (m) with about so many evaluations, or the tolerance of an adaptive method that leads to them, which are
+/// `None` if the body diverges; `None` for a method that needs far more evaluations.
 fn finest(
     subject: &Subject,
     model: &Arc<dyn ElasticModel>,
     method: (Integrator, f64),
     evaluations: f64,
-) -> Option<Vec<DVec3>> {
+) -> Option<Option<Vec<DVec3>>> {
     let mut tolerance = if method.0.is_adaptive() { 1e-4 } else { TOLERANCE };
+    let mut before = None;
     loop {
-        let (end, count) = Way::new(method, evaluations, tolerance).run(subject, model);
+        let (end, count) = Way::new(method, evaluations, tolerance).run(subject, model, evaluations);
+        let end = match end {
+            End::Reached(positions) => Some(positions),
+            End::Diverged => None,
+            End::GivenUp => return before,
+        };
         if tolerance <= TOLERANCE || count as f64 > evaluations {
-            return end;
+            return Some(end);
         }
+        before = Some(end);
         tolerance = (0.1 * tolerance).max(TOLERANCE);
     }
 }

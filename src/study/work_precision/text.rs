@@ -53,7 +53,7 @@ impl Results {
                 ("s_lower", exact(one.time.lower)),
                 ("s_upper", exact(one.time.upper)),
                 ("s_least", exact(one.time.least)),
-                ("status", if one.error.is_some() { "ok" } else { "diverged" }.to_owned()),
+                ("status", status(one).to_owned()),
             ]
         };
         Sheet::of(rows.map(row)).csv()
@@ -70,6 +70,7 @@ impl Results {
                 "tolerance": one.integrator.is_adaptive().then_some(one.step),
                 "evaluations": one.evaluations,
                 "error": one.error,
+                "status": status(one),
                 "seconds": one.time,
             })
         };
@@ -186,9 +187,19 @@ impl Study {
                 ("order", self.order(one).map_or_else(|| "–".to_owned(), |order| format!("{order:.2}"))),
                 ("largest step that does not diverge", coarsest.map_or_else(|| "–".to_owned(), step)),
                 ("least error", format!("{least:.0e}")),
+                ("given up", self.of(one).find(|run| run.is_given_up).map_or_else(|| "–".to_owned(), step)),
             ]
         };
         Sheet::of(self.integrators().map(row))
+    }
+}
+
+/// How a run ended.
+fn status(one: &Measured) -> &'static str {
+    match one.error {
+        Some(_) => "ok",
+        None if one.is_given_up => "given up",
+        None => "diverged",
     }
 }
 

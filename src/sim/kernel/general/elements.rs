@@ -1,7 +1,8 @@
 //! The laws of elements and springs in lanes: what they add to the sums of their nodes.
 
 use super::{Class, Constants, Part, RECORD, SUM};
-use crate::sim::kernel::rotation::{self, Solver};
+use crate::sim::kernel::rotation::{self, Moments, Solver};
+use crate::sim::kernel::tally::Tally;
 use crate::sim::lanes::{Lanes, MOST, each};
 
 /// The elements of one class of a part.
@@ -10,6 +11,7 @@ pub(super) struct Elements<'a> {
     pub(super) class: &'a Class,
     pub(super) constants: &'a Constants,
     pub(super) commit: bool,
+    pub(super) tally: &'a Tally,
 }
 
 /// Blocks in a batch, for which first all moments are computed, then all rotations, then all forces. A rotation is a
@@ -40,7 +42,8 @@ impl Elements<'_> {
     /// Eq. (4) in space.
     #[inline(always)]
     pub(super) fn space<L: Lanes, const DAMPED: bool>(&self, solver: impl Solver) {
-        let &Self { part, class, constants, commit } = self;
+        let &Self { part, class, constants, commit, tally } = self;
+        let tally = commit.then_some(tally);
         let corners = class.corners;
         let (records, sums) = (part.records.pointer(), part.sums.pointer());
         let k = L::splat(constants.stiffness);
@@ -106,7 +109,8 @@ impl Elements<'_> {
                             } else {
                                 each!(4, entry => L::load(out.add((TURN + entry) * MOST)))
                             };
-                            let (turn, next) = solver.step(&a, scale, last, open[lanes], pass == passes);
+                            let of = Moments { a: &a, scale, tally };
+                            let (turn, next) = solver.step(of, last, open[lanes], pass == passes);
                             if pass < passes {
                                 open[lanes] = next;
                                 each!(4, entry => turn[entry].store(out.add((TURN + entry) * MOST)));
@@ -168,7 +172,7 @@ impl Elements<'_> {
     /// Eq. (4) in the plane, with the rotation of Eq. (9).
     #[inline(always)]
     pub(super) fn plane<L: Lanes, const DAMPED: bool>(&self) {
-        let &Self { part, class, constants, commit } = self;
+        let &Self { part, class, constants, commit, .. } = self;
         let corners = class.corners;
         let (records, sums) = (part.records.pointer(), part.sums.pointer());
         let k = L::splat(constants.stiffness);

@@ -16,6 +16,7 @@ mod pass;
 
 use super::memory::Aligned;
 use super::stepper::{Pass, Passes, Stepper};
+use super::tally::Tally;
 use super::{Around, Lost, Rotation};
 use crate::sim::body::{Body, Dimension, IndexLists, bounds};
 use crate::sim::crew::Crew;
@@ -66,6 +67,9 @@ pub(in crate::sim) struct General {
     shared: Shared,
     /// The first record of each node.
     places: Vec<Place>,
+    /// Number of elements.
+    elements: usize,
+    tally: Tally,
 }
 
 /// A record: the part, and its number there.
@@ -225,7 +229,8 @@ impl General {
         shared.starts.resize(whole + 1, shared.places.len() as u32);
         shared.accelerations = Aligned::zeros(whole * 3);
         shared.kept = Aligned::zeros(whole * 3);
-        Self { set, law, constants, parts: made, shared, places }
+        let (elements, tally) = (elements.len(), Tally::default());
+        Self { set, law, constants, parts: made, shared, places, elements, tally }
     }
 }
 
@@ -383,6 +388,7 @@ impl Stepper for General {
                 }
             }
         }
+        self.tally.load(memory.get(self.elements * width));
     }
 
     fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
@@ -398,6 +404,7 @@ impl Stepper for General {
                 }
             }
         }
+        self.tally.store(memory.get_mut(self.elements * width));
     }
 
     fn node(&mut self, node: usize) -> (DVec3, DVec3) {
@@ -432,6 +439,7 @@ impl Stepper for General {
             part.classes.iter_mut().for_each(|class| class.kept.copy_from(&mut class.turns));
         }
         self.shared.kept.copy_from(&mut self.shared.accelerations);
+        self.tally.keep();
     }
 
     fn restore(&mut self) {
@@ -442,6 +450,7 @@ impl Stepper for General {
             part.classes.iter_mut().for_each(|class| class.turns.copy_from(&mut class.kept));
         }
         self.shared.accelerations.copy_from(&mut self.shared.kept);
+        self.tally.restore();
     }
 
     fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {

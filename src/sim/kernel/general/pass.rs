@@ -26,7 +26,8 @@ impl Work for OnePart<'_> {
         let Pass { stage, number, commit, .. } = self.pass;
         if stage.has_forces() {
             for class in &part.classes {
-                let elements = Elements { part, class, constants: &self.body.constants, commit };
+                let tally = &self.body.tally;
+                let elements = Elements { part, class, constants: &self.body.constants, commit, tally };
                 match (self.body.law, self.body.constants.damping > 0.0) {
                     (Law::Plane, true) => elements.plane::<L, true>(),
                     (Law::Plane, false) => elements.plane::<L, false>(),

@@ -22,6 +22,7 @@ mod tests;
 
 use super::memory::Aligned;
 use super::stepper::{Passes, Scheme, Stepper};
+use super::tally::Tally;
 use super::{Around, Lost, Rotation};
 use crate::sim::body::{Body, Dimension};
 use crate::sim::crew::Crew;
@@ -165,6 +166,7 @@ pub(in crate::sim) struct Lattice {
     turns: Aligned,
     /// Copies of `nodes` and `turns`.
     kept: [Aligned; 2],
+    tally: Tally,
     pattern: Pattern,
     /// The buffers of all threads; see [`Slab`].
     slabs: Aligned,
@@ -250,8 +252,8 @@ impl Lattice {
             let edge = |at: usize, cells: usize| if at == 0 || at == cells { 1.0 } else { 2.0 };
             *valence = edge(at % row, row - 1) * edge(at / row, rows);
         }
-        let (slabs, signals) = (Aligned::zeros(0), Box::default());
-        Some(Self { set, grid, parameters, parts, nodes, turns, kept, pattern, slabs, signals })
+        let (slabs, signals, tally) = (Aligned::zeros(0), Box::default(), Tally::default());
+        Some(Self { set, grid, parameters, parts, nodes, turns, kept, tally, pattern, slabs, signals })
     }
 
     /// The index in `nodes` of the first number of a node.
@@ -279,6 +281,7 @@ impl Stepper for Lattice {
             let turns = self.turns.as_mut_slice();
             (0..4).for_each(|part| turns[at + part * MOST] = turn[part]);
         }
+        self.tally.load(memory.chunks_exact(4).remainder().first());
     }
 
     fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
@@ -290,6 +293,7 @@ impl Stepper for Lattice {
             let turns = self.turns.as_mut_slice();
             (0..4).for_each(|part| turn[part] = turns[at + part * MOST]);
         }
+        self.tally.store(memory.chunks_exact_mut(4).into_remainder().first_mut());
     }
 
     fn node(&mut self, node: usize) -> (DVec3, DVec3) {
@@ -316,12 +320,14 @@ impl Stepper for Lattice {
         let [nodes, turns] = &mut self.kept;
         nodes.copy_from(&mut self.nodes);
         turns.copy_from(&mut self.turns);
+        self.tally.keep();
     }
 
     fn restore(&mut self) {
         let [nodes, turns] = &mut self.kept;
         self.nodes.copy_from(nodes);
         self.turns.copy_from(turns);
+        self.tally.restore();
     }
 
     fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {

@@ -112,7 +112,8 @@ pub(super) fn start(body: &Body, seed: u64) -> State {
     State::new(position, velocity)
 }
 
-/// The rotations of the elements at a state, with which the reference starts as well.
+/// The rotations of the elements at a state, and in space the number of those that took the global solver: the memory with which the
+/// reference starts as well.
 pub(super) fn rotations(body: &Body, state: &State) -> Vec<f64> {
     let mut memory = Vec::new();
     for nodes in body.elements.iter() {
@@ -126,6 +127,7 @@ pub(super) fn rotations(body: &Body, state: &State) -> Vec<f64> {
             Dimension::Space => memory.extend(davenport1968::optimum(a, DQuat::IDENTITY).to_array()),
         }
     }
+    memory.extend((body.dimension == Dimension::Space).then_some(0.0));
     memory
 }
 

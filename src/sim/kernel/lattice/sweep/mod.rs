@@ -8,6 +8,7 @@ use crate::sim::kernel::memory::Aligned;
 use crate::sim::kernel::motion::Motion;
 use crate::sim::kernel::rotation::{Arctangent, Optimum, Solver};
 use crate::sim::kernel::stepper::{Pass, Passes, Scheme};
+use crate::sim::kernel::tally::Tally;
 use crate::sim::kernel::{Around, Lost, Rotation};
 use crate::sim::lanes::{Lanes, MOST, Work};
 use glam::DVec3;
@@ -25,7 +26,7 @@ pub(super) fn run(
     around: &Around<'_>,
     crew: &mut Crew,
 ) -> Option<Lost> {
-    let Lattice { set, grid, parameters, parts, nodes, turns, pattern, slabs, signals, kept: _ } = lattice;
+    let Lattice { set, grid, parameters, parts, nodes, turns, pattern, slabs, signals, tally, kept: _ } = lattice;
     if some.is_empty() {
         return None;
     }
@@ -69,6 +70,7 @@ pub(super) fn run(
         member: 0,
         members,
         signals,
+        tally,
         stop: &stop,
     };
     let lost = Mutex::new(None);
@@ -158,6 +160,7 @@ struct Sweep<'a> {
     member: usize,
     members: usize,
     signals: &'a [Signal],
+    tally: &'a Tally,
     /// Set when a thread has panicked or found a node that is too fast.
     stop: &'a AtomicBool,
 }

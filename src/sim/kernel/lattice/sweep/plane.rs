@@ -3,7 +3,7 @@
 use super::Sweep;
 use crate::sim::kernel::lattice::{ACCELERATION, CHUNK, INVERSE_MASS, MEAN, TURN, VELOCITY, slot};
 use crate::sim::kernel::motion::{Motion, Nodes};
-use crate::sim::kernel::rotation::{Solver, choose, matrix, turn, turned_back};
+use crate::sim::kernel::rotation::{Moments, Solver, choose, matrix, turn, turned_back};
 use crate::sim::lanes::{Lanes, MOST, each, thrice};
 
 impl Sweep<'_> {
@@ -180,7 +180,8 @@ impl Sweep<'_> {
                     let late = if is_last { sound & !u32::from(last) } else { 0 };
                     if failed | late != 0 {
                         let edges = self.edges::<L, DAMPED>(at, here, L::load(self.live.add(at)));
-                        q = solver.go_on(&edges, scale, q, late, failed);
+                        let of = Moments { a: &edges, scale, tally: commit.then_some(self.tally) };
+                        q = solver.go_on(of, q, late, failed);
                     }
                     here = self.next(here, L::WIDTH);
                     let _ = each!(4, part => q[part].store(work.add((TURN + part) * CHUNK)));

@@ -1,0 +1,45 @@
+//! The count of rotations that needed the global solver.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The number of rotations that the global solver has computed so far: of those that are stored, so that it does not depend on how
+/// steps are divided into calls. Threads add to it in any order.
+#[derive(Debug, Default)]
+pub(super) struct Tally {
+    now: AtomicU64,
+    kept: u64,
+}
+
+impl Tally {
+    /// Adds the lanes whose bits are set.
+    pub(super) fn add(&self, lanes: u32) {
+        self.now.fetch_add(lanes.count_ones().into(), Ordering::Relaxed);
+    }
+
+    /// The number.
+    pub(super) fn get(&self) -> u64 {
+        self.now.load(Ordering::Relaxed)
+    }
+
+    /// Reads it from the memory of a model, which has it after the rotations of all elements; without it counts from 0.
+    pub(super) fn load(&mut self, after: Option<&f64>) {
+        *self.now.get_mut() = after.map_or(0, |&count| count as u64);
+    }
+
+    /// Writes it where [`Self::load`] reads it.
+    pub(super) fn store(&self, after: Option<&mut f64>) {
+        if let Some(count) = after {
+            *count = self.get() as f64;
+        }
+    }
+
+    /// Keeps a copy.
+    pub(super) fn keep(&mut self) {
+        self.kept = self.get();
+    }
+
+    /// Restores the copy.
+    pub(super) fn restore(&mut self) {
+        *self.now.get_mut() = self.kept;
+    }
+}
