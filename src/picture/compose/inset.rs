@@ -64,8 +64,8 @@ pub(super) fn rooms(view: &View, panel: Rectangle, scale: Scale) -> (Rectangle, 
     }
     let (side, margin) = (side as u32, scale.margin().round() as u32);
     let free = clear_height + above as u32 - side;
-    let top = clear_top + if view.camera.follow { free - above as u32 } else { free / 2 };
-    let square = [left + width - margin - side, top, side, side];
+    let down = if view.camera.follow { free - above as u32 } else { free / 2 };
+    let square = [left + width - margin - side, clear_top + down, side, side];
     ([left, top, width - taken.ceil() as u32, height], Some(Enlarged { inset, square }))
 }
 
