@@ -1,6 +1,7 @@
 //! How the panels of a frame are seen: their arrangement, their cameras and their overviews.
 
 use super::Composer;
+use super::inset::Enlarged;
 use super::panel::Draft;
 use crate::look::Place;
 use crate::picture::Framing;
@@ -65,7 +66,7 @@ impl Composer<'_> {
     /// Draws the overview of a panel, if its camera moves.
     pub(super) fn locate(
         &self,
-        panel: Rectangle,
+        (panel, enlarged): (Rectangle, Option<&Enlarged>),
         draft: &Draft<'_>,
         shot: &Shot,
         tracking: &Tracking,
@@ -73,6 +74,9 @@ impl Composer<'_> {
     ) {
         let Some(locator) = self.locator.as_ref().filter(|_| !shot.is_still) else { return };
         let Some(place) = locator.place(&self.scene.view, panel, writer.scale) else { return };
+        if enlarged.is_some_and(|enlarged| !enlarged.leaves_free(place)) {
+            return;
+        }
         if draft.position.is_empty() {
             return;
         }

@@ -17,7 +17,7 @@ const LEAST: f64 = 40.0;
 /// Width of the frames and of their halo (px in the reference picture), and the opacity of the lines between them.
 const FRAME: f64 = 1.3;
 const HALO: f64 = 2.8;
-const LEADER_ALPHA: f64 = 0.6;
+const LEADER_ALPHA: f32 = 0.6;
 /// Radius of the ring around its node, and the dashes of that if the node is hidden (px in the reference picture).
 const RING: f64 = 5.5;
 const RING_DASH: [f64; 2] = [2.6, 2.4];
@@ -32,6 +32,13 @@ pub(super) struct Enlarged {
     inset: Inset,
     /// Its square (px).
     square: Rectangle,
+}
+
+impl Enlarged {
+    /// Whether it leaves a place in its panel free (px: left, top, width and height).
+    pub(super) fn leaves_free(&self, [_, top, _, height]: [f64; 4]) -> bool {
+        top + height < f64::from(self.square[1])
+    }
 }
 
 /// Where the parts of a picture go.
@@ -55,16 +62,18 @@ pub(super) fn rooms(view: &View, panel: Rectangle, scale: Scale) -> (Rectangle, 
     let [left, top, width, height] = panel;
     let [_, clear_top, _, clear_height] = layout::clear_of_words(panel, view, scale);
     let above = (ABOVE * scale.caption()).round();
-    // Above it there is room for an overview, if the camera may need one.
-    let for_overview = if view.camera.follow { locator::HEIGHT * f64::from(clear_height) + scale.gap() } else { 0.0 };
-    let side = (SHARE * f64::from(width)).min(f64::from(clear_height) - above - for_overview).floor();
+    let free = f64::from(clear_height) - above;
+    let side = |free: f64| (SHARE * f64::from(width)).min(free).floor();
+    // Above it stands the overview, if the camera may need one and both have room.
+    let below_overview = side(free - locator::HEIGHT * f64::from(clear_height) - scale.gap());
+    let is_below = view.camera.follow && below_overview >= LEAST;
+    let side = if is_below { below_overview } else { side(free) };
     let taken = side + scale.margin() + scale.gap();
     if side < LEAST || taken > 0.5 * f64::from(width) {
         return (panel, None);
     }
     let (side, margin) = (side as u32, scale.margin().round() as u32);
-    let free = clear_height + above as u32 - side;
-    let down = if view.camera.follow { free - above as u32 } else { free / 2 };
+    let down = if is_below { clear_height - side } else { (clear_height + above as u32 - side) / 2 };
     let square = [left + width - margin - side, clear_top + down, side, side];
     ([left, top, width - taken.ceil() as u32, height], Some(Enlarged { inset, square }))
 }
@@ -84,16 +93,19 @@ impl Draft<'_> {
         let [left, top, width, height] = square.map(f64::from);
         let half = 0.5 * DVec2::new(width, height);
         let (here, there) = (DVec2::from(pixel), DVec2::new(left, top) + half);
+        let frame = |middle: DVec2, half: DVec2| {
+            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| middle + half * DVec2::new(x, y))
+        };
+        let outside = |ends: [DVec2; 2]| [ends[0].lerp(ends[1], self.leaves(ends)), ends[1]];
+        let (small, large) = (frame(here, half / times), frame(there, half));
+        // To the corners that face each other, from where the lines leave the body.
+        let leaders = [[1, 0], [2, 3]].map(|[one, other]| outside([small[one], large[other]]));
         // The same camera: what is in front of something else stays there.
         self.lens.focal *= times;
         self.lens.centre = (there + times * (DVec2::from(self.lens.centre) - here)).to_array();
         self.element *= times;
         self.enlarged = times;
         (self.viewport, self.clear) = (square, square);
-        let frame = |middle: DVec2, half: DVec2| {
-            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| middle + half * DVec2::new(x, y))
-        };
-        let (small, large) = (frame(here, half / times), frame(there, half));
         let palette = &self.composer.palette;
         let line = |points: &[DVec2], width: f64, dash: &[f64], colour| Curve {
             points: points.iter().map(|at| at.to_array().map(narrow)).collect(),
@@ -102,11 +114,8 @@ impl Draft<'_> {
             colour,
             alpha: 1.0,
         };
-        // To the corners that face each other, behind the body.
-        for corners in [[1, 0], [2, 3]].into_iter().filter(|_| !self.framing.moves) {
-            let ends = [small[corners[0]], large[corners[1]]];
-            let leader = Mark::line(ends, FRAME * self.scale.line(), palette.second_text);
-            sinks.under.extend(leader.faded(LEADER_ALPHA));
+        for ends in leaders.iter().filter(|_| !self.framing.moves) {
+            sinks.curves.push(Curve { alpha: LEADER_ALPHA, ..line(ends, FRAME, &[], palette.second_text) });
         }
         for (frame, width, colour) in
             [(small, HALO, palette.halo), (small, FRAME, palette.second_text), (large, FRAME, palette.second_text)]
@@ -125,8 +134,10 @@ impl Draft<'_> {
         draw(&self, sinks.curves);
         // The node that it shows, which surfaces may hide; in the plane it is seen.
         if !self.flat {
-            let corner =
-                |at: u32| there + RING * self.scale.line() * DVec2::from_angle(TAU / 24.0 * f64::from(at % 24));
+            let corner = |at: u32| {
+                let (sine, cosine) = libm::sincos(TAU / 24.0 * f64::from(at % 24));
+                there + RING * self.scale.line() * DVec2::new(cosine, sine)
+            };
             let ring: Vec<_> = (0..25).map(corner).collect();
             let is_hidden = self.composer.skin.visible(&self.position, &self.lens)[node as usize] == 0.0;
             let dash = if is_hidden { &RING_DASH[..] } else { &[] };
@@ -140,5 +151,20 @@ impl Draft<'_> {
         let (fonts, colour) = (&self.composer.fonts, self.composer.palette.second_text);
         sinks.words.push(fonts.lay_out(&text, Weight::Regular, size, colour, left, top - WORDS * size));
         Some(Panel { is_cut: false, ..panel })
+    }
+
+    /// The share of a way from a pixel to another one after which no surface of the body is crossed any more.
+    fn leaves(&self, [from, to]: [DVec2; 2]) -> f64 {
+        let skin = &self.composer.skin;
+        let pixel = |at: u32| Some(DVec2::from(self.lens.project(self.position[skin.nodes[at as usize] as usize])?.0));
+        let way = to - from;
+        let crossing = |[a, b]: [u32; 2]| {
+            let (a, b) = (pixel(a)?, pixel(b)?);
+            let turned = way.perp_dot(b - a);
+            let [share, beside] = [(a - from).perp_dot(b - a) / turned, (a - from).perp_dot(way) / turned];
+            ((0.0..=1.0).contains(&share) && (0.0..=1.0).contains(&beside)).then_some(share)
+        };
+        let edges = skin.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        edges.filter_map(crossing).fold(0.0, f64::max)
     }
 }

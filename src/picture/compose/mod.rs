@@ -313,7 +313,7 @@ impl<'a> Composer<'a> {
                 insets.extend(Draft::new(self, *room, run, framing, scale).enlarged(enlarged, over, sinks));
             }
             if let Some((shot, tracking)) = shot.as_ref().zip(self.tracking.as_ref()) {
-                self.locate(place, &draft, shot, tracking, &mut writer);
+                self.locate((place, enlarged.as_ref()), &draft, shot, tracking, &mut writer);
             }
         }
         if let Some((compared, place)) = compared {
