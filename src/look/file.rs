@@ -343,7 +343,7 @@ pub(crate) struct CameraFile {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) distance: Option<f64>,
     /// Whether the camera follows the centre of each run's body. All panels and frames then have one scale, at which the body
-    /// takes about 55 % of its panel's width at its widest moment. Where all runs stay in view at that scale, the camera
+    /// takes about 60 % of its panel's width at its widest moment. Where all runs stay in view at that scale, the camera
     /// stands still; otherwise a small overview in each panel shows the body, the path of its centre and the floor, with the
     /// same axes in all panels. The whole scene is simulated before the first frame is drawn. A camera with a `target` or a
     /// `distance` stands still.

@@ -124,10 +124,12 @@ impl Writer<'_> {
         let sample = heading.sample.filter(|_| !heading.name.is_empty());
         let reserved = if sample.is_some() { (SAMPLE_GAP + SAMPLE[0]) * self.scale.unit } else { 0.0 };
         let free_for_name = free[0] - (left - room.left) - reserved;
-        let name = self.fonts.told_apart(heading.name, heading.names, Weight::SemiBold, title, free_for_name);
-        self.left(&name, Weight::SemiBold, title, self.palette.text, left, baseline);
+        // Names are written smaller, all alike, before one is cut.
+        let size = self.size_of_names(heading, free_for_name);
+        let name = self.fonts.told_apart(heading.name, heading.names, Weight::SemiBold, size, free_for_name);
+        self.left(&name, Weight::SemiBold, size, self.palette.text, left, baseline);
         if let Some(sample) = sample.filter(|_| Scale::legible(title) && !name.is_empty()) {
-            let left = left + self.fonts.width(&name, Weight::SemiBold, title) + SAMPLE_GAP * self.scale.unit;
+            let left = left + self.fonts.width(&name, Weight::SemiBold, size) + SAMPLE_GAP * self.scale.unit;
             self.sample([left, baseline - X_HEIGHT / 2.0 * title], sample);
         }
         // Parts are left out from the end on: what is left out of the middle of a number makes another one.
@@ -137,6 +139,15 @@ impl Writer<'_> {
             second = second.rsplit_once(", ").map_or("", |(first, _)| first);
         }
         self.left(second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
+    }
+
+    /// The size of the names of a heading where each has so much room (px): smaller than usual if one of them is too wide, but
+    /// no smaller than other words.
+    fn size_of_names(&self, heading: &Heading<'_>, room: f64) -> f64 {
+        let title = self.scale.title();
+        let names = heading.names.iter().copied().chain([heading.name]);
+        let widest = names.map(|name| self.fonts.width(name, Weight::SemiBold, title)).fold(0.0, f64::max);
+        (title * (room / widest.max(f64::MIN_POSITIVE))).clamp(self.scale.caption().min(title), title)
     }
 
     /// A sample of the line of a run, from a place on (px).
@@ -164,8 +175,16 @@ impl Writer<'_> {
         }
     }
 
+    /// Whether a heading is shortened in a room of a width (px): its name, and its second line.
+    pub(super) fn is_shortened(&self, heading: &Heading<'_>, room: f64) -> [bool; 2] {
+        let [first, second] = self.heading_width(heading);
+        let name = self.fonts.width(heading.name, Weight::SemiBold, self.scale.title());
+        let least = self.size_of_names(heading, 0.0) / self.scale.title();
+        [first - (1.0 - least) * name > room, second > room]
+    }
+
     /// How wide a heading is, with letter and sample: its first and its second line (px).
-    pub(super) fn heading_width(&self, heading: &Heading<'_>) -> [f64; 2] {
+    fn heading_width(&self, heading: &Heading<'_>) -> [f64; 2] {
         let title = self.scale.title();
         let wide = |text: &str| self.fonts.width(text, Weight::SemiBold, title);
         let letter = if heading.letter.is_empty() { 0.0 } else { wide(&heading.letter) + LETTER_GAP * title };

@@ -15,6 +15,9 @@ const WIDTH: f64 = 2.0;
 const HALO: f64 = 4.4;
 const HALO_ALPHA: f64 = 0.65;
 pub(super) const DASH: [f64; 2] = [6.5, 4.5];
+/// Length of an arrow to what lies outside of the room, that of its head, and from its tip to the border (px in the reference
+/// picture).
+const POINTER: [f64; 3] = [34.0, 11.0, 6.0];
 /// Edges are looked at in pieces of this length, and covered this far beside them on both sides they lie inside (px).
 const PIECE: f64 = 3.0;
 const BESIDE: f64 = 1.6;
@@ -33,19 +36,39 @@ pub(super) struct Ghost<'a> {
 }
 
 impl Ghost<'_> {
-    /// The dashed outline in a colour, with a halo; nothing if a part of the surface is not in front of the camera.
+    /// The dashed outline in a colour, with a halo; nothing if a part of the surface is not in front of the camera. Where the
+    /// body lies outside of the room, an arrow points there.
     pub(super) fn draw(&self, scale: Scale, colour: Colour, halo: Colour, curves: &mut Vec<Curve>) {
         let lines = [self.outline(), self.bars()].concat();
+        let is_seen = !lines.is_empty();
+        let lines = if is_seen { lines } else { self.pointer(scale) };
         for (width, colour, alpha) in [(HALO, halo, HALO_ALPHA), (WIDTH, colour, 1.0)] {
             let curve = |line: &Vec<DVec2>| Curve {
                 points: line.iter().map(|point| point.to_array().map(narrow)).collect(),
                 width: narrow(width * scale.line()),
-                dash: dashes(line, scale.line()).map(narrow).to_vec(),
+                dash: if is_seen { dashes(line, scale.line()).map(narrow).to_vec() } else { Vec::new() },
                 colour,
                 alpha: narrow(alpha),
             };
             curves.extend(lines.iter().map(curve));
         }
+    }
+
+    /// An arrow at the border of the room towards a body outside of it: its shaft and its head (px).
+    fn pointer(&self, scale: Scale) -> Vec<Vec<DVec2>> {
+        let middle = self.position.iter().sum::<DVec3>() / self.position.len().max(1) as f64;
+        let Some((pixel, _)) = self.lens.project(middle) else { return Vec::new() };
+        let [left, top, right, bottom] = sides(self.room.map(f64::from));
+        let [length, wing, free] = POINTER.map(|length| length * scale.line());
+        let from = DVec2::new(left.midpoint(right), top.midpoint(bottom));
+        let way = DVec2::from(pixel) - from;
+        let inner = [left + free, top + free, right - free, bottom - free];
+        let Some([_, end]) = clipped(from, way, inner, [0.0, 1.0]).filter(|[_, end]| *end < 1.0) else {
+            return Vec::new();
+        };
+        let (tip, along) = (from + end * way, way.normalize_or_zero());
+        let back = |aside: f64| tip - wing * (along + aside * along.perp());
+        vec![vec![tip - length * along, tip], vec![back(0.6), tip, back(-0.6)]]
     }
 
     /// The elements without faces (px).
@@ -249,6 +272,23 @@ mod tests {
         let [dash, gap] = dashes(line, 1.0);
         let count = length / (dash + gap);
         assert!((count - count.round()).abs() < 1e-9 && (dash / DASH[0] - 1.0).abs() < 0.1, "{count}");
+    }
+
+    #[test]
+    fn an_arrow_points_to_what_lies_outside() {
+        let lens = lens(Dimension::Space);
+        let (mut position, triangles) = cube();
+        position.iter_mut().for_each(|at| at.y += 20.0);
+        let nodes: Vec<u32> = (0..8).collect();
+        let ghost =
+            Ghost { lens: &lens, position: &position, nodes: &nodes, triangles: &triangles, bars: &[], room: ROOM };
+        let mut curves = Vec::new();
+        ghost.draw(Scale::REFERENCE, [0; 3], [255; 3], &mut curves);
+        // A shaft and a head, each with its halo, at the upper border.
+        assert_eq!(curves.iter().map(|curve| curve.points.len()).collect::<Vec<_>>(), [2, 3, 2, 3]);
+        let [tail, tip] = [0, 1].map(|at| curves[0].points[at]);
+        assert_eq!((tip, tip[1] < tail[1], curves[0].dash.len()), (curves[1].points[1], true, 0));
+        assert!((tip[1] - narrow(POINTER[2])).abs() < 1e-3, "{tip:?}");
     }
 
     #[test]

@@ -72,8 +72,8 @@ const CLEAR: [f64; 3] = [10.0, 9.0, 27.0];
 /// The least distance of lines, in sizes of their type.
 const LINE: f64 = 1.25;
 const ASCENT: f64 = 0.77;
-/// What is free below the baseline of a title or a clock, in sizes of its type.
-const DESCENT: f64 = 0.4;
+/// Free below the baseline of a clock and of a title, in sizes of names.
+const DESCENT: [f64; 2] = [0.4, 0.9];
 
 /// A rectangle: left, top, width, height (px).
 pub(crate) type Rectangle = [u32; 4];
@@ -142,7 +142,8 @@ impl Layout {
         let clock = clock_row.map(|_| in_row.max(title_end + LINE * around.title()));
         let top = title + clock_row.unwrap_or(0);
         // What stands there reaches into the margin of the panels, unless that is too narrow.
-        let reach = clock.unwrap_or(title_end) + DESCENT * around.title() - f64::from(top);
+        let free = DESCENT[usize::from(clock.is_none())] * around.title();
+        let reach = clock.unwrap_or(title_end) + free - f64::from(top);
         let spared = (reach - margin).max(0.0).ceil() as u32;
         let title = (top + spared).min(most.max(top));
         let legend = if title + legend <= most { legend } else { 0 };

@@ -77,18 +77,17 @@ impl<'a> Bar<'a> {
 /// A line or a mark with its meaning.
 pub(super) struct Sample<'a> {
     pub(super) name: Cow<'a, str>,
-    pub(super) colour: Colour,
     pub(super) kind: SampleKind,
 }
 
 /// What a sample looks like.
 pub(super) enum SampleKind {
     /// The dashed outline of a ghost.
-    Ghost,
-    /// A path.
-    Path,
+    Ghost(Colour),
+    /// Paths, each of a run in its colour.
+    Path(Vec<Colour>),
     /// A measured point.
-    Ring,
+    Ring(Colour),
 }
 
 /// Sizes of the key of a picture.
@@ -174,26 +173,28 @@ impl Legend {
 
     /// A sample with its name; returns where that ends (px).
     fn sample(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], sample: &Sample<'_>) -> f64 {
-        let (unit, palette, colour) = (self.unit, writer.palette, sample.colour);
+        let (unit, palette) = (self.unit, writer.palette);
         let [length, width] = SAMPLE.map(|length| length * unit);
         let line = unit * writer.scale.line_factor;
-        let curve = |dash: Vec<f32>| Curve {
-            points: [left, left + length].map(|x| [x, middle].map(narrow)).to_vec(),
-            width: narrow(width * writer.scale.line_factor),
-            dash,
-            colour,
-            alpha: 1.0,
+        let width = narrow(width * writer.scale.line_factor);
+        let curve = |[from, to]: [f64; 2], dash: Vec<f32>, colour| {
+            let points = [from, to].map(|x| [x, middle].map(narrow)).to_vec();
+            Curve { points, width, dash, colour, alpha: 1.0 }
         };
         let length = match sample.kind {
-            SampleKind::Ghost => {
-                writer.curves.push(curve(ghost::DASH.map(|length| narrow(length * line)).to_vec()));
+            SampleKind::Ghost(colour) => {
+                let dash = ghost::DASH.map(|length| narrow(length * line)).to_vec();
+                writer.curves.push(curve([left, left + length], dash, colour));
                 length
             }
-            SampleKind::Path => {
-                writer.curves.push(curve(Vec::new()));
+            SampleKind::Path(ref colours) => {
+                // A part for each run.
+                let at = |part: usize| left + length * part as f64 / colours.len() as f64;
+                let part = |(part, &colour)| curve([at(part), at(part + 1)], Vec::new(), colour);
+                writer.curves.extend(colours.iter().enumerate().map(part));
                 length
             }
-            SampleKind::Ring => {
+            SampleKind::Ring(colour) => {
                 let ring =
                     Mark::around(DVec2::new(left + RING * line, middle), RING * line, MarkShape::Node, palette.halo);
                 writer.marks.push(Mark { second: colour, ..ring });

@@ -15,7 +15,7 @@ use glam::{DVec2, DVec3};
 
 /// Its width, and its height at the most, in parts of a panel's width and of the height that words leave free.
 const WIDTH: f64 = 0.22;
-const HEIGHT: f64 = 0.42;
+pub(super) const HEIGHT: f64 = 0.42;
 /// It is no narrower or lower than this part of its longer side, and nothing is drawn that is shorter than this (px).
 const SLENDEREST: f64 = 0.42;
 const LEAST: f64 = 36.0;

@@ -1,13 +1,18 @@
 //! Time series of one run in several scenes, such as those of one body with several seeds: their mean, in a band from the least to
 //! the greatest value.
 
+use super::Curve;
 use super::axis::Axis;
 use super::caption::Writer;
 use super::chart::{Chart, filled};
-use super::series::{Series, steps, value};
+use super::narrow::narrow;
+use super::series::{EXACT, Series, simplified, steps, value, within};
 
 /// Opacity of the band.
 const RANGE: f64 = 0.22;
+/// Width of the curves of single scenes (px in the reference picture), and their opacity.
+const SINGLE: f64 = 1.0;
+const SINGLE_ALPHA: f64 = 0.5;
 
 impl Series {
     /// The mean of a run's time series in several scenes, up to the first end of one of them. A single one stays as it is.
@@ -31,7 +36,8 @@ impl Series {
         self.points.iter().chain(self.members.iter().flatten())
     }
 
-    /// Draws the band between the least and the greatest value of several scenes.
+    /// Draws the band between the least and the greatest value of several scenes, and the thin curve of each: a mean may lie
+    /// where none of them is.
     pub(super) fn draw_range(&self, writer: &mut Writer<'_>, chart: Chart, [times, values]: [&Axis; 2]) {
         let member = |points: &Vec<[f64; 2]>| {
             let at = |&[time, value]: &[f64; 2]| [chart.x(times, time), chart.y(values, value)];
@@ -61,6 +67,15 @@ impl Series {
                 writer.marks.extend(mark.faded(RANGE));
             }
             left += 1.0;
+        }
+        for part in members.iter().flat_map(|points| within(points, [chart.top, chart.bottom])) {
+            writer.curves.push(Curve {
+                points: simplified(&part, EXACT).into_iter().map(|point| point.map(narrow)).collect(),
+                width: narrow(SINGLE * chart.thickness()),
+                dash: Vec::new(),
+                colour: self.style.colour,
+                alpha: narrow(SINGLE_ALPHA),
+            });
         }
     }
 }

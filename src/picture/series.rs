@@ -266,7 +266,7 @@ fn outside(points: &[[f64; 2]], spans: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
 }
 
 /// The parts of a curve between an upper and a lower border.
-fn within(points: &[[f64; 2]], [top, bottom]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+pub(super) fn within(points: &[[f64; 2]], [top, bottom]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
     let mut parts: Vec<Vec<[f64; 2]>> = Vec::new();
     let mut open = false;
     if let &[[x, y]] = points

@@ -15,7 +15,7 @@ use crate::sim::snapshot::{RunFrame, Status};
 use glam::{DVec2, DVec3};
 
 /// The part of a panel's width that the widest moment takes.
-const FILLED: f64 = 0.55;
+const FILLED: f64 = 0.62;
 /// A camera stands still if everything stays in view at a scale at which the widest moment takes this part of that width, or
 /// as much as it can take.
 const LEAST_FILLED: f64 = 0.45;
@@ -141,28 +141,31 @@ impl Tracking {
         halved.take_while(|window| *window > 0.25 / frames_per_second).find(|&window| fits(window)).unwrap_or(0.0)
     }
 
-    /// How a panel of a picture with type of a scale is seen. The part of it that is `taken` at its upper right is kept
-    /// free, if that is possible (px: left, top, width and height). A metre has `most` pixels at the most.
+    /// How the room for bodies in a panel of a width (px) is seen, in a picture with type of a scale. The part of it that is
+    /// `taken` at its upper right is kept free, if that is possible (px: left, top, width and height). A metre has `most`
+    /// pixels at the most.
     pub(super) fn shot(
         &self,
         scene: &Scene,
         (viewport, scale): (Rectangle, Scale),
+        width: u32,
         taken: Option<[f64; 4]>,
         most: f64,
     ) -> Shot {
         let (view, dimension) = (&scene.view, scene.body.dimension);
         let lens = near(scene, viewport, scale);
-        let [left, top, width, height] =
+        let [left, top, wide, high] =
             layout::clear_of_words(viewport, view, scale).map(|length| f64::from(length).max(1.0));
         let [above, below] = NEARER.map(|length| length * scale.unit);
-        let room = [left, top - above, width, height + above + below];
+        let room = [left, top - above, wide, high + above + below];
         // What is nearer than the point looked at is seen larger; the outline lies on the way to the nearest.
         let depth = |half: DVec3| if dimension == Dimension::Space { 0.5 * half.z / lens.focal } else { 0.0 };
         let fit = |half: DVec3| {
             let depth = depth(half);
             (room[2] / (2.0 * half.x + room[2] * depth)).min(room[3] / (2.0 * half.y + room[3] * depth))
         };
-        let [filled, least] = [FILLED, LEAST_FILLED].map(|part| part * f64::from(viewport[2].max(1)) / self.widest);
+        let part = |part: f64, width: u32| part * f64::from(width.max(1)) / self.widest;
+        let (filled, least) = (part(FILLED, width), part(LEAST_FILLED, viewport[2]));
         let following = filled.min(fit(self.half + self.slack())).min(most);
         let least = least.min(following);
         let standing = |[low, high]: [DVec3; 2]| (fit(0.5 * (high - low)).min(following), low.midpoint(high));
@@ -336,7 +339,7 @@ mod tests {
         let scene = Scene::parse(text, "fig4b.toml", &crate::scene::Limits::default()).unwrap();
         let tracking = Tracking::new(&scene, &History::new(&scene, &[0, 1])).unwrap();
         let (viewport, scale) = ([0, 0, 640, 600], Scale::at(1.0));
-        let shot = tracking.shot(&scene, (viewport, scale), None, f64::INFINITY);
+        let shot = tracking.shot(&scene, (viewport, scale), viewport[2], None, f64::INFINITY);
         assert!(!shot.is_still && tracking.window > 0.0, "{shot:?} {}", tracking.window);
         let (mut runner, mut last) = (crate::runner::Runner::new(&scene, &[0, 1]), None);
         for index in 0..=scene.last_frame() {

@@ -152,7 +152,7 @@ fn maps(results: &Results) -> Maps {
             axes: [
                 "k/m (1/s²)".to_owned(),
                 if grid.limit.is_some() { "ΔT, as a share of the limit" } else { "ΔT, as a share of T/π" }.to_owned(),
-                "and of T".to_owned(),
+                "ΔT".to_owned(),
             ],
         }
     };

@@ -22,7 +22,7 @@ impl Draft<'_> {
             lens: &self.lens,
             origin: self.origin,
             side: self.side,
-            soft: self.composer.soft * self.side,
+            soft: self.composer.soft * self.side / self.enlarged,
             edges: self.scene.view.edges,
             apart: self.composer.exploded.is_some(),
             element: self.element,

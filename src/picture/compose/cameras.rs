@@ -1,6 +1,7 @@
 //! How the panels of a frame are seen: their arrangement, their cameras and their overviews.
 
 use super::Composer;
+use super::inset::Enlarged;
 use super::panel::Draft;
 use crate::look::Place;
 use crate::picture::Framing;
@@ -22,8 +23,9 @@ impl Composer<'_> {
         let (view, words) = (&self.scene.view, self.words());
         let pixels = |columns: usize| {
             let layout = words.around(runs, columns).layout;
-            let viewport = self.body_room(*layout.panels.first()?, layout.scale).0;
-            let shot = self.shot(viewport, layout.scale, f64::INFINITY).map(|shot| shot.pixels);
+            let panel = *layout.panels.first()?;
+            let viewport = self.body_room(panel, layout.scale).0;
+            let shot = self.shot(viewport, panel[2], layout.scale, f64::INFINITY).map(|shot| shot.pixels);
             let still = || self.pixels_a_metre(viewport, &Framing::still(&view.camera), layout.scale);
             Some(shot.unwrap_or_else(still))
         };
@@ -41,10 +43,12 @@ impl Composer<'_> {
         view.columns.map_or_else(chosen, |columns| columns.clamp(1, panels.max(1)))
     }
 
-    /// How a camera that follows sees a panel, with `most` pixels for a metre.
-    pub(super) fn shot(&self, viewport: Rectangle, scale: Scale, most: f64) -> Option<Shot> {
-        let taken = self.locator.as_ref().and_then(|locator| locator.place(&self.scene.view, viewport, scale));
-        Some(self.tracking.as_ref()?.shot(self.scene, (viewport, scale), taken, most))
+    /// How a camera that follows sees the room for bodies in a panel of a width (px), with `most` pixels for a metre.
+    pub(super) fn shot(&self, viewport: Rectangle, width: u32, scale: Scale, most: f64) -> Option<Shot> {
+        // Beside an inset, the overview stands above that.
+        let locator = self.locator.as_ref().filter(|_| viewport[2] == width);
+        let taken = locator.and_then(|locator| locator.place(&self.scene.view, viewport, scale));
+        Some(self.tracking.as_ref()?.shot(self.scene, (viewport, scale), width, taken, most))
     }
 
     /// What the camera of a run looks at in a panel.
@@ -60,10 +64,19 @@ impl Composer<'_> {
     }
 
     /// Draws the overview of a panel, if its camera moves.
-    pub(super) fn locate(&self, draft: &Draft<'_>, shot: &Shot, tracking: &Tracking, writer: &mut Writer<'_>) {
-        let (view, viewport) = (&self.scene.view, draft.viewport);
+    pub(super) fn locate(
+        &self,
+        (panel, enlarged): (Rectangle, Option<&Enlarged>),
+        draft: &Draft<'_>,
+        shot: &Shot,
+        tracking: &Tracking,
+        writer: &mut Writer<'_>,
+    ) {
         let Some(locator) = self.locator.as_ref().filter(|_| !shot.is_still) else { return };
-        let Some(place) = locator.place(view, viewport, writer.scale) else { return };
+        let Some(place) = locator.place(&self.scene.view, panel, writer.scale) else { return };
+        if enlarged.is_some_and(|enlarged| !enlarged.leaves_free(place)) {
+            return;
+        }
         if draft.position.is_empty() {
             return;
         }
@@ -73,7 +86,7 @@ impl Composer<'_> {
             points: self.skin.nodes.iter().map(at).collect(),
             triangles: &self.skin.triangles,
             bars: bars.map(|ends| ends.map(|node| at(&node))).collect(),
-            shown: draft.lens.shown(viewport.map(f64::from), shot.pixels),
+            shown: draft.lens.shown(draft.viewport.map(f64::from), shot.pixels),
             colour: self.scene.runs.get(draft.run.run).map_or(self.palette.text, |run| run.line(&self.palette).colour),
         };
         let run = (draft.run.run, draft.run.snapshot.time);

@@ -130,10 +130,11 @@ impl Draft<'_> {
     }
 
     /// How many times wider than usual the floor is drawn: what lies farther away fades at about the same place in the
-    /// panel.
+    /// panel. A camera that a scene places far away shows more than a body, on one floor throughout.
     pub(super) fn widening(&self) -> f64 {
         let usual = USUAL_DISTANCE * self.composer.extent * self.composer.spread;
-        (self.framing.distance / usual).max(1.0).sqrt()
+        let farther = (self.framing.distance / usual).max(1.0);
+        if self.scene.view.camera.follow { farther.sqrt() } else { farther }
     }
 
     /// The distance of the grid's lines (sides).

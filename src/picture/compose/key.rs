@@ -12,12 +12,12 @@ use crate::sim::snapshot::Frame;
 impl Composer<'_> {
     /// What lines and marks mean.
     pub(super) fn samples(&self) -> Vec<Sample<'_>> {
-        let ghost = self.ghost().map(|(name, colour)| Sample { name: name.into(), colour, kind: SampleKind::Ghost });
+        let ghost = self.ghost().map(|(name, colour)| Sample { name: name.into(), kind: SampleKind::Ghost(colour) });
         let path = Some(self.path_name()).filter(|name| !name.is_empty());
-        let colour = self.palette.text;
-        let path = path.map(|name| Sample { name: name.into(), colour, kind: SampleKind::Path });
+        let colours = self.traced.iter().map(|series| self.scene.runs[series.run].line(&self.palette).colour).collect();
+        let path = path.map(|name| Sample { name: name.into(), kind: SampleKind::Path(colours) });
         let points = self.scene.view.points.as_ref();
-        let points = points.map(|_| Sample { name: "measured".into(), colour, kind: SampleKind::Ring });
+        let points = points.map(|_| Sample { name: "measured".into(), kind: SampleKind::Ring(self.palette.text) });
         ghost.into_iter().chain(path).chain(points).collect()
     }
 

@@ -300,7 +300,9 @@ impl<'a> Composer<'a> {
             draft.ghost(&frame.runs, draft.between_words(), curves);
             draft.paths(&self.traced, draft.between_words(), curves);
         };
-        for (((room, enlarged), run), framing) in rooms.iter().zip(&frame.runs).zip(&framings) {
+        for ((((room, enlarged), &place), run), framing) in
+            rooms.iter().zip(&layout.panels).zip(&frame.runs).zip(&framings)
+        {
             let draft = Draft::new(self, *room, run, framing, scale);
             over(&draft, &mut ghosts);
             panels.push(draft.panel(&mut under, &mut marks));
@@ -311,7 +313,7 @@ impl<'a> Composer<'a> {
                 insets.extend(Draft::new(self, *room, run, framing, scale).enlarged(enlarged, over, sinks));
             }
             if let Some((shot, tracking)) = shot.as_ref().zip(self.tracking.as_ref()) {
-                self.locate(&draft, shot, tracking, &mut writer);
+                self.locate((place, enlarged.as_ref()), &draft, shot, tracking, &mut writer);
             }
         }
         if let Some((compared, place)) = compared {
@@ -342,7 +344,8 @@ impl<'a> Composer<'a> {
         let (layout, scale) = (&around.layout, around.layout.scale);
         // The chart of a difference takes room from its body, which is as large as the others.
         let difference = layout.panels.get(runs.len()).map(|&panel| self.rooms(panel, scale).0);
-        let largest = |room: Option<Rectangle>, most: f64| room.and_then(|room| self.shot(room, scale, most));
+        let width = layout.panels.first().map_or(0, |panel| panel[2]);
+        let largest = |room: Option<Rectangle>, most: f64| room.and_then(|room| self.shot(room, width, scale, most));
         let most = largest(difference, f64::INFINITY).map_or(f64::INFINITY, |shot| shot.pixels);
         let shot = largest(layout.panels.first().map(|&panel| self.body_room(panel, scale).0), most);
         let shot_of_difference = largest(difference, shot.map_or(f64::INFINITY, |shot| shot.pixels));

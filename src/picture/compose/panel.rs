@@ -55,6 +55,8 @@ pub(super) struct Draft<'a> {
     pub(super) shades: Option<Shades>,
     /// Its places at the nodes, if anything but surfaces shows them.
     pub(super) of_nodes: Vec<f32>,
+    /// How many times it is enlarged, in an inset: its hatch keeps its distance on the picture.
+    pub(super) enlarged: f64,
     /// Length of an element's edge at the body's distance (px).
     pub(super) element: f64,
     /// Whether the body lies in the plane.
@@ -127,6 +129,7 @@ impl<'a> Draft<'a> {
             position,
             shades,
             of_nodes,
+            enlarged: 1.0,
             element: lens.focal * view.side / if flat { 1.0 } else { framing.distance },
             flat,
             diverged,

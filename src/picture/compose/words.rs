@@ -209,7 +209,7 @@ impl<'a> Words<'a> {
         for (at, &panel) in layout.panels.iter().enumerate().take(runs.len()) {
             let heading = self.heading(at, runs, &names, written.labels, layout.chart.is_some());
             let room = f64::from(panel[2]) - 2.0 * layout.scale.margin();
-            let [name, second] = writer.heading_width(&heading).map(|width| width > room);
+            let [name, second] = writer.is_shortened(&heading, room);
             if name {
                 told.push(format!("the name of run `{}` is shortened", names[at]));
             }

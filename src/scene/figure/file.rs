@@ -57,7 +57,8 @@ pub(super) struct SheetFile {
     pub(super) row: Vec<RowFile>,
     /// Diagnostics plotted over time below the pictures, with marks at the moments shown, such as `["turned_over"]`. If columns
     /// show several scenes, such as one body with several seeds, each curve is the mean of a run over these, in a band from the
-    /// least to the greatest value; the scenes then have the same duration. Default: none.
+    /// least to the greatest value with a thin line for
+    /// each scene; the scenes then have the same duration. Default: none.
     #[serde(default)]
     #[schemars(length(max = 6))]
     pub(super) strips: Vec<Diagnostic>,
@@ -83,7 +84,7 @@ pub(super) struct ColumnFile {
     /// The moment shown (s). Default: that of the row.
     #[schemars(range(min = 0.0))]
     pub(super) time: Option<f64>,
-    /// The label above it. Default: the moment.
+    /// The label above it. Default: the moment, behind the name of its scene if columns show several.
     #[schemars(length(max = 80))]
     pub(super) label: Option<String>,
 }

@@ -3,6 +3,7 @@
 
 use super::plan::Plan;
 use crate::history::Reach;
+use crate::look::Ghost;
 use crate::moments::Moments;
 use crate::picture::camera::{Framing, Lens};
 use crate::picture::exploded::Exploded;
@@ -41,12 +42,15 @@ pub(super) struct Cell {
 pub(super) fn cells(scenes: &[Scene], reaches: &[Reach], sheet: &Sheet, moments: &Moments) -> Vec<Vec<Cell>> {
     let exploded = |scene: &Scene| (scene.view.explode > 0.0).then(|| Exploded::new(&scene.body, scene.view.explode));
     let exploded: Vec<_> = scenes.iter().map(exploded).collect();
-    let cell = |column: usize, run: &RunFrame| {
+    let cell = |column: usize, run: &RunFrame, other: Option<&RunFrame>| {
         let at = sheet.columns[column].scene;
-        Cell { scene: at, points: points(&scenes[at], exploded[at].as_ref(), &reaches[at], run) }
+        let ghost = ghost(&scenes[at], run, other);
+        Cell { scene: at, points: points(&scenes[at], exploded[at].as_ref(), &reaches[at], run, ghost) }
     };
-    let row = |runs: &Vec<RunFrame>| runs.iter().enumerate().map(|(column, run)| cell(column, run)).collect();
-    moments.cells.iter().map(row).collect()
+    let row = |(runs, others): (&Vec<RunFrame>, &Vec<Option<RunFrame>>)| {
+        runs.iter().zip(others).enumerate().map(|(column, (run, other))| cell(column, run, other.as_ref())).collect()
+    };
+    moments.cells.iter().zip(&moments.others).map(row).collect()
 }
 
 /// Where the nodes shown in a sheet come near the plates and walls of each scene.
@@ -61,8 +65,17 @@ pub(super) fn reaches(scenes: &[Scene], sheet: &Sheet, moments: &Moments) -> Vec
     reaches
 }
 
-/// The points of a run at a time (m): nodes and obstacles near them.
-fn points(scene: &Scene, exploded: Option<&Exploded>, reach: &Reach, run: &RunFrame) -> Vec<DVec3> {
+/// The nodes of the body that is outlined over a run (m).
+fn ghost(scene: &Scene, run: &RunFrame, other: Option<&RunFrame>) -> Vec<DVec3> {
+    match scene.view.ghost {
+        Some(Ghost::Rest) => scene.body.rest.iter().map(|&rest| run.snapshot.placement.place(rest)).collect(),
+        Some(Ghost::Run(_)) => other.map_or_else(Vec::new, |other| other.snapshot.position.clone()),
+        None => Vec::new(),
+    }
+}
+
+/// The points of a run at a time (m): nodes, and obstacles and the nodes of a ghost near them.
+fn points(scene: &Scene, exploded: Option<&Exploded>, reach: &Reach, run: &RunFrame, ghost: Vec<DVec3>) -> Vec<DVec3> {
     let snapshot = run.shown();
     if snapshot.position.len() != scene.body.len() {
         return Vec::new();
@@ -118,8 +131,9 @@ fn points(scene: &Scene, exploded: Option<&Exploded>, reach: &Reach, run: &RunFr
             }
         }
     }
-    // Of distant obstacles only the nearest part is shown.
-    points.extend(near.into_iter().map(|point| point.clamp(low, high)));
+    // Of what is distant only the nearest part is shown.
+    let ghost = ghost.into_iter().filter(|point| point.is_finite());
+    points.extend(near.into_iter().chain(ghost).map(|point| point.clamp(low, high)));
     points
 }
 

@@ -34,7 +34,10 @@ impl Heading {
         let text = |at: usize| {
             let column = &sheet.columns[at];
             let own = column.time.filter(|_| !replaced).map(&moment);
-            column.label.clone().or(own).unwrap_or_default()
+            // Columns of several scenes, such as one body with several seeds, are told apart by these.
+            let scene = sheet.scenes.get(column.scene).map(|scene| scene.name.clone());
+            let own: Vec<_> = scene.filter(|_| sheet.scenes.len() > 1).into_iter().chain(own).collect();
+            column.label.clone().unwrap_or_else(|| own.join(", "))
         };
         let letter = |at: usize| if count > 1 || with_charts { caption::letter(at) } else { String::new() };
         let all = (0..count).map(|at| {
