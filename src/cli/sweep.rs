@@ -256,10 +256,11 @@ impl Sweep {
                 let number = |value: &Value| value.as_f64().map_or_else(String::new, exact);
                 let [run_name, status] = ["name", "status"].map(|key| run[key].as_str().unwrap_or_default());
                 let [over, error] = ["turned_over", "shape_error"].map(|key| &run["last"][key]);
-                write(&[name, run_name, status, &number(&run["time"]), &number(over), &number(error)]);
+                let over = over.as_u64().map_or_else(String::new, |count| count.to_string());
+                write(&[name, run_name, status, &number(&run["time"]), &over, &number(error)]);
                 let at = run["time"].as_f64().map_or_else(String::new, |time| format!(" at {} s", short(time)));
                 let error = error.as_f64().map_or_else(String::new, |error| quantity(error, "m"));
-                shown.push([name.to_owned(), run_name.to_owned(), format!("{status}{at}"), number(over), error]);
+                shown.push([name.to_owned(), run_name.to_owned(), format!("{status}{at}"), over, error]);
             }
         }
         let path = self.folder.join(COMPARISON_FILE);
