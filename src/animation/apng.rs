@@ -3,6 +3,7 @@
 use super::order::{Kept, in_order};
 use super::timeline::fraction;
 use super::{Animation, AnimationError, Image, Written, changed};
+use crate::output::image_data;
 use std::io::{self, Write};
 
 const ANIMATION_CONTROL: png::chunk::ChunkType = png::chunk::ChunkType(*b"acTL");
@@ -88,17 +89,7 @@ fn compressed([width, height]: [u32; 2], pixels: &[u8]) -> Vec<u8> {
     let mut writer = encoder.write_header().expect("a picture into memory");
     writer.write_image_data(pixels).expect("a picture of the right length into memory");
     writer.finish().expect("a picture into memory");
-    // After the signature: length, name, data and checksum of each chunk.
-    let mut data = Vec::with_capacity(file.len());
-    let mut rest = &file[8..];
-    while let Some((head, tail)) = rest.split_first_chunk::<8>() {
-        let length = u32::from_be_bytes([head[0], head[1], head[2], head[3]]) as usize;
-        if &head[4..] == b"IDAT" {
-            data.extend_from_slice(&tail[..length]);
-        }
-        rest = &tail[length + 4..];
-    }
-    data
+    image_data(&file)
 }
 
 fn failed(error: png::EncodingError) -> AnimationError {

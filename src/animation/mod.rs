@@ -81,9 +81,6 @@ pub trait Reel: Sync {
     fn size(&self) -> [u32; 2];
 
     /// A frame by its number, from 0. May block until it exists.
-    ///
-    /// # Errors
-    /// If it cannot be read.
     fn image(&self, frame: usize) -> Result<Image, AnimationError>;
 }
 

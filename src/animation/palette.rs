@@ -27,7 +27,6 @@ const GRAIN: f64 = 0.15;
 /// Number of steps of a mixture.
 const LEVELS: f64 = 64.0;
 
-/// The cell of a pixel.
 fn cell(pixel: [u8; 3]) -> usize {
     let [r, g, b] = pixel.map(|byte| usize::from(byte >> (8 - BITS)));
     r << (2 * BITS) | g << BITS | b

@@ -30,9 +30,6 @@ struct Kept {
 
 impl Spool {
     /// For frames of a width and height (px), stored in an existing folder.
-    ///
-    /// # Errors
-    /// If nothing can be written there.
     pub(crate) fn new(folder: &Path, size: [u32; 2]) -> Result<Self, OutputError> {
         let file = tempfile::tempfile_in(folder).map_err(OutputError::writing(folder))?;
         let kept = Kept { file, places: HashMap::new(), end: 0, ended: false };
@@ -40,9 +37,6 @@ impl Spool {
     }
 
     /// Stores a frame, which is a PNG file.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub(crate) fn put(&self, frame: usize, picture: &[u8]) -> Result<(), OutputError> {
         let mut kept = self.lock();
         let end = kept.end;

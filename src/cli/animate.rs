@@ -226,28 +226,27 @@ impl Folders {
             let ([one, other], [name, beside]) = ([first, folder], [options.folders[0].display(), path.display()]);
             let [[w, h], [w2, h2]] = [one.size, other.size];
             if one.size != other.size {
-                let message = format!("{name} has frames of {w}×{h} and {beside} of {w2}×{h2}; expected equal sizes");
-                return Err(Failure::usage(message));
+                bail!("{name} has frames of {w}×{h} and {beside} of {w2}×{h2}; expected equal sizes");
             }
             let unlike = one.frames.iter().zip(&other.frames).find(|(a, b)| a.0 != b.0).map(|(a, b)| a.0.min(b.0));
             let (a, b) = (one.frames.len(), other.frames.len());
             let unlike = unlike.or_else(|| (a != b).then(|| if a < b { other.frames[a].0 } else { one.frames[b].0 }));
             if let Some(number) = unlike {
-                let message = format!(
+                bail!(
                     "frame {number} is in only one of {name} and {beside}; choose frames that both have with --frames"
                 );
-                return Err(Failure::usage(message));
             }
             // Each takes its frames at the end of a step of its own.
             let between = one.frames.windows(2).map(|pair| pair[1].1 - pair[0].1);
             let from_start = one.frames.iter().filter(|frame| frame.0 > 0).map(|frame| frame.1 / frame.0 as f64);
             let step = between.chain(from_start).fold(f64::INFINITY, f64::min);
             if let Some((a, b)) = one.frames.iter().zip(&other.frames).find(|(a, b)| (a.1 - b.1).abs() > step / 2.0) {
-                let message = format!(
+                bail!(
                     "frame {} is at {:.4} s in {name} and at {:.4} s in {beside}; expected equal times",
-                    a.0, a.1, b.1
+                    a.0,
+                    a.1,
+                    b.1
                 );
-                return Err(Failure::usage(message));
             }
         }
         let files = |at: usize| folders.iter().map(|folder| folder.frames[at].2.clone()).collect();
@@ -270,9 +269,7 @@ impl Folders {
         };
         if size.iter().any(|&side| side > 16_384) {
             let [width, height] = size;
-            return Err(Failure::usage(format!(
-                "together the frames have {width}×{height} pixels; expected at most 16384 a side"
-            )));
+            bail!("together the frames have {width}×{height} pixels; expected at most 16384 a side");
         }
         Ok(Self { paths, moments, scenes, own, size, stack: options.stack })
     }
@@ -323,23 +320,18 @@ impl Folder {
         match path.metadata() {
             Ok(found) if found.is_dir() => {}
             Ok(_) => {
-                return Err(Failure::usage(format!(
-                    "{name} is not a folder; expected one with frames of `localshape render`"
-                )));
+                bail!("{name} is not a folder; expected one with frames of `localshape render`");
             }
             Err(error) => {
-                return Err(Failure::usage(format!(
-                    "{name} cannot be read: {error}; expected a folder with frames of `localshape render`"
-                )));
+                bail!("{name} cannot be read: {error}; expected a folder with frames of `localshape render`");
             }
         }
         let mut files = frame_files(path)?;
         let Some(&(last, _)) = files.last() else {
-            let message = format!(
+            bail!(
                 "{name} has no frames, such as {}; make some with `localshape render SCENE -o {name}`",
                 frame_file_name(0)
             );
-            return Err(Failure::usage(message));
         };
         if let Some(asked) = asked {
             let wanted =
@@ -347,28 +339,26 @@ impl Folder {
             if let Some(missing) =
                 wanted.iter().find(|number| files.binary_search_by_key(number, |(number, _)| number).is_err())
             {
-                return Err(Failure::usage(format!("frames of {name}: there is no {}", frame_file_name(*missing))));
+                bail!("frames of {name}: there is no {}", frame_file_name(*missing));
             }
             files.retain(|(number, _)| wanted.binary_search(number).is_ok());
         } else if let Some(stride) = files.get(1).map(|(second, _)| second - files[0].0)
             && let Some(pair) = files.windows(2).find(|pair| pair[1].0 - pair[0].0 != stride)
         {
             let [before, after] = [&pair[0], &pair[1]].map(|(number, _)| frame_file_name(*number));
-            let message = format!(
+            bail!(
                 "{name} has a gap: {after} follows {before}, while frames before that are {stride} apart; render the \
                  missing frames, or choose frames with --frames"
             );
-            return Err(Failure::usage(message));
         }
         let mut folder: Option<Self> = None;
         for (number, file) in files {
             let found = read_tags(&file)?;
             let Some((size, Tags { shows: Shown::Frame { frame, time }, scenes, states, .. })) = found else {
-                let message = format!(
+                bail!(
                     "{} is damaged, or is not a frame of `localshape render`: it does not name its scene",
                     file.display()
                 );
-                return Err(Failure::usage(message));
             };
             let runs: Vec<String> = states.into_iter().map(|(_, run)| run).collect();
             let first = || Self { size, scenes: scenes.clone(), runs: runs.clone(), frames: Vec::new() };

@@ -9,7 +9,6 @@ use super::{
     frames::FrameRanges,
     interrupt,
     options::size,
-    scenes::status_of,
 };
 #[cfg(feature = "render")]
 use crate::golden::draw::{DrawError, DrawOptions, Subject, draw, usual_gpu};
@@ -154,10 +153,7 @@ impl Compare {
                     (_, true) => "--bless ",
                     _ => "",
                 };
-                let message = format!(
-                    "{scene} is a scene or figure and must come last: localshape compare {option}{other} {scene}"
-                );
-                return Err(Failure::usage(message));
+                bail!("{scene} is a scene or figure and must come last: localshape compare {option}{other} {scene}");
             }
             self.no_drawing()?;
             return Comparison::of(&self.expected, &self.actual, self.bless || self.bless_state)
@@ -167,11 +163,10 @@ impl Compare {
         let expected = Side::read_or_absent(&self.expected).map_err(failed)?;
         if !expected.is_golden() {
             let (expected, actual) = (self.expected.display(), self.actual.display());
-            let message = format!(
+            bail!(
                 "{expected} is not a golden (a folder with golden.toml), but {actual} is a scene or figure, which is \
                  compared with its golden; to make one, name a folder that does not exist"
             );
-            return Err(Failure::usage(message));
         }
         let Some(actual) = self.draw(&expected)? else { return Ok(None) };
         Comparison::between(expected, actual).map(Some).map_err(failed)
@@ -184,10 +179,10 @@ impl Compare {
         let given = [("--frames", frames.is_some()), ("--size", size.is_some()), ("--adapter", adapter.is_some())];
         match given.into_iter().find(|(_, is_given)| *is_given) {
             None => Ok(()),
-            Some((option, _)) => Err(Failure::usage(format!(
+            Some((option, _)) => bail!(
                 "{option} is for scenes and figures, which are drawn to be compared; {} is neither",
                 self.actual.display()
-            ))),
+            ),
         }
     }
 
@@ -200,10 +195,7 @@ impl Compare {
     #[cfg(feature = "render")]
     fn draw(&self, expected: &Side) -> Result<Option<Side>, Failure> {
         let path: &Path = &self.actual;
-        let subject = Subject::load(path, &Limits::default()).map_err(|error| match status_of(&error) {
-            Status::Files => Failure::files(with_causes(&error)),
-            _ => Failure::usage(error.to_string()),
-        })?;
+        let subject = Subject::load(path, &Limits::default())?;
         match &subject {
             _ if self.printing.quiet => {}
             Subject::Scene(scene) => warn(path, scene),
@@ -217,12 +209,11 @@ impl Compare {
                 Some(frames.select(scene.last_frame()).map_err(message)?)
             }
             (Some(_), Subject::Figure(_)) => {
-                return Err(Failure::usage("--frames is for scenes; a figure is one picture"));
+                bail!("--frames is for scenes; a figure is one picture");
             }
         };
         let wish = DrawOptions { frames, size: *size, distances: self.report.is_some(), ..DrawOptions::default() };
-        let gpu =
-            adapter.as_ref().map_or_else(|| usual_gpu(expected), Gpu::new).map_err(|error| Failure::adapter(&error))?;
+        let gpu = adapter.as_ref().map_or_else(|| usual_gpu(expected), Gpu::new)?;
         interrupt::listen();
         let drawn = draw(path, &subject, &wish, expected, Some(&gpu), &mut || !interrupt::requested());
         let drawn = drawn.map_err(|error| match error {
@@ -237,11 +228,11 @@ impl Compare {
     #[cfg(not(feature = "render"))]
     fn draw(&self, _expected: &Side) -> Result<Option<Side>, Failure> {
         let path: &Path = &self.actual;
-        Err(Failure::usage(format!(
+        bail!(
             "{} must be drawn, but this program was built without the feature `render`; give a picture or a folder \
              of pictures",
             path.display()
-        )))
+        )
     }
 }
 
@@ -263,8 +254,7 @@ fn replaceable(path: &Path) -> Result<(), Failure> {
     if path.symlink_metadata().is_err() || is_file && is_page().is_some() {
         return Ok(());
     }
-    let message = format!("--report: {} exists and is not a page of a comparison; name another file", path.display());
-    Err(Failure::usage(message))
+    bail!("--report: {} exists and is not a page of a comparison; name another file", path.display())
 }
 
 /// How pages begin.

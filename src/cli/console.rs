@@ -1,6 +1,7 @@
 //! Results on standard output.
 
 use super::failure::Failure;
+use crate::output::document;
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 
@@ -16,8 +17,7 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
 
 /// Prints one JSON document.
 pub(super) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(value).expect("plain data");
-    print(&(text + "\n"))
+    print(&document(value))
 }
 
 /// Rows with aligned columns: to the left, or to the right where `right` says so.

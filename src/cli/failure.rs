@@ -1,5 +1,7 @@
 //! Exit statuses and error messages.
 
+#[cfg(feature = "render")]
+use crate::gpu::InitError;
 use crate::output::OutputError;
 #[cfg(feature = "render")]
 use crate::render::RenderError;
@@ -49,10 +51,9 @@ impl Failure {
         Self { status: Status::Difference, message: Some(message.into()) }
     }
 
-    /// No usable graphics adapter.
-    #[cfg(feature = "render")]
-    pub(super) fn adapter(error: &dyn Error) -> Self {
-        Self { status: Status::Adapter, message: Some(with_causes(error)) }
+    /// An error with its causes.
+    pub(super) fn new(status: Status, error: &dyn Error) -> Self {
+        Self { status, message: Some(with_causes(error)) }
     }
 
     /// Reading or writing failed.
@@ -93,7 +94,15 @@ impl From<OutputError> for Failure {
             OutputError::States { .. } | OutputError::Checkpoint { .. } => Status::Usage,
             OutputError::NoFolder { .. } | OutputError::Write { .. } | OutputError::Read { .. } => Status::Files,
         };
-        Self { status, message: Some(with_causes(&error)) }
+        Self::new(status, &error)
+    }
+}
+
+/// There is no usable graphics adapter.
+#[cfg(feature = "render")]
+impl From<InitError> for Failure {
+    fn from(error: InitError) -> Self {
+        Self::new(Status::Adapter, &error)
     }
 }
 
@@ -101,7 +110,7 @@ impl From<OutputError> for Failure {
 #[cfg(feature = "render")]
 impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
-        Self::adapter(&error)
+        Self::new(Status::Adapter, &error)
     }
 }
 

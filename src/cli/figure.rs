@@ -1,7 +1,7 @@
 //! `figure`: the paper's figures, and figures of the user.
 
 use super::console;
-use super::failure::{Failure, Status, warn_of_figure, with_causes};
+use super::failure::{Failure, Status, warn_of_figure};
 use super::interrupt;
 use super::options::{DeviceOptions, PrintOptions, ThreadOptions, number_in, size};
 use super::record;
@@ -157,9 +157,7 @@ impl FigureCommand {
         }
         let [width, height] = figure.size;
         if width.min(height) < LEAST_SIDE {
-            let message =
-                format!("{}: {width}×{height} is too small; expected at least {LEAST_SIDE} pixels a side", figure.name);
-            return Err(Failure::usage(message));
+            bail!("{}: {width}×{height} is too small; expected at least {LEAST_SIDE} pixels a side", figure.name);
         }
         if let Some(theme) = self.theme {
             figure.set_theme(match theme {
@@ -194,7 +192,6 @@ impl FigureCommand {
         Format::of(&self.out).unwrap_or(Format::Png)
     }
 
-    /// The folder of the files.
     fn folder(&self) -> &Path {
         if Format::of(&self.out).is_some() { folder_of(&self.out) } else { &self.out }
     }
@@ -210,13 +207,7 @@ impl FigureCommand {
                 // A built-in figure is not at any path.
                 meant.into_iter().filter_map(|name| Some((Figure::built_in(name)?, PathBuf::new()))).collect()
             } else if is_path {
-                let figure = Figure::load(Path::new(asked), &Limits::default()).map_err(|error| {
-                    match error.is_unreadable() {
-                        true => Failure::files(with_causes(&error)),
-                        false => Failure::usage(error.to_string()),
-                    }
-                })?;
-                vec![(figure, PathBuf::from(asked))]
+                vec![(Figure::load(Path::new(asked), &Limits::default())?, PathBuf::from(asked))]
             } else {
                 return Err(Failure::usage(unknown(asked)));
             };
@@ -226,11 +217,10 @@ impl FigureCommand {
                     Some((_, known)) if *known == path => {}
                     Some(_) => {
                         let file = self.out.join(format!("{}.png", figure.name));
-                        let message = format!(
+                        bail!(
                             "two figures would both be written to {}; draw them one at a time with -o",
                             file.display()
                         );
-                        return Err(Failure::usage(message));
                     }
                 }
             }
@@ -246,9 +236,7 @@ impl FigureCommand {
                 [_] => replaceable(&self.out, self.format()).map(|()| vec![self.out.clone()]),
                 _ => {
                     let (file, count) = (self.out.display(), figures.len());
-                    let message =
-                        format!("{file} is a file for one figure, but {count} are asked for; draw them one at a time");
-                    Err(Failure::usage(message))
+                    bail!("{file} is a file for one figure, but {count} are asked for; draw them one at a time")
                 }
             };
         }

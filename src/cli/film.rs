@@ -41,7 +41,7 @@ pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
     let Ok(found) = path.metadata() else { return Ok(()) };
     let name = path.display();
     if !found.is_file() {
-        return Err(Failure::usage(format!("{name} is not a file; choose another name with -o")));
+        bail!("{name} is not a file; choose another name with -o");
     }
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(BEGINNING).read_to_end(&mut bytes));
@@ -49,10 +49,7 @@ pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
     if is_ours(&bytes) {
         return Ok(());
     }
-    let message = format!(
-        "{name} exists and was not made by this command; choose another name with -o, or replace it with --overwrite"
-    );
-    Err(Failure::usage(message))
+    bail!("{name} exists and was not made by this command; choose another name with -o, or replace it with --overwrite")
 }
 
 /// Whether a file that begins with these bytes is one that this program has made: our mark stands where its format has

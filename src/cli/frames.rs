@@ -18,7 +18,6 @@ struct Span {
 const MOST_FRAMES: u64 = 10_000_000;
 
 impl FrameRanges {
-    /// All frames from 0 to `last`.
     pub(super) fn all(last: u64) -> Self {
         Self(vec![Span { first: 0, last, stride: 1 }])
     }
@@ -53,7 +52,6 @@ impl FromStr for FrameRanges {
 /// One of several equal shares of the frames: `2/4` has the second frame and every fourth one after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shard {
-    /// Its number, from 1 to `of`.
     pub(super) number: usize,
     /// How many there are.
     pub(super) of: usize,

@@ -5,8 +5,8 @@ use super::failure::{Failure, Status, note};
 use super::interrupt;
 use super::scenes::occupied;
 use crate::output::{
-    DIAGNOSTICS_FILE, Folder, OutputError, Plan, Replace, SUMMARY_FILE, Whose, frame_file_name, read_file, read_tags,
-    relative, write_whole,
+    DIAGNOSTICS_FILE, Folder, OutputError, Plan, Replace, SUMMARY_FILE, Whose, document, frame_file_name, read_file,
+    read_tags, relative, write_whole,
 };
 use clap::{Args, ValueHint};
 use csv::StringRecord;
@@ -72,8 +72,7 @@ impl Merge {
         if let Some(part) =
             parts.iter().find(|part| place(&self.out).is_some() && place(&part.folder) == place(&self.out))
         {
-            let message = format!("-o {} is one of the shards; choose another folder", part.folder.display());
-            return Err(Failure::usage(message));
+            bail!("-o {} is one of the shards; choose another folder", part.folder.display());
         }
         let mut frames: Vec<u64> = parts.iter().flat_map(|part| part.rows.keys().copied()).collect();
         frames.sort_unstable();
@@ -125,8 +124,7 @@ impl Part {
         let shard = shard.ok_or_else(|| Failure::usage(format!("{name} is no shard; {expected}")))?;
         if summary["outcome"] != "done" {
             let outcome = summary["outcome"].as_str().unwrap_or("unfinished");
-            let message = format!("{name} is not complete ({outcome}); run its command again, with --resume");
-            return Err(Failure::usage(message));
+            bail!("{name} is not complete ({outcome}); run its command again, with --resume");
         }
         let path = folder.join(DIAGNOSTICS_FILE);
         let broken = |error: csv::Error| Failure::files(format!("cannot read {}: {error}", path.display()));
@@ -141,8 +139,7 @@ impl Part {
         }
         let is_whole = part.rows.values().all(|rows| rows.len() == part.runs().len());
         if !is_whole || part.summary["frames"]["asked"] != part.rows.len() {
-            let message = format!("{} does not have all frames; run the command again", path.display());
-            return Err(Failure::usage(message));
+            bail!("{} does not have all frames; run the command again", path.display());
         }
         Ok(part)
     }
@@ -185,7 +182,7 @@ impl Part {
             if !is_it {
                 let what = if path.exists() { "is not that frame of this scene" } else { "is missing" };
                 let help = "run the command of its shard again, with --resume";
-                return Err(Failure::usage(format!("{} {what}; {help}", path.display())));
+                bail!("{} {what}; {help}", path.display());
             }
         }
         Ok(())
@@ -206,8 +203,7 @@ fn check_alike(parts: &[Part]) -> Result<(), Failure> {
     for (what, fact) in FACTS {
         if let Some(other) = parts.iter().find(|part| fact(part) != fact(&parts[0])) {
             let [one, two] = [&parts[0], other].map(|part| format!("{} ({})", part.folder.display(), fact(part)));
-            let message = format!("{one} and {two} differ in {what}; expected shards of one sequence");
-            return Err(Failure::usage(message));
+            bail!("{one} and {two} differ in {what}; expected shards of one sequence");
         }
     }
     Ok(())
@@ -217,14 +213,14 @@ fn check_alike(parts: &[Part]) -> Result<(), Failure> {
 fn check_all_there(parts: &[Part]) -> Result<(), Failure> {
     if let Some(two) = parts.windows(2).find(|two| two[0].shard == two[1].shard) {
         let ([number, of], one, two) = (two[0].shard, two[0].folder.display(), two[1].folder.display());
-        return Err(Failure::usage(format!("{one} and {two} are both shard {number}/{of}; expected each once")));
+        bail!("{one} and {two} are both shard {number}/{of}; expected each once");
     }
     let of = parts[0].shard[1];
     let missing = (1..=of).filter(|&number| parts.iter().all(|part| part.shard[0] != number));
     let missing: Vec<_> = missing.map(|number| format!("{number}/{of}")).collect();
     if let [_, ..] = missing[..] {
         let plural = if missing.len() == 1 { "" } else { "s" };
-        return Err(Failure::usage(format!("missing: shard{plural} {}; expected all of {of}", missing.join(", "))));
+        bail!("missing: shard{plural} {}; expected all of {of}", missing.join(", "));
     }
     let frames = parts.iter().flat_map(|part| part.rows.keys().map(|&frame| (frame, part.shard[0])));
     let mut frames: Vec<_> = frames.collect();
@@ -232,13 +228,12 @@ fn check_all_there(parts: &[Part]) -> Result<(), Failure> {
     let help = "shards of the same --frames share these out in turn";
     if let Some(two) = frames.windows(2).find(|two| two[0].0 == two[1].0) {
         let [(frame, one), (_, other)] = [two[0], two[1]];
-        return Err(Failure::usage(format!("frame {frame} is in shard {one}/{of} and in {other}/{of}; {help}")));
+        bail!("frame {frame} is in shard {one}/{of} and in {other}/{of}; {help}");
     }
     for (at, &(frame, number)) in frames.iter().enumerate() {
         let expected = at % of + 1;
         if number != expected {
-            let message = format!("frame {frame} is in shard {number}/{of} and should be in {expected}/{of}; {help}");
-            return Err(Failure::usage(message));
+            bail!("frame {frame} is in shard {number}/{of} and should be in {expected}/{of}; {help}");
         }
     }
     Ok(())
@@ -297,7 +292,5 @@ fn table(parts: &[Part], frames: &[u64]) -> Vec<u8> {
 }
 
 fn write_summary(folder: &Path, summary: &Value) -> Result<(), OutputError> {
-    let mut text = serde_json::to_string_pretty(summary).expect("plain data");
-    text.push('\n');
-    write_whole(&folder.join(SUMMARY_FILE), text.as_bytes())
+    write_whole(&folder.join(SUMMARY_FILE), document(summary).as_bytes())
 }

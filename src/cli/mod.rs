@@ -4,6 +4,11 @@
 //! difference; 2 wrong usage or a wrong scene; 3 no usable graphics adapter; 4 reading or writing failed;
 //! 130 interrupted.
 
+/// Ends a function with wrong usage, said as by `format!`.
+macro_rules! bail {
+    ($($message:tt)*) => { return Err($crate::cli::failure::Failure::usage(format!($($message)*))) };
+}
+
 #[cfg(feature = "render")]
 mod animate;
 mod check;

@@ -128,18 +128,16 @@ pub(super) struct DeviceOptions {
 impl DeviceOptions {
     /// Opens the device, on which pictures of these sizes (px) are to be drawn.
     pub(super) fn open(&self, sizes: impl IntoIterator<Item = [u32; 2]>) -> Result<Gpu, Failure> {
-        let gpu = Gpu::new(&self.adapter).map_err(|error| Failure::adapter(&error))?;
+        let gpu = Gpu::new(&self.adapter)?;
         let longest = gpu.longest_side();
         if let Some([width, height]) = sizes.into_iter().find(|size| size.iter().any(|&side| side > longest)) {
             let adapter = gpu.description();
-            let message = format!("{width}×{height} is too large: {adapter} draws up to {longest} pixels a side");
-            return Err(Failure::usage(message));
+            bail!("{width}×{height} is too large: {adapter} draws up to {longest} pixels a side");
         }
         Ok(gpu)
     }
 }
 
-/// A number from `least` to `most`.
 #[cfg(feature = "render")]
 pub(super) fn number_in(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone {
     move |typed| {

@@ -29,7 +29,6 @@ use std::time::Duration;
 
 /// What makes pictures of scenes.
 pub(super) trait Studio {
-    /// Begins the pictures of some frames of a scene in a folder.
     fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure>;
     /// The graphics adapter that draws, as in summaries.
     fn adapter(&self) -> String;

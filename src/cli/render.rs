@@ -114,8 +114,7 @@ impl Render {
         }
         let films = self.films(scenes.len())?;
         if let (Some(file), true) = (&self.from_states, scenes.len() > 1) {
-            let message = format!("{} has the states of one scene; render the scenes one at a time", file.display());
-            return Err(Failure::usage(message));
+            bail!("{} has the states of one scene; render the scenes one at a time", file.display());
         }
         let states = self.from_states.as_deref();
         let mut jobs = self.options.jobs(scenes, !self.no_frames, self.shard, states, words)?;
@@ -163,8 +162,7 @@ impl Render {
     /// Draws variants of a scene.
     fn sweep(&self, file: &Path, words: &[OsString]) -> Result<Status, Failure> {
         if let Some(name) = self.options.out.as_deref().filter(|out| FileFormat::of(out).is_some()) {
-            let message = format!("{} is a file for one frame; with --sweep name a folder", name.display());
-            return Err(Failure::usage(message));
+            bail!("{} is a file for one frame; with --sweep name a folder", name.display());
         }
         let sizes = Mutex::new(Vec::new());
         let check = |scene: &Scene| {
@@ -188,22 +186,18 @@ impl Render {
     fn still(&self, path: &Path, format: FileFormat, scenes: &[Scene]) -> Result<Status, Failure> {
         let name = path.display();
         let [scene] = scenes else {
-            let message = format!("{name} is a file for one frame; render the scenes one at a time, or into a folder");
-            return Err(Failure::usage(message));
+            bail!("{name} is a file for one frame; render the scenes one at a time, or into a folder");
         };
         let is_part = self.options.resume || self.shard.is_some() || self.from_states.is_some();
         if self.options.states || is_part || !self.animate.is_empty() || self.options.printing.json {
             let others = "--states, --from-states, --shard, --resume, --animate or --json";
-            let message = format!("{name} gets one frame and nothing else; with {others} name a folder");
-            return Err(Failure::usage(message));
+            bail!("{name} gets one frame and nothing else; with {others} name a folder");
         }
         let (runs, frames) = (self.options.runs(scene)?, self.options.frames(scene)?);
         check_compared(scene, &runs)?;
         let &[frame] = &frames[..] else {
             let count = frames.len();
-            let message =
-                format!("{name} is a file for one frame, but {count} are asked for; choose one, such as --frames 30");
-            return Err(Failure::usage(message));
+            bail!("{name} is a file for one frame, but {count} are asked for; choose one, such as --frames 30");
         };
         if !self.options.overwrite {
             replaceable_still(path, format)?;
@@ -236,7 +230,7 @@ impl Render {
     /// The requested animations, if they can be made.
     fn films(&self, scenes: usize) -> Result<Vec<(Format, PathBuf)>, Failure> {
         if scenes > 1 && !self.animate.is_empty() {
-            return Err(Failure::usage("--animate writes one scene to a file; render the scenes one at a time"));
+            bail!("--animate writes one scene to a file; render the scenes one at a time");
         }
         let film = |path: &PathBuf| {
             let format = Format::of(path).map_err(Failure::usage)?;
@@ -248,7 +242,7 @@ impl Render {
             if folder.is_dir() {
                 Ok((format, path.clone()))
             } else {
-                Err(Failure::usage(format!("{}: there is no folder {}", path.display(), folder.display())))
+                bail!("{}: there is no folder {}", path.display(), folder.display())
             }
         };
         let films: Vec<_> = self.animate.iter().map(film).collect::<Result<_, _>>()?;
@@ -256,7 +250,7 @@ impl Render {
         let places: Vec<_> = self.animate.iter().map(|path| place(path)).collect();
         if let Some(at) = (1..places.len()).find(|&at| places[..at].contains(&places[at])) {
             let name = self.animate[at].display();
-            return Err(Failure::usage(format!("--animate is given {name} twice; expected different files")));
+            bail!("--animate is given {name} twice; expected different files");
         }
         Ok(films)
     }
@@ -289,7 +283,7 @@ fn check_compared(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
         Some((key, run)) => {
             let (title, name) = (&scene.title, &scene.runs[run].name);
             let message = format!("--only leaves out the run “{name}”, which `view.{key}` of “{title}” needs");
-            Err(Failure::usage(format!("{message}; add --only {}", shell::word(name))))
+            bail!("{message}; add --only {}", shell::word(name))
         }
     }
 }

@@ -52,6 +52,12 @@ pub(super) fn status_of(error: &SceneError) -> Status {
     if error.is_unreadable() { Status::Files } else { Status::Usage }
 }
 
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        Self::new(status_of(&error), &error)
+    }
+}
+
 /// A mistake of the user's comes before one of the system's.
 pub(super) fn worse(one: Option<Status>, other: Status) -> Status {
     if one == Some(Status::Usage) { Status::Usage } else { other }
@@ -101,9 +107,7 @@ impl RunOptions {
             };
             if let Some(first) = folders.insert(path.clone(), scene.title.clone()) {
                 let (second, path) = (&scene.title, path.display());
-                let message =
-                    format!("“{first}” and “{second}” would both be written to {path}; run them one at a time with -o");
-                return Err(Failure::usage(message));
+                bail!("“{first}” and “{second}” would both be written to {path}; run them one at a time with -o");
             }
             jobs.push(self.job(scene, &path, pictures, shard, states_read.as_deref(), words)?);
         }
@@ -185,7 +189,7 @@ pub(super) fn runs_of(only: &[String], scene: &Scene) -> Result<Vec<usize>, Fail
     if let Some(unknown) = only.iter().find(|wanted| !names.contains(&wanted.as_str())) {
         let (message, help) = scene.no_run(unknown);
         let help = help.map_or(String::new(), |help| format!("; {help}"));
-        return Err(Failure::usage(format!("--only: {message}{help}")));
+        bail!("--only: {message}{help}");
     }
     let is_wanted = |name: &str| only.is_empty() || only.iter().any(|only| only == name);
     Ok((0..names.len()).filter(|&run| is_wanted(names[run])).collect())

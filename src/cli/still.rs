@@ -18,7 +18,6 @@ use std::path::Path;
 pub(super) enum Format {
     /// Pixels.
     Png,
-    /// Vectors.
     Vector(vector::Format),
 }
 
@@ -39,12 +38,11 @@ impl Format {
         if path.is_dir() || !OTHERS.contains(&&*ending) {
             return Ok(());
         }
-        let message = format!(
+        bail!(
             "-o {}: a picture is written as .png, .svg or .pdf; expected one of these, or the name of a folder (films: \
              `localshape animate`)",
             path.display()
-        );
-        Err(Failure::usage(message))
+        )
     }
 
     /// Whether pictures of scenes need a graphics device: vectors only where bodies are lit.
@@ -120,7 +118,7 @@ impl Still<'_> {
                 let bodies = draw_bodies(gpu, self.pictures)?;
                 let page = Page {
                     picture,
-                    bodies: bodies.as_deref().map(vector::Pixels),
+                    bodies: bodies.as_deref(),
                     size_mm: self.print.map(|print| print.mm),
                     is_transparent: self.pictures.len() > 1,
                     title: self.title,
@@ -142,7 +140,6 @@ pub(super) enum Drawn {
 }
 
 impl Drawn {
-    /// The file.
     pub(super) fn file(self) -> Vec<u8> {
         match self {
             Self::Pixels { size, pixels, tags, dpi } => encode_print(size, &pixels, &tags, Compression::High, dpi),

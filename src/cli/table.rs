@@ -155,10 +155,7 @@ impl Table {
         };
         let pool = record::pool(threads)?;
         let bar = self.printing.progress(name.word(), work);
-        let watch: &Watch<'_> = &|more| {
-            bar.inc(more);
-            !interrupt::requested()
-        };
+        let watch: &Watch<'_> = &interrupt::watch(&bar);
         let made = pool.install(|| match name {
             Name::Ratio => {
                 ratio::measure(&timing, watch).map(|ratios| Made::new(ratios.files(), Vec::new(), ratios.json()))
@@ -172,11 +169,7 @@ impl Table {
 
 impl Name {
     fn word(self) -> &'static str {
-        match self {
-            Self::Table1 => "table1",
-            Self::Ratio => "ratio",
-            Self::All => "all",
-        }
+        if self == Self::Ratio { "ratio" } else { "table1" }
     }
 
     fn files(self) -> Vec<&'static str> {

@@ -32,7 +32,6 @@ const VIENOT_1999: [Loss; 2] = [
 ];
 
 impl Vision {
-    /// All of them.
     pub(crate) const ALL: [Self; 3] = [Self::Normal, Self::Deuteranopia, Self::Protanopia];
 
     /// Its name within a sentence, after *to*.

@@ -6,7 +6,6 @@ use super::{Colour, encoded, linear};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Oklab(pub [f64; 3]);
 
-/// A colour in Oklab.
 pub(crate) fn oklab(colour: Colour) -> Oklab {
     let [r, g, b] = linear(colour);
     let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);

@@ -22,9 +22,6 @@ struct Row {
 }
 
 /// The states in a folder; `None` if it has no archive of them.
-///
-/// # Errors
-/// What is wrong with the archive.
 pub(super) fn read(folder: &Path) -> Result<Option<States>, String> {
     let path = folder.join(STATES_FILE);
     match path.metadata() {

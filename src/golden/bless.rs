@@ -28,40 +28,19 @@ pub(crate) struct Blessed {
 /// Why nothing was accepted.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum BlessError {
-    /// States moved, or the scene ends earlier, and accepting that was not requested.
     #[error("the state moved, so nothing was accepted; to accept it anyway: {command}")]
-    StateMoved {
-        /// The command that accepts it.
-        command: String,
-    },
-    /// A file of the golden cannot be read, so it is unknown whether the state moved.
+    StateMoved { command: String },
     #[error("the expected side is damaged, so nothing was accepted; to replace it: {command}")]
-    Damaged {
-        /// The command that accepts it.
-        command: String,
-    },
-    /// The actual side cannot be accepted.
+    Damaged { command: String },
     #[error("nothing was accepted: {0}")]
     Unfit(String),
-    /// The golden records more states than the other side knows.
     #[error(
         "nothing was accepted: the golden records {recorded} states, and {known} of them are known here. \
          Compare it with its scene file, or with frames that were drawn with --states"
     )]
-    StatesUnknown {
-        /// States in the record.
-        recorded: usize,
-        /// Those that could be renewed.
-        known: usize,
-    },
-    /// A file cannot be written.
+    StatesUnknown { recorded: usize, known: usize },
     #[error("{source}; {blessed}")]
-    Write {
-        /// The changes made before.
-        blessed: Blessed,
-        /// The cause.
-        source: OutputError,
-    },
+    Write { blessed: Blessed, source: OutputError },
 }
 
 impl Comparison {

@@ -135,7 +135,6 @@ impl Distance {
         self.limits().map(|limit| limit.used()).fold(0.0, f64::max)
     }
 
-    /// The count that is nearest to its limit.
     pub(crate) fn nearest_to_limit(&self) -> Count {
         let nearest = self.limits().max_by(|one, other| one.part().total_cmp(&other.part()));
         nearest.map_or(self.counted, |limit| limit.count)

@@ -37,9 +37,6 @@ pub(crate) enum Subject {
 
 impl Subject {
     /// Reads a scene file or a figure file.
-    ///
-    /// # Errors
-    /// Whatever keeps the file from being one.
     pub(crate) fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
         if is_figure_file(path, limits) {
             return Ok(Self::Figure(Box::new(Figure::load(path, limits)?)));
@@ -81,21 +78,15 @@ impl DrawOptions {
 /// Why it could not be drawn.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum DrawError {
-    /// The device stopped working or refused.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// States that wait to be drawn could not be kept.
     #[error("states cannot be stored in the folder for temporary files: {0}")]
     Disk(#[from] std::io::Error),
-    /// An option that cannot be met.
     #[error("{0}")]
     Options(String),
 }
 
 /// The device for a golden: the kind of adapter that drew it if this machine has it, else a software driver.
-///
-/// # Errors
-/// If there is neither.
 pub(crate) fn usual_gpu(golden: &Side) -> Result<Gpu, InitError> {
     let drawn = golden.record.iter().flat_map(|record| &record.pictures).map(|drawn| kind(&drawn.adapter));
     let same = drawn.filter(|kind| !kind.is_empty()).find_map(|kind| Gpu::new(&AdapterChoice::Named(kind.into())).ok());

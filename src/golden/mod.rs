@@ -54,48 +54,20 @@ use std::path::{Path, PathBuf};
 /// Why no comparison can be made.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ComparisonError {
-    /// There is nothing at a path.
     #[error("{} does not exist; expected a picture or a folder of pictures", path.display())]
-    Absent {
-        /// The path.
-        path: PathBuf,
-    },
-    /// A file or folder is not there or cannot be read.
+    Absent { path: PathBuf },
     #[error("cannot read {}", path.display())]
-    Read {
-        /// The file or folder.
-        path: PathBuf,
-        /// The cause.
-        source: io::Error,
-    },
-    /// One side is a folder, and the other one is not.
+    Read { path: PathBuf, source: io::Error },
     #[error("{} is a folder and {} is a file; expected two pictures or two folders of pictures", folder.display(), file.display())]
-    Unlike {
-        /// The folder.
-        folder: PathBuf,
-        /// The file.
-        file: PathBuf,
-    },
-    /// There is nothing to compare.
+    Unlike { folder: PathBuf, file: PathBuf },
     #[error("neither {} nor {} has a PNG picture", expected.display(), actual.display())]
-    Empty {
-        /// The expected folder.
-        expected: PathBuf,
-        /// The actual folder.
-        actual: PathBuf,
-    },
-    /// The record of a golden is invalid.
+    Empty { expected: PathBuf, actual: PathBuf },
     #[error(
         "{}: this record of a golden cannot be read: {what}; if nothing else helps, delete the folder and make the \
          golden again",
         path.join(RECORD_FILE).display()
     )]
-    Record {
-        /// The golden's folder.
-        path: PathBuf,
-        /// What is wrong with the record.
-        what: String,
-    },
+    Record { path: PathBuf, what: String },
 }
 
 /// The result of comparing the pictures and states of two sides.

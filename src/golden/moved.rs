@@ -27,9 +27,6 @@ pub(super) fn distances_of(scene: &Scene, frame: &Frame, old: &Record) -> Option
 
 /// Draws a frame in a size (px) whose bodies are coloured by a distance of each node (m), with the time series of its scene if that
 /// needs them. Bodies without distances keep their colour.
-///
-/// # Errors
-/// If the device fails.
 pub(super) fn draw_distances(
     gpu: &Gpu,
     scene: &Scene,

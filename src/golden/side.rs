@@ -18,7 +18,6 @@ const LARGEST_SUMMARY: u64 = 16 << 20;
 /// The kind of a side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// One picture.
     Picture,
     /// A folder of pictures.
     Folder,

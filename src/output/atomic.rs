@@ -19,9 +19,6 @@ pub(crate) struct AtomicFile {
 impl AtomicFile {
     /// Creates the file for `path`, whose folder exists. If the folder is not locked ([`super::FolderLock`]), another
     /// process may remove it as a leftover.
-    ///
-    /// # Errors
-    /// If the folder cannot be written to.
     pub(crate) fn create(path: &Path) -> Result<Self, OutputError> {
         let folder = folder_of(path);
         // `File::create` gives results the usual permissions; files made by tempfile can be read by their owner only.
@@ -125,7 +122,6 @@ pub(super) fn remove(path: &Path) -> Result<(), OutputError> {
     }
 }
 
-/// The folder of a file.
 pub(crate) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,

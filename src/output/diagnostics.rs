@@ -40,9 +40,6 @@ pub(crate) struct Rows {
 
 impl DiagnosticsWriter {
     /// Creates the file in `folder`.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub(crate) fn create(folder: &Path, scene: &Scene) -> Result<Self, OutputError> {
         let mut writer = Self::open(folder, scene, Rows::default())?;
         writer.append(&rows([cells("", 0, &Snapshot::default()).into_iter().map(|(head, _)| head)]))?;
@@ -50,9 +47,6 @@ impl DiagnosticsWriter {
     }
 
     /// Goes on after rows that another process has written, whether it has finished the file or not.
-    ///
-    /// # Errors
-    /// If they are not there.
     pub(crate) fn resume(folder: &Path, scene: &Scene, before: Rows) -> Result<Self, OutputError> {
         let [hidden, path] = [UNFINISHED, DIAGNOSTICS_FILE].map(|name| folder.join(name));
         // A finished file has lost its hidden name.
@@ -97,9 +91,6 @@ impl DiagnosticsWriter {
     }
 
     /// Makes what is written so far survive a power failure.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub(crate) fn sync(&mut self) -> io::Result<Rows> {
         self.file.sync_data()?;
         Ok(self.written())
@@ -107,9 +98,6 @@ impl DiagnosticsWriter {
 
     /// Renames the file to its final name. Also after a failed [`Self::write`]: the file then ends with the last
     /// complete frame.
-    ///
-    /// # Errors
-    /// If it cannot be renamed.
     pub(crate) fn finish(self) -> Result<(), OutputError> {
         let Self { file, hidden, path, written, .. } = self;
         let renamed =

@@ -2,7 +2,6 @@
 
 use crate::sim::snapshot::Snapshot;
 use sha2::{Digest, Sha256};
-use std::fmt::Write;
 
 /// SHA-256 over all positions (m) and then all velocities (m/s) of a run's nodes, as little-endian double precision
 /// numbers x, y, z: 64 hexadecimal digits.
@@ -11,11 +10,7 @@ pub(crate) fn state_digest(snapshot: &Snapshot) -> String {
     for vector in snapshot.position.iter().chain(&snapshot.velocity) {
         hash.update(super::states::vector_bytes(vector));
     }
-    let mut digits = String::with_capacity(64);
-    for byte in hash.finalize() {
-        write!(digits, "{byte:02x}").expect("a string takes all");
-    }
-    digits
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

@@ -7,70 +7,22 @@ use std::path::{Path, PathBuf};
 /// A file or folder that could not be read, written or used. The source is the cause, if there is one.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
-    /// Something could not be written.
     #[error("cannot write {}{}", path.display(), hint(source))]
-    Write {
-        /// The file or folder.
-        path: PathBuf,
-        /// The cause.
-        source: io::Error,
-    },
-    /// Something could not be read.
+    Write { path: PathBuf, source: io::Error },
     #[error("cannot read {}", path.display())]
-    Read {
-        /// The file or folder.
-        path: PathBuf,
-        /// The cause.
-        source: io::Error,
-    },
-    /// Another process writes to the folder.
+    Read { path: PathBuf, source: io::Error },
     #[error("{} is in use: {what}; wait until that has ended, or choose another folder with -o", path.display())]
-    InUse {
-        /// The folder.
-        path: PathBuf,
-        /// The other process and what it does.
-        what: Box<str>,
-    },
-    /// The path of a folder has something that is not a folder.
+    InUse { path: PathBuf, what: Box<str> },
     #[error("{} is {what}, not a folder; choose another folder with -o", path.display())]
-    NoFolder {
-        /// The path.
-        path: PathBuf,
-        /// What it is.
-        what: &'static str,
-    },
-    /// The path of an output file has something that is not a file.
+    NoFolder { path: PathBuf, what: &'static str },
     #[error("{} is {what}, not a file; move it away, or choose another folder with -o", path.display())]
-    NoFile {
-        /// The path.
-        path: PathBuf,
-        /// What it is.
-        what: &'static str,
-    },
-    /// Stored states are damaged, or do not fit the scene.
+    NoFile { path: PathBuf, what: &'static str },
     #[error("{} {what}", path.display())]
-    States {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong, and what to do.
-        what: Box<str>,
-    },
-    /// A checkpoint is not one of this command.
+    States { path: PathBuf, what: Box<str> },
     #[error("the checkpoint in {} {what}; to begin anew, leave out --resume and add --overwrite", path.display())]
-    Checkpoint {
-        /// The folder.
-        path: PathBuf,
-        /// What is wrong.
-        what: Box<str>,
-    },
-    /// The folder has files that belong to something else.
+    Checkpoint { path: PathBuf, what: Box<str> },
     #[error("{} holds {what}; choose another folder with -o, or replace what is there with --overwrite", path.display())]
-    Occupied {
-        /// The folder.
-        path: PathBuf,
-        /// These files.
-        what: String,
-    },
+    Occupied { path: PathBuf, what: String },
 }
 
 /// An addition to the message if the disk is full.
@@ -115,9 +67,6 @@ pub(crate) fn is_folder(path: &Path) -> Result<bool, OutputError> {
 }
 
 /// Reads a whole file; `None` if there is none, or if it is not a file: opening a pipe would block.
-///
-/// # Errors
-/// If it cannot be read.
 pub(crate) fn read_file(path: &Path) -> Result<Option<Vec<u8>>, OutputError> {
     match fs::metadata(path) {
         Ok(found) if found.is_file() => fs::read(path).map(Some).map_err(OutputError::reading(path)),

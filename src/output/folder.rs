@@ -6,6 +6,7 @@ use super::error::kind_of;
 use super::plan::{Plan, Whose};
 use super::{DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, is_folder, read_file, read_tags};
 use std::fs;
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
 /// The file name of frame `index`: `frame_00000.png`.
@@ -23,9 +24,6 @@ fn frame_number(name: &str) -> Option<u64> {
 }
 
 /// The numbers and paths of all frames in a folder, by their names, sorted.
-///
-/// # Errors
-/// If the folder cannot be read.
 pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
     let mut frames = Vec::new();
     for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
@@ -107,7 +105,6 @@ impl Folder {
         }
     }
 
-    /// The path of the folder.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
@@ -137,56 +134,48 @@ impl Folder {
         let checkpoint = if self.resume { read()? } else { None };
         let found = self.find()?;
         if checkpoint.is_none() {
-            forget(&self.path)?;
+            // First, so that no checkpoint is left without what belongs to it.
+            Checkpoint::remove(&self.path)?;
+            remove_leftovers(&self.path)?;
         }
         // The summary is removed last: until then it identifies the owner of the other files.
         let stale = [found.frames, found.earlier_frames, found.unlike, found.records, found.earlier_records].concat();
         for path in stale.iter().chain(found.states.iter().filter(|_| !self.plan.states)) {
             remove(path)?;
         }
-        Ok(Claimed { path: self.path, scene: self.scene, plan: self.plan, checkpoint, _lock: lock })
+        Ok(Claimed { folder: self, checkpoint, _lock: lock })
     }
 }
 
 /// A locked folder: no other process writes to it until this is dropped.
 #[derive(Debug)]
 pub(crate) struct Claimed {
-    path: PathBuf,
-    scene: Whose,
-    plan: Plan,
+    folder: Folder,
     checkpoint: Option<Checkpoint>,
     _lock: FolderLock,
 }
 
+impl Deref for Claimed {
+    type Target = Folder;
+
+    fn deref(&self) -> &Folder {
+        &self.folder
+    }
+}
+
 impl Claimed {
-    /// The path of the folder.
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// What is written there, and for which scene.
-    pub(crate) fn contents(&self) -> (&Plan, &Whose) {
-        (&self.plan, &self.scene)
-    }
-
     /// Takes the checkpoint from which to go on, if there is one.
     pub(crate) fn take_checkpoint(&mut self) -> Option<Checkpoint> {
         self.checkpoint.take()
     }
 }
 
-/// Removes a checkpoint first, so that none is left without what belongs to it.
-fn forget(path: &Path) -> Result<(), OutputError> {
-    Checkpoint::remove(path)?;
-    remove_leftovers(path)
-}
-
 /// Without a checkpoint, unfinished files are of no use.
 impl Drop for Claimed {
     fn drop(&mut self) {
-        if !Checkpoint::is_in(&self.path) {
+        if !Checkpoint::is_in(self.path()) {
             // The next command tries again.
-            let _ = remove_leftovers(&self.path);
+            let _ = remove_leftovers(self.path());
         }
     }
 }

@@ -31,9 +31,6 @@ impl FolderLock {
     }
 
     /// The same, leaving leftovers, which may be the way to go on.
-    ///
-    /// # Errors
-    /// If another process writes to it.
     pub(super) fn alone_with_leftovers(path: &Path) -> Result<Self, OutputError> {
         let lock = Self::open(path);
         if lock.take(true) { Ok(lock) } else { Err(in_use(path)) }
@@ -53,9 +50,6 @@ impl FolderLock {
     }
 
     /// Tests whether a process has locked a folder, which need not exist, for exclusive use.
-    ///
-    /// # Errors
-    /// If one has.
     pub(crate) fn check(path: &Path) -> Result<(), OutputError> {
         if Self::open(path).take(false) { Ok(()) } else { Err(in_use(path)) }
     }

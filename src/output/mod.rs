@@ -32,6 +32,8 @@ pub(crate) use frames::Tap;
 pub(crate) use frames::{FrameWriter, PixelFrame};
 pub(crate) use lock::FolderLock;
 pub(crate) use plan::{Plan, Whose};
+#[cfg(feature = "render")]
+pub(crate) use png::image_data;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
 pub(crate) use png::{Texts, encode_print, is_drawn};
 pub(crate) use sheets::SheetFiles;
@@ -39,7 +41,7 @@ pub(crate) use states::{STATES_FILE, StatesWriter};
 pub(crate) use stored::StoredStates;
 #[cfg(feature = "render")]
 pub(crate) use summary::relative;
-pub(crate) use summary::{Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary};
+pub(crate) use summary::{Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary, document};
 pub(crate) use timing::{Clock, thread_time};
 pub use timing::{Spent, Timings};
 

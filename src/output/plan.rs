@@ -11,14 +11,12 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Whose {
     /// Digest of its meaning.
     pub digest: String,
-    /// Its title.
     pub title: String,
     /// Its file, as a full path.
     pub file: Option<PathBuf>,
 }
 
 impl Whose {
-    /// That of a scene.
     pub(crate) fn of(scene: &Scene) -> Self {
         Self { digest: scene.digest.clone(), title: scene.title.clone(), file: scene.file.clone() }
     }

@@ -175,22 +175,43 @@ pub(crate) fn encode_print(
     bytes
 }
 
+/// The packed pixels in a PNG file: the contents of its `IDAT` chunks.
+#[cfg(feature = "render")]
+pub(crate) fn image_data(file: &[u8]) -> Vec<u8> {
+    let mut data = Vec::with_capacity(file.len());
+    // After the signature: length, name, data and checksum of each chunk.
+    let mut rest = &file[8..];
+    while let Some((head, tail)) = rest.split_first_chunk::<8>() {
+        let length = u32::from_be_bytes([head[0], head[1], head[2], head[3]]) as usize;
+        if &head[4..] == b"IDAT" {
+            data.extend_from_slice(&tail[..length]);
+        }
+        rest = &tail[length + 4..];
+    }
+    data
+}
+
 /// Reads width and height of a picture (px) and its metadata, without its pixels; `None` if the file is not a PNG file
 /// or was not written by this crate.
 ///
 /// # Errors
 /// If the file cannot be read.
 pub fn read_tags(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> {
+    path.metadata().map_err(OutputError::reading(path))?;
+    let reader = header(path)?;
+    let info = reader.as_ref().map(png::Reader::info);
+    Ok(info.and_then(|info| Some(([info.width, info.height], Tags::of(info).ok()??))))
+}
+
+/// A reader after the header of a picture; `None` if there is no PNG file at the path.
+fn header(path: &Path) -> Result<Option<png::Reader<BufReader<File>>>, OutputError> {
     // Opening a pipe would block.
-    if !path.metadata().map_err(OutputError::reading(path))?.is_file() {
+    if !path.is_file() {
         return Ok(None);
     }
     let file = File::open(path).map_err(OutputError::reading(path))?;
     match png::Decoder::new(BufReader::new(file)).read_info() {
-        Ok(reader) => {
-            let info = reader.info();
-            Ok(Tags::of(info).ok().flatten().map(|tags| ([info.width, info.height], tags)))
-        }
+        Ok(reader) => Ok(Some(reader)),
         Err(png::DecodingError::IoError(error)) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
             Err(OutputError::reading(path)(error))
         }
@@ -200,21 +221,13 @@ pub fn read_tags(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> {
 
 /// Whether a file is the picture that would be written with this size (px), these texts and these pixels of an inch; `false`
 /// if there is no such file.
-///
-/// # Errors
-/// If the file cannot be read.
 pub(crate) fn is_drawn(
     path: &Path,
     size: [u32; 2],
     texts: &[(&'static str, String)],
     dpi: Option<f64>,
 ) -> Result<bool, OutputError> {
-    // Opening a pipe would block.
-    if !path.is_file() {
-        return Ok(false);
-    }
-    let file = File::open(path).map_err(OutputError::reading(path))?;
-    let Ok(reader) = png::Decoder::new(BufReader::new(file)).read_info() else { return Ok(false) };
+    let Some(reader) = header(path)? else { return Ok(false) };
     let info = reader.info();
     let has = |(name, text): &(&'static str, String)| texts_of(info, name) == [Some(text.clone())];
     let of_metre = |dims: png::PixelDimensions| dims.xppu;

@@ -63,7 +63,6 @@ pub(super) struct Origin {
     pub(super) version: String,
     /// Digest of the scene.
     pub(super) digest: String,
-    /// Its title.
     pub(super) title: String,
 }
 
@@ -81,7 +80,6 @@ pub(crate) struct Course {
 /// One run of a [`Course`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct StoredRun {
-    /// Its name.
     pub(super) name: String,
     /// How many numbers of the memory belong to the model; the others belong to constraints.
     pub(super) model: usize,
@@ -221,9 +219,6 @@ impl StatesWriter {
     }
 
     /// Makes the frames written so far survive a power failure.
-    ///
-    /// # Errors
-    /// If they cannot be written.
     pub(crate) fn sync(&mut self) -> io::Result<Course> {
         self.spool.sync_data()?;
         Ok(self.course.clone())

@@ -56,7 +56,6 @@ impl StoredStates {
         Ok(stored)
     }
 
-    /// The path of the file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }

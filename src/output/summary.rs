@@ -16,11 +16,9 @@ pub(crate) const SUMMARY_FILE: &str = "run.json";
 pub(crate) struct Summary {
     /// Version of this crate.
     pub localshape: String,
-    /// The scene.
     pub scene: SceneSummary,
     /// The command line, one entry for each argument.
     pub command: Vec<String>,
-    /// The outcome.
     pub outcome: Outcome,
     /// The requested and the written frames.
     pub frames: FrameSummary,
@@ -40,7 +38,6 @@ pub(crate) struct Summary {
 /// Identifies the scene.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct SceneSummary {
-    /// Its title.
     pub title: String,
     /// Its file, as a full path; `null` if it was parsed from a text.
     pub file: Option<String>,
@@ -89,7 +86,6 @@ pub(crate) struct FrameSummary {
 /// The result of a run.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct RunSummary {
-    /// Its name.
     pub name: String,
     /// Time step (s).
     pub time_step: f64,
@@ -135,7 +131,6 @@ pub(crate) struct LastState {
     pub frame: u64,
     /// Time (s).
     pub time: f64,
-    /// The diagnostics.
     #[serde(flatten)]
     pub diagnostics: Chosen,
     /// Another diagnostic, which is not in goldens.
@@ -199,16 +194,16 @@ impl Summary {
     }
 
     /// Writes `run.json` into `folder`.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub(crate) fn write(&self, folder: &Path) -> Result<(), OutputError> {
         let mut summary = self.clone();
         summary.scene.relative_file = self.scene.file.as_ref().and_then(|file| relative(Path::new(file), folder));
-        let mut text = serde_json::to_string_pretty(&summary).expect("plain data");
-        text.push('\n');
-        write_whole(&folder.join(SUMMARY_FILE), text.as_bytes())
+        write_whole(&folder.join(SUMMARY_FILE), document(&summary).as_bytes())
     }
+}
+
+/// Plain data as a JSON document to read.
+pub(crate) fn document(value: &impl Serialize) -> String {
+    serde_json::to_string_pretty(value).expect("plain data") + "\n"
 }
 
 /// Whether a number of frames is not worth a word.

@@ -14,6 +14,48 @@ pub(crate) enum Way<'a> {
     Index(usize),
 }
 
+impl<'a> From<&'a str> for Way<'a> {
+    fn from(key: &'a str) -> Self {
+        Self::Key(key)
+    }
+}
+
+impl From<usize> for Way<'_> {
+    fn from(index: usize) -> Self {
+        Self::Index(index)
+    }
+}
+
+/// A path of keys and indices: `way!["run", 1, "model"]`; with `way![path; "model"]` one that goes on from another.
+macro_rules! way {
+    ($($part:expr),+) => { [$($crate::reading::report::Way::from($part)),+] };
+    ($before:expr; $($part:expr),+) => { [&$before[..], &$crate::reading::report::way![$($part),+][..]].concat() };
+}
+pub(crate) use way;
+
+/// What to do about a mistake, if there is more to say than its message does.
+pub(crate) trait Help {
+    fn text(self) -> Option<String>;
+}
+
+impl Help for &str {
+    fn text(self) -> Option<String> {
+        Some(self.to_owned())
+    }
+}
+
+impl Help for String {
+    fn text(self) -> Option<String> {
+        Some(self)
+    }
+}
+
+impl Help for Option<String> {
+    fn text(self) -> Option<String> {
+        self
+    }
+}
+
 /// The path of a value, as written in messages: `run[1].model.stiffness`.
 pub(crate) fn written(path: &[Way<'_>]) -> String {
     let mut text = String::new();
@@ -79,23 +121,23 @@ impl<'t> Report<'t> {
     }
 
     /// A mistake in the value at `path`, or in the nearest table or array that exists.
-    pub(crate) fn at(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Into<Option<String>>) {
-        self.at_span(span_of(self.root, path), path, message.into(), help.into());
+    pub(crate) fn at(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Help) {
+        self.at_span(span_of(self.root, path), path, message.into(), help.text());
     }
 
     /// A mistake about the key at the end of `path`, or about where it is missing.
-    pub(crate) fn at_key(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Into<Option<String>>) {
+    pub(crate) fn at_key(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Help) {
         let (table, key) = match path {
             [before @ .., Way::Key(key)] => (table_at(self.root, before), *key),
             _ => (None, ""),
         };
         let span = table.and_then(|table| table.get_key_value(key)).map(|(key, _)| key.span());
-        self.at_span(span.unwrap_or_else(|| span_of(self.root, path)), path, message.into(), help.into());
+        self.at_span(span.unwrap_or_else(|| span_of(self.root, path)), path, message.into(), help.text());
     }
 
     /// A warning about the value at `path`, or about the nearest one that exists: it is allowed and probably not meant.
-    pub(crate) fn warn(&mut self, path: &[Way<'_>], message: String, help: String) {
-        self.warned.push(mistake(self.source, span_of(self.root, path), path, message, Some(help)));
+    pub(crate) fn warn(&mut self, path: &[Way<'_>], message: String, help: impl Help) {
+        self.warned.push(mistake(self.source, span_of(self.root, path), path, message, help.text()));
     }
 
     /// All warnings, in the order of the text.

@@ -11,7 +11,6 @@ use std::io::{self, BufWriter, Write};
 /// Digests of the files that a scene names.
 #[derive(Debug, Default)]
 pub(super) struct FileDigests {
-    /// The body file.
     pub(super) body: Option<String>,
     /// The font file.
     pub(super) regular: Option<String>,

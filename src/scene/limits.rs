@@ -34,7 +34,6 @@ impl Limits {
 /// How large a body will be.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct BodySize {
-    /// Nodes.
     pub(super) nodes: u128,
     /// Whether it may come out smaller.
     pub(super) is_bound: bool,

@@ -8,7 +8,7 @@ use super::structure::Checked;
 use super::{Scene, structure};
 use crate::reading::Mistakes;
 use crate::reading::beside::similar;
-use crate::reading::report::{Report, Way, mistake};
+use crate::reading::report::{Report, mistake, way};
 use crate::reading::source::Source;
 use crate::reading::words::quoted;
 use serde_json::Value;
@@ -134,7 +134,7 @@ pub(super) fn checked<T>(
     }
     let mut report = Report::new(&source, root.get_ref());
     if let Some(key) = other.keys.iter().find(|key| root.get_ref().contains_key(**key)) {
-        report.at_key(&[Way::Key(key)], other.message, None);
+        report.at_key(&way![*key], other.message, None);
         return Err(SceneError::Mistakes(report.finish(name)));
     }
     let checked = structure::check(schema, root.get_ref(), &mut report);
@@ -144,7 +144,6 @@ pub(super) fn checked<T>(
     }
 }
 
-/// The text of a file.
 pub(super) fn text_of(path: &Path, limits: &Limits) -> Result<String, SceneError> {
     let bytes = read(path, limits)?;
     if path.file_name().is_some_and(|name| stem(Path::new(name)).is_none()) {

@@ -6,9 +6,7 @@ use serde::Serialize;
 /// be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Printed {
-    /// μ(α).
     pub mean: Option<f64>,
-    /// σ(α).
     pub deviation: Option<f64>,
     /// max(α).
     pub maximum: Option<f64>,
@@ -30,50 +28,32 @@ pub(crate) const STIFFNESSES: [f64; 3] = [1e4, 1e5, 1e6];
 
 /// The paper's Table 1 as printed.
 pub(crate) const ROWS: [Row; 4] = {
-    const fn printed(mean: f64, deviation: f64, maximum: f64) -> Printed {
-        const fn measured(number: f64) -> Option<f64> {
-            if number > 0.0 { Some(number) } else { None }
-        }
-        Printed { mean: measured(mean), deviation: measured(deviation), maximum: measured(maximum) }
-    }
+    /// What the paper says was too small to be measured.
     const LESS: f64 = 0.0;
+    const fn measured(number: f64) -> Option<f64> {
+        if number > LESS { Some(number) } else { None }
+    }
+    const fn case(step: f64, [mean, deviation, maximum]: [f64; 3]) -> (f64, Printed) {
+        (step, Printed { mean: measured(mean), deviation: measured(deviation), maximum: measured(maximum) })
+    }
+    let a = [
+        case(0.006, [4.52554, 4.49862, 30.87597]),
+        case(0.002, [1.987712, 1.68312, 9.119262]),
+        case(0.0006, [1.301888, 1.297613, 7.570902]),
+    ];
+    let b = [
+        case(0.0006, [0.032915, 0.037503, 0.320008]),
+        case(0.0002, [0.030974, 0.028445, 0.157926]),
+        case(0.00006, [0.005511, 0.005129, 0.034552]),
+    ];
+    let c =
+        [case(0.006, [0.000493, 0.00211, 0.060352]), case(0.002, [LESS, 0.000001, 0.000017]), case(0.0006, [LESS; 3])];
+    let d = [case(0.006, [LESS, LESS, 0.000001]), case(0.002, [LESS; 3]), case(0.0006, [LESS; 3])];
     [
-        Row {
-            name: "A",
-            passes: 1,
-            cases: [
-                (0.006, printed(4.52554, 4.49862, 30.87597)),
-                (0.002, printed(1.987712, 1.68312, 9.119262)),
-                (0.0006, printed(1.301888, 1.297613, 7.570902)),
-            ],
-        },
-        Row {
-            name: "B",
-            passes: 1,
-            cases: [
-                (0.0006, printed(0.032915, 0.037503, 0.320008)),
-                (0.0002, printed(0.030974, 0.028445, 0.157926)),
-                (0.00006, printed(0.005511, 0.005129, 0.034552)),
-            ],
-        },
-        Row {
-            name: "C",
-            passes: 2,
-            cases: [
-                (0.006, printed(0.000493, 0.00211, 0.060352)),
-                (0.002, printed(LESS, 0.000001, 0.000017)),
-                (0.0006, printed(LESS, LESS, LESS)),
-            ],
-        },
-        Row {
-            name: "D",
-            passes: 3,
-            cases: [
-                (0.006, printed(LESS, LESS, 0.000001)),
-                (0.002, printed(LESS, LESS, LESS)),
-                (0.0006, printed(LESS, LESS, LESS)),
-            ],
-        },
+        Row { name: "A", passes: 1, cases: a },
+        Row { name: "B", passes: 1, cases: b },
+        Row { name: "C", passes: 2, cases: c },
+        Row { name: "D", passes: 3, cases: d },
     ]
 };
 

@@ -5,7 +5,6 @@
 pub(crate) struct Sheet {
     /// The headings of the columns.
     pub heads: Vec<String>,
-    /// The rows.
     pub rows: Vec<Vec<String>>,
 }
 

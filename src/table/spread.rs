@@ -5,11 +5,9 @@ use serde::Serialize;
 /// Median, quartiles and range of some numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
-    /// The least.
     pub least: f64,
     /// The lower quartile.
     pub lower: f64,
-    /// The median.
     pub median: f64,
     /// The upper quartile.
     pub upper: f64,

@@ -62,7 +62,6 @@ impl Default for Protocol {
 pub(crate) struct Case {
     /// The method that computes rotations.
     pub solver: Solver,
-    /// The row.
     pub row: Row,
     /// Index of its k/m in [`STIFFNESSES`].
     pub stiffness: usize,
@@ -177,7 +176,6 @@ pub(crate) struct Table1 {
 /// The results of all starts in one case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Summary {
-    /// The case.
     pub case: Case,
     /// The means of all starts (rad/s²).
     pub mean: Spread,

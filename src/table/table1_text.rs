@@ -13,7 +13,6 @@ impl Table1 {
         [self.markdown(), self.summary_sheet().csv(), self.start_sheet().csv()]
     }
 
-    /// The table as Markdown.
     pub(crate) fn markdown(&self) -> String {
         let Protocol { orientations, duration, .. } = self.protocol;
         let plural = if orientations == 1 { "" } else { "s" };

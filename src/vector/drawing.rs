@@ -29,7 +29,6 @@ pub(super) enum Item<'a> {
         path: Path,
         /// The points (px).
         ends: [Vec2; 2],
-        /// The colours there.
         colours: [Colour; 2],
     },
     /// Pixels.
@@ -45,7 +44,6 @@ pub(super) enum Item<'a> {
 /// A colour with an opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Paint {
-    /// The colour.
     pub(super) colour: Colour,
     /// The opacity, from 0 to 1.
     pub(super) alpha: f32,
@@ -124,7 +122,6 @@ impl Path {
         Self::polygon(&[corner, corner + x, corner + size, corner + y])
     }
 
-    /// A circle.
     pub(super) fn circle(middle: Vec2, radius: f32) -> Self {
         let mut path = Self::default();
         path.add_arc(middle, radius, [0.0, TAU], true);

@@ -59,7 +59,6 @@ pub(super) fn panel(picture: &Picture, panel: &Panel, items: &mut Vec<Item<'_>>)
 }
 
 impl Flat<'_> {
-    /// The pixel of a point.
     fn pixel(&self, point: [f32; 3]) -> Vec2 {
         let [left, top, width, height] = self.panel.viewport.map(|length| length as f32);
         let at = self.panel.sight.clip * Vec3::from(point).extend(1.0);
@@ -76,7 +75,6 @@ impl Flat<'_> {
         mesh.triangles.iter().map(one).collect()
     }
 
-    /// The whole of a mesh.
     fn whole(&self, mesh: &Mesh) -> Path {
         path_of(self.triangles(mesh, |_| 0.0).iter().map(|triangle| triangle.map(|(at, _)| at).to_vec()))
     }

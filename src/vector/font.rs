@@ -22,9 +22,6 @@ pub(super) struct Subset<'a> {
 }
 
 /// The parts of all fonts that lines of text need, in the order of their numbers.
-///
-/// # Errors
-/// A font that cannot be embedded.
 pub(super) fn subsets<'a>(fonts: &'a Fonts, words: &[TextRun]) -> Result<Vec<Subset<'a>>, VectorError> {
     let mut used: BTreeMap<u8, BTreeMap<u16, Vec<char>>> = BTreeMap::new();
     for run in words {

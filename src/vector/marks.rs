@@ -189,7 +189,6 @@ fn ends_of(path: &Path) -> Vec<Vec2> {
     path.0.iter().filter_map(end).collect()
 }
 
-/// An arrow with its halo.
 fn arrow(place: &Place, paint: Paint, halo: Paint, items: &mut Vec<Item<'_>>) {
     let wide = place.size.y / (1.0 + 2.0 * ARROW_HALO);
     let pad = wide * ARROW_HALO;

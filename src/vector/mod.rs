@@ -42,8 +42,9 @@ impl Format {
 pub(crate) struct Page<'a> {
     /// What it shows.
     pub(crate) picture: &'a Picture,
-    /// The picture's lit panels, as [`bodies`] asks for them; `None` if it has none.
-    pub(crate) bodies: Option<Pixels<'a>>,
+    /// The pixels of the picture's lit panels, as [`bodies`] asks for them: red, green and blue of each, or these and opacity, in
+    /// rows from the top left; `None` if it has none.
+    pub(crate) bodies: Option<&'a [u8]>,
     /// Width and height (mm); if not given, pixels are those of the web, 96 to an inch.
     pub(crate) size_mm: Option<[f64; 2]>,
     /// Whether nothing is behind it.
@@ -55,10 +56,6 @@ pub(crate) struct Page<'a> {
     /// What the file says about itself: names without `localshape:`, and texts.
     pub(crate) tags: &'a [(&'static str, String)],
 }
-
-/// Pixels of a whole picture: red, green and blue of each, or these and opacity, in rows from the top left.
-#[derive(Clone, Copy)]
-pub(crate) struct Pixels<'a>(pub(crate) &'a [u8]);
 
 /// Why a page could not be written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -84,16 +81,13 @@ pub(crate) fn bodies(picture: &Picture) -> Option<Picture> {
 }
 
 /// The file of a page.
-///
-/// # Errors
-/// A font that cannot be embedded.
 pub(crate) fn write(page: &Page<'_>, format: Format) -> Result<Vec<u8>, VectorError> {
     let subsets = font::subsets(&page.picture.fonts, &page.picture.words)?;
     let items = items(page);
-    match format {
+    Ok(match format {
         Format::Svg => svg::file(page, &items, &subsets),
         Format::Pdf => pdf::file(page, &items, &subsets),
-    }
+    })
 }
 
 /// Everything on a page, in order.
@@ -128,7 +122,7 @@ fn items<'a>(page: &Page<'a>) -> Vec<Item<'a>> {
 }
 
 /// The part of a lit panel in which there is anything.
-fn image(picture: &Picture, panel: &Panel, Pixels(pixels): Pixels<'_>) -> Option<Image> {
+fn image(picture: &Picture, panel: &Panel, pixels: &[u8]) -> Option<Image> {
     let [width, height] = picture.size.map(|length| length as usize);
     let channels = pixels.len() / (width * height);
     let [left, top, wide, high] = panel.viewport.map(|length| length as usize);

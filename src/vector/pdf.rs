@@ -1,8 +1,9 @@
 //! A page as PDF 1.7, with its fonts and images inside.
 
+use super::Page;
 use super::drawing::{Image, Item, Paint, Path, Pen, Step};
 use super::font::Subset;
-use super::{Page, VectorError};
+use crate::output::image_data;
 use crate::picture::{Colour, TextRun};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
@@ -10,7 +11,7 @@ use glam::Vec2;
 use pdf_writer::types::{
     CidFontType, FontFlags, FunctionShadingType, LineCapStyle, LineJoinStyle, Predictor, SystemInfo, UnicodeCmap,
 };
-use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
+use pdf_writer::{Content, Dict, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 use std::io::Write;
 
 /// Points of PDF in a millimetre.
@@ -18,11 +19,7 @@ const POINTS: f64 = 72.0 / 25.4;
 /// Characters are numbers of glyphs.
 const IDENTITY: SystemInfo<'static> = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 
-/// The file of a page.
-///
-/// # Errors
-/// An image that cannot be encoded.
-pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) -> Result<Vec<u8>, VectorError> {
+pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) -> Vec<u8> {
     let [width, height] = match page.size_mm {
         Some(lengths) => lengths.map(|length| (length * POINTS) as f32),
         None => page.picture.size.map(|length| 0.75 * length as f32),
@@ -67,29 +64,15 @@ pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) 
     let mut sheet = pdf.page(sheet);
     sheet.media_box(Rect::new(0.0, 0.0, width, height)).parent(pages).contents(content);
     let mut resources = sheet.resources();
-    let mut dictionary = resources.fonts();
-    for (face, id) in fonts {
-        dictionary.pair(Name(name('F', face.into()).as_bytes()), id);
-    }
-    dictionary.finish();
-    let mut dictionary = resources.ext_g_states();
-    for (alpha, id) in states {
-        dictionary.pair(Name(name('G', alpha.into()).as_bytes()), id);
-    }
-    dictionary.finish();
-    let mut dictionary = resources.x_objects();
-    for (at, id) in images.iter().enumerate() {
-        dictionary.pair(Name(name('I', at).as_bytes()), *id);
-    }
-    dictionary.finish();
-    let mut dictionary = resources.shadings();
-    for (at, id) in shadings.iter().enumerate() {
-        dictionary.pair(Name(name('S', at).as_bytes()), *id);
-    }
-    dictionary.finish();
+    let fonts = fonts.into_iter().map(|(face, id)| (usize::from(face), id));
+    let states = states.into_iter().map(|(alpha, id)| (usize::from(alpha), id));
+    put(resources.fonts(), 'F', fonts);
+    put(resources.ext_g_states(), 'G', states);
+    put(resources.x_objects(), 'I', images.into_iter().enumerate());
+    put(resources.shadings(), 'S', shadings.into_iter().enumerate());
     resources.finish();
     sheet.finish();
-    Ok(pdf.finish())
+    pdf.finish()
 }
 
 /// Opacities are told apart as finely as this.
@@ -332,11 +315,17 @@ impl Writer<'_> {
     }
 }
 
+/// Gives names of a letter and a number to resources of one kind.
+fn put(mut dictionary: Dict<'_>, letter: char, resources: impl Iterator<Item = (usize, Ref)>) {
+    for (number, id) in resources {
+        dictionary.pair(Name(name(letter, number).as_bytes()), id);
+    }
+}
+
 fn name(letter: char, number: usize) -> String {
     format!("{letter}{number}")
 }
 
-/// A colour from 0 to 1.
 fn light(colour: Colour) -> [f32; 3] {
     colour.map(|byte| f32::from(byte) / 255.0)
 }
@@ -363,15 +352,5 @@ fn rows_of_png([width, height]: [u32; 2], kind: png::ColorType, pixels: &[u8]) -
         writer.finish()
     });
     written.expect("pixels of the right length into memory");
-    let mut rows = Vec::new();
-    // After the signature, chunks of a length, a name, contents and a checksum.
-    let mut rest = &file[8..];
-    while let Some((head, after)) = rest.split_at_checked(8) {
-        let length = u32::from_be_bytes([head[0], head[1], head[2], head[3]]) as usize;
-        if &head[4..] == b"IDAT" {
-            rows.extend(&after[..length]);
-        }
-        rest = &after[length + 4..];
-    }
-    rows
+    image_data(&file)
 }

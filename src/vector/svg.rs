@@ -1,23 +1,23 @@
 //! A page as SVG 1.1, with its fonts and images inside.
 
+use super::Page;
 use super::drawing::{Image, Item, Paint, Path, Pen, Step};
 use super::font::Subset;
-use super::{Page, VectorError};
 use crate::colour::written;
 use crate::output::{Compression, encode};
 use crate::picture::{Glyph, TextRun, Weight};
+use crate::reading::words::escaped;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::Vec2;
 use std::fmt::Write;
 
-/// The file of a page.
-pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) -> Result<Vec<u8>, VectorError> {
+pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) -> Vec<u8> {
     let mut svg = Svg { text: String::new(), subsets, names: 0 };
     svg.head(page);
     items.iter().for_each(|item| svg.item(item));
     svg.text += "</svg>\n";
-    Ok(svg.text.into_bytes())
+    svg.text.into_bytes()
 }
 
 struct Svg<'a> {
@@ -207,22 +207,4 @@ fn stroke(pen: &Pen, Paint { colour, alpha }: Paint) -> String {
         }
     };
     format!(" stroke=\"{colour}\" stroke-width=\"{width}\"{cap} stroke-linejoin=\"round\"{dash}{alpha}")
-}
-
-/// A text without the signs of XML, and without what XML does not allow.
-fn escaped(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => safe += "&amp;",
-            '<' => safe += "&lt;",
-            '>' => safe += "&gt;",
-            '"' => safe += "&quot;",
-            '\n' | '\t' => safe.push(character),
-            '\u{fffe}' | '\u{ffff}' => {}
-            other if other.is_control() => {}
-            other => safe.push(other),
-        }
-    }
-    safe
 }

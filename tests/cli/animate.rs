@@ -24,8 +24,7 @@ fn tags(number: u64) -> Tags {
 }
 
 fn put(place: &Place, folder: &str, number: u64, bytes: &[u8]) {
-    std::fs::create_dir_all(place.path(folder)).expect("a folder");
-    std::fs::write(place.path(format!("{folder}/frame_{number:05}.png")), bytes).expect("a frame");
+    place.write(&format!("{folder}/frame_{number:05}.png"), bytes);
 }
 
 /// A place with a folder of frames at 30 per second.

@@ -16,12 +16,6 @@ fn digest(end: &str) -> String {
     format!("{end:0>64}")
 }
 
-fn put(place: &Place, name: &str, bytes: &[u8]) {
-    let path = place.path(name);
-    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-    std::fs::write(path, bytes).unwrap();
-}
-
 /// The state of a run, with a complete digest.
 const FULL: &str = "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef run";
 
@@ -32,9 +26,9 @@ fn two_pictures() {
     let place = Place::new();
     let mut other = GREY;
     other[..30].fill(0);
-    put(&place, "a.png", &picture("one", "1", 0, &GREY));
-    put(&place, "b.png", &picture("two", "1", 0, &other));
-    put(&place, "c.png", &picture("one", "2", 0, &GREY));
+    place.write("a.png", &picture("one", "1", 0, &GREY));
+    place.write("b.png", &picture("two", "1", 0, &other));
+    place.write("c.png", &picture("one", "2", 0, &GREY));
     assert_eq!(place.run("compare a.png a.png").good().out, "a.png: identical\n");
     let drawn = place.run("compare a.png b.png");
     assert_eq!((drawn.status, drawn.err.as_str()), (Some(1), ""));
@@ -51,7 +45,7 @@ fn two_pictures() {
     assert_eq!((told["verdict"].as_str(), told["moved"][0]["first"].as_u64()), (Some("state moved"), Some(0)));
     assert_eq!(told["accept"], "localshape compare --bless-state a.png c.png");
     // The expected moment is reported, not only that the state differs.
-    put(&place, "late.png", &picture("one", "2", 6, &GREY));
+    place.write("late.png", &picture("one", "2", 6, &GREY));
     let late = place.run("compare a.png late.png");
     assert!(late.out.contains("\nlate.png shows frame 6 instead of frame 0\n"), "{late:?}");
     // If the page cannot be written, the result is still reported.
@@ -65,13 +59,13 @@ fn two_pictures() {
 fn two_folders() {
     let place = Place::new();
     for frame in 0..5 {
-        put(&place, &format!("was/frame_{frame:05}.png"), &picture("one", "1", frame, &GREY));
+        place.write(&format!("was/frame_{frame:05}.png"), &picture("one", "1", frame, &GREY));
         let state = if frame < 3 { "1" } else { "2" };
-        put(&place, &format!("is/frame_{frame:05}.png"), &picture("one", state, frame, &GREY));
+        place.write(&format!("is/frame_{frame:05}.png"), &picture("one", state, frame, &GREY));
     }
-    put(&place, "was/gone.png", &picture("one", "1", 9, &GREY));
-    put(&place, "is/new.png", &picture("one", "1", 9, &GREY));
-    put(&place, "is/diagnostics.csv", b"no picture");
+    place.write("was/gone.png", &picture("one", "1", 9, &GREY));
+    place.write("is/new.png", &picture("one", "1", 9, &GREY));
+    place.write("is/diagnostics.csv", b"no picture");
     let found = place.run("compare was is");
     assert_eq!(found.status, Some(1));
     assert_eq!(
@@ -93,8 +87,8 @@ fn two_folders() {
 fn another_scene_file_is_mentioned_and_no_difference() {
     let place = Place::new();
     let tags = |scene: &str| Tags { scenes: vec![scene.into()], ..frame_tags(0, 0.0) };
-    put(&place, "a.png", &frame_file([16, 8], &GREY, &tags("5")));
-    put(&place, "b.png", &frame_file([16, 8], &GREY, &tags("6")));
+    place.write("a.png", &frame_file([16, 8], &GREY, &tags("5")));
+    place.write("b.png", &frame_file([16, 8], &GREY, &tags("6")));
     let ran = place.run("compare a.png b.png").good();
     assert_eq!(ran.out, "b.png: identical\nthe scene files are not the same\n");
 }
@@ -105,10 +99,10 @@ fn accepting_rewrites_only_what_failed_and_states_only_if_asked() {
     let mut other = GREY;
     other[..60].fill(0);
     for (name, state, bytes) in [("same", "1", &GREY), ("drawn", "1", &other), ("moved", "2", &GREY)] {
-        put(&place, &format!("was/{name}.png"), &picture("one", "1", 0, &GREY));
-        put(&place, &format!("is/{name}.png"), &picture("one", state, 0, bytes));
+        place.write(&format!("was/{name}.png"), &picture("one", "1", 0, &GREY));
+        place.write(&format!("is/{name}.png"), &picture("one", state, 0, bytes));
     }
-    put(&place, "was/gone.png", &picture("one", "1", 0, &GREY));
+    place.write("was/gone.png", &picture("one", "1", 0, &GREY));
     let before = std::fs::read(place.path("was/drawn.png")).unwrap();
     let refused = place.run("compare --bless was is");
     refused.bad(1, &["the state moved, so nothing was accepted", "localshape compare --bless-state was is"]);
@@ -137,7 +131,7 @@ fn accepting_rewrites_only_what_failed_and_states_only_if_asked() {
 #[test]
 fn what_is_missing_fails_with_the_command_that_makes_it() {
     let place = Place::new();
-    put(&place, "is/a.png", &picture("one", "1", 0, &GREY));
+    place.write("is/a.png", &picture("one", "1", 0, &GREY));
     for (expected, actual) in [("was", "is"), ("was.png", "is/a.png")] {
         // A path that was mistyped is told alike on both sides.
         let words = format!("{expected} does not exist; expected a picture or a folder of pictures");
@@ -156,12 +150,12 @@ fn what_is_missing_fails_with_the_command_that_makes_it() {
 #[test]
 fn no_damaged_picture_is_ever_accepted() {
     let place = Place::new();
-    put(&place, "was.png", &picture("one", "1", 0, &GREY));
-    put(&place, "cut.png", &picture("one", "1", 0, &GREY)[..60]);
+    place.write("was.png", &picture("one", "1", 0, &GREY));
+    place.write("cut.png", &picture("one", "1", 0, &GREY)[..60]);
     place.run("compare --bless-state was.png cut.png").bad(1, &["nothing was accepted", "cut.png", "cut short"]);
     place.run("compare --bless new.png cut.png").bad(1, &["nothing was accepted", "cut.png", "cut short"]);
-    put(&place, "some/cut.png", &picture("one", "1", 0, &GREY)[..60]);
-    put(&place, "none/whole.png", &picture("one", "1", 0, &GREY));
+    place.write("some/cut.png", &picture("one", "1", 0, &GREY)[..60]);
+    place.write("none/whole.png", &picture("one", "1", 0, &GREY));
     place.run("compare --bless-state none some").bad(1, &["nothing was accepted", "cut.png", "cut short"]);
     assert!(!place.path("new.png").exists() && place.names("none") == ["whole.png"]);
     // A damaged golden can be renewed, with a message that its state is lost.
@@ -179,7 +173,7 @@ fn put_scene(place: &Place, name: &str) {
     let mut runner = Runner::new(&scene, &[0, 1]);
     for index in 0..=scene.last_frame() {
         let tags = Tags::of_frame(&scene, &runner.frame(index), "one");
-        put(place, &format!("{name}/frame_{index:05}.png"), &frame_file([16, 8], &GREY, &tags));
+        place.write(&format!("{name}/frame_{index:05}.png"), &frame_file([16, 8], &GREY, &tags));
     }
 }
 
@@ -292,7 +286,7 @@ fn foreign_pictures_pass_only_if_they_are_equal() {
     let mut other = GREY;
     other[50] += 1;
     for (name, bytes) in [("was/a.png", &GREY), ("same/a.png", &GREY), ("other/a.png", &other)] {
-        put(&place, name, &foreign(bytes));
+        place.write(name, &foreign(bytes));
     }
     for end in ["", "/a.png"] {
         let same = place.run(&format!("compare was{end} same{end}")).good();
@@ -311,8 +305,8 @@ fn a_run_that_only_the_new_side_has_is_no_pass() {
         let states = runs.iter().map(|run| (digest("1"), (*run).to_owned())).collect();
         frame_file([16, 8], &GREY, &Tags { states, ..frame_tags(0, 0.0) })
     };
-    put(&place, "was/a.png", &with(&["one"]));
-    put(&place, "is/a.png", &with(&["one", "other"]));
+    place.write("was/a.png", &with(&["one"]));
+    place.write("is/a.png", &with(&["one", "other"]));
     for (folders, change) in [("was is", "new"), ("is was", "gone")] {
         let ran = place.run(&format!("compare {folders}"));
         let told = format!("state moved: other is {change}\na.png: state moved: other\n");
@@ -323,8 +317,8 @@ fn a_run_that_only_the_new_side_has_is_no_pass() {
 #[test]
 fn a_report_is_one_file() {
     let place = Place::new();
-    put(&place, "a.png", &picture("one", "1", 0, &GREY));
-    put(&place, "c.png", &picture("one", "2", 0, &GREY));
+    place.write("a.png", &picture("one", "1", 0, &GREY));
+    place.write("c.png", &picture("one", "2", 0, &GREY));
     let ran = place.run("compare a.png c.png --report page.html -q");
     assert_eq!((ran.status, ran.out.as_str(), ran.err.as_str()), (Some(1), "", ""));
     let page = place.read("page.html");
@@ -351,7 +345,7 @@ fn a_report_is_one_file() {
 fn what_is_no_picture_never_passes() {
     let place = Place::new();
     let whole = picture("one", "1", 0, &GREY);
-    put(&place, "whole.png", &whole);
+    place.write("whole.png", &whole);
     let mut flipped = whole.clone();
     let middle = whole.len() - 30;
     flipped[middle] ^= 0x55;
@@ -442,7 +436,7 @@ fn what_is_no_picture_never_passes() {
         ("none.png", states("3", ""), "`localshape:state` is missing"),
     ];
     for (name, bytes, words) in wrong {
-        put(&place, name, &bytes);
+        place.write(name, &bytes);
         for order in [format!("{name} whole.png"), format!("whole.png {name}")] {
             let ran = place.run(&format!("compare {order}"));
             assert_eq!((ran.status, ran.err.as_str()), (Some(1), ""), "{order}: {ran:?}");
@@ -455,7 +449,7 @@ fn what_is_no_picture_never_passes() {
 #[test]
 fn what_is_no_file_of_a_picture_is_told_at_once() {
     let place = Place::new();
-    put(&place, "whole.png", &picture("one", "1", 0, &GREY));
+    place.write("whole.png", &picture("one", "1", 0, &GREY));
     let large = std::fs::File::create(place.path("large.png")).unwrap();
     large.set_len((1 << 29) + 1).unwrap();
     let mut wrong =
@@ -481,7 +475,7 @@ fn crc32(bytes: &[u8]) -> u32 {
 #[test]
 fn wrong_words() {
     let place = Place::new();
-    put(&place, "a.png", &picture("one", "1", 0, &GREY));
+    place.write("a.png", &picture("one", "1", 0, &GREY));
     std::fs::create_dir(place.path("none")).unwrap();
     place.run("compare a.png b.png").bad(4, &["b.png does not exist"]);
     if cfg!(feature = "render") {
@@ -499,7 +493,7 @@ fn wrong_words() {
     let words = if cfg!(feature = "render") { "`size`" } else { "without the feature `render`" };
     place.run("compare none2 wrong.toml").bad(2, &["wrong.toml", words]);
     place.run("compare none a.png").bad(2, &["none is a folder and a.png is a file"]);
-    put(&place, "full/a.png", &picture("one", "1", 0, &GREY));
+    place.write("full/a.png", &picture("one", "1", 0, &GREY));
     place.run("compare full a.png").bad(2, &["full is a folder and a.png is a file"]);
     place.run("compare none none").bad(2, &["has a PNG picture"]);
     place.run("compare a.png").bad(2, &["<ACTUAL>"]);
@@ -513,8 +507,8 @@ fn a_report_opens_at_the_worst_picture() {
         let mut other = GREY;
         other[..different].fill(0);
         let state = if different > 0 { "2" } else { "1" };
-        put(&place, &format!("a/{frame}.png"), &picture("one", "1", frame, &GREY));
-        put(&place, &format!("b/{frame}.png"), &picture("one", state, frame, &other));
+        place.write(&format!("a/{frame}.png"), &picture("one", "1", frame, &GREY));
+        place.write(&format!("b/{frame}.png"), &picture("one", state, frame, &other));
     }
     assert_eq!(place.run("compare a b --report page.html -q").status, Some(1));
     let page = place.read("page.html");

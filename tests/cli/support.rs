@@ -82,10 +82,10 @@ impl Place {
         self.0.path().join(name)
     }
 
-    pub(crate) fn write(&self, name: &str, text: &str) {
+    pub(crate) fn write(&self, name: &str, contents: impl AsRef<[u8]>) {
         let path = self.path(name);
         fs::create_dir_all(path.parent().expect("below the place")).expect("a folder");
-        fs::write(path, text).expect("a file");
+        fs::write(path, contents).expect("a file");
     }
 
     pub(crate) fn read(&self, name: &str) -> String {

@@ -8,7 +8,7 @@ use localshape::look::Theme;
 use localshape::moments::Moments;
 use localshape::picture::{Picture, compose, compose_figure};
 use localshape::scene::figure::Figure;
-use localshape::vector::{Format, Page, Pixels, bodies, write};
+use localshape::vector::{Format, Page, bodies, write};
 use std::io::Read;
 
 fn figure(name: &str, theme: Theme) -> Picture {
@@ -17,7 +17,7 @@ fn figure(name: &str, theme: Theme) -> Picture {
     compose_figure(&figure, &Moments::new(&figure)).expect("room")
 }
 
-fn page<'a>(picture: &'a Picture, bodies: Option<Pixels<'a>>) -> Page<'a> {
+fn page<'a>(picture: &'a Picture, bodies: Option<&'a [u8]>) -> Page<'a> {
     let tags = &[];
     Page { picture, bodies, size_mm: Some([180.0, 90.0]), is_transparent: false, title: "A & B", maker: "a test", tags }
 }
@@ -129,12 +129,12 @@ fn lit_bodies_are_images_without_words() {
     // Three pixels beside each other in the second panel.
     let at = 3 * (300 * width + 900) as usize;
     pixels[at..at + 9].fill(0);
-    let svg = String::from_utf8(write(&page(&picture, Some(Pixels(&pixels))), Format::Svg).expect("a page")).unwrap();
+    let svg = String::from_utf8(write(&page(&picture, Some(&pixels)), Format::Svg).expect("a page")).unwrap();
     let images: Vec<_> = svg.split("<image ").skip(1).collect();
     assert_eq!(images.len(), 1);
     assert!(images[0].starts_with("width=\"3\" height=\"1\"") && images[0].contains("matrix(1 0 0 1 900 300)"));
     assert_eq!(texts(&svg).len(), picture.words.len());
-    let pdf = write(&page(&picture, Some(Pixels(&pixels))), Format::Pdf).expect("a page");
+    let pdf = write(&page(&picture, Some(&pixels)), Format::Pdf).expect("a page");
     assert!(String::from_utf8_lossy(&pdf).contains("/Width 3"));
 }
 

@@ -41,6 +41,19 @@ fn bad(text: &str) -> SceneError {
     }
 }
 
+/// Expects exactly these mistakes, one in each line: `LINE:COLUMN` and a part of its message or help. Lines are counted
+/// after the first `before`.
+#[track_caller]
+fn expect(error: &SceneError, before: usize, expected: &str) {
+    assert_eq!(error.mistakes().len(), expected.lines().count(), "{error}");
+    for (mistake, expected) in error.mistakes().iter().zip(expected.lines()) {
+        let (place, words) = expected.split_once(' ').expect("a place and words");
+        assert_eq!(format!("{}:{}", mistake.line - before, mistake.column), place, "{error}");
+        let text = format!("{} {}", mistake.message, mistake.help.as_deref().unwrap_or_default());
+        assert!(text.contains(words), "{words:?} is not in\n{error}");
+    }
+}
+
 /// A shipped scene.
 fn shipped(name: &str) -> String {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);

@@ -6,11 +6,10 @@ mod stress;
 mod work_precision;
 
 use super::console::{print, print_json};
-use super::failure::{Failure, Status, complain};
+use super::failure::{Failure, Status};
 #[cfg(feature = "render")]
 use super::options::DeviceOptions;
 use super::options::PrintOptions;
-use super::scenes::status_of;
 use super::{interrupt, record};
 use crate::output::SheetFiles;
 #[cfg(feature = "render")]
@@ -133,18 +132,14 @@ impl OfScene {
         format!("localshape study {name}{scene}{}", if self.full { " --full" } else { "" })
     }
 
-    /// The scene, if one is given.
     fn subject(&self) -> Result<Option<Scene>, Failure> {
         let Some(path) = &self.scene else { return Ok(None) };
-        let scene = Scene::load(path, &Limits::default()).map_err(|error| {
-            complain(&error.to_string());
-            Failure::silent(status_of(&error))
-        })?;
+        let scene = Scene::load(path, &Limits::default())?;
         if scene.duration == 0.0 {
-            return Err(Failure::usage(format!(
+            bail!(
                 "{}: `time.duration` is 0: nothing moves, and there is nothing to measure; make it longer",
                 path.display()
-            )));
+            );
         }
         Ok(Some(scene))
     }
@@ -178,10 +173,7 @@ impl StudyOptions {
         let _ = plots;
         let files = SheetFiles::begin(&folder, &names, &plan.mark, self.overwrite)?;
         let bar = self.printing.progress(plan.name, plan.work);
-        let found = measure(&|more| {
-            bar.inc(more);
-            !interrupt::requested()
-        });
+        let found = measure(&interrupt::watch(&bar));
         bar.finish_and_clear();
         let Some(found) = found else {
             if self.printing.prints_text() {

@@ -6,6 +6,7 @@
 use super::states::RunDifference;
 use crate::colour::written;
 use crate::look::{LineStyle, Palette, Theme};
+use crate::reading::words::escaped;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use serde::{Serialize, Serializer};
@@ -235,22 +236,6 @@ fn with_numbers(text: &str) -> String {
     parts.join(" ")
 }
 
-/// Text escaped for HTML, between tags and in attributes.
-fn escaped(text: &str) -> String {
-    let mut html = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => html.push_str("&amp;"),
-            '<' => html.push_str("&lt;"),
-            '>' => html.push_str("&gt;"),
-            '"' => html.push_str("&quot;"),
-            '\'' => html.push_str("&#39;"),
-            _ => html.push(letter),
-        }
-    }
-    html
-}
-
 /// JSON escaped so that it cannot end the element around it. The escaped characters occur in strings only.
 fn inert(json: &str) -> String {
     let mut inert = String::with_capacity(json.len() + json.len() / 64);
@@ -291,6 +276,6 @@ mod tests {
         let json = inert(&serde_json::to_string(hostile).expect("JSON"));
         assert!(!json.contains(['<', '>', '&', '\u{2028}', '\u{2029}']), "{json}");
         assert_eq!(serde_json::from_str::<String>(&json).expect("JSON"), hostile);
-        assert_eq!(escaped("<a b='\"&'>"), "&lt;a b=&#39;&quot;&amp;&#39;&gt;");
+        assert_eq!(escaped("<a b='\"&'>"), "&lt;a b='&quot;&amp;'&gt;");
     }
 }

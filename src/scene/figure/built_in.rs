@@ -41,7 +41,6 @@ pub(super) fn path(name: &str) -> Option<PathBuf> {
     NAMES.contains(&name).then(|| PathBuf::from(format!("figures/{name}.toml")))
 }
 
-/// A text by its path.
 pub(super) fn text(path: &Path) -> Option<&'static str> {
     let mut parts: Vec<&str> = Vec::new();
     for part in path.components() {

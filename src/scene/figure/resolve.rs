@@ -4,7 +4,7 @@ use super::file::{ColumnFile, FigureFile, ForcesFile, NumbersFile, RowFile, Shee
 use super::{Column, Content, Figure, Forces, Row, Sheet};
 use crate::look::print::{unit, unit_of_sheet};
 use crate::look::{self, Subject};
-use crate::reading::report::{Report, Way};
+use crate::reading::report::{Report, Way, way};
 use crate::reading::words::list;
 use crate::scene::structure::Checked;
 use crate::scene::{Scene, SceneError};
@@ -17,7 +17,6 @@ use std::path::{Path, PathBuf};
 /// The shortest side of a figure (px).
 const LEAST_SIDE: u32 = 64;
 
-/// Reads a scene from a path.
 type Reader<'a> = &'a dyn Fn(&Path) -> Result<Scene, SceneError>;
 
 /// The figure of a checked file.
@@ -49,11 +48,11 @@ pub(super) fn resolve(
     let first = match &content {
         Content::Sheet(Sheet { scenes, .. }) | Content::Forces(Forces { scenes, .. }) => &scenes[0],
     };
-    let Some((size, print)) = file.size.resolve(LEAST_SIDE, &[Way::Key("size")], report) else { return Ok(None) };
+    let Some((size, print)) = file.size.resolve(LEAST_SIDE, &way!["size"], report) else { return Ok(None) };
     if size.iter().any(|&side| side < LEAST_SIDE) {
         let [width, height] = size;
         let message = format!("`size` is {width} × {height}; expected {LEAST_SIDE} to 16384 pixels a side");
-        report.at(&[Way::Key("size")], message, None);
+        report.at(&way!["size"], message, None);
         return Ok(None);
     }
     let unit = match &content {
@@ -64,7 +63,7 @@ pub(super) fn resolve(
         }
     };
     let text_scale = match file.text_scale {
-        Some(typed) => match typed.resolve(print.as_ref(), unit, &[Way::Key("text_scale")], report) {
+        Some(typed) => match typed.resolve(print.as_ref(), unit, &way!["text_scale"], report) {
             None => return Ok(None),
             times => times,
         },
@@ -114,7 +113,7 @@ impl Scenes<'_, '_, '_> {
     }
 
     fn sheet(mut self, file: SheetFile) -> Result<Option<Sheet>, SceneError> {
-        let at = |key: &'static str| [Way::Key("sheet"), Way::Key(key)];
+        let at = |key: &'static str| way!["sheet", key];
         let before = self.report.total();
         let are_moments = file.moments.is_some();
         let columns = match file.moments {
@@ -141,7 +140,7 @@ impl Scenes<'_, '_, '_> {
         };
         let mut resolved = Vec::new();
         for (index, column) in columns.into_iter().enumerate() {
-            let path = [Way::Key("sheet"), Way::Key("column"), Way::Index(index), Way::Key("scene")];
+            let path = way!["sheet", "column", index, "scene"];
             let scene = match (&column.scene, &file.scene) {
                 (Some(named), _) => self.scene(named, &path)?,
                 (None, Some(_)) => usual,
@@ -166,13 +165,13 @@ impl Scenes<'_, '_, '_> {
         if let Some(other) = ends.iter().position(|end| *end != ends[0]).filter(|_| !file.strips.is_empty()) {
             let [one, two] = [0, other].map(|at| format!("“{}” ends at {} s", self.scenes[at].title, ends[at]));
             let message = format!("strips over several scenes have one axis of time, but {one} and {two}");
-            self.report.at_key(&at("strips"), message, "give the scenes the same duration and frame rate".to_owned());
+            self.report.at_key(&at("strips"), message, "give the scenes the same duration and frame rate");
         }
         self.check_times(&file.strips, file.from, file.split, &resolved);
         if let Some(index) = rows.iter().position(|row| row.time.is_some()).filter(|_| !file.strips.is_empty()) {
-            let path = [Way::Key("sheet"), Way::Key("row"), Way::Index(index), Way::Key("time")];
+            let path = way!["sheet", "row", index, "time"];
             let message = "strips mark the moments of columns, but here a row has one of its own";
-            self.report.at_key(&path, message, "leave out `sheet.strips`, or say the moments in columns".to_owned());
+            self.report.at_key(&path, message, "leave out `sheet.strips`, or say the moments in columns");
         }
         let row = |row: RowFile| Row {
             label: row.label.unwrap_or_else(|| row.run.clone()),
@@ -185,7 +184,7 @@ impl Scenes<'_, '_, '_> {
         share_lines(&mut scenes);
         if let Some(typed) = &file.colour {
             let subjects: Vec<_> = scenes.iter().map(subject).collect();
-            let way = [Way::Key("sheet"), Way::Key("colour"), Way::Key("range")];
+            let way = way!["sheet", "colour", "range"];
             let scale = look::colour(typed, &subjects, &way, report);
             scenes.iter_mut().for_each(|scene| scene.view.colour = scale);
         }
@@ -203,7 +202,7 @@ impl Scenes<'_, '_, '_> {
 
     /// Whether the time axis includes its start, the change of its scale, and the moments of columns.
     fn check_times(&mut self, strips: &[Diagnostic], from: Option<f64>, split: Option<f64>, columns: &[Column]) {
-        let at = |key: &'static str| [Way::Key("sheet"), Way::Key(key)];
+        let at = |key: &'static str| way!["sheet", key];
         for (key, _) in [("from", from), ("split", split)].iter().filter(|(_, time)| time.is_some()) {
             if strips.is_empty() {
                 self.report.at_key(&at(key), format!("`sheet.{key}` is about strips, but there are none"), None);
@@ -217,7 +216,7 @@ impl Scenes<'_, '_, '_> {
                 true => format!("the axis of time begins at {from} s, but there is a moment at {earliest} s"),
                 false => format!("the axis of time begins at {from} s, but the scene ends at {end} s"),
             };
-            self.report.at(&at("from"), message, "expected an earlier one".to_owned());
+            self.report.at(&at("from"), message, "expected an earlier one");
         } else if let Some(split) = split.filter(|&split| split >= end || split <= from.unwrap_or(0.0)) {
             let from = from.unwrap_or(0.0);
             let message =
@@ -229,7 +228,7 @@ impl Scenes<'_, '_, '_> {
     /// Whether each cell has a run and a moment.
     fn check_cells(&mut self, rows: &[RowFile], columns: &[Column], are_moments: bool) {
         for (index, row) in rows.iter().enumerate() {
-            let path = |key: &'static str| [Way::Key("sheet"), Way::Key("row"), Way::Index(index), Way::Key(key)];
+            let path = |key: &'static str| way!["sheet", "row", index, key];
             for scene in &self.scenes {
                 if !scene.runs.iter().any(|run| run.name == row.run) {
                     let (message, help) = scene.no_run(&row.run);
@@ -242,29 +241,29 @@ impl Scenes<'_, '_, '_> {
         }
         let timed = rows.iter().position(|row| row.time.is_some());
         if let Some(index) = timed.filter(|_| columns.iter().any(|column| column.time.is_some())) {
-            let path = [Way::Key("sheet"), Way::Key("row"), Way::Index(index), Way::Key("time")];
+            let path = way!["sheet", "row", index, "time"];
             let message = "both a row and a column say the moment of the same picture";
-            self.report.at_key(&path, message, "keep the moments of rows, or those of columns".to_owned());
+            self.report.at_key(&path, message, "keep the moments of rows, or those of columns");
         }
         let timeless = rows.iter().find(|row| row.time.is_none());
         for (index, column) in columns.iter().enumerate() {
             let scene = &self.scenes[column.scene];
-            let path = |key: &'static str| [Way::Key("sheet"), Way::Key("column"), Way::Index(index), Way::Key(key)];
+            let path = |key: &'static str| way!["sheet", "column", index, key];
             if column.time.is_some_and(|time| time > end(scene)) {
-                let moments = [Way::Key("sheet"), Way::Key("moments"), Way::Index(index)];
+                let moments = way!["sheet", "moments", index];
                 let place: &[_] = if are_moments { &moments } else { &path("time") };
                 self.report.at(place, too_late(scene), None);
             }
             if let Some(row) = timeless.filter(|_| column.time.is_none()) {
                 let message = format!("the column has no `time`, and neither has the row “{}”", row.run);
-                self.report.at(&path("time"), message, "say it in one of them".to_owned());
+                self.report.at(&path("time"), message, "say it in one of them");
             }
         }
     }
 
     fn forces(mut self, file: ForcesFile) -> Result<Option<Forces>, SceneError> {
         let before = self.report.total();
-        let path = |index: usize| [Way::Key("forces"), Way::Key("scenes"), Way::Index(index)];
+        let path = |index: usize| way!["forces", "scenes", index];
         for (index, named) in file.scenes.iter().enumerate() {
             if self.scene(named, &path(index))?.is_some_and(|place| place < index) {
                 self.report.at(&path(index), "this scene is named a second time", None);
@@ -285,21 +284,17 @@ impl Scenes<'_, '_, '_> {
             let place = runs.iter().position(|run| *run == name);
             if place.is_none() {
                 let (message, help) = self.scenes[0].no_run(&name);
-                self.report.at(&[Way::Key("forces"), Way::Key("compare")], message, help);
+                self.report.at(&way!["forces", "compare"], message, help);
             }
             place
         });
         if file.notes.len() > runs.len() {
             let message = format!("there are more notes ({}) than runs ({})", file.notes.len(), runs.len());
-            self.report.at(
-                &[Way::Key("forces"), Way::Key("notes")],
-                message,
-                "expected one for each at most".to_owned(),
-            );
+            self.report.at(&way!["forces", "notes"], message, "expected one for each at most");
         }
         if runs.len() == 1 && compare.is_some() {
             let message = "there is a single run, and nothing to compare it with";
-            self.report.at_key(&[Way::Key("forces"), Way::Key("compare")], message, None);
+            self.report.at_key(&way!["forces", "compare"], message, None);
         }
         let stiffness = self.scenes[0].runs[0].model.stiffness();
         for (index, scene) in self.scenes.iter().enumerate() {
@@ -307,7 +302,7 @@ impl Scenes<'_, '_, '_> {
                 let message = format!(
                     "a run has another stiffness than {stiffness} N/m, that of the first: forces would have two units"
                 );
-                self.report.at(&path(index), message, "give all runs the same stiffness".to_owned());
+                self.report.at(&path(index), message, "give all runs the same stiffness");
             }
             if scene.body.len() > MOST_NODES {
                 let message = format!("the body has {} nodes, whose forces would hide each other", scene.body.len());
@@ -317,7 +312,7 @@ impl Scenes<'_, '_, '_> {
         if file.vectors && (file.numbers == NumbersFile::Force || runs.len() > 1) {
             let message = "vectors are drawn for one run, and without numbers";
             let help = "leave one run in the scenes, and say `numbers = \"none\"`".to_owned();
-            self.report.at_key(&[Way::Key("forces"), Way::Key("vectors")], message, help);
+            self.report.at_key(&way!["forces", "vectors"], message, help);
         }
         let side = self.scenes[0].view.side;
         if let Some(index) = self
@@ -329,7 +324,7 @@ impl Scenes<'_, '_, '_> {
                 "the elements of this scene have sides of {} m, those of the first of {side} m: numbers in `k × side` would mean two things",
                 self.scenes[index].view.side
             );
-            self.report.at(&path(index), message, "take bodies of one size, or `numbers = \"none\"`".to_owned());
+            self.report.at(&path(index), message, "take bodies of one size, or `numbers = \"none\"`");
         }
         let mut notes = file.notes;
         notes.resize(runs.len(), String::new());

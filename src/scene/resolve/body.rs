@@ -3,7 +3,7 @@
 use super::lists::{Lists, check_count, check_exclusive};
 use super::motion::axis;
 use super::{direction, elements, vector};
-use crate::reading::report::{Report, Way};
+use crate::reading::report::{Report, Way, way};
 use crate::reading::words::quoted;
 use crate::scene::file::{BodyFile, Cells, Coordinates, Lattice, RunFile, SideFile, StartShape};
 use crate::scene::generate::{Generator, Made, brought_to_start};
@@ -17,7 +17,6 @@ use std::collections::BTreeMap;
 /// A body, its initial state, and what else the scene says about it.
 #[derive(Debug)]
 pub(super) struct ResolvedBody {
-    /// The body.
     pub(super) body: Body,
     /// Its start.
     pub(super) initial: State,
@@ -70,17 +69,17 @@ fn generated(
     let before = report.total();
     let dimension = generator.dimension();
     let along = check_generator(generator, report);
-    let (path, less): (&[Way<'_>], _) = match generator {
-        Generator::Lattice(_) => (&[Way::Key("body"), Way::Key("lattice"), Way::Key("cells")], "use fewer cells"),
-        Generator::Polygon(_) => (&[Way::Key("body"), Way::Key("polygon"), Way::Key("sides")], "use fewer sides"),
-        Generator::Fan(_) => (&[Way::Key("body"), Way::Key("fan"), Way::Key("sides")], "use fewer sides"),
-        Generator::Disc(_) => (&[Way::Key("body"), Way::Key("disc")], "use fewer rings or sectors"),
-        Generator::Bars(_) => (&[Way::Key("body"), Way::Key("bars"), Way::Key("count")], "use fewer bars"),
+    let (path, less) = match generator {
+        Generator::Lattice(_) => (way!["body", "lattice", "cells"].to_vec(), "use fewer cells"),
+        Generator::Polygon(_) => (way!["body", "polygon", "sides"].to_vec(), "use fewer sides"),
+        Generator::Fan(_) => (way!["body", "fan", "sides"].to_vec(), "use fewer sides"),
+        Generator::Disc(_) => (way!["body", "disc"].to_vec(), "use fewer rings or sectors"),
+        Generator::Bars(_) => (way!["body", "bars", "count"].to_vec(), "use fewer bars"),
     };
     if let Some(Excess { message, help, run }) = generator.size().beyond(runs, limits, less) {
         match run {
             Some(run) => report.at(&springs_of(run), message, help),
-            None => report.at(path, message, help),
+            None => report.at(&path, message, help),
         }
         check_start(file, dimension, report);
         return None;
@@ -99,7 +98,7 @@ fn generated(
 
 /// Checks of a generator that the schema cannot express; returns the direction of bars, any direction for others.
 fn check_generator(generator: Generator<'_>, report: &mut Report<'_>) -> Option<DVec3> {
-    let at = |key, inner| [Way::Key("body"), Way::Key(key), Way::Key(inner)];
+    let at = |key, inner| way!["body", key, inner];
     match generator {
         Generator::Lattice(Lattice { cells, side, elements, .. }) => {
             let axes = cells.len();
@@ -122,7 +121,7 @@ fn check_generator(generator: Generator<'_>, report: &mut Report<'_>) -> Option<
                 let message = format!(
                     "`body.lattice.side` has {sides} entries, and `cells` has {axes}; expected one for each axis"
                 );
-                report.at(&at("lattice", "side"), message, "or one number for all".to_owned());
+                report.at(&at("lattice", "side"), message, "or one number for all");
             }
             (wrong.is_none() && sides == axes).then_some(DVec3::X)
         }
@@ -152,9 +151,9 @@ fn listed(
     if let Some(Excess { message, help, run }) = size.beyond(runs, limits, "use fewer nodes") {
         match (run, &file.file) {
             (Some(run), _) => report.at(&springs_of(run), message, help),
-            (None, None) => report.at_key(&[Way::Key("body"), Way::Key("nodes")], message, help),
+            (None, None) => report.at_key(&way!["body", "nodes"], message, help),
             (None, Some(name)) => {
-                report.at(&[Way::Key("body"), Way::Key("file")], format!("`{name}`: {message}"), help);
+                report.at(&way!["body", "file"], format!("`{name}`: {message}"), help);
             }
         }
         return None;
@@ -193,7 +192,7 @@ fn solids(file: &BodyFile) -> Solids {
 
 /// The place of a run's springs.
 fn springs_of(run: usize) -> [Way<'static>; 4] {
-    [Way::Key("run"), Way::Index(run), Way::Key("model"), Way::Key("springs")]
+    way!["run", run, "model", "springs"]
 }
 
 /// Where and how fast the body starts, from its positions (m) and, if they are listed, velocities (m/s).
@@ -236,7 +235,7 @@ fn check_start(
 ) -> (Option<(StartShape, DVec3, u32)>, Option<(DVec3, f64)>, Option<DVec3>, DVec3, DVec3) {
     let shape = file.start.as_ref().and_then(|typed| {
         check_use(typed.shape, report);
-        let path = [Way::Key("body"), Way::Key("start"), Way::Key("direction")];
+        let path = way!["body", "start", "direction"];
         let along = match &typed.direction {
             // Reported above.
             Some(_) if !typed.shape.has_direction() => DVec3::X,
@@ -246,15 +245,15 @@ fn check_start(
         Some((typed.shape, along, typed.seed))
     });
     let turn = file.rotation.as_ref().and_then(|typed| {
-        let path = [Way::Key("body"), Way::Key("rotation")];
+        let path = way!["body", "rotation"];
         Some((axis(typed.axis.as_ref(), dimension, &path, report)?, typed.angle))
     });
     let spin = file.spin.as_ref().and_then(|typed| {
-        let path = [Way::Key("body"), Way::Key("spin")];
+        let path = way!["body", "spin"];
         Some(axis(typed.axis.as_ref(), dimension, &path, report)? * typed.rate)
     });
     let mut optional = |typed: &Option<Coordinates>, key| match typed {
-        Some(typed) => vector(typed, dimension, &[Way::Key("body"), Way::Key(key)], report).unwrap_or_default(),
+        Some(typed) => vector(typed, dimension, &way!["body", key], report).unwrap_or_default(),
         None => DVec3::ZERO,
     };
     (shape, turn, spin, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
@@ -267,10 +266,10 @@ fn check_use(shape: StartShape, report: &mut Report<'_>) {
         ("seed", shape.is_random(), "clouds"),
     ];
     for (key, used, about) in about {
-        let path = [Way::Key("body"), Way::Key("start"), Way::Key(key)];
+        let path = way!["body", "start", key];
         if !used && report.is_typed(&path) {
             let message = format!("`body.start.{key}` is about {about}, but the shape is {}", quoted(&typed(&shape)));
-            report.at_key(&path, message, "remove it, or use another shape".to_owned());
+            report.at_key(&path, message, "remove it, or use another shape");
         }
     }
 }

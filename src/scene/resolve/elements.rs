@@ -54,7 +54,7 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
     // A wrong index leaves the right node without an element; that is not reported a second time.
     for (node, _) in held.iter().enumerate().filter(|&(_, &held)| are_valid && !held) {
         let message = format!("node {node} belongs to no element and no spring, so nothing would hold it");
-        source.report(report, "nodes", &[node], message, "remove it, or list it in an element".to_owned());
+        source.report(report, "nodes", &[node], message, "remove it, or list it in an element");
     }
 }
 
@@ -286,7 +286,7 @@ fn check_indices(
             1 => format!("there is no node {node}; the body has only node 0"),
             _ => format!("there is no node {node}; the body has nodes 0 to {}", nodes - 1),
         };
-        source.report(report, key, &[at, entry], message, "nodes are counted from 0".to_owned());
+        source.report(report, key, &[at, entry], message, "nodes are counted from 0");
         are_valid = false;
     }
     are_valid
@@ -308,7 +308,7 @@ fn repeated<'l>(
     if first != at {
         let [this, other] = [at, first].map(|at| source.name(key, &[at]));
         let message = format!("`{this}` has the same nodes as `{other}`");
-        source.report(report, key, &[at], message, "remove one of them".to_owned());
+        source.report(report, key, &[at], message, "remove one of them");
     }
     first != at
 }

@@ -2,7 +2,7 @@
 
 use super::body::ResolvedBody;
 use super::{motion, vector};
-use crate::reading::report::{Report, Way, written};
+use crate::reading::report::{Report, Way, way, written};
 use crate::reading::words::{count, fine};
 use crate::scene::file::{GrabFile, HoldFile, NodesFile, RegionFile};
 use crate::scene::summary::corners;
@@ -24,12 +24,12 @@ pub(super) fn resolve(
     let layers = OnceCell::new();
     for (at, typed) in holds.iter().enumerate() {
         let Some(typed) = typed else { continue };
-        let path = vec![Way::Key("hold"), Way::Index(at)];
+        let path = way!["hold", at].to_vec();
         let until = typed.until.unwrap_or(f64::INFINITY);
         let nodes = nodes(&typed.nodes, body, &layers, &path, report);
         if until <= typed.from {
             let message = format!("`hold[{at}]` ends at {until} s, not later than it begins at {} s", typed.from);
-            report.at(&[&path[..], &[Way::Key("until")]].concat(), message, None);
+            report.at(&way![path; "until"], message, None);
         } else if let Some(nodes) = nodes {
             let grip = Grip { nodes, from: typed.from, until, motion: Motion::Still };
             named.push((format!("held by `hold[{at}]`"), path, grip));
@@ -37,12 +37,12 @@ pub(super) fn resolve(
     }
     for (at, typed) in grabs.iter().enumerate() {
         let Some(typed) = typed else { continue };
-        let path = vec![Way::Key("grab"), Way::Index(at)];
+        let path = way!["grab", at].to_vec();
         let nodes = nodes(&typed.nodes, body, &layers, &path, report);
-        let way = [&path[..], &[Way::Key("path")]].concat();
+        let way = way![path; "path"];
         if typed.path.repeat {
             let message = format!("`grab[{at}].path` repeats, so the nodes would never be released");
-            report.at_key(&[&way[..], &[Way::Key("repeat")]].concat(), message, "remove `repeat`".to_owned());
+            report.at_key(&way![way; "repeat"], message, "remove `repeat`".to_owned());
             continue;
         }
         let motion = motion::keys(&typed.path, body.body.dimension, &way, report);
@@ -51,7 +51,7 @@ pub(super) fn resolve(
         if typed.path.keys.len() == 1 {
             let message =
                 format!("`grab[{at}].path` has a single key: nodes grabbed at {from} s would be released at once");
-            report.at(&way, message, "add a key, or write [[hold]] for nodes that stay where they are".to_owned());
+            report.at(&way, message, "add a key, or write [[hold]] for nodes that stay where they are");
         } else if let (Some(nodes), Some(motion)) = (nodes, motion) {
             named.push((format!("grabbed by `grab[{at}]`"), path, Grip { nodes, from, until, motion }));
         }
@@ -67,11 +67,11 @@ pub(super) fn check_steps(holds: &[Option<HoldFile>], grabs: &[Option<GrabFile>]
         if let Some((until, from)) = until.filter(|(until, from)| (0.0..step).contains(&(until - from))) {
             let message = format!("`hold[{at}]` lasts {:.3e} s, but a time step takes {step:.3e} s", until - from);
             let help = "it would hold nothing: make it longer".to_owned();
-            report.at(&[Way::Key("hold"), Way::Index(at), Way::Key("until")], message, help);
+            report.at(&way!["hold", at, "until"], message, help);
         }
     }
     for (at, grab) in grabs.iter().enumerate() {
-        let path = [Way::Key("grab"), Way::Index(at), Way::Key("path")];
+        let path = way!["grab", at, "path"];
         grab.iter().for_each(|grab| motion::check_steps(&grab.path, step, &path, report));
     }
 }
@@ -104,7 +104,7 @@ fn check_overlaps(named: &[(String, Vec<Way<'_>>, Grip)], report: &mut Report<'_
         let until = if until.is_finite() { format!("until {until} s") } else { "on".into() };
         let message = format!("node {node} is {other} and {words} at once, from {from} s {until}");
         let help = "assign each node to one of them at a time".to_owned();
-        report.at(&[&path[..], &[Way::Key("nodes")]].concat(), message, help);
+        report.at(&way![path; "nodes"], message, help);
     }
 }
 
@@ -116,7 +116,7 @@ fn nodes(
     path: &[Way<'_>],
     report: &mut Report<'_>,
 ) -> Option<Vec<u32>> {
-    let path = [path, &[Way::Key("nodes")]].concat();
+    let path = way![path; "nodes"];
     match typed {
         NodesFile::List(list) => listed(list, body.body.len(), &path, report),
         NodesFile::Region(region) => within(region, body, layers, &path, report),
@@ -127,7 +127,7 @@ fn listed(list: &[u32], count: usize, path: &[Way<'_>], report: &mut Report<'_>)
     let before = report.total();
     let mut first = HashMap::new();
     for (place, &node) in list.iter().enumerate() {
-        let at = [path, &[Way::Index(place)]].concat();
+        let at = way![path; place];
         if node as usize >= count {
             report.at(&at, format!("there is no node {node}; the body has nodes 0 to {}", count - 1), None);
         } else if first.insert(node, place).is_some() {
@@ -147,7 +147,7 @@ fn within(
     report: &mut Report<'_>,
 ) -> Option<Vec<u32>> {
     let dimension = body.body.dimension;
-    let mut point = |typed, key| vector(typed, dimension, &[path, &[Way::Key(key)]].concat(), report);
+    let mut point = |typed, key| vector(typed, dimension, &way![path; key], report);
     let position = &body.initial.position;
     // The end of a lattice may be at -0.30000000000000004 m, but is typed as -0.3.
     let close = ROUND_OFF * body.body.extent();
@@ -161,7 +161,7 @@ fn within(
             let (low, high) = (low?, high?);
             if low.cmpgt(high).any() {
                 let message = format!("`{}.low` does not lie below `high` along every axis", written(path));
-                report.at(&[path, &[Way::Key("low")]].concat(), message, None);
+                report.at(&way![path; "low"], message, None);
                 return None;
             }
             let is_inside = |at: &DVec3| at.cmpge(low - close).all() && at.cmple(high + close).all();

@@ -2,7 +2,7 @@
 
 use super::vector;
 use crate::reading::beside::{missing, similar};
-use crate::reading::report::{Report, Way, written};
+use crate::reading::report::{Help, Report, Way, way, written};
 use crate::reading::words::{count, list, nearest};
 use crate::scene::file::{BodyFile, Coordinates, Positive};
 use crate::scene::limits::Limits;
@@ -33,28 +33,21 @@ impl ListSource {
     }
 
     /// Reports a mistake in an entry of a list.
-    pub(super) fn report(
-        &self,
-        report: &mut Report<'_>,
-        key: &str,
-        at: &[usize],
-        message: String,
-        help: impl Into<Option<String>>,
-    ) {
+    pub(super) fn report(&self, report: &mut Report<'_>, key: &str, at: &[usize], message: String, help: impl Help) {
         match self {
             Self::Scene => {
                 let indices = at.iter().map(|&index| Way::Index(index));
-                let path: Vec<_> = [Way::Key("body"), Way::Key(key)].into_iter().chain(indices).collect();
+                let path: Vec<_> = way!["body", key].into_iter().chain(indices).collect();
                 report.at(&path, message, help);
             }
-            Self::File(_) => self.report_in_file(report, key, at, message, help.into()),
+            Self::File(_) => self.report_in_file(report, key, at, message, help.text()),
         }
     }
 
     /// Reports a mistake about a whole list.
     pub(super) fn report_key(&self, report: &mut Report<'_>, key: &str, message: String) {
         match self {
-            Self::Scene => report.at_key(&[Way::Key("body"), Way::Key(key)], message, None),
+            Self::Scene => report.at_key(&way!["body", key], message, None),
             Self::File(_) => self.report_in_file(report, key, &[], message, None),
         }
     }
@@ -63,7 +56,7 @@ impl ListSource {
     fn report_in_file(&self, report: &mut Report<'_>, key: &str, at: &[usize], message: String, help: Option<String>) {
         let named = message.contains(&format!("`{}", self.name(key, &at[..at.len().min(1)])));
         let message = if named { message } else { format!("`{}`: {message}", self.name(key, at)) };
-        report.at(&[Way::Key("body"), Way::Key("file")], message, help);
+        report.at(&way!["body", "file"], message, help);
     }
 }
 
@@ -93,7 +86,7 @@ impl Lists {
         let mut points = |typed: &Option<Vec<Coordinates>>, key| {
             let mut points = Vec::new();
             for (at, coordinates) in typed.as_ref()?.iter().enumerate() {
-                let path = [Way::Key("body"), Way::Key(key), Way::Index(at)];
+                let path = way!["body", key, at];
                 points.push(vector(coordinates, dimension, &path, report).unwrap_or_default());
             }
             Some(points)
@@ -117,7 +110,7 @@ impl Lists {
     pub(super) fn read(folder: &Path, name: &str, limits: &Limits, report: &mut Report<'_>) -> Option<Self> {
         let path = folder.join(name);
         let whole = |report: &mut Report<'_>, message: String, help: Option<String>| {
-            report.at(&[Way::Key("body"), Way::Key("file")], format!("`{name}` {message}"), help);
+            report.at(&way!["body", "file"], format!("`{name}` {message}"), help);
         };
         if !path.exists() {
             whole(report, missing(&path), similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?")));
@@ -283,7 +276,7 @@ impl Reader<'_, '_> {
         if found.is_none() {
             let ListSource::File(file) = &self.source else { return None };
             let message = format!("`{file}` has no array `{key}`");
-            self.report.at(&[Way::Key("body"), Way::Key("file")], message, None);
+            self.report.at(&way!["body", "file"], message, None);
         }
         found.flatten()
     }
@@ -464,8 +457,8 @@ pub(super) fn check_count(source: &ListSource, key: &str, length: usize, nodes: 
 /// Reports a key of the scene that says the same as an array of the file.
 pub(super) fn check_exclusive(lists: &Lists, typed: bool, key: &str, array: &str, report: &mut Report<'_>) {
     if typed {
-        let path = [Way::Key("body"), Way::Key(key)];
+        let path = way!["body", key];
         let message = format!("`{}` and `{}` exclude each other", written(&path), lists.source.name(array, &[]));
-        report.at_key(&path, message, "keep one".to_owned());
+        report.at_key(&path, message, "keep one");
     }
 }

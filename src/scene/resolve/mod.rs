@@ -19,7 +19,7 @@ use crate::look::file::ViewFile;
 use crate::look::points::{self, PointsRead};
 use crate::look::{self, FontFiles, View, font};
 use crate::reading::coordinates::{direction, vector};
-use crate::reading::report::{Report, Way};
+use crate::reading::report::{Report, Way, way};
 use crate::reading::words::{count, short};
 use crate::sim::contact::Obstacle;
 use crate::sim::grip::Grip;
@@ -147,12 +147,12 @@ pub(super) struct Unwritten {
 }
 
 fn part<T: DeserializeOwned>(file: &Map<String, Json>, key: &str, report: &mut Report<'_>) -> Option<T> {
-    read(file.get(key)?, &[Way::Key(key)], report)
+    read(file.get(key)?, &way![key], report)
 }
 
 fn several<T: DeserializeOwned>(file: &Map<String, Json>, key: &str, report: &mut Report<'_>) -> Vec<Option<T>> {
     let entries = file.get(key).and_then(Json::as_array).into_iter().flatten().enumerate();
-    entries.map(|(at, entry)| read(entry, &[Way::Key(key), Way::Index(at)], report)).collect()
+    entries.map(|(at, entry)| read(entry, &way![key, at], report)).collect()
 }
 
 fn read<T: DeserializeOwned>(json: &Json, path: &[Way<'_>], report: &mut Report<'_>) -> Option<T> {
@@ -232,7 +232,7 @@ fn physics(parts: &Parts, beside: Option<Lists>, limits: &Limits, report: &mut R
     let read_body = |file| body::resolve(file, beside, parts.flawed.contains("body"), &parts.runs, limits, report);
     let body = parts.body.as_ref().and_then(read_body);
     let gravity = match (&parts.gravity, dimension) {
-        (Some(typed), Some(dimension)) => vector(typed, dimension, &[Way::Key("gravity")], report),
+        (Some(typed), Some(dimension)) => vector(typed, dimension, &way!["gravity"], report),
         _ => Some(DVec3::ZERO),
     };
     let obstacles = obstacles::resolve(&parts.obstacles, dimension, body.as_ref(), report);
@@ -276,7 +276,7 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
         let (duration, rate) = (short(scene.duration), short(scene.frames_per_second));
         let message = format!("at {rate} frames per second, {duration} s have only one frame, the start");
         report.warn(
-            &[Way::Key("time"), Way::Key("frames_per_second")],
+            &way!["time", "frames_per_second"],
             message,
             format!("use at least {} to show the end", short(1.0 / scene.duration)),
         );
@@ -298,7 +298,7 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
             if elements == 1 { "" } else { "s" }
         );
         let help = "make `duration` shorter, `step` larger or the body smaller, unless you can wait".to_owned();
-        report.warn(&[Way::Key("time"), Way::Key("duration")], message, help);
+        report.warn(&way!["time", "duration"], message, help);
     }
 }
 
@@ -306,13 +306,13 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
 fn warn_of_steps(scene: &Scene, report: &mut Report<'_>) {
     for run in 0..scene.runs.len() {
         if let Some((_, [message, help])) = scene.near_limit(run) {
-            let own = [Way::Key("run"), Way::Index(run), Way::Key("step")];
-            let path = if report.is_typed(&own) { &own[..] } else { &[Way::Key("time"), Way::Key("step")] };
-            report.warn(path, message, help);
+            let own = way!["run", run, "step"];
+            let path = if report.is_typed(&own) { own.to_vec() } else { way!["time", "step"].to_vec() };
+            report.warn(&path, message, help);
         }
         if let Some([message, help]) = scene.never_stable(run) {
-            let own = [Way::Key("run"), Way::Index(run), Way::Key("integrator")];
-            let path = if report.is_typed(&own) { &own[..] } else { &[Way::Key("time"), Way::Key("integrator")] };
+            let own = way!["run", run, "integrator"];
+            let path = if report.is_typed(&own) { &own[..] } else { &way!["time", "integrator"] };
             report.warn(path, message, help);
         }
     }
@@ -328,6 +328,6 @@ fn check_frames(time: &TimeFile, report: &mut Report<'_>) {
             count(MOST_FRAMES as u128)
         );
         let help = "make `duration` or `frames_per_second` smaller".to_owned();
-        report.at(&[Way::Key("time"), Way::Key("duration")], message, help);
+        report.at(&way!["time", "duration"], message, help);
     }
 }

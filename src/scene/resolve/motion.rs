@@ -1,7 +1,7 @@
 //! Rotations and paths.
 
 use super::{direction, vector};
-use crate::reading::report::{Report, Way, written};
+use crate::reading::report::{Report, Way, way, written};
 use crate::scene::file::{Coordinates, MotionPath, Rotation, Swing};
 use crate::sim::body::Dimension;
 use crate::sim::motion::{Key, Motion, Offset};
@@ -15,12 +15,12 @@ pub(super) fn axis(
     report: &mut Report<'_>,
 ) -> Option<DVec3> {
     let rotation = written(path);
-    let path = [path, &[Way::Key("axis")]].concat();
+    let path = way![path; "axis"];
     match (typed, dimension) {
         (None, Dimension::Plane) => Some(DVec3::Z),
         (Some(_), Dimension::Plane) => {
             let message = format!("`{rotation}` has an `axis`, but the body is in the plane");
-            report.at_key(&path, message, "remove `axis`; a positive angle rotates counter-clockwise".to_owned());
+            report.at_key(&path, message, "remove `axis`; a positive angle rotates counter-clockwise");
             None
         }
         (None, Dimension::Space) => {
@@ -43,12 +43,12 @@ fn offset(
     report: &mut Report<'_>,
 ) -> Option<Offset> {
     let shift = match shift {
-        Some(typed) => vector(typed, dimension, &[path, &[Way::Key("shift")]].concat(), report),
+        Some(typed) => vector(typed, dimension, &way![path; "shift"], report),
         None => Some(DVec3::ZERO),
     };
     let rotation = match rotation {
         Some(typed) => {
-            let axis = axis(typed.axis.as_ref(), dimension, &[path, &[Way::Key("rotation")]].concat(), report);
+            let axis = axis(typed.axis.as_ref(), dimension, &way![path; "rotation"], report);
             axis.map(|axis| axis * typed.angle)
         }
         None => Some(DVec3::ZERO),
@@ -66,17 +66,13 @@ pub(super) fn keys(
     let mut keys = Vec::with_capacity(typed.keys.len());
     let mut in_order = true;
     for (at, key) in typed.keys.iter().enumerate() {
-        let path = [path, &[Way::Key("keys"), Way::Index(at)]].concat();
+        let path = way![path; "keys", at];
         if let Some(before) =
             at.checked_sub(1).map(|before| typed.keys[before].time).filter(|&before| before >= key.time)
         {
             let message =
                 format!("`{}` is at {} s, not later than the key before it at {before} s", written(&path), key.time);
-            report.at(
-                &[&path[..], &[Way::Key("time")]].concat(),
-                message,
-                "list the keys in rising order of time".to_owned(),
-            );
+            report.at(&way![path; "time"], message, "list the keys in rising order of time".to_owned());
             in_order = false;
         }
         let offset = offset(key.shift.as_ref(), key.rotation.as_ref(), dimension, &path, report);
@@ -88,13 +84,13 @@ pub(super) fn keys(
     if let (true, Some(first), Some(last)) = (typed.repeat, keys.first(), keys.last()) {
         if keys.len() == 1 {
             let message = format!("`{}` repeats, but has a single key", written(path));
-            report.at(path, message, "add keys, or remove `repeat`".to_owned());
+            report.at(path, message, "add keys, or remove `repeat`");
             return None;
         }
         if !same(first.offset, last.offset) {
             let message = format!("`{}` repeats, but does not end where it begins: it would jump", written(path));
             let help = "give the last key the first one's `shift`, and its `rotation` up to whole turns".to_owned();
-            report.at(&[path, &[Way::Key("keys"), Way::Index(keys.len() - 1)]].concat(), message, help);
+            report.at(&way![path; "keys", keys.len() - 1], message, help);
             return None;
         }
     }
@@ -114,7 +110,7 @@ fn same(one: Offset, other: Offset) -> bool {
 pub(super) fn swing(typed: &Swing, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Motion> {
     if typed.shift.is_none() && typed.rotation.is_none() {
         let message = format!("`{}` has neither `shift` nor `rotation`: nothing would move", written(path));
-        report.at(path, message, "such as shift = [0.1, 0, 0]".to_owned());
+        report.at(path, message, "such as shift = [0.1, 0, 0]");
         return None;
     }
     let amplitude = offset(typed.shift.as_ref(), typed.rotation.as_ref(), dimension, path, report)?;
@@ -126,12 +122,12 @@ pub(super) fn check_steps(typed: &MotionPath, step: f64, path: &[Way<'_>], repor
     for (at, pair) in typed.keys.windows(2).enumerate() {
         let apart = pair[1].time - pair[0].time;
         if apart > 0.0 && apart < step {
-            let key = [path, &[Way::Key("keys"), Way::Index(at + 1)]].concat();
+            let key = way![path; "keys", at + 1];
             let message = format!(
                 "`{}` is {apart:.3e} s after the key before it, but a time step takes {step:.3e} s: it would jump",
                 written(&key)
             );
-            report.at(&[&key[..], &[Way::Key("time")]].concat(), message, "leave more time between them".to_owned());
+            report.at(&way![key; "time"], message, "leave more time between them".to_owned());
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::body::ResolvedBody;
 use super::motion::{self, axis};
 use super::{direction, vector};
-use crate::reading::report::{Report, Way};
+use crate::reading::report::{Report, Way, way};
 use crate::scene::file::{Coordinates, ObstacleFile, ShapeFile};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{Motion, Obstacle, Shape};
@@ -22,7 +22,7 @@ pub(super) fn resolve(
     let mut obstacles = Vec::new();
     for (at, obstacle) in typed.iter().enumerate() {
         let Some(typed) = obstacle else { continue };
-        let path = [Way::Key("obstacle"), Way::Index(at)];
+        let path = way!["obstacle", at];
         let Some(obstacle) = one(typed, dimension, &path, report) else { continue };
         if let Some(body) = body {
             check_start(&obstacle, body, &path, report);
@@ -35,16 +35,13 @@ pub(super) fn resolve(
 fn one(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Obstacle> {
     let shape = shape(&typed.shape, dimension, path, report);
     let motion = match (&typed.path, &typed.swing) {
-        (Some(typed), _) => motion::keys(typed, dimension, &[path, &[Way::Key("path")]].concat(), report),
-        (None, Some(typed)) => motion::swing(typed, dimension, &[path, &[Way::Key("swing")]].concat(), report),
+        (Some(typed), _) => motion::keys(typed, dimension, &way![path; "path"], report),
+        (None, Some(typed)) => motion::swing(typed, dimension, &way![path; "swing"], report),
         (None, None) => Some(Motion::Still),
     };
-    let about =
-        typed.about.as_ref().map(|typed| vector(typed, dimension, &[path, &[Way::Key("about")]].concat(), report));
-    let of = [path, &[Way::Key("friction_of")]].concat();
-    if typed.friction_of.is_some() && !report.is_typed(&[path, &[Way::Key("friction")]].concat()) {
-        let help = "give `friction`, or remove `friction_of`".to_owned();
-        report.at_key(&of, "`friction_of` needs `friction`", help);
+    let about = typed.about.as_ref().map(|typed| vector(typed, dimension, &way![path; "about"], report));
+    if typed.friction_of.is_some() && !report.is_typed(&way![path; "friction"]) {
+        report.at_key(&way![path; "friction_of"], "`friction_of` needs `friction`", "give `friction`, or remove `friction_of`");
     }
     let (shape, motion) = (shape?, motion?);
     let pivot = match about {
@@ -62,7 +59,7 @@ fn one(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &mu
 }
 
 fn shape(typed: &ShapeFile, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Shape> {
-    let way = |key| [path, &[Way::Key(key)]].concat();
+    let way = |key| way![path; key];
     let mut point = |typed: &Coordinates, key| vector(typed, dimension, &way(key), report);
     match typed {
         ShapeFile::Floor { normal, height } => {
@@ -146,7 +143,7 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
         let point =
             if body.body.dimension == Dimension::Plane { format!("[{x}, {y}]") } else { format!("[{x}, {y}, {z}]") };
         let message = format!("this {name} starts inside the body, at {point}, between its nodes");
-        report.at(path, message, "move one of them; only nodes collide with an obstacle, from outside".to_owned());
+        report.at(path, message, "move one of them; only nodes collide with an obstacle, from outside");
     }
 }
 
@@ -184,14 +181,14 @@ fn inner_points(shape: &Shape, dimension: Dimension) -> Vec<DVec3> {
 pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mut Report<'_>) {
     for (at, obstacle) in typed.iter().enumerate() {
         let Some(obstacle) = obstacle else { continue };
-        let path = [Way::Key("obstacle"), Way::Index(at)];
+        let path = way!["obstacle", at];
         if let Some(typed) = &obstacle.path {
-            motion::check_steps(typed, step, &[&path[..], &[Way::Key("path")]].concat(), report);
+            motion::check_steps(typed, step, &way![path; "path"], report);
         }
         if let Some(swing) = obstacle.swing.as_ref().filter(|swing| swing.period < LEAST_STEPS * step) {
             let message = format!("it would oscillate once in {} s, but a time step takes {step:.3e} s", swing.period);
             let help = format!("use a period of at least {LEAST_STEPS} steps, or shorter steps");
-            report.at(&[&path[..], &[Way::Key("swing"), Way::Key("period")]].concat(), message, help);
+            report.at(&way![path; "swing", "period"], message, help);
         }
     }
 }

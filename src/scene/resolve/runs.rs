@@ -1,7 +1,7 @@
 //! The runs: models, steps and integrators.
 
 use super::body::ResolvedBody;
-use crate::reading::report::{Report, Way};
+use crate::reading::report::{Report, Way, way};
 use crate::reading::words;
 use crate::scene::Run;
 use crate::scene::file::{RunFile, StepFile, TimeFile};
@@ -32,7 +32,7 @@ pub(super) fn resolve(
             let run = run.as_ref()?;
             let typed = || run.model.resolve(&body.body, body.springs.as_deref());
             let model = run.own.clone().map_or_else(typed, Ok);
-            let path = |key| [Way::Key("run"), Way::Index(at), Way::Key("model"), Way::Key(key)];
+            let path = |key| way!["run", at, "model", key];
             model.map_err(|misfit| report.at(&path(misfit.key), misfit.message, None)).ok()
         })
         .collect();
@@ -48,10 +48,10 @@ pub(super) fn resolve(
             report.at(&path, message, hint);
             return None;
         }
-        let own = [Way::Key("run"), Way::Index(at), Way::Key("step")];
+        let (own, shared) = (way!["run", at, "step"], way!["time", "step"]);
         let (step, path) = match &run.step {
             Some(step) => (step, &own[..]),
-            None => (time.step.as_ref().unwrap_or(&StepFile::DEFAULT), &[Way::Key("time"), Way::Key("step")][..]),
+            None => (time.step.as_ref().unwrap_or(&StepFile::DEFAULT), &shared[..]),
         };
         let tolerance = run.tolerance.or(time.tolerance).unwrap_or(Integrator::TOLERANCE);
         let tolerance = integrator.is_adaptive().then_some(tolerance);
@@ -75,7 +75,7 @@ pub(super) fn resolve(
         if !(step.is_normal() && step > 0.0 && time.duration / step <= MOST_STEPS) {
             let message =
                 format!("the time step comes out as {step:e} s with T = {cycle:.4e} s, which cannot be counted");
-            report.at(path, message, "make it larger, or masses and stiffness less extreme".to_owned());
+            report.at(path, message, "make it larger, or masses and stiffness less extreme");
             return None;
         }
         if step > time.duration && time.duration > 0.0 && tolerance.is_none() {
@@ -94,8 +94,8 @@ pub(super) fn resolve(
         }
         if let Some(reason) = integrator.refusal(|| model.prepare(&Arc::new(body.body.clone()))) {
             let path = match run.integrator {
-                Some(_) => vec![Way::Key("run"), Way::Index(at), Way::Key("integrator")],
-                None => vec![Way::Key("time"), Way::Key("integrator")],
+                Some(_) => way!["run", at, "integrator"].to_vec(),
+                None => way!["time", "integrator"].to_vec(),
             };
             let message = format!("{} {reason}", words::quoted(&crate::sim::words::typed(&integrator)));
             report.at(&path, message, None);
@@ -105,11 +105,11 @@ pub(super) fn resolve(
         let fastest = Kernel::of(model.as_ref(), integrator);
         let kernel = run.kernel.unwrap_or(fastest);
         if kernel == Kernel::Fast && fastest != Kernel::Fast {
-            let path = [Way::Key("run"), Way::Index(at), Way::Key("kernel")];
+            let path = way!["run", at, "kernel"];
             let message = format!(
                 "`run[{at}].kernel` is \"fast\", but this `integrator`, `model.rotation` or `model.damping_of` has no vectorised steps"
             );
-            report.at(&path, message, "remove it, or write \"reference\"".to_owned());
+            report.at(&path, message, "remove it, or write \"reference\"");
             return None;
         }
         runs.push(Run { name: run.name.clone(), model, integrator, step, tolerance, kernel, place: 0, colour });
@@ -124,8 +124,8 @@ fn misplaced(
     time: &TimeFile,
     integrator: Integrator,
 ) -> Option<(Vec<Way<'static>>, String, String)> {
-    let own = |key| vec![Way::Key("run"), Way::Index(at), Way::Key(key)];
-    let common = |key| vec![Way::Key("time"), Way::Key(key)];
+    let own = |key| way!["run", at, key].to_vec();
+    let common = |key| way!["time", key].to_vec();
     let name = words::quoted(&crate::sim::words::typed(&integrator));
     if integrator.is_adaptive() {
         let path = if run.step.is_some() { own("step") } else { common("step") };
@@ -195,17 +195,17 @@ fn no_limit(run: &RunFile, integrator: Integrator, limit: f64) -> (String, Strin
 fn check_names(typed: &[Option<RunFile>], report: &mut Report<'_>) {
     for (at, run) in typed.iter().enumerate() {
         let Some(run) = run else { continue };
-        let path = [Way::Key("run"), Way::Index(at), Way::Key("name")];
+        let path = way!["run", at, "name"];
         let quoted = words::quoted(&run.name);
         let unfit = |c: char| matches!(c, '/' | '\\') || c.is_control();
         if run.name.trim() != run.name || run.name.contains(unfit) {
             let message = format!("the name {quoted} cannot be used in files");
-            report.at(&path, message, "no slash, no control character, and no space at either end".to_owned());
+            report.at(&path, message, "no slash, no control character, and no space at either end");
         }
         let same = |other: &Option<RunFile>| other.as_ref().is_some_and(|other| other.name == run.name);
         if let Some(first) = typed[..at].iter().position(same) {
             let message = format!("two runs are called {quoted}: `run[{first}]` and `run[{at}]`");
-            report.at(&path, message, "give each run a unique name".to_owned());
+            report.at(&path, message, "give each run a unique name");
         }
     }
 }

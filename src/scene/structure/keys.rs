@@ -129,7 +129,6 @@ fn strings(list: Option<&Json>) -> impl Iterator<Item = &str> {
     list.and_then(Json::as_array).into_iter().flatten().filter_map(Json::as_str)
 }
 
-/// The names of keys.
 fn names<'a>(keys: &[(&'a Spanned<DeString<'_>>, &Spanned<DeValue<'_>>)]) -> Vec<&'a str> {
     keys.iter().map(|(key, _)| key.get_ref().as_ref()).collect()
 }
