@@ -7,7 +7,7 @@ use crate::picture::{Composer, NoRoom, Picture, compose_figure};
 use crate::render::{RenderError, Renderer};
 use crate::scene::Scene;
 use crate::scene::figure::Figure;
-use crate::sim::snapshot::Frame;
+use crate::sim::snapshot::{Diagnostic, Frame, RunFrame, Snapshot};
 use crate::vector;
 use image::RgbImage;
 use std::sync::Arc;
@@ -19,6 +19,12 @@ pub(crate) struct Artist<'a> {
     renderer: Renderer,
     /// The last frame and its pixels. One that is the same is not drawn again.
     last: Option<(Composed, Arc<Vec<u8>>)>,
+    /// The number of frames that were not.
+    repeated: usize,
+    /// The last frame that was composed, and what came of it, if only states change pictures. The same states are not
+    /// composed again.
+    still: Option<(Frame, Composed)>,
+    is_still: bool,
 }
 
 /// A frame that is being drawn.
@@ -34,10 +40,16 @@ enum State {
 }
 
 /// A frame that is composed and can be drawn.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Composed {
     /// One picture, or two on white and on black.
-    pictures: Vec<Picture>,
+    pictures: Arc<Vec<Picture>>,
+}
+
+impl PartialEq for Composed {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.pictures, &other.pictures) || self.pictures == other.pictures
+    }
 }
 
 impl Composed {
@@ -60,7 +72,14 @@ impl<'a> Artist<'a> {
     /// # Errors
     /// If the device fails.
     pub(crate) fn new(gpu: &Gpu, scene: &'a Scene) -> Result<Self, RenderError> {
-        Ok(Self { composers: composers(scene), renderer: Renderer::new(gpu, scene.view.size)?, last: None })
+        Ok(Self {
+            composers: composers(scene),
+            renderer: Renderer::new(gpu, scene.view.size)?,
+            last: None,
+            repeated: 0,
+            still: None,
+            is_still: !scene.shows_time(),
+        })
     }
 
     /// Sets the time series of the scene, which the chart shows; see [`Composer::set_history`].
@@ -69,8 +88,21 @@ impl<'a> Artist<'a> {
     }
 
     /// Composes a frame.
-    pub(crate) fn compose(&self, frame: &Frame) -> Composed {
-        Composed { pictures: self.composers.iter().map(|composer| composer.compose(frame)).collect() }
+    pub(crate) fn compose(&mut self, frame: &Frame) -> Composed {
+        if let Some((before, composed)) = &self.still
+            && have_same_states(before, frame)
+        {
+            return composed.clone();
+        }
+        let pictures = self.composers.iter().map(|composer| composer.compose(frame)).collect();
+        let composed = Composed { pictures: Arc::new(pictures) };
+        self.still = self.is_still.then(|| (frame.clone(), composed.clone()));
+        composed
+    }
+
+    /// The number of frames so far that were the same as the one before and not drawn again.
+    pub(crate) fn repeated(&self) -> usize {
+        self.repeated
     }
 
     /// Begins to draw a frame, which [`Self::finish`] must complete before the next one begins. Meanwhile the next one may be
@@ -81,7 +113,10 @@ impl<'a> Artist<'a> {
     pub(crate) fn begin(&mut self, composed: Composed) -> Result<Begun, RenderError> {
         let same = self.last.as_ref().filter(|(last, _)| *last == composed);
         let state = match (same, &composed.pictures[..]) {
-            (Some((_, pixels)), _) => State::Drawn(Arc::clone(pixels)),
+            (Some((_, pixels)), _) => {
+                self.repeated += 1;
+                State::Drawn(Arc::clone(pixels))
+            }
             (None, [picture]) => State::Submitted(self.renderer.submit(picture)?),
             (None, pictures) => State::Drawn(Arc::new(draw_with(&mut self.renderer, pictures)?)),
         };
@@ -100,6 +135,24 @@ impl<'a> Artist<'a> {
         self.last = Some((composed, Arc::clone(&pixels)));
         Ok(pixels)
     }
+}
+
+/// Whether two frames show the same runs in the same states, at any times.
+fn have_same_states(one: &Frame, other: &Frame) -> bool {
+    // By their bits: what is not a number is not equal to itself. Directions follow from the nodes.
+    let values = |run: &RunFrame| -> Vec<_> {
+        Diagnostic::ALL.iter().map(|one| one.value(&run.snapshot.diagnostics).size().to_bits()).collect()
+    };
+    let nodes = |run: &RunFrame| {
+        let (step, time, diagnostics) = Default::default();
+        Snapshot { step, time, diagnostics, ..run.snapshot.clone() }
+    };
+    let same = |(one, other): (&RunFrame, &RunFrame)| {
+        (one.run, &one.last_fit) == (other.run, &other.last_fit)
+            && values(one) == values(other)
+            && nodes(one) == nodes(other)
+    };
+    one.runs.len() == other.runs.len() && one.runs.iter().zip(&other.runs).all(same)
 }
 
 /// One for the scene's background, or two for white and black if it has none.

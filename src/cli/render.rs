@@ -453,6 +453,7 @@ impl Pictures for Drawing<'_> {
         let filmed = self.films.map_or(Ok(()), |films| films.finish());
         summary.frames.written = self.keep.then_some(written);
         summary.frames.kept = self.kept;
+        summary.frames.repeated = self.artist.repeated();
         for run in &mut summary.runs {
             let of_run = self.cut.iter().filter(|(at, _)| self.scene.runs[*at].name == run.name);
             run.cut = of_run.map(|(_, frame)| *frame).collect();

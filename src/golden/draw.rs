@@ -203,7 +203,8 @@ fn draw_scene(
             }
         }
         if let (Some(artist), true) = (&mut artist, plan.pictures.contains(&index)) {
-            let begun = artist.begin(artist.compose(&frame))?;
+            let composed = artist.compose(&frame);
+            let begun = artist.begin(composed)?;
             let pixels = artist.finish(begun)?;
             let label = Tags::of_frame(&scene, &frame, &adapter);
             let bytes = encode(size, &pixels, &label.texts(), Compression::High);

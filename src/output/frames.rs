@@ -1,9 +1,9 @@
 //! Compresses and writes frames on separate threads, in parallel to drawing.
 
-use super::{Clock, Compression, OutputError, Spent, Texts, encode_print, frame_file_name, write_whole};
+use super::{Clock, Compression, OutputError, Spent, Texts, encode_like, encode_print, frame_file_name, write_whole};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::thread::JoinHandle;
 
 /// A frame as drawn.
@@ -24,11 +24,15 @@ pub(crate) struct PixelFrame {
 /// A second consumer of the frame files besides the disk: it gets their numbers and bytes, in any order.
 pub(crate) type Tap = Arc<dyn Fn(u64, &[u8]) -> Result<(), OutputError> + Send + Sync>;
 
+/// The pixels of a frame, and its file, whose compressed pixels serve further frames with the same ones.
+type Last = Mutex<(Weak<Vec<u8>>, Arc<Vec<u8>>)>;
+
 /// Threads that compress and write frames, started as needed, up to a bound. Memory is bounded: while all threads are
 /// busy, [`Self::write`] blocks.
 pub(crate) struct FrameWriter {
     queue: Option<SyncSender<PixelFrame>>,
     frames: Arc<Mutex<Option<Receiver<PixelFrame>>>>,
+    last: Arc<Last>,
     folder: Option<PathBuf>,
     tap: Option<Tap>,
     /// Greatest number of threads.
@@ -56,6 +60,7 @@ impl FrameWriter {
         Self {
             queue: Some(queue),
             frames,
+            last: Arc::default(),
             folder,
             tap,
             most: most.max(1),
@@ -77,7 +82,9 @@ impl FrameWriter {
         // A thread costs buffers of its own, so another one starts only when none is free.
         if self.threads.len() < self.most {
             let (folder, frames, tap) = (self.folder.clone(), Arc::clone(&self.frames), self.tap.clone());
-            self.threads.push(std::thread::spawn(move || write_frames(folder.as_deref(), &frames, tap.as_ref())));
+            let last = Arc::clone(&self.last);
+            let work = move || write_frames(folder.as_deref(), &frames, tap.as_ref(), &last);
+            self.threads.push(std::thread::spawn(work));
         }
         if queue.send(frame).is_ok() { Ok(()) } else { self.wait() }
     }
@@ -115,14 +122,32 @@ impl FrameWriter {
     }
 }
 
+/// The file of a frame. Pixels that are those of the last one are not compressed again.
+fn compressed(frame: &PixelFrame, last: &Last) -> Arc<Vec<u8>> {
+    let lock = || last.lock().unwrap_or_else(PoisonError::into_inner);
+    let PixelFrame { size, dpi, pixels, texts, .. } = frame;
+    let (known, file) = lock().clone();
+    if Weak::ptr_eq(&known, &Arc::downgrade(pixels)) {
+        return Arc::new(encode_like((&file, pixels.len()), *size, texts, *dpi));
+    }
+    let file = Arc::new(encode_print(*size, pixels, texts, Compression::Fast, *dpi));
+    *lock() = (Arc::downgrade(pixels), Arc::clone(&file));
+    file
+}
+
 /// Writes frames until there are no more or one fails. After a failure the channel is closed, so that no sender blocks.
-fn write_frames(folder: Option<&Path>, queue: &Mutex<Option<Receiver<PixelFrame>>>, tap: Option<&Tap>) -> Written {
+fn write_frames(
+    folder: Option<&Path>,
+    queue: &Mutex<Option<Receiver<PixelFrame>>>,
+    tap: Option<&Tap>,
+    last: &Last,
+) -> Written {
     let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
     let mut written = Written::default();
     loop {
         let Some(frame) = lock().as_ref().and_then(|frames| frames.recv().ok()) else { return written };
         let clock = Clock::thread();
-        let bytes = encode_print(frame.size, &frame.pixels, &frame.texts, Compression::Fast, frame.dpi);
+        let bytes = compressed(&frame, last);
         let index = frame.frame;
         let kept = folder.map_or(Ok(()), |folder| write_whole(&folder.join(frame_file_name(index)), &bytes));
         let result = kept.and_then(|()| tap.map_or(Ok(()), |tap| tap(index, &bytes)));

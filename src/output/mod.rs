@@ -35,7 +35,7 @@ pub(crate) use plan::{Plan, Whose};
 #[cfg(feature = "render")]
 pub(crate) use png::image_data;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
-pub(crate) use png::{Texts, encode_print, is_drawn};
+pub(crate) use png::{Texts, encode_like, encode_print, is_drawn};
 pub(crate) use sheets::SheetFiles;
 pub(crate) use states::{STATES_FILE, StatesWriter};
 pub(crate) use stored::StoredStates;

@@ -145,14 +145,48 @@ pub(crate) fn encode_print(
     compression: Compression,
     dpi: Option<f64>,
 ) -> Vec<u8> {
+    file(size, pixels.len(), texts, compression, dpi, |writer| writer.write_image_data(pixels))
+}
+
+/// The same for the pixels of another file that was made so, which are not compressed again.
+pub(crate) fn encode_like(
+    (file_before, length): (&[u8], usize),
+    size: [u32; 2],
+    texts: &[(&'static str, String)],
+    dpi: Option<f64>,
+) -> Vec<u8> {
+    // Behind the signature, each chunk has its length, its name, its data and a sum.
+    const SIGNATURE: usize = 8;
+    file(size, length, texts, Compression::Fast, dpi, |writer| {
+        let mut rest = &file_before[SIGNATURE..];
+        while let Some((head, behind)) = rest.split_at_checked(8) {
+            let length = u32::from_be_bytes([head[0], head[1], head[2], head[3]]) as usize;
+            if head[4..] == png::chunk::IDAT.0 {
+                writer.write_chunk(png::chunk::IDAT, &behind[..length])?;
+            }
+            rest = &behind[length + 4..];
+        }
+        Ok(())
+    })
+}
+
+/// A file with so many bytes of pixels, which `write` adds.
+fn file(
+    size: [u32; 2],
+    length: usize,
+    texts: &[(&'static str, String)],
+    compression: Compression,
+    dpi: Option<f64>,
+    write: impl FnOnce(&mut png::Writer<&mut Vec<u8>>) -> Result<(), png::EncodingError>,
+) -> Vec<u8> {
     let [width, height] = size;
     let all = u64::from(width) * u64::from(height);
-    let colour = match pixels.len() as u64 {
+    let colour = match length as u64 {
         length if length == 3 * all => png::ColorType::Rgb,
         length if length == 4 * all => png::ColorType::Rgba,
         length => panic!("{length} bytes for {all} pixels; expected three for each, or four"),
     };
-    let mut bytes = Vec::with_capacity(pixels.len() / 8);
+    let mut bytes = Vec::with_capacity(length / 8);
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(colour);
     encoder.set_depth(png::BitDepth::Eight);
@@ -168,7 +202,7 @@ pub(crate) fn encode_print(
         added.expect("the header is not written yet");
     }
     let written = encoder.write_header().and_then(|mut writer| {
-        writer.write_image_data(pixels)?;
+        write(&mut writer)?;
         writer.finish()
     });
     written.expect("a picture of the right length into memory");
@@ -269,7 +303,7 @@ mod tests {
         }
     }
 
-    fn file(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> {
+    fn made(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> {
         encode(size, pixels, &tags.texts(), Compression::Fast)
     }
 
@@ -283,8 +317,8 @@ mod tests {
             [(3, png::ColorType::Rgb, tags()), (4, png::ColorType::Rgba, tags()), (3, png::ColorType::Rgb, figure)]
         {
             let pixels: Vec<u8> = (0..5 * 3 * channels).map(|byte| byte * 4).collect();
-            let bytes = file([5, 3], &pixels, &tags);
-            assert_eq!(bytes, file([5, 3], &pixels, &tags), "equal input, equal bytes");
+            let bytes = made([5, 3], &pixels, &tags);
+            assert_eq!(bytes, made([5, 3], &pixels, &tags), "equal input, equal bytes");
             std::fs::write(&path, &bytes).unwrap();
             assert_eq!(read_tags(&path).unwrap(), Some(([5, 3], tags)));
 
@@ -298,12 +332,24 @@ mod tests {
     }
 
     #[test]
+    fn pixels_that_are_compressed_once_give_the_same_files() {
+        let size = [40, 30];
+        let pixels: Vec<u8> = (0..40 * 30 * 3).map(|at: u32| (at * at / 7) as u8).collect();
+        let before = made(size, &pixels, &tags());
+        let later = Tags { shows: Shown::Frame { frame: 8, time: 0.5 }, ..tags() };
+        for dpi in [None, Some(300.0)] {
+            let again = encode_like((&before, pixels.len()), size, &later.texts(), dpi);
+            assert!(again == encode_print(size, &pixels, &later.texts(), Compression::Fast, dpi), "{dpi:?}");
+        }
+    }
+
+    #[test]
     fn no_file_of_ours_has_no_tags() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("frame.png");
         std::fs::write(&path, "no picture").unwrap();
         assert_eq!(read_tags(&path).unwrap(), None);
-        std::fs::write(&path, &file([1, 1], &[0; 3], &tags())[..40]).unwrap();
+        std::fs::write(&path, &made([1, 1], &[0; 3], &tags())[..40]).unwrap();
         assert_eq!(read_tags(&path).unwrap(), None);
         assert!(read_tags(&folder.path().join("absent.png")).is_err());
     }

@@ -76,6 +76,9 @@ pub(crate) struct FrameSummary {
     /// The number of pictures that were there already and stayed (`--resume`); absent if there are none.
     #[serde(skip_serializing_if = "is_zero")]
     pub kept: usize,
+    /// The number of pictures that are the same as the one before and were not drawn again; absent if there are none.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub repeated: usize,
     /// Width and height of the pictures (px); `null` without pictures.
     pub size: Option<[u32; 2]>,
     /// Which share of the frames this is, and of how many; absent if it is all.
@@ -166,7 +169,7 @@ impl Summary {
             },
             command: command.to_vec(),
             outcome: Outcome::Unfinished,
-            frames: FrameSummary { asked, recorded: 0, written: None, kept: 0, size: None, shard: None },
+            frames: FrameSummary { asked, recorded: 0, written: None, kept: 0, repeated: 0, size: None, shard: None },
             files: Vec::new(),
             adapter: None,
             runs: runs.iter().map(run).collect(),

@@ -46,6 +46,8 @@ use crate::sim::contact::{self, Obstacle, Shape};
 use crate::sim::grip::Grip;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
+#[cfg(feature = "render")]
+use crate::sim::motion::Motion;
 use crate::sim::sleep::Sleep;
 use crate::sim::snapshot::Diagnostic;
 use crate::sim::state::State;
@@ -129,6 +131,19 @@ impl Scene {
             || view.camera.follow
             || (!is_flat && self.obstacles.iter().any(has_size));
         needed.then_some(view.strip.as_slice())
+    }
+
+    /// Whether pictures of it show anything of the time besides the states of its runs: a clock, the course of the scene, or
+    /// what moves by itself.
+    #[cfg(feature = "render")]
+    pub(crate) fn shows_time(&self) -> bool {
+        let view = &self.view;
+        let is_moved = |grip: &Grip| grip.motion != Motion::Still || grip.from > 0.0 || grip.until.is_finite();
+        view.labels.clock
+            || view.points.is_some()
+            || self.time_series().is_some()
+            || self.obstacles.iter().any(|obstacle| obstacle.motion != Motion::Still)
+            || self.grips.iter().any(is_moved)
     }
 
     /// The diagnostics of a frame that its picture shows: the number of each run, and the present value in a chart.

@@ -393,3 +393,40 @@ fn runs_that_others_are_compared_with_cannot_be_left_out() {
         place.run("render ghost.toml apart.toml --frames 2").good();
     }
 }
+
+/// A body that is held, with a camera that stands still, is drawn once if no clock runs.
+#[test]
+fn frames_of_the_same_states_are_drawn_once() {
+    let Some(place) = place_to_draw() else { return };
+    let held =
+        lasting("0.1") + "labels = [\"name\", \"count\"]\n[[hold]]\nnodes = { low = [-9, -9, -9], high = [9, 9, 9] }\n";
+    let repeated = |scene: &str| {
+        place.write("held.toml", scene);
+        place.run("render held.toml --overwrite --size 480x320").good();
+        place.json("output/held/run.json")["frames"]["repeated"].as_u64()
+    };
+    assert_eq!(repeated(&held.replace("\"count\"", "\"clock\"")), None);
+    assert_eq!(repeated(&held), Some(SMALL_FRAMES as u64 - 1));
+    let last = format!("output/held/frame_{:05}.png", SMALL_FRAMES - 1);
+    let bytes = std::fs::read(place.path(&last)).expect("a frame");
+    place.run(&format!("render held.toml --overwrite --size 480x320 --frames {}", SMALL_FRAMES - 1)).good();
+    assert_eq!(std::fs::read(place.path(&last)).expect("a frame"), bytes, "as drawn alone");
+}
+
+/// Mesa's software driver writes beyond its memory with narrow vectors.
+#[test]
+#[cfg(target_os = "linux")]
+fn widths_of_vectors_that_crash_the_driver_are_not_passed_on() {
+    let Some(place) = place_to_draw() else { return };
+    place.run("render small.toml --frames 3 -o usual").good();
+    for (width, is_taken) in [("256", true), ("512", true), ("128", false), ("", false), ("wide", false)] {
+        let mut command = place.command(["render", "small.toml", "--frames", "3", "-o", "made", "--overwrite"]);
+        let made = run_command(command.env("LP_NATIVE_VECTOR_WIDTH", width));
+        assert_eq!(made.status, Some(0), "{width}: {made:?}");
+        let warning =
+            format!("warning: LP_NATIVE_VECTOR_WIDTH is {width}, with which software drivers may crash; expected 256");
+        assert_eq!(made.err.contains(&warning), !is_taken, "{width}: {made:?}");
+        let frame = |folder: &str| std::fs::read(place.path(&format!("{folder}/frame_00003.png"))).expect("a frame");
+        assert!(width == "512" || frame("made") == frame("usual"), "{width}");
+    }
+}

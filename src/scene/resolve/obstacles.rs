@@ -41,7 +41,11 @@ fn one(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &mu
     };
     let about = typed.about.as_ref().map(|typed| vector(typed, dimension, &way![path; "about"], report));
     if typed.friction_of.is_some() && !report.is_typed(&way![path; "friction"]) {
-        report.at_key(&way![path; "friction_of"], "`friction_of` needs `friction`", "give `friction`, or remove `friction_of`");
+        report.at_key(
+            &way![path; "friction_of"],
+            "`friction_of` needs `friction`",
+            "give `friction`, or remove `friction_of`",
+        );
     }
     let (shape, motion) = (shape?, motion?);
     let pivot = match about {
