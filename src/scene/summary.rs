@@ -1,7 +1,7 @@
 //! What a scene contains, in words and numbers, as `check` prints it.
 
 use super::{Scene, stability};
-use crate::reading::words::{count, list, short};
+use crate::reading::words::{count, fine, list, short};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{FrictionOf, Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
@@ -250,7 +250,9 @@ impl fmt::Display for SceneSummary {
         };
         line("body", &format!("{nodes} nodes, {elements}, {extent} m, {} kg", short(self.mass)))?;
         let [low, high] = &self.start;
-        line("start", &format!("between {} and {} m", vector(low), vector(high)))?;
+        // Exact, as regions of nodes are copied from it.
+        let corner = |corner: &[f64]| corner.iter().copied().map(fine).collect::<Vec<_>>().join(", ");
+        line("start", &format!("between ({}) and ({}) m", corner(low), corner(high)))?;
         line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
         let (duration, rate) = (short(self.duration), short(self.frames_per_second));
         let plural = if self.frames == 1 { "" } else { "s" };

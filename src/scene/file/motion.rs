@@ -56,7 +56,7 @@ pub struct Swing {
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct HoldFile {
     /// The nodes: a list, or all nodes that start in a region, a ball or an axis-aligned box. Nodes on the border of the
-    /// region, to round-off (1e-9 of the body's longest side), belong to it. `localshape check --json` prints where the body starts.
+    /// region, to round-off (1e-9 of the body's longest side), belong to it. `localshape check` prints where the body starts.
     pub(in crate::scene) nodes: NodesFile,
     /// Start (s).
     #[serde(default)]
@@ -72,7 +72,7 @@ pub(in crate::scene) struct HoldFile {
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct GrabFile {
     /// The nodes: a list, or all nodes that start in a region, a ball or an axis-aligned box. Nodes on the border of the
-    /// region, to round-off (1e-9 of the body's longest side), belong to it. `localshape check --json` prints where the body starts.
+    /// region, to round-off (1e-9 of the body's longest side), belong to it. `localshape check` prints where the body starts.
     pub(in crate::scene) nodes: NodesFile,
     /// The path along which they are dragged. At the time of the first key the nodes are grabbed wherever they are. They
     /// then follow the path's motion since that key, rotating about their centre, and are released at the last key.
