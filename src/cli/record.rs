@@ -395,6 +395,12 @@ impl<'a> Recording<'a> {
         }
         let slice = slice(&self.scene.body);
         self.sound = simulation.frames.states().cloned().collect();
+        // Runs that diverged on the way from the last frame to the checkpoint.
+        for ((summary, &run), sound) in self.summary.runs.iter().zip(&self.runs).zip(&mut self.sound) {
+            if simulation.read_from.is_none() && sound.status != snapshot::Status::Ok && summary.cause.is_none() {
+                *sound = self.scene.world(run).state().clone();
+            }
+        }
         // Frames that are not kept cannot be continued, and states that are read need not be.
         let can_resume =
             simulation.read_from.is_none() && (results.pictures.is_none() || self.summary.frames.size.is_some());

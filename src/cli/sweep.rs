@@ -38,8 +38,9 @@ pub(super) struct Sweep {
     /// Those of the shard.
     variants: Vec<Variant>,
     folder: PathBuf,
-    /// The contents of the table of all variants.
+    /// The contents of the table of all variants, and the digests of their scenes.
     table: Vec<u8>,
+    digests: Vec<String>,
 }
 
 /// One line of the table.
@@ -77,12 +78,10 @@ impl Sweep {
         let Variants { keys, rows } = Variants::parse(text).map_err(|found| {
             Failure::usage(Mistakes { file: name.to_string(), found: vec![*found], total: 1 }.to_string())
         })?;
-        let mut sweep =
-            Self { scene: path.clone(), limits, variants: Vec::new(), folder: PathBuf::new(), table: Vec::new() };
-        sweep.folder = options
-            .out
-            .as_deref()
-            .map_or_else(|| Path::new("output").join(format!("{}-sweep", base.name)), Path::to_owned);
+        let usual = || Path::new("output").join(format!("{}-sweep", base.name));
+        let folder = options.out.as_deref().map_or_else(usual, Path::to_owned);
+        let (variants, table, digests) = (Vec::new(), Vec::new(), Vec::new());
+        let mut sweep = Self { scene: path.clone(), limits, variants, folder, table, digests };
         let names = short_names(&keys);
         for (number, (row, _)) in rows.iter().enumerate() {
             let cells = keys.iter().zip(row).filter(|(_, cell)| !cell.is_empty());
@@ -94,7 +93,8 @@ impl Sweep {
             let folder = format!("{:04}_{values}", number + 1);
             sweep.variants.push(Variant { changes, folder: folder.trim_end_matches(['_', '.']).to_owned() });
         }
-        let mut warnings = sweep.check(file, text, &keys, &rows, check)?;
+        let (mut warnings, digests) = sweep.check(file, text, &keys, &rows, check)?;
+        sweep.digests = digests;
         // Those of the scene itself are told already.
         warnings.retain(|one| base.warnings.iter().all(|known| known.message != one.message));
         if !options.printing.quiet {
@@ -114,7 +114,8 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// Reads all variants, so that nothing is made before all mistakes are known, and returns the warnings, each at its cell.
+    /// Reads all variants, so that nothing is made before all mistakes are known, and returns the warnings, each at its cell,
+    /// and the digests.
     fn check(
         &self,
         file: &Path,
@@ -122,9 +123,9 @@ impl Sweep {
         keys: &[String],
         rows: &[Row],
         check: impl Fn(&Scene) -> Result<(), Failure>,
-    ) -> Result<Vec<Mistake>, Failure> {
+    ) -> Result<(Vec<Mistake>, Vec<String>), Failure> {
         let source = Source::new(text);
-        let mut warnings = Vec::new();
+        let (mut warnings, mut digests) = (Vec::new(), Vec::new());
         let column_of = |place: &str| {
             let is_below = |long: &str, short: &str| {
                 long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
@@ -146,6 +147,7 @@ impl Sweep {
                     if let Err(failure) = check(&scene) {
                         add(cell(text, *start, 0), failure.mistake()?, None);
                     }
+                    digests.push(scene.digest);
                     warnings.extend(scene.warnings.into_iter().map(|one| {
                         mistake(&source, cell(text, *start, column_of(&one.place)), &[], one.message, one.help)
                     }));
@@ -167,7 +169,7 @@ impl Sweep {
             }
         }
         match total {
-            0 => Ok(warnings),
+            0 => Ok((warnings, digests)),
             _ => Err(Failure::usage(Mistakes { file: file.display().to_string(), found, total }.to_string())),
         }
     }
@@ -188,12 +190,15 @@ impl Sweep {
     /// # Errors
     /// If it is refused or cannot be read.
     pub(super) fn check_folder(&self, overwrite: bool) -> Result<(), OutputError> {
-        let path = self.folder.join(VARIANTS_FILE);
-        let Some(bytes) = read_file(&path)? else { return Ok(()) };
         let occupied = |what: String| Err(OutputError::Occupied { path: self.folder.clone(), what });
-        if !bytes.starts_with(b"folder,") {
-            return occupied(format!("{VARIANTS_FILE}, which was not written by localshape"));
+        let bytes = read_file(&self.folder.join(VARIANTS_FILE))?;
+        let compared = read_file(&self.folder.join(COMPARISON_FILE))?;
+        for (name, bytes) in [(VARIANTS_FILE, &bytes), (COMPARISON_FILE, &compared)] {
+            if !overwrite && bytes.as_ref().is_some_and(|bytes| !bytes.starts_with(b"folder,")) {
+                return occupied(format!("{name}, which was not written by localshape"));
+            }
         }
+        let Some(bytes) = bytes.filter(|bytes| bytes.starts_with(b"folder,")) else { return Ok(()) };
         let lines = |table: &[u8]| -> Vec<Vec<String>> {
             let lines = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(table).into_records();
             lines.flatten().map(|line| line.iter().map(str::to_owned).collect()).collect()
@@ -232,7 +237,7 @@ impl Sweep {
     }
 
     /// Ends a sweep that was not interrupted: writes a table of how the runs of all variants fare that are complete, also of other
-    /// shards, and prints the beginning of it if that is wanted.
+    /// shards, if they are of the same scene, and prints the beginning of it if that is wanted.
     ///
     /// # Errors
     /// If a summary cannot be read, or the table cannot be written.
@@ -247,11 +252,11 @@ impl Sweep {
         write(&["folder", "run", "status", "diverged_at_s", "turned_over", "shape_error_m"]);
         let mut shown = vec![["variant", "run", "status", "turned over", "shape error"].map(str::to_owned)];
         let mut lines = ReaderBuilder::new().from_reader(&self.table[..]);
-        for line in lines.records().flatten() {
+        for (line, digest) in lines.records().flatten().zip(&self.digests) {
             let name = line.get(0).unwrap_or_default();
             let bytes = read_file(&self.folder.join(name).join(SUMMARY_FILE))?.unwrap_or_default();
             let summary: Value = serde_json::from_slice(&bytes).unwrap_or_default();
-            let is_done = summary["outcome"] == "done";
+            let is_done = summary["outcome"] == "done" && summary["scene"]["digest"] == *digest;
             for run in summary["runs"].as_array().filter(|_| is_done).into_iter().flatten() {
                 let number = |value: &Value| value.as_f64().map_or_else(String::new, exact);
                 let [run_name, status] = ["name", "status"].map(|key| run[key].as_str().unwrap_or_default());

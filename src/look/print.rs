@@ -51,13 +51,13 @@ pub(crate) enum TextScaleFile {
     /// Times the usual size.
     Times(#[schemars(range(min = 0.5, max = 3.0))] f64),
     /// In pictures for print: the size of most type, such as `{ pt = 7 }`. Names are larger, numbers at axes smaller.
-    Points(PointsFile),
+    Points(TypeSizeFile),
 }
 
 /// A size of type.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct PointsFile {
+pub(crate) struct TypeSizeFile {
     /// Size of most type (pt).
     #[schemars(range(min = 5.0, max = 72.0))]
     pub(crate) pt: f64,
@@ -130,7 +130,7 @@ impl TextScaleFile {
         way: &[Way<'_>],
         report: &mut Report<'_>,
     ) -> Option<f64> {
-        let PointsFile { pt } = match self {
+        let TypeSizeFile { pt } = match self {
             Self::Times(times) => return Some(times),
             Self::Points(points) => points,
         };

@@ -83,6 +83,9 @@ impl Folder {
         let mut folder = Self { path: path.to_owned(), scene, plan, replace, resume, replaced: None };
         if is_folder(path)? {
             FolderLock::check(path)?;
+            if resume {
+                Checkpoint::read(path, &folder.scene, &folder.plan)?;
+            }
             let found = folder.find()?;
             folder.replaced = found.earlier().or(found.lost);
         }

@@ -100,7 +100,7 @@ pub(crate) struct RunSummary {
     /// Why it diverged; absent if it did not, or its states are read.
     #[serde(flatten)]
     pub cause: Option<Cause>,
-    /// Since when its body sleeps in the last recorded frame (s); absent if it does not.
+    /// Since when its body sleeps in the last recorded frame (s); absent if it does not, or its states are read.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub asleep_since: Option<f64>,
     /// The frames drawn by this command in which its body leaves its panel; absent if there are none.

@@ -83,16 +83,18 @@ impl Chart {
         (3..=MOST_TIMES).rev().map(axis).find(fits).unwrap_or_else(|| axis(2))
     }
 
-    /// Grid lines at round values, a stronger one at zero, and optionally their numbers.
+    /// Grid lines at round values, a stronger one at zero, and optionally their numbers; in a chart that is too low for two,
+    /// the upper one.
     pub(super) fn rows(self, writer: &mut Writer<'_>, values: &Axis, with_numbers: bool) {
         let palette = writer.palette;
         let thickness = self.hairline();
-        for (&tick, text) in values.ticks.iter().zip(&values.texts) {
+        for (at, (&tick, text)) in values.ticks.iter().zip(&values.texts).enumerate() {
             let y = self.y(values, tick);
             let colour = self.thinned(if tick == 0.0 { palette.axis } else { palette.hairline }, palette.background);
             let line = [self.left, (y - thickness / 2.0).round(), self.right - self.left, thickness];
             writer.marks.push(filled(line, colour));
-            if !with_numbers {
+            let above = values.ticks.get(at + 1).map(|&next| self.y(values, next));
+            if !with_numbers || above.is_some_and(|above| y - above < NUMBERS * self.unit) {
                 continue;
             }
             let left = self.left - GAP * self.unit - wide(writer.fonts, text, self.unit);

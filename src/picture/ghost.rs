@@ -33,11 +33,13 @@ pub(super) struct Ghost<'a> {
     pub(super) bars: &'a [[u32; 2]],
     /// Nothing is drawn outside of it.
     pub(super) room: Rectangle,
+    /// Whether an arrow points to a body outside of it.
+    pub(super) is_pointed_at: bool,
 }
 
 impl Ghost<'_> {
     /// The dashed outline in a colour, with a halo; nothing if a part of the surface is not in front of the camera. Where the
-    /// body lies outside of the room, an arrow points there.
+    /// body lies outside of the room, an arrow may point there.
     pub(super) fn draw(&self, scale: Scale, colour: Colour, halo: Colour, curves: &mut Vec<Curve>) {
         let lines = [self.outline(), self.bars()].concat();
         let is_seen = !lines.is_empty();
@@ -54,11 +56,19 @@ impl Ghost<'_> {
         }
     }
 
-    /// An arrow at the border of the room towards a body outside of it: its shaft and its head (px).
+    /// An arrow at the border of the room towards a body outside of it: its shaft and its head (px). Nothing if a body without
+    /// an outline in the room is around all of it.
     fn pointer(&self, scale: Scale) -> Vec<Vec<DVec2>> {
+        let [left, top, right, bottom] = sides(self.room.map(f64::from));
+        let seen = self.position.iter().filter_map(|&at| self.lens.project(at)).map(|(pixel, _)| DVec2::from(pixel));
+        let (low, high) =
+            seen.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+        if !self.is_pointed_at || low.cmplt(DVec2::new(right, bottom)).all() && high.cmpgt(DVec2::new(left, top)).all()
+        {
+            return Vec::new();
+        }
         let middle = self.position.iter().sum::<DVec3>() / self.position.len().max(1) as f64;
         let Some((pixel, _)) = self.lens.project(middle) else { return Vec::new() };
-        let [left, top, right, bottom] = sides(self.room.map(f64::from));
         let [length, wing, free] = POINTER.map(|length| length * scale.line());
         let from = DVec2::new(left.midpoint(right), top.midpoint(bottom));
         let way = DVec2::from(pixel) - from;
@@ -249,7 +259,7 @@ mod tests {
 
     fn outline(lens: &Lens, position: &[DVec3], triangles: &[[u32; 3]], room: Rectangle) -> Vec<Vec<DVec2>> {
         let nodes: Vec<u32> = (0..position.len() as u32).collect();
-        Ghost { lens, position, nodes: &nodes, triangles, bars: &[], room }.outline()
+        Ghost { lens, position, nodes: &nodes, triangles, bars: &[], room, is_pointed_at: true }.outline()
     }
 
     /// A cube with outward triangles.
@@ -280,8 +290,15 @@ mod tests {
         let (mut position, triangles) = cube();
         position.iter_mut().for_each(|at| at.y += 20.0);
         let nodes: Vec<u32> = (0..8).collect();
-        let ghost =
-            Ghost { lens: &lens, position: &position, nodes: &nodes, triangles: &triangles, bars: &[], room: ROOM };
+        let ghost = Ghost {
+            lens: &lens,
+            position: &position,
+            nodes: &nodes,
+            triangles: &triangles,
+            bars: &[],
+            room: ROOM,
+            is_pointed_at: true,
+        };
         let mut curves = Vec::new();
         ghost.draw(Scale::REFERENCE, [0; 3], [255; 3], &mut curves);
         // A shaft and a head, each with its halo, at the upper border.

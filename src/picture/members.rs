@@ -83,15 +83,8 @@ impl Series {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::look::LineStyle;
     use crate::picture::series::range;
-
-    fn series(values: &[f64], diverged: bool) -> Series {
-        let points = values.iter().enumerate().map(|(at, &value)| [at as f64, value]).collect();
-        let style = LineStyle { colour: [0; 3], dash: &[] };
-        let diverged = diverged.then_some(values.len() as f64);
-        Series { run: 0, name: String::new(), style, is_count: false, points, members: Vec::new(), diverged }
-    }
+    use crate::picture::series::tests::series;
 
     #[test]
     fn several_scenes_have_a_mean_within_their_band() {

@@ -324,10 +324,11 @@ pub(super) fn simplified(points: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn series(values: &[f64], diverged: bool) -> Series {
+    /// Values at 0, 1, 2 … s.
+    pub(in crate::picture) fn series(values: &[f64], diverged: bool) -> Series {
         let points = values.iter().enumerate().map(|(at, &value)| [at as f64, value]).collect();
         let style = LineStyle { colour: [0; 3], dash: &[] };
         let diverged = diverged.then_some(values.len() as f64);

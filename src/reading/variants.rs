@@ -52,7 +52,9 @@ impl Variants {
         let mut rows = Vec::new();
         for row in reader.into_records() {
             let row = row.map_err(no_table)?;
-            let start = row.position().map_or(0, |position| position.byte() as usize);
+            let read_from = row.position().map_or(0, |position| position.byte() as usize);
+            // Empty lines before it are skipped.
+            let start = read_from + text[read_from..].bytes().take_while(|byte| b"\r\n".contains(byte)).count();
             if row.len() != keys.len() {
                 let plural = if row.len() == 1 { "" } else { "s" };
                 let message =
@@ -197,6 +199,7 @@ mod tests {
             ("a\tb\n1\t2\n", (1, 1), "separated by tabs"),
             ("a,b\n1,2\n0,5,3\n", (3, 5), "this line has 3 values; expected 2"),
             ("a,b\n1\n", (2, 1), "this line has 1 value; expected 2"),
+            ("a,b\n\n\r\n1\n", (4, 1), "this line has 1 value; expected 2"),
             ("a,,b\n1,2,3\n", (1, 3), "the key of column 2 is missing"),
             ("a,a\n1,2\n", (1, 3), "given a second time"),
             ("a,b\n", (1, 1), "no variants"),

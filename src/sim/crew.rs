@@ -74,7 +74,7 @@ impl Crew {
         // SAFETY: helpers use it only while they are busy, and this function waits until none is, also after a panic.
         let lent = unsafe { std::mem::transmute::<&Work<'_>, &'static Work<'static>>(work) };
         busy.store(self.helpers.len(), Ordering::Relaxed);
-        self.shared.tell(Some(lent));
+        self.shared.announce(Some(lent));
         let own = catch_unwind(AssertUnwindSafe(|| work(0)));
         wait_until(|| busy.load(Ordering::Acquire) == 0);
         if let Err(panic) = own {
@@ -105,7 +105,7 @@ impl Crew {
 impl Drop for Crew {
     fn drop(&mut self) {
         self.shared.end.store(true, Ordering::Relaxed);
-        self.shared.tell(None);
+        self.shared.announce(None);
         for helper in self.helpers.drain(..) {
             // A helper catches the panics of its work, so joining succeeds.
             drop(helper.join());
@@ -114,7 +114,7 @@ impl Drop for Crew {
 }
 
 impl Shared {
-    fn tell(&self, work: Option<&'static Work<'static>>) {
+    fn announce(&self, work: Option<&'static Work<'static>>) {
         let mut place = self.work.lock().unwrap_or_else(PoisonError::into_inner);
         *place = work;
         self.round.fetch_add(1, Ordering::Release);

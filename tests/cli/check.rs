@@ -231,17 +231,17 @@ fn what_cannot_be_meant_is_told() {
 #[test]
 fn what_sleeps_is_told() {
     let place = Place::new();
-    let sleep = "sleep = { distance = 1e-4, after = 0.02 }\n[body]";
+    let sleep = "sleep = { distance = 1e-4, after = 0.07 }\n[body]";
     place.write(
         "sleep.toml",
         &SMALL.replace("[body]", sleep).replace("velocity = [0, -2, 0]\n", "").replace("gravity = [0, -9.8, 0]\n", ""),
     );
     let ran = place.run("check sleep.toml").good();
-    assert!(ran.out.contains("\n  sleep     after 0.02 s in which no node moves farther than 0.0001 m\n"), "{ran:?}");
+    assert!(ran.out.contains("\n  sleep     after 0.07 s in which no node moves farther than 0.0001 m\n"), "{ran:?}");
     let ran = place.run("simulate sleep.toml -o out").good();
-    assert!(ran.out.contains("ok, asleep since 0.02"), "{ran:?}");
+    assert!(ran.out.contains("ok, asleep since 0.07"), "{ran:?}");
     let since = place.json("out/run.json")["runs"][0]["asleep_since"].as_f64().expect("a time");
-    assert!((0.02..0.03).contains(&since), "{since}");
+    assert!((0.07..0.08).contains(&since), "{since}");
     place.write("never.toml", &SMALL.replace("[body]", "sleep = { distance = 0, after = 1 }\n[body]"));
     place.run("check never.toml").bad(2, &["`time.sleep.distance` is 0", "greater than 0"]);
 }

@@ -158,6 +158,19 @@ fn folders_of_other_tables_are_refused_before_anything_is_made() {
     place.write(&format!("new/{}/frame_00000.png", FOLDERS[2]), "mine");
     place.run("simulate small.toml --sweep sweep.csv -o new").bad(2, &[FOLDERS[2]]);
     assert_eq!(place.names("new"), [FOLDERS[2]]);
+    // Tables that are not ours are kept, unless they may be lost.
+    for name in ["comparison.csv", "variants.csv"] {
+        place.write(&format!("{name}-own/{name}"), "mine");
+        let typed = format!("simulate small.toml --sweep sweep.csv --frames 0-0 -o {name}-own");
+        place.run(&typed).bad(2, &[&format!("{name}, which was not written by localshape"), "--overwrite"]);
+        assert_eq!(place.read(&format!("{name}-own/{name}")), "mine");
+        place.run(&format!("{typed} --overwrite")).good();
+    }
+    // A comparison has variants of one scene: here the first is of a changed one.
+    place.write("small.toml", &place.read("small.toml").replace("0.1\n", "0.2\n"));
+    place.run(&format!("{typed} --shard 1/3 --overwrite")).good();
+    let compared = place.read("out/comparison.csv");
+    assert!(compared.contains(FOLDERS[0]) && !compared.contains(FOLDERS[1]), "{compared}");
 }
 
 #[cfg(feature = "render")]

@@ -37,7 +37,7 @@ impl Stability {
         let mark = self.of.mark("stability");
         if protocol.work(&scene) == 0 {
             let message = format!(
-                "all runs of “{}” find their own steps: there is nothing to map; give one a `step`",
+                "all runs of “{}” find their own steps: there is nothing to map; give one another integrator",
                 scene.title
             );
             return Err(Failure::usage(message));
@@ -141,7 +141,7 @@ fn maps(results: &Results) -> Maps {
         };
         let tick = |share: f64| (share, [short(share), format!("T/{:.1}", grid.steps_per_cycle(share))]);
         let limit = grid.limit.map(|_| (1.0, "predicted limit"));
-        let stretched = grid.stretched.map(|share| (share, "with stretched springs"));
+        let stretched = grid.stretched.filter(|&share| share < 1.0).map(|share| (share, "with stretched springs"));
         Map {
             name: results.words(grid, speed),
             across,

@@ -99,6 +99,10 @@ impl Draft<'_> {
         let outside = |ends: [DVec2; 2]| [ends[0].lerp(ends[1], self.leaves(ends)), ends[1]];
         let (small, large) = (frame(here, half / times), frame(there, half));
         // To the corners that face each other, from where the lines leave the body.
+        // What it enlarges may have left the panel.
+        let [x, y, wide, high] = self.viewport.map(f64::from);
+        let (low, high) = (DVec2::new(x, y), DVec2::new(x + wide, y + high));
+        let is_here = small[0].cmpge(low).all() && small[2].cmple(high).all();
         let leaders = [[1, 0], [2, 3]].map(|[one, other]| outside([small[one], large[other]]));
         // The same camera: what is in front of something else stays there.
         self.lens.focal *= times;
@@ -114,12 +118,12 @@ impl Draft<'_> {
             colour,
             alpha: 1.0,
         };
-        for ends in leaders.iter().filter(|_| !self.framing.moves) {
+        for ends in leaders.iter().filter(|_| is_here && !self.framing.moves) {
             sinks.curves.push(Curve { alpha: LEADER_ALPHA, ..line(ends, FRAME, &[], palette.second_text) });
         }
-        for (frame, width, colour) in
-            [(small, HALO, palette.halo), (small, FRAME, palette.second_text), (large, FRAME, palette.second_text)]
-        {
+        let frames =
+            [(small, HALO, palette.halo), (small, FRAME, palette.second_text), (large, FRAME, palette.second_text)];
+        for &(frame, width, colour) in &frames[if is_here { 0 } else { 2 }..] {
             // Each side for itself: joints would be rounded.
             sinks.curves.extend((0..4).map(|at| line(&[frame[at], frame[(at + 1) % 4]], width, &[], colour)));
         }
