@@ -426,7 +426,7 @@ fn widths_of_vectors_that_crash_the_driver_are_not_passed_on() {
         let warning =
             format!("warning: LP_NATIVE_VECTOR_WIDTH is {width}, with which software drivers may crash; expected 256");
         assert_eq!(made.err.contains(&warning), !is_taken, "{width}: {made:?}");
-        let frame = |folder: &str| std::fs::read(place.path(&format!("{folder}/frame_00003.png"))).expect("a frame");
+        let frame = |folder: &str| std::fs::read(place.path(format!("{folder}/frame_00003.png"))).expect("a frame");
         assert!(width == "512" || frame("made") == frame("usual"), "{width}");
     }
 }
