@@ -303,7 +303,8 @@ impl<'a> Composer<'a> {
         for ((((room, enlarged), &place), run), framing) in
             rooms.iter().zip(&layout.panels).zip(&frame.runs).zip(&framings)
         {
-            let draft = Draft::new(self, *room, run, framing, scale);
+            let mut draft = Draft::new(self, *room, run, framing, scale);
+            draft.overview = shot.as_ref().and_then(|shot| self.overview(place, enlarged.as_ref(), shot, scale));
             over(&draft, &mut ghosts);
             panels.push(draft.panel(&mut under, &mut marks));
             draft.points(draft.between_words(), &mut marks);
@@ -313,7 +314,7 @@ impl<'a> Composer<'a> {
                 insets.extend(Draft::new(self, *room, run, framing, scale).enlarged(enlarged, over, sinks));
             }
             if let Some((shot, tracking)) = shot.as_ref().zip(self.tracking.as_ref()) {
-                self.locate((place, enlarged.as_ref()), &draft, shot, tracking, &mut writer);
+                self.locate(&draft, shot, tracking, &mut writer);
             }
         }
         if let Some((compared, place)) = compared {
