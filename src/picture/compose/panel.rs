@@ -156,7 +156,10 @@ impl<'a> Draft<'a> {
         self.marks_of_plane(under, above);
         let SurfaceLines { drawn: mut lines, borders } = lines;
         let of_body = lines.len();
-        let (obstacles, staged) = self.obstacles([&sound, &turned_over], &mut lines, above);
+        let mut arrows = Vec::new();
+        let (obstacles, staged) = self.obstacles([&sound, &turned_over], &mut lines, &mut arrows);
+        self.fade_obstacles(&obstacles, above);
+        above.extend(arrows);
         let borders = borders.into_iter().map(|border| border.line).chain(lines[of_body..].iter().copied()).collect();
         if !self.scene.view.outline {
             lines.retain(|line| !matches!(line.kind, LineKind::Contour | LineKind::ObstacleContour));
