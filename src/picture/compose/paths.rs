@@ -27,16 +27,26 @@ const RING: f64 = 5.0;
 const PAST: f64 = 2.6;
 
 impl Composer<'_> {
-    /// What the paths are called in the key; empty if there are none.
-    pub(super) fn path_name(&self) -> String {
+    /// What the paths are called in the key, from the longest wording to the shortest; none if there are none. The one of the
+    /// centre is drawn thicker.
+    pub(super) fn path_names(&self) -> Vec<String> {
         let paths = &self.scene.view.paths;
-        let nodes = paths.iter().filter(|traced| **traced != Traced::Centre).count();
-        match (nodes < paths.len(), nodes) {
-            (false, 0) => String::new(),
-            (true, 0) => "path of the centre".to_owned(),
-            (false, 1) => "path of a node".to_owned(),
-            (false, _) => "paths of nodes".to_owned(),
-            (true, _) => "paths".to_owned(),
+        let nodes: Vec<_> = paths
+            .iter()
+            .filter_map(|traced| if let Traced::Node(node) = traced { Some(node.to_string()) } else { None })
+            .collect();
+        let all = nodes.join(", ");
+        match (nodes.len() < paths.len(), nodes.len()) {
+            (false, 0) => Vec::new(),
+            (true, 0) => vec!["path of the centre".to_owned()],
+            (false, 1) => vec![format!("path of node {all}")],
+            (false, count) => vec![format!("paths of nodes {all}"), format!("paths of {count} nodes")],
+            (true, count) => {
+                let plural = if count == 1 { "" } else { "s" };
+                let wordings = [format!("node{plural} {all}"), format!("{count} node{plural}")];
+                let [named, counted] = wordings.map(|nodes| format!("paths: centre (thick), {nodes}"));
+                vec![named, counted.clone(), counted.replace(" (thick)", "")]
+            }
         }
     }
 }
