@@ -83,7 +83,8 @@ impl Draft<'_> {
         }
     }
 
-    /// What of obstacles in boxes (px), if it is seen, goes on beyond each side of a room.
+    /// What of obstacles in boxes (px), if it is seen, goes on beyond each side of a room. The fading spans all that reach into
+    /// it, so that none is cut where it ends.
     fn beyond(
         &self,
         [left, top, right, bottom]: [f64; 4],
@@ -91,22 +92,19 @@ impl Draft<'_> {
     ) -> [Option<Beyond>; 4] {
         let [least, most] = [LEAST, FADING].map(|distance| distance * self.scale.unit);
         let free = LINE_ROOM * self.scale.line();
-        let mut parts = [None; 4];
-        for [low, high] in boxes {
-            let is_seen = low.x < right && high.x > left && low.y < bottom && high.y > top;
-            let over = [left - low.x, top - low.y, high.x - right, high.y - bottom].map(|over| over - least);
-            let [wide, high] = [[low.x, high.x, left, right], [low.y, high.y, top, bottom]]
-                .map(|[low, high, from, to]| [(low - free).floor().max(from), (high + free).ceil().min(to)]);
-            for (side, part) in parts.iter_mut().enumerate().filter(|&(side, _)| is_seen && over[side] > 0.0) {
-                let [first, last] = if side % 2 == 0 { high } else { wide };
-                let known = part.unwrap_or(Beyond { distance: 0.0, along: [first, last] });
-                *part = Some(Beyond {
-                    distance: known.distance.max(over[side].min(most)),
-                    along: [known.along[0].min(first), known.along[1].max(last)],
-                });
-            }
-        }
-        parts
+        let is_seen = |[low, high]: &[DVec2; 2]| low.x < right && high.x > left && low.y < bottom && high.y > top;
+        let over = |[low, high]: &[DVec2; 2]| [left - low.x, top - low.y, high.x - right, high.y - bottom];
+        let boxes: Vec<_> = boxes.filter(is_seen).collect();
+        [0, 1, 2, 3].map(|side: usize| {
+            let distance = boxes.iter().map(|one| over(one)[side] - least).fold(0.0, f64::max).min(most);
+            let along = |[low, high]: &[DVec2; 2]| match side % 2 {
+                0 => [(low.y - free).max(top), (high.y + free).min(bottom)],
+                _ => [(low.x - free).max(left), (high.x + free).min(right)],
+            };
+            let reaching = boxes.iter().filter(|one| over(one)[side] > -distance).map(along);
+            let along = reaching.reduce(|one, other| [one[0].min(other[0]), one[1].max(other[1])])?;
+            (distance > 0.0).then_some(Beyond { distance, along: [along[0].floor(), along[1].ceil()] })
+        })
     }
 
     /// The corners of the box around points (m) in the picture (px); `None` if none is before the camera.
