@@ -4,8 +4,8 @@ use super::layout::Rectangle;
 use super::plane::sides;
 use glam::DVec2;
 
-/// Over what distance lines fade at the sides of their room and around an overview (px in the reference picture), and in how
-/// many steps.
+/// Over what distance lines fade at the sides of their room and around an overview (px in the reference picture), and
+/// in how many steps.
 pub(super) const FADING: f64 = 42.0;
 const AROUND: f64 = 14.0;
 const STEPS: f64 = 8.0;
@@ -24,8 +24,8 @@ pub(super) struct Fade {
 }
 
 impl Fade {
-    /// In a room and around an overview in it (px: left, top, width and height), where a pixel of the reference picture has
-    /// `unit` pixels.
+    /// In a room and around an overview in it (px: left, top, width and height), where a pixel of the reference picture
+    /// has `unit` pixels.
     pub(super) fn new(room: Rectangle, distances: [f64; 4], overview: Option<[f64; 4]>, unit: f64) -> Self {
         Self { sides: sides(room.map(f64::from)), distances, overview: overview.map(sides), around: AROUND * unit }
     }

@@ -41,8 +41,8 @@ pub(super) struct Ghost<'a> {
 }
 
 impl Ghost<'_> {
-    /// The dashed outline in a colour, with a halo; nothing if a part of the surface is not in front of the camera. Where next
-    /// to nothing of the body lies in the room, an arrow may point there.
+    /// The dashed outline in a colour, with a halo; nothing if a part of the surface is not in front of the camera.
+    /// Where next to nothing of the body lies in the room, an arrow may point there.
     pub(super) fn draw(&self, scale: Scale, colour: Colour, halo: Colour, curves: &mut Vec<Curve>) {
         let lines = [self.outline(), self.bars()].concat();
         let fade = self.fade(scale);
@@ -82,8 +82,8 @@ impl Ghost<'_> {
         }
     }
 
-    /// Where it fades: at the sides that it leaves, over no longer a distance than it goes on outside, so that nothing changes
-    /// at once.
+    /// Where it fades: at the sides that it leaves, over no longer a distance than it goes on outside, so that nothing
+    /// changes at once.
     fn fade(&self, scale: Scale) -> Fade {
         let [left, top, right, bottom] = sides(self.room.map(f64::from));
         let [low, high] = self.bounds();
@@ -98,8 +98,8 @@ impl Ghost<'_> {
         seen.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
     }
 
-    /// An arrow at the border of the room towards a body whose middle lies outside of it: its shaft and its head (px). Nothing
-    /// if a body of which nothing is seen in the room is around all of it.
+    /// An arrow at the border of the room towards a body whose middle lies outside of it: its shaft and its head (px).
+    /// Nothing if a body of which nothing is seen in the room is around all of it.
     fn pointer(&self, scale: Scale, is_seen: bool) -> Vec<Vec<DVec2>> {
         let [left, top, right, bottom] = sides(self.room.map(f64::from));
         let [low, high] = self.bounds();

@@ -24,8 +24,8 @@ struct Beyond {
 }
 
 impl Draft<'_> {
-    /// Covers the sides of the panel where obstacles leave it with the background, the more the nearer to the side; over no
-    /// longer a distance than they go on outside, so that nothing changes at once. The body is left out.
+    /// Covers the sides of the panel where obstacles leave it with the background, the more the nearer to the side;
+    /// over no longer a distance than they go on outside, so that nothing changes at once. The body is left out.
     pub(super) fn fade_obstacles(&self, obstacles: &Obstacles, marks: &mut Vec<Mark>) {
         // An inset is a piece of a picture, and has a frame.
         if self.enlarged != 1.0 {
@@ -83,8 +83,8 @@ impl Draft<'_> {
         }
     }
 
-    /// What of obstacles in boxes (px), if it is seen, goes on beyond each side of a room. The fading spans all that reach into
-    /// it, so that none is cut where it ends.
+    /// What of obstacles in boxes (px), if it is seen, goes on beyond each side of a room. The fading spans all that
+    /// reach into it, so that none is cut where it ends.
     fn beyond(
         &self,
         [left, top, right, bottom]: [f64; 4],

@@ -27,8 +27,8 @@ const RING: f64 = 5.0;
 const PAST: f64 = 2.6;
 
 impl Composer<'_> {
-    /// What the paths are called in the key, from the longest wording to the shortest; none if there are none. The one of the
-    /// centre is drawn thicker.
+    /// What the paths are called in the key, from the longest wording to the shortest; none if there are none. The one
+    /// of the centre is drawn thicker.
     pub(super) fn path_names(&self) -> Vec<String> {
         let paths = &self.scene.view.paths;
         let nodes: Vec<_> = paths
