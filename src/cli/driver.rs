@@ -28,7 +28,10 @@ pub fn settle(words: &[std::ffi::OsString]) {
     // A process cannot change its own environment safely, so the restarted one gets it.
     let is_scene = |word: &std::ffi::OsString| word.to_string_lossy().ends_with(".toml");
     let draws = command == "render" || command == "figure" || command == "compare" && rest.iter().any(is_scene);
-    let width = var_os(VECTOR_WIDTH[0]);
+    // `info` names the driver as it is when pictures are drawn.
+    let draws = draws || command == "info";
+    let is_quiet = |word: &std::ffi::OsString| word == "--quiet" || word.to_string_lossy().starts_with("-q");
+    let width = var_os(VECTOR_WIDTH[0]).filter(|width| !width.is_empty());
     let is_possible = width.as_ref().is_some_and(|width| WIDTHS.iter().any(|possible| width == possible));
     let to_set = [(VECTOR_WIDTH, is_possible), (HEAPS, var_os(HEAPS[0]).is_some())];
     let to_set: Vec<_> =
@@ -36,7 +39,7 @@ pub fn settle(words: &[std::ffi::OsString]) {
     if !draws || to_set.is_empty() {
         return;
     }
-    if let Some(width) = width.filter(|_| !is_possible) {
+    if let Some(width) = width.filter(|_| !is_possible && !rest.iter().any(is_quiet)) {
         let ([name, usual], [_, other], width) = (VECTOR_WIDTH, WIDTHS, width.display());
         note(&format!(
             "{name} is {width}, with which software drivers may crash; expected {usual} or {other}, so {usual} is taken"

@@ -247,6 +247,29 @@ impl Sweep {
         if status != Status::Done {
             return Ok(status);
         }
+        let path = self.folder.join(COMPARISON_FILE);
+        let (mut table, mut shown) = self.compared()?;
+        loop {
+            write_whole(&path, &table)?;
+            // Shards that end together: whoever writes last has seen all.
+            let now = self.compared()?;
+            if now.0 == table {
+                break;
+            }
+            (table, shown) = now;
+        }
+        if printing.prints_text() {
+            let more = shown.len().saturating_sub(MOST + 1);
+            shown.truncate(MOST + 1);
+            let text = columns(&shown, [false, false, false, true, true]);
+            let more = if more > 0 { format!("{more} more ") } else { String::new() };
+            console::print(&format!("\n{text}{more}in {}\n", path.display()))?;
+        }
+        Ok(status)
+    }
+
+    /// How the runs of all complete variants fare: as a table, and in words.
+    fn compared(&self) -> Result<(Vec<u8>, Vec<[String; 5]>), Failure> {
         let mut table = csv::Writer::from_writer(Vec::new());
         let mut write = |line: &[&str]| table.write_record(line).expect("rows of equal length into memory");
         write(&["folder", "run", "status", "diverged_at_s", "turned_over", "shape_error_m"]);
@@ -268,16 +291,7 @@ impl Sweep {
                 shown.push([name.to_owned(), run_name.to_owned(), format!("{status}{at}"), over, error]);
             }
         }
-        let path = self.folder.join(COMPARISON_FILE);
-        write_whole(&path, &table.into_inner().expect("memory takes all"))?;
-        if printing.prints_text() {
-            let more = shown.len().saturating_sub(MOST + 1);
-            shown.truncate(MOST + 1);
-            let text = columns(&shown, [false, false, false, true, true]);
-            let more = if more > 0 { format!("{more} more ") } else { String::new() };
-            console::print(&format!("\n{text}{more}in {}\n", path.display()))?;
-        }
-        Ok(status)
+        Ok((table.into_inner().expect("memory takes all"), shown))
     }
 
     fn table(&self, keys: &[String], rows: &[Row]) -> Vec<u8> {

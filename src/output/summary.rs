@@ -103,6 +103,10 @@ pub(crate) struct RunSummary {
     /// Since when its body sleeps in the last recorded frame (s); absent if it does not, or its states are read.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub asleep_since: Option<f64>,
+    /// The time of the first recorded frame in which its body was awake again after it had slept, the last time that
+    /// this happened (s); absent if it never did, or its states are read.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub woke_at: Option<f64>,
     /// The frames drawn by this command in which its body leaves its panel; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cut: Vec<u64>,
@@ -136,8 +140,8 @@ pub(crate) struct LastState {
     pub time: f64,
     #[serde(flatten)]
     pub diagnostics: Chosen,
-    /// Another diagnostic, which is not in goldens.
-    pub global_rotations: f64,
+    /// Another diagnostic, which is not in goldens; `null` for a model without it.
+    pub global_rotations: Option<u64>,
     /// Digest of the state.
     pub state: String,
 }
@@ -154,6 +158,7 @@ impl Summary {
                 status: RunStatus::Ok,
                 cause: None,
                 asleep_since: None,
+                woke_at: None,
                 cut: Vec::new(),
                 last: None,
             }
@@ -190,7 +195,9 @@ impl Summary {
                 frame: frame.index,
                 time: snapshot.time,
                 diagnostics: Chosen::within(Reach::Summaries, &snapshot.diagnostics),
-                global_rotations: snapshot.diagnostics.global_rotations,
+                global_rotations: Some(snapshot.diagnostics.global_rotations)
+                    .filter(|count| count.is_finite())
+                    .map(|count| count as u64),
                 state: state_digest(snapshot),
             });
         }

@@ -2,6 +2,7 @@
 
 use super::Curve;
 use super::camera::Lens;
+use super::fade::{FADING, Fade, dashed};
 use super::layout::{Rectangle, Scale};
 use super::narrow::narrow;
 use super::plane::{clipped, sides};
@@ -33,38 +34,77 @@ pub(super) struct Ghost<'a> {
     pub(super) bars: &'a [[u32; 2]],
     /// Nothing is drawn outside of it.
     pub(super) room: Rectangle,
-    /// Whether an arrow points to a body outside of it.
+    /// Where an overview covers it (px: left, top, width and height).
+    pub(super) overview: Option<[f64; 4]>,
+    /// Whether an arrow points to a body outside of it, and lines fade where they leave it.
     pub(super) is_pointed_at: bool,
 }
 
 impl Ghost<'_> {
-    /// The dashed outline in a colour, with a halo; nothing if a part of the surface is not in front of the camera. Where the
-    /// body lies outside of the room, an arrow may point there.
+    /// The dashed outline in a colour, with a halo; nothing if a part of the surface is not in front of the camera.
+    /// Where next to nothing of the body lies in the room, an arrow may point there.
     pub(super) fn draw(&self, scale: Scale, colour: Colour, halo: Colour, curves: &mut Vec<Curve>) {
         let lines = [self.outline(), self.bars()].concat();
-        let is_seen = !lines.is_empty();
-        let lines = if is_seen { lines } else { self.pointer(scale) };
+        let fade = self.fade(scale);
+        // What fades is cut into dashes here.
+        let mut pieces = Vec::new();
+        let mut seen = 0.0;
+        for line in lines {
+            let dash = dashes(&line, scale.line());
+            let points: Vec<_> = line.iter().map(DVec2::to_array).collect();
+            let opacities: Vec<_> = fade.parts(&points).iter().map(|(_, opacity)| *opacity).collect();
+            if opacities == [1.0] {
+                seen += length(&line);
+                pieces.push((line, Some(dash), 1.0));
+                continue;
+            }
+            for dash in dashed(&line, dash) {
+                let opacity = fade.opacity(dash[0].midpoint(dash[dash.len() - 1]));
+                seen += opacity * length(&dash);
+                pieces.extend((opacity > 0.0).then_some((dash, None, opacity)));
+            }
+        }
+        if seen < POINTER[0] * scale.line() {
+            let pointer = self.pointer(scale, seen > 0.0);
+            if !pointer.is_empty() {
+                pieces = pointer.into_iter().map(|line| (line, None, 1.0)).collect();
+            }
+        }
         for (width, colour, alpha) in [(HALO, halo, HALO_ALPHA), (WIDTH, colour, 1.0)] {
-            let curve = |line: &Vec<DVec2>| Curve {
+            let curve = |(line, dash, opacity): &(Vec<DVec2>, Option<[f64; 2]>, f64)| Curve {
                 points: line.iter().map(|point| point.to_array().map(narrow)).collect(),
                 width: narrow(width * scale.line()),
-                dash: if is_seen { dashes(line, scale.line()).map(narrow).to_vec() } else { Vec::new() },
+                dash: dash.iter().flatten().map(|&length| narrow(length)).collect(),
                 colour,
-                alpha: narrow(alpha),
+                alpha: narrow(alpha * opacity),
             };
-            curves.extend(lines.iter().map(curve));
+            curves.extend(pieces.iter().map(curve));
         }
     }
 
-    /// An arrow at the border of the room towards a body outside of it: its shaft and its head (px). Nothing if a body without
-    /// an outline in the room is around all of it.
-    fn pointer(&self, scale: Scale) -> Vec<Vec<DVec2>> {
+    /// Where it fades: at the sides that it leaves, over no longer a distance than it goes on outside, so that nothing
+    /// changes at once.
+    fn fade(&self, scale: Scale) -> Fade {
         let [left, top, right, bottom] = sides(self.room.map(f64::from));
+        let [low, high] = self.bounds();
+        let over = [left - low.x, top - low.y, high.x - right, high.y - bottom];
+        let most = if self.is_pointed_at { FADING * scale.unit } else { 0.0 };
+        Fade::new(self.room, over.map(|over| over.clamp(0.0, most)), self.overview, scale.unit)
+    }
+
+    /// The corners of the box around all nodes before the camera (px).
+    fn bounds(&self) -> [DVec2; 2] {
         let seen = self.position.iter().filter_map(|&at| self.lens.project(at)).map(|(pixel, _)| DVec2::from(pixel));
-        let (low, high) =
-            seen.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
-        if !self.is_pointed_at || low.cmplt(DVec2::new(right, bottom)).all() && high.cmpgt(DVec2::new(left, top)).all()
-        {
+        seen.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
+    }
+
+    /// An arrow at the border of the room towards a body whose middle lies outside of it: its shaft and its head (px).
+    /// Nothing if a body of which nothing is seen in the room is around all of it.
+    fn pointer(&self, scale: Scale, is_seen: bool) -> Vec<Vec<DVec2>> {
+        let [left, top, right, bottom] = sides(self.room.map(f64::from));
+        let [low, high] = self.bounds();
+        let reaches_in = low.cmplt(DVec2::new(right, bottom)).all() && high.cmpgt(DVec2::new(left, top)).all();
+        if !self.is_pointed_at || !is_seen && reaches_in {
             return Vec::new();
         }
         let middle = self.position.iter().sum::<DVec3>() / self.position.len().max(1) as f64;
@@ -126,10 +166,15 @@ impl Ghost<'_> {
     }
 }
 
+/// The length of a line (px).
+fn length(line: &[DVec2]) -> f64 {
+    line.windows(2).map(|two| two[0].distance(two[1])).sum()
+}
+
 /// Dashes and gaps along a line, such that a closed one has whole dashes (px).
 fn dashes(line: &[DVec2], unit: f64) -> [f64; 2] {
     let dash = DASH.map(|length| length * unit);
-    let length: f64 = line.windows(2).map(|two| two[0].distance(two[1])).sum();
+    let length = length(line);
     let period = dash[0] + dash[1];
     if line.first() != line.last() || length < period {
         return dash;
@@ -259,7 +304,8 @@ mod tests {
 
     fn outline(lens: &Lens, position: &[DVec3], triangles: &[[u32; 3]], room: Rectangle) -> Vec<Vec<DVec2>> {
         let nodes: Vec<u32> = (0..position.len() as u32).collect();
-        Ghost { lens, position, nodes: &nodes, triangles, bars: &[], room, is_pointed_at: true }.outline()
+        Ghost { lens, position, nodes: &nodes, triangles, bars: &[], room, overview: None, is_pointed_at: true }
+            .outline()
     }
 
     /// A cube with outward triangles.
@@ -297,6 +343,7 @@ mod tests {
             triangles: &triangles,
             bars: &[],
             room: ROOM,
+            overview: None,
             is_pointed_at: true,
         };
         let mut curves = Vec::new();
@@ -306,6 +353,38 @@ mod tests {
         let [tail, tip] = [0, 1].map(|at| curves[0].points[at]);
         assert_eq!((tip, tip[1] < tail[1], curves[0].dash.len()), (curves[1].points[1], true, 0));
         assert!((tip[1] - narrow(POINTER[2])).abs() < 1e-3, "{tip:?}");
+    }
+
+    #[test]
+    fn a_ghost_fades_where_it_leaves_and_around_an_overview() {
+        let lens = lens(Dimension::Space);
+        let (mut position, triangles) = cube();
+        position.iter_mut().for_each(|at| at.x += 0.3);
+        let nodes: Vec<u32> = (0..8).collect();
+        let drawn = |room: Rectangle, overview| {
+            let (lens, position, nodes, triangles) = (&lens, &position, &nodes, &triangles);
+            let ghost = Ghost { lens, position, nodes, triangles, bars: &[], room, overview, is_pointed_at: true };
+            let mut curves = Vec::new();
+            ghost.draw(Scale::REFERENCE, [0; 3], [255; 3], &mut curves);
+            curves.retain(|curve| curve.colour == [0; 3]);
+            curves
+        };
+        let whole = drawn(ROOM, None);
+        assert!(whole.len() == 1 && !whole[0].dash.is_empty() && whole[0].alpha == 1.0);
+        let xs = || whole[0].points.iter().map(|at| at[0]);
+        let middle = xs().fold(0.0, |sum: f32, x| sum + x) / xs().count() as f32;
+        // A room that ends within it: each dash for itself, and fainter towards the side.
+        let cut = drawn([0, 0, middle as u32 + 30, 640], None);
+        let right = |curve: &Curve| curve.points.iter().fold(0.0, |most: f32, at| most.max(at[0]));
+        let last = cut.iter().max_by(|a, b| right(a).total_cmp(&right(b))).unwrap();
+        assert!(last.dash.is_empty() && last.alpha < 0.2, "{last:?}");
+        assert!(cut.iter().any(|curve| curve.alpha == 1.0));
+        // Nothing of it lies in an overview.
+        let at = whole[0].points[0].map(f64::from);
+        let overview = [at[0] - 20.0, at[1] - 20.0, 40.0, 40.0];
+        let inside = |[x, y]: &[f32; 2]| (f64::from(*x) - at[0]).abs() < 14.0 && (f64::from(*y) - at[1]).abs() < 14.0;
+        assert!(whole[0].points.iter().any(inside));
+        assert!(!drawn(ROOM, Some(overview)).iter().flat_map(|curve| &curve.points).any(inside));
     }
 
     #[test]

@@ -76,7 +76,8 @@ impl<'a> Bar<'a> {
 
 /// A line or a mark with its meaning.
 pub(super) struct Sample<'a> {
-    pub(super) name: Cow<'a, str>,
+    /// Its name: the longest wording that fits, of at least one.
+    pub(super) names: Vec<Cow<'a, str>>,
     pub(super) kind: SampleKind,
 }
 
@@ -139,8 +140,11 @@ impl Legend {
             let size = size.min(most.max(size / writer.scale.line_factor));
             left = self.arrow(writer, [left, middle], &metres, [length, size]) + APART * unit;
         }
-        for sample in samples {
-            left = self.sample(writer, [left, middle], sample) + APART * unit;
+        let taken_by_bars = bars.len() as f64 * (BAR_ROOM + APART) * unit;
+        for (sample, after) in samples.iter().zip((0..samples.len()).rev()) {
+            let taken_by_others = after as f64 * (SAMPLE_ROOM + APART) * unit;
+            let room = (picture_width - margin - left - taken_by_bars - taken_by_others).max(SAMPLE_ROOM * unit);
+            left = self.sample(writer, [left, middle], room, sample) + APART * unit;
         }
         // Bars share what is left evenly.
         let right = picture_width - margin;
@@ -171,8 +175,8 @@ impl Legend {
         )
     }
 
-    /// A sample with its name; returns where that ends (px).
-    fn sample(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], sample: &Sample<'_>) -> f64 {
+    /// A sample with its name in a room (px); returns where that ends (px).
+    fn sample(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], room: f64, sample: &Sample<'_>) -> f64 {
         let (unit, palette) = (self.unit, writer.palette);
         let [length, width] = SAMPLE.map(|length| length * unit);
         let line = unit * writer.scale.line_factor;
@@ -202,8 +206,10 @@ impl Legend {
             }
         };
         let before = length + 12.0 * unit;
-        let room = SAMPLE_ROOM * unit - before;
-        let name = writer.fonts.shortened(&sample.name, Weight::Regular, 16.0 * unit, room);
+        let fonts = writer.fonts;
+        let fits = |name: &&Cow<'_, str>| fonts.width(name, Weight::Regular, 16.0 * unit) <= room - before;
+        let name = sample.names.iter().find(fits).or(sample.names.last()).map_or("", |name| name);
+        let name = fonts.shortened(name, Weight::Regular, 16.0 * unit, room - before);
         self.write(writer, &name, Weight::Regular, 16.0, palette.second_text, left + before, middle + 5.5 * unit)
     }
 

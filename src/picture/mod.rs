@@ -19,6 +19,7 @@ mod ears;
 mod ends;
 mod event;
 mod exploded;
+mod fade;
 mod field;
 mod flag;
 mod ghost;

@@ -61,9 +61,14 @@ impl Tally {
         Self { rows, are_layers, count }
     }
 
-    /// Whether there are squares, one for each element, and not a bar.
-    pub(super) fn has_squares(&self) -> bool {
-        !self.rows.is_empty()
+    /// Whether there are squares, one for each element, and not a bar, in a room (px).
+    pub(super) fn has_squares(&self, scale: Scale, room: f64) -> bool {
+        self.squares(scale, room).is_some()
+    }
+
+    /// The same as a bar.
+    pub(super) fn as_bar(&self) -> Self {
+        Self { rows: Vec::new(), are_layers: false, count: self.count }
     }
 
     /// Whether its rows are several layers of the body.

@@ -41,6 +41,12 @@ impl Variants {
             let help = "write commas between values, and points in decimals".to_owned();
             return Err(wrong(0..key.len(), format!("the keys are separated by {name}; expected commas"), Some(help)));
         }
+        if let Some(at) = keys.iter().position(|key| !value(key).is_str()) {
+            let message =
+                format!("the first line has keys, such as run[0].model.stiffness, but `{}` is a value", keys[at]);
+            let help = "write a line with the key of each column above the values".to_owned();
+            return Err(wrong(cell(text, 0, at), message, Some(help)));
+        }
         if let Some(at) = (0..keys.len()).find(|&at| keys[at].is_empty() || keys[..at].contains(&keys[at])) {
             let message = format!(
                 "the key of column {} is {}; expected one such as run[0].model.stiffness",
@@ -69,6 +75,11 @@ impl Variants {
                     "a value that is that of the scene is an empty cell, and one with commas stands in quotation marks"
                 };
                 return Err(wrong(cell(text, start, keys.len().min(row.len() - 1)), message, Some(help.to_owned())));
+            }
+            if let Some(at) = row.iter().position(has_comment) {
+                let message = format!("`{}` is a value with a comment; expected the value alone", &row[at]);
+                let help = "a comment may stand in no cell; leave out `#` and what follows".to_owned();
+                return Err(wrong(cell(text, start, at), message, Some(help)));
             }
             rows.push((row, start));
         }
@@ -107,6 +118,12 @@ pub(crate) fn value(cell: &str) -> toml::Value {
     let typed = toml::from_str::<toml::Table>(&format!("value = {cell}")).ok();
     let typed = typed.filter(|table| table.len() == 1).and_then(|mut table| table.remove("value"));
     typed.unwrap_or_else(|| toml::Value::String(cell.to_owned()))
+}
+
+/// Whether a cell has a comment behind its value, which a scene file may have.
+fn has_comment(cell: &str) -> bool {
+    // A comment hides the bracket.
+    !value(cell).is_str() && toml::from_str::<toml::Table>(&format!("value = [{cell}]")).is_err()
 }
 
 /// Sets the value of a key such as `run[0].model.stiffness`.
@@ -202,12 +219,16 @@ mod tests {
             ("a,b\n\n\r\n1\n", (4, 1), "this line has 1 value; expected 2"),
             ("a,,b\n1,2,3\n", (1, 3), "the key of column 2 is missing"),
             ("a,a\n1,2\n", (1, 3), "given a second time"),
+            ("a,b\n1,1e3 # soft\n", (2, 3), "`1e3 # soft` is a value with a comment"),
+            ("a,1e3\n1,2\n", (1, 3), "the first line has keys, such as run[0].model.stiffness, but `1e3` is a value"),
             ("a,b\n", (1, 1), "no variants"),
             ("", (1, 1), "no variants"),
         ] {
             let found = Variants::parse(text).expect_err(text);
             assert!((found.line, found.column) == place && found.message.contains(words), "{text:?}: {found:?}");
         }
+        let texts = "a\n#0072b2\nnumber # 7\n\"\"\"1 # 2\"\"\"\n\"[1, 2]\"\n";
+        assert_eq!(Variants::parse(texts).map(|table| table.rows.len()).ok(), Some(4));
         let help = |text: &str| Variants::parse(text).expect_err(text).help.unwrap_or_default();
         assert!(help("a\n0,5\n").contains("decimals have a point"));
         assert_eq!(decimal_comma("-0,5").as_deref(), Some("decimals have a point: -0.5"));

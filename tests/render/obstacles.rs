@@ -431,3 +431,30 @@ fn a_rod_that_touches_darkens_the_body_below_it_and_one_that_does_not_leaves_it_
     let [touching, hovering] = [0.2305, 0.5].map(brightness);
     assert!(touching < 0.85 && (hovering - 1.0).abs() < 0.05, "{touching} {hovering}");
 }
+
+/// Over a distance that grows as the obstacle leaves, so that nothing changes at once.
+#[test]
+fn obstacles_fade_where_they_leave_their_panel() {
+    let alone = scene(&[WORLD, CUBE, FLOOR]);
+    let mut widest = [0_usize; 2];
+    let mut before = 0;
+    for step in 0..60_usize {
+        let x = -0.2 - 0.01 * step as f64;
+        let sphere = format!("[[obstacle]]\nkind = 'sphere'\ncentre = [{x}, 0.2, 0]\nradius = 0.05\n");
+        let mut seen = scene(&[WORLD, CUBE, FLOOR, &sphere]);
+        seen.view.camera.clone_from(&alone.view.camera);
+        let picture = picture(&seen, 0);
+        let [left, top, ..] = picture.panels[0].viewport;
+        let is_cover = |mark: &&Mark| mark.colour == picture.palette.background && mark.rectangle[2] == 1.0;
+        let covers: Vec<_> = picture.marks.iter().filter(is_cover).collect();
+        let depths: Vec<_> = covers.iter().map(|mark| mark.rectangle[0] - left as f32).collect();
+        assert!(covers.windows(2).all(|two| two[0].opacity >= two[1].opacity), "{x}");
+        assert!(covers.is_empty() || depths[0] == 0.0 && covers[0].rectangle[1] >= top as f32, "{x}");
+        if covers.len() > before {
+            widest = [step, covers.len()];
+        }
+        before = before.max(covers.len());
+    }
+    // Neither where it is whole nor where nothing of it is seen.
+    assert!(widest[0] > 5 && widest[1] > 10 && before == widest[1], "{widest:?}");
+}

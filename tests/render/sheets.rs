@@ -4,7 +4,7 @@ use super::assert_words_are_clear;
 use super::strips::alike;
 use glam::Vec3;
 use localshape::moments::Moments;
-use localshape::picture::{MarkShape, Panel, Picture, TextRun, Weight, compose_figure};
+use localshape::picture::{Mark, MarkShape, Panel, Picture, TextRun, Weight, compose_figure};
 use localshape::scene::Limits;
 use localshape::scene::figure::{Content, Figure, Sheet};
 use localshape::sim::snapshot::Status;
@@ -406,4 +406,21 @@ fn a_sheet_colours_all_its_scenes_by_one_field() {
         assert!(panel.sound.shades.iter().any(|&shade| shade > 0.05));
     }
     assert!(picture.words.iter().any(|run| run.text == "displacement"));
+}
+
+/// Of several scenes, too, of which one has too many elements in a layer for squares; and the key says what is drawn.
+#[test]
+fn tallies_of_a_sheet_have_one_style() {
+    let column = |scene: &str| format!("[[sheet.column]]\nscene = '{scene}.toml'\ntime = 0\n");
+    let words = |columns: &str| {
+        let figure = own(&format!("title = 'x'\n[sheet]\n{columns}"));
+        let picture = compose_figure(&figure, &Moments::new(&figure)).expect("room");
+        let key = picture.words.iter().find(|run| run.text.starts_with("turned over")).expect("a key").text.clone();
+        let of_tally = |mark: &&Mark| mark.colour == picture.palette.tally;
+        (key, picture.marks.iter().filter(of_tally).count())
+    };
+    let [one, other] = [column("fig4b"), column("rod")];
+    assert_eq!(words(&one), ("turned over (one square per cube, lowest layer at the bottom)".to_owned(), 2 * 27));
+    assert_eq!(words(&other), ("turned over".to_owned(), 2));
+    assert_eq!(words(&(one + &other)), ("turned over".to_owned(), 4));
 }

@@ -324,7 +324,7 @@ fn a_summary_says_what_a_scene_holds() {
     );
     let cube = format!("{WORLD}[body]\nlattice = {{ cells = [1, 1, 1], side = 1 }}\n");
     let model = |more: &str| good(&cube.replace("1e4", more)).summary().runs[0].model.clone();
-    assert_eq!(model("1e4"), "1 cube, k = 10 kN/m, rotation robust");
+    assert_eq!(model("1e4"), "1 cube, k = 10 kN/m, rotation robust (exact)");
     assert_eq!(model("1e4, passes = 1"), "1 cube, k = 10 kN/m, rotation arctangent with 1 pass");
     let json = serde_json::to_value(good(include_str!("explicit.toml")).summary()).unwrap();
     assert_eq!(json["elements"], serde_json::json!(["6 triangles"]));

@@ -491,6 +491,15 @@ fn mistakes_of_ghosts_and_differences() {
     case(&same, "size = [640, 360]", "ghost = 'rest'", "20:9 means the rest shape, but `run[1]` has this name, too");
 }
 
+/// A chart without a curve says nothing.
+#[test]
+fn charts_of_what_no_run_has_are_refused() {
+    let other = "which no run has only shape-based models in space count them; plot another diagnostic";
+    let chart = |of: &str| format!("strip = '{of}'");
+    case(PLANE, "size = [640, 360]", &chart("global_rotations"), &format!("20:9 {other}"));
+    good(&PLANE.replace("size = [640, 360]", &chart("residual")));
+}
+
 #[test]
 fn paths_and_points_are_read() {
     let folder = tempfile::tempdir().expect("a folder");

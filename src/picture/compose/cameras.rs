@@ -63,20 +63,22 @@ impl Composer<'_> {
         tracking.framing(self.scene, shot, run, place, panel)
     }
 
-    /// Draws the overview of a panel, if its camera moves.
-    pub(super) fn locate(
+    /// Where the overview of a panel stands (px: left, top, width and height), if its camera moves.
+    pub(super) fn overview(
         &self,
-        (panel, enlarged): (Rectangle, Option<&Enlarged>),
-        draft: &Draft<'_>,
+        panel: Rectangle,
+        enlarged: Option<&Enlarged>,
         shot: &Shot,
-        tracking: &Tracking,
-        writer: &mut Writer<'_>,
-    ) {
-        let Some(locator) = self.locator.as_ref().filter(|_| !shot.is_still) else { return };
-        let Some(place) = locator.place(&self.scene.view, panel, writer.scale) else { return };
-        if enlarged.is_some_and(|enlarged| !enlarged.leaves_free(place)) {
-            return;
-        }
+        scale: Scale,
+    ) -> Option<[f64; 4]> {
+        let locator = self.locator.as_ref().filter(|_| !shot.is_still)?;
+        let place = locator.place(&self.scene.view, panel, scale)?;
+        enlarged.is_none_or(|enlarged| enlarged.leaves_free(place)).then_some(place)
+    }
+
+    /// Draws the overview of a panel, if it has one.
+    pub(super) fn locate(&self, draft: &Draft<'_>, shot: &Shot, tracking: &Tracking, writer: &mut Writer<'_>) {
+        let Some((locator, place)) = self.locator.as_ref().zip(draft.overview) else { return };
         if draft.position.is_empty() {
             return;
         }

@@ -55,6 +55,7 @@ impl Draft<'_> {
             triangles: &skin.triangles,
             bars: &bars,
             room,
+            overview: self.overview,
             is_pointed_at: self.enlarged == 1.0,
         };
         ghost.draw(self.scale, colour, self.composer.palette.halo, curves);

@@ -8,16 +8,20 @@ use crate::picture::legend::{Bar, Legend, Sample, SampleKind};
 use crate::picture::wire::spring_strain;
 use crate::picture::{Framing, arrows, number};
 use crate::sim::snapshot::Frame;
+use std::borrow::Cow;
 
 impl Composer<'_> {
     /// What lines and marks mean.
     pub(super) fn samples(&self) -> Vec<Sample<'_>> {
-        let ghost = self.ghost().map(|(name, colour)| Sample { name: name.into(), kind: SampleKind::Ghost(colour) });
-        let path = Some(self.path_name()).filter(|name| !name.is_empty());
+        let ghost =
+            self.ghost().map(|(name, colour)| Sample { names: vec![name.into()], kind: SampleKind::Ghost(colour) });
+        let path: Vec<_> = self.path_names().into_iter().map(Cow::from).collect();
+        let path = Some(path).filter(|names| !names.is_empty());
         let colours = self.traced.iter().map(|series| self.scene.runs[series.run].line(&self.palette).colour).collect();
-        let path = path.map(|name| Sample { name: name.into(), kind: SampleKind::Path(colours) });
+        let path = path.map(|names| Sample { names, kind: SampleKind::Path(colours) });
         let points = self.scene.view.points.as_ref();
-        let points = points.map(|_| Sample { name: "measured".into(), kind: SampleKind::Ring(self.palette.text) });
+        let points =
+            points.map(|_| Sample { names: vec!["measured".into()], kind: SampleKind::Ring(self.palette.text) });
         ghost.into_iter().chain(path).chain(points).collect()
     }
 

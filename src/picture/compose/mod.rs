@@ -2,6 +2,7 @@
 
 mod body;
 mod cameras;
+mod cut;
 mod difference;
 mod figure;
 mod ghost;
@@ -294,7 +295,7 @@ impl<'a> Composer<'a> {
             let bars = self.bars(frame, compared.map(|(compared, _)| compared));
             legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &self.samples(), &bars);
         }
-        let (mut under, mut marks, mut panels) = (Vec::new(), hairlines, Vec::with_capacity(runs.len()));
+        let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::with_capacity(runs.len()));
         let (mut ghosts, mut insets) = (Vec::new(), Vec::new());
         let over = |draft: &Draft<'_>, curves: &mut Vec<Curve>| {
             draft.ghost(&frame.runs, draft.between_words(), curves);
@@ -303,7 +304,8 @@ impl<'a> Composer<'a> {
         for ((((room, enlarged), &place), run), framing) in
             rooms.iter().zip(&layout.panels).zip(&frame.runs).zip(&framings)
         {
-            let draft = Draft::new(self, *room, run, framing, scale);
+            let mut draft = Draft::new(self, *room, run, framing, scale);
+            draft.overview = shot.as_ref().and_then(|shot| self.overview(place, enlarged.as_ref(), shot, scale));
             over(&draft, &mut ghosts);
             panels.push(draft.panel(&mut under, &mut marks));
             draft.points(draft.between_words(), &mut marks);
@@ -313,9 +315,10 @@ impl<'a> Composer<'a> {
                 insets.extend(Draft::new(self, *room, run, framing, scale).enlarged(enlarged, over, sinks));
             }
             if let Some((shot, tracking)) = shot.as_ref().zip(self.tracking.as_ref()) {
-                self.locate((place, enlarged.as_ref()), &draft, shot, tracking, &mut writer);
+                self.locate(&draft, shot, tracking, &mut writer);
             }
         }
+        marks.extend(hairlines);
         if let Some((compared, place)) = compared {
             let room = self.rooms(place, scale).0;
             let framing = self.framing(shot_of_difference.as_ref(), compared.one, (room, scale));

@@ -55,6 +55,8 @@ pub(super) struct Draft<'a> {
     pub(super) shades: Option<Shades>,
     /// Its places at the nodes, if anything but surfaces shows them.
     pub(super) of_nodes: Vec<f32>,
+    /// Where an overview lies over it (px: left, top, width and height).
+    pub(super) overview: Option<[f64; 4]>,
     /// How many times it is enlarged, in an inset: its hatch keeps its distance on the picture.
     pub(super) enlarged: f64,
     /// Length of an element's edge at the body's distance (px).
@@ -129,6 +131,7 @@ impl<'a> Draft<'a> {
             position,
             shades,
             of_nodes,
+            overview: None,
             enlarged: 1.0,
             element: lens.focal * view.side / if flat { 1.0 } else { framing.distance },
             flat,
@@ -153,7 +156,10 @@ impl<'a> Draft<'a> {
         self.marks_of_plane(under, above);
         let SurfaceLines { drawn: mut lines, borders } = lines;
         let of_body = lines.len();
-        let (obstacles, staged) = self.obstacles([&sound, &turned_over], &mut lines, above);
+        let mut arrows = Vec::new();
+        let (obstacles, staged) = self.obstacles([&sound, &turned_over], &mut lines, &mut arrows);
+        self.fade_obstacles(&obstacles, above);
+        above.extend(arrows);
         let borders = borders.into_iter().map(|border| border.line).chain(lines[of_body..].iter().copied()).collect();
         if !self.scene.view.outline {
             lines.retain(|line| !matches!(line.kind, LineKind::Contour | LineKind::ObstacleContour));

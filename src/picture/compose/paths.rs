@@ -5,6 +5,7 @@ use super::panel::Draft;
 use crate::history::TimeSeries;
 use crate::look::Traced;
 use crate::picture::chart::dot;
+use crate::picture::fade::{FADING, Fade};
 use crate::picture::layout::Rectangle;
 use crate::picture::narrow::narrow;
 use crate::picture::plane::{clipped, sides};
@@ -21,24 +22,31 @@ const HALO: f64 = 2.0;
 const HALO_ALPHA: f64 = 0.6;
 /// Radius of the dot at the end of a path, in widths.
 const DOT: f64 = 1.7;
-/// They fade over this distance from where they leave the panel (px in the reference picture), in so many steps.
-const FADING: f64 = 42.0;
-const STEPS: f64 = 8.0;
 /// Radius of a measured point of the present moment and of earlier ones (px in the reference picture).
 const RING: f64 = 5.0;
 const PAST: f64 = 2.6;
 
 impl Composer<'_> {
-    /// What the paths are called in the key; empty if there are none.
-    pub(super) fn path_name(&self) -> String {
+    /// What the paths are called in the key, from the longest wording to the shortest; none if there are none. The one
+    /// of the centre is drawn thicker.
+    pub(super) fn path_names(&self) -> Vec<String> {
         let paths = &self.scene.view.paths;
-        let nodes = paths.iter().filter(|traced| **traced != Traced::Centre).count();
-        match (nodes < paths.len(), nodes) {
-            (false, 0) => String::new(),
-            (true, 0) => "path of the centre".to_owned(),
-            (false, 1) => "path of a node".to_owned(),
-            (false, _) => "paths of nodes".to_owned(),
-            (true, _) => "paths".to_owned(),
+        let nodes: Vec<_> = paths
+            .iter()
+            .filter_map(|traced| if let Traced::Node(node) = traced { Some(node.to_string()) } else { None })
+            .collect();
+        let all = nodes.join(", ");
+        match (nodes.len() < paths.len(), nodes.len()) {
+            (false, 0) => Vec::new(),
+            (true, 0) => vec!["path of the centre".to_owned()],
+            (false, 1) => vec![format!("path of node {all}")],
+            (false, count) => vec![format!("paths of nodes {all}"), format!("paths of {count} nodes")],
+            (true, count) => {
+                let plural = if count == 1 { "" } else { "s" };
+                let wordings = [format!("node{plural} {all}"), format!("{count} node{plural}")];
+                let [named, counted] = wordings.map(|nodes| format!("paths: centre (thick), {nodes}"));
+                vec![named, counted.clone(), counted.replace(" (thick)", "")]
+            }
         }
     }
 }
@@ -60,7 +68,8 @@ impl Draft<'_> {
             let pieces = lines.iter().flat_map(|line| parted(simplified(line, EXACT)));
             // In an inset they go on to its frame.
             let fading = if self.clear == self.viewport { 0.0 } else { FADING * self.scale.unit };
-            let pieces: Vec<_> = pieces.flat_map(|piece| faded(&piece, room, fading)).collect();
+            let fade = Fade::new(room, [fading; 4], self.overview, self.scale.unit);
+            let pieces: Vec<_> = pieces.flat_map(|piece| fade.parts(&piece)).collect();
             let last = self.lens.project(now).map(|(pixel, _)| pixel).filter(|&pixel| holds(room, pixel.into()));
             for (more, colour, alpha) in [(HALO, halo, HALO_ALPHA), (0.0, colour, 1.0)] {
                 let line = self.scale.line();
@@ -114,32 +123,6 @@ fn present(samples: &[(f64, DVec3)], snapshot: &Snapshot, half_frame: f64) -> (O
 fn holds(room: Rectangle, pixel: DVec2) -> bool {
     let [left, top, right, bottom] = sides(room.map(f64::from));
     (left..=right).contains(&pixel.x) && (top..=bottom).contains(&pixel.y)
-}
-
-/// A line in a room, parted so that it fades over a distance from the room's upper and lower border (px), with the opacity
-/// of each part.
-fn faded(line: &[[f64; 2]], room: Rectangle, distance: f64) -> Vec<(Vec<[f64; 2]>, f64)> {
-    let [_, top, _, bottom] = sides(room.map(f64::from));
-    let step = |y: f64| match (y - top).min(bottom - y) / distance {
-        share if distance > 0.0 && share < 1.0 => (share.max(0.0) * STEPS).floor(),
-        _ => STEPS - 1.0,
-    };
-    let mut parts: Vec<(Vec<[f64; 2]>, f64)> = Vec::new();
-    for two in line.windows(2) {
-        let [from, to] = [two[0], two[1]].map(DVec2::from);
-        // Pieces as short as a step where it may fade.
-        let near = step(from.y).min(step(to.y)) < STEPS - 1.0;
-        let count = if near { ((to.y - from.y).abs() * STEPS / distance).ceil().max(1.0) as u32 } else { 1 };
-        for at in 0..count {
-            let [start, end] = [at, at + 1].map(|at| from.lerp(to, f64::from(at) / f64::from(count)));
-            let alpha = (step(start.midpoint(end).y) + 1.0) / STEPS;
-            match parts.last_mut().filter(|part| part.1 == alpha) {
-                Some((points, _)) => points.push(end.to_array()),
-                None => parts.push((vec![start.to_array(), end.to_array()], alpha)),
-            }
-        }
-    }
-    parts
 }
 
 /// A line, parted where it turns back on itself: the shader of curves joins pieces that go on in about the same direction.
@@ -199,17 +182,6 @@ mod tests {
         let lines = within(points.into_iter(), [0, 0, 10, 10]);
         assert_eq!(lines, [vec![[5.0, 5.0], [10.0, 5.0]], vec![[10.0, 6.5], [5.0, 8.0], [6.0, 9.0]]]);
         assert_eq!(within([points[0], None, points[4], points[3]].into_iter(), [0, 0, 10, 10]).len(), 1);
-    }
-
-    #[test]
-    fn lines_fade_where_they_leave() {
-        let line = [[5.0, 0.0], [5.0, 100.0]];
-        let parts = faded(&line, [0, 0, 10, 200], 40.0);
-        // They join without a gap, and become steadily more opaque.
-        assert_eq!(parts.len(), STEPS as usize);
-        assert!(parts.windows(2).all(|two| two[0].0.last() == two[1].0.first() && two[0].1 < two[1].1));
-        assert_eq!((parts[0].0[0], parts[7].0.last(), parts[7].1), ([5.0, 0.0], Some(&[5.0, 100.0]), 1.0));
-        assert_eq!(faded(&line, [0, 0, 10, 200], 0.0), [(line.to_vec(), 1.0)]);
     }
 
     #[test]

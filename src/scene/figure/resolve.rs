@@ -5,10 +5,11 @@ use super::{Column, Content, Figure, Forces, Row, Sheet};
 use crate::look::print::{unit, unit_of_sheet};
 use crate::look::{self, Subject};
 use crate::reading::report::{Report, Way, way};
-use crate::reading::words::list;
+use crate::reading::words::{list, quoted};
 use crate::scene::structure::Checked;
 use crate::scene::{Scene, SceneError};
 use crate::sim::snapshot::Diagnostic;
+use crate::sim::words::typed;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -166,6 +167,12 @@ impl Scenes<'_, '_, '_> {
             let [one, two] = [0, other].map(|at| format!("“{}” ends at {} s", self.scenes[at].title, ends[at]));
             let message = format!("strips over several scenes have one axis of time, but {one} and {two}");
             self.report.at_key(&at("strips"), message, "give the scenes the same duration and frame rate");
+        }
+        for (index, strip) in file.strips.iter().enumerate() {
+            if let Some(why) = self.scenes.iter().map(|scene| scene.lacks(*strip)).reduce(Option::and).flatten() {
+                let message = format!("`sheet.strips[{index}]` is {}, which no run has", quoted(&typed(strip)));
+                self.report.at(&way!["sheet", "strips", index], message, why);
+            }
         }
         self.check_times(&file.strips, file.from, file.split, &resolved);
         if let Some(index) = rows.iter().position(|row| row.time.is_some()).filter(|_| !file.strips.is_empty()) {

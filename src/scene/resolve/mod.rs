@@ -25,6 +25,7 @@ use crate::sim::contact::Obstacle;
 use crate::sim::grip::Grip;
 use crate::sim::model::ElasticModel;
 use crate::sim::sleep::Sleep;
+use crate::sim::words::typed;
 use body::ResolvedBody;
 use glam::DVec3;
 use lists::Lists;
@@ -225,6 +226,10 @@ pub(super) fn resolve(
     if let (Some(_), Some(run)) = (scene.sleep, scene.runs.iter().find(|run| run.integrator.is_adaptive())) {
         let message = format!("{} cannot sleep: it has no steps after which nodes are looked at", quoted(&run.name));
         report.at_key(&way!["time", "sleep"], message, "remove `sleep`, or choose an integrator with a `step`");
+    }
+    if let Some((strip, why)) = scene.view.strip.and_then(|strip| Some((strip, scene.lacks(strip)?))) {
+        let message = format!("`view.strip` is {}, which no run has", quoted(&typed(&strip)));
+        report.at(&way!["view", "strip"], message, why);
     }
     warn_of_time(&scene, report);
     warn_of_sleep(&scene, report);

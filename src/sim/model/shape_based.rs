@@ -157,6 +157,8 @@ impl ElasticModel for ShapeBased {
                 if rotation.has_passes() {
                     let plural = if self.passes == 1 { "" } else { "es" };
                     text += &format!(" with {} pass{plural}", self.passes);
+                } else {
+                    text += " (exact)";
                 }
             }
         }

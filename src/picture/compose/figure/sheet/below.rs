@@ -23,15 +23,28 @@ const NUMBER_GAP: f64 = 18.0;
 /// Half the height of digits, in parts of the type's size.
 const X_MIDDLE: f64 = 0.36;
 
-/// Wordings of the key of turned-over elements, from the longest to the shortest.
-pub(super) fn key(scenes: &[Scene]) -> Vec<String> {
+/// The elements of all scenes in rows, in one style: squares for all, or bars.
+pub(super) fn tallies(scenes: &[Scene], scale: Scale, plan: &Plan) -> Vec<Tally> {
     let tallies: Vec<_> = scenes.iter().map(|scene| Tally::new(&scene.body, scene.view.side)).collect();
+    let (scale, room) = size_of_tallies(scale, plan);
+    let have_squares = tallies.iter().all(|tally| tally.has_squares(scale, room));
+    if have_squares { tallies } else { tallies.iter().map(Tally::as_bar).collect() }
+}
+
+/// The scale and the room of tallies (px).
+fn size_of_tallies(scale: Scale, plan: &Plan) -> (Scale, f64) {
+    (scale.with_unit(TALLY * scale.unit), TALLY_SHARE * plan.words_width(scale))
+}
+
+/// Wordings of the key of turned-over elements, from the longest to the shortest.
+pub(super) fn key(scenes: &[Scene], tallies: &[Tally], scale: Scale, plan: &Plan) -> Vec<String> {
+    let (scale, room) = size_of_tallies(scale, plan);
     let kinds: Vec<_> = scenes.iter().flat_map(|scene| elements(&scene.body)).map(|(_, kind)| kind).collect();
     let same = kinds.first().filter(|first| kinds.iter().all(|kind| kind == *first));
     let kind = same.and_then(|kind| kind.strip_suffix('s')).unwrap_or("element");
     let mut wordings = vec!["turned over".to_owned()];
     let several = scenes.iter().any(|scene| scene.body.elements.len() > 1);
-    if several && tallies.iter().all(Tally::has_squares) {
+    if several && tallies.iter().all(|tally| tally.has_squares(scale, room)) {
         wordings.push(format!("turned over (one square per {kind})"));
         if tallies.iter().all(Tally::has_layers) {
             wordings.push(format!("turned over (one square per {kind}, lowest layer at the bottom)"));
@@ -75,8 +88,7 @@ impl Below {
         };
         let (mut tally, mut tally_width) = (Vec::new(), 0.0);
         if !over.is_empty() {
-            let scale = writer.scale.with_unit(TALLY * writer.scale.unit);
-            let room = TALLY_SHARE * plan.words_width(writer.scale);
+            let (scale, room) = size_of_tallies(writer.scale, plan);
             tally_width = composer.tally.draw([over, flat], writer.palette, scale, room, [0.0; 2], &mut tally);
         }
         let count = run.snapshot.diagnostics.turned_over;

@@ -52,8 +52,6 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let mut writer = Writer { palette, fonts: &fonts, scale, marks: Vec::new(), curves: Vec::new(), words: Vec::new() };
     let scenes = plain(figure, sheet);
 
-    let has_flat = moments.cells.iter().flatten().any(|run| run.snapshot.flat.contains(&true));
-    let header = header::write(&mut writer, figure, &below::key(&scenes), has_flat);
     let legend = legend(&scenes, size, scale);
     let has_charts = !sheet.strips.is_empty();
     let charts = has_charts.then(|| Charts::new(sheet, &moments.histories, &writer, f64::from(size[0])));
@@ -61,7 +59,16 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let with_sample = has_charts || scenes.iter().any(shows_runs);
     let labels = RowLabels::new(sheet, &fonts, scale, with_sample, f64::from(size[0]));
     let bottom = size[1] - legend.map_or(0, |legend| legend.height.min(size[1] / 2));
-    let plan = Plan::new(sheet, &writer, [size[0], bottom], header, labels.width, charts.as_ref());
+    let plan_below = |header: f64, writer: &Writer<'_>| {
+        Plan::new(sheet, writer, [size[0], bottom], header, labels.width, charts.as_ref())
+    };
+    // How wide tiles are does not depend on the header, whose key says how tallies are drawn.
+    let plan = plan_below(0.0, &writer);
+    let tallies = below::tallies(&scenes, scale, &plan);
+    let has_flat = moments.cells.iter().flatten().any(|run| run.snapshot.flat.contains(&true));
+    let key = below::key(&scenes, &tallies, scale, &plan);
+    let header = header::write(&mut writer, figure, &key, has_flat);
+    let plan = plan_below(header, &writer);
     labels.write(&mut writer, &plan, sheet);
     for (column, heading) in plan.headings.iter().enumerate() {
         let left = f64::from(plan.tile(0, column)[0]);
@@ -77,9 +84,10 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     // The tiles of a scene share what is computed for the first of them.
     let scenes: Vec<_> = scenes.iter().enumerate().map(|(at, scene)| seen(scene, at, sheet, &framings)).collect();
     let traced = |scene: usize| moments.histories.get(scene).map_or_else(Vec::new, |history| history.series.clone());
-    let composers = scenes.iter().zip(reaches).enumerate();
-    let composers: Vec<_> =
-        composers.map(|(at, (scene, reach))| Composer { reach, traced: traced(at), ..Composer::new(scene) }).collect();
+    let composers = scenes.iter().zip(reaches).zip(tallies).enumerate();
+    let composer =
+        |(at, ((scene, reach), tally))| Composer { reach, tally, traced: traced(at), ..Composer::new(scene) };
+    let composers: Vec<_> = composers.map(composer).collect();
     let mut below = Vec::new();
     for (row, cells) in moments.cells.iter().enumerate() {
         for (column, run) in cells.iter().enumerate() {

@@ -1,0 +1,117 @@
+//! Obstacles that leave their panel fade there, instead of being cut off.
+
+use super::panel::Draft;
+use crate::look::Labels;
+use crate::picture::fade::FADING;
+use crate::picture::plane::sides;
+use crate::picture::{Mark, MarkShape, Obstacles};
+use glam::{DVec2, DVec3};
+
+/// Free around the body, which is not faded with them (px in the reference picture).
+const AROUND_BODY: f64 = 4.0;
+/// Nothing fades that goes on by less than this (px in the reference picture).
+const LEAST: f64 = 6.0;
+/// Room for the lines of an obstacle (px in the reference picture).
+const LINE_ROOM: f64 = 3.0;
+
+/// What of obstacles goes on beyond a side.
+#[derive(Clone, Copy)]
+struct Beyond {
+    /// How far, up to the distance of fading (px).
+    distance: f64,
+    /// From where to where along the side (px).
+    along: [f64; 2],
+}
+
+impl Draft<'_> {
+    /// Covers the sides of the panel where obstacles leave it with the background, the more the nearer to the side;
+    /// over no longer a distance than they go on outside, so that nothing changes at once. The body is left out.
+    pub(super) fn fade_obstacles(&self, obstacles: &Obstacles, marks: &mut Vec<Mark>) {
+        // An inset is a piece of a picture, and has a frame.
+        if self.enlarged != 1.0 {
+            return;
+        }
+        let place = |at: [f32; 3]| self.origin + self.side * DVec3::from(at.map(f64::from));
+        let has_words = self.scene.view.labels != Labels::default();
+        let room = if has_words { self.between_words() } else { self.viewport };
+        let solids = obstacles.solids.iter().map(|solid| solid.mesh.vertices.iter().map(|vertex| vertex.position));
+        let solids = solids.filter_map(|points| self.bounds(points.map(place)));
+        self.fade(sides(room.map(f64::from)), solids, marks);
+        // Plates go behind words, too; walls fade by themselves.
+        let slabs = obstacles.slabs.iter().filter_map(|slab| {
+            let panes = slab.panes.iter().filter(|pane| !pane.grid);
+            self.bounds(panes.flat_map(|pane| &pane.corners).map(|corner| place(corner.position)))
+        });
+        self.fade(sides(self.viewport.map(f64::from)), slabs, marks);
+    }
+
+    /// Does so at the sides of a room (px: left, top, right and bottom) for boxes around obstacles (px).
+    fn fade(
+        &self,
+        [left, top, right, bottom]: [f64; 4],
+        boxes: impl Iterator<Item = [DVec2; 2]>,
+        marks: &mut Vec<Mark>,
+    ) {
+        let parts = self.beyond([left, top, right, bottom], boxes);
+        let around = AROUND_BODY * self.scale.line();
+        let body = self.bounds(self.position.iter().copied()).unwrap_or_default();
+        let body = [body[0].x - around, body[0].y - around, body[1].x + around, body[1].y + around];
+        for (side, part) in parts.into_iter().enumerate() {
+            let Some(Beyond { distance, along: [first, last] }) = part else { continue };
+            // The body across the fading, and along the side.
+            let ([from, to], [begin, end]) = match side % 2 {
+                0 => ([body[0], body[2]], [body[1], body[3]]),
+                _ => ([body[1], body[3]], [body[0], body[2]]),
+            };
+            for at in 0..distance.ceil() as u32 {
+                let depth = f64::from(at);
+                let share = ((depth + 0.5) / distance).min(1.0);
+                let cover = 1.0 - share * share * (3.0 - 2.0 * share);
+                let across = [left + depth, top + depth, right - depth - 1.0, bottom - depth - 1.0][side];
+                let is_beside = across + 1.0 > from && across < to;
+                let [begin, end] =
+                    if is_beside { [begin, end].map(|at| at.clamp(first, last).round()) } else { [last; 2] };
+                for [start, stop] in [[first, begin], [end, last]].into_iter().filter(|[start, stop]| stop > start) {
+                    let rectangle = match side % 2 {
+                        0 => [across, start, 1.0, stop - start],
+                        _ => [start, across, stop - start, 1.0],
+                    };
+                    let mark = Mark::upright(rectangle, MarkShape::Filled, self.composer.palette.background);
+                    marks.extend(mark.faded(cover));
+                }
+            }
+        }
+    }
+
+    /// What of obstacles in boxes (px), if it is seen, goes on beyond each side of a room. The fading spans all that
+    /// reach into it, so that none is cut where it ends.
+    fn beyond(
+        &self,
+        [left, top, right, bottom]: [f64; 4],
+        boxes: impl Iterator<Item = [DVec2; 2]>,
+    ) -> [Option<Beyond>; 4] {
+        let [least, most] = [LEAST, FADING].map(|distance| distance * self.scale.unit);
+        let free = LINE_ROOM * self.scale.line();
+        let is_seen = |[low, high]: &[DVec2; 2]| low.x < right && high.x > left && low.y < bottom && high.y > top;
+        let over = |[low, high]: &[DVec2; 2]| [left - low.x, top - low.y, high.x - right, high.y - bottom];
+        let boxes: Vec<_> = boxes.filter(is_seen).collect();
+        [0, 1, 2, 3].map(|side: usize| {
+            let distance = boxes.iter().map(|one| over(one)[side] - least).fold(0.0, f64::max).min(most);
+            let along = |[low, high]: &[DVec2; 2]| match side % 2 {
+                0 => [(low.y - free).max(top), (high.y + free).min(bottom)],
+                _ => [(low.x - free).max(left), (high.x + free).min(right)],
+            };
+            let reaching = boxes.iter().filter(|one| over(one)[side] > -distance).map(along);
+            let along = reaching.reduce(|one, other| [one[0].min(other[0]), one[1].max(other[1])])?;
+            (distance > 0.0).then_some(Beyond { distance, along: [along[0].floor(), along[1].ceil()] })
+        })
+    }
+
+    /// The corners of the box around points (m) in the picture (px); `None` if none is before the camera.
+    fn bounds(&self, points: impl Iterator<Item = DVec3>) -> Option<[DVec2; 2]> {
+        let seen = points.filter_map(|at| self.lens.project(at)).map(|(pixel, _)| DVec2::from(pixel));
+        seen.fold(None, |known: Option<[DVec2; 2]>, at| {
+            Some(known.map_or([at; 2], |[low, high]| [low.min(at), high.max(at)]))
+        })
+    }
+}
