@@ -222,14 +222,19 @@ pub(super) fn element<T>(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
 }
 
 /// A texture of a width, a height and a number of layers, with one sample a pixel, written by the processor.
-pub(super) fn written_texture(gpu: &Gpu, label: &str, [width, height, layers]: [u32; 3]) -> wgpu::Texture {
+pub(super) fn written_texture(
+    gpu: &Gpu,
+    label: &str,
+    [width, height, layers]: [u32; 3],
+    format: wgpu::TextureFormat,
+) -> wgpu::Texture {
     gpu.device().create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R8Unorm,
+        format,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     })
