@@ -10,6 +10,16 @@ struct Segment {
     // Opacity, and where its samples of visibility are: the first, and how many.
     @location(3) @interpolate(flat) strength: f32,
     @location(4) @interpolate(flat) samples: vec2<u32>,
+    // What all pixels of a panel share.
+    @location(5) @interpolate(flat) scales: vec4<f32>,
+}
+
+fn unpack(segment: Segment) {
+    panel.line_scale = segment.scales.x;
+    panel.contour_share = segment.scales.y;
+    panel.element = segment.scales.z;
+    panel.opacity = segment.scales.w;
+    panel.line_share = 1.0;
 }
 
 const EDGE = 0u;
@@ -70,16 +80,18 @@ fn segment(
     @location(2) look: u32,
     @location(3) first: u32,
 ) -> Segment {
+    panel = panel_data;
     let kind = extractBits(look, 0u, KIND_BITS);
     let strength = f32(extractBits(look, KIND_BITS, STRENGTH_BITS)) / 255.0;
     let samples = vec2(first, look >> (KIND_BITS + STRENGTH_BITS));
     let line = projected(start, end, kind);
     if !line.seen {
-        return Segment(NOWHERE, vec4(0.0), vec2(0.0), kind, strength, samples);
+        return Segment(NOWHERE, vec4(0.0), vec2(0.0), kind, strength, samples, vec4(0.0));
     }
     let reach = 0.5 * max(widest(kind) * panel.line_scale, 1.0) + 0.5;
     let place = strip_corner(corner, line.ends.xy, line.ends.zw, reach, panel.region.zw);
-    return Segment(place, line.ends + panel.region.xyxy, line.depths, kind, strength, samples);
+    let scales = vec4(panel.line_scale, panel.contour_share, panel.line_share * panel.element, panel.opacity);
+    return Segment(place, line.ends + panel.region.xyxy, line.depths, kind, strength, samples, scales);
 }
 
 // A line on the panel's region: its ends (px), and their depths.
@@ -161,6 +173,7 @@ fn hidden_alpha() -> vec2<f32> {
 
 @fragment
 fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    unpack(segment);
     let at = beside(segment);
     let scale = panel.line_scale;
     let kind = segment.kind;
@@ -178,6 +191,7 @@ fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
 
 @fragment
 fn alarm_edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    unpack(segment);
     let at = beside(segment);
     let shares = visibility_at(segment, at.share);
     // Turned-over elements hide more of it than others.
@@ -207,6 +221,7 @@ fn contour_look(distance: f32, segment: Segment, shares: vec4<f32>) -> ContourLo
 
 @fragment
 fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    unpack(segment);
     let at = beside(segment);
     let look = contour_look(at.distance, segment, visibility_at(segment, at.share));
     return vec4(0.0, 0.0, look.outline, look.step);
@@ -214,6 +229,7 @@ fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
 
 @fragment
 fn alarm_contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    unpack(segment);
     let at = beside(segment);
     let shares = visibility_at(segment, at.share);
     let look = contour_look(at.distance, segment, shares);
@@ -226,6 +242,7 @@ fn alarm_contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
 // In the plane nothing hides a line.
 @fragment
 fn flat_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    unpack(segment);
     let distance = beside(segment).distance;
     let scale = panel.line_scale;
     switch segment.kind {

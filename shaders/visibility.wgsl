@@ -92,6 +92,7 @@ struct Sample {
 }
 
 fn sample_of(thread: vec3<u32>, groups: vec3<u32>) -> Sample {
+    panel = panel_data;
     let index = thread.y * groups.x * GROUP + thread.x;
     let within = index / CHUNK < range.y;
     let chunk = chunks[range.x + min(index / CHUNK, range.y - 1u)];
