@@ -18,6 +18,7 @@ fn area_beyond(off: f32, normal: vec2<f32>) -> f32 {
 
 @fragment
 fn border_colour(segment: Segment) -> @location(0) vec4<f32> {
+    panel = panel_data;
     let start = segment.ends.xy;
     let difference = segment.ends.zw - start;
     let extent = length(difference);

@@ -4,10 +4,22 @@
 // What pixels gain that borders cross.
 @group(1) @binding(3) var borders: texture_2d<f32>;
 
+struct Corner {
+    @builtin(position) place: vec4<f32>,
+    @location(0) @interpolate(flat) region: vec4<f32>,
+    @location(1) @interpolate(flat) shift: vec4<f32>,
+    @location(2) @interpolate(flat) edge: vec3<f32>,
+    @location(3) @interpolate(flat) alarm_line: vec3<f32>,
+    @location(4) @interpolate(flat) outline: vec4<f32>,
+}
+
 @vertex
-fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+fn corner(@builtin(vertex_index) index: u32) -> Corner {
+    panel = panel_data;
     // The viewport is the body's region.
-    return vec4(f32(index & 1u) * 2.0 - 1.0, f32(index >> 1u) * 2.0 - 1.0, 0.5, 1.0);
+    let place = vec4(f32(index & 1u) * 2.0 - 1.0, f32(index >> 1u) * 2.0 - 1.0, 0.5, 1.0);
+    let outline = vec4(panel.outline, panel.outline_alpha);
+    return Corner(place, panel.region, panel.place, panel.edge, panel.alarm_line, outline);
 }
 
 fn over(colour: vec4<f32>, above: vec3<f32>, alpha: f32) -> vec4<f32> {
@@ -35,8 +47,14 @@ fn with_borders(at: vec2<i32>) -> vec4<f32> {
 }
 
 @fragment
-fn layered(@builtin(position) place: vec4<f32>) -> @location(0) vec4<f32> {
-    let at = vec2<i32>(place.xy - panel.place.xy);
+fn layered(corner: Corner) -> @location(0) vec4<f32> {
+    panel.region = corner.region;
+    panel.place = corner.shift;
+    panel.edge = corner.edge;
+    panel.alarm_line = corner.alarm_line;
+    panel.outline = corner.outline.rgb;
+    panel.outline_alpha = corner.outline.a;
+    let at = vec2<i32>(corner.place.xy - panel.place.xy);
     let opacity = textureLoad(lines, at, 0);
     var colour = with_borders(at);
     colour = over(colour, panel.edge, opacity.r);

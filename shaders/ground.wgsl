@@ -20,13 +20,40 @@ struct Ground {
     viewport: vec4<f32>,
 }
 
-@group(1) @binding(0) var<uniform> ground: Ground;
+@group(1) @binding(0) var<uniform> ground_data: Ground;
+// As for the panel.
+var<private> ground: Ground;
+// Each texel holds the four cells around a corner of the grid, so that one reading is enough: a software driver takes five
+// times as long with a sampler.
 @group(1) @binding(1) var shades: texture_2d_array<f32>;
-@group(1) @binding(2) var smooth_cells: sampler;
 
 struct Corner {
     @builtin(position) place: vec4<f32>,
     @location(0) on_floor: vec2<f32>,
+    @location(1) @interpolate(flat) viewport: vec4<f32>,
+    @location(2) @interpolate(flat) middle_and_fade: vec4<f32>,
+    @location(3) @interpolate(flat) background: vec4<f32>,
+    @location(4) @interpolate(flat) floor: vec4<f32>,
+    @location(5) @interpolate(flat) grid: vec4<f32>,
+    @location(6) @interpolate(flat) shadow: vec4<f32>,
+    @location(7) @interpolate(flat) lines: vec3<f32>,
+    @location(8) @interpolate(flat) key: vec4<f32>,
+    @location(9) @interpolate(flat) sky: vec4<f32>,
+}
+
+fn unpack(corner: Corner) {
+    ground.viewport = corner.viewport;
+    ground.middle = corner.middle_and_fade.xy;
+    ground.fade = corner.middle_and_fade.zw;
+    ground.background = corner.background;
+    ground.floor = corner.floor;
+    ground.grid = corner.grid;
+    ground.shadow = corner.shadow;
+    ground.first.w = corner.lines.x;
+    ground.second.w = corner.lines.y;
+    panel.line_scale = corner.lines.z;
+    ground.key = corner.key;
+    ground.sky = corner.sky;
 }
 
 // The part of the panel's width over which the floor fades on each side.
@@ -35,11 +62,28 @@ const GRID_ALPHA = 0.85;
 
 @vertex
 fn corner(@builtin(vertex_index) index: u32) -> Corner {
+    panel = panel_data;
+    ground = ground_data;
     let sign = vec2(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
     let on_floor = ground.middle + sign * ground.fade.y;
     let position = panel.up * panel.floor + ground.first.xyz * on_floor.x + ground.second.xyz * on_floor.y;
-    return Corner(panel.clip * vec4(position, 1.0), on_floor);
+    return Corner(
+        panel.clip * vec4(position, 1.0),
+        on_floor,
+        ground.viewport,
+        vec4(ground.middle, ground.fade),
+        ground.background,
+        ground.floor,
+        ground.grid,
+        ground.shadow,
+        vec3(ground.first.w, ground.second.w, panel.line_scale),
+        ground.key,
+        ground.sky,
+    );
 }
+
+// Cells along each side of a shadow.
+const CELLS = 128.0;
 
 // An ordered dither: from −½ to ½, evenly spread over each 8×8 pixels (B. E. Bayer, 1973).
 fn dither(pixel: vec2<f32>) -> f32 {
@@ -59,7 +103,12 @@ fn byte_step(colour: vec3<f32>) -> vec3<f32> {
 fn taken(shade: vec4<f32>, layer: f32, on_floor: vec2<f32>) -> f32 {
     let at = (on_floor - shade.xy) * shade.z;
     let inside = all(at >= vec2(0.0)) && all(at <= vec2(1.0));
-    return select(0.0, shade.w * textureSampleLevel(shades, smooth_cells, at, i32(layer), 0.0).r, inside);
+    let place = saturate(at) * CELLS + 0.5;
+    let corner = floor(place);
+    let beyond = place - corner;
+    let four = textureLoad(shades, vec2<i32>(corner), i32(layer), 0);
+    let rows = mix(four.xz, four.yw, beyond.x);
+    return select(0.0, shade.w * mix(rows.x, rows.y, beyond.y), inside);
 }
 
 // The colour of the floor where so much of its light is left by the body.
@@ -93,12 +142,14 @@ fn floor_light(corner: Corner, left: f32) -> vec4<f32> {
 
 @fragment
 fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
+    unpack(corner);
     return floor_light(corner, 1.0);
 }
 
 // Reading shadows takes longer than all the rest. A software driver does it for each pixel, so it is a pipeline of its own.
 @fragment
 fn shadowed_colour(corner: Corner) -> @location(0) vec4<f32> {
+    unpack(corner);
     let at = corner.on_floor;
     let left = (1.0 - taken(ground.key, ground.background.w, at)) * (1.0 - taken(ground.sky, ground.floor.w, at));
     return floor_light(corner, left);

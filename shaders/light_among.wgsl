@@ -25,7 +25,7 @@ fn left_by(occluder: Occluder, position: vec3<f32>, facing: vec3<f32>) -> f32 {
 fn left_by_obstacles(position: vec3<f32>, facing: vec3<f32>) -> f32 {
     var left = 1.0;
     for (var at = 0u; at < OCCLUDERS; at++) {
-        left *= left_by(panel.occluders[at], position, facing);
+        left *= left_by(panel_data.occluders[at], position, facing);
     }
     return left;
 }

@@ -7,7 +7,19 @@ struct Segment {
     @location(0) @interpolate(flat) ends: vec4<f32>,
     @location(1) @interpolate(flat) depths: vec2<f32>,
     @location(2) @interpolate(flat) kind: u32,
+    // Opacity, and where its samples of visibility are: the first, and how many.
     @location(3) @interpolate(flat) strength: f32,
+    @location(4) @interpolate(flat) samples: vec2<u32>,
+    // What all pixels of a panel share.
+    @location(5) @interpolate(flat) scales: vec4<f32>,
+}
+
+fn unpack(segment: Segment) {
+    panel.line_scale = segment.scales.x;
+    panel.contour_share = segment.scales.y;
+    panel.element = segment.scales.z;
+    panel.opacity = segment.scales.w;
+    panel.line_share = 1.0;
 }
 
 const EDGE = 0u;
@@ -17,11 +29,19 @@ const ALARM_CONTOUR = 3u;
 const BAR = 4u;
 const OBSTACLE_EDGE = 8u;
 const OBSTACLE_CONTOUR = 9u;
+// How a line is packed into one number: its kind, its opacity (of 255), and above these how many samples it has.
+const KIND_BITS = 4u;
+const STRENGTH_BITS = 8u;
 
 // Opacities of hidden edges: of elements that are not inverted and of turned-over ones, behind surfaces that hide
 // everything and behind those that hide nothing.
 const HIDDEN = vec2<f32>(0.16, 0.62);
 const SEEN_THROUGH = vec2<f32>(0.70, 0.95);
+// Opacities of lines that are seen.
+const EDGE_ALPHA = 0.80;
+const FLAT_EDGE_ALPHA = 0.75;
+const ALARM_EDGE_ALPHA = 0.95;
+const BAR_ALPHA = 0.85;
 
 // Widths of lines (px in the reference picture).
 const EDGE_WIDTH = 1.15;
@@ -33,10 +53,6 @@ const FLAT_CONTOUR_WIDTH = 2.5;
 const NEARER = 0.02;
 // A line lies this much before its surface, as a part of the distance.
 const OFFSET = 0.0016;
-// From this step of depth on, a contour inside the body is drawn (soft units).
-const STEP = 0.22;
-// By less than this step (soft units) an obstacle does not hide the contour of another, or its own.
-const ROUND_STEP = 0.8;
 // Width of the lines of an element without faces (px in the reference picture).
 const BAR_WIDTH = 2.2;
 // Elements smaller than this (px) get fainter edges, or edges would cover everything.
@@ -45,11 +61,6 @@ const SMALL_ELEMENT = 26.0;
 const SMALLEST_ELEMENT = vec2<f32>(4.0, 8.0);
 // Folds inside the turned-over set of elements smaller than this (px) are fainter.
 const SMALL_FOLDED = 8.0;
-
-// The depth of the turned-over set by itself at one of the taps around a point.
-fn alarm_depth_around(place: vec2<f32>, tap: u32) -> f32 {
-    return load_alarm_depth(texel_around(place, tap));
-}
 
 // The width of the widest line of a kind (px in the reference picture).
 fn widest(kind: u32) -> f32 {
@@ -66,20 +77,36 @@ fn segment(
     @builtin(vertex_index) corner: u32,
     @location(0) start: vec3<f32>,
     @location(1) end: vec3<f32>,
-    @location(2) kind: u32,
-    @location(3) strength: f32,
+    @location(2) look: u32,
+    @location(3) first: u32,
 ) -> Segment {
-    let ends = ends_of(start, end);
-    if !ends.seen {
-        return Segment(NOWHERE, vec4(0.0), vec2(0.0), kind, strength);
+    panel = panel_data;
+    let kind = extractBits(look, 0u, KIND_BITS);
+    let strength = f32(extractBits(look, KIND_BITS, STRENGTH_BITS)) / 255.0;
+    let samples = vec2(first, look >> (KIND_BITS + STRENGTH_BITS));
+    let line = projected(start, end, kind);
+    if !line.seen {
+        return Segment(NOWHERE, vec4(0.0), vec2(0.0), kind, strength, samples, vec4(0.0));
     }
+    let reach = 0.5 * max(widest(kind) * panel.line_scale, 1.0) + 0.5;
+    let place = strip_corner(corner, line.ends.xy, line.ends.zw, reach, panel.region.zw);
+    let scales = vec4(panel.line_scale, panel.contour_share, panel.line_share * panel.element, panel.opacity);
+    return Segment(place, line.ends + panel.region.xyxy, line.depths, kind, strength, samples, scales);
+}
+
+// A line on the panel's region: its ends (px), and their depths.
+struct Projected {
+    ends: vec4<f32>,
+    depths: vec2<f32>,
+    seen: bool,
+}
+
+fn projected(start: vec3<f32>, end: vec3<f32>, kind: u32) -> Projected {
+    let ends = ends_of(start, end);
     let size = panel.region.zw;
-    let from_pixel = pixel_of(ends.a, size);
-    let to_pixel = pixel_of(ends.b, size);
     let nearer = select(0.0, NEARER, kind == ALARM_EDGE || kind == ALARM_CONTOUR);
     let depths = vec2(ends.a.z / max(ends.a.w - nearer, panel.near), ends.b.z / max(ends.b.w - nearer, panel.near));
-    let place = strip_corner(corner, from_pixel, to_pixel, 0.5 * max(widest(kind) * panel.line_scale, 1.0) + 0.5, size);
-    return Segment(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, kind, strength);
+    return Projected(vec4(pixel_of(ends.a, size), pixel_of(ends.b, size)), depths, ends.seen);
 }
 
 fn distance_of(depth: f32) -> f32 {
@@ -93,61 +120,6 @@ fn covered(distance: f32, width: f32) -> f32 {
     return clamp(0.5 * drawn + 0.5 - distance, 0.0, 1.0) * (width / drawn);
 }
 
-// The visibility of an edge, and how much of it lies behind a body.
-fn edge_shares(at: Beside, kind: u32, tap: u32) -> vec2<f32> {
-    // Of a face seen at a grazing angle, what is a pixel nearer to the viewer lies before its edge. So the farther side counts.
-    let across = 0.75 * vec2(-at.along.y, at.along.x);
-    let here = tap_depth(at.middle, tap);
-    let sides = vec2(tap_depth(at.middle + across, tap), tap_depth(at.middle - across, tap));
-    let beside = select(sides, vec2(here), sides <= vec2(0.0));
-    let seen = visible_share(at.depth * (1.0 + OFFSET), min(here, min(beside.x, beside.y)));
-    // Obstacles hide all edges; their own edges are seen through clear surfaces only.
-    let through = !(seen < 1.0 && is_obstacle(at.middle, tap));
-    return vec2(seen, select(0.0, 1.0 - seen, through));
-}
-
-// How much of a contour is outer outline, how much is a step of depth inside the body, and how much is hidden.
-fn contour_shares(at: Beside, kind: u32, tap: u32) -> vec3<f32> {
-    let here = tap_depth(at.middle, tap);
-    let normal = vec2(-at.along.y, at.along.x);
-    let across = normal * (0.9 + 1.3 * panel.line_scale);
-    let sides = vec2(tap_depth(at.middle + across, tap), tap_depth(at.middle - across, tap));
-    let nearer = max(sides.x, sides.y);
-    let farther = min(sides.x, sides.y);
-    let step = STEP * panel.soft;
-    let distance = distance_of(at.depth);
-    // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
-    let covered_by = distance - distance_of(max(farther, min(here, nearer)));
-    var shown = 1.0 - smoothstep(0.4 * step, 0.6 * step, covered_by);
-    let obstacles = vec2(
-        is_obstacle(at.middle + across, tap),
-        is_obstacle(at.middle - across, tap),
-    );
-    if kind == OBSTACLE_CONTOUR {
-        // Round obstacles come nearer still: only other things than obstacles hide their contours fully.
-        let least = panel.soft * select(vec2(0.5 * STEP), vec2(ROUND_STEP), obstacles);
-        let before_it = vec2(distance) - vec2(distance_of(sides.x), distance_of(sides.y));
-        let free = 1.0 - smoothstep(0.8 * least, 1.2 * least, before_it);
-        shown = select(0.0, free.x * free.y, any(obstacles));
-    }
-    // Obstacles hide all contours behind them.
-    var clear = 1.0;
-    if kind != OBSTACLE_CONTOUR && is_obstacle(at.middle, tap) {
-        clear = visible_share(at.depth * (1.0 + OFFSET), here);
-    }
-    var outline = 0.0;
-    if farther <= 0.0 {
-        // Background beside it: part of the outline. A fold of the surface that covers it slightly must be very close.
-        let close = normal * select(-0.9, 0.9, sides.x <= sides.y);
-        outline = select(shown, 1.0, tap_depth(at.middle + close, tap) <= 0.0);
-    }
-    // Where one thing ends before another, a contour is drawn however close they are.
-    let deep = smoothstep(0.8 * step, 1.2 * step, distance_of(farther) - distance_of(nearer));
-    let meets = obstacles.x != obstacles.y;
-    let stepped = (1.0 - outline) * shown * select(deep, 1.0, meets);
-    return clear * vec3(outline, stepped, 1.0 - outline - stepped);
-}
-
 // Where a pixel is beside a line.
 struct Beside {
     // The nearest point of the line, and the line's direction.
@@ -155,6 +127,8 @@ struct Beside {
     along: vec2<f32>,
     distance: f32,
     depth: f32,
+    // The part of the line before that point.
+    share: f32,
 }
 
 fn beside(segment: Segment) -> Beside {
@@ -164,120 +138,123 @@ fn beside(segment: Segment) -> Beside {
     let share = clamp(dot(pixel - start, difference) / max(dot(difference, difference), 1e-6), 0.0, 1.0);
     let middle = start + share * difference;
     let along = difference / max(length(difference), 1e-6);
-    return Beside(middle, along, length(pixel - middle), mix(segment.depths.x, segment.depths.y, share));
+    return Beside(middle, along, length(pixel - middle), mix(segment.depths.x, segment.depths.y, share), share);
 }
 
-// Visibility is tested at the taps around the nearest point of the line, so that lines end smoothly. Each kind of line that reads
-// more than others has a pipeline of its own: a software driver would read all of it for every line.
-
-struct EdgeLook {
-    // Opacity where the edge is seen, but for its width.
-    strength: f32,
-    // Visibility, and how much lies behind a body, of all taps.
-    shares: vec2<f32>,
-    // Opacity behind surfaces of elements that are not inverted, and of turned-over ones.
-    hidden_alpha: vec2<f32>,
-}
-
-fn edge_look(at: Beside, kind: u32) -> EdgeLook {
+// The opacity of edges, but for what they are of.
+fn edge_strength() -> f32 {
     let element = panel.line_share * panel.element;
-    let strength = min(1.0, element / SMALL_ELEMENT) * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, element);
-    var shares = vec2(0.0);
-    for (var tap = 0u; tap < TAPS; tap++) {
-        shares += edge_shares(at, kind, tap) / f32(TAPS);
-    }
-    return EdgeLook(strength, shares, mix(SEEN_THROUGH, HIDDEN, panel.opacity));
+    return min(1.0, element / SMALL_ELEMENT) * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, element);
+}
+
+// What was found of the visibility of lines, line after line: see `visibility.wgsl`.
+@group(1) @binding(4) var visibility: texture_2d<f32>;
+
+const VISIBILITY_WIDTH = 2048u;
+
+fn visibility_place(sample: u32) -> vec2<u32> {
+    return vec2(sample % VISIBILITY_WIDTH, sample / VISIBILITY_WIDTH);
+}
+
+// The visibility of a line at a part of its length, between the two samples around it.
+fn visibility_at(segment: Segment, share: f32) -> vec4<f32> {
+    let along = share * f32(segment.samples.y - 1u);
+    let before = min(u32(along), segment.samples.y - 2u);
+    let first = segment.samples.x + before;
+    let one = textureLoad(visibility, visibility_place(first), 0);
+    let other = textureLoad(visibility, visibility_place(first + 1u), 0);
+    return mix(one, other, along - f32(before));
+}
+
+// Opacities behind surfaces of elements that are not inverted, and of turned-over ones.
+fn hidden_alpha() -> vec2<f32> {
+    return mix(SEEN_THROUGH, HIDDEN, panel.opacity);
 }
 
 @fragment
 fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    unpack(segment);
     let at = beside(segment);
-    let kind = segment.kind;
     let scale = panel.line_scale;
-    let look = edge_look(at, kind);
-    let shares = look.shares;
-    if kind == BAR {
-        let seen = select(shares.x, 1.0, panel.flatness > 0.5);
-        let alpha = 0.85 * seen + look.hidden_alpha.x * (1.0 - seen);
-        return vec4(alpha * covered(at.distance, BAR_WIDTH * scale), 0.0, 0.0, 0.0);
-    }
-    if panel.flatness > 0.5 {
-        return vec4(0.75 * look.strength * covered(at.distance, FLAT_EDGE_WIDTH * scale), 0.0, 0.0, 0.0);
-    }
+    let kind = segment.kind;
+    let shares = visibility_at(segment, at.share);
+    let strength = edge_strength();
+    let behind = hidden_alpha().x;
     let of_obstacle = kind == OBSTACLE_EDGE;
-    let seen = 0.80 * select(look.strength, 1.0, of_obstacle) * covered(at.distance, EDGE_WIDTH * scale);
-    let weak = look.hidden_alpha.x * look.strength * look.strength * covered(at.distance, 0.9 * scale);
+    let seen = EDGE_ALPHA * select(strength, 1.0, of_obstacle) * covered(at.distance, EDGE_WIDTH * scale);
+    let weak = behind * strength * strength * covered(at.distance, 0.9 * scale);
     let hidden = select(weak, (1.0 - panel.opacity) * seen, of_obstacle);
-    return vec4(shares.x * seen + segment.strength * shares.y * hidden, 0.0, 0.0, 0.0);
+    let edge = shares.x * seen + segment.strength * shares.y * hidden;
+    let bar = mix(behind, BAR_ALPHA, shares.x) * covered(at.distance, BAR_WIDTH * scale);
+    return vec4(select(edge, bar, kind == BAR), 0.0, 0.0, 0.0);
 }
 
 @fragment
 fn alarm_edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    unpack(segment);
     let at = beside(segment);
-    let look = edge_look(at, ALARM_EDGE);
+    let shares = visibility_at(segment, at.share);
     // Turned-over elements hide more of it than others.
-    var free = 0.0;
-    for (var tap = 0u; tap < TAPS; tap++) {
-        free += visible_share(at.depth * (1.0 + OFFSET), alarm_depth_around(at.middle, tap)) / f32(TAPS);
-    }
-    let behind = mix(0.15, look.hidden_alpha.y, free);
-    let alpha = select(0.95 * look.shares.x + behind * look.shares.y, 0.95, panel.flatness > 0.5);
+    let behind = mix(0.15, hidden_alpha().y, shares.z);
+    let alpha = ALARM_EDGE_ALPHA * shares.x + behind * shares.y;
     let width = ALARM_EDGE_WIDTH * panel.line_scale * panel.contour_share;
-    return vec4(0.0, look.strength * alpha * covered(at.distance, width), 0.0, 0.0);
+    return vec4(0.0, edge_strength() * alpha * covered(at.distance, width), 0.0, 0.0);
 }
 
 struct ContourLook {
-    // Opacities of the outline and of steps of depth.
+    // Opacities of the outline, of steps of depth, and of what surfaces hide.
     outline: f32,
     step: f32,
-    // How much of it is hidden.
     hidden: f32,
-    // The scale of its width.
-    width: f32,
 }
 
-fn contour_look(at: Beside, segment: Segment) -> ContourLook {
-    var shares = vec3(0.0);
-    for (var tap = 0u; tap < TAPS; tap++) {
-        shares += contour_shares(at, segment.kind, tap) / f32(TAPS);
-    }
-    shares *= segment.strength;
+fn contour_look(distance: f32, segment: Segment, shares: vec4<f32>) -> ContourLook {
     // Small bodies would be mostly outline.
     let width = panel.line_scale * select(panel.contour_share, 1.0, segment.kind == OBSTACLE_CONTOUR);
-    let outline = shares.x * covered(at.distance, CONTOUR_WIDTH * width);
-    return ContourLook(outline, 0.85 * shares.y * covered(at.distance, 1.5 * width), shares.z, width);
+    let shown = segment.strength * shares;
+    return ContourLook(
+        shown.x * covered(distance, CONTOUR_WIDTH * width),
+        0.85 * shown.y * covered(distance, 1.5 * width),
+        0.80 * shown.z * covered(distance, 1.7 * width),
+    );
 }
 
 @fragment
 fn contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    unpack(segment);
     let at = beside(segment);
-    if panel.flatness > 0.5 {
-        return vec4(0.0, 0.0, covered(at.distance, FLAT_CONTOUR_WIDTH * panel.line_scale), 0.0);
-    }
-    let look = contour_look(at, segment);
+    let look = contour_look(at.distance, segment, visibility_at(segment, at.share));
     return vec4(0.0, 0.0, look.outline, look.step);
 }
 
 @fragment
 fn alarm_contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    unpack(segment);
     let at = beside(segment);
-    let scale = panel.line_scale;
-    if panel.flatness > 0.5 {
-        return vec4(0.0, covered(at.distance, FLAT_CONTOUR_WIDTH * scale), 0.0, 0.0);
-    }
-    let look = contour_look(at, segment);
-    // Where the set ends, its outline is drawn at full strength.
-    let across = vec2(-at.along.y, at.along.x) * (0.9 + 1.3 * scale);
-    var ends = 0.0;
-    for (var tap = 0u; tap < TAPS; tap++) {
-        let farther = min(
-            alarm_depth_around(at.middle + across, tap),
-            alarm_depth_around(at.middle - across, tap),
-        );
-        ends += select(0.0, 1.0, farther <= 0.0) / f32(TAPS);
-    }
+    let shares = visibility_at(segment, at.share);
+    let look = contour_look(at.distance, segment, shares);
     let smallness = min(1.0, panel.line_share * panel.element / SMALL_FOLDED);
-    let fold = mix(smallness * smallness, 1.0, ends);
-    let through = 0.80 * fold * look.hidden * covered(at.distance, 1.7 * look.width);
-    return vec4(0.0, look.step + through, look.outline, 0.0);
+    // Where the set ends, its outline is drawn at full strength.
+    let fold = mix(smallness * smallness, 1.0, shares.w);
+    return vec4(0.0, look.step + fold * look.hidden, look.outline, 0.0);
+}
+
+// In the plane nothing hides a line.
+@fragment
+fn flat_opacity(segment: Segment) -> @location(0) vec4<f32> {
+    unpack(segment);
+    let distance = beside(segment).distance;
+    let scale = panel.line_scale;
+    switch segment.kind {
+        case BAR: { return vec4(BAR_ALPHA * covered(distance, BAR_WIDTH * scale), 0.0, 0.0, 0.0); }
+        case EDGE, OBSTACLE_EDGE: {
+            return vec4(FLAT_EDGE_ALPHA * edge_strength() * covered(distance, FLAT_EDGE_WIDTH * scale), 0.0, 0.0, 0.0);
+        }
+        case ALARM_EDGE: {
+            let width = ALARM_EDGE_WIDTH * scale * panel.contour_share;
+            return vec4(0.0, ALARM_EDGE_ALPHA * edge_strength() * covered(distance, width), 0.0, 0.0);
+        }
+        case ALARM_CONTOUR: { return vec4(0.0, covered(distance, FLAT_CONTOUR_WIDTH * scale), 0.0, 0.0); }
+        default: { return vec4(0.0, 0.0, covered(distance, FLAT_CONTOUR_WIDTH * scale), 0.0); }
+    }
 }

@@ -12,6 +12,14 @@ struct SolidCorner {
     @location(5) above: f32,
     // How much the body occludes the ambient light.
     @location(6) near: f32,
+    @location(7) @interpolate(flat) shared_0: vec4<f32>,
+    @location(8) @interpolate(flat) shared_1: vec4<f32>,
+    @location(9) @interpolate(flat) shared_2: vec4<f32>,
+    @location(10) @interpolate(flat) shared_3: vec4<f32>,
+}
+
+fn unpack_solid(corner: SolidCorner) {
+    panel.sound = unpack_shared(array(corner.shared_0, corner.shared_1, corner.shared_2, corner.shared_3));
 }
 
 // Width of the rim (px in the reference picture).
@@ -29,8 +37,11 @@ fn solid_corner(
     @location(4) inward: f32,
     @location(5) near: f32,
 ) -> SolidCorner {
+    panel = panel_data;
+    let same = pack_shared(panel.sound);
     let above = dot(position, panel.up) - panel.floor;
-    return SolidCorner(panel.clip * vec4(position, 1.0), position, normal, colour, rim, inward, above, near);
+    let place = panel.clip * vec4(position, 1.0);
+    return SolidCorner(place, position, normal, colour, rim, inward, above, near, same[0], same[1], same[2], same[3]);
 }
 
 fn solid(corner: SolidCorner, opacity: f32) -> vec4<f32> {
@@ -48,11 +59,13 @@ fn solid(corner: SolidCorner, opacity: f32) -> vec4<f32> {
 
 @fragment
 fn solid_surface(corner: SolidCorner) -> @location(0) vec4<f32> {
+    unpack_solid(corner);
     return solid(corner, OBSTACLE);
 }
 
 // Among the turned-over elements, to be seen through clear surfaces.
 @fragment
 fn solid_behind(corner: SolidCorner) -> @location(0) vec4<f32> {
+    unpack_solid(corner);
     return solid(corner, 1.0);
 }

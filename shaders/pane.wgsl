@@ -45,6 +45,7 @@ fn pane_corner(
     @location(4) colour: vec4<f32>,
     @location(5) lined: vec4<f32>,
 ) -> PaneCorner {
+    panel = panel_data;
     let place = panel.clip * vec4(position, 1.0);
     let above = dot(position, panel.up) - panel.floor;
     return PaneCorner(place, grid, from_middle, inward, above, place.xyw, colour, lined);
@@ -114,11 +115,13 @@ fn pane_colour(corner: PaneCorner) -> vec4<f32> {
 
 @fragment
 fn pane_below(corner: PaneCorner) -> @location(0) vec4<f32> {
+    panel = panel_data;
     return pane_colour(corner);
 }
 
 @fragment
 fn pane_above(corner: PaneCorner) -> @location(0) vec4<f32> {
+    panel = panel_data;
     let colour = pane_colour(corner);
     let left = select(OVER_BODIES, WALL_OVER_BODIES, corner.lined.a > 0.5);
     return vec4(colour.rgb, left * colour.a * before_bodies(corner.place.xy, corner.place.z));
@@ -140,6 +143,7 @@ fn edge_corner(
     @location(3) size: vec2<f32>,
     @location(4) viewport: vec2<f32>,
 ) -> EdgePiece {
+    panel = panel_data;
     let ends = ends_of(start, end);
     if !ends.seen {
         return EdgePiece(NOWHERE, vec4(0.0), vec2(0.0), colour);
@@ -165,11 +169,13 @@ fn edge_at(piece: EdgePiece) -> vec2<f32> {
 
 @fragment
 fn edge_below(piece: EdgePiece) -> @location(0) vec4<f32> {
+    panel = panel_data;
     return vec4(piece.colour, edge_at(piece).x);
 }
 
 @fragment
 fn edge_above(piece: EdgePiece) -> @location(0) vec4<f32> {
+    panel = panel_data;
     let edge = edge_at(piece);
     return vec4(piece.colour, edge.x * before_bodies(piece.place.xy, edge.y));
 }

@@ -53,7 +53,12 @@ struct Panel {
     occluders: array<Occluder, 5>,
 }
 
-@group(0) @binding(0) var<uniform> panel: Panel;
+@group(0) @binding(0) var<uniform> panel_data: Panel;
+
+// The same for the functions below. Vertex shaders copy all of it. Fragment shaders get what they use from the corners of what is
+// drawn, as numbers that do not vary: a software driver reads a uniform buffer anew for each pixel, which took longer than all
+// the rest.
+var<private> panel: Panel;
 
 // Powers of a colour's brightness that the eye weighs.
 const LUMINANCE = vec3<f32>(0.2126, 0.7152, 0.0722);

@@ -42,6 +42,7 @@ fn stroke(
     @location(5) size: f32,
     @location(6) kind: u32,
 ) -> Stroke {
+    panel = panel_data;
     let ends = ends_of(start, end);
     if !ends.seen {
         return Stroke(NOWHERE, vec4(0.0), vec2(0.0), first, second, other, size, kind);
@@ -84,6 +85,7 @@ fn line_shares(middle: vec2<f32>, across: vec2<f32>, before: f32, tap: u32) -> v
 
 @fragment
 fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
+    panel = panel_data;
     let start = stroke.ends.xy;
     let difference = stroke.ends.zw - start;
     let pixel = stroke.place.xy - panel.place.xy;

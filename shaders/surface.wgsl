@@ -6,6 +6,42 @@ struct Corner {
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) hatch: f32,
+    @location(4) @interpolate(flat) shared_0: vec4<f32>,
+    @location(5) @interpolate(flat) shared_1: vec4<f32>,
+    @location(6) @interpolate(flat) shared_2: vec4<f32>,
+    @location(7) @interpolate(flat) shared_3: vec4<f32>,
+}
+
+// What all pixels of a panel share, as far as it is used by all: packed into varyings, and taken out again. More of them would
+// take longer to set up for small triangles than they save.
+fn pack_shared(own: vec3<f32>) -> array<vec4<f32>, 4> {
+    return array(
+        vec4(panel.eye, panel.opacity),
+        vec4(panel.key, panel.flatness),
+        vec4(panel.up, panel.floor),
+        vec4(own, panel.soft),
+    );
+}
+
+// Returns the colour of the set.
+fn unpack_shared(same: array<vec4<f32>, 4>) -> vec3<f32> {
+    panel = panel_data;
+    panel.eye = same[0].xyz;
+    panel.opacity = same[0].w;
+    panel.key = same[1].xyz;
+    panel.flatness = same[1].w;
+    panel.up = same[2].xyz;
+    panel.floor = same[2].w;
+    panel.soft = same[3].w;
+    return same[3].xyz;
+}
+
+fn unpack_sound(corner: Corner) {
+    panel.sound = unpack_shared(array(corner.shared_0, corner.shared_1, corner.shared_2, corner.shared_3));
+}
+
+fn unpack_alarm(corner: Corner) {
+    panel.alarm = unpack_shared(array(corner.shared_0, corner.shared_1, corner.shared_2, corner.shared_3));
 }
 
 const KEY = vec3<f32>(0.66, 0.635, 0.595);
@@ -56,7 +92,10 @@ fn corner_place(position: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
 
 @vertex
 fn sound_corner(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) hatch: f32) -> Corner {
-    return Corner(corner_place(position, normal), position, normal, hatch);
+    panel = panel_data;
+    let same = pack_shared(panel.sound);
+    let place = corner_place(position, normal);
+    return Corner(place, position, normal, hatch, same[0], same[1], same[2], same[3]);
 }
 
 // Where a corner of the turned-over set is drawn.
@@ -69,7 +108,10 @@ fn moved_nearer(position: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
 
 @vertex
 fn alarm_corner(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) hatch: f32) -> Corner {
-    return Corner(moved_nearer(position, normal), position, normal, hatch);
+    panel = panel_data;
+    let same = pack_shared(panel.alarm);
+    let place = moved_nearer(position, normal);
+    return Corner(place, position, normal, hatch, same[0], same[1], same[2], same[3]);
 }
 
 struct Light {
@@ -136,12 +178,14 @@ fn alarm(corner: Corner) -> AlarmColour {
 // The turned-over set by itself, which is seen through the body.
 @fragment
 fn alarm_behind(corner: Corner) -> @location(0) vec4<f32> {
+    unpack_alarm(corner);
     let alarm = alarm(corner);
     return vec4(sqrt(saturate(alarm.lit)), saturate(0.5 * alarm.brightness));
 }
 
 @fragment
 fn alarm_surface(corner: Corner) -> @location(0) vec4<f32> {
+    unpack_alarm(corner);
     return vec4(sqrt(saturate(alarm(corner).lit)), 1.0);
 }
 
@@ -192,23 +236,25 @@ fn dots(place: vec2<f32>) -> f32 {
 }
 
 // The colour of a surface that is not inverted.
-fn sound(corner: Corner) -> vec3<f32> {
+fn sound(corner: Corner, own: vec3<f32>) -> vec3<f32> {
     let light = light(corner.position, corner.normal);
-    var own = panel.sound;
-    if corner.hatch > 0.5 {
-        // Flat: grey with dots.
-        own = mix(vec3(dot(own, LUMINANCE)), panel.edge, dots(corner.place.xy));
-    }
     return own * light.diffuse + light.gloss;
 }
 
 @fragment
 fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
-    return see_through(sound(corner));
+    unpack_sound(corner);
+    return see_through(sound(corner, panel.sound));
 }
 
-// Where something lies behind such surfaces. A software driver would run all of it for every surface.
+// Where something lies behind such surfaces, or elements are flat. A software driver would run all of it for every surface.
 @fragment
 fn sound_before(corner: Corner) -> @location(0) vec4<f32> {
-    return over_behind(sound(corner), corner);
+    unpack_sound(corner);
+    var own = panel.sound;
+    if corner.hatch > 0.5 {
+        // Flat: grey with dots.
+        own = mix(vec3(dot(own, LUMINANCE)), panel.edge, dots(corner.place.xy));
+    }
+    return over_behind(sound(corner, own), corner);
 }

@@ -19,6 +19,14 @@ struct TintedCorner {
     @location(1) normal: vec3<f32>,
     @location(2) hatch: f32,
     @location(3) shade: f32,
+    @location(4) @interpolate(flat) shared_0: vec4<f32>,
+    @location(5) @interpolate(flat) shared_1: vec4<f32>,
+    @location(6) @interpolate(flat) shared_2: vec4<f32>,
+    @location(7) @interpolate(flat) shared_3: vec4<f32>,
+}
+
+fn unpack_tinted(corner: TintedCorner) -> vec3<f32> {
+    return unpack_shared(array(corner.shared_0, corner.shared_1, corner.shared_2, corner.shared_3));
 }
 
 @vertex
@@ -28,7 +36,10 @@ fn tinted_corner(
     @location(2) hatch: f32,
     @location(3) shade: f32,
 ) -> TintedCorner {
-    return TintedCorner(corner_place(position, normal), position, normal, hatch, shade);
+    panel = panel_data;
+    let same = pack_shared(panel.sound);
+    let place = corner_place(position, normal);
+    return TintedCorner(place, position, normal, hatch, shade, same[0], same[1], same[2], same[3]);
 }
 
 @vertex
@@ -38,7 +49,10 @@ fn tinted_alarm_corner(
     @location(2) hatch: f32,
     @location(3) shade: f32,
 ) -> TintedCorner {
-    return TintedCorner(moved_nearer(position, normal), position, normal, hatch, shade);
+    panel = panel_data;
+    let same = pack_shared(panel.alarm);
+    let place = moved_nearer(position, normal);
+    return TintedCorner(place, position, normal, hatch, shade, same[0], same[1], same[2], same[3]);
 }
 
 fn tint(corner: TintedCorner) -> vec3<f32> {
@@ -71,6 +85,7 @@ fn alarm_tint(corner: TintedCorner) -> vec4<f32> {
 // The hatch of the turned-over set by itself, which is seen through the body: how much of a pixel it covers.
 @fragment
 fn tinted_behind(corner: TintedCorner) -> @location(0) vec4<f32> {
+    panel.alarm = unpack_tinted(corner);
     let alarm = alarm_tint(corner);
     // Under a clear surface, their own colour is seen, too.
     let alpha = select(1.0, 0.5, panel.opacity < 1.0) * alarm.a;
@@ -79,6 +94,7 @@ fn tinted_behind(corner: TintedCorner) -> @location(0) vec4<f32> {
 
 @fragment
 fn tinted_alarm(corner: TintedCorner) -> @location(0) vec4<f32> {
+    panel.alarm = unpack_tinted(corner);
     return vec4(sqrt(saturate(alarm_tint(corner).rgb)), 1.0);
 }
 
@@ -103,18 +119,16 @@ fn tinted_over(colour: vec3<f32>, corner: TintedCorner) -> vec4<f32> {
     return opaque(mix(colour, alarm, THROUGH * (1.0 - 0.4 * deep) * stored.a));
 }
 
-fn sound_tint(corner: TintedCorner) -> vec3<f32> {
-    // Flat elements are dotted.
-    let dotted = select(0.0, dots(corner.place.xy), corner.hatch > 0.5);
-    return mix(tint(corner), panel.edge, dotted);
-}
-
 @fragment
 fn tinted_sound(corner: TintedCorner) -> @location(0) vec4<f32> {
-    return see_through(sound_tint(corner));
+    panel.sound = unpack_tinted(corner);
+    return see_through(tint(corner));
 }
 
 @fragment
 fn tinted_before(corner: TintedCorner) -> @location(0) vec4<f32> {
-    return tinted_over(sound_tint(corner), corner);
+    panel.sound = unpack_tinted(corner);
+    // Flat elements are dotted.
+    let dotted = select(0.0, dots(corner.place.xy), corner.hatch > 0.5);
+    return tinted_over(mix(tint(corner), panel.edge, dotted), corner);
 }

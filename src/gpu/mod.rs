@@ -178,6 +178,7 @@ impl Gpu {
             required_limits: wgpu::Limits {
                 max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
                 max_buffer_size: adapter.limits().max_buffer_size,
+                max_storage_buffer_binding_size: adapter.limits().max_storage_buffer_binding_size,
                 ..wgpu::Limits::downlevel_defaults()
             },
             ..Default::default()

@@ -106,6 +106,8 @@ pub(crate) struct Panel {
     pub turned_over: Mesh,
     /// Whether that is hatched.
     pub hatch: bool,
+    /// Whether others are flat, and so dotted.
+    pub dotted: bool,
     /// Whether the body is drawn in greys, because its run diverges or did so.
     pub greyed: bool,
     /// Edges and contours of both, and of solid obstacles.

@@ -11,9 +11,9 @@ use std::ops::Range;
 pub(super) const SHADER: &str = include_str!("../../shaders/border.wgsl");
 
 /// The parts of the shader.
-pub(super) fn parts() -> [&'static str; 8] {
-    let [panel, segment, taps, bodies, obstacles, turned_over, line] = line::parts(false);
-    [panel, segment, taps, bodies, obstacles, turned_over, line, SHADER]
+pub(super) fn parts() -> [&'static str; 7] {
+    let [panel, segment, line] = line::parts();
+    [panel, segment, super::TAPS_SHADER, super::BODIES_SHADER, super::TURNED_OVER_SHADER, line, SHADER]
 }
 
 /// The pipeline, and the borders of one picture.

@@ -129,5 +129,5 @@ impl Glyphs {
 }
 
 fn create(gpu: &Gpu, height: u32) -> wgpu::Texture {
-    written_texture(gpu, "glyphs", [WIDTH, height, 1])
+    written_texture(gpu, "glyphs", [WIDTH, height, 1], wgpu::TextureFormat::R8Unorm)
 }

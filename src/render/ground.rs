@@ -37,7 +37,6 @@ pub(super) struct Grounds {
     /// Without shadows and with them.
     pipelines: [wgpu::RenderPipeline; 2],
     layout: wgpu::BindGroupLayout,
-    sampler: wgpu::Sampler,
     uniforms: GrowingBuffer<u8>,
     shades: wgpu::Texture,
     bind_group: Option<wgpu::BindGroup>,
@@ -53,12 +52,11 @@ impl Grounds {
             count: None,
         };
         let shades = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
             view_dimension: wgpu::TextureViewDimension::D2Array,
             multisampled: false,
         };
-        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let entries = [uniform_entry(0, size_of::<GroundUniform>(), true), entry(1, shades), entry(2, sampler)];
+        let entries = [uniform_entry(0, size_of::<GroundUniform>(), true), entry(1, shades)];
         let layout = group_layout(gpu, "ground", &entries);
         let build = |fragment| {
             let recipe = Recipe {
@@ -68,16 +66,9 @@ impl Grounds {
             };
             recipe.build(gpu)
         };
-        let sampler = gpu.device().create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("shades"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
         Self {
             pipelines: ["floor_colour", "shadowed_colour"].map(build),
             layout,
-            sampler,
             uniforms: GrowingBuffer::new(gpu, "grounds", wgpu::BufferUsages::UNIFORM, 4 * STRIDE),
             shades: create_shades(gpu, 2),
             bind_group: None,
@@ -111,9 +102,9 @@ impl Grounds {
         let origin = wgpu::Origin3d { x: 0, y: 0, z: layer };
         gpu.queue().write_texture(
             wgpu::TexelCopyTextureInfo { origin, ..self.shades.as_image_copy() },
-            &shade.cells,
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(CELLS as u32), rows_per_image: None },
-            wgpu::Extent3d { width: CELLS as u32, height: CELLS as u32, depth_or_array_layers: 1 },
+            corners_of(&shade.cells).as_flattened(),
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * CORNERS), rows_per_image: None },
+            wgpu::Extent3d { width: CORNERS, height: CORNERS, depth_or_array_layers: 1 },
         );
     }
 
@@ -124,8 +115,7 @@ impl Grounds {
         });
         let uniform = element::<GroundUniform>(self.uniforms.buffer());
         let shades = wgpu::BindingResource::TextureView(&view);
-        let sampler = wgpu::BindingResource::Sampler(&self.sampler);
-        bind(gpu, "ground", &self.layout, &[(0, uniform), (1, shades), (2, sampler)])
+        bind(gpu, "ground", &self.layout, &[(0, uniform), (1, shades)])
     }
 
     /// Draws the floors of all panels that have one.
@@ -212,12 +202,45 @@ fn uniform(picture: &Picture, panel: &Panel, floor: &Floor, at: usize) -> Ground
 }
 
 fn create_shades(gpu: &Gpu, layers: u32) -> wgpu::Texture {
-    written_texture(gpu, "shades", [CELLS as u32, CELLS as u32, layers])
+    written_texture(gpu, "shades", [CORNERS, CORNERS, layers], wgpu::TextureFormat::Rgba8Unorm)
+}
+
+/// Corners of cells along each side of a shadow.
+const CORNERS: u32 = CELLS as u32 + 1;
+
+/// The four cells around each corner of the grid: left and right above it, then below it. Beyond its border the grid goes on as
+/// it ends.
+fn corners_of(cells: &[u8]) -> Vec<[u8; 4]> {
+    let (rows, rest) = cells.as_chunks::<CELLS>();
+    debug_assert!(rows.len() == CELLS && rest.is_empty());
+    let beside = |at: usize| [at.saturating_sub(1), at.min(CELLS - 1)];
+    let mut corners = Vec::with_capacity((CELLS + 1) * (CELLS + 1));
+    for row in 0..=CELLS {
+        let [above, below] = beside(row).map(|row| &rows[row]);
+        corners.extend((0..=CELLS).map(|column| {
+            let [left, right] = beside(column);
+            [above[left], above[right], below[left], below[right]]
+        }));
+    }
+    corners
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_corner_of_the_grid_has_the_cells_around_it() {
+        let cells: Vec<u8> = (0..CELLS * CELLS).map(|at| (at % 251) as u8).collect();
+        let corners = corners_of(&cells);
+        let [at, corner] = [CELLS, CELLS + 1].map(|wide| move |row: usize, column: usize| row * wide + column);
+        assert_eq!(corners[corner(0, 0)], [cells[0]; 4]);
+        let inside = [at(4, 6), at(4, 7), at(5, 6), at(5, 7)].map(|at| cells[at]);
+        assert_eq!(corners[corner(5, 7)], inside);
+        let [last, before] = [at(9, CELLS - 1), at(8, CELLS - 1)].map(|at| cells[at]);
+        assert_eq!(corners[corner(9, CELLS)], [before, before, last, last]);
+        assert_eq!(corners.len(), (CELLS + 1) * (CELLS + 1));
+    }
 
     #[test]
     fn the_parts_around_a_rectangle_and_itself_cover_each_pixel_once() {

@@ -3,7 +3,7 @@
 //! 1. `surface`: turned-over elements by themselves, so that they can be seen through the body.
 //! 2. `surface`: all surfaces, in textures no larger than the bodies; among them solid obstacles (`obstacle`).
 //! 3. `border`: smooth borders where their colours change at a line.
-//! 4. `line`: edges and contours as opacities, with smooth borders of their own.
+//! 4. `visibility`, then `line`: edges and contours as opacities, with smooth borders of their own.
 //! 5. `ground`: the floor, its grid and its shadows, into the picture.
 //! 6. `composite`: bodies and lines over the ground, between transparent obstacles (`obstacle`).
 //! 7. `stroke`: lines with colours of their own and nodes in space, over the bodies; only where there are any.
@@ -34,6 +34,7 @@ mod stroke;
 mod surface;
 mod target;
 mod tint;
+mod visibility;
 
 use crate::gpu::{Gpu, GpuError, Pending, ReadBack};
 use crate::picture::Picture;
@@ -270,9 +271,10 @@ impl Renderer {
             let mut pass = begin(&mut commands, "borders", &bodies.borders, CLEAR, None);
             self.borders.draw(&mut pass, &self.panels, &places);
         }
+        self.lines.test(&mut commands, &self.panels, &places, with_solids);
         {
             let mut pass = begin(&mut commands, "lines", &bodies.lines, CLEAR, None);
-            self.lines.draw(&mut pass, &self.panels, &places, with_solids);
+            self.lines.draw(&mut pass, &self.panels, &places);
         }
         let [r, g, b] = panel::linear(picture.palette.background).to_array().map(f64::from);
         let mut background = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });

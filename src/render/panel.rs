@@ -101,6 +101,11 @@ fn crop(viewport: Rectangle, region: Rectangle) -> Mat4 {
     )
 }
 
+/// From a panel's coordinates to clip space of its body's region.
+pub(super) fn cropped(panel: &Panel) -> Mat4 {
+    crop(panel.viewport, panel.region) * panel.sight.clip
+}
+
 /// Whether anything may be visible through the surfaces of a panel that are not turned over.
 pub(super) fn has_behind(panel: &Panel) -> bool {
     let has_solids = || panel.obstacles.solids.iter().any(|solid| !solid.mesh.triangles.is_empty());
@@ -172,8 +177,7 @@ impl Panels {
     pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture, places: &[Rectangle]) {
         let mut bytes = vec![0; 2 * STRIDE * picture.panels.len()];
         for (at, (panel, &place)) in picture.panels.iter().zip(places).enumerate() {
-            let cropped = crop(panel.viewport, panel.region) * panel.sight.clip;
-            for (half, clip) in [cropped, panel.sight.clip].into_iter().enumerate() {
+            for (half, clip) in [cropped(panel), panel.sight.clip].into_iter().enumerate() {
                 let uniform = uniform(picture, panel, clip, place);
                 let start = (2 * at + half) * STRIDE;
                 bytes[start..start + size_of::<PanelUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
@@ -197,6 +201,11 @@ impl Panels {
             pass.set_bind_group(0, &self.bind_group, &[(2 * panel * STRIDE) as u32]);
             draw(pass, panel);
         }
+    }
+
+    /// Binds a panel for work on its body's region.
+    pub(super) fn bind_region(&self, pass: &mut wgpu::ComputePass<'_>, panel: usize) {
+        pass.set_bind_group(0, &self.bind_group, &[(2 * panel * STRIDE) as u32]);
     }
 
     /// Binds a panel for drawing into the whole of it.

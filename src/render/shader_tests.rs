@@ -5,6 +5,7 @@ use super::overlay::CanvasUniform;
 use super::panel::{OccluderUniform, PanelUniform};
 use super::{
     BODIES_SHADER, PANEL_SHADER, border, composite, curve, ground, line, obstacle, overlay, stroke, surface, tint,
+    visibility,
 };
 use crate::picture::MOST_OCCLUDERS;
 use std::mem::offset_of;
@@ -30,8 +31,9 @@ fn shaders_are_valid() {
     }
     parse(&[&surface::parts(0)[..], &[obstacle::SHADER]].concat());
     parse(&border::parts());
-    parse(&line::parts(false));
-    parse(&line::parts(true));
+    parse(&line::parts());
+    parse(&visibility::parts(false));
+    parse(&visibility::parts(true));
     parse(&obstacle::pane_parts());
     parse(&[PANEL_SHADER, BODIES_SHADER, composite::SHADER]);
     parse(&stroke::parts());

@@ -4,7 +4,7 @@ use super::panel::{Panels, has_behind, is_plain};
 use super::pipeline::{Recipe, bind_textures, for_vertices, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{MOST_OCCLUDERS, Mesh, Picture, Rectangle, Vertex};
+use crate::picture::{MOST_OCCLUDERS, Mesh, Panel, Picture, Rectangle, Vertex};
 use std::ops::Range;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/surface.wgsl");
@@ -51,7 +51,7 @@ pub(super) struct Pipelines {
     pub(super) alarm_behind: wgpu::RenderPipeline,
     pub(super) alarm: wgpu::RenderPipeline,
     pub(super) sound: wgpu::RenderPipeline,
-    /// The same where something lies behind.
+    /// The same where something lies behind, or elements are flat.
     pub(super) before: wgpu::RenderPipeline,
 }
 
@@ -85,7 +85,7 @@ pub(super) struct Surfaces {
     indices: GrowingBuffer<u32>,
     /// The indices of each panel's two sets.
     ranges: Vec<[Range<u32>; 2]>,
-    /// Whether a panel's surfaces are coloured by a field, and whether anything lies behind them.
+    /// Whether a panel's surfaces are coloured by a field, and whether anything lies behind them or is dotted.
     kinds: Vec<[bool; 2]>,
 }
 
@@ -134,7 +134,8 @@ impl Surfaces {
             start..indices.len() as u32
         };
         self.ranges = picture.panels.iter().map(|panel| [add(&panel.sound), add(&panel.turned_over)]).collect();
-        self.kinds = picture.panels.iter().map(|panel| [!is_plain(picture, panel), has_behind(panel)]).collect();
+        let kind = |panel: &Panel| [!is_plain(picture, panel), has_behind(panel) || panel.dotted];
+        self.kinds = picture.panels.iter().map(kind).collect();
         self.vertices.write(gpu, &vertices);
         self.indices.write(gpu, &indices);
     }

@@ -175,6 +175,7 @@ impl<'a> Draft<'a> {
             opacity: narrow(self.scene.view.opacity),
             turned_over,
             hatch: self.scene.view.hatch,
+            dotted: self.run.snapshot.flat.contains(&true),
             greyed: self.greyed,
             lines,
             borders,

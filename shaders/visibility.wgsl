@@ -1,0 +1,178 @@
+// How visible lines are: tested once for each pixel of their length, not for each that they cover, before they are drawn.
+// The tests are made at the taps around the point of the line, so that lines end smoothly. Each kind of line has a pipeline of
+// its own, as the tests differ.
+
+// A line as `line.wgsl` reads it: its ends, the packed number, and its first sample. Bits of numbers of three kinds.
+struct Line {
+    first: vec4<u32>,
+    second: vec4<u32>,
+}
+
+// Samples that follow each other along one line: the line, and the first of them on it.
+@group(2) @binding(0) var<storage, read> chunks: array<vec2<u32>>;
+@group(2) @binding(1) var<storage, read> lines: array<Line>;
+@group(2) @binding(2) var found: texture_storage_2d<rgba8unorm, write>;
+// The first of the chunks that are to be done, and how many.
+@group(2) @binding(3) var<uniform> range: vec2<u32>;
+
+const CHUNK = 4u;
+const GROUP = 128u;
+
+// From this step of depth on, a contour inside the body is drawn (soft units).
+const STEP = 0.22;
+// By less than this step (soft units) an obstacle does not hide the contour of another, or its own.
+const ROUND_STEP = 0.8;
+
+// The depth of the turned-over set by itself at one of the taps around a point.
+fn alarm_depth_around(place: vec2<f32>, tap: u32) -> f32 {
+    return load_alarm_depth(texel_around(place, tap));
+}
+
+// The visibility of an edge, and how much of it lies behind a body.
+fn edge_shares(at: Beside, tap: u32) -> vec2<f32> {
+    // Of a face seen at a grazing angle, what is a pixel nearer to the viewer lies before its edge. So the farther side counts.
+    let across = 0.75 * vec2(-at.along.y, at.along.x);
+    let here = tap_depth(at.middle, tap);
+    let sides = vec2(tap_depth(at.middle + across, tap), tap_depth(at.middle - across, tap));
+    let beside = select(sides, vec2(here), sides <= vec2(0.0));
+    let seen = visible_share(at.depth * (1.0 + OFFSET), min(here, min(beside.x, beside.y)));
+    // Obstacles hide all edges; their own edges are seen through clear surfaces only.
+    let through = !(seen < 1.0 && is_obstacle(at.middle, tap));
+    return vec2(seen, select(0.0, 1.0 - seen, through));
+}
+
+// How much of a contour is outer outline, how much is a step of depth inside the body, and how much is hidden.
+fn contour_shares(at: Beside, kind: u32, tap: u32) -> vec3<f32> {
+    let here = tap_depth(at.middle, tap);
+    let normal = vec2(-at.along.y, at.along.x);
+    let across = normal * (0.9 + 1.3 * panel.line_scale);
+    let sides = vec2(tap_depth(at.middle + across, tap), tap_depth(at.middle - across, tap));
+    let nearer = max(sides.x, sides.y);
+    let farther = min(sides.x, sides.y);
+    let step = STEP * panel.soft;
+    let distance = distance_of(at.depth);
+    // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
+    let covered_by = distance - distance_of(max(farther, min(here, nearer)));
+    var shown = 1.0 - smoothstep(0.4 * step, 0.6 * step, covered_by);
+    let obstacles = vec2(
+        is_obstacle(at.middle + across, tap),
+        is_obstacle(at.middle - across, tap),
+    );
+    if kind == OBSTACLE_CONTOUR {
+        // Round obstacles come nearer still: only other things than obstacles hide their contours fully.
+        let least = panel.soft * select(vec2(0.5 * STEP), vec2(ROUND_STEP), obstacles);
+        let before_it = vec2(distance) - vec2(distance_of(sides.x), distance_of(sides.y));
+        let free = 1.0 - smoothstep(0.8 * least, 1.2 * least, before_it);
+        shown = select(0.0, free.x * free.y, any(obstacles));
+    }
+    // Obstacles hide all contours behind them.
+    var clear = 1.0;
+    if kind != OBSTACLE_CONTOUR && is_obstacle(at.middle, tap) {
+        clear = visible_share(at.depth * (1.0 + OFFSET), here);
+    }
+    var outline = 0.0;
+    if farther <= 0.0 {
+        // Background beside it: part of the outline. A fold of the surface that covers it slightly must be very close.
+        let close = normal * select(-0.9, 0.9, sides.x <= sides.y);
+        outline = select(shown, 1.0, tap_depth(at.middle + close, tap) <= 0.0);
+    }
+    // Where one thing ends before another, a contour is drawn however close they are.
+    let deep = smoothstep(0.8 * step, 1.2 * step, distance_of(farther) - distance_of(nearer));
+    let meets = obstacles.x != obstacles.y;
+    let stepped = (1.0 - outline) * shown * select(deep, 1.0, meets);
+    return clear * vec3(outline, stepped, 1.0 - outline - stepped);
+}
+
+// One sample of a line.
+struct Sample {
+    at: Beside,
+    kind: u32,
+    place: vec2<u32>,
+    exists: bool,
+}
+
+fn sample_of(thread: vec3<u32>, groups: vec3<u32>) -> Sample {
+    panel = panel_data;
+    let index = thread.y * groups.x * GROUP + thread.x;
+    let within = index / CHUNK < range.y;
+    let chunk = chunks[range.x + min(index / CHUNK, range.y - 1u)];
+    let line = lines[chunk.x];
+    let look = line.second.z;
+    let kind = extractBits(look, 0u, KIND_BITS);
+    let count = look >> (KIND_BITS + STRENGTH_BITS);
+    let number = chunk.y + index % CHUNK;
+    let start = bitcast<vec3<f32>>(line.first.xyz);
+    let end = bitcast<vec3<f32>>(vec3(line.first.w, line.second.xy));
+    let drawn = projected(start, end, kind);
+    let share = f32(number) / f32(count - 1u);
+    let from_pixel = drawn.ends.xy + panel.region.xy;
+    let difference = drawn.ends.zw - drawn.ends.xy;
+    let along = difference / max(length(difference), 1e-6);
+    let depth = mix(drawn.depths.x, drawn.depths.y, share);
+    let at = Beside(from_pixel + share * difference, along, 0.0, depth, share);
+    let place = visibility_place(line.second.w + number);
+    return Sample(at, kind, place, within && number < count && drawn.seen);
+}
+
+// Edges: how visible, and how much lies behind a body.
+@compute @workgroup_size(GROUP)
+fn edges(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let one = sample_of(thread, groups);
+    if !one.exists {
+        return;
+    }
+    var shares = vec2(0.0);
+    for (var tap = 0u; tap < TAPS; tap++) {
+        shares += edge_shares(one.at, tap) / f32(TAPS);
+    }
+    textureStore(found, one.place, vec4(shares, 0.0, 0.0));
+}
+
+// Edges of turned-over elements: also whether none of these hides it.
+@compute @workgroup_size(GROUP)
+fn alarm_edges(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let one = sample_of(thread, groups);
+    if !one.exists {
+        return;
+    }
+    var shares = vec2(0.0);
+    var free = 0.0;
+    for (var tap = 0u; tap < TAPS; tap++) {
+        shares += edge_shares(one.at, tap) / f32(TAPS);
+        free += visible_share(one.at.depth * (1.0 + OFFSET), alarm_depth_around(one.at.middle, tap)) / f32(TAPS);
+    }
+    textureStore(found, one.place, vec4(shares, free, 0.0));
+}
+
+// Contours: how much of one is outer outline, how much is a step of depth inside the body, and how much is hidden.
+@compute @workgroup_size(GROUP)
+fn contours(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let one = sample_of(thread, groups);
+    if !one.exists {
+        return;
+    }
+    var shares = vec3(0.0);
+    for (var tap = 0u; tap < TAPS; tap++) {
+        shares += contour_shares(one.at, one.kind, tap) / f32(TAPS);
+    }
+    textureStore(found, one.place, vec4(shares, 0.0));
+}
+
+// Contours of turned-over elements: also whether the set ends there.
+@compute @workgroup_size(GROUP)
+fn alarm_contours(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let one = sample_of(thread, groups);
+    if !one.exists {
+        return;
+    }
+    let at = one.at;
+    let across = vec2(-at.along.y, at.along.x) * (0.9 + 1.3 * panel.line_scale);
+    var shares = vec3(0.0);
+    var ends = 0.0;
+    for (var tap = 0u; tap < TAPS; tap++) {
+        shares += contour_shares(at, one.kind, tap) / f32(TAPS);
+        let farther = min(alarm_depth_around(at.middle + across, tap), alarm_depth_around(at.middle - across, tap));
+        ends += select(0.0, 1.0, farther <= 0.0) / f32(TAPS);
+    }
+    textureStore(found, one.place, vec4(shares, ends));
+}
