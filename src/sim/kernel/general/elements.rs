@@ -1,6 +1,7 @@
 //! The laws of elements and springs in lanes: what they add to the sums of their nodes.
 
 use super::{Class, Constants, Part, RECORD, SUM};
+use crate::sim::kernel::memory::Aligned;
 use crate::sim::kernel::rotation::{self, Moments, Solver};
 use crate::sim::kernel::tally::Tally;
 use crate::sim::lanes::{Lanes, MOST, each};
@@ -8,10 +9,14 @@ use crate::sim::lanes::{Lanes, MOST, each};
 /// The elements of one class of a part.
 pub(super) struct Elements<'a> {
     pub(super) part: &'a Part,
+    /// Of the nodes of the part.
+    pub(super) sums: &'a Aligned,
     pub(super) class: &'a Class,
     pub(super) constants: &'a Constants,
     pub(super) commit: bool,
     pub(super) tally: &'a Tally,
+    /// [`General::is_large`](super::General::is_large).
+    pub(super) is_large: bool,
 }
 
 /// Blocks in a batch, for which first all moments are computed, then all rotations, then all forces. A rotation is a
@@ -42,15 +47,16 @@ impl Elements<'_> {
     /// Eq. (4) in space.
     #[inline(always)]
     pub(super) fn space<L: Lanes, const DAMPED: bool>(&self, solver: impl Solver) {
-        let &Self { part, class, constants, commit, tally } = self;
+        let &Self { part, sums, class, constants, commit, tally, is_large } = self;
         let tally = commit.then_some(tally);
         let corners = class.corners;
-        let (records, sums) = (part.records.pointer(), part.sums.pointer());
+        let (records, sums) = (part.records.pointer(), sums.pointer());
         let k = L::splat(constants.stiffness);
         let k_mean = L::splat(constants.stiffness / corners as f64);
         let d_mean = L::splat(constants.damping / corners as f64);
         let zero = L::splat(0.0);
         let blocks = class.elements.len().div_ceil(MOST);
+        let ahead = if is_large { 2 * BATCH } else { BATCH };
         let mut batch = [const { Block([[0.0; MOST]; TURN + 4]) }; BATCH];
         for begin in (0..blocks).step_by(BATCH) {
             let batch = &mut batch[..BATCH.min(blocks - begin)];
@@ -128,11 +134,18 @@ impl Elements<'_> {
                 for (block, out) in (begin..).zip(&*batch) {
                     let nodes = class.nodes.as_ptr().add(block * corners * MOST);
                     let rest = class.rest.pointer().add(block * corners * 3 * MOST);
-                    // Prefetches the data of the next batch, which for a large body are not in the second-level cache.
-                    let turns = class.turns.pointer().wrapping_add((block + BATCH) * 4 * MOST);
+                    // Prefetches the data of the next batch, which are not in the second-level cache; of a large body those
+                    // of the batch after it, and the records of the next one, which take longer to arrive.
+                    let turns = class.turns.pointer().wrapping_add((block + ahead) * 4 * MOST);
                     each!(4, entry => L::expect(turns.wrapping_add(entry * MOST)));
+                    if is_large && block + BATCH < blocks {
+                        let nodes = nodes.add(BATCH * corners * MOST);
+                        for corner in 0..corners * MOST {
+                            L::expect(records.add(*nodes.add(corner) as usize));
+                        }
+                    }
                     let expect_corner = |corner: usize| {
-                        let corner = BATCH * corners + corner;
+                        let corner = ahead * corners + corner;
                         each!(3, axis => L::expect(rest.wrapping_add((corner * 3 + axis) * MOST)));
                         L::expect(nodes.wrapping_add(corner * MOST).cast());
                     };
@@ -172,9 +185,9 @@ impl Elements<'_> {
     /// Eq. (4) in the plane, with the rotation of Eq. (9).
     #[inline(always)]
     pub(super) fn plane<L: Lanes, const DAMPED: bool>(&self) {
-        let &Self { part, class, constants, commit, .. } = self;
+        let &Self { part, sums, class, constants, commit, .. } = self;
         let corners = class.corners;
-        let (records, sums) = (part.records.pointer(), part.sums.pointer());
+        let (records, sums) = (part.records.pointer(), sums.pointer());
         let k = L::splat(constants.stiffness);
         let k_mean = L::splat(constants.stiffness / corners as f64);
         let d_mean = L::splat(constants.damping / corners as f64);
@@ -236,8 +249,8 @@ impl Elements<'_> {
     /// Eq. (1).
     #[inline(always)]
     pub(super) fn springs<L: Lanes, const DAMPED: bool>(&self) {
-        let &Self { part, class, constants, .. } = self;
-        let (records, sums) = (part.records.pointer(), part.sums.pointer());
+        let &Self { part, sums, class, constants, .. } = self;
+        let (records, sums) = (part.records.pointer(), sums.pointer());
         let (k, d) = (L::splat(constants.stiffness), L::splat(constants.damping));
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         for block in 0..class.elements.len().div_ceil(MOST) {

@@ -65,7 +65,9 @@ pub(in crate::sim) struct General {
     constants: Constants,
     parts: Vec<Part>,
     shared: Shared,
-    /// The first record of each node.
+    /// For each thread the sums of the part at which it is, which so stay in the caches; zeros between parts.
+    sums: Vec<Aligned>,
+    /// The record of each node. If several parts share it, the part is [`NONE`], and the record its number in `shared`.
     places: Vec<Place>,
     /// Number of elements.
     elements: usize,
@@ -86,6 +88,7 @@ struct Part {
     /// The index in the body of each record; 0 for padding.
     index: Vec<u32>,
     records: Aligned,
+    /// Of the nodes shared with other parts.
     sums: Aligned,
     /// Of the nodes of this part only, block by block, coordinate by coordinate.
     accelerations: Aligned,
@@ -201,7 +204,7 @@ impl General {
             made.push(Part {
                 own: whole / MOST,
                 records,
-                sums: Aligned::zeros((index.len() + 1) * SUM),
+                sums: Aligned::zeros(of_others.len() * SUM),
                 accelerations: Aligned::zeros(whole * 3),
                 kept: [Aligned::zeros((index.len() + 1) * RECORD), Aligned::zeros(whole * 3)],
                 classes: counts.into_iter().map(class).collect(),
@@ -211,7 +214,11 @@ impl General {
                 record[node as usize] = NONE;
             }
         }
-        shared_places.sort_by_key(|&(node, place)| (node, place.part));
+        // In the order of the first part, so that nodes moved one after the other are neighbours in memory.
+        shared_places.sort_by_key(|&(node, place)| {
+            let Place { part, record } = places[node as usize];
+            (part, record, place.part)
+        });
         let mut shared = Shared {
             index: Vec::new(),
             starts: Vec::new(),
@@ -220,7 +227,9 @@ impl General {
             kept: Aligned::zeros(0),
         };
         for of_node in shared_places.chunk_by(|a, b| a.0 == b.0) {
-            shared.index.push(of_node[0].0);
+            let node = of_node[0].0;
+            places[node as usize] = Place { part: NONE, record: shared.index.len() as u32 };
+            shared.index.push(node);
             shared.starts.push(shared.places.len() as u32);
             shared.places.extend(of_node.iter().map(|(_, place)| place));
         }
@@ -230,7 +239,7 @@ impl General {
         shared.accelerations = Aligned::zeros(whole * 3);
         shared.kept = Aligned::zeros(whole * 3);
         let (elements, tally) = (elements.len(), Tally::default());
-        Self { set, law, constants, parts: made, shared, places, elements, tally }
+        Self { set, law, constants, parts: made, shared, sums: Vec::new(), places, elements, tally }
     }
 }
 
@@ -255,11 +264,9 @@ impl Law {
 }
 
 impl Shared {
-    /// All places of a node, if it belongs to several parts.
-    fn of(&self, node: usize) -> Option<&[Place]> {
-        let count = self.starts.partition_point(|&start| (start as usize) < self.places.len());
-        let at = self.index[..count].binary_search(&(node as u32)).ok()?;
-        Some(&self.places[self.starts[at] as usize..self.starts[at + 1] as usize])
+    /// All places of the node with this number.
+    fn of(&self, number: usize) -> &[Place] {
+        &self.places[self.starts[number] as usize..self.starts[number + 1] as usize]
     }
 }
 
@@ -343,6 +350,12 @@ impl Class {
 }
 
 impl General {
+    /// Whether the body exceeds the caches that it usually has for itself (an element of eight corners has some 350 bytes: 11 MB), so that
+    /// prefetching what is read in no order is worth its instructions.
+    fn is_large(&self) -> bool {
+        self.parts.len() > 8
+    }
+
     /// Evaluates the forces once, unless they are known, and moves all nodes. Returns the first node that becomes too
     /// fast.
     fn pass(&self, pass: Pass, around: Around<'_>, crew: &mut Crew) -> Option<Lost> {
@@ -350,7 +363,10 @@ impl General {
         let share = |count: usize, me: usize| me * count / threads..(me + 1) * count / threads;
         crew.run(&|me| {
             for part in share(self.parts.len(), me) {
-                lost.fetch_min(self.set.run(OnePart { body, part, pass, around }), Ordering::Relaxed);
+                lost.fetch_min(
+                    self.set.run(OnePart { body, part, sums: &body.sums[me], pass, around }),
+                    Ordering::Relaxed,
+                );
             }
         });
         let shared = self.shared.index.len() / MOST;
@@ -408,7 +424,10 @@ impl Stepper for General {
     }
 
     fn node(&mut self, node: usize) -> (DVec3, DVec3) {
-        let Place { part, record } = self.places[node];
+        let Place { part, record } = match self.places[node] {
+            Place { part: NONE, record } => self.shared.of(record as usize)[0],
+            place => place,
+        };
         let record = &mut self.parts[part as usize].records.as_mut_slice()[record as usize * RECORD..];
         let [px, py, vx, vy, pz, vz] = [0, 1, 2, 3, 4, 5].map(|entry: usize| record[entry]);
         (DVec3::new(px, py, pz), DVec3::new(vx, vy, vz))
@@ -421,9 +440,9 @@ impl Stepper for General {
             let record = &mut parts[place.part as usize].records.as_mut_slice()[place.record as usize * RECORD..];
             record[..values.len()].copy_from_slice(&values);
         };
-        match shared.of(node) {
-            Some(copies) => copies.iter().for_each(|&place| put(place)),
-            None => put(places[node]),
+        match places[node] {
+            Place { part: NONE, record } => shared.of(record as usize).iter().for_each(|&place| put(place)),
+            place => put(place),
         }
     }
 
@@ -454,6 +473,10 @@ impl Stepper for General {
     }
 
     fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {
+        if self.sums.len() < crew.threads() {
+            let most = self.parts.iter().map(|part| part.index.len() + 1).max().unwrap_or(0);
+            self.sums.resize_with(crew.threads(), || Aligned::zeros(most * SUM));
+        }
         some.into_iter().find_map(|pass| self.pass(passes.get(pass), *around, crew))
     }
 }

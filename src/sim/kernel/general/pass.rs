@@ -2,6 +2,7 @@
 
 use super::elements::Elements;
 use super::{Constants, General, Law, NONE, Place, RECORD, SUM, first_of};
+use crate::sim::kernel::memory::Aligned;
 use crate::sim::kernel::motion::{Motion, Nodes, Stage};
 use crate::sim::kernel::rotation::{Arctangent, Optimum};
 use crate::sim::kernel::stepper::Pass;
@@ -13,6 +14,8 @@ use std::ops::Range;
 pub(super) struct OnePart<'a> {
     pub(super) body: &'a General,
     pub(super) part: usize,
+    /// Zeros, at least one row more than the part has records.
+    pub(super) sums: &'a Aligned,
     pub(super) pass: Pass,
     pub(super) around: Around<'a>,
 }
@@ -27,7 +30,9 @@ impl Work for OnePart<'_> {
         if stage.has_forces() {
             for class in &part.classes {
                 let tally = &self.body.tally;
-                let elements = Elements { part, class, constants: &self.body.constants, commit, tally };
+                let is_large = self.body.is_large();
+                let (constants, sums) = (&self.body.constants, self.sums);
+                let elements = Elements { part, sums, class, constants, commit, tally, is_large };
                 match (self.body.law, self.body.constants.damping > 0.0) {
                     (Law::Plane, true) => elements.plane::<L, true>(),
                     (Law::Plane, false) => elements.plane::<L, false>(),
@@ -47,7 +52,7 @@ impl Work for OnePart<'_> {
         let Constants { step, gravity, .. } = self.body.constants;
         let motion = Motion::<L>::new(stage, step, gravity, number, self.around);
         let own = Own { motion, stage, constants: &self.body.constants };
-        let (records, sums) = (part.records.pointer(), part.sums.pointer());
+        let (records, sums) = (part.records.pointer(), self.sums.pointer());
         let mut lost = NONE;
         for first in (0..part.own * MOST).step_by(L::WIDTH) {
             // SAFETY: these are records of the part, which is this thread's.
@@ -57,6 +62,14 @@ impl Work for OnePart<'_> {
                 let lanes = own.advance(|lane| records.add((first + lane) * RECORD), [x, y, z], accelerations);
                 lost = first_of(lost, lanes, |lane| part.index[first + lane]);
             }
+        }
+        // What the next part must not find, and `SharedNodes` needs.
+        // SAFETY: the sums are this thread's, and so are those of the part; the last row is that of lanes without an element.
+        unsafe {
+            let own = part.own * MOST;
+            let (of_shared, count) = (sums.add(own * SUM), (part.index.len() - own) * SUM);
+            part.sums.pointer().copy_from_nonoverlapping(of_shared, count);
+            of_shared.write_bytes(0, count + SUM);
         }
         lost
     }
@@ -129,45 +142,49 @@ impl Work for SharedNodes<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        let Self { body: General { shared, parts, constants, .. }, blocks, pass, around } = self;
+        let Self { body, blocks, pass, around } = self;
+        let General { shared, parts, constants, .. } = body;
         let Pass { stage, number, .. } = pass;
         let motion = Motion::<L>::new(stage, constants.step, constants.gravity, number, around);
         let own = Own { motion, stage, constants };
+        let is_large = body.is_large();
+        let record =
+            |place: &Place| parts[place.part as usize].records.pointer().wrapping_add(place.record as usize * RECORD);
+        let sum = |place: &Place| {
+            let part = &parts[place.part as usize];
+            part.sums.pointer().wrapping_add((place.record as usize - part.own * MOST) * SUM)
+        };
         let mut lost = NONE;
         for first in (blocks.start * MOST..blocks.end * MOST).step_by(L::WIDTH) {
-            let places = |lane: usize| {
-                &shared.places[shared.starts[first + lane] as usize..shared.starts[first + lane + 1] as usize]
-            };
-            let mut records = [[0.0; RECORD]; MOST];
+            let places = |lane: usize| shared.of(first + lane);
+            if is_large {
+                let start = |lane: usize| shared.starts[shared.index.len().min(first + lane)] as usize;
+                for place in &shared.places[start(2 * L::WIDTH)..start(3 * L::WIDTH)] {
+                    L::expect(record(place));
+                    L::expect(sum(place));
+                }
+            }
+            let (mut padding, mut rows) = ([[0.0; RECORD]; MOST], [std::ptr::null_mut(); MOST]);
             let mut sums = [[0.0; SUM]; MOST];
-            // SAFETY: all parts are done, and these nodes belong to this thread, wherever their records are.
+            // SAFETY: all parts are done, and these nodes belong to this thread, wherever their records are. Lanes without a
+            // node have rows of their own.
             unsafe {
-                let record = |place: &Place| {
-                    parts[place.part as usize]
-                        .records
-                        .pointer()
-                        .add(place.record as usize * RECORD)
-                        .cast::<[f64; RECORD]>()
-                };
                 for lane in 0..L::WIDTH {
                     let places = places(lane);
-                    if let Some(place) = places.first() {
-                        records[lane] = *record(place);
-                    }
+                    rows[lane] = places.first().map_or(padding[lane].as_mut_ptr(), record);
                     for place in places {
-                        let part = &parts[place.part as usize];
-                        let row = &mut *part.sums.pointer().add(place.record as usize * SUM).cast::<[f64; SUM]>();
-                        sums[lane].iter_mut().zip(&*row).for_each(|(sum, value)| *sum += value);
-                        *row = [0.0; SUM];
+                        let row = &*sum(place).cast::<[f64; SUM]>();
+                        sums[lane].iter_mut().zip(row).for_each(|(sum, value)| *sum += value);
                     }
                 }
                 let [x, y, z, _] = L::columns_4(|lane| sums[lane].as_ptr());
                 let accelerations = shared.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
-                let rows = records.as_mut_ptr();
-                let lanes = own.advance(|lane| rows.add(lane).cast(), [x, y, z], accelerations);
+                let lanes = own.advance(|lane| rows[lane], [x, y, z], accelerations);
                 lost = first_of(lost, lanes, |lane| shared.index[first + lane]);
-                for (lane, moved) in records.iter().enumerate().take(L::WIDTH) {
-                    places(lane).iter().for_each(|place| *record(place) = *moved);
+                for (lane, row) in rows.iter().enumerate().take(L::WIDTH) {
+                    for place in places(lane).iter().skip(1) {
+                        record(place).copy_from_nonoverlapping(*row, RECORD);
+                    }
                 }
             }
         }
