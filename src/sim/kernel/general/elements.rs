@@ -134,8 +134,8 @@ impl Elements<'_> {
                 for (block, out) in (begin..).zip(&*batch) {
                     let nodes = class.nodes.as_ptr().add(block * corners * MOST);
                     let rest = class.rest.pointer().add(block * corners * 3 * MOST);
-                    // Prefetches the data of the next batch, which are not in the second-level cache; of a large body those
-                    // of the batch after it, and the records of the next one, which take longer to arrive.
+                    // Prefetches the data of the next batch, which are not in the second-level cache. Those of a large
+                    // body take longer to arrive: here of the batch after it, and the records of the next one.
                     let turns = class.turns.pointer().wrapping_add((block + ahead) * 4 * MOST);
                     each!(4, entry => L::expect(turns.wrapping_add(entry * MOST)));
                     if is_large && block + BATCH < blocks {

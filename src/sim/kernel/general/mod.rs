@@ -350,8 +350,8 @@ impl Class {
 }
 
 impl General {
-    /// Whether the body exceeds the caches that it usually has for itself (an element of eight corners has some 350 bytes: 11 MB), so that
-    /// prefetching what is read in no order is worth its instructions.
+    /// Whether the body exceeds the share of the last cache that it can count on: prefetching what is read in no
+    /// order is then worth its instructions. So many parts have 11 MB if elements have eight corners.
     fn is_large(&self) -> bool {
         self.parts.len() > 8
     }

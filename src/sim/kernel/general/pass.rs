@@ -63,8 +63,8 @@ impl Work for OnePart<'_> {
                 lost = first_of(lost, lanes, |lane| part.index[first + lane]);
             }
         }
-        // What the next part must not find, and `SharedNodes` needs.
-        // SAFETY: the sums are this thread's, and so are those of the part; the last row is that of lanes without an element.
+        // What the next part must not find, and `SharedNodes` needs. The last row is that of lanes without an element.
+        // SAFETY: the sums are this thread's, and so are those of the part.
         unsafe {
             let own = part.own * MOST;
             let (of_shared, count) = (sums.add(own * SUM), (part.index.len() - own) * SUM);
@@ -166,8 +166,8 @@ impl Work for SharedNodes<'_> {
             }
             let (mut padding, mut rows) = ([[0.0; RECORD]; MOST], [std::ptr::null_mut(); MOST]);
             let mut sums = [[0.0; SUM]; MOST];
-            // SAFETY: all parts are done, and these nodes belong to this thread, wherever their records are. Lanes without a
-            // node have rows of their own.
+            // SAFETY: all parts are done, and these nodes belong to this thread, wherever their records are. Lanes
+            // without a node have rows of their own.
             unsafe {
                 for lane in 0..L::WIDTH {
                     let places = places(lane);

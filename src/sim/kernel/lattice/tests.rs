@@ -154,13 +154,14 @@ fn steps_are_those_of_the_reference() {
                     }
                     let (found, _) = run_by(1, scheme, &body, &state, parameters, Set::best(), [10, 100]);
                     let distance = distance(&reference(scheme, &body, &state, parameters, 1000), &found);
-                    // The energy of explicit Euler grows, and with it what round-off has become: one unit in the last place of
-                    // the start alone becomes 5e-13, and both codes round in every step.
+                    // The energy of explicit Euler grows until elements collapse, and with it what round-off has become:
+                    // in one of these runs, the only one beyond 1e-12, one unit in the last place of the start alone makes
+                    // the reference differ from itself by 5e-13, and both codes round in every step.
                     let amplified = match scheme {
                         Scheme::ExplicitEuler => growth_of_round_off(scheme, &body, &state, parameters, 1000),
                         _ => 0.0,
                     };
-                    let bound = f64::max(1e-12, 10.0 * amplified);
+                    let bound = f64::max(1e-12, 4.0 * amplified);
                     assert!(
                         distance < bound,
                         "{cells:?} {sides} {scheme:?} {parameters:?}: {distance:e}, not {bound:e}"
