@@ -148,18 +148,19 @@ impl Scene {
 
     /// Why no run has a diagnostic, and what else a chart can show; `None` if a run has it, as far as models say that.
     pub(crate) fn lacks(&self, diagnostic: Diagnostic) -> Option<&'static str> {
-        let (has, why): (&dyn Fn(&dyn ElasticModel) -> bool, _) = match diagnostic {
+        let has = |has: &dyn Fn(&dyn ElasticModel) -> bool| self.runs.iter().any(|run| has(&*run.model));
+        let (exists, why) = match diagnostic {
             Diagnostic::GlobalRotations => (
-                &|model| model.shape_based().is_some_and(|model| model.counts_global(&self.body)),
+                has(&|model| model.shape_based().is_some_and(|model| model.counts_global(&self.body))),
                 "only shape-based models in space count them; plot another diagnostic, such as \"turned_over\"",
             ),
             Diagnostic::Residual => (
-                &|model| model.springs().is_empty(),
+                has(&|model| model.springs().is_empty()),
                 "mass-spring models have no rotations; plot another diagnostic, such as \"turned_over\"",
             ),
             _ => return None,
         };
-        (!self.runs.iter().any(|run| has(&*run.model))).then_some(why)
+        (!exists).then_some(why)
     }
 
     /// The diagnostics of a frame that its picture shows: the number of each run, and the present value in a chart.
