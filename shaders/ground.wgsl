@@ -82,9 +82,6 @@ fn corner(@builtin(vertex_index) index: u32) -> Corner {
     );
 }
 
-// Cells along each side of a shadow.
-const CELLS = 128.0;
-
 // An ordered dither: from −½ to ½, evenly spread over each 8×8 pixels (B. E. Bayer, 1973).
 fn dither(pixel: vec2<f32>) -> f32 {
     let at = vec2<u32>(pixel);
@@ -103,7 +100,8 @@ fn byte_step(colour: vec3<f32>) -> vec3<f32> {
 fn taken(shade: vec4<f32>, layer: f32, on_floor: vec2<f32>) -> f32 {
     let at = (on_floor - shade.xy) * shade.z;
     let inside = all(at >= vec2(0.0)) && all(at <= vec2(1.0));
-    let place = saturate(at) * CELLS + 0.5;
+    let cells = f32(textureDimensions(shades).x - 1u);
+    let place = saturate(at) * cells + 0.5;
     let corner = floor(place);
     let beyond = place - corner;
     let four = textureLoad(shades, vec2<i32>(corner), i32(layer), 0);

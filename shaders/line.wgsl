@@ -49,8 +49,6 @@ const FLAT_EDGE_WIDTH = 1.5;
 const ALARM_EDGE_WIDTH = 1.5;
 const CONTOUR_WIDTH = 2.2;
 const FLAT_CONTOUR_WIDTH = 2.5;
-// As for the surfaces of turned-over elements. Moving all lines as far would let stubs of hidden ones show at corners.
-const NEARER = 0.02;
 // A line lies this much before its surface, as a part of the distance.
 const OFFSET = 0.0016;
 // Width of the lines of an element without faces (px in the reference picture).
@@ -72,11 +70,12 @@ fn widest(kind: u32) -> f32 {
     }
 }
 
+// A line has two ends on the panel's region (px), and their depths.
 @vertex
 fn segment(
     @builtin(vertex_index) corner: u32,
-    @location(0) start: vec3<f32>,
-    @location(1) end: vec3<f32>,
+    @location(0) ends: vec4<f32>,
+    @location(1) depths: vec2<f32>,
     @location(2) look: u32,
     @location(3) first: u32,
 ) -> Segment {
@@ -84,29 +83,10 @@ fn segment(
     let kind = extractBits(look, 0u, KIND_BITS);
     let strength = f32(extractBits(look, KIND_BITS, STRENGTH_BITS)) / 255.0;
     let samples = vec2(first, look >> (KIND_BITS + STRENGTH_BITS));
-    let line = projected(start, end, kind);
-    if !line.seen {
-        return Segment(NOWHERE, vec4(0.0), vec2(0.0), kind, strength, samples, vec4(0.0));
-    }
     let reach = 0.5 * max(widest(kind) * panel.line_scale, 1.0) + 0.5;
-    let place = strip_corner(corner, line.ends.xy, line.ends.zw, reach, panel.region.zw);
+    let place = strip_corner(corner, ends.xy, ends.zw, reach, panel.region.zw);
     let scales = vec4(panel.line_scale, panel.contour_share, panel.line_share * panel.element, panel.opacity);
-    return Segment(place, line.ends + panel.region.xyxy, line.depths, kind, strength, samples, scales);
-}
-
-// A line on the panel's region: its ends (px), and their depths.
-struct Projected {
-    ends: vec4<f32>,
-    depths: vec2<f32>,
-    seen: bool,
-}
-
-fn projected(start: vec3<f32>, end: vec3<f32>, kind: u32) -> Projected {
-    let ends = ends_of(start, end);
-    let size = panel.region.zw;
-    let nearer = select(0.0, NEARER, kind == ALARM_EDGE || kind == ALARM_CONTOUR);
-    let depths = vec2(ends.a.z / max(ends.a.w - nearer, panel.near), ends.b.z / max(ends.b.w - nearer, panel.near));
-    return Projected(vec4(pixel_of(ends.a, size), pixel_of(ends.b, size)), depths, ends.seen);
+    return Segment(place, ends + panel.region.xyxy, depths, kind, strength, samples, scales);
 }
 
 fn distance_of(depth: f32) -> f32 {

@@ -55,9 +55,9 @@ struct Panel {
 
 @group(0) @binding(0) var<uniform> panel_data: Panel;
 
-// The same for the functions below. Vertex shaders copy all of it. Fragment shaders get what they use from the corners of what is
-// drawn, as numbers that do not vary: a software driver reads a uniform buffer anew for each pixel, which took longer than all
-// the rest.
+// The same for the functions below, which vertex shaders copy. Where it pays, fragment shaders get what they use most from the
+// corners of what is drawn, as varyings that do not vary: a software driver reads a uniform buffer anew for each lane, which
+// took as long as all the rest.
 var<private> panel: Panel;
 
 // Powers of a colour's brightness that the eye weighs.

@@ -2,10 +2,10 @@
 // The tests are made at the taps around the point of the line, so that lines end smoothly. Each kind of line has a pipeline of
 // its own, as the tests differ.
 
-// A line as `line.wgsl` reads it: its ends, the packed number, and its first sample. Bits of numbers of three kinds.
+// A line as `line.wgsl` reads it: its ends, and the bits of its depths, of the packed number, and its first sample.
 struct Line {
-    first: vec4<u32>,
-    second: vec4<u32>,
+    ends: vec4<f32>,
+    rest: vec4<u32>,
 }
 
 // Samples that follow each other along one line: the line, and the first of them on it.
@@ -97,21 +97,17 @@ fn sample_of(thread: vec3<u32>, groups: vec3<u32>) -> Sample {
     let within = index / CHUNK < range.y;
     let chunk = chunks[range.x + min(index / CHUNK, range.y - 1u)];
     let line = lines[chunk.x];
-    let look = line.second.z;
+    let look = line.rest.z;
     let kind = extractBits(look, 0u, KIND_BITS);
     let count = look >> (KIND_BITS + STRENGTH_BITS);
     let number = chunk.y + index % CHUNK;
-    let start = bitcast<vec3<f32>>(line.first.xyz);
-    let end = bitcast<vec3<f32>>(vec3(line.first.w, line.second.xy));
-    let drawn = projected(start, end, kind);
+    let depths = bitcast<vec2<f32>>(line.rest.xy);
     let share = f32(number) / f32(count - 1u);
-    let from_pixel = drawn.ends.xy + panel.region.xy;
-    let difference = drawn.ends.zw - drawn.ends.xy;
+    let difference = line.ends.zw - line.ends.xy;
     let along = difference / max(length(difference), 1e-6);
-    let depth = mix(drawn.depths.x, drawn.depths.y, share);
-    let at = Beside(from_pixel + share * difference, along, 0.0, depth, share);
-    let place = visibility_place(line.second.w + number);
-    return Sample(at, kind, place, within && number < count && drawn.seen);
+    let middle = panel.region.xy + line.ends.xy + share * difference;
+    let at = Beside(middle, along, 0.0, mix(depths.x, depths.y, share), share);
+    return Sample(at, kind, visibility_place(line.rest.w + number), within && number < count);
 }
 
 // Edges: how visible, and how much lies behind a body.

@@ -19,6 +19,8 @@ pub(super) const DASH: [f64; 2] = [6.5, 4.5];
 /// Length of an arrow to what lies outside of the room, that of its head, and from its tip to the border (px in the reference
 /// picture).
 const POINTER: [f64; 3] = [34.0, 11.0, 6.0];
+/// A ghost of which this part is seen needs no arrow.
+const MOSTLY: f64 = 0.9;
 /// Edges are looked at in pieces of this length, and covered this far beside them on both sides they lie inside (px).
 const PIECE: f64 = 3.0;
 const BESIDE: f64 = 1.6;
@@ -46,6 +48,7 @@ impl Ghost<'_> {
     pub(super) fn draw(&self, scale: Scale, colour: Colour, halo: Colour, curves: &mut Vec<Curve>) {
         let lines = [self.outline(), self.bars()].concat();
         let fade = self.fade(scale);
+        let whole: f64 = lines.iter().map(|line| length(line)).sum();
         // What fades is cut into dashes here.
         let mut pieces = Vec::new();
         let mut seen = 0.0;
@@ -64,7 +67,7 @@ impl Ghost<'_> {
                 pieces.extend((opacity > 0.0).then_some((dash, None, opacity)));
             }
         }
-        if seen < POINTER[0] * scale.line() {
+        if seen < (POINTER[0] * scale.line()).min(MOSTLY * whole) || whole == 0.0 {
             let pointer = self.pointer(scale, seen > 0.0);
             if !pointer.is_empty() {
                 pieces = pointer.into_iter().map(|line| (line, None, 1.0)).collect();

@@ -54,7 +54,7 @@ impl Borders {
         self.ranges.clear();
         for panel in &picture.panels {
             let start = segments.len() as u32;
-            segments.extend(panel.borders.iter().map(Segment::new));
+            segments.extend(panel.borders.iter().filter_map(line::projected(panel)));
             self.ranges.push(start..segments.len() as u32);
         }
         self.segments.write(gpu, &segments);

@@ -1,9 +1,10 @@
 //! Edges, contours and outlines of bodies, as opacities.
 
+use super::RenderError;
 use super::panel::{Panels, cropped};
 use super::pipeline::{LINE_FORMAT, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry};
 use super::target::Bodies;
-use super::visibility::{Visibility, most_samples};
+use super::visibility::{Visibility, most_lines, most_samples};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Line, LineKind, Panel, Picture, Rectangle};
 use bytemuck::{Pod, Zeroable};
@@ -16,40 +17,81 @@ const SHADER: &str = include_str!("../../shaders/line.wgsl");
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Segment {
-    from: [f32; 3],
-    to: [f32; 3],
+    /// Its ends on the region of its panel (px), and their depths.
+    ends: [f32; 4],
+    depths: [f32; 2],
     /// Its kind, its opacity (of 255), and the number of samples of its visibility.
     look: u32,
     /// The first of these.
     first: u32,
 }
 
-/// Where the opacity and the number of samples begin in [`Segment::look`].
-const STRENGTH: u32 = 4;
-const COUNT: u32 = 12;
-/// The longest line in samples.
-const MOST_OF_LINE: u32 = (1 << (32 - COUNT)) - 1;
+/// Bits of the kind and of the opacity in [`Segment::look`].
+pub(super) const KIND_BITS: u32 = 4;
+pub(super) const STRENGTH_BITS: u32 = 8;
 
 pub(super) const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
-    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32, 3 => Uint32];
+    wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x2, 2 => Uint32, 3 => Uint32];
 
 impl Segment {
-    /// A line whose visibility is not tested beforehand.
-    pub(super) fn new(line: &Line) -> Self {
-        Self::tested(line, 0..0)
-    }
-
-    fn tested(line: &Line, samples: Range<u32>) -> Self {
-        let &Line { from, to, kind, strength } = line;
-        let strength = (255.0 * strength).round() as u32;
-        let look = kind as u32 | strength << STRENGTH | (samples.len() as u32) << COUNT;
-        Self { from, to, look, first: samples.start }
+    /// Its length (px).
+    fn length(&self) -> f32 {
+        let [x, y, to_x, to_y] = self.ends;
+        Vec2::new(x, y).distance(Vec2::new(to_x, to_y))
     }
 
     /// The samples of its visibility.
     pub(super) fn samples(&self) -> Range<u32> {
-        self.first..self.first + (self.look >> COUNT)
+        self.first..self.first + (self.look >> (KIND_BITS + STRENGTH_BITS))
     }
+}
+
+/// Lines of turned-over elements are this much nearer (sides), as their surfaces are. Moving all lines as far would let stubs of
+/// hidden ones show at corners.
+const NEARER: f32 = 0.02;
+
+/// What of lines lies on the region of a panel, or so near to it that they reach into it.
+pub(super) fn projected(panel: &Panel) -> impl Fn(&Line) -> Option<Segment> {
+    let (clip, near) = (cropped(panel), panel.sight.near);
+    let size = Vec2::new(panel.region[2] as f32, panel.region[3] as f32);
+    let around = 2.0 + 2.0 * panel.sight.line_scale;
+    move |line| {
+        let [mut a, mut b] = [line.from, line.to].map(|end| clip * Vec3::from(end).extend(1.0));
+        if a.w < near && b.w < near {
+            return None;
+        }
+        if a.w < near {
+            a = a.lerp(b, (near - a.w) / (b.w - a.w));
+        } else if b.w < near {
+            b = b.lerp(a, (near - b.w) / (a.w - b.w));
+        }
+        let nearer = if matches!(line.kind, LineKind::AlarmEdge | LineKind::AlarmContour) { NEARER } else { 0.0 };
+        let place = |at: Vec4| (Vec2::new(at.x, -at.y) / at.w * 0.5 + 0.5) * size;
+        // A depth is as linear on the screen as places are.
+        let [from, to] = [a, b].map(|at| place(at).extend(at.z / (at.w - nearer).max(near)));
+        let [start, end] = shares_within(from.truncate(), to.truncate(), [Vec2::splat(-around), size + around])?;
+        let [from, to] = [from.lerp(to, start), from.lerp(to, end)];
+        let strength = (255.0 * line.strength).round() as u32;
+        let look = line.kind as u32 | strength << KIND_BITS;
+        Some(Segment { ends: [from.x, from.y, to.x, to.y], depths: [from.z, to.z], look, first: 0 })
+    }
+}
+
+/// From which part of a line to which one it lies in a rectangle.
+fn shares_within(from: Vec2, to: Vec2, [low, high]: [Vec2; 2]) -> Option<[f32; 2]> {
+    let way = to - from;
+    let (mut start, mut end) = (0.0_f32, 1.0_f32);
+    for axis in 0..2 {
+        if way[axis] == 0.0 {
+            if from[axis] < low[axis] || from[axis] > high[axis] {
+                return None;
+            }
+            continue;
+        }
+        let [one, other] = [low, high].map(|side| (side[axis] - from[axis]) / way[axis]);
+        (start, end) = (start.max(one.min(other)), end.min(one.max(other)));
+    }
+    (start <= end).then_some([start, end])
 }
 
 /// The parts of the shader.
@@ -74,9 +116,9 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// Those whose visibility is tested.
-    pub(super) const TESTED: [Self; 4] = [Self::Edge, Self::AlarmEdge, Self::Contour, Self::AlarmContour];
-    const ALL: [Self; 5] = [Self::Edge, Self::AlarmEdge, Self::Contour, Self::AlarmContour, Self::Flat];
+    pub(super) const ALL: [Self; 5] = [Self::Edge, Self::AlarmEdge, Self::Contour, Self::AlarmContour, Self::Flat];
+    /// What tests the visibility of the first of these. Nothing hides what is in the plane.
+    pub(super) const TESTED: [&'static str; 4] = ["edges", "alarm_edges", "contours", "alarm_contours"];
 
     fn of(panel: &Panel, line: &Line) -> Self {
         match line.kind {
@@ -96,16 +138,6 @@ impl Kind {
             Self::Contour => "contour_opacity",
             Self::AlarmContour => "alarm_contour_opacity",
             Self::Flat => "flat_opacity",
-        }
-    }
-
-    /// What tests them.
-    pub(super) fn test(self) -> &'static str {
-        match self {
-            Self::AlarmEdge => "alarm_edges",
-            Self::Contour => "contours",
-            Self::AlarmContour => "alarm_contours",
-            Self::Edge | Self::Flat => "edges",
         }
     }
 }
@@ -139,18 +171,25 @@ impl Lines {
     }
 
     /// Uploads the lines of a picture, and prepares to draw them, among solid obstacles or without any.
-    pub(super) fn write(&mut self, gpu: &Gpu, panels: &Panels, bodies: &Bodies, picture: &Picture, among: bool) {
-        let mut apart = 1.0;
-        let mut segments = self.sampled(picture, apart);
-        while segments.last().is_some_and(|last| u64::from(last.samples().end) > most_samples(gpu)) {
-            apart *= 2.0;
-            segments = self.sampled(picture, apart);
+    ///
+    /// # Errors
+    /// More lines than the device can test.
+    pub(super) fn write(
+        &mut self,
+        gpu: &Gpu,
+        panels: &Panels,
+        bodies: &Bodies,
+        picture: &Picture,
+        among: bool,
+    ) -> Result<(), RenderError> {
+        let segments = self.sampled(picture, most_samples(gpu));
+        let most = most_lines::<Segment>(gpu);
+        if segments.len() > most {
+            return Err(RenderError::Lines { count: segments.len(), most });
         }
         let is_new = self.segments.write(gpu, &segments);
-        let tested: Vec<_> =
-            self.ranges.iter().map(|ranges| std::array::from_fn(|kind| ranges[kind].clone())).collect();
         let lines = (&segments[..], self.segments.buffer(), is_new);
-        if self.visibility.write(gpu, panels, bodies, lines, &tested, among) || self.found.is_none() {
+        if self.visibility.write(gpu, panels, bodies, lines, &self.ranges, among) || self.found.is_none() {
             self.found = Some(bind_textures(gpu, "visibility", &self.layout, &[(4, &self.visibility.found())]));
         }
         for (at, kind) in Kind::ALL.into_iter().enumerate() {
@@ -158,26 +197,35 @@ impl Lines {
                 self.prepare(gpu, panels, kind);
             }
         }
+        Ok(())
     }
 
-    /// The lines of a picture by panels and kinds, with samples so far apart (px).
-    fn sampled(&mut self, picture: &Picture, apart: f32) -> Vec<Segment> {
-        let (mut segments, mut samples) = (Vec::new(), 0);
+    /// The lines of a picture by panels and kinds, with a sample of their visibility for each pixel of their length, or
+    /// fewer, so that there are at most so many.
+    fn sampled(&mut self, picture: &Picture, most: u64) -> Vec<Segment> {
+        let mut segments: Vec<Segment> = Vec::new();
         self.ranges.clear();
         for panel in &picture.panels {
-            let length = length_in(panel);
+            let projected = projected(panel);
             self.ranges.push(Kind::ALL.map(|kind| {
                 let start = segments.len() as u32;
-                for line in panel.lines.iter().filter(|line| Kind::of(panel, line) == kind) {
-                    let count = match kind {
-                        Kind::Flat => 0,
-                        _ => ((length(line) / apart).ceil() as u32 + 1).clamp(2, MOST_OF_LINE),
-                    };
-                    segments.push(Segment::tested(line, samples..samples + count));
-                    samples += count;
-                }
+                segments.extend(panel.lines.iter().filter(|line| Kind::of(panel, line) == kind).filter_map(&projected));
                 start..segments.len() as u32
             }));
+        }
+        let ranges = self.ranges.iter().flat_map(|ranges| &ranges[..Kind::TESTED.len()]);
+        let tested: Vec<_> = ranges.flat_map(Range::clone).map(|at| at as usize).collect();
+        let length: f64 = tested.iter().map(|&at| f64::from(segments[at].length())).sum();
+        let left = most.saturating_sub(2 * tested.len() as u64).max(1);
+        let apart = (length / left as f64).max(1.0);
+        let mut first = 0;
+        for at in tested {
+            let segment = &mut segments[at];
+            let count = (f64::from(segment.length()) / apart).ceil() as u32 + 1;
+            let count = count.max(2);
+            segment.look |= count << (KIND_BITS + STRENGTH_BITS);
+            segment.first = first;
+            first += count;
         }
         segments
     }
@@ -225,21 +273,20 @@ impl Lines {
     }
 }
 
-/// The length of a line of a panel, as far as it is before the eye (px).
-fn length_in(panel: &Panel) -> impl Fn(&Line) -> f32 {
-    let (clip, near) = (cropped(panel), panel.sight.near);
-    let size = Vec2::new(panel.region[2] as f32, panel.region[3] as f32);
-    let place = move |at: Vec4| at.truncate().truncate() / at.w * 0.5 * size;
-    move |line| {
-        let [mut a, mut b] = [line.from, line.to].map(|end| clip * Vec3::from(end).extend(1.0));
-        if a.w < near && b.w < near {
-            return 0.0;
-        }
-        if a.w < near {
-            a = a.lerp(b, (near - a.w) / (b.w - a.w));
-        } else if b.w < near {
-            b = b.lerp(a, (near - b.w) / (a.w - b.w));
-        }
-        place(a).distance(place(b))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_cut_to_what_may_be_seen() {
+        let room = [Vec2::ZERO, Vec2::new(10.0, 5.0)];
+        let within = |from: [f32; 2], to: [f32; 2]| shares_within(from.into(), to.into(), room);
+        assert_eq!(within([1.0, 1.0], [9.0, 4.0]), Some([0.0, 1.0]));
+        assert_eq!(within([-10.0, 2.0], [30.0, 2.0]), Some([0.25, 0.5]));
+        assert_eq!(within([3.0, -1e3], [3.0, -1.0]), None);
+        assert_eq!(within([-1.0, 6.0], [12.0, 6.0]), None);
+        assert_eq!(within([4.0, 4.0], [4.0, 4.0]), Some([0.0, 1.0]));
+        // Past a corner.
+        assert_eq!(within([-2.0, 4.0], [4.0, 10.0]), None);
     }
 }

@@ -72,6 +72,16 @@ pub enum RenderError {
         /// Size that the renderer was made for (px).
         expected: [u32; 2],
     },
+    /// A picture has more lines than the device can draw.
+    #[error(
+        "the picture has {count} lines, this device can draw {most}: leave out edges (`view.edges`), or draw fewer panels"
+    )]
+    Lines {
+        /// Edges and contours in the picture.
+        count: usize,
+        /// The most that the device can draw.
+        most: usize,
+    },
     /// The device failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
@@ -213,7 +223,7 @@ impl Renderer {
         }
         let curves = self.curves.as_ref().filter(|_| !picture.curves.is_empty());
         let [with_solids, with_slabs] = [Solids::are_in(picture), Slabs::are_in(picture)];
-        self.lines.write(&gpu, &self.panels, &bodies, picture, with_solids);
+        self.lines.write(&gpu, &self.panels, &bodies, picture, with_solids)?;
         let with_clear = picture.panels.iter().any(|panel| panel.opacity < 1.0);
         if with_solids {
             let new = || Solids::new(&gpu, &self.panels);

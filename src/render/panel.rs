@@ -106,10 +106,11 @@ pub(super) fn cropped(panel: &Panel) -> Mat4 {
     crop(panel.viewport, panel.region) * panel.sight.clip
 }
 
-/// Whether anything may be visible through the surfaces of a panel that are not turned over.
+/// Whether anything may be visible through the surfaces of a panel that are not turned over, or these are dotted: one pipeline
+/// draws both.
 pub(super) fn has_behind(panel: &Panel) -> bool {
     let has_solids = || panel.obstacles.solids.iter().any(|solid| !solid.mesh.triangles.is_empty());
-    !panel.turned_over.triangles.is_empty() || (panel.opacity < 1.0 && has_solids())
+    panel.dotted || !panel.turned_over.triangles.is_empty() || (panel.opacity < 1.0 && has_solids())
 }
 
 /// Whether no field colours the surfaces of a panel.

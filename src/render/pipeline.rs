@@ -142,7 +142,7 @@ pub(super) fn shader(gpu: &Gpu, label: &str, parts: &[&str]) -> wgpu::ShaderModu
 pub(super) fn uniform_entry(binding: u32, size: usize, has_dynamic_offset: bool) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
-        visibility: wgpu::ShaderStages::all(),
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE,
         ty: wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
             has_dynamic_offset,

@@ -70,6 +70,24 @@ fn structs_are_laid_out_alike_on_both_sides() {
 }
 
 #[test]
+fn numbers_about_lines_are_the_same_on_both_sides() {
+    let module = parse(&visibility::parts(false));
+    let number = |name: &str| {
+        let found = module.constants.iter().find(|(_, constant)| constant.name.as_deref() == Some(name));
+        let (_, constant) = found.unwrap_or_else(|| panic!("there is no constant {name}"));
+        match module.global_expressions[constant.init] {
+            naga::Expression::Literal(naga::Literal::U32(value)) => value,
+            ref other => panic!("{name} is {other:?}"),
+        }
+    };
+    assert_eq!(number("VISIBILITY_WIDTH"), visibility::WIDTH);
+    assert_eq!(number("CHUNK"), visibility::CHUNK);
+    assert_eq!(number("GROUP"), visibility::GROUP);
+    assert_eq!(number("KIND_BITS"), line::KIND_BITS);
+    assert_eq!(number("STRENGTH_BITS"), line::STRENGTH_BITS);
+}
+
+#[test]
 fn the_scale_of_a_field_has_as_many_colours_on_both_sides() {
     let module = parse(&[&surface::parts(0)[..], &[tint::SHADER]].concat());
     let ramp = module.global_variables.iter().find(|(_, variable)| variable.name.as_deref() == Some("ramp"));

@@ -4,7 +4,7 @@ use super::panel::{Panels, has_behind, is_plain};
 use super::pipeline::{Recipe, bind_textures, for_vertices, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{MOST_OCCLUDERS, Mesh, Panel, Picture, Rectangle, Vertex};
+use crate::picture::{MOST_OCCLUDERS, Mesh, Picture, Rectangle, Vertex};
 use std::ops::Range;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/surface.wgsl");
@@ -134,8 +134,7 @@ impl Surfaces {
             start..indices.len() as u32
         };
         self.ranges = picture.panels.iter().map(|panel| [add(&panel.sound), add(&panel.turned_over)]).collect();
-        let kind = |panel: &Panel| [!is_plain(picture, panel), has_behind(panel) || panel.dotted];
-        self.kinds = picture.panels.iter().map(kind).collect();
+        self.kinds = picture.panels.iter().map(|panel| [!is_plain(picture, panel), has_behind(panel)]).collect();
         self.vertices.write(gpu, &vertices);
         self.indices.write(gpu, &indices);
     }

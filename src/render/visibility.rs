@@ -20,9 +20,9 @@ const AMONG_SHADER: &str = include_str!("../../shaders/line_among.wgsl");
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// As in the shaders: samples in a row of the texture, samples that a chunk has, and threads of a group.
-const WIDTH: u32 = 2048;
-const CHUNK: u32 = 4;
-const GROUP: u32 = 128;
+pub(super) const WIDTH: u32 = 2048;
+pub(super) const CHUNK: u32 = 4;
+pub(super) const GROUP: u32 = 128;
 
 /// The distance between two ranges in their buffer (bytes).
 const STRIDE: usize = 256;
@@ -105,7 +105,7 @@ impl Visibility {
         panels: &Panels,
         bodies: &Bodies,
         (segments, lines, is_new): (&[Segment], &wgpu::Buffer, bool),
-        tested: &[[Range<u32>; Kind::TESTED.len()]],
+        ranges_of_lines: &[[Range<u32>; Kind::ALL.len()]],
         among: bool,
     ) -> bool {
         if among && self.among.is_none() {
@@ -116,7 +116,7 @@ impl Visibility {
         let (mut chunks, mut ranges) = (Vec::new(), Vec::new());
         self.counts.clear();
         let mut samples = 0;
-        for panel in tested {
+        for panel in ranges_of_lines {
             self.counts.push(std::array::from_fn(|kind| {
                 let first = chunks.len() as u32;
                 for line in panel[kind].clone() {
@@ -149,7 +149,7 @@ impl Visibility {
         let variant = if among { self.among.as_mut().expect("made above") } else { &mut self.alone };
         let is_tested = |kind: usize| self.counts.iter().any(|counts| counts[kind] > 0);
         for kind in (0..Kind::TESTED.len()).filter(|&kind| is_tested(kind)) {
-            variant.prepare(gpu, &[&panels.layout, &variant.layout.clone(), &self.layout], kind);
+            variant.prepare(gpu, &panels.layout, &self.layout, kind);
         }
         is_small
     }
@@ -180,9 +180,17 @@ impl Visibility {
 /// All devices can do so many groups in each direction.
 const MOST_GROUPS: u32 = 65_535;
 
-/// The number of samples that fit into what a device can have.
+/// The number of samples for which a device has room.
 pub(super) fn most_samples(gpu: &Gpu) -> u64 {
     u64::from(WIDTH) * u64::from(gpu.longest_side())
+}
+
+/// The number of lines for which a device has room: two samples each use half of that for samples.
+pub(super) fn most_lines<T>(gpu: &Gpu) -> usize {
+    let in_buffer = gpu.device().limits().max_storage_buffer_binding_size / size_of::<T>() as u64;
+    // Buffers grow to powers of two.
+    let in_buffer = if in_buffer.is_power_of_two() { in_buffer } else { in_buffer.next_power_of_two() / 2 };
+    in_buffer.min(most_samples(gpu) / 4) as usize
 }
 
 fn texture(gpu: &Gpu, height: u32) -> wgpu::Texture {
@@ -214,9 +222,10 @@ impl Variant {
     }
 
     /// Makes the pipeline of a kind.
-    fn prepare(&mut self, gpu: &Gpu, groups: &[&wgpu::BindGroupLayout], kind: usize) {
-        let entry = Kind::TESTED[kind].test();
-        self.pipelines[kind].get_or_insert_with(|| compute_pipeline(gpu, "visibility", &self.module, entry, groups));
+    fn prepare(&mut self, gpu: &Gpu, panel: &wgpu::BindGroupLayout, own: &wgpu::BindGroupLayout, kind: usize) {
+        let groups = [panel, &self.layout, own];
+        let build = || compute_pipeline(gpu, "visibility", &self.module, Kind::TESTED[kind], &groups);
+        self.pipelines[kind].get_or_insert_with(build);
     }
 
     fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {

@@ -58,6 +58,38 @@ fn an_opaque_body_is_the_same_whatever_was_seen_through_before() {
 }
 
 #[test]
+fn a_dotted_body_shows_nothing_of_what_was_turned_over_before() {
+    let Some(gpu) = gpu("a_dotted_body_shows_nothing_of_what_was_turned_over_before") else { return };
+    let (scene, frame) = middle_turned_over();
+    let mut dotted = frame.clone();
+    dotted.runs[0].snapshot.turned_over[13] = false;
+    dotted.runs[0].snapshot.flat[0] = true;
+    let mut renderer = renderer(gpu, scene.view.size);
+    renderer.draw(&compose(&scene, &frame)).expect("the device works");
+    let after = renderer.draw(&compose(&scene, &dotted)).expect("the device works");
+    assert_eq!(after, draw(gpu, &compose(&scene, &dotted)));
+    assert_eq!(orange(&after), 0, "nothing has turned over");
+}
+
+#[test]
+fn lines_that_reach_far_beyond_the_picture_are_drawn_like_those_that_end_at_it() {
+    let Some(gpu) = gpu("lines_that_reach_far_beyond_the_picture_are_drawn_like_those_that_end_at_it") else { return };
+    let (scene, frame) = fig4b(0);
+    let lengthened = |by: f32| {
+        let mut picture = compose(&scene, &frame);
+        for line in picture.panels[0].lines.iter_mut().filter(|line| line.kind == LineKind::Contour) {
+            let [from, to] = [line.from, line.to].map(Vec3::from);
+            line.to = (to + by * (to - from)).to_array();
+        }
+        draw(gpu, &picture)
+    };
+    let (far, farther) = (lengthened(1e3), lengthened(1e6));
+    let differing = far.pixels().zip(farther.pixels()).filter(|(one, other)| one != other).count();
+    assert!(differing < 200, "{differing}");
+    assert_ne!(far, lengthened(0.0));
+}
+
+#[test]
 fn solids_are_seen_through_clear_surfaces_only() {
     let Some(gpu) = gpu("solids_are_seen_through_clear_surfaces_only") else { return };
     // The ball is behind the plate of cubes and much smaller.

@@ -5,6 +5,7 @@ use crate::look::Labels;
 use crate::picture::fade::FADING;
 use crate::picture::plane::sides;
 use crate::picture::{Mark, MarkShape, Obstacles};
+use crate::sim::contact;
 use glam::{DVec2, DVec3};
 
 /// Free around the body, which is not faded with them (px in the reference picture).
@@ -27,8 +28,10 @@ impl Draft<'_> {
     /// Covers the sides of the panel where obstacles leave it with the background, the more the nearer to the side;
     /// over no longer a distance than they go on outside, so that nothing changes at once. The body is left out.
     pub(super) fn fade_obstacles(&self, obstacles: &Obstacles, marks: &mut Vec<Mark>) {
-        // An inset is a piece of a picture, and has a frame.
-        if self.enlarged != 1.0 {
+        // An inset is a piece of a picture, and has a frame. What covers obstacles would cover a slope in the plane, too.
+        let ground = contact::ground(&self.scene.obstacles, self.run.snapshot.time);
+        let is_slope = self.lens.orthographic && ground.is_some_and(|(normal, _)| normal != DVec3::Y);
+        if self.enlarged != 1.0 || is_slope {
             return;
         }
         let place = |at: [f32; 3]| self.origin + self.side * DVec3::from(at.map(f64::from));
@@ -53,6 +56,9 @@ impl Draft<'_> {
         marks: &mut Vec<Mark>,
     ) {
         let parts = self.beyond([left, top, right, bottom], boxes);
+        if parts.iter().all(Option::is_none) {
+            return;
+        }
         let around = AROUND_BODY * self.scale.line();
         let body = self.bounds(self.position.iter().copied()).unwrap_or_default();
         let body = [body[0].x - around, body[0].y - around, body[1].x + around, body[1].y + around];
