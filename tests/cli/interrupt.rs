@@ -24,7 +24,13 @@ fn start_ignoring(ignored: &'static [c_int], place: &Place, arguments: &str, sig
     let mut command = place.command(arguments.split(' '));
     set_signals(&mut command, ignored);
     let mut running = Running::start(&mut command);
-    running.until(sign, |_| place.path(sign).exists());
+    running.until(sign, |running| {
+        // The file may have been written between the two questions.
+        let has_ended = !running.is_running();
+        let exists = place.path(sign).exists();
+        assert!(exists || !has_ended, "{sign}: the command has ended without it");
+        exists
+    });
     running
 }
 

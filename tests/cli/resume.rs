@@ -34,9 +34,9 @@ fn again(place: &Place, arguments: &str) -> Running {
     running
 }
 
-/// A scene that takes some seconds, so that a killed command leaves a checkpoint.
+/// A scene that takes some seconds, so that a killed command leaves a checkpoint: these are written every two seconds.
 fn seconds() -> String {
-    lasting("400").replace("cells = [2, 1, 1]", "cells = [4, 4, 4]")
+    lasting("1000").replace("cells = [2, 1, 1]", "cells = [4, 4, 4]")
 }
 
 #[test]
