@@ -1,8 +1,8 @@
 //! Smooth borders of surfaces: pixels that a line crosses at which colours change.
 
-use super::line::{self, ATTRIBUTES, Segment};
 use super::panel::Panels;
 use super::pipeline::{BORDER_FORMAT, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry};
+use super::segment::{self, ATTRIBUTES, Segment};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Picture, Rectangle};
@@ -12,7 +12,7 @@ pub(super) const SHADER: &str = include_str!("../../shaders/border.wgsl");
 
 /// The parts of the shader.
 pub(super) fn parts() -> [&'static str; 7] {
-    let [panel, segment, line] = line::parts();
+    let [panel, segment, line] = segment::parts();
     [panel, segment, super::TAPS_SHADER, super::BODIES_SHADER, super::TURNED_OVER_SHADER, line, SHADER]
 }
 
@@ -54,7 +54,7 @@ impl Borders {
         self.ranges.clear();
         for panel in &picture.panels {
             let start = segments.len() as u32;
-            segments.extend(panel.borders.iter().filter_map(line::projected(panel)));
+            segments.extend(panel.borders.iter().filter_map(segment::projected(panel)));
             self.ranges.push(start..segments.len() as u32);
         }
         self.segments.write(gpu, &segments);

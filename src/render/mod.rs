@@ -28,6 +28,7 @@ mod obstacle;
 mod overlay;
 mod panel;
 mod pipeline;
+mod segment;
 #[cfg(test)]
 mod shader_tests;
 mod stroke;

@@ -4,7 +4,7 @@ use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;
 use super::panel::{OccluderUniform, PanelUniform};
 use super::{
-    BODIES_SHADER, PANEL_SHADER, border, composite, curve, ground, line, obstacle, overlay, stroke, surface, tint,
+    BODIES_SHADER, PANEL_SHADER, border, composite, curve, ground, obstacle, overlay, segment, stroke, surface, tint,
     visibility,
 };
 use crate::picture::MOST_OCCLUDERS;
@@ -31,7 +31,7 @@ fn shaders_are_valid() {
     }
     parse(&[&surface::parts(0)[..], &[obstacle::SHADER]].concat());
     parse(&border::parts());
-    parse(&line::parts());
+    parse(&segment::parts());
     parse(&visibility::parts(false));
     parse(&visibility::parts(true));
     parse(&obstacle::pane_parts());
@@ -83,8 +83,8 @@ fn numbers_about_lines_are_the_same_on_both_sides() {
     assert_eq!(number("VISIBILITY_WIDTH"), visibility::WIDTH);
     assert_eq!(number("CHUNK"), visibility::CHUNK);
     assert_eq!(number("GROUP"), visibility::GROUP);
-    assert_eq!(number("KIND_BITS"), line::KIND_BITS);
-    assert_eq!(number("STRENGTH_BITS"), line::STRENGTH_BITS);
+    assert_eq!(number("KIND_BITS"), segment::KIND_BITS);
+    assert_eq!(number("STRENGTH_BITS"), segment::STRENGTH_BITS);
 }
 
 #[test]

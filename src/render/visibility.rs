@@ -1,11 +1,11 @@
 //! How visible lines are: tested once for each pixel of their length, before they are drawn. Testing each pixel that a line
 //! covers would take several times as long.
 
-use super::line::{Kind, Segment};
 use super::panel::Panels;
 use super::pipeline::{
     bind, compute_pipeline, element, group_layout, shader, storage_entry, texture_entry, uniform_entry,
 };
+use super::segment::{self, Kind, Segment};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::Rectangle;
@@ -30,7 +30,7 @@ const STRIDE: usize = 256;
 /// The parts of the shader, alone or among solid obstacles.
 pub(super) fn parts(among: bool) -> [&'static str; 8] {
     let obstacles = if among { AMONG_SHADER } else { ALONE_SHADER };
-    let [panel, segment, line] = super::line::parts();
+    let [panel, segment, line] = segment::parts();
     [panel, segment, super::TAPS_SHADER, super::BODIES_SHADER, obstacles, super::TURNED_OVER_SHADER, line, SHADER]
 }
 
