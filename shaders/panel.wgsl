@@ -56,8 +56,7 @@ struct Panel {
 @group(0) @binding(0) var<uniform> panel_data: Panel;
 
 // The same for the functions below, which vertex shaders copy. Where it pays, fragment shaders get what they use most from the
-// corners of what is drawn, as varyings that do not vary: a software driver reads a uniform buffer anew for each lane, which
-// took as long as all the rest.
+// corners of what is drawn, as varyings that do not vary: a software driver reads a uniform buffer anew for each lane.
 var<private> panel: Panel;
 
 // Powers of a colour's brightness that the eye weighs.
