@@ -370,4 +370,21 @@ mod tests {
         (0..5).for_each(|at| store.put(&piece(at)).unwrap());
         assert!([4, 0, 2, 3, 1].into_iter().all(|at| store.get(at).unwrap() == piece(at)));
     }
+
+    #[test]
+    fn progress_that_diverged_nowhere_is_refused() {
+        use crate::scene::{Limits, Scene};
+        use crate::sim::snapshot::Divergence;
+        let scene = Scene::parse(crate::untrusted::SCENE, "scene.toml", &Limits::default()).unwrap();
+        let begun = || Frames::new(Runner::new(&scene, &[0, 1]), &[2, 4], None);
+        let resumed = |step, part, element| {
+            let mut progress = begun().progress().unwrap().unwrap();
+            let mut state = State::from_bytes(&progress.states[1]).unwrap();
+            state.status = Status::Diverged(Divergence { time: 0.0, step, part, element });
+            progress.states[1] = state.to_bytes();
+            begun().resume(progress).is_ok()
+        };
+        assert!(resumed(1, 0, None) && resumed(1, 0, Some(0)));
+        assert!(!resumed(0, 0, None) && !resumed(1, 1, None) && !resumed(1, 0, Some(1)));
+    }
 }

@@ -303,14 +303,21 @@ impl World {
         &self.state
     }
 
-    /// Whether a state has the numbers of nodes and of memory of these bodies.
+    /// Whether a state has the numbers of nodes and of memory of these bodies, and diverged, if it did, in one of them.
     pub(crate) fn takes(&self, state: &State) -> bool {
         let lengths = |state: &State| {
             let Memory { model, constraints, .. } = &state.memory;
             [state.position.len(), state.velocity.len(), model.len(), constraints.len()]
         };
         let sleep = [0, 1, 3 * state.position.len()].contains(&state.sleep.len());
-        lengths(state) == lengths(&self.state) && sleep && (self.sleep.is_some() || state.sleep.is_empty())
+        let place = match state.status {
+            Status::Ok => true,
+            Status::Diverged(Divergence { step, part, element, .. }) => {
+                let elements = self.system.parts.get(part).map(|part| part.body.elements.len());
+                step > 0 && elements.is_some_and(|elements| element.is_none_or(|element| element < elements))
+            }
+        };
+        lengths(state) == lengths(&self.state) && place && sleep && (self.sleep.is_some() || state.sleep.is_empty())
     }
 
     /// Continues from another state of the same bodies under the same conditions. The time step has to be the same, as

@@ -212,7 +212,7 @@ pub(crate) fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Table1> 
 
 /// Number of cubes simulated together, as one body. With a single cube the overhead of a step would be as long as the
 /// step, and lanes would be unused. The cubes do not touch, and their bits do not depend on the others.
-const CROWD: usize = 16;
+const CROWD: usize = 32;
 
 /// The corners of a cube.
 const CORNERS: usize = 8;

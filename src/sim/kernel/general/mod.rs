@@ -352,7 +352,7 @@ impl Class {
 impl General {
     /// Whether the body exceeds the share of the last cache that it can count on: prefetching what is read in no
     /// order is then worth its instructions. So many parts have 11 MB if elements have eight corners.
-    fn is_large(&self) -> bool {
+    pub(super) fn is_large(&self) -> bool {
         self.parts.len() > 8
     }
 
@@ -428,8 +428,9 @@ impl Stepper for General {
             Place { part: NONE, record } => self.shared.of(record as usize)[0],
             place => place,
         };
-        let record = &mut self.parts[part as usize].records.as_mut_slice()[record as usize * RECORD..];
-        let [px, py, vx, vy, pz, vz] = [0, 1, 2, 3, 4, 5].map(|entry: usize| record[entry]);
+        let records = self.parts[part as usize].records.as_mut_slice();
+        let (records, _) = records.as_chunks::<RECORD>();
+        let [px, py, vx, vy, pz, vz, ..] = records[record as usize];
         (DVec3::new(px, py, pz), DVec3::new(vx, vy, vz))
     }
 

@@ -56,25 +56,28 @@ fn any_scheme_steps_like_the_reference() {
     }
 }
 
-/// Several parts that share nodes, and blocks that are not full.
+/// Several parts that share nodes, and blocks that are not full; then so many parts that what they need is prefetched.
 #[test]
 fn a_body_of_several_parts_steps_like_the_reference() {
-    let body = pieces([23, 17, 19], &[4, 6, 8], 11);
-    let start = start(&body, 3);
-    let start = (start.clone(), rotations(&body, &start));
-    let mut world = reference(&body, &start.0, &shape_based(TWICE, 10.0), Scheme::SemiImplicitEuler, Vec::new());
-    world.advance(50);
-    let mut found: Option<Whole> = None;
-    for (set, threads) in Set::all().skip(1).flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
-        let mut kernel = general(&body, &start, TWICE, 10.0, SEMI, set);
-        kernel.1 = Crew::new(threads);
-        assert_eq!(kernel.advance(50, FREE), Ok(()));
-        let here = kernel.stored(&start);
-        assert!(found.as_ref().is_none_or(|found| *found == here), "{set:?} on {threads} threads has other bits");
-        found = Some(here);
+    for (cells, steps, is_large) in [([23, 17, 19], 50, false), ([45, 33, 33], 3, true)] {
+        let body = pieces(cells, &[4, 6, 8], 11);
+        let start = start(&body, 3);
+        let start = (start.clone(), rotations(&body, &start));
+        let mut world = reference(&body, &start.0, &shape_based(TWICE, 10.0), Scheme::SemiImplicitEuler, Vec::new());
+        world.advance(steps);
+        let mut found: Option<Whole> = None;
+        for (set, threads) in Set::all().skip(1).flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
+            let kernel = General::new(&body, TWICE, constants(10.0), set);
+            assert_eq!(kernel.is_large(), is_large);
+            let mut kernel = Moving::new(kernel, &start, SEMI, threads);
+            assert_eq!(kernel.advance(steps, FREE), Ok(()));
+            let here = kernel.stored(&start);
+            assert!(found.as_ref().is_none_or(|found| *found == here), "{set:?} on {threads} threads has other bits");
+            found = Some(here);
+        }
+        let far = distance(&found.expect("some set").0, world.state());
+        assert!(far <= 1e-12, "{far:e}");
     }
-    let far = distance(&found.expect("some set").0, world.state());
-    assert!(far <= 1e-12, "{far:e}");
 }
 
 /// Elements turned inside out, flattened or collapsed to a point, in single lanes among others.
