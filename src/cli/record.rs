@@ -243,10 +243,8 @@ impl<'a> Recording<'a> {
         // Written before the first frame, so that the folder is known as this scene's even if the program is killed.
         self.summary.write(folder)?;
         let (progress, rows, course) = match checkpoint {
-            Some(Checkpoint { progress, causes, sleep, rows, course, .. }) => {
+            Some(Checkpoint { progress, causes, rows, course, .. }) => {
                 self.summary.runs.iter_mut().zip(causes).for_each(|(run, cause)| run.cause = cause);
-                let runs = self.summary.runs.iter_mut().zip(sleep);
-                runs.for_each(|(run, sleep)| [run.asleep_since, run.woke_at] = sleep);
                 (Some(progress), rows, course)
             }
             None => (None, None, None),
@@ -324,14 +322,12 @@ impl<'a> Recording<'a> {
         }
     }
 
-    /// Notes since when bodies sleep, or that they woke, at the time of a frame (s).
-    fn note_sleep(&mut self, states: &[&State], time: f64) {
+    /// Notes since when bodies sleep, and when they woke.
+    fn note_sleep(&mut self, states: &[&State]) {
         for (summary, state) in self.summary.runs.iter_mut().zip(states) {
-            let since = state.asleep_since().map(|step| step as f64 * summary.time_step);
-            if summary.asleep_since.is_some_and(|before| since != Some(before)) {
-                summary.woke_at = Some(time);
-            }
-            summary.asleep_since = since;
+            let time = |step: u64| step as f64 * summary.time_step;
+            summary.asleep_since = state.asleep_since().map(time);
+            summary.woke_at = (state.woken > 0).then(|| time(state.woken));
         }
     }
 
@@ -435,7 +431,7 @@ impl<'a> Recording<'a> {
                     if read_from.is_none() {
                         let states: Vec<_> = frames.states().collect();
                         pool.install(|| self.find_causes(&states));
-                        self.note_sleep(&states, frame.time);
+                        self.note_sleep(&states);
                     }
                     self.last = Some(frame);
                 }

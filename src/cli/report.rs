@@ -54,7 +54,7 @@ fn row(run: &RunSummary) -> [String; 4] {
                 format!("ok, asleep{again} since {} s", short(time))
             }
             None => match run.woke_at {
-                Some(time) => format!("ok, slept and woke by {} s", short(time)),
+                Some(time) => format!("ok, slept, woke at {} s", short(time)),
                 None => "ok".to_owned(),
             },
         },

@@ -79,7 +79,6 @@ impl Results<'_> {
             let Some(progress) = frames.progress().map_err(failed)? else { return Ok(()) };
             let mut checkpoint = Checkpoint::new(summary.command.clone(), plan, progress);
             checkpoint.causes = summary.runs.iter().map(|run| run.cause.clone()).collect();
-            checkpoint.sleep = summary.runs.iter().map(|run| [run.asleep_since, run.woke_at]).collect();
             if !ahead {
                 checkpoint.rows = Some(diagnostics.sync().map_err(failed)?);
                 checkpoint.course = states.as_mut().map(StatesWriter::sync).transpose().map_err(failed)?;

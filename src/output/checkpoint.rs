@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 const CHECKPOINT_FILE: &str = ".localshape-checkpoint.partial";
 
 /// The first bytes of the file; a digest of the rest follows.
-const MARK: &[u8] = b"localshape checkpoint 1\n";
+const MARK: &[u8] = b"localshape checkpoint 2\n";
 
 /// Where a command has come to.
 #[derive(Debug, Serialize, Deserialize)]
@@ -31,8 +31,6 @@ pub(crate) struct Checkpoint {
     pub(crate) progress: Progress,
     /// Why runs have diverged, as far as that is known: one for each run.
     pub(crate) causes: Vec<Option<Cause>>,
-    /// Since when the body of each run sleeps, and when it woke (s).
-    pub(crate) sleep: Vec<[Option<f64>; 2]>,
     /// The rows of frames that are written; `None` if no frame is written before the end of the simulation.
     pub(crate) rows: Option<Rows>,
     /// The states that are written with them, if states are.
@@ -42,7 +40,7 @@ pub(crate) struct Checkpoint {
 impl Checkpoint {
     /// Of a command that makes what a `plan` says.
     pub(crate) fn new(command: Vec<String>, plan: &Plan, progress: Progress) -> Self {
-        Self { command, plan: digest(plan), progress, causes: Vec::new(), sleep: Vec::new(), rows: None, course: None }
+        Self { command, plan: digest(plan), progress, causes: Vec::new(), rows: None, course: None }
     }
 
     /// Replaces the one in a folder, if there is one. What it refers to has to be on the disk.

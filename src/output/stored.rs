@@ -170,6 +170,7 @@ impl Stored for StoredStates {
             status: reached.map_or(Status::Ok, Status::Diverged),
             memory: Memory { model, constraints, integrator: Vec::new() },
             sleep: Vec::new(),
+            woken: 0,
         })
     }
 

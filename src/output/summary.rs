@@ -103,8 +103,8 @@ pub(crate) struct RunSummary {
     /// Since when its body sleeps in the last recorded frame (s); absent if it does not, or its states are read.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub asleep_since: Option<f64>,
-    /// The time of the first recorded frame in which its body was awake again after it had slept, the last time that
-    /// this happened (s); absent if it never did, or its states are read.
+    /// When its body last woke, up to the last recorded frame (s); absent if it never slept and woke, or its states are
+    /// read.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub woke_at: Option<f64>,
     /// The frames drawn by this command in which its body leaves its panel; absent if there are none.

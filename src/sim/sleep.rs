@@ -72,6 +72,7 @@ impl Sleep {
                 state.steps = now + self.quiet_steps(system, state, now, end);
                 if state.steps < end {
                     state.sleep.clear();
+                    state.woken = state.steps;
                 }
                 Next::Skipped
             }

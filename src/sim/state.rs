@@ -22,6 +22,8 @@ pub struct State {
     /// Of bodies that may [`Sleep`](super::Sleep): nothing while they move, the positions of all nodes (m) when they were last
     /// seen to rest, or, while they sleep, the number of steps after which they fell asleep.
     pub sleep: Vec<f64>,
+    /// Number of steps after which bodies that slept last woke; 0 if they never did.
+    pub woken: u64,
 }
 
 /// What persists from one step to the next besides positions and velocities. The model, the constraint or the
@@ -81,7 +83,9 @@ impl State {
             }
         };
         let lengths = [self.position.len(), model.len(), constraints.len(), integrator.len(), self.sleep.len()];
-        let header = [self.steps, diverged, time, step, part, element].into_iter().chain(lengths.map(|len| len as u64));
+        let header = [self.steps, diverged, time, step, part, element, self.woken]
+            .into_iter()
+            .chain(lengths.map(|len| len as u64));
         let vectors = self.position.iter().chain(&self.velocity).flat_map(|vector| vector.to_array());
         let memory = model.iter().chain(constraints).chain(integrator).chain(&self.sleep).copied();
         let words = header.chain(vectors.chain(memory).map(f64::to_bits)).map(u64::to_le_bytes);
@@ -92,7 +96,7 @@ impl State {
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let (words, []) = bytes.strip_prefix(MARK)?.as_chunks::<8>() else { return None };
         let (header, words) = words.split_at_checked(HEADER)?;
-        let [steps, diverged, time, step, part, element, lengths @ ..]: [u64; HEADER] =
+        let [steps, diverged, time, step, part, element, woken, lengths @ ..]: [u64; HEADER] =
             std::array::from_fn(|at| u64::from_le_bytes(header[at]));
         let [nodes, model, constraints, integrator, sleep] = lengths.map(|length| usize::try_from(length).ok());
         let (nodes, memory, sleep) = (nodes?.checked_mul(3)?, [model?, constraints?, integrator?], sleep?);
@@ -115,14 +119,14 @@ impl State {
             }
             _ => return None,
         };
-        rest.is_empty().then_some(Self { position, velocity, steps, status, memory, sleep })
+        rest.is_empty().then_some(Self { position, velocity, steps, status, memory, sleep, woken })
     }
 }
 
 /// The first bytes of every state.
-const MARK: &[u8] = b"localshape state 3\n";
+const MARK: &[u8] = b"localshape state 4\n";
 /// Number of 64-bit words in the header.
-const HEADER: usize = 11;
+const HEADER: usize = 12;
 
 #[cfg(test)]
 mod tests {
@@ -132,7 +136,7 @@ mod tests {
         let memory = Memory { model: vec![1.0, f64::NAN], constraints: vec![], integrator: vec![-0.0] };
         let status = Status::Diverged(Divergence { time: 0.3, step: 7, part: 1, element: Some(0) });
         let (position, velocity) = (vec![DVec3::X, DVec3::splat(-0.0)], vec![DVec3::Y, DVec3::splat(1e-310)]);
-        State { position, velocity, steps: 9, status, memory, sleep: vec![8.0] }
+        State { position, velocity, steps: 9, status, memory, sleep: vec![8.0], woken: 5 }
     }
 
     #[test]

@@ -247,7 +247,7 @@ fn what_sleeps_is_told() {
     let moves = "path.keys = [{ time = 0.13, shift = [0, 0, 0] }, { time = 0.2, shift = [0, 0.05, 0] }]";
     place.write("wakes.toml", &scene.replace("[view]", &format!("[[grab]]\nnodes = [0]\n{moves}\n[view]")));
     let ran = place.run("simulate wakes.toml -o woken").good();
-    assert!(ran.out.contains("ok, slept and woke by 0.133"), "{ran:?}");
+    assert!(ran.out.contains("ok, slept, woke at 0.129"), "{ran:?}");
     let run = &place.json("woken/run.json")["runs"][0];
     assert!(run["asleep_since"].is_null() && run["last"]["global_rotations"].is_u64(), "{run}");
     place.write("never.toml", &SMALL.replace("[body]", "sleep = { distance = 0, after = 1 }\n[body]"));

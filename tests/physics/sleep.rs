@@ -136,6 +136,7 @@ fn what_touches_a_body_wakes_it() {
                 world.advance(1);
                 let sleeps = world.state().asleep_since().is_some();
                 if slept && !sleeps && woken.is_none() {
+                    assert_eq!(world.state().woken + 1, world.steps(), "{name}");
                     woken = Some(world.steps() as f64 * step);
                 }
                 slept |= sleeps;
