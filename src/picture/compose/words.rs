@@ -5,6 +5,7 @@ use crate::look::{Difference, Ghost, Labels, LineStyle, Palette, View};
 use crate::picture::caption::{self, Heading, Writer, wrapped};
 use crate::picture::layout::{self, Layout, Scale, Wanted, Written};
 use crate::picture::legend::Legend;
+use crate::picture::series;
 use crate::picture::text::{Fonts, Weight};
 use crate::scene::Scene;
 
@@ -156,8 +157,11 @@ impl<'a> Words<'a> {
             matches!(view.ghost, Some(Ghost::Run(_))) || view.difference.is_some() || !view.paths.is_empty();
         (view.legend && (has_chart || has_arrows || has_ghost)).then(|| self.scene.runs.get(run)).flatten().map(|run| {
             let line = run.line(self.palette);
-            // Arrows are solid.
-            if has_chart || has_ghost { line } else { LineStyle { dash: &[], ..line } }
+            // As its curve in the chart. Without one, only colours count.
+            match view.strip.filter(|_| has_chart) {
+                Some(diagnostic) => series::style(diagnostic, line),
+                None => LineStyle { dash: &[], ..line },
+            }
         })
     }
 
