@@ -64,6 +64,12 @@ pub(super) struct Located<'a> {
     pub(super) colour: Colour,
 }
 
+/// Whether there is a shape in which it has room in a panel (px).
+pub(super) fn fits(view: &crate::look::View, viewport: Rectangle, scale: Scale) -> bool {
+    let [_, _, width, height] = layout::clear_of_words(viewport, view, scale).map(f64::from);
+    (WIDTH * width).min(HEIGHT * height) >= LEAST
+}
+
 impl Locator {
     /// For a scene and the paths of its runs; `None` if no place of a body is known.
     pub(super) fn new(scene: &Scene, tracking: &Tracking) -> Option<Self> {
