@@ -51,9 +51,10 @@ impl<'a> Drawn<'a> {
     }
 
     /// The body with its rest shape behind it.
-    pub(super) fn panel(&self, under: &mut Vec<Mark>) -> Panel {
+    pub(super) fn panel(&self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) -> Panel {
         // Without the ring arrows, nodes and displacements of usual pictures.
         let mut panel = self.draft.panel(under, &mut Vec::new());
+        self.draft.fade_obstacles(&panel.obstacles, above);
         panel.floor = None;
         panel.beads.clear();
         if self.draft.flat {
