@@ -209,7 +209,10 @@ impl<'a> Words<'a> {
             tell(!explained, "panels do not say all that may happen in the chart");
             tell(explained && !with_times, "panels do not say when all of it happens");
         }
-        tell(view.camera.follow && !locator::fits(view, *panel, layout.scale), "overviews of cameras that move may be left out");
+        tell(
+            view.camera.follow && !locator::fits(view, *panel, layout.scale),
+            "overviews of cameras that move may be left out",
+        );
         tell(has(|labels| labels.model), "panels do not describe the models");
         tell(has(|labels| labels.count || labels.number), "panels have no numbers");
         tell(has(|labels| labels.name), "panels have no names");
