@@ -7,7 +7,8 @@ use glam::{DVec3, UVec3};
 const NEARER: f64 = 0.02;
 /// What lies nearer to a common corner than this many times that is no cut.
 const AWAY: f64 = 3.0;
-/// Above this number of triangles elements are so small, and cuts so many, that borders without steps are not worth their time.
+/// Above this number of triangles elements are so small, and cuts so many, that borders without steps are not worth
+/// their time.
 const MOST_TRIANGLES: usize = 40_000;
 /// Cells in which triangles are looked for are so many times larger than these, and at most so many along an axis.
 const BOX: f64 = 2.0;
@@ -45,7 +46,8 @@ impl Piece {
         Some([next()?, next()?])
     }
 
-    /// The line in which it cuts another one, unless that is what becomes of a common side or corner as one is drawn nearer.
+    /// The line in which it cuts another one, unless that is what becomes of a common side or corner as one is drawn
+    /// nearer.
     fn cut_away(&self, other: &Self) -> Option<[DVec3; 2]> {
         let line = self.cut(other)?;
         let middle = line[0].midpoint(line[1]);
@@ -74,7 +76,8 @@ impl Piece {
     }
 }
 
-/// The lines in which the surface of the turned-over elements cuts that of the others, as seen from an eye in a direction.
+/// The lines in which the surface of the turned-over elements cuts that of the others, as seen from an eye in a
+/// direction.
 pub(super) fn crossings([sound, turned_over]: [&Mesh; 2], eye: DVec3, forward: DVec3) -> Vec<[DVec3; 2]> {
     let count = sound.triangles.len() + turned_over.triangles.len();
     if turned_over.triangles.is_empty() || count > MOST_TRIANGLES {

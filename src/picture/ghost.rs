@@ -10,8 +10,8 @@ use crate::colour::Colour;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
-/// Width of the outline and of its casing, the opacity of this, and the lengths of its dashes and of the gaps between them (px in the reference
-/// picture).
+/// Width of the outline and of its casing, the opacity of this, and the lengths of its dashes and of the gaps between
+/// them (px in the reference picture).
 const WIDTH: f64 = 2.0;
 const HALO: f64 = 4.4;
 const HALO_ALPHA: f64 = 0.65;
@@ -43,8 +43,8 @@ pub(super) struct Ghost<'a> {
 }
 
 impl Ghost<'_> {
-    /// The dashed outline in a colour, on a casing without dashes; nothing if a part of the surface is not in front of the camera.
-    /// Where next to nothing of the body lies in the room, an arrow may point there.
+    /// The dashed outline in a colour, on a casing without dashes; nothing if a part of the surface is not in front of
+    /// the camera. Where next to nothing of the body lies in the room, an arrow may point there.
     pub(super) fn draw(&self, scale: Scale, colour: Colour, halo: Colour, curves: &mut Vec<Curve>) {
         let lines = [self.outline(), self.bars()].concat();
         let fade = self.fade(scale);

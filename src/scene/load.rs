@@ -149,8 +149,8 @@ pub(super) fn checked<T>(
     }
 }
 
-/// The text of a file that should not be of another kind. For a missing one, the message names a file that may be meant: one
-/// of this name in a folder beside, or one of a similar name.
+/// The text of a file that should not be of another kind. For a missing one, the message names a file that may be
+/// meant: one of this name in a folder beside, or one of a similar name.
 pub(super) fn text_of(path: &Path, limits: &Limits, other: Other) -> Result<String, SceneError> {
     let bytes = read(path, limits).map_err(|error| match error {
         SceneError::Missing { path, .. } => {
@@ -222,8 +222,8 @@ fn key_without_value(text: &str, at: usize) -> Option<&str> {
     key.rsplit([' ', ',', '{']).next().filter(|key| is_end && !key.is_empty())
 }
 
-/// The digits before and after the comma of a value that would be a number with a point there, if a byte of a text lies in
-/// or after it in its line.
+/// The digits before and after the comma of a value that would be a number with a point there, if a byte of a text
+/// lies in or after it in its line.
 fn decimal_comma(text: &str, at: usize) -> Option<[&str; 2]> {
     let (before, after) = text.split_at_checked(at)?;
     let from = before.rfind('\n').map_or(0, |end| end + 1);

@@ -46,7 +46,8 @@ impl Draft<'_> {
             at += 1;
             at > of_sound || border.edge.is_none_or(|edge| !shared.contains(&edge))
         });
-        // Without a field, the colours of turned-over elements change with their depth behind the others, and so without a border.
+        // Without a field, the colours of turned-over elements change with their depth behind the others, and so
+        // without a border.
         if !self.flat && self.shades.is_some() {
             let eye = (self.lens.eye - self.origin) / self.side;
             let cuts = crossings([&sound, &turned_over], eye, self.lens.forward).into_iter();

@@ -10,8 +10,8 @@ use glam::{DVec2, DVec3};
 
 /// Free around the body, which is not faded with them (px in the reference picture).
 const AROUND_BODY: f64 = 4.0;
-/// Nothing fades that goes on by less than the first length, and all that goes on by more than the second one fades alike
-/// (px in the reference picture).
+/// Nothing fades that goes on by less than the first length, and all that goes on by more than the second one fades
+/// alike (px in the reference picture).
 const BEGINS: [f64; 2] = [0.5, 8.0];
 /// Room for the lines of an obstacle (px in the reference picture).
 const LINE_ROOM: f64 = 3.0;
@@ -26,8 +26,9 @@ struct Beyond {
 }
 
 impl Draft<'_> {
-    /// Covers the sides of the panel where obstacles leave it with the background, the more the nearer to the side, over the
-    /// same distance wherever they end; those that hardly leave it less, so that nothing changes at once. The body is left out.
+    /// Covers the sides of the panel where obstacles leave it with the background, the more the nearer to the side,
+    /// over the same distance wherever they end; those that hardly leave it less, so that nothing changes at once. The
+    /// body is left out.
     pub(super) fn fade_obstacles(&self, obstacles: &Obstacles, marks: &mut Vec<Mark>) {
         // An inset is a piece of a picture, and has a frame. What covers obstacles would cover a slope in the plane, too.
         let ground = contact::ground(&self.scene.obstacles, self.run.snapshot.time);

@@ -205,8 +205,8 @@ impl<'a> Drawn<'a> {
         }
     }
 
-    /// Whether the arrow of a node of a body in the plane lies in a narrow corner of an element there, whose sides its halo would
-    /// cover.
+    /// Whether the arrow of a node of a body in the plane lies in a narrow corner of an element there, whose sides its
+    /// halo would cover.
     fn is_in_corner(&self, node: usize, [from, to]: [DVec2; 2]) -> bool {
         let way = to - from;
         let nearly = |other: u32| {
