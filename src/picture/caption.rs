@@ -420,8 +420,9 @@ pub(super) fn letter(at: usize) -> String {
 pub(super) fn divergence(run: &RunFrame) -> Option<Number> {
     let Status::Diverged(Divergence { time, .. }) = run.shown().status else { return None };
     let (loud, at) = (diverged(run), format!("at {}", number::time(time)));
-    let wider = wider(run).map(|wider| [format!("{loud} {at}"), wider]);
-    let wordings = wider.into_iter().chain([[loud.to_owned(), at], [loud.to_owned(), String::new()]]).collect();
+    let wider = wider(run).map(|wider| [format!("then {wider}"), wider].map(|wider| [format!("{loud} {at}"), wider]));
+    let wordings =
+        wider.into_iter().flatten().chain([[loud.to_owned(), at], [loud.to_owned(), String::new()]]).collect();
     Some(Number { widest: String::new(), wordings, is_loud: true })
 }
 

@@ -2,6 +2,7 @@
 
 use super::number;
 use super::series::Series;
+use crate::scene::Scene;
 use crate::sim::snapshot::Diagnostic;
 
 /// The most events of a picture: their numbers have one digit.
@@ -67,6 +68,21 @@ pub(super) fn events(diagnostic: Diagnostic, series: &[Series], extent: f64, end
     let mut events: Vec<_> = all.into_iter().map(|(_, event)| event).collect();
     events.sort_by(|one, other| one.time.total_cmp(&other.time));
     events
+}
+
+/// What may happen to a run of a scene, in the narrowest words.
+pub(super) fn narrowest(diagnostic: Diagnostic, scene: &Scene) -> Vec<Event> {
+    const AT: f64 = 1e-3;
+    let event = |words: String, joint: &str| Event {
+        run: 0,
+        time: AT,
+        words: [format!("{words} {joint} {}", number::time(AT)), words],
+    };
+    if diagnostic == Diagnostic::TurnedOver {
+        return vec![event("first turned over".to_owned(), "at"), event("settles at 1".to_owned(), "after")];
+    }
+    let extent = scene.body.extent();
+    vec![event(format!("lowest {}", number::value(diagnostic, 0.1 * extent, extent)), "at")]
 }
 
 /// The time (s) at which the scale of time changes in a scene up to an end (s): soon after nearly everything has happened,

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 /// Over what distance lines fade at the sides of their room and around an overview (px in the reference picture), and
 /// in how many steps.
-pub(super) const FADING: f64 = 42.0;
+pub(super) const FADING: f64 = 28.0;
 const AROUND: f64 = 14.0;
 const STEPS: f64 = 8.0;
 /// No piece of a line is cut shorter than this (px).

@@ -107,6 +107,12 @@ impl Writer<'_> {
         (0..=events.len()).rev().find(fits).filter(|_| Scale::legible(self.scale.caption())).unwrap_or(0)
     }
 
+    /// Whether all of some events have room for their words in a panel, and whether they have with their times.
+    pub(super) fn explains(&self, panel: Rectangle, events: &[Event]) -> [bool; 2] {
+        let room = Room::new(panel, self.scale).width();
+        [1, 0].map(|at| Scale::legible(self.scale.caption()) && self.events_width(events.iter(), at) <= room)
+    }
+
     /// How wide events are with their words, with or without their times (px).
     fn events_width<'e>(&self, events: impl Iterator<Item = &'e Event>, at: usize) -> f64 {
         let (unit, size) = (self.scale.type_unit(), self.scale.caption());

@@ -10,8 +10,8 @@ use crate::colour::Colour;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
-/// Width of the outline and of its halo, and the lengths of its dashes and of the gaps between them (px in the reference
-/// picture).
+/// Width of the outline and of its casing, the opacity of this, and the lengths of its dashes and of the gaps between
+/// them (px in the reference picture).
 const WIDTH: f64 = 2.0;
 const HALO: f64 = 4.4;
 const HALO_ALPHA: f64 = 0.65;
@@ -43,20 +43,23 @@ pub(super) struct Ghost<'a> {
 }
 
 impl Ghost<'_> {
-    /// The dashed outline in a colour, with a halo; nothing if a part of the surface is not in front of the camera.
-    /// Where next to nothing of the body lies in the room, an arrow may point there.
+    /// The dashed outline in a colour, on a casing without dashes; nothing if a part of the surface is not in front of
+    /// the camera. Where next to nothing of the body lies in the room, an arrow may point there.
     pub(super) fn draw(&self, scale: Scale, colour: Colour, halo: Colour, curves: &mut Vec<Curve>) {
         let lines = [self.outline(), self.bars()].concat();
         let fade = self.fade(scale);
         let whole: f64 = lines.iter().map(|line| length(line)).sum();
         // What fades is cut into dashes here.
-        let mut pieces = Vec::new();
+        let (mut pieces, mut casing) = (Vec::new(), Vec::new());
         let mut seen = 0.0;
         for line in lines {
             let dash = dashes(&line, scale.line());
             let points: Vec<_> = line.iter().map(DVec2::to_array).collect();
-            let opacities: Vec<_> = fade.parts(&points).iter().map(|(_, opacity)| *opacity).collect();
-            if opacities == [1.0] {
+            let parts = fade.parts(&points);
+            let is_whole = matches!(parts[..], [(_, 1.0)]);
+            let points = |part: Vec<[f64; 2]>| part.into_iter().map(DVec2::from).collect();
+            casing.extend(parts.into_iter().map(|(part, opacity)| (points(part), None, opacity)));
+            if is_whole {
                 seen += length(&line);
                 pieces.push((line, Some(dash), 1.0));
                 continue;
@@ -71,9 +74,10 @@ impl Ghost<'_> {
             let pointer = self.pointer(scale, seen > 0.0);
             if !pointer.is_empty() {
                 pieces = pointer.into_iter().map(|line| (line, None, 1.0)).collect();
+                casing.clone_from(&pieces);
             }
         }
-        for (width, colour, alpha) in [(HALO, halo, HALO_ALPHA), (WIDTH, colour, 1.0)] {
+        for (pieces, width, colour, alpha) in [(casing, HALO, halo, HALO_ALPHA), (pieces, WIDTH, colour, 1.0)] {
             let curve = |(line, dash, opacity): &(Vec<DVec2>, Option<[f64; 2]>, f64)| Curve {
                 points: line.iter().map(|point| point.to_array().map(narrow)).collect(),
                 width: narrow(width * scale.line()),

@@ -19,6 +19,8 @@ pub(super) const HEIGHT: f64 = 0.42;
 /// It is no narrower or lower than this part of its longer side, and nothing is drawn that is shorter than this (px).
 const SLENDEREST: f64 = 0.42;
 const LEAST: f64 = 36.0;
+/// The shorter side of a usual one, in parts of the longer one.
+const USUAL: f64 = 0.6;
 /// Free inside its frame (px in the reference picture).
 const INSIDE: f64 = 5.0;
 /// The floor is shown if it lies no deeper below the path than this (parts of the body's width).
@@ -62,6 +64,12 @@ pub(super) struct Located<'a> {
     pub(super) shown: (DVec3, [f64; 2]),
     /// The colour of the path.
     pub(super) colour: Colour,
+}
+
+/// Whether one of a usual shape has room in a panel (px).
+pub(super) fn fits(view: &crate::look::View, viewport: Rectangle, scale: Scale) -> bool {
+    let [_, _, width, height] = layout::clear_of_words(viewport, view, scale).map(f64::from);
+    USUAL * (WIDTH * width).min(HEIGHT * height) >= LEAST
 }
 
 impl Locator {

@@ -15,6 +15,7 @@ mod camera;
 mod caption;
 mod chart;
 mod compose;
+mod crossing;
 mod ears;
 mod ends;
 mod event;

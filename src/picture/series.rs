@@ -58,7 +58,7 @@ impl Series {
         Self {
             run: of_run.run,
             name: run.name.clone(),
-            style: run.line(palette),
+            style: style(diagnostic, run.line(palette)),
             is_count: diagnostic == Diagnostic::TurnedOver,
             points: points.filter(|[_, value]| value.is_finite()).collect(),
             members: Vec::new(),
@@ -86,15 +86,24 @@ impl Series {
         Some([chart.x(times, time), chart.y(values, value).clamp(chart.top, chart.bottom)])
     }
 
+    /// The points of the curve in a chart (px).
+    fn pixels(&self, chart: Chart, [times, values]: [&Axis; 2]) -> Vec<[f64; 2]> {
+        let points = self.points.iter().map(|&[time, value]| [chart.x(times, time), chart.y(values, value)]);
+        let points: Vec<_> = points.collect();
+        if self.is_count { steps(&points) } else { points }
+    }
+
+    /// Whether a band stands for a part of the curve in a chart.
+    pub(super) fn has_band(&self, chart: Chart, axes: [&Axis; 2]) -> bool {
+        self.is_count
+            && !dense(&self.pixels(chart, axes), [DENSE, TURN].map(|length| length * chart.thickness())).is_empty()
+    }
+
     /// Draws the curve, with a cross where the run diverged. Counts are solid steps; where they go up and down too densely for
     /// a line, their least and greatest values enclose a band. Other curves have no dashes there, which would be a hatch.
     pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: Chart, [times, values]: [&Axis; 2]) {
         self.draw_range(writer, chart, [times, values]);
-        let points = self.points.iter().map(|&[time, value]| [chart.x(times, time), chart.y(values, value)]);
-        let mut points: Vec<_> = points.collect();
-        if self.is_count {
-            points = steps(&points);
-        }
+        let points = self.pixels(chart, [times, values]);
         let borders = [chart.top - chart.outside(), chart.bottom + chart.outside()];
         let thickness = chart.thickness();
         let curve = |points: &[[f64; 2]], width: f64, dash: Vec<f32>| Curve {
@@ -104,8 +113,7 @@ impl Series {
             colour: self.style.colour,
             alpha: 1.0,
         };
-        let dash = if self.is_count { &[] } else { self.style.dash };
-        let dash: Vec<_> = dash.iter().map(|length| narrow(length * thickness)).collect();
+        let dash: Vec<_> = self.style.dash.iter().map(|length| narrow(length * thickness)).collect();
         let dense = dense(&points, [DENSE, TURN].map(|length| length * thickness));
         for &[from, to] in &dense {
             if !self.is_count {
@@ -142,6 +150,11 @@ pub(super) fn value(points: &[[f64; 2]], at: f64, is_count: bool) -> Option<f64>
     let Some(&[to, other]) = points.get(after) else { return (from == at).then_some(one) };
     let share = if is_count { 0.0 } else { (at - from) / (to - from) };
     Some(one + share * (other - one))
+}
+
+/// What the line of a run looks like in a chart of a diagnostic: counts are solid steps.
+pub(super) fn style(diagnostic: Diagnostic, line: LineStyle) -> LineStyle {
+    if diagnostic == Diagnostic::TurnedOver { LineStyle { dash: &[], ..line } } else { line }
 }
 
 /// The name of a diagnostic of a scene in a picture.

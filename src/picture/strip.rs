@@ -18,6 +18,8 @@ use crate::sim::words::elements;
 /// Size of the unit's type, and from the name to the unit (px in the reference picture).
 const UNIT: f64 = 14.0;
 const UNIT_BELOW: f64 = 19.0;
+/// What a band stands for where a count goes up and down too densely for a line.
+const BAND: &str = "band: least to most";
 /// Between the name and the numbers beside the chart (px in the reference picture).
 const BESIDE_NAME: f64 = 14.0;
 /// The first time begins at most so far left of the chart (px in the reference picture).
@@ -34,8 +36,8 @@ pub(super) struct Strip {
     unit: String,
     /// One for each run shown.
     pub(super) series: Vec<Series>,
-    /// What curves stand for, if there are several scenes; else empty.
-    note: String,
+    /// What curves and bands stand for, if that is not clear.
+    notes: Vec<String>,
     /// The values shown; `None` if there are none.
     range: Option<[f64; 2]>,
     /// The size of the body (m).
@@ -72,11 +74,11 @@ impl Strip {
         if let Some(first) = name.get_mut(..1) {
             first.make_ascii_uppercase();
         }
-        let note = match of_scenes.len() {
-            1 => String::new(),
-            count => format!("{count} scenes: mean, range"),
+        let notes = match of_scenes.len() {
+            1 => Vec::new(),
+            count => vec![format!("{count} scenes: mean, range")],
         };
-        let one = Self { diagnostic, name, unit: String::new(), note, series, range, extent: scene.body.extent() };
+        let one = Self { diagnostic, name, unit: String::new(), notes, series, range, extent: scene.body.extent() };
         let unit = match one.values(MOST_TICKS) {
             _ if is_count => match elements(&scene.body)[..] {
                 _ if of_scenes.iter().any(|(other, _)| elements(&other.body) != elements(&scene.body)) => {
@@ -112,20 +114,35 @@ impl Strip {
     /// The room that its name takes (px).
     pub(super) fn name_width(&self, fonts: &Fonts, scale: Scale) -> f64 {
         let below = |text: &str| fonts.width(text, Weight::Regular, UNIT * scale.type_unit());
-        fonts.width(&self.name, Weight::SemiBold, scale.caption()).max(below(&self.unit)).max(below(&self.note))
+        let name = fonts.width(&self.name, Weight::SemiBold, scale.caption());
+        self.notes.iter().map(|note| below(note)).fold(name.max(below(&self.unit)), f64::max)
     }
 
     /// Writes name and unit from a left end around a height (px).
     pub(super) fn write_name(&self, writer: &mut Writer<'_>, [left, middle]: [f64; 2]) {
         let (scale, palette) = (writer.scale, writer.palette);
         let unit = scale.type_unit();
-        let below = [&self.unit, &self.note].into_iter().filter(|text| !text.is_empty() && Scale::legible(UNIT * unit));
+        let below = std::iter::once(&self.unit)
+            .chain(&self.notes)
+            .filter(|text| !text.is_empty() && Scale::legible(UNIT * unit));
         let below: Vec<_> = below.collect();
         let baseline = middle + 0.36 * scale.caption() - 0.5 * below.len() as f64 * UNIT_BELOW * unit;
         writer.left(&self.name, Weight::SemiBold, scale.caption(), palette.text, left, baseline);
         for (text, line) in below.into_iter().zip(1..) {
             let baseline = baseline + f64::from(line) * UNIT_BELOW * unit;
             writer.left(text, Weight::Regular, UNIT * unit, palette.second_text, left, baseline);
+        }
+    }
+
+    /// Says what bands are, if a curve has any in a chart.
+    pub(super) fn explain_bands(&mut self, fonts: &Fonts, parts: &Parts) {
+        let has_bands = parts.0.iter().any(|&(chart, span)| {
+            let (times, values) = (chart.times(fonts, span), self.values_in(chart));
+            let has_band = |one: &Series| values.as_ref().is_some_and(|values| one.has_band(chart, [&times, values]));
+            self.series.iter().any(|one| has_band(&one.between(span)))
+        });
+        if has_bands {
+            self.notes.push(BAND.to_owned());
         }
     }
 

@@ -52,7 +52,7 @@ impl Timeline {
         room: Option<Rectangle>,
         explained: impl Fn(&[&Event]) -> usize,
     ) -> Self {
-        let strip = Strip::new(diagnostic, &[(scene, history)], writer.palette, str::to_owned);
+        let mut strip = Strip::new(diagnostic, &[(scene, history)], writer.palette, str::to_owned);
         let mut events = event::events(diagnostic, &strip.series, scene.body.extent(), history.end);
         // A number that its panel does not explain says nothing.
         for one in &strip.series {
@@ -65,7 +65,7 @@ impl Timeline {
             });
         }
         let room = room.filter(|_| history.end > 0.0);
-        let parts = room.and_then(|room| still(&strip, &events, &mut writer, room.map(f64::from), history.end));
+        let parts = room.and_then(|room| still(&mut strip, &events, &mut writer, room.map(f64::from), history.end));
         let Writer { marks, curves, words, .. } = writer;
         Self { strip, events, parts, marks, curves, words }
     }
@@ -100,7 +100,7 @@ impl Timeline {
 /// Draws what does not move into a room (px), for a scene up to an end (s); returns where the chart stands, if there is
 /// room for it.
 fn still(
-    strip: &Strip,
+    strip: &mut Strip,
     events: &[Event],
     writer: &mut Writer<'_>,
     [left, top, width, height]: [f64; 4],
@@ -111,14 +111,20 @@ fn still(
     let chart = [(top + ABOVE * unit).round(), (top + height - BELOW * unit).round()];
     let names_room = [NAMES * width, chart[1] - chart[0] + (NAMES_ABOVE + BELOW) * unit];
     let names = Ends::new(fonts, &strip.series, unit, names_room);
-    let [name, numbers] = [strip.name_width(fonts, scale), strip.numbers_width(fonts, unit)];
-    let has_name = name <= NAME * width;
-    let first = (left + numbers + if has_name { name } else { 0.0 }).round();
     let last = (left + width - names.as_ref().map_or(0.0, |names| names.width)).round();
-    if last - first < LEAST_WIDTH || chart[1] - chart[0] < LEAST_CHART || !Scale::legible(NUMBERS * unit) {
-        return None;
-    }
-    let parts = Parts::new(scale, [first, last], chart, [0.0, end], event::split(&strip.series, end));
+    let split = event::split(&strip.series, end);
+    let place = |strip: &Strip| {
+        let [name, numbers] = [strip.name_width(fonts, scale), strip.numbers_width(fonts, unit)];
+        let has_name = name <= NAME * width;
+        let first = (left + numbers + if has_name { name } else { 0.0 }).round();
+        let has_room =
+            last - first >= LEAST_WIDTH && chart[1] - chart[0] >= LEAST_CHART && Scale::legible(NUMBERS * unit);
+        has_room.then(|| (has_name, [first, last], Parts::new(scale, [first, last], chart, [0.0, end], split)))
+    };
+    // What bands are stands below the name, beside the chart that has them.
+    let (_, _, parts) = place(strip)?;
+    strip.explain_bands(fonts, &parts);
+    let (has_name, [first, last], parts) = place(strip)?;
     let flags = (1..).zip(events).map(|(number, event)| Flag {
         at: parts.place(event.time).1,
         text: number.to_string(),

@@ -1,7 +1,7 @@
 //! Files in the folder of a scene that belong to it.
 
 use super::words::nearest;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The message for a missing file.
 pub(crate) fn missing(path: &Path) -> String {
@@ -25,4 +25,17 @@ pub(crate) fn similar(path: &Path, endings: &[&str]) -> Option<String> {
     let stems: Vec<&str> = similar.iter().map(|(stem, _)| stem.as_str()).collect();
     let near = nearest(&stem(path)?, &stems)?;
     Some(similar[stems.iter().position(|&stem| stem == near)?].1.clone())
+}
+
+/// The files with the name of a missing one, with an ending if it has none, in the folders beside it, in order.
+pub(crate) fn in_folders(path: &Path, ending: &str) -> Vec<PathBuf> {
+    let Some(name) = path.file_name() else { return Vec::new() };
+    let name = if path.extension().is_none() { Path::new(name).with_extension(ending) } else { name.into() };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let seen = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let entries = std::fs::read_dir(seen).into_iter().flatten().flatten().take(10_000);
+    let mut found: Vec<_> = entries.map(|entry| folder.join(entry.file_name()).join(&name)).collect();
+    found.retain(|file| file.is_file());
+    found.sort();
+    found
 }

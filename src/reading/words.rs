@@ -97,6 +97,22 @@ pub(crate) fn short(number: f64) -> String {
     significant(number, 4)
 }
 
+/// The ends of a range with up to four significant digits, rounded so that the range keeps all that is in it.
+pub(crate) fn ends([low, high]: [f64; 2]) -> [String; 2] {
+    let out = |number: f64, is_beyond: fn(f64, f64) -> bool| {
+        let step = |digits: usize| rounded(number, digits);
+        // A number that has no more digits, but for its round-off, is not rounded.
+        let exact = step(12);
+        let near = step(4);
+        if near == exact || is_beyond(near, exact) {
+            return near;
+        }
+        let last = libm::exp10(libm::floor(libm::log10(exact.abs())) - 3.0);
+        rounded(if is_beyond(near - last, exact) { near - last } else { near + last }, 4)
+    };
+    [out(low, |one, other| one <= other), out(high, |one, other| one >= other)].map(|end| significant(end, 4))
+}
+
 /// A number with up to twelve significant digits: precise enough to be the bound of a region.
 pub(crate) fn fine(number: f64) -> String {
     significant(number, 12)

@@ -15,7 +15,7 @@ pub enum SceneError {
     Missing {
         /// The path asked for.
         path: PathBuf,
-        /// The most similar name of a file in the same folder.
+        /// A file of this name in a folder beside, or the one of the most similar name in the same folder.
         nearest: Option<PathBuf>,
     },
     /// Its name has nothing before the ending that a folder of results could be called.

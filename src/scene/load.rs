@@ -7,7 +7,7 @@ use super::schema::SCHEMA;
 use super::structure::Checked;
 use super::{Scene, structure};
 use crate::reading::Mistakes;
-use crate::reading::beside::similar;
+use crate::reading::beside::{in_folders, similar};
 use crate::reading::report::{Report, mistake, way};
 use crate::reading::source::Source;
 use crate::reading::words::quoted;
@@ -23,7 +23,7 @@ impl Scene {
     /// # Errors
     /// Whatever keeps the file from being a scene, with all mistakes in it; see [`SceneError`].
     pub fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
-        Self::load_text(&text_of(path, limits)?, path, limits)
+        Self::load_text(&text_of(path, limits, FIGURE)?, path, limits)
     }
 
     /// The text of a scene file.
@@ -31,7 +31,7 @@ impl Scene {
     /// # Errors
     /// If it cannot be read, is too long or is no text.
     pub(crate) fn text(path: &Path, limits: &Limits) -> Result<String, SceneError> {
-        text_of(path, limits)
+        text_of(path, limits, FIGURE)
     }
 
     /// Reads a scene from a text in the place of its file.
@@ -107,11 +107,16 @@ pub(super) const SCENE: Other =
 /// Whether a file looks like a figure and not like a scene.
 #[cfg(feature = "render")]
 pub(crate) fn is_figure_file(path: &Path, limits: &Limits) -> bool {
-    let is_figure = |text: String| {
-        let (root, _) = DeTable::parse_recoverable(text.strip_prefix('\u{feff}').unwrap_or(&text));
-        FIGURE.keys.iter().any(|key| root.get_ref().contains_key(*key))
+    is_file_of(path, limits, FIGURE)
+}
+
+/// Whether a file is there and of a kind.
+fn is_file_of(path: &Path, limits: &Limits, kind: Other) -> bool {
+    let is_of = |text: &str| {
+        let (root, _) = DeTable::parse_recoverable(text.strip_prefix('\u{feff}').unwrap_or(text));
+        kind.keys.iter().any(|key| root.get_ref().contains_key(*key))
     };
-    text_of(path, limits).is_ok_and(is_figure)
+    read(path, limits).is_ok_and(|bytes| std::str::from_utf8(&bytes).is_ok_and(is_of))
 }
 
 /// Parses TOML, checks it against a schema and resolves it; all mistakes are reported together.
@@ -144,8 +149,17 @@ pub(super) fn checked<T>(
     }
 }
 
-pub(super) fn text_of(path: &Path, limits: &Limits) -> Result<String, SceneError> {
-    let bytes = read(path, limits)?;
+/// The text of a file that should not be of another kind. For a missing one, the message names a file that may be
+/// meant: one of this name in a folder beside, or one of a similar name.
+pub(super) fn text_of(path: &Path, limits: &Limits, other: Other) -> Result<String, SceneError> {
+    let bytes = read(path, limits).map_err(|error| match error {
+        SceneError::Missing { path, .. } => {
+            let in_folder = in_folders(&path, "toml").into_iter().find(|found| !is_file_of(found, limits, other));
+            let nearest = in_folder.or_else(|| similar(&path, &["toml"]).map(|name| path.with_file_name(name)));
+            SceneError::Missing { path, nearest }
+        }
+        error => error,
+    })?;
     if path.file_name().is_some_and(|name| stem(Path::new(name)).is_none()) {
         return Err(SceneError::Nameless { path: path.into() });
     }
@@ -173,6 +187,9 @@ fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistak
                 let is_list = ["run", "obstacle", "hold", "grab"].contains(&text);
                 let help = is_list.then(|| format!("write `[[{text}]]` before each of several"));
                 (format!("`{text}` is given a second time"), help)
+            } else if let Some([whole, part]) = decimal_comma(source.text(), span.start) {
+                let message = format!("`{whole},{part}` has a decimal comma");
+                (message, Some(format!("a number has a decimal point, not a comma: {whole}.{part}")))
             } else if let Some(key) = key_without_value(source.text(), span.start) {
                 (format!("`{key}` has no value"), Some("write one after `=`, or remove the key".to_owned()))
             } else if found.contains("array") {
@@ -205,6 +222,22 @@ fn key_without_value(text: &str, at: usize) -> Option<&str> {
     key.rsplit([' ', ',', '{']).next().filter(|key| is_end && !key.is_empty())
 }
 
+/// The digits before and after the comma of a value that would be a number with a point there, if a byte of a text
+/// lies in or after it in its line.
+fn decimal_comma(text: &str, at: usize) -> Option<[&str; 2]> {
+    let (before, after) = text.split_at_checked(at)?;
+    let from = before.rfind('\n').map_or(0, |end| end + 1);
+    let line = text[from..at + after.find('\n').unwrap_or(after.len())].trim_end();
+    let value = line[before[from..].rfind('=')? + 1..].trim_start();
+    let (whole, rest) = value.split_once(',')?;
+    let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
+    let unsigned = whole.trim_start_matches(['+', '-']);
+    let (part, rest) = rest.split_at(digits(rest));
+    let ends = rest.is_empty() || rest.starts_with([' ', '\t', '#', ',', '}', ']', '\r']);
+    let is_number = !unsigned.is_empty() && digits(unsigned) == unsigned.len() && !part.is_empty();
+    (is_number && ends).then_some([whole, part])
+}
+
 /// The bytes of a file.
 fn read(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
     if path.is_dir() {
@@ -217,8 +250,7 @@ fn read(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
         Ok(_) if bytes.len() as u64 > limits.file => Err(SceneError::TooLong { path: path.into(), limit: limits.file }),
         Ok(_) => Ok(bytes),
         Err(error) if error.kind() == ErrorKind::NotFound => {
-            let nearest = similar(path, &["toml"]).map(|name| path.with_file_name(name));
-            Err(SceneError::Missing { path: path.into(), nearest })
+            Err(SceneError::Missing { path: path.into(), nearest: None })
         }
         Err(source) => Err(SceneError::Unreadable { path: path.into(), source }),
     }

@@ -1,7 +1,7 @@
 //! What a scene contains, in words and numbers, as `check` prints it.
 
 use super::{Scene, stability};
-use crate::reading::words::{count, fine, list, short};
+use crate::reading::words::{count, ends, list, short};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{FrictionOf, Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
@@ -250,9 +250,10 @@ impl fmt::Display for SceneSummary {
         };
         line("body", &format!("{nodes} nodes, {elements}, {extent} m, {} kg", short(self.mass)))?;
         let [low, high] = &self.start;
-        // Exact, as regions of nodes are copied from it.
-        let corner = |corner: &[f64]| corner.iter().copied().map(fine).collect::<Vec<_>>().join(", ");
-        line("start", &format!("between ({}) and ({}) m", corner(low), corner(high)))?;
+        // Regions of nodes are copied from it, and hold all nodes.
+        let ranges: Vec<_> = low.iter().zip(high).map(|(&low, &high)| ends([low, high])).collect();
+        let corner = |at: usize| ranges.iter().map(|range| &*range[at]).collect::<Vec<_>>().join(", ");
+        line("start", &format!("between ({}) and ({}) m", corner(0), corner(1)))?;
         line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
         let (duration, rate) = (short(self.duration), short(self.frames_per_second));
         let plural = if self.frames == 1 { "" } else { "s" };

@@ -486,6 +486,30 @@ fn a_run_that_diverged_is_grey_and_stands_still_as_it_fitted_last() {
     assert!(said.contains(&when.as_str()), "{said:?}");
     assert!(said.iter().any(|text| text.ends_with(" times wider than shown")), "{said:?}");
     let when = when.replace("diverged", "diverges");
+    // Alone it has the scale bar, which measures what is shown.
+    let alone = Runner::new(&scene, &[2]).frame(119);
+    let picture = Composer::new(&scene).compose(&alone);
+    let shown = &alone.runs[0].last_fit.as_ref().expect("it diverged").snapshot.position;
+    let sight = &picture.panels[0].sight;
+    let across = glam::Vec3::new(sight.clip.x_axis.x, sight.clip.y_axis.x, sight.clip.z_axis.x).normalize();
+    let along = |points: &mut dyn Iterator<Item = f64>| {
+        let [low, high] =
+            points.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]);
+        high - low
+    };
+    let metres = along(&mut shown.iter().map(|at| at.dot(across.as_dvec3())));
+    let corners = picture.panels[0].sound.vertices.iter().chain(&picture.panels[0].turned_over.vertices);
+    let seen = corners.map(|corner| sight.clip.project_point3(glam::Vec3::from(corner.position)).x);
+    let pixels = along(&mut seen.map(|at| 0.5 * f64::from(at) * f64::from(picture.panels[0].viewport[2])));
+    let text = picture.words.iter().find(|run| run.text.ends_with("mm")).expect("a bar");
+    let stands_for = text.text.trim_end_matches(|c: char| !c.is_ascii_digit()).parse::<f64>().expect("a number") * 1e-3;
+    let is_bar = |mark: &&Mark| mark.shape == MarkShape::Filled && mark.colour == picture.palette.second_text;
+    let bar = picture.marks.iter().filter(is_bar).map(|mark| f64::from(mark.rectangle[2])).fold(0.0, f64::max);
+    // Nearer points are a little larger.
+    assert!(
+        (pixels / metres * stands_for / bar - 1.0).abs() < 0.1,
+        "{pixels} px, {metres} m, {bar} px, {stands_for} m"
+    );
     assert!(growing.words.iter().any(|run| run.text == when), "it has not yet");
 }
 

@@ -5,7 +5,7 @@ use localshape::history::History;
 use localshape::look::{Style, Theme};
 use localshape::picture::{Composer, Curve, Mark, MarkShape, Picture, TextRun, Weight};
 use localshape::runner::Runner;
-use localshape::scene::Scene;
+use localshape::scene::{Limits, Scene};
 use localshape::sim::snapshot::{Diagnostic, Frame, Status};
 
 /// The scene of Fig. 4(b) with a strip, and some of its frames.
@@ -452,4 +452,29 @@ fn one_chart_names_the_curves_of_many_runs() {
 fn what_stands_for_more_than_eight_runs_differs_in_colour_or_dashes() {
     let scene = parse(&alike(64, "light"));
     each_differs(&scene.runs.iter().map(|run| run.line(&scene.view.look.palette)).collect::<Vec<_>>());
+}
+
+/// What is drawn otherwise than as a curve is explained, and samples look like their curves.
+#[test]
+fn bands_are_explained_and_samples_of_counts_are_solid() {
+    let text = include_str!("../../scenes/springs.toml");
+    let mut scene = Scene::parse(text, "springs.toml", &Limits::default()).expect("the shipped scene is sound");
+    let says_band = |scene: &Scene| {
+        let picture = compose(scene, &Runner::new(scene, &[0, 1]).frame(0));
+        (picture.words.iter().any(|run| run.text.starts_with("band: ")), picture)
+    };
+    let (has_band, picture) = says_band(&scene);
+    assert!(has_band, "edges chatter");
+    // The sample of a dashed run is one piece.
+    let colour = scene.runs[1].line(&picture.palette).colour;
+    let pieces = |picture: &Picture| {
+        let is_sample =
+            |mark: &&Mark| mark.colour == colour && mark.rectangle[3] <= 4.0 && mark.shape == MarkShape::Filled;
+        picture.marks.iter().filter(is_sample).count()
+    };
+    let solid = pieces(&picture);
+    scene.view.strip = Some(Diagnostic::ShapeError);
+    let (has_band, picture) = says_band(&scene);
+    assert!(!has_band);
+    assert!(solid >= 1 && pieces(&picture) > solid + 2, "{solid}");
 }

@@ -89,7 +89,7 @@ fn every_rule_puts_the_body_where_it_is_said_to_be() {
         ("polygon = { sides = 4, radius = 1.414213562373095 }", "between (-1, 0) and (1, 2) m"),
         ("fan = { sides = 4, radius = 1.414213562373095 }", "between (-1, 0) and (1, 2) m"),
         ("disc = { rings = 2, sectors = 4, radius = 1.414213562373095 }", "between (-1, 0) and (1, 2) m"),
-        ("polygon = { sides = 3, radius = 1 }", "between (-0.866025403784, 0) and (0.866025403784, 1.5) m"),
+        ("polygon = { sides = 3, radius = 1 }", "between (-0.8661, 0) and (0.8661, 1.5) m"),
         ("bars = { count = 3, length = 0.1, direction = [0, -2] }", "between (0, -0.3) and (0, 0) m"),
         ("bars = { count = 3, length = 0.1, direction = [-1, 0, 0] }", "between (-0.3, 0, 0) and (0, 0, 0) m"),
         ("nodes = [[1, 2], [2, 2], [1, 3]]\nelements = [[0, 1, 2]]", "between (1, 2) and (2, 3) m"),

@@ -251,6 +251,15 @@ fn files_that_are_no_scenes_are_told_apart() {
     assert!(missing.to_string().contains("cubes.toml?"), "{missing}");
     assert!(matches!(load(&folder.path().join("cubes")), SceneError::Missing { nearest: Some(_), .. }));
     assert!(matches!(load(&folder.path().join("zzz")), SceneError::Missing { nearest: None, .. }));
+    // A file of this name in a folder beside, of the kind that is wanted.
+    for (name, text) in [("figures", "sheet = {}"), ("scenes", "body = {}")] {
+        std::fs::create_dir(folder.path().join(name)).unwrap();
+        put(&format!("{name}/drop.toml"), text.as_bytes());
+    }
+    for name in ["drop.toml", "drop"] {
+        let missing = load(&folder.path().join(name)).to_string();
+        assert!(missing.ends_with("scenes/drop.toml?"), "{missing}");
+    }
     // A file extension that all have does not make names equal.
     put("e.toml", b"");
     assert!(matches!(load(&folder.path().join("nope.toml")), SceneError::Missing { nearest: None, .. }));
@@ -306,7 +315,7 @@ fn a_summary_says_what_a_scene_holds() {
         format!(
             "  scene     3×3×3 cubes dropped on a floor (test)
   body      64 nodes, 27 cubes, 0.3 × 0.3 × 0.3 m, 64 kg
-  start     between (-0.152999571257, 0, -0.152999571257) and (0.152999571257, 0.311878295331, 0.152999571257) m
+  start     between (-0.153, 0, -0.153) and (0.153, 0.3119, 0.153) m
   gravity   (0, -9.8, 0) m/s²
   time      3 s, 181 frames at 60 per second
   cycle     T = 0.06283 s

@@ -522,6 +522,12 @@ fn syntax_errors_have_their_place() {
     }
     case(SPACE, "side = 0.1", "side = ", "5:40 `side` has no value");
     case(PLANE, "duration = 3", "duration = = 3", "3:12 this is not TOML: extra `=`");
+    case(
+        PLANE,
+        "duration = 3",
+        "duration = 3,5",
+        "3:13 `3,5` has a decimal comma a number has a decimal point, not a comma: 3.5",
+    );
     case(PLANE, "duration = 3", "duration = 3\nduration = 4", "4:1 `duration` is given a second time");
     case(PLANE, "[0, -9.8]", "[0, -9.8", "2:1 is an array before this not closed with `]`?");
     case(

@@ -10,23 +10,25 @@ use glam::{DVec2, DVec3};
 
 /// Free around the body, which is not faded with them (px in the reference picture).
 const AROUND_BODY: f64 = 4.0;
-/// Nothing fades that goes on by less than this (px in the reference picture).
-const LEAST: f64 = 6.0;
+/// Nothing fades that goes on by less than the first length, and all that goes on by more than the second one fades
+/// alike (px in the reference picture).
+const BEGINS: [f64; 2] = [0.5, 8.0];
 /// Room for the lines of an obstacle (px in the reference picture).
 const LINE_ROOM: f64 = 3.0;
 
 /// What of obstacles goes on beyond a side.
 #[derive(Clone, Copy)]
 struct Beyond {
-    /// How far, up to the distance of fading (px).
-    distance: f64,
+    /// How strongly it fades, from 0 to 1.
+    strength: f64,
     /// From where to where along the side (px).
     along: [f64; 2],
 }
 
 impl Draft<'_> {
-    /// Covers the sides of the panel where obstacles leave it with the background, the more the nearer to the side;
-    /// over no longer a distance than they go on outside, so that nothing changes at once. The body is left out.
+    /// Covers the sides of the panel where obstacles leave it with the background, the more the nearer to the side,
+    /// over the same distance wherever they end; those that hardly leave it less, so that nothing changes at once. The
+    /// body is left out.
     pub(super) fn fade_obstacles(&self, obstacles: &Obstacles, marks: &mut Vec<Mark>) {
         // An inset is a piece of a picture, and has a frame. What covers obstacles would cover a slope in the plane, too.
         let ground = contact::ground(&self.scene.obstacles, self.run.snapshot.time);
@@ -59,11 +61,12 @@ impl Draft<'_> {
         if parts.iter().all(Option::is_none) {
             return;
         }
+        let distance = FADING * self.scale.unit;
         let around = AROUND_BODY * self.scale.line();
         let body = self.bounds(self.position.iter().copied()).unwrap_or_default();
         let body = [body[0].x - around, body[0].y - around, body[1].x + around, body[1].y + around];
         for (side, part) in parts.into_iter().enumerate() {
-            let Some(Beyond { distance, along: [first, last] }) = part else { continue };
+            let Some(Beyond { strength, along: [first, last] }) = part else { continue };
             // The body across the fading, and along the side.
             let ([from, to], [begin, end]) = match side % 2 {
                 0 => ([body[0], body[2]], [body[1], body[3]]),
@@ -72,7 +75,7 @@ impl Draft<'_> {
             for at in 0..distance.ceil() as u32 {
                 let depth = f64::from(at);
                 let share = ((depth + 0.5) / distance).min(1.0);
-                let cover = 1.0 - share * share * (3.0 - 2.0 * share);
+                let cover = strength * (1.0 - share * share * (3.0 - 2.0 * share));
                 let across = [left + depth, top + depth, right - depth - 1.0, bottom - depth - 1.0][side];
                 let is_beside = across + 1.0 > from && across < to;
                 let [begin, end] =
@@ -96,20 +99,22 @@ impl Draft<'_> {
         [left, top, right, bottom]: [f64; 4],
         boxes: impl Iterator<Item = [DVec2; 2]>,
     ) -> [Option<Beyond>; 4] {
-        let [least, most] = [LEAST, FADING].map(|distance| distance * self.scale.unit);
+        let [first, full] = BEGINS.map(|distance| distance * self.scale.unit);
+        let distance = FADING * self.scale.unit;
         let free = LINE_ROOM * self.scale.line();
         let is_seen = |[low, high]: &[DVec2; 2]| low.x < right && high.x > left && low.y < bottom && high.y > top;
         let over = |[low, high]: &[DVec2; 2]| [left - low.x, top - low.y, high.x - right, high.y - bottom];
         let boxes: Vec<_> = boxes.filter(is_seen).collect();
         [0, 1, 2, 3].map(|side: usize| {
-            let distance = boxes.iter().map(|one| over(one)[side] - least).fold(0.0, f64::max).min(most);
+            let farthest = boxes.iter().map(|one| over(one)[side]).fold(0.0, f64::max);
+            let strength = ((farthest - first) / (full - first)).clamp(0.0, 1.0);
             let along = |[low, high]: &[DVec2; 2]| match side % 2 {
                 0 => [(low.y - free).max(top), (high.y + free).min(bottom)],
                 _ => [(low.x - free).max(left), (high.x + free).min(right)],
             };
             let reaching = boxes.iter().filter(|one| over(one)[side] > -distance).map(along);
             let along = reaching.reduce(|one, other| [one[0].min(other[0]), one[1].max(other[1])])?;
-            (distance > 0.0).then_some(Beyond { distance, along: [along[0].floor(), along[1].ceil()] })
+            (strength > 0.0).then_some(Beyond { strength, along: [along[0].floor(), along[1].ceil()] })
         })
     }
 

@@ -23,6 +23,8 @@ use glam::DVec3;
 const STRIP: f64 = 104.0;
 const BELOW_STRIP: f64 = 22.0;
 const MOST: f64 = 0.3;
+/// From the outline of the other body to the strip (px in the reference picture).
+const ABOVE_STRIP: f64 = 14.0;
 /// From the top of the strip to its name's baseline and to the chart; size of the name's type, and radius of the dot and of
 /// its halo (px in the reference picture).
 const NAME_BASELINE: f64 = 13.0;
@@ -174,7 +176,9 @@ impl Composer<'_> {
         draft.colour_by(&self.distance_scale(), &compared.distances);
         let colour = self.scene.runs[compared.other].line(&self.palette).colour;
         // Wherever the other body is, it is not cut off at rows of words.
-        draft.outline(&compared.outlined, colour, draft.viewport, curves);
+        let [left, top, width, height] = draft.viewport;
+        let free = if self.rooms(panel, scale).1.is_some() { (ABOVE_STRIP * scale.unit).round() as u32 } else { 0 };
+        draft.outline(&compared.outlined, colour, [left, top, width, height.saturating_sub(free)], curves);
         draft.panel(under, above)
     }
 }

@@ -5,7 +5,9 @@ use crate::look::{Difference, Ghost, Labels, LineStyle, Palette, View};
 use crate::picture::caption::{self, Heading, Writer, wrapped};
 use crate::picture::layout::{self, Layout, Scale, Wanted, Written};
 use crate::picture::legend::Legend;
+use crate::picture::series;
 use crate::picture::text::{Fonts, Weight};
+use crate::picture::{event, locator};
 use crate::scene::Scene;
 
 /// Titles and captions are never longer than this (lines).
@@ -156,8 +158,11 @@ impl<'a> Words<'a> {
             matches!(view.ghost, Some(Ghost::Run(_))) || view.difference.is_some() || !view.paths.is_empty();
         (view.legend && (has_chart || has_arrows || has_ghost)).then(|| self.scene.runs.get(run)).flatten().map(|run| {
             let line = run.line(self.palette);
-            // Arrows are solid.
-            if has_chart || has_ghost { line } else { LineStyle { dash: &[], ..line } }
+            // As its curve in the chart. Without one, only colours count.
+            match view.strip.filter(|_| has_chart) {
+                Some(diagnostic) => series::style(diagnostic, line),
+                None => LineStyle { dash: &[], ..line },
+            }
         })
     }
 
@@ -180,10 +185,6 @@ impl<'a> Words<'a> {
         let (view, around) = (self.view(), self.around(runs, columns));
         let layout = &around.layout;
         let mut told = Vec::new();
-        // Nobody expects words in a thumbnail.
-        if !Scale::legible(layout.around.small()) {
-            return told;
-        }
         let mut tell = |is_so: bool, what: &str| {
             if is_so {
                 told.push(what.to_owned());
@@ -202,6 +203,16 @@ impl<'a> Words<'a> {
         let written = layout::written(view, f64::from(panel[3]), layout.scale.unit);
         let has = |one: fn(Labels) -> bool| one(view.labels) && !one(written.labels);
         tell(view.strip.is_some() && !written.events, "panels do not say what happens in the chart");
+        if let Some(diagnostic) = view.strip.filter(|_| written.events && layout.chart.is_some()) {
+            let [explained, with_times] =
+                self.writer(layout.scale).explains(*panel, &event::narrowest(diagnostic, self.scene));
+            tell(!explained, "panels do not say all that may happen in the chart");
+            tell(explained && !with_times, "panels do not say when all of it happens");
+        }
+        tell(
+            view.camera.follow && !locator::fits(view, *panel, layout.scale),
+            "overviews of cameras that move may be left out",
+        );
         tell(has(|labels| labels.model), "panels do not describe the models");
         tell(has(|labels| labels.count || labels.number), "panels have no numbers");
         tell(has(|labels| labels.name), "panels have no names");
@@ -226,10 +237,18 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
     let composer = Composer::new(scene);
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let words = composer.words();
-    let mut told = words.left_out(&runs, composer.columns(&runs));
+    let left_out = |columns: usize| {
+        let bar = composer.lacks_bar(&runs, columns).then(|| "the scale bar is left out".to_owned());
+        words.left_out(&runs, columns).into_iter().chain(bar).collect::<Vec<_>>()
+    };
+    // Nobody expects words in a thumbnail.
+    if !Scale::legible(Layout::around(&scene.view).small()) {
+        return Vec::new();
+    }
+    let mut told = left_out(composer.columns(&runs));
     if scene.view.columns.is_none() {
         // How panels stand follows from the course of the scene, too: what finds no room side by side, either, is certain.
-        let side_by_side = words.left_out(&runs, words.panels(&runs));
+        let side_by_side = left_out(words.panels(&runs));
         told.retain(|one| side_by_side.contains(one));
     }
     told

@@ -132,7 +132,7 @@ impl Figure {
     /// # Errors
     /// Whatever keeps the file, or a scene that it names, from being one, with all mistakes in it.
     pub fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
-        let text = load::text_of(path, limits)?;
+        let text = load::text_of(path, limits, load::SCENE)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         Self::read(&text, &path.display().to_string(), folder, &|path| Scene::load(path, limits))
     }

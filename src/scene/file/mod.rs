@@ -99,7 +99,7 @@ pub(in crate::scene) struct SleepFile {
     /// How far no node moves in the time (m). More than what is left of the motion at rest: on an obstacle with e > 0 nodes rebound
     /// for ever, by about `g ΔT²`.
     pub(in crate::scene) distance: Positive,
-    /// The time (s).
+    /// For how long no node has moved farther than that before the body sleeps (s).
     pub(in crate::scene) after: Positive,
 }
 

@@ -1,7 +1,7 @@
 //! A cell of a diagram of forces, drawn: the body, the rest shape behind it, arrows, vectors and numbers.
 
 use super::cell::Cell;
-use super::marks::{GHOST_LINE, ghost_colour, outlined};
+use super::marks::{GHOST_LINE, bare, ghost_colour, outlined};
 use crate::colour::Colour;
 use crate::picture::arrows::arrow;
 use crate::picture::caption::Writer;
@@ -30,6 +30,8 @@ const CENTRE: f64 = 3.4;
 const ARROW: f64 = 5.0;
 /// Arrows shorter than this are not drawn (px in the reference picture).
 const SHORTEST: f64 = 3.0;
+/// An arrow that leaves both sides of a corner by less than this (rad) has no halo there.
+const NARROW: f64 = 0.5;
 /// Opacity of what a body hides.
 const HIDDEN: f64 = 0.3;
 
@@ -51,9 +53,10 @@ impl<'a> Drawn<'a> {
     }
 
     /// The body with its rest shape behind it.
-    pub(super) fn panel(&self, under: &mut Vec<Mark>) -> Panel {
+    pub(super) fn panel(&self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) -> Panel {
         // Without the ring arrows, nodes and displacements of usual pictures.
         let mut panel = self.draft.panel(under, &mut Vec::new());
+        self.draft.fade_obstacles(&panel.obstacles, above);
         panel.floor = None;
         panel.beads.clear();
         if self.draft.flat {
@@ -172,8 +175,8 @@ impl<'a> Drawn<'a> {
             let arrows = ends(compared);
             labels.lines.extend(arrows.iter().flat_map(|ends| wide(*ends, ARROW * unit)));
             let colour = cell.scene.runs[*run].line(palette).colour;
-            for ends in arrows.iter().filter(|ends| shown(ends)) {
-                above.extend(outlined(*ends, *scale, colour, palette.background));
+            for (node, ends) in arrows.iter().enumerate().filter(|(_, ends)| shown(ends)) {
+                above.extend(outlined(*ends, *scale, colour, palette.background, !self.is_in_corner(node, *ends)));
             }
         }
         if forces.vectors {
@@ -182,6 +185,10 @@ impl<'a> Drawn<'a> {
         let mut order: Vec<usize> = (0..arrows.len()).filter(|&at| shown(&arrows[at])).collect();
         order.sort_by(|&a, &b| seen[a].total_cmp(&seen[b]));
         for &at in &order {
+            if self.is_in_corner(at, arrows[at]) {
+                above.extend(bare(arrows[at], scale.line(), own));
+                continue;
+            }
             let whole = arrow(arrows[at], scale.line(), own, palette.halo);
             above.extend(whole.faded(HIDDEN + (1.0 - HIDDEN) * seen[at]));
         }
@@ -196,6 +203,21 @@ impl<'a> Drawn<'a> {
                 self.number(at, arrows[at], writer, &mut labels, palette.text_like(own));
             }
         }
+    }
+
+    /// Whether the arrow of a node of a body in the plane lies in a narrow corner of an element there, whose sides its
+    /// halo would cover.
+    fn is_in_corner(&self, node: usize, [from, to]: [DVec2; 2]) -> bool {
+        let way = to - from;
+        let nearly = |other: u32| {
+            let side = self.pixel(self.cell.snapshot().position[other as usize]) - from;
+            way.angle_to(side).abs() < NARROW
+        };
+        self.draft.flat
+            && self.cell.scene.body.elements.iter().any(|nodes| {
+                let at = nodes.iter().position(|&other| other as usize == node);
+                at.is_some_and(|at| [1, nodes.len() - 1].iter().all(|step| nearly(nodes[(at + step) % nodes.len()])))
+            })
     }
 
     /// The size of a force at its arrow, and the angle to the one that it is compared with.

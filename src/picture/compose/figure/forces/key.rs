@@ -88,7 +88,7 @@ impl Key<'_> {
         }
         let ends = [DVec2::new(left, middle), DVec2::new(left + 54.0 * unit, middle)];
         let compared = &scene.runs[compare];
-        marks.extend(outlined(ends, scale, compared.line(palette).colour, palette.background));
+        marks.extend(outlined(ends, scale, compared.line(palette).colour, palette.background, true));
         say(&format!("forces of “{}”, for comparison", compared.name), ends[1].x + gap, writer);
     }
 }

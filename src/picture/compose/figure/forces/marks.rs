@@ -2,9 +2,10 @@
 
 use crate::colour::{Colour, mixed};
 use crate::look::Palette;
-use crate::picture::Mark;
 use crate::picture::arrows::{HEAD, arrow};
 use crate::picture::layout::Scale;
+use crate::picture::narrow::narrow;
+use crate::picture::{Mark, MarkShape};
 use glam::DVec2;
 
 /// Opacity of the rest shape, and of the inside and the outline of arrows to compare with.
@@ -21,11 +22,29 @@ pub(super) fn ghost_colour(palette: &Palette) -> Colour {
 }
 
 /// An arrow of the run to compare with: faintly filled, with an outline.
-pub(super) fn outlined(ends: [DVec2; 2], scale: Scale, colour: Colour, ground: Colour) -> Vec<Mark> {
+pub(super) fn outlined(ends: [DVec2; 2], scale: Scale, colour: Colour, ground: Colour, has_halo: bool) -> Vec<Mark> {
     let points = outline(ends, HEAD * scale.line());
     let edge = mixed(ground, colour, OUTLINE_ALPHA);
     let sides = points.windows(2).map(|two| Mark::line([two[0], two[1]], OUTLINE * scale.line(), edge));
-    std::iter::once(arrow(ends, scale.line(), mixed(ground, colour, COMPARED), ground)).chain(sides).collect()
+    let fill = mixed(ground, colour, COMPARED);
+    let filled =
+        if has_halo { vec![arrow(ends, scale.line(), fill, ground)] } else { bare(ends, scale.line(), fill).into() };
+    filled.into_iter().chain(sides).collect()
+}
+
+/// An arrow without a halo, which would cover the lines beside it.
+pub(super) fn bare([from, to]: [DVec2; 2], size: f64, colour: Colour) -> [Mark; 2] {
+    let points = outline([from, to], HEAD * size);
+    // Around it: the shaft's two sides, the joint, a wing and the tip.
+    let [shaft, joint, wing, tip] = [points[0], points[1], points[2], points[3]];
+    let along = (to - from).normalize_or_zero();
+    let [half_shaft, half_head] = [shaft, wing].map(|at| (at - from).perp_dot(along).abs());
+    let end = from + (joint - from).dot(along) * along;
+    let high = 2.0 * half_head;
+    let corner = tip - (tip - wing).dot(along) * along - half_head * along.perp();
+    let head = Mark::upright([corner.x, corner.y, (tip - wing).dot(along), high], MarkShape::Point, colour);
+    let head = Mark { along: along.to_array().map(narrow), ..head };
+    [Mark::line([from, end], 2.0 * half_shaft, colour), head]
 }
 
 /// The outline of an arrow with a head of a width (px), closed. The shader that draws arrows has the same shares.

@@ -6,6 +6,7 @@ mod key;
 mod marks;
 
 use super::{NoRoom, header};
+use crate::look::Labels;
 use crate::moments::Moments;
 use crate::picture::Picture;
 use crate::picture::caption::Writer;
@@ -75,7 +76,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     let (mut panels, mut under, mut above) = (Vec::new(), Vec::new(), Vec::new());
     for (cell, &centre) in cells.iter().zip(&centres) {
         let view = Drawn::new(cell, pixels, centre, scale, figure);
-        panels.push(view.panel(&mut under));
+        panels.push(view.panel(&mut under, &mut above));
         view.draw(forces, &mut writer, &mut above);
     }
     for column in 0..columns {
@@ -116,12 +117,13 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     Ok(Picture { size: figure.size, palette, fonts, ramp: Vec::new(), panels, under, marks: above, curves, words })
 }
 
-/// A scene as a diagram shows it: in the figure's colours, without fields, strips and arrows of its own.
+/// A scene as a diagram shows it: in the figure's colours, without fields, strips, words and arrows of its own.
 fn bare(scene: &Scene, figure: &Figure) -> Scene {
     let mut scene = scene.clone();
     let view = &mut scene.view;
     view.look = figure.look.clone();
     (view.colour, view.strip, view.spring_strain, view.explode) = (None, None, None, 0.0);
     view.visible.displacements = false;
+    view.labels = Labels::default();
     scene
 }

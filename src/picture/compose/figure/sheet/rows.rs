@@ -5,6 +5,7 @@ use crate::picture::caption::{Writer, wrapped};
 use crate::picture::compose::cut;
 use crate::picture::layout::Scale;
 use crate::picture::number;
+use crate::picture::series;
 use crate::picture::text::{Fonts, Weight};
 use crate::scene::Scene;
 use crate::scene::figure::{Row, Sheet};
@@ -98,7 +99,11 @@ impl RowLabels {
                 baseline += SAMPLE_BELOW * unit;
                 let run = |scene: &Scene| scene.runs.iter().position(|run| run.name == sheet.rows[row].run);
                 if let Some((scene, run)) = sheet.scenes.first().and_then(|scene| Some((scene, run(scene)?))) {
-                    writer.sample([left, baseline], scene.runs[run].line(palette));
+                    // Where not all charts have dashes, those that have them tell.
+                    let line = scene.runs[run].line(palette);
+                    let lines = sheet.strips.iter().map(|&diagnostic| series::style(diagnostic, line));
+                    let line = lines.max_by_key(|line| line.dash.len()).unwrap_or(line);
+                    writer.sample([left, baseline], line);
                 }
             }
             baseline += NOTE_BELOW * unit;
