@@ -12,7 +12,7 @@ const AWAY: f64 = 3.0;
 const MOST_TRIANGLES: usize = 40_000;
 /// Cells in which triangles are looked for are so many times larger than these, and at most so many along an axis.
 const BOX: f64 = 2.0;
-const MOST_CELLS: f64 = 40.0;
+const MOST_CELLS: f64 = 20.0;
 
 /// A triangle of a surface.
 struct Piece {
