@@ -1,7 +1,10 @@
 //! Smooth borders of surfaces: pixels that a line crosses at which colours change.
 
 use super::panel::Panels;
-use super::pipeline::{BORDER_FORMAT, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry};
+use super::pass::Pass;
+use super::pipeline::{
+    BORDER_FORMAT, Pipeline, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry,
+};
 use super::segment::{self, ATTRIBUTES, Segment};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
@@ -19,7 +22,7 @@ pub(super) fn parts() -> [&'static str; 7] {
 /// The pipeline, and the borders of one picture.
 #[derive(Debug)]
 pub(super) struct Borders {
-    pipeline: wgpu::RenderPipeline,
+    pipeline: Pipeline,
     layout: wgpu::BindGroupLayout,
     textures: Option<wgpu::BindGroup>,
     segments: GrowingBuffer<Segment>,
@@ -57,11 +60,11 @@ impl Borders {
             segments.extend(panel.borders.iter().filter_map(segment::projected(panel)));
             self.ranges.push(start..segments.len() as u32);
         }
-        self.segments.write(gpu, &segments);
+        self.segments.write(gpu, segments);
     }
 
     /// Draws the borders of all panels.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle]) {
+    pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, self.textures.as_ref(), &[]);
         pass.set_vertex_buffer(0, self.segments.buffer().slice(..));

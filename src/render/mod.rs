@@ -27,6 +27,7 @@ mod line;
 mod obstacle;
 mod overlay;
 mod panel;
+mod pass;
 mod pipeline;
 mod segment;
 #[cfg(test)]
@@ -42,6 +43,7 @@ use crate::picture::Picture;
 use image::{RgbImage, RgbaImage};
 use obstacle::{Slabs, Solids};
 use panel::Panels;
+use pass::Pass;
 use target::{Bodies, Canvas};
 
 const PANEL_SHADER: &str = include_str!("../../shaders/panel.wgsl");
@@ -265,26 +267,27 @@ impl Renderer {
 
         let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if has_behind {
-            let mut pass = begin(&mut commands, "turned over", &bodies.alarm_colour, CLEAR, Some(&bodies.alarm_depth));
+            let mut pass =
+                Pass::begin(&gpu, &mut commands, "turned over", &bodies.alarm_colour, CLEAR, Some(&bodies.alarm_depth));
             self.surfaces.draw_behind(&mut pass, &self.panels, &places, colourings);
             if let Some(solids) = solids.filter(|_| with_clear) {
                 solids.draw_behind(&mut pass, &self.panels, &places);
             }
         }
         {
-            let mut pass = begin(&mut commands, "bodies", &bodies.colour, CLEAR, Some(&bodies.depth));
+            let mut pass = Pass::begin(&gpu, &mut commands, "bodies", &bodies.colour, CLEAR, Some(&bodies.depth));
             self.surfaces.draw_all(&mut pass, &self.panels, &places, colourings);
             if let Some(solids) = solids {
                 solids.draw(&mut pass, &self.panels, &places);
             }
         }
         {
-            let mut pass = begin(&mut commands, "borders", &bodies.borders, CLEAR, None);
+            let mut pass = Pass::begin(&gpu, &mut commands, "borders", &bodies.borders, CLEAR, None);
             self.borders.draw(&mut pass, &self.panels, &places);
         }
-        self.lines.test(&mut commands, &self.panels, &places, with_solids);
+        self.lines.test(&gpu, &mut commands, &self.panels, &places, with_solids);
         {
-            let mut pass = begin(&mut commands, "lines", &bodies.lines, CLEAR, None);
+            let mut pass = Pass::begin(&gpu, &mut commands, "lines", &bodies.lines, CLEAR, None);
             self.lines.draw(&mut pass, &self.panels, &places);
         }
         let [r, g, b] = panel::linear(picture.palette.background).to_array().map(f64::from);
@@ -292,12 +295,12 @@ impl Renderer {
         if !picture.under.is_empty() {
             let [r, g, b] = picture.palette.background.map(|byte| f64::from(byte) / 255.0);
             let encoded = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });
-            let mut pass = begin(&mut commands, "under", &self.canvas.encoded, encoded, None);
+            let mut pass = Pass::begin(&gpu, &mut commands, "under", &self.canvas.encoded, encoded, None);
             self.overlay.draw_under(&mut pass);
             background = wgpu::LoadOp::Load;
         }
         {
-            let mut pass = begin(&mut commands, "picture", &self.canvas.linear, background, None);
+            let mut pass = Pass::begin(&gpu, &mut commands, "picture", &self.canvas.linear, background, None);
             self.grounds.draw(&mut pass, &self.panels, picture);
             if let Some(slabs) = slabs {
                 slabs.draw(&mut pass, &self.panels, picture, false);
@@ -311,7 +314,7 @@ impl Renderer {
             }
         }
         {
-            let mut pass = begin(&mut commands, "overlay", &self.canvas.encoded, wgpu::LoadOp::Load, None);
+            let mut pass = Pass::begin(&gpu, &mut commands, "overlay", &self.canvas.encoded, wgpu::LoadOp::Load, None);
             self.overlay.draw_marks(&mut pass);
             if let Some(curves) = curves {
                 curves.draw(&mut pass);
@@ -325,27 +328,3 @@ impl Renderer {
 
 /// Empty: transparent, and infinitely far away.
 const CLEAR: wgpu::LoadOp<wgpu::Color> = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
-
-fn begin<'a>(
-    commands: &'a mut wgpu::CommandEncoder,
-    label: &str,
-    view: &wgpu::TextureView,
-    load: wgpu::LoadOp<wgpu::Color>,
-    depth: Option<&wgpu::TextureView>,
-) -> wgpu::RenderPass<'a> {
-    commands.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some(label),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-        })],
-        depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
-            view,
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
-            stencil_ops: None,
-        }),
-        ..Default::default()
-    })
-}

@@ -1,6 +1,6 @@
 //! Short forms for making pipelines and bindings.
 
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Work};
 
 /// How bodies are stored while they are drawn: square roots of linear colours, multiplied with alpha.
 pub(super) const BODY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -14,6 +14,13 @@ pub(super) const LINE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Un
 pub(super) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// The finished picture, written as sRGB values.
 pub(super) const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// What draws, by its label.
+#[derive(Debug)]
+pub(super) struct Pipeline {
+    pub(super) label: &'static str,
+    pub(super) pipeline: wgpu::RenderPipeline,
+}
 
 /// The description of a pipeline, as far as pipelines differ.
 pub(super) struct Recipe<'a> {
@@ -56,9 +63,10 @@ impl<'a> Recipe<'a> {
         Self { topology, blend: None, depth: true, ..rectangles }
     }
 
-    pub(super) fn build(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
+    pub(super) fn build(&self, gpu: &Gpu) -> Pipeline {
         let layout = pipeline_layout(gpu, self.label, self.groups);
-        gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        gpu.note(Work::Pipeline(self.label));
+        let pipeline = gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(self.label),
             layout: Some(&layout),
             vertex: wgpu::VertexState {
@@ -88,7 +96,8 @@ impl<'a> Recipe<'a> {
             }),
             multiview_mask: None,
             cache: None,
-        })
+        });
+        Pipeline { label: self.label, pipeline }
     }
 }
 
@@ -97,9 +106,10 @@ pub(super) fn compute_pipeline(
     gpu: &Gpu,
     label: &str,
     module: &wgpu::ShaderModule,
-    entry: &str,
+    entry: &'static str,
     groups: &[&wgpu::BindGroupLayout],
 ) -> wgpu::ComputePipeline {
+    gpu.note(Work::Pipeline(entry));
     gpu.device().create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(label),
         layout: Some(&pipeline_layout(gpu, label, groups)),

@@ -1,7 +1,8 @@
 //! Surfaces of bodies: the turned-over set by itself, then both sets.
 
 use super::panel::{Panels, has_behind, is_plain};
-use super::pipeline::{Recipe, bind_textures, for_vertices, group_layout, shader, texture_entry};
+use super::pass::Pass;
+use super::pipeline::{Pipeline, Recipe, bind_textures, for_vertices, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{MOST_OCCLUDERS, Mesh, Picture, Rectangle, Vertex};
@@ -48,11 +49,11 @@ pub(super) type ForOccluders<T> = [Option<T>; MOST_OCCLUDERS + 1];
 /// The pipelines that draw surfaces: turned-over ones by themselves, and both sets.
 #[derive(Debug)]
 pub(super) struct Pipelines {
-    pub(super) alarm_behind: wgpu::RenderPipeline,
-    pub(super) alarm: wgpu::RenderPipeline,
-    pub(super) sound: wgpu::RenderPipeline,
+    pub(super) alarm_behind: Pipeline,
+    pub(super) alarm: Pipeline,
+    pub(super) sound: Pipeline,
     /// The same where something lies behind, or elements are flat.
-    pub(super) before: wgpu::RenderPipeline,
+    pub(super) before: Pipeline,
 }
 
 /// The two sets of elements of a panel, in the order in which they are stored.
@@ -135,8 +136,8 @@ impl Surfaces {
         };
         self.ranges = picture.panels.iter().map(|panel| [add(&panel.sound), add(&panel.turned_over)]).collect();
         self.kinds = picture.panels.iter().map(|panel| [!is_plain(picture, panel), has_behind(panel)]).collect();
-        self.vertices.write(gpu, &vertices);
-        self.indices.write(gpu, &indices);
+        self.vertices.write(gpu, vertices);
+        self.indices.write(gpu, indices);
     }
 
     /// Binds new textures.
@@ -154,7 +155,7 @@ impl Surfaces {
     /// Draws the turned-over sets by themselves.
     pub(super) fn draw_behind(
         &self,
-        pass: &mut wgpu::RenderPass<'_>,
+        pass: &mut Pass<'_>,
         panels: &Panels,
         places: &[Rectangle],
         colourings: [Option<Colouring<'_>>; 2],
@@ -165,7 +166,7 @@ impl Surfaces {
     /// Draws everything.
     pub(super) fn draw_all(
         &self,
-        pass: &mut wgpu::RenderPass<'_>,
+        pass: &mut Pass<'_>,
         panels: &Panels,
         places: &[Rectangle],
         colourings: [Option<Colouring<'_>>; 2],
@@ -177,11 +178,11 @@ impl Surfaces {
 
     fn draw(
         &self,
-        pass: &mut wgpu::RenderPass<'_>,
+        pass: &mut Pass<'_>,
         panels: &Panels,
         places: &[Rectangle],
         colourings: [Option<Colouring<'_>>; 2],
-        pipeline: fn(&Pipelines) -> &wgpu::RenderPipeline,
+        pipeline: fn(&Pipelines) -> &Pipeline,
         (set, with_behind): (usize, bool),
     ) {
         pass.set_vertex_buffer(0, self.vertices.buffer().slice(..));
@@ -201,7 +202,7 @@ impl Surfaces {
                 false => [0; 4],
             };
             panels.draw_regions(pass, places.iter().enumerate().map(own), |pass, panel| {
-                pass.draw_indexed(self.ranges[panel][set].clone(), 0, 0..1);
+                pass.draw_indexed(self.ranges[panel][set].clone());
             });
         }
     }

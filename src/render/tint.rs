@@ -89,15 +89,14 @@ impl Tint {
     /// Uploads the scale of a picture and where its corners stand, in the order of its vertices.
     pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
         let colours: Vec<_> = picture.ramp.iter().take(SHADES).map(|&colour| linear(colour).extend(1.0)).collect();
-        self.ramp.write(gpu, &colours);
+        self.ramp.write(gpu, colours);
         let meshes = picture.panels.iter().flat_map(|panel| [&panel.sound, &panel.turned_over]);
         // Panels without a field have places, too, which nothing reads.
         let shades = meshes.flat_map(|mesh| {
             let missing = mesh.vertices.len() - mesh.shades.len();
             mesh.shades.iter().copied().chain(std::iter::repeat_n(0.0, missing))
         });
-        let shades: Vec<_> = shades.collect();
-        self.shades.write(gpu, &shades);
+        self.shades.write(gpu, shades.collect());
     }
 }
 
