@@ -1,7 +1,7 @@
 //! From a [`Picture`] to an image: the passes, in order.
 //!
-//! 1. `surface`: turned-over elements by themselves, so that they can be seen through the body.
-//! 2. `surface`: all surfaces, in textures no larger than the bodies; among them solid obstacles (`obstacle`).
+//! 1. `surface`: turned-over elements, by themselves, so that they can be seen through the body, and in the bodies.
+//! 2. `surface`: the others over them, in textures no larger than the bodies; among them solid obstacles (`obstacle`).
 //! 3. `border`: smooth borders where their colours change at a line.
 //! 4. `visibility`, then `line`: edges and contours as opacities, with smooth borders of their own.
 //! 5. `ground`: the floor, its grid and its shadows, into the picture.
@@ -266,28 +266,38 @@ impl Renderer {
         let strokes = self.strokes.as_ref().filter(|_| stroke::Strokes::are_in(picture));
 
         let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let (mut load, mut deep) = (CLEAR, FAR);
         if has_behind {
-            let mut pass =
-                Pass::begin(&gpu, &mut commands, "turned over", &bodies.alarm_colour, CLEAR, Some(&bodies.alarm_depth));
-            self.surfaces.draw_behind(&mut pass, &self.panels, &places, colourings);
+            // Drawn once for both: the other surfaces are drawn over it.
+            let targets = [(&bodies.alarm_colour, CLEAR), (&bodies.colour, CLEAR)];
+            let depth = Some((&bodies.alarm_depth, FAR));
+            let mut pass = Pass::begin(&gpu, &mut commands, "turned over", &targets, depth);
+            self.surfaces.draw_turned_over(&mut pass, &self.panels, &places, colourings);
+            drop(pass);
+            bodies.copy_depth(&mut commands);
+            (load, deep) = (wgpu::LoadOp::Load, wgpu::LoadOp::Load);
             if let Some(solids) = solids.filter(|_| with_clear) {
+                let targets = [(&bodies.alarm_colour, wgpu::LoadOp::Load)];
+                let depth = Some((&bodies.alarm_depth, wgpu::LoadOp::Load));
+                let mut pass = Pass::begin(&gpu, &mut commands, "obstacles behind", &targets, depth);
                 solids.draw_behind(&mut pass, &self.panels, &places);
             }
         }
         {
-            let mut pass = Pass::begin(&gpu, &mut commands, "bodies", &bodies.colour, CLEAR, Some(&bodies.depth));
-            self.surfaces.draw_all(&mut pass, &self.panels, &places, colourings);
+            let depth = Some((&bodies.depth, deep));
+            let mut pass = Pass::begin(&gpu, &mut commands, "bodies", &[(&bodies.colour, load)], depth);
+            self.surfaces.draw_sound(&mut pass, &self.panels, &places, colourings);
             if let Some(solids) = solids {
                 solids.draw(&mut pass, &self.panels, &places);
             }
         }
         {
-            let mut pass = Pass::begin(&gpu, &mut commands, "borders", &bodies.borders, CLEAR, None);
+            let mut pass = Pass::begin(&gpu, &mut commands, "borders", &[(&bodies.borders, CLEAR)], None);
             self.borders.draw(&mut pass, &self.panels, &places);
         }
         self.lines.test(&gpu, &mut commands, &self.panels, &places, with_solids);
         {
-            let mut pass = Pass::begin(&gpu, &mut commands, "lines", &bodies.lines, CLEAR, None);
+            let mut pass = Pass::begin(&gpu, &mut commands, "lines", &[(&bodies.lines, CLEAR)], None);
             self.lines.draw(&mut pass, &self.panels, &places);
         }
         let [r, g, b] = panel::linear(picture.palette.background).to_array().map(f64::from);
@@ -295,12 +305,12 @@ impl Renderer {
         if !picture.under.is_empty() {
             let [r, g, b] = picture.palette.background.map(|byte| f64::from(byte) / 255.0);
             let encoded = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });
-            let mut pass = Pass::begin(&gpu, &mut commands, "under", &self.canvas.encoded, encoded, None);
+            let mut pass = Pass::begin(&gpu, &mut commands, "under", &[(&self.canvas.encoded, encoded)], None);
             self.overlay.draw_under(&mut pass);
             background = wgpu::LoadOp::Load;
         }
         {
-            let mut pass = Pass::begin(&gpu, &mut commands, "picture", &self.canvas.linear, background, None);
+            let mut pass = Pass::begin(&gpu, &mut commands, "picture", &[(&self.canvas.linear, background)], None);
             self.grounds.draw(&mut pass, &self.panels, picture);
             if let Some(slabs) = slabs {
                 slabs.draw(&mut pass, &self.panels, picture, false);
@@ -314,7 +324,8 @@ impl Renderer {
             }
         }
         {
-            let mut pass = Pass::begin(&gpu, &mut commands, "overlay", &self.canvas.encoded, wgpu::LoadOp::Load, None);
+            let mut pass =
+                Pass::begin(&gpu, &mut commands, "overlay", &[(&self.canvas.encoded, wgpu::LoadOp::Load)], None);
             self.overlay.draw_marks(&mut pass);
             if let Some(curves) = curves {
                 curves.draw(&mut pass);
@@ -328,3 +339,4 @@ impl Renderer {
 
 /// Empty: transparent, and infinitely far away.
 const CLEAR: wgpu::LoadOp<wgpu::Color> = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+const FAR: wgpu::LoadOp<f32> = wgpu::LoadOp::Clear(0.0);

@@ -16,21 +16,20 @@ impl<'a> Pass<'a> {
         gpu: &'a Gpu,
         commands: &'a mut wgpu::CommandEncoder,
         label: &'static str,
-        view: &wgpu::TextureView,
-        load: wgpu::LoadOp<wgpu::Color>,
-        depth: Option<&wgpu::TextureView>,
+        targets: &[(&wgpu::TextureView, wgpu::LoadOp<wgpu::Color>)],
+        depth: Option<(&wgpu::TextureView, wgpu::LoadOp<f32>)>,
     ) -> Self {
+        let target = |&(view, load)| {
+            let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+            Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
+        };
+        let targets: Vec<_> = targets.iter().map(target).collect();
         let pass = commands.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(label),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            color_attachments: &targets,
+            depth_stencil_attachment: depth.map(|(view, load)| wgpu::RenderPassDepthStencilAttachment {
                 view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-            })],
-            depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
-                view,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+                depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
             ..Default::default()

@@ -31,6 +31,8 @@ pub(super) struct Recipe<'a> {
     pub(super) vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub(super) topology: wgpu::PrimitiveTopology,
     pub(super) target: wgpu::TextureFormat,
+    /// How many targets of that format there are.
+    pub(super) targets: usize,
     pub(super) blend: Option<wgpu::BlendState>,
     pub(super) depth: bool,
 }
@@ -51,6 +53,7 @@ impl<'a> Recipe<'a> {
             vertices: &[],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             target,
+            targets: 1,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),
             depth: false,
         }
@@ -66,6 +69,8 @@ impl<'a> Recipe<'a> {
     pub(super) fn build(&self, gpu: &Gpu) -> Pipeline {
         let layout = pipeline_layout(gpu, self.label, self.groups);
         gpu.note(Work::Pipeline(self.label));
+        let target =
+            wgpu::ColorTargetState { format: self.target, blend: self.blend, write_mask: wgpu::ColorWrites::ALL };
         let pipeline = gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(self.label),
             layout: Some(&layout),
@@ -88,11 +93,7 @@ impl<'a> Recipe<'a> {
                 module: self.shader,
                 entry_point: Some(self.entries[1]),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: self.target,
-                    blend: self.blend,
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
+                targets: &vec![Some(target); self.targets],
             }),
             multiview_mask: None,
             cache: None,

@@ -46,10 +46,10 @@ pub(super) fn occluders(picture: &Picture) -> usize {
 /// One for each number of obstacles near a body, made when it is first needed.
 pub(super) type ForOccluders<T> = [Option<T>; MOST_OCCLUDERS + 1];
 
-/// The pipelines that draw surfaces: turned-over ones by themselves, and both sets.
+/// The pipelines that draw surfaces.
 #[derive(Debug)]
 pub(super) struct Pipelines {
-    pub(super) alarm_behind: Pipeline,
+    /// Into two targets: as seen through the body, and as surfaces of it.
     pub(super) alarm: Pipeline,
     pub(super) sound: Pipeline,
     /// The same where something lies behind, or elements are flat.
@@ -106,15 +106,15 @@ impl Surfaces {
 
     fn made(gpu: &Gpu, panels: &Panels, behind: &wgpu::BindGroupLayout, occluders: usize) -> Pipelines {
         let module = shader(gpu, "surface", &parts(occluders));
-        let build = |label, entries, groups: &[&wgpu::BindGroupLayout]| {
-            let recipe = Recipe { groups, vertices: &[Some(vertices())], ..Recipe::bodies(label, &module, entries) };
+        let build = |label, entries, groups: &[&wgpu::BindGroupLayout], targets| {
+            let vertices = &[Some(vertices())];
+            let recipe = Recipe { groups, vertices, targets, ..Recipe::bodies(label, &module, entries) };
             recipe.build(gpu)
         };
         Pipelines {
-            alarm_behind: build("turned over, behind", ["alarm_corner", "alarm_behind"], &[&panels.layout]),
-            alarm: build("turned over", ["alarm_corner", "alarm_surface"], &[&panels.layout]),
-            sound: build("sound", ["sound_corner", "sound_surface"], &[&panels.layout]),
-            before: build("sound, before others", ["sound_corner", "sound_before"], &[&panels.layout, behind]),
+            alarm: build("turned over", ["alarm_corner", "alarm_surface"], &[&panels.layout], 2),
+            sound: build("sound", ["sound_corner", "sound_surface"], &[&panels.layout], 1),
+            before: build("sound, before others", ["sound_corner", "sound_before"], &[&panels.layout, behind], 1),
         }
     }
 
@@ -152,19 +152,8 @@ impl Surfaces {
         Colouring { pipelines, groups: [self.behind.as_ref(), None], shades: None }
     }
 
-    /// Draws the turned-over sets by themselves.
-    pub(super) fn draw_behind(
-        &self,
-        pass: &mut Pass<'_>,
-        panels: &Panels,
-        places: &[Rectangle],
-        colourings: [Option<Colouring<'_>>; 2],
-    ) {
-        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.alarm_behind, (TURNED_OVER, true));
-    }
-
-    /// Draws everything.
-    pub(super) fn draw_all(
+    /// Draws the turned-over sets, as seen through the bodies and as surfaces of them.
+    pub(super) fn draw_turned_over(
         &self,
         pass: &mut Pass<'_>,
         panels: &Panels,
@@ -172,6 +161,16 @@ impl Surfaces {
         colourings: [Option<Colouring<'_>>; 2],
     ) {
         self.draw(pass, panels, places, colourings, |pipelines| &pipelines.alarm, (TURNED_OVER, true));
+    }
+
+    /// Draws the other sets, over the turned-over ones.
+    pub(super) fn draw_sound(
+        &self,
+        pass: &mut Pass<'_>,
+        panels: &Panels,
+        places: &[Rectangle],
+        colourings: [Option<Colouring<'_>>; 2],
+    ) {
         self.draw(pass, panels, places, colourings, |pipelines| &pipelines.sound, (SOUND, false));
         self.draw(pass, panels, places, colourings, |pipelines| &pipelines.before, (SOUND, true));
     }

@@ -48,20 +48,20 @@ impl Tint {
     fn made(gpu: &Gpu, panels: &Panels, layouts: [&wgpu::BindGroupLayout; 2], occluders: usize) -> Pipelines {
         let module = shader(gpu, "tint", &[&surface::parts(occluders)[..], &[SHADER]].concat());
         let vertices = [Some(surface::vertices()), Some(for_vertices::<f32>(&ATTRIBUTES))];
-        let build = |label, entries, layout| {
+        let build = |label, entries, layout, targets| {
             let recipe = Recipe {
                 groups: &[&panels.layout, layout],
                 vertices: &vertices,
+                targets,
                 ..Recipe::bodies(label, &module, entries)
             };
             recipe.build(gpu)
         };
         let [of_alarm, of_sound] = layouts;
         Pipelines {
-            alarm_behind: build("turned over, behind, coloured", ["tinted_alarm_corner", "tinted_behind"], of_alarm),
-            alarm: build("turned over, coloured", ["tinted_alarm_corner", "tinted_alarm"], of_alarm),
-            sound: build("sound, coloured", ["tinted_corner", "tinted_sound"], of_sound),
-            before: build("sound, coloured, before others", ["tinted_corner", "tinted_before"], of_sound),
+            alarm: build("turned over, coloured", ["tinted_alarm_corner", "tinted_alarm"], of_alarm, 2),
+            sound: build("sound, coloured", ["tinted_corner", "tinted_sound"], of_sound, 1),
+            before: build("sound, coloured, before others", ["tinted_corner", "tinted_before"], of_sound, 1),
         }
     }
 
