@@ -10,12 +10,12 @@ use super::segment::{ATTRIBUTES, Kind, Segment, parts, projected};
 use super::target::Bodies;
 use super::visibility::{Visibility, most_lines, most_samples};
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{LineKind, Panel, Picture, Rectangle};
+use crate::picture::{Panel, Picture, Rectangle};
 use std::ops::Range;
 
 /// Whether there are lines of turned-over elements.
 pub(super) fn has_alarm(panel: &Panel) -> bool {
-    panel.lines.iter().any(|line| matches!(line.kind, LineKind::AlarmEdge | LineKind::AlarmContour))
+    panel.lines.iter().any(|line| line.kind.is_alarm())
 }
 
 /// The pipelines of the lines, and the lines of one picture.

@@ -131,7 +131,7 @@ impl Renderer {
             size,
             surfaces: surface::Surfaces::new(gpu),
             lines: line::Lines::new(gpu),
-            borders: border::Borders::new(gpu, &panels),
+            borders: border::Borders::new(gpu),
             solids: None,
             slabs: None,
             grounds: ground::Grounds::new(gpu, &panels),
@@ -218,7 +218,7 @@ impl Renderer {
         };
         self.panels.write(&gpu, picture, &places);
         self.surfaces.write(&gpu, picture);
-        self.borders.write(&gpu, picture);
+        self.borders.write(&gpu, &self.panels, picture);
         self.grounds.write(&gpu, picture);
         self.overlay.write(&gpu, picture);
         if !picture.curves.is_empty() {

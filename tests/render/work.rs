@@ -41,9 +41,15 @@ fn work_for(gpu: &Gpu, picture: &Picture) -> Vec<Work> {
 fn only_what_a_picture_holds_is_drawn_and_has_pipelines() {
     let Some(gpu) = own_gpu("only_what_a_picture_holds_is_drawn_and_has_pipelines") else { return };
     const LINES: [&str; 4] = ["edges", "edge_opacity", "contours", "contour_opacity"];
-    const BODY: [&str; 3] = ["sound", "border", "composite"];
-    const TURNED_OVER: [&str; 5] =
-        ["turned over", "alarm_edges", "alarm_edge_opacity", "alarm_contours", "alarm_contour_opacity"];
+    const BODY: [&str; 3] = ["sound", "border_colour", "composite"];
+    const TURNED_OVER: [&str; 6] = [
+        "turned over",
+        "alarm_edges",
+        "alarm_edge_opacity",
+        "alarm_contours",
+        "alarm_contour_opacity",
+        "alarm_border_colour",
+    ];
     let set = |parts: &[&[&'static str]]| parts.concat().into_iter().collect::<BTreeSet<_>>();
     let (scene, first) = fig4b(0);
     let mut still = compose(&scene, &first);
