@@ -1,7 +1,8 @@
 //! What a frame costs, by stage: `cargo bench --bench render`, and `benches/README.md` how to read it.
 //!
-//! The program itself renders scenes into a temporary folder, a short and a long sequence of frames in turns. What the
-//! longer one takes more, over the number of frames that it has more, is the cost of a frame; the median counts.
+//! The program itself draws scenes into a temporary folder, a short and a long sequence of frames in turns, from states that it
+//! simulated once: else the simulation's noise would hide what drawing costs. What the longer one takes more, over the number of
+//! frames that it has more, is the cost of a frame; the median counts.
 
 use serde_json::Value;
 use std::path::Path;
@@ -9,22 +10,24 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+/// Frames a second, as in the scene.
+const RATE: u32 = 60;
 /// Blocks of cubes, by the triangles of their surface: cubes along each edge, and frames beyond the first one.
 const CASES: [(u32, [u32; 3], u32); 3] =
     [(588, [7, 7, 7], 60), (20_172, [41, 41, 41], 12), (300_300, [273, 1, 273], 4)];
 /// How often each sequence is rendered.
 const TURNS: usize = 3;
 /// What `run.json` calls the stages.
-const STAGES: [&str; 4] = ["simulate", "compose", "draw", "encode"];
+const STAGES: [&str; 3] = ["compose", "draw", "encode"];
 
 /// Two panels with floor, shadow, lines and words.
 const SCENE: &str = r#"
 title = "A block dropped on a floor"
 gravity = [0, -9.8, 0]
 [time]
-duration = 3.0
+duration = DURATION
 step = "T/50"
-frames_per_second = 60
+frames_per_second = RATE
 [body]
 lattice = { cells = CELLS, side = 0.1 }
 mass = 1.0
@@ -50,7 +53,7 @@ letters = true
 /// One run of the program.
 struct Rendered {
     /// Processor time of each stage (s).
-    stages: [f64; 4],
+    stages: [f64; 3],
     /// From its start to its end, and to the first frame on disk (s).
     wall: f64,
     first: f64,
@@ -58,17 +61,21 @@ struct Rendered {
     peak: f64,
 }
 
-/// Renders the first frame of a scene and so many more.
-fn render(scene: &Path, more: u32, folder: &Path) -> Rendered {
+/// The program, on a scene into a folder.
+fn program(command: &str, scene: &Path, folder: &Path) -> Command {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_localshape"));
+    program.args([command, "--quiet"]).arg(scene).arg("-o").arg(folder).stdout(Stdio::null());
+    program
+}
+
+/// Renders the first frame of a scene and so many more, from states if there are any.
+fn render(scene: &Path, states: Option<&Path>, more: u32, folder: &Path) -> Rendered {
     let start = Instant::now();
-    let mut program = Command::new(env!("CARGO_BIN_EXE_localshape"))
-        .args(["render", "--quiet", "--frames", &format!("0-{more}")])
-        .arg(scene)
-        .arg("-o")
-        .arg(folder)
-        .stdout(Stdio::null())
-        .spawn()
-        .expect("the program starts");
+    let mut command = program("render", scene, folder);
+    if let Some(states) = states {
+        command.arg("--from-states").arg(states);
+    }
+    let mut program = command.args(["--frames", &format!("0-{more}")]).spawn().expect("the program starts");
     let (status, first_frame) = (format!("/proc/{}/status", program.id()), folder.join("frame_00000.png"));
     let (mut first, mut peak) = (None, 0.0);
     let ended = loop {
@@ -106,24 +113,32 @@ fn main() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let out = folder.path().join("frames");
     println!("milliseconds of processor time a frame, two panels, 1280×720");
-    println!("triangles  simulate  compose     draw   encode  | drawn   wall ms  first s  peak MiB");
+    println!("triangles  compose     draw   encode  |   all   wall ms  first s  peak MiB");
     let mut lines = Vec::new();
     for (triangles, cells, more) in CASES {
         let scene = folder.path().join("scene.toml");
-        std::fs::write(&scene, SCENE.replace("CELLS", &format!("{cells:?}"))).expect("a temporary file");
-        let turns: Vec<_> = (0..TURNS).map(|_| [render(&scene, 0, &out), render(&scene, more, &out)]).collect();
-        let of = |value: &dyn Fn(&[Rendered; 2]) -> f64| median(turns.iter().map(value).collect());
+        let duration = format!("{:?}", f64::from(more) / f64::from(RATE));
+        let text = SCENE.replace("CELLS", &format!("{cells:?}")).replace("DURATION", &duration);
+        let text = text.replace("RATE", &RATE.to_string());
+        std::fs::write(&scene, text).expect("a temporary file");
+        let simulated = folder.path().join("states");
+        let made = program("simulate", &scene, &simulated).args(["--states", "--overwrite"]).status();
+        assert!(made.expect("the program starts").success(), "the program cannot simulate here");
+        let states = simulated.join("states.npz");
+        let turn = |_| {
+            let [short, long] = [0, more].map(|more| render(&scene, Some(&states), more, &out));
+            [short, long, render(&scene, None, more, &out)]
+        };
+        let turns: Vec<_> = (0..TURNS).map(turn).collect();
+        let of = |value: &dyn Fn(&[Rendered; 3]) -> f64| median(turns.iter().map(value).collect());
         let each = 1e3 / f64::from(more);
-        let stage = |at: usize| of(&|[short, long]| each * (long.stages[at] - short.stages[at]));
-        // What pictures cost: without the simulation.
-        let drawn = |one: &Rendered| one.stages[1..].iter().sum::<f64>();
-        let cpu = of(&|[short, long]| each * (drawn(long) - drawn(short)));
-        let wall = of(&|[short, long]| each * (long.wall - short.wall));
-        let (first, peak) = (of(&|[short, _]| short.first), of(&|[_, long]| long.peak));
-        let [simulate, compose, draw, encode] = [0, 1, 2, 3].map(stage);
-        println!(
-            "{triangles:9}  {simulate:8.2} {compose:8.2} {draw:8.2} {encode:8.2}  | {cpu:5.1} {wall:9.1} {first:8.3} {peak:9.1}"
-        );
+        let stage = |at: usize| of(&|[short, long, _]| each * (long.stages[at] - short.stages[at]));
+        let all = |one: &Rendered| one.stages.iter().sum::<f64>();
+        let cpu = of(&|[short, long, _]| each * (all(long) - all(short)));
+        let wall = of(&|[short, long, _]| each * (long.wall - short.wall));
+        let (first, peak) = (of(&|[.., whole]| whole.first), of(&|[.., whole]| whole.peak));
+        let [compose, draw, encode] = [0, 1, 2].map(stage);
+        println!("{triangles:9}  {compose:7.2} {draw:8.2} {encode:8.2}  | {cpu:5.1} {wall:9.1} {first:8.3} {peak:9.1}");
         lines.push((triangles, cpu, first, peak));
     }
     let (small, large) = (&lines[0], &lines[1]);

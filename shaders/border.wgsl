@@ -18,6 +18,23 @@ fn area_beyond(off: f32, normal: vec2<f32>) -> f32 {
 
 @fragment
 fn border_colour(segment: Segment) -> @location(0) vec4<f32> {
+    return gained(segment, false);
+}
+
+// Of the turned-over set, which has a depth of its own.
+@fragment
+fn alarm_border_colour(segment: Segment) -> @location(0) vec4<f32> {
+    return gained(segment, true);
+}
+
+fn depth_of(texel: vec2<i32>, of_alarm: bool) -> f32 {
+    if of_alarm {
+        return load_alarm_depth(texel);
+    }
+    return load_depth(texel);
+}
+
+fn gained(segment: Segment, of_alarm: bool) -> vec4<f32> {
     panel = panel_data;
     let start = segment.ends.xy;
     let difference = segment.ends.zw - start;
@@ -40,12 +57,7 @@ fn border_colour(segment: Segment) -> @location(0) vec4<f32> {
     let second = texel_of(segment.place.xy + across);
     let own_texel = texel_of(segment.place.xy);
     let share = saturate(gone / max(extent, 1e-6));
-    let of_alarm = segment.kind == ALARM_EDGE || segment.kind == ALARM_CONTOUR;
-    let depths = select(
-        vec3(load_depth(first), load_depth(second), load_depth(own_texel)),
-        vec3(load_alarm_depth(first), load_alarm_depth(second), load_alarm_depth(own_texel)),
-        of_alarm,
-    );
+    let depths = vec3(depth_of(first, of_alarm), depth_of(second, of_alarm), depth_of(own_texel, of_alarm));
     // Faces meet in a crease on both of its sides, so it is hidden by what is before the nearer one. A contour has the surface
     // on one side: it is hidden if all that is around it is before it.
     let is_crease = segment.kind == EDGE || segment.kind == ALARM_EDGE;

@@ -175,18 +175,18 @@ fn alarm(corner: Corner) -> AlarmColour {
     return AlarmColour(colour * light.diffuse + light.gloss, dot(light.diffuse, LUMINANCE));
 }
 
-// The turned-over set by itself, which is seen through the body.
-@fragment
-fn alarm_behind(corner: Corner) -> @location(0) vec4<f32> {
-    unpack_alarm(corner);
-    let alarm = alarm(corner);
-    return vec4(sqrt(saturate(alarm.lit)), saturate(0.5 * alarm.brightness));
+// The turned-over set, as it is seen through the body, and as a surface of the body.
+struct TurnedOver {
+    @location(0) behind: vec4<f32>,
+    @location(1) surface: vec4<f32>,
 }
 
 @fragment
-fn alarm_surface(corner: Corner) -> @location(0) vec4<f32> {
+fn alarm_surface(corner: Corner) -> TurnedOver {
     unpack_alarm(corner);
-    return vec4(sqrt(saturate(alarm(corner).lit)), 1.0);
+    let alarm = alarm(corner);
+    let colour = sqrt(saturate(alarm.lit));
+    return TurnedOver(vec4(colour, saturate(0.5 * alarm.brightness)), vec4(colour, 1.0));
 }
 
 fn opaque(colour: vec3<f32>) -> vec4<f32> {

@@ -82,20 +82,15 @@ fn alarm_tint(corner: TintedCorner) -> vec4<f32> {
     return vec4(panel.alarm * light.diffuse + light.gloss, 1.0);
 }
 
-// The hatch of the turned-over set by itself, which is seen through the body: how much of a pixel it covers.
+// Behind the body, how much of a pixel its hatch covers.
 @fragment
-fn tinted_behind(corner: TintedCorner) -> @location(0) vec4<f32> {
+fn tinted_alarm(corner: TintedCorner) -> TurnedOver {
     panel.alarm = unpack_tinted(corner);
     let alarm = alarm_tint(corner);
+    let colour = sqrt(saturate(alarm.rgb));
     // Under a clear surface, their own colour is seen, too.
     let alpha = select(1.0, 0.5, panel.opacity < 1.0) * alarm.a;
-    return vec4(sqrt(saturate(alarm.rgb)), alpha);
-}
-
-@fragment
-fn tinted_alarm(corner: TintedCorner) -> @location(0) vec4<f32> {
-    panel.alarm = unpack_tinted(corner);
-    return vec4(sqrt(saturate(alarm_tint(corner).rgb)), 1.0);
+    return TurnedOver(vec4(colour, alpha), vec4(colour, 1.0));
 }
 
 // As for plain surfaces.

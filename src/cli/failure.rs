@@ -66,6 +66,13 @@ impl Failure {
         Self { status, message: None }
     }
 
+    /// Adds what to do to the message.
+    #[cfg(feature = "render")]
+    pub(super) fn advise(mut self, advice: &str) -> Self {
+        self.message = self.message.map(|message| format!("{message}; {advice}"));
+        self
+    }
+
     /// The message, if it is one of wrong usage.
     ///
     /// # Errors

@@ -14,13 +14,14 @@ use super::still::{
 use super::sweep::Sweep;
 use crate::animation::{Format, Sheet, Spool};
 use crate::artist::{Artist, Begun, compose_frame};
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, GpuError};
 use crate::history::History;
 use crate::look::Ghost;
 use crate::output::{
     AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Spent, StoredStates, Summary, Tags, Tap,
     Texts, Timings, folder_of, frame_file_name, is_drawn, read_tags,
 };
+use crate::render::RenderError;
 use crate::scene::Scene;
 use crate::shell;
 use crate::sim::diagnostics::Diagnostic;
@@ -352,7 +353,7 @@ impl Drawing<'_> {
     fn hand_on(&mut self) -> Result<(), Failure> {
         let Some((frame, texts, begun)) = self.begun.take() else { return Ok(()) };
         let clock = Clock::thread();
-        let pixels = self.artist.finish(begun)?;
+        let pixels = self.artist.finish(begun).map_err(|error| stopped(self.keep, error))?;
         self.draw += clock.spent();
         let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
         Ok(self.writer.write(PixelFrame { size, dpi, pixels, frame, texts })?)
@@ -378,6 +379,13 @@ impl Drawing<'_> {
         let pass = |tap: &Tap| tap(frame, &std::fs::read(path).map_err(OutputError::reading(path))?);
         Ok(self.tap.as_ref().map_or(Ok(()), pass)?)
     }
+}
+
+/// Why drawing stopped on the way, where frames are kept or not.
+fn stopped(keep: bool, error: RenderError) -> Failure {
+    let is_lost = matches!(error, RenderError::Gpu(GpuError::Lost(_)));
+    let failure = Failure::from(error);
+    if keep && is_lost { failure.advise("with --resume it keeps the frames that were drawn") } else { failure }
 }
 
 impl Pictures for Drawing<'_> {
@@ -416,7 +424,7 @@ impl Pictures for Drawing<'_> {
         check_type(self.scene.view.print.as_ref(), composed.first(), &source_of(self.scene))?;
         self.hand_on()?;
         let clock = Clock::thread();
-        let begun = self.artist.begin(composed)?;
+        let begun = self.artist.begin(composed).map_err(|error| stopped(self.keep, error))?;
         self.draw += clock.spent();
         self.begun = Some((frame.index, texts, begun));
         Ok(())
@@ -460,5 +468,72 @@ impl Pictures for Drawing<'_> {
         }
         (times.compose, times.draw, times.encode) = (Some(self.compose), Some(self.draw), Some(encode));
         last.and(result.map_err(Failure::from)).and(filmed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::AdapterChoice;
+    use crate::runner::Runner;
+    use crate::scene::Limits;
+
+    /// Frames that were drawn are whole and written, and a second device goes on after them.
+    #[test]
+    fn a_lost_device_loses_no_frame_that_was_drawn() {
+        const DRAWN: usize = 3;
+        let Ok(gpu) = Gpu::new(&AdapterChoice::Auto) else {
+            return eprintln!("SKIPPED: no graphics adapter");
+        };
+        let text = include_str!("../../scenes/fig4b.toml").replace("size = ", "# ");
+        let mut scene = Scene::parse(&text, "test.toml", &Limits::default()).expect("a scene");
+        scene.view.size = [480, 320];
+        let runs: Vec<_> = (0..scene.runs.len()).collect();
+        let mut runner = Runner::new(&scene, &runs);
+        let frames: Vec<_> = (0..6).map(|index| runner.frame(index)).collect();
+        let asked: Vec<_> = (0..6).collect();
+        let studio = |gpu: &Gpu, resume: bool| Device {
+            gpu: gpu.clone(),
+            writers: 2,
+            keep: true,
+            resume,
+            shared: None,
+            made: Mutex::default(),
+        };
+        let summary = || Summary::new(&scene, &runs, asked.len(), &[]);
+        let folders = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
+        let [broken, sound] = [&folders[0], &folders[1]].map(tempfile::TempDir::path);
+
+        let device = studio(&gpu, false);
+        let mut pictures = device.begin(&scene, broken, &asked).expect("a device");
+        frames[..=DRAWN].iter().for_each(|frame| pictures.draw(frame).expect("a device"));
+        // The last one is still being drawn.
+        gpu.device().destroy();
+        let failure = pictures.draw(&frames[DRAWN + 1]).expect_err("no device");
+        let mut told = summary();
+        pictures.finish(&mut told, &mut Timings::default()).expect("files");
+        assert_eq!(told.frames.written, Some(DRAWN));
+        assert_eq!(failure.report(), Status::Adapter);
+
+        let gpu = Gpu::new(&AdapterChoice::Auto).expect("as before");
+        for (folder, resume, drawn) in [(sound, false, asked.len()), (broken, true, asked.len() - DRAWN)] {
+            let device = studio(&gpu, resume);
+            let mut pictures = device.begin(&scene, folder, &asked).expect("a device");
+            frames.iter().for_each(|frame| pictures.draw(frame).expect("a device"));
+            let mut told = summary();
+            pictures.finish(&mut told, &mut Timings::default()).expect("files");
+            assert_eq!(told.frames.written, Some(drawn));
+        }
+        let names = |folder: &Path| {
+            let entries = std::fs::read_dir(folder).expect("a folder");
+            let mut names: Vec<_> = entries.map(|entry| entry.expect("a file").file_name()).collect();
+            names.sort();
+            names
+        };
+        assert_eq!((names(broken), names(sound).len()), (names(sound), asked.len()), "whole frames only");
+        for name in names(sound) {
+            let bytes = |folder: &Path| std::fs::read(folder.join(&name)).expect("a frame");
+            assert!(bytes(broken) == bytes(sound), "{}", name.display());
+        }
     }
 }

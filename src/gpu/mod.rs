@@ -4,9 +4,11 @@ mod buffer;
 mod noise;
 mod processor;
 mod read_back;
+mod work;
 
 pub(crate) use buffer::GrowingBuffer;
 pub(crate) use read_back::{Pending, ReadBack};
+pub(crate) use work::Work;
 
 use std::fmt;
 use std::sync::{Arc, Mutex};
@@ -140,7 +142,7 @@ pub enum GpuError {
     #[error("the graphics device is out of memory; a smaller picture needs less")]
     OutOfMemory,
     /// The device is gone, for instance after a reset of the driver.
-    #[error("the graphics device was lost: {0}")]
+    #[error("the graphics device was lost ({0}), as when its driver is reset; run the command again")]
     Lost(String),
     /// The device refused a command, which is a mistake in this program.
     #[error("the graphics device refused a command: {0}")]
@@ -154,6 +156,7 @@ pub struct Gpu {
     queue: wgpu::Queue,
     description: AdapterDescription,
     trouble: Arc<Mutex<Option<GpuError>>>,
+    work: Arc<Mutex<Vec<Work>>>,
 }
 
 impl Gpu {
@@ -189,12 +192,8 @@ impl Gpu {
         let keep = Arc::clone(&trouble);
         device.on_uncaptured_error(Arc::new(move |error| note(&keep, translate(error))));
         let keep = Arc::clone(&trouble);
-        device.set_device_lost_callback(move |reason, message| {
-            if reason != wgpu::DeviceLostReason::Destroyed {
-                note(&keep, GpuError::Lost(message));
-            }
-        });
-        Ok(Self { device, queue, description, trouble })
+        device.set_device_lost_callback(move |_, message| note(&keep, lost(&message)));
+        Ok(Self { device, queue, description, trouble, work: Arc::default() })
     }
 
     /// The device, for those who draw with it.
@@ -230,6 +229,13 @@ impl Gpu {
             _ => trouble.take().map_or(Ok(()), Err),
         }
     }
+}
+
+/// A loss, in one line.
+fn lost(message: &str) -> GpuError {
+    let words: Vec<_> = message.split_whitespace().collect();
+    let words = words.join(" ");
+    GpuError::Lost(if words.is_empty() { "its driver gives no reason".to_owned() } else { words })
 }
 
 fn note(trouble: &Mutex<Option<GpuError>>, error: GpuError) {

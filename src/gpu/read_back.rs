@@ -1,6 +1,6 @@
 //! Reading back pixels from a texture on the device to memory.
 
-use super::{Gpu, GpuError};
+use super::{Gpu, GpuError, Work, lost};
 use std::sync::mpsc;
 
 /// Bytes per pixel of the textures that are read back.
@@ -67,6 +67,7 @@ impl ReadBack {
             },
             wgpu::Extent3d { width: self.width, height: self.height, depth_or_array_layers: 1 },
         );
+        gpu.note(Work::Picture);
         let (sender, mapped) = mpsc::channel();
         commands.map_buffer_on_submit(&self.buffer, wgpu::MapMode::Read, .., move |result| {
             // The receiver is gone when a frame was abandoned.
@@ -83,14 +84,10 @@ impl ReadBack {
         let wait = wgpu::PollType::Wait { submission_index: Some(pending.submission), timeout: None };
         let waited = gpu.device().poll(wait);
         gpu.check()?;
-        waited.map_err(|error| GpuError::Lost(error.to_string()))?;
-        match pending.mapped.recv() {
-            Ok(Ok(())) => {}
-            Ok(Err(error)) => return Err(GpuError::Lost(error.to_string())),
-            Err(error) => return Err(GpuError::Lost(error.to_string())),
-        }
+        waited.map_err(|error| lost(&error.to_string()))?;
+        pending.mapped.recv().map_err(|error| lost(&error.to_string()))?.map_err(|error| lost(&error.to_string()))?;
         let colours = {
-            let rows = self.buffer.get_mapped_range(..).map_err(|error| GpuError::Lost(error.to_string()))?;
+            let rows = self.buffer.get_mapped_range(..).map_err(|error| lost(&error.to_string()))?;
             without_padding(&rows, self.width, self.height)
         };
         self.buffer.unmap();

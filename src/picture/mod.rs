@@ -319,6 +319,13 @@ pub(crate) enum LineKind {
     ObstacleContour = 9,
 }
 
+impl LineKind {
+    /// Whether it is of turned-over elements.
+    pub(crate) fn is_alarm(self) -> bool {
+        matches!(self, Self::AlarmEdge | Self::AlarmContour)
+    }
+}
+
 /// A straight line in space with colours of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stroke {

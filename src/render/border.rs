@@ -1,11 +1,14 @@
 //! Smooth borders of surfaces: pixels that a line crosses at which colours change.
 
 use super::panel::Panels;
-use super::pipeline::{BORDER_FORMAT, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry};
+use super::pass::Pass;
+use super::pipeline::{
+    BORDER_FORMAT, Pipeline, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry,
+};
 use super::segment::{self, ATTRIBUTES, Segment};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{Picture, Rectangle};
+use crate::picture::{Line, Picture, Rectangle};
 use std::ops::Range;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/border.wgsl");
@@ -16,30 +19,43 @@ pub(super) fn parts() -> [&'static str; 7] {
     [panel, segment, super::TAPS_SHADER, super::BODIES_SHADER, super::TURNED_OVER_SHADER, line, SHADER]
 }
 
-/// The pipeline, and the borders of one picture.
+/// The pipelines, and the borders of one picture.
 #[derive(Debug)]
 pub(super) struct Borders {
-    pipeline: wgpu::RenderPipeline,
+    module: wgpu::ShaderModule,
+    /// For turned-over sets and for the others, made when they are first needed. A software driver would read the depths of
+    /// both for each of them.
+    pipelines: [Option<Pipeline>; 2],
     layout: wgpu::BindGroupLayout,
     textures: Option<wgpu::BindGroup>,
     segments: GrowingBuffer<Segment>,
-    ranges: Vec<Range<u32>>,
+    /// The borders of each panel, in runs that share a pipeline.
+    runs: Vec<Vec<(usize, Range<u32>)>>,
 }
 
 impl Borders {
-    pub(super) fn new(gpu: &Gpu, panels: &Panels) -> Self {
-        let module = shader(gpu, "border", &parts());
+    pub(super) fn new(gpu: &Gpu) -> Self {
         let entries = [texture_entry(0, false), texture_entry(1, true), texture_entry(2, true)];
         let layout = group_layout(gpu, "bodies", &entries);
-        let sum = wgpu::BlendComponent { dst_factor: wgpu::BlendFactor::One, ..wgpu::BlendComponent::REPLACE };
-        let recipe = Recipe {
-            groups: &[&panels.layout, &layout],
-            vertices: &[Some(for_instances::<Segment>(&ATTRIBUTES))],
-            blend: Some(wgpu::BlendState { color: sum, alpha: sum }),
-            ..Recipe::rectangles("border", &module, ["segment", "border_colour"], BORDER_FORMAT)
-        };
         let segments = GrowingBuffer::new(gpu, "borders", wgpu::BufferUsages::VERTEX, 1024);
-        Self { pipeline: recipe.build(gpu), layout, textures: None, segments, ranges: Vec::new() }
+        let module = shader(gpu, "border", &parts());
+        Self { module, pipelines: [None, None], layout, textures: None, segments, runs: Vec::new() }
+    }
+
+    /// Makes a pipeline.
+    fn prepare(&mut self, gpu: &Gpu, panels: &Panels, at: usize) {
+        let sum = wgpu::BlendComponent { dst_factor: wgpu::BlendFactor::One, ..wgpu::BlendComponent::REPLACE };
+        let entry = ["border_colour", "alarm_border_colour"][at];
+        let build = || {
+            let recipe = Recipe {
+                groups: &[&panels.layout, &self.layout],
+                vertices: &[Some(for_instances::<Segment>(&ATTRIBUTES))],
+                blend: Some(wgpu::BlendState { color: sum, alpha: sum }),
+                ..Recipe::rectangles(entry, &self.module, ["segment", entry], BORDER_FORMAT)
+            };
+            recipe.build(gpu)
+        };
+        self.pipelines[at].get_or_insert_with(build);
     }
 
     /// Binds new textures.
@@ -49,24 +65,36 @@ impl Borders {
     }
 
     /// Uploads the borders of a picture.
-    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
+    pub(super) fn write(&mut self, gpu: &Gpu, panels: &Panels, picture: &Picture) {
         let mut segments = Vec::new();
-        self.ranges.clear();
+        self.runs.clear();
         for panel in &picture.panels {
-            let start = segments.len() as u32;
-            segments.extend(panel.borders.iter().filter_map(segment::projected(panel)));
-            self.ranges.push(start..segments.len() as u32);
+            let projected = segment::projected(panel);
+            let mut run = |borders: &[Line]| {
+                let start = segments.len() as u32;
+                segments.extend(borders.iter().filter_map(&projected));
+                (usize::from(borders[0].kind.is_alarm()), start..segments.len() as u32)
+            };
+            let of_one = panel.borders.chunk_by(|one, other| one.kind.is_alarm() == other.kind.is_alarm());
+            self.runs.push(of_one.map(&mut run).filter(|(_, lines)| !lines.is_empty()).collect());
         }
-        self.segments.write(gpu, &segments);
+        for at in 0..self.pipelines.len() {
+            if self.runs.iter().flatten().any(|(pipeline, _)| *pipeline == at) {
+                self.prepare(gpu, panels, at);
+            }
+        }
+        self.segments.write(gpu, segments);
     }
 
     /// Draws the borders of all panels.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle]) {
-        pass.set_pipeline(&self.pipeline);
+    pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
         pass.set_bind_group(1, self.textures.as_ref(), &[]);
         pass.set_vertex_buffer(0, self.segments.buffer().slice(..));
         panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
-            pass.draw(0..4, self.ranges[panel].clone());
+            for (pipeline, lines) in &self.runs[panel] {
+                pass.set_pipeline(self.pipelines[*pipeline].as_ref().expect("prepared"));
+                pass.draw(0..4, lines.clone());
+            }
         });
     }
 }

@@ -1,7 +1,8 @@
 //! Blending bodies and their lines over the ground.
 
 use super::panel::Panels;
-use super::pipeline::{PICTURE_FORMAT, Recipe, bind_textures, group_layout, shader, texture_entry};
+use super::pass::Pass;
+use super::pipeline::{PICTURE_FORMAT, Pipeline, Recipe, bind_textures, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::Gpu;
 use crate::picture::Picture;
@@ -11,7 +12,7 @@ pub(super) const SHADER: &str = include_str!("../../shaders/composite.wgsl");
 /// The pipeline that blends them.
 #[derive(Debug)]
 pub(super) struct Composite {
-    pipeline: wgpu::RenderPipeline,
+    pipeline: Pipeline,
     layout: wgpu::BindGroupLayout,
     textures: Option<wgpu::BindGroup>,
 }
@@ -35,7 +36,7 @@ impl Composite {
     }
 
     /// Draws the bodies of all panels into the picture.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture) {
+    pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, picture: &Picture) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, self.textures.as_ref(), &[]);
         panels.draw_regions(pass, picture.panels.iter().map(|panel| panel.region), |pass, _| pass.draw(0..4, 0..1));

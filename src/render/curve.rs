@@ -1,7 +1,8 @@
 //! Flat curves over the finished picture.
 
 use super::overlay::CanvasUniform;
-use super::pipeline::{ENCODED_FORMAT, Recipe, bind, for_instances, group_layout, shader, uniform_entry};
+use super::pass::Pass;
+use super::pipeline::{ENCODED_FORMAT, Pipeline, Recipe, bind, for_instances, group_layout, shader, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Curve, Picture};
 use bytemuck::{Pod, Zeroable};
@@ -30,7 +31,7 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
 /// The pipeline, and the curves of one picture. Made for the first picture that has any.
 #[derive(Debug)]
 pub(super) struct Curves {
-    pipeline: wgpu::RenderPipeline,
+    pipeline: Pipeline,
     canvas: wgpu::BindGroup,
     pieces: GrowingBuffer<Piece>,
 }
@@ -46,7 +47,7 @@ impl Curves {
             ..Recipe::rectangles("curve", &module, ["piece", "piece_colour"], ENCODED_FORMAT)
         };
         let mut canvas = GrowingBuffer::new(gpu, "canvas of curves", wgpu::BufferUsages::UNIFORM, 1);
-        canvas.write(gpu, &[CanvasUniform { size: size.map(|length| length as f32), unused: [0.0; 2] }]);
+        canvas.write(gpu, vec![CanvasUniform { size: size.map(|length| length as f32), unused: [0.0; 2] }]);
         let canvas = bind(gpu, "curve", &layout, &[(0, canvas.buffer().as_entire_binding())]);
         Self {
             pipeline: recipe.build(gpu),
@@ -57,12 +58,11 @@ impl Curves {
 
     /// Uploads the curves of a picture.
     pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
-        let pieces: Vec<_> = picture.curves.iter().flat_map(pieces).collect();
-        self.pieces.write(gpu, &pieces);
+        self.pieces.write(gpu, picture.curves.iter().flat_map(pieces).collect());
     }
 
     /// Draws the curves, one over the other.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+    pub(super) fn draw(&self, pass: &mut Pass<'_>) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.canvas, &[]);
         pass.set_vertex_buffer(0, self.pieces.buffer().slice(..));

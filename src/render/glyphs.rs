@@ -1,7 +1,7 @@
 //! The glyph atlas: each glyph in use is rasterised once and kept in one texture.
 
 use super::pipeline::written_texture;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Work};
 use crate::picture::{Face, Fonts, Glyph, TextRun};
 use std::collections::HashMap;
 
@@ -41,7 +41,8 @@ pub(super) struct Glyphs {
     /// Left end and top of the row that is being filled, and its height.
     pen: [u32; 3],
     texture: wgpu::Texture,
-    changed: bool,
+    /// The first row of the texture that is new.
+    changed: Option<u32>,
 }
 
 impl Glyphs {
@@ -52,7 +53,7 @@ impl Glyphs {
             height: 0,
             pen: [0; 3],
             texture: create(gpu, 1),
-            changed: false,
+            changed: None,
         }
     }
 
@@ -88,7 +89,7 @@ impl Glyphs {
             let index = (at[1] + y) as usize * WIDTH as usize + (at[0] + x) as usize;
             self.coverage[index] = (covered.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
         });
-        self.changed = true;
+        self.changed = Some(self.changed.map_or(at[1], |row| row.min(at[1])));
         Some(Raster { at, size: [width, height], offset: [bounds.min.x, bounds.min.y] })
     }
 
@@ -105,18 +106,21 @@ impl Glyphs {
 
     /// Uploads new glyphs. Returns whether the texture was replaced.
     pub(super) fn upload(&mut self, gpu: &Gpu) -> bool {
-        if !self.changed {
-            return false;
-        }
-        self.changed = false;
+        let Some(changed) = self.changed.take() else { return false };
         let replaced = self.texture.height() < self.height;
         if replaced {
             self.texture = create(gpu, self.height.next_power_of_two().min(gpu.longest_side()));
         }
-        let height = self.height.min(self.texture.height());
+        let top = if replaced { 0 } else { changed };
+        let height = self.height.min(self.texture.height()).saturating_sub(top);
+        let new = &self.coverage[(WIDTH * top) as usize..][..(WIDTH * height) as usize];
+        gpu.note(Work::Upload("glyphs", new.len()));
         gpu.queue().write_texture(
-            self.texture.as_image_copy(),
-            &self.coverage[..(WIDTH * height) as usize],
+            wgpu::TexelCopyTextureInfo {
+                origin: wgpu::Origin3d { x: 0, y: top, z: 0 },
+                ..self.texture.as_image_copy()
+            },
+            new,
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(WIDTH), rows_per_image: None },
             wgpu::Extent3d { width: WIDTH, height, depth_or_array_layers: 1 },
         );

@@ -1,8 +1,11 @@
 //! The floor with its grid and the soft shadows on it.
 
 use super::panel::{Panels, is_visible, limit, linear};
-use super::pipeline::{PICTURE_FORMAT, Recipe, bind, element, group_layout, shader, uniform_entry, written_texture};
-use crate::gpu::{Gpu, GrowingBuffer};
+use super::pass::Pass;
+use super::pipeline::{
+    PICTURE_FORMAT, Pipeline, Recipe, bind, element, group_layout, shader, uniform_entry, written_texture,
+};
+use crate::gpu::{Gpu, GrowingBuffer, Work};
 use crate::picture::{CELLS, Floor, Panel, Picture, Rectangle, Shade};
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec2, Vec2, Vec4};
@@ -35,10 +38,12 @@ const MOST_PANELS: usize = 128;
 #[derive(Debug)]
 pub(super) struct Grounds {
     /// Without shadows and with them.
-    pipelines: [wgpu::RenderPipeline; 2],
+    pipelines: [Pipeline; 2],
     layout: wgpu::BindGroupLayout,
     uniforms: GrowingBuffer<u8>,
     shades: wgpu::Texture,
+    /// The cells of each layer of them.
+    cells: Vec<Vec<u8>>,
     bind_group: Option<wgpu::BindGroup>,
 }
 
@@ -62,7 +67,7 @@ impl Grounds {
             let recipe = Recipe {
                 groups: &[&panels.layout, &layout],
                 blend: None,
-                ..Recipe::rectangles("ground", &module, ["corner", fragment], PICTURE_FORMAT)
+                ..Recipe::rectangles(fragment, &module, ["corner", fragment], PICTURE_FORMAT)
             };
             recipe.build(gpu)
         };
@@ -71,6 +76,7 @@ impl Grounds {
             layout,
             uniforms: GrowingBuffer::new(gpu, "grounds", wgpu::BufferUsages::UNIFORM, 4 * STRIDE),
             shades: create_shades(gpu, 2),
+            cells: vec![Vec::new(); 2],
             bind_group: None,
         }
     }
@@ -81,25 +87,31 @@ impl Grounds {
         let layers = (2 * picture.panels.len().clamp(1, MOST_PANELS)) as u32;
         if self.shades.depth_or_array_layers() < layers {
             self.shades = create_shades(gpu, layers);
+            self.cells = vec![Vec::new(); layers as usize];
             self.bind_group = None;
         }
         for (at, panel) in picture.panels.iter().enumerate() {
             let Some(floor) = &panel.floor else { continue };
             for (half, shade) in floor.shades.iter().enumerate() {
                 if has_layer(at) && !shade.cells.is_empty() {
-                    self.write_shade(gpu, (2 * at + half) as u32, shade);
+                    self.write_shade(gpu, 2 * at + half, shade);
                 }
             }
             let uniform = uniform(picture, panel, floor, at);
             bytes[at * STRIDE..at * STRIDE + size_of::<GroundUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
         }
-        if self.uniforms.write(gpu, &bytes) || self.bind_group.is_none() {
+        if self.uniforms.write(gpu, bytes) || self.bind_group.is_none() {
             self.bind_group = Some(self.bind(gpu));
         }
     }
 
-    fn write_shade(&self, gpu: &Gpu, layer: u32, shade: &Shade) {
-        let origin = wgpu::Origin3d { x: 0, y: 0, z: layer };
+    fn write_shade(&mut self, gpu: &Gpu, layer: usize, shade: &Shade) {
+        if self.cells[layer] == shade.cells {
+            return;
+        }
+        self.cells[layer].clone_from(&shade.cells);
+        let origin = wgpu::Origin3d { x: 0, y: 0, z: layer as u32 };
+        gpu.note(Work::Upload("shades", 4 * (CORNERS * CORNERS) as usize));
         gpu.queue().write_texture(
             wgpu::TexelCopyTextureInfo { origin, ..self.shades.as_image_copy() },
             corners_of(&shade.cells).as_flattened(),
@@ -119,7 +131,7 @@ impl Grounds {
     }
 
     /// Draws the floors of all panels that have one.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture) {
+    pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, picture: &Picture) {
         for (at, panel) in picture.panels.iter().enumerate() {
             let Some(floor) = &panel.floor else { continue };
             limit(pass, panel.viewport);

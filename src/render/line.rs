@@ -2,17 +2,20 @@
 
 use super::RenderError;
 use super::panel::Panels;
-use super::pipeline::{LINE_FORMAT, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry};
+use super::pass::Pass;
+use super::pipeline::{
+    LINE_FORMAT, Pipeline, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry,
+};
 use super::segment::{ATTRIBUTES, Kind, Segment, parts, projected};
 use super::target::Bodies;
 use super::visibility::{Visibility, most_lines, most_samples};
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{LineKind, Panel, Picture, Rectangle};
+use crate::picture::{Panel, Picture, Rectangle};
 use std::ops::Range;
 
 /// Whether there are lines of turned-over elements.
 pub(super) fn has_alarm(panel: &Panel) -> bool {
-    panel.lines.iter().any(|line| matches!(line.kind, LineKind::AlarmEdge | LineKind::AlarmContour))
+    panel.lines.iter().any(|line| line.kind.is_alarm())
 }
 
 /// The pipelines of the lines, and the lines of one picture.
@@ -20,7 +23,7 @@ pub(super) fn has_alarm(panel: &Panel) -> bool {
 pub(super) struct Lines {
     module: wgpu::ShaderModule,
     /// For each kind, made when it is first needed.
-    pipelines: [Option<wgpu::RenderPipeline>; Kind::ALL.len()],
+    pipelines: [Option<Pipeline>; Kind::ALL.len()],
     layout: wgpu::BindGroupLayout,
     found: Option<wgpu::BindGroup>,
     visibility: Visibility,
@@ -60,8 +63,8 @@ impl Lines {
         if segments.len() > most {
             return Err(RenderError::Lines { count: segments.len(), most });
         }
-        let is_new = self.segments.write(gpu, &segments);
-        let lines = (&segments[..], self.segments.buffer(), is_new);
+        let is_new = self.segments.write(gpu, segments);
+        let lines = (self.segments.contents(), self.segments.buffer(), is_new);
         if self.visibility.write(gpu, panels, bodies, lines, &self.ranges, among) || self.found.is_none() {
             self.found = Some(bind_textures(gpu, "visibility", &self.layout, &[(4, &self.visibility.found())]));
         }
@@ -113,7 +116,7 @@ impl Lines {
                 groups: &[&panels.layout, &self.layout],
                 vertices: &[Some(for_instances::<Segment>(&ATTRIBUTES))],
                 blend: Some(wgpu::BlendState { color: largest, alpha: largest }),
-                ..Recipe::rectangles("lines", &self.module, ["segment", kind.entry()], LINE_FORMAT)
+                ..Recipe::rectangles(kind.entry(), &self.module, ["segment", kind.entry()], LINE_FORMAT)
             };
             recipe.build(gpu)
         };
@@ -126,12 +129,19 @@ impl Lines {
     }
 
     /// Tests the visibility of all lines, among solid obstacles if there are any. The bodies must have been drawn.
-    pub(super) fn test(&self, commands: &mut wgpu::CommandEncoder, panels: &Panels, places: &[Rectangle], among: bool) {
-        self.visibility.find(commands, panels, places, among);
+    pub(super) fn test(
+        &self,
+        gpu: &Gpu,
+        commands: &mut wgpu::CommandEncoder,
+        panels: &Panels,
+        places: &[Rectangle],
+        among: bool,
+    ) {
+        self.visibility.find(gpu, commands, panels, places, among);
     }
 
     /// Draws the lines of all panels, whose visibility was tested.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle]) {
+    pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
         pass.set_bind_group(1, self.found.as_ref(), &[]);
         pass.set_vertex_buffer(0, self.segments.buffer().slice(..));
         for (at, pipeline) in self.pipelines.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! From a [`Picture`] to an image: the passes, in order.
 //!
-//! 1. `surface`: turned-over elements by themselves, so that they can be seen through the body.
-//! 2. `surface`: all surfaces, in textures no larger than the bodies; among them solid obstacles (`obstacle`).
+//! 1. `surface`: turned-over elements, by themselves, so that they can be seen through the body, and in the bodies.
+//! 2. `surface`: the others over them, in textures no larger than the bodies; among them solid obstacles (`obstacle`).
 //! 3. `border`: smooth borders where their colours change at a line.
 //! 4. `visibility`, then `line`: edges and contours as opacities, with smooth borders of their own.
 //! 5. `ground`: the floor, its grid and its shadows, into the picture.
@@ -27,6 +27,7 @@ mod line;
 mod obstacle;
 mod overlay;
 mod panel;
+mod pass;
 mod pipeline;
 mod segment;
 #[cfg(test)]
@@ -42,6 +43,7 @@ use crate::picture::Picture;
 use image::{RgbImage, RgbaImage};
 use obstacle::{Slabs, Solids};
 use panel::Panels;
+use pass::Pass;
 use target::{Bodies, Canvas};
 
 const PANEL_SHADER: &str = include_str!("../../shaders/panel.wgsl");
@@ -129,7 +131,7 @@ impl Renderer {
             size,
             surfaces: surface::Surfaces::new(gpu),
             lines: line::Lines::new(gpu),
-            borders: border::Borders::new(gpu, &panels),
+            borders: border::Borders::new(gpu),
             solids: None,
             slabs: None,
             grounds: ground::Grounds::new(gpu, &panels),
@@ -216,7 +218,7 @@ impl Renderer {
         };
         self.panels.write(&gpu, picture, &places);
         self.surfaces.write(&gpu, picture);
-        self.borders.write(&gpu, picture);
+        self.borders.write(&gpu, &self.panels, picture);
         self.grounds.write(&gpu, picture);
         self.overlay.write(&gpu, picture);
         if !picture.curves.is_empty() {
@@ -264,27 +266,38 @@ impl Renderer {
         let strokes = self.strokes.as_ref().filter(|_| stroke::Strokes::are_in(picture));
 
         let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let (mut load, mut deep) = (CLEAR, FAR);
         if has_behind {
-            let mut pass = begin(&mut commands, "turned over", &bodies.alarm_colour, CLEAR, Some(&bodies.alarm_depth));
-            self.surfaces.draw_behind(&mut pass, &self.panels, &places, colourings);
+            // Drawn once for both: the other surfaces are drawn over it.
+            let targets = [(&bodies.alarm_colour, CLEAR), (&bodies.colour, CLEAR)];
+            let depth = Some((&bodies.alarm_depth, FAR));
+            let mut pass = Pass::begin(&gpu, &mut commands, "turned over", &targets, depth);
+            self.surfaces.draw_turned_over(&mut pass, &self.panels, &places, colourings);
+            drop(pass);
+            bodies.copy_depth(&mut commands);
+            (load, deep) = (wgpu::LoadOp::Load, wgpu::LoadOp::Load);
             if let Some(solids) = solids.filter(|_| with_clear) {
+                let targets = [(&bodies.alarm_colour, wgpu::LoadOp::Load)];
+                let depth = Some((&bodies.alarm_depth, wgpu::LoadOp::Load));
+                let mut pass = Pass::begin(&gpu, &mut commands, "obstacles behind", &targets, depth);
                 solids.draw_behind(&mut pass, &self.panels, &places);
             }
         }
         {
-            let mut pass = begin(&mut commands, "bodies", &bodies.colour, CLEAR, Some(&bodies.depth));
-            self.surfaces.draw_all(&mut pass, &self.panels, &places, colourings);
+            let depth = Some((&bodies.depth, deep));
+            let mut pass = Pass::begin(&gpu, &mut commands, "bodies", &[(&bodies.colour, load)], depth);
+            self.surfaces.draw_sound(&mut pass, &self.panels, &places, colourings);
             if let Some(solids) = solids {
                 solids.draw(&mut pass, &self.panels, &places);
             }
         }
         {
-            let mut pass = begin(&mut commands, "borders", &bodies.borders, CLEAR, None);
+            let mut pass = Pass::begin(&gpu, &mut commands, "borders", &[(&bodies.borders, CLEAR)], None);
             self.borders.draw(&mut pass, &self.panels, &places);
         }
-        self.lines.test(&mut commands, &self.panels, &places, with_solids);
+        self.lines.test(&gpu, &mut commands, &self.panels, &places, with_solids);
         {
-            let mut pass = begin(&mut commands, "lines", &bodies.lines, CLEAR, None);
+            let mut pass = Pass::begin(&gpu, &mut commands, "lines", &[(&bodies.lines, CLEAR)], None);
             self.lines.draw(&mut pass, &self.panels, &places);
         }
         let [r, g, b] = panel::linear(picture.palette.background).to_array().map(f64::from);
@@ -292,12 +305,12 @@ impl Renderer {
         if !picture.under.is_empty() {
             let [r, g, b] = picture.palette.background.map(|byte| f64::from(byte) / 255.0);
             let encoded = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });
-            let mut pass = begin(&mut commands, "under", &self.canvas.encoded, encoded, None);
+            let mut pass = Pass::begin(&gpu, &mut commands, "under", &[(&self.canvas.encoded, encoded)], None);
             self.overlay.draw_under(&mut pass);
             background = wgpu::LoadOp::Load;
         }
         {
-            let mut pass = begin(&mut commands, "picture", &self.canvas.linear, background, None);
+            let mut pass = Pass::begin(&gpu, &mut commands, "picture", &[(&self.canvas.linear, background)], None);
             self.grounds.draw(&mut pass, &self.panels, picture);
             if let Some(slabs) = slabs {
                 slabs.draw(&mut pass, &self.panels, picture, false);
@@ -311,7 +324,8 @@ impl Renderer {
             }
         }
         {
-            let mut pass = begin(&mut commands, "overlay", &self.canvas.encoded, wgpu::LoadOp::Load, None);
+            let mut pass =
+                Pass::begin(&gpu, &mut commands, "overlay", &[(&self.canvas.encoded, wgpu::LoadOp::Load)], None);
             self.overlay.draw_marks(&mut pass);
             if let Some(curves) = curves {
                 curves.draw(&mut pass);
@@ -325,27 +339,4 @@ impl Renderer {
 
 /// Empty: transparent, and infinitely far away.
 const CLEAR: wgpu::LoadOp<wgpu::Color> = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
-
-fn begin<'a>(
-    commands: &'a mut wgpu::CommandEncoder,
-    label: &str,
-    view: &wgpu::TextureView,
-    load: wgpu::LoadOp<wgpu::Color>,
-    depth: Option<&wgpu::TextureView>,
-) -> wgpu::RenderPass<'a> {
-    commands.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some(label),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-        })],
-        depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
-            view,
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
-            stencil_ops: None,
-        }),
-        ..Default::default()
-    })
-}
+const FAR: wgpu::LoadOp<f32> = wgpu::LoadOp::Clear(0.0);

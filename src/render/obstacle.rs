@@ -2,8 +2,9 @@
 //! they are first needed.
 
 use super::panel::{Panels, is_visible, limit, linear};
+use super::pass::Pass;
 use super::pipeline::{
-    PICTURE_FORMAT, Recipe, bind_textures, for_instances, for_vertices, group_layout, shader, texture_entry,
+    PICTURE_FORMAT, Pipeline, Recipe, bind_textures, for_instances, for_vertices, group_layout, shader, texture_entry,
 };
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
@@ -77,9 +78,9 @@ const EDGE: [wgpu::VertexAttribute; 5] =
 /// The solid obstacles of one picture.
 #[derive(Debug)]
 pub(super) struct Solids {
-    pipeline: wgpu::RenderPipeline,
+    pipeline: Pipeline,
     /// For those that are seen through clear surfaces, as soon as there are any.
-    behind: Option<wgpu::RenderPipeline>,
+    behind: Option<Pipeline>,
     vertices: GrowingBuffer<SolidVertex>,
     indices: GrowingBuffer<u32>,
     ranges: Vec<Range<u32>>,
@@ -101,13 +102,13 @@ impl Solids {
         }
     }
 
-    fn pipeline(gpu: &Gpu, panels: &Panels, fragment: &'static str) -> wgpu::RenderPipeline {
+    fn pipeline(gpu: &Gpu, panels: &Panels, fragment: &'static str) -> Pipeline {
         // The light is that on bodies.
         let module = shader(gpu, "obstacle", &[&super::surface::parts(0)[..], &[SHADER]].concat());
         let recipe = Recipe {
             groups: &[&panels.layout],
             vertices: &[Some(for_vertices::<SolidVertex>(&SOLID))],
-            ..Recipe::bodies("obstacle", &module, ["solid_corner", fragment])
+            ..Recipe::bodies(fragment, &module, ["solid_corner", fragment])
         };
         recipe.build(gpu)
     }
@@ -136,34 +137,28 @@ impl Solids {
             }
             self.ranges.push(start..indices.len() as u32);
         }
-        self.vertices.write(gpu, &vertices);
-        self.indices.write(gpu, &indices);
+        self.vertices.write(gpu, vertices);
+        self.indices.write(gpu, indices);
     }
 
     /// Draws the solids of all panels, in the pass and after the bodies.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle]) {
+    pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
         self.draw_with(&self.pipeline, pass, panels, places);
     }
 
     /// Draws the solids of all panels among the turned-over elements, if that was prepared.
-    pub(super) fn draw_behind(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, places: &[Rectangle]) {
+    pub(super) fn draw_behind(&self, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
         if let Some(pipeline) = &self.behind {
             self.draw_with(pipeline, pass, panels, places);
         }
     }
 
-    fn draw_with(
-        &self,
-        pipeline: &wgpu::RenderPipeline,
-        pass: &mut wgpu::RenderPass<'_>,
-        panels: &Panels,
-        places: &[Rectangle],
-    ) {
+    fn draw_with(&self, pipeline: &Pipeline, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
         pass.set_pipeline(pipeline);
         pass.set_vertex_buffer(0, self.vertices.buffer().slice(..));
         pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
         panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
-            pass.draw_indexed(self.ranges[panel].clone(), 0, 0..1);
+            pass.draw_indexed(self.ranges[panel].clone());
         });
     }
 }
@@ -172,8 +167,8 @@ impl Solids {
 #[derive(Debug)]
 pub(super) struct Slabs {
     /// Below and above the bodies.
-    panes: [wgpu::RenderPipeline; 2],
-    edges: [wgpu::RenderPipeline; 2],
+    panes: [Pipeline; 2],
+    edges: [Pipeline; 2],
     layout: wgpu::BindGroupLayout,
     textures: Option<wgpu::BindGroup>,
     corners: GrowingBuffer<PaneVertex>,
@@ -192,12 +187,12 @@ impl Slabs {
         let module = shader(gpu, "pane", &pane_parts());
         let entries = [texture_entry(1, true), texture_entry(2, false)];
         let group = group_layout(gpu, "pane", &entries);
-        let build = |entries, vertices, topology| {
+        let build = |entries: [&'static str; 2], vertices, topology| {
             let recipe = Recipe {
                 groups: &[&panels.layout, &group],
                 vertices: &[Some(vertices)],
                 topology,
-                ..Recipe::rectangles("pane", &module, entries, PICTURE_FORMAT)
+                ..Recipe::rectangles(entries[1], &module, entries, PICTURE_FORMAT)
             };
             recipe.build(gpu)
         };
@@ -249,12 +244,12 @@ impl Slabs {
             }
             self.ranges.push(ranges);
         }
-        self.corners.write(gpu, &corners);
-        self.pieces.write(gpu, &pieces);
+        self.corners.write(gpu, corners);
+        self.pieces.write(gpu, pieces);
     }
 
     /// Draws the slabs of all panels below the bodies, or above them where they are nearer.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture, above: bool) {
+    pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, picture: &Picture, above: bool) {
         pass.set_bind_group(1, self.textures.as_ref(), &[]);
         for (at, (panel, slabs)) in picture.panels.iter().zip(&self.ranges).enumerate() {
             let touched = if above { panel.region } else { panel.viewport };

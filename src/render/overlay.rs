@@ -1,8 +1,9 @@
 //! Marks and words on top of everything.
 
 use super::glyphs::Glyphs;
+use super::pass::Pass;
 use super::pipeline::{
-    ENCODED_FORMAT, Recipe, bind, for_instances, group_layout, shader, texture_entry, uniform_entry,
+    ENCODED_FORMAT, Pipeline, Recipe, bind, for_instances, group_layout, shader, texture_entry, uniform_entry,
 };
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{self, Colour, Fonts, MarkShape, Picture, TextRun};
@@ -55,7 +56,7 @@ pub(super) struct CanvasUniform {
 #[derive(Debug)]
 pub(super) struct Overlay {
     /// For rectangles, for other marks, and for glyphs.
-    pipelines: [wgpu::RenderPipeline; 3],
+    pipelines: [Pipeline; 3],
     layout: wgpu::BindGroupLayout,
     canvas: GrowingBuffer<CanvasUniform>,
     glyphs: Glyphs,
@@ -74,7 +75,7 @@ impl Overlay {
             let recipe = Recipe {
                 groups: &[&layout],
                 vertices: &[Some(for_instances::<Mark>(&ATTRIBUTES))],
-                ..Recipe::rectangles("overlay", &module, ["corner", fragment], ENCODED_FORMAT)
+                ..Recipe::rectangles(fragment, &module, ["corner", fragment], ENCODED_FORMAT)
             };
             recipe.build(gpu)
         };
@@ -101,11 +102,11 @@ impl Overlay {
             }
             self.write_run(&picture.fonts, run, run.colour, [0.0; 2], &mut marks);
         }
-        self.marks.write(gpu, &marks);
         self.runs = [0..under, under..above, above..marks.len() as u32].map(|range| runs(&marks, range));
+        self.marks.write(gpu, marks);
         if self.glyphs.upload(gpu) || self.bind_group.is_none() {
             let size = picture.size.map(|length| length as f32);
-            self.canvas.write(gpu, &[CanvasUniform { size, unused: [0.0; 2] }]);
+            self.canvas.write(gpu, vec![CanvasUniform { size, unused: [0.0; 2] }]);
             self.bind_group = Some(self.bind(gpu));
         }
     }
@@ -134,21 +135,21 @@ impl Overlay {
     }
 
     /// Draws the marks below the bodies.
-    pub(super) fn draw_under(&self, pass: &mut wgpu::RenderPass<'_>) {
+    pub(super) fn draw_under(&self, pass: &mut Pass<'_>) {
         self.draw_runs(pass, &self.runs[0]);
     }
 
     /// Draws the marks above the bodies.
-    pub(super) fn draw_marks(&self, pass: &mut wgpu::RenderPass<'_>) {
+    pub(super) fn draw_marks(&self, pass: &mut Pass<'_>) {
         self.draw_runs(pass, &self.runs[1]);
     }
 
     /// Draws the words.
-    pub(super) fn draw_words(&self, pass: &mut wgpu::RenderPass<'_>) {
+    pub(super) fn draw_words(&self, pass: &mut Pass<'_>) {
         self.draw_runs(pass, &self.runs[2]);
     }
 
-    fn draw_runs(&self, pass: &mut wgpu::RenderPass<'_>, runs: &[(usize, Range<u32>)]) {
+    fn draw_runs(&self, pass: &mut Pass<'_>, runs: &[(usize, Range<u32>)]) {
         pass.set_bind_group(0, self.bind_group.as_ref(), &[]);
         pass.set_vertex_buffer(0, self.marks.buffer().slice(..));
         for (pipeline, range) in runs {

@@ -1,5 +1,6 @@
 //! The data of a panel that every pass reads, and the places of bodies in the textures that hold them.
 
+use super::pass::Pass;
 use super::pipeline::{bind, element, group_layout, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Colour, MOST_OCCLUDERS, Occluder, Panel, Picture, Rectangle};
@@ -184,7 +185,7 @@ impl Panels {
                 bytes[start..start + size_of::<PanelUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
             }
         }
-        if self.buffer.write(gpu, &bytes) {
+        if self.buffer.write(gpu, bytes) {
             let uniform = element::<PanelUniform>(self.buffer.buffer());
             self.bind_group = bind(gpu, "panel", &self.layout, &[(0, uniform)]);
         }
@@ -193,9 +194,9 @@ impl Panels {
     /// Draws each panel that has anything in its rectangle, limited to that rectangle and bound for its body's region.
     pub(super) fn draw_regions(
         &self,
-        pass: &mut wgpu::RenderPass<'_>,
+        pass: &mut Pass<'_>,
         rectangles: impl IntoIterator<Item = Rectangle>,
-        draw: impl Fn(&mut wgpu::RenderPass<'_>, usize),
+        draw: impl Fn(&mut Pass<'_>, usize),
     ) {
         for (panel, rectangle) in rectangles.into_iter().enumerate().filter(|(_, rectangle)| is_visible(*rectangle)) {
             limit(pass, rectangle);
@@ -210,13 +211,13 @@ impl Panels {
     }
 
     /// Binds a panel for drawing into the whole of it.
-    pub(super) fn bind_whole(&self, pass: &mut wgpu::RenderPass<'_>, panel: usize) {
+    pub(super) fn bind_whole(&self, pass: &mut Pass<'_>, panel: usize) {
         pass.set_bind_group(0, &self.bind_group, &[((2 * panel + 1) * STRIDE) as u32]);
     }
 }
 
 /// Limits drawing to a rectangle of the target.
-pub(super) fn limit(pass: &mut wgpu::RenderPass<'_>, [left, top, width, height]: Rectangle) {
+pub(super) fn limit(pass: &mut Pass<'_>, [left, top, width, height]: Rectangle) {
     pass.set_viewport(left as f32, top as f32, width as f32, height as f32, 0.0, 1.0);
     pass.set_scissor_rect(left, top, width, height);
 }

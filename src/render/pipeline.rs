@@ -1,6 +1,6 @@
 //! Short forms for making pipelines and bindings.
 
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Work};
 
 /// How bodies are stored while they are drawn: square roots of linear colours, multiplied with alpha.
 pub(super) const BODY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -15,6 +15,13 @@ pub(super) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba
 /// The finished picture, written as sRGB values.
 pub(super) const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
+/// What draws, by its label.
+#[derive(Debug)]
+pub(super) struct Pipeline {
+    pub(super) label: &'static str,
+    pub(super) pipeline: wgpu::RenderPipeline,
+}
+
 /// The description of a pipeline, as far as pipelines differ.
 pub(super) struct Recipe<'a> {
     pub(super) label: &'static str,
@@ -24,6 +31,8 @@ pub(super) struct Recipe<'a> {
     pub(super) vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub(super) topology: wgpu::PrimitiveTopology,
     pub(super) target: wgpu::TextureFormat,
+    /// How many targets of that format there are.
+    pub(super) targets: usize,
     pub(super) blend: Option<wgpu::BlendState>,
     pub(super) depth: bool,
 }
@@ -44,6 +53,7 @@ impl<'a> Recipe<'a> {
             vertices: &[],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             target,
+            targets: 1,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),
             depth: false,
         }
@@ -56,9 +66,12 @@ impl<'a> Recipe<'a> {
         Self { topology, blend: None, depth: true, ..rectangles }
     }
 
-    pub(super) fn build(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
+    pub(super) fn build(&self, gpu: &Gpu) -> Pipeline {
         let layout = pipeline_layout(gpu, self.label, self.groups);
-        gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        gpu.note(Work::Pipeline(self.label));
+        let target =
+            wgpu::ColorTargetState { format: self.target, blend: self.blend, write_mask: wgpu::ColorWrites::ALL };
+        let pipeline = gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(self.label),
             layout: Some(&layout),
             vertex: wgpu::VertexState {
@@ -80,15 +93,12 @@ impl<'a> Recipe<'a> {
                 module: self.shader,
                 entry_point: Some(self.entries[1]),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: self.target,
-                    blend: self.blend,
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
+                targets: &vec![Some(target); self.targets],
             }),
             multiview_mask: None,
             cache: None,
-        })
+        });
+        Pipeline { label: self.label, pipeline }
     }
 }
 
@@ -97,9 +107,10 @@ pub(super) fn compute_pipeline(
     gpu: &Gpu,
     label: &str,
     module: &wgpu::ShaderModule,
-    entry: &str,
+    entry: &'static str,
     groups: &[&wgpu::BindGroupLayout],
 ) -> wgpu::ComputePipeline {
+    gpu.note(Work::Pipeline(entry));
     gpu.device().create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(label),
         layout: Some(&pipeline_layout(gpu, label, groups)),

@@ -66,7 +66,7 @@ pub(super) fn projected(panel: &Panel) -> impl Fn(&Line) -> Option<Segment> {
         } else if b.w < near {
             b = b.lerp(a, (near - b.w) / (a.w - b.w));
         }
-        let nearer = if matches!(line.kind, LineKind::AlarmEdge | LineKind::AlarmContour) { NEARER } else { 0.0 };
+        let nearer = if line.kind.is_alarm() { NEARER } else { 0.0 };
         let place = |at: Vec4| (Vec2::new(at.x, -at.y) / at.w * 0.5 + 0.5) * size;
         // A depth is as linear on the screen as places are.
         let [from, to] = [a, b].map(|at| place(at).extend(at.z / (at.w - nearer).max(near)));

@@ -1,7 +1,10 @@
 //! Lines with colours of their own, and nodes in space.
 
 use super::panel::Panels;
-use super::pipeline::{PICTURE_FORMAT, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry};
+use super::pass::Pass;
+use super::pipeline::{
+    PICTURE_FORMAT, Pipeline, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry,
+};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Bead, Colour, Picture, Second, Stroke};
@@ -35,7 +38,7 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 7] = wgpu::vertex_attr_array![
 /// The pipeline, and the lines and discs of one picture. Made for the first picture that has any.
 #[derive(Debug)]
 pub(super) struct Strokes {
-    pipeline: wgpu::RenderPipeline,
+    pipeline: Pipeline,
     layout: wgpu::BindGroupLayout,
     depth: wgpu::BindGroup,
     instances: GrowingBuffer<Instance>,
@@ -80,11 +83,11 @@ impl Strokes {
             instances.extend(panel.beads.iter().map(disc));
             self.ranges.push(start..instances.len() as u32);
         }
-        self.instances.write(gpu, &instances);
+        self.instances.write(gpu, instances);
     }
 
     /// Draws the lines and discs of all panels into the picture.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture) {
+    pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, picture: &Picture) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, &self.depth, &[]);
         pass.set_vertex_buffer(0, self.instances.buffer().slice(..));

@@ -1,7 +1,8 @@
 //! Surfaces of bodies: the turned-over set by itself, then both sets.
 
 use super::panel::{Panels, has_behind, is_plain};
-use super::pipeline::{Recipe, bind_textures, for_vertices, group_layout, shader, texture_entry};
+use super::pass::Pass;
+use super::pipeline::{Pipeline, Recipe, bind_textures, for_vertices, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{MOST_OCCLUDERS, Mesh, Picture, Rectangle, Vertex};
@@ -45,14 +46,14 @@ pub(super) fn occluders(picture: &Picture) -> usize {
 /// One for each number of obstacles near a body, made when it is first needed.
 pub(super) type ForOccluders<T> = [Option<T>; MOST_OCCLUDERS + 1];
 
-/// The pipelines that draw surfaces: turned-over ones by themselves, and both sets.
+/// The pipelines that draw surfaces.
 #[derive(Debug)]
 pub(super) struct Pipelines {
-    pub(super) alarm_behind: wgpu::RenderPipeline,
-    pub(super) alarm: wgpu::RenderPipeline,
-    pub(super) sound: wgpu::RenderPipeline,
+    /// Into two targets: as seen through the body, and as surfaces of it.
+    pub(super) alarm: Pipeline,
+    pub(super) sound: Pipeline,
     /// The same where something lies behind, or elements are flat.
-    pub(super) before: wgpu::RenderPipeline,
+    pub(super) before: Pipeline,
 }
 
 /// The two sets of elements of a panel, in the order in which they are stored.
@@ -105,15 +106,15 @@ impl Surfaces {
 
     fn made(gpu: &Gpu, panels: &Panels, behind: &wgpu::BindGroupLayout, occluders: usize) -> Pipelines {
         let module = shader(gpu, "surface", &parts(occluders));
-        let build = |label, entries, groups: &[&wgpu::BindGroupLayout]| {
-            let recipe = Recipe { groups, vertices: &[Some(vertices())], ..Recipe::bodies(label, &module, entries) };
+        let build = |label, entries, groups: &[&wgpu::BindGroupLayout], targets| {
+            let vertices = &[Some(vertices())];
+            let recipe = Recipe { groups, vertices, targets, ..Recipe::bodies(label, &module, entries) };
             recipe.build(gpu)
         };
         Pipelines {
-            alarm_behind: build("turned over, behind", ["alarm_corner", "alarm_behind"], &[&panels.layout]),
-            alarm: build("turned over", ["alarm_corner", "alarm_surface"], &[&panels.layout]),
-            sound: build("sound", ["sound_corner", "sound_surface"], &[&panels.layout]),
-            before: build("sound, before others", ["sound_corner", "sound_before"], &[&panels.layout, behind]),
+            alarm: build("turned over", ["alarm_corner", "alarm_surface"], &[&panels.layout], 2),
+            sound: build("sound", ["sound_corner", "sound_surface"], &[&panels.layout], 1),
+            before: build("sound, before others", ["sound_corner", "sound_before"], &[&panels.layout, behind], 1),
         }
     }
 
@@ -135,8 +136,8 @@ impl Surfaces {
         };
         self.ranges = picture.panels.iter().map(|panel| [add(&panel.sound), add(&panel.turned_over)]).collect();
         self.kinds = picture.panels.iter().map(|panel| [!is_plain(picture, panel), has_behind(panel)]).collect();
-        self.vertices.write(gpu, &vertices);
-        self.indices.write(gpu, &indices);
+        self.vertices.write(gpu, vertices);
+        self.indices.write(gpu, indices);
     }
 
     /// Binds new textures.
@@ -151,37 +152,36 @@ impl Surfaces {
         Colouring { pipelines, groups: [self.behind.as_ref(), None], shades: None }
     }
 
-    /// Draws the turned-over sets by themselves.
-    pub(super) fn draw_behind(
+    /// Draws the turned-over sets, as seen through the bodies and as surfaces of them.
+    pub(super) fn draw_turned_over(
         &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        panels: &Panels,
-        places: &[Rectangle],
-        colourings: [Option<Colouring<'_>>; 2],
-    ) {
-        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.alarm_behind, (TURNED_OVER, true));
-    }
-
-    /// Draws everything.
-    pub(super) fn draw_all(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
+        pass: &mut Pass<'_>,
         panels: &Panels,
         places: &[Rectangle],
         colourings: [Option<Colouring<'_>>; 2],
     ) {
         self.draw(pass, panels, places, colourings, |pipelines| &pipelines.alarm, (TURNED_OVER, true));
+    }
+
+    /// Draws the other sets, over the turned-over ones.
+    pub(super) fn draw_sound(
+        &self,
+        pass: &mut Pass<'_>,
+        panels: &Panels,
+        places: &[Rectangle],
+        colourings: [Option<Colouring<'_>>; 2],
+    ) {
         self.draw(pass, panels, places, colourings, |pipelines| &pipelines.sound, (SOUND, false));
         self.draw(pass, panels, places, colourings, |pipelines| &pipelines.before, (SOUND, true));
     }
 
     fn draw(
         &self,
-        pass: &mut wgpu::RenderPass<'_>,
+        pass: &mut Pass<'_>,
         panels: &Panels,
         places: &[Rectangle],
         colourings: [Option<Colouring<'_>>; 2],
-        pipeline: fn(&Pipelines) -> &wgpu::RenderPipeline,
+        pipeline: fn(&Pipelines) -> &Pipeline,
         (set, with_behind): (usize, bool),
     ) {
         pass.set_vertex_buffer(0, self.vertices.buffer().slice(..));
@@ -201,7 +201,7 @@ impl Surfaces {
                 false => [0; 4],
             };
             panels.draw_regions(pass, places.iter().enumerate().map(own), |pass, panel| {
-                pass.draw_indexed(self.ranges[panel][set].clone(), 0, 0..1);
+                pass.draw_indexed(self.ranges[panel][set].clone());
             });
         }
     }

@@ -55,7 +55,7 @@ pub(super) struct Bodies {
 impl Bodies {
     /// Textures of a size, with or without those of the turned-over set alone.
     pub(super) fn new(gpu: &Gpu, size: [u32; 2], has_behind: bool) -> Self {
-        let texture = |label, size, format| {
+        let texture = |label, size, format, copied| {
             let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: extent(size),
@@ -63,22 +63,29 @@ impl Bodies {
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
                 format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING | copied,
                 view_formats: &[],
             });
             texture.create_view(&wgpu::TextureViewDescriptor::default())
         };
+        let none = wgpu::TextureUsages::empty();
         let behind = if has_behind { size } else { [1; 2] };
         Self {
             size,
-            colour: texture("bodies", size, BODY_FORMAT),
-            depth: texture("depth of bodies", size, DEPTH_FORMAT),
+            colour: texture("bodies", size, BODY_FORMAT, none),
+            depth: texture("depth of bodies", size, DEPTH_FORMAT, wgpu::TextureUsages::COPY_DST),
             has_behind,
-            alarm_colour: texture("turned over", behind, BODY_FORMAT),
-            alarm_depth: texture("depth of turned over", behind, DEPTH_FORMAT),
-            borders: texture("borders", size, BORDER_FORMAT),
-            lines: texture("lines", size, LINE_FORMAT),
+            alarm_colour: texture("turned over", behind, BODY_FORMAT, none),
+            alarm_depth: texture("depth of turned over", behind, DEPTH_FORMAT, wgpu::TextureUsages::COPY_SRC),
+            borders: texture("borders", size, BORDER_FORMAT, none),
+            lines: texture("lines", size, LINE_FORMAT, none),
         }
+    }
+
+    /// Gives the bodies the depth of the turned-over elements.
+    pub(super) fn copy_depth(&self, commands: &mut wgpu::CommandEncoder) {
+        let [from, to] = [&self.alarm_depth, &self.depth].map(|view| view.texture().as_image_copy());
+        commands.copy_texture_to_texture(from, to, extent(self.size));
     }
 
     /// Whether regions of a size fit, with what lies behind surfaces if anything does, and fill enough of the textures that

@@ -48,20 +48,20 @@ impl Tint {
     fn made(gpu: &Gpu, panels: &Panels, layouts: [&wgpu::BindGroupLayout; 2], occluders: usize) -> Pipelines {
         let module = shader(gpu, "tint", &[&surface::parts(occluders)[..], &[SHADER]].concat());
         let vertices = [Some(surface::vertices()), Some(for_vertices::<f32>(&ATTRIBUTES))];
-        let build = |label, entries, layout| {
+        let build = |label, entries, layout, targets| {
             let recipe = Recipe {
                 groups: &[&panels.layout, layout],
                 vertices: &vertices,
+                targets,
                 ..Recipe::bodies(label, &module, entries)
             };
             recipe.build(gpu)
         };
         let [of_alarm, of_sound] = layouts;
         Pipelines {
-            alarm_behind: build("turned over, behind, coloured", ["tinted_alarm_corner", "tinted_behind"], of_alarm),
-            alarm: build("turned over, coloured", ["tinted_alarm_corner", "tinted_alarm"], of_alarm),
-            sound: build("sound, coloured", ["tinted_corner", "tinted_sound"], of_sound),
-            before: build("sound, coloured, before others", ["tinted_corner", "tinted_before"], of_sound),
+            alarm: build("turned over, coloured", ["tinted_alarm_corner", "tinted_alarm"], of_alarm, 2),
+            sound: build("sound, coloured", ["tinted_corner", "tinted_sound"], of_sound, 1),
+            before: build("sound, coloured, before others", ["tinted_corner", "tinted_before"], of_sound, 1),
         }
     }
 
@@ -89,15 +89,14 @@ impl Tint {
     /// Uploads the scale of a picture and where its corners stand, in the order of its vertices.
     pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
         let colours: Vec<_> = picture.ramp.iter().take(SHADES).map(|&colour| linear(colour).extend(1.0)).collect();
-        self.ramp.write(gpu, &colours);
+        self.ramp.write(gpu, colours);
         let meshes = picture.panels.iter().flat_map(|panel| [&panel.sound, &panel.turned_over]);
         // Panels without a field have places, too, which nothing reads.
         let shades = meshes.flat_map(|mesh| {
             let missing = mesh.vertices.len() - mesh.shades.len();
             mesh.shades.iter().copied().chain(std::iter::repeat_n(0.0, missing))
         });
-        let shades: Vec<_> = shades.collect();
-        self.shades.write(gpu, &shades);
+        self.shades.write(gpu, shades.collect());
     }
 }
 

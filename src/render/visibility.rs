@@ -7,7 +7,7 @@ use super::pipeline::{
 };
 use super::segment::{self, Kind, Segment};
 use super::target::Bodies;
-use crate::gpu::{Gpu, GrowingBuffer};
+use crate::gpu::{Gpu, GrowingBuffer, Work};
 use crate::picture::Rectangle;
 use std::ops::Range;
 
@@ -135,7 +135,7 @@ impl Visibility {
         if is_small {
             self.found = texture(gpu, rows.next_power_of_two().min(gpu.longest_side()));
         }
-        let replaced = [self.chunks.write(gpu, &chunks), self.ranges.write(gpu, &ranges), is_small, is_new];
+        let replaced = [self.chunks.write(gpu, chunks), self.ranges.write(gpu, ranges), is_small, is_new];
         if replaced.contains(&true) || self.bind_group.is_none() {
             let found = self.found();
             let resources = [
@@ -155,7 +155,14 @@ impl Visibility {
     }
 
     /// Tests all lines, among solid obstacles if there are any.
-    pub(super) fn find(&self, commands: &mut wgpu::CommandEncoder, panels: &Panels, places: &[Rectangle], among: bool) {
+    pub(super) fn find(
+        &self,
+        gpu: &Gpu,
+        commands: &mut wgpu::CommandEncoder,
+        panels: &Panels,
+        places: &[Rectangle],
+        among: bool,
+    ) {
         let variant = self.among.as_ref().filter(|_| among).unwrap_or(&self.alone);
         let mut pass = commands.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_bind_group(1, variant.textures.as_ref(), &[]);
@@ -171,6 +178,7 @@ impl Visibility {
                 let range = (panel * Kind::TESTED.len() + kind) * STRIDE;
                 pass.set_bind_group(2, self.bind_group.as_ref(), &[range as u32]);
                 let wide = groups.min(MOST_GROUPS);
+                gpu.note(Work::Draw(Kind::TESTED[kind]));
                 pass.dispatch_workgroups(wide, groups.div_ceil(wide), 1);
             }
         }

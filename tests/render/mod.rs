@@ -18,6 +18,7 @@ mod steady;
 mod strips;
 mod vectors;
 mod words;
+mod work;
 
 use image::RgbImage;
 use localshape::gpu::{AdapterChoice, Gpu};
