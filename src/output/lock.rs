@@ -8,7 +8,8 @@ use std::fs::{File, TryLockError};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// How long a process may hold an exclusive lock only to remove leftovers, which takes milliseconds.
+/// How long a process may hold a lock that does not write there: to remove leftovers, which takes milliseconds, or because
+/// it was killed and has not ended yet.
 const MOMENT: Duration = Duration::from_secs(1);
 
 /// A folder to which this process writes, locked until this is dropped. Where the system cannot lock folders, there is
@@ -40,12 +41,8 @@ impl FolderLock {
     /// may belong to these.
     pub(crate) fn beside_others(path: &Path) -> Self {
         let lock = Self::open(path);
-        let started = Instant::now();
-        // A process with an exclusive lock may be about to remove leftovers. If it keeps the lock for longer, it has
-        // done so, and there is no need to wait for it.
-        while !lock.take(false) && started.elapsed() < MOMENT {
-            std::thread::sleep(Duration::from_millis(5));
-        }
+        // A process that keeps an exclusive lock for longer has removed its leftovers: there is no need to wait for it.
+        let _ = lock.take(false);
         lock
     }
 
@@ -59,10 +56,18 @@ impl FolderLock {
         Self { folder: if path.is_dir() { File::open(path).ok() } else { None } }
     }
 
-    /// Takes the lock, exclusive or shared; `false` if another process holds it.
+    /// Takes the lock, exclusive or shared; `false` if another process holds it for longer than a moment.
     fn take(&self, alone: bool) -> bool {
         let lock = if alone { File::try_lock } else { File::try_lock_shared };
-        self.folder.as_ref().is_none_or(|folder| !matches!(lock(folder), Err(TryLockError::WouldBlock)))
+        let Some(folder) = &self.folder else { return true };
+        let started = Instant::now();
+        while matches!(lock(folder), Err(TryLockError::WouldBlock)) {
+            if started.elapsed() > MOMENT {
+                return false;
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        true
     }
 }
 

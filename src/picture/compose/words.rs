@@ -245,11 +245,14 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
     if !Scale::legible(Layout::around(&scene.view).small()) {
         return Vec::new();
     }
-    let mut told = left_out(composer.columns(&runs));
+    let columns = composer.columns(&runs);
+    let mut told = left_out(columns);
     if scene.view.columns.is_none() {
-        // How panels stand follows from the course of the scene, too: what finds no room side by side, either, is certain.
-        let side_by_side = left_out(words.panels(&runs));
-        told.retain(|one| side_by_side.contains(one));
+        // How panels stand follows from the course of the scene, too: between what the start suggests and side by side.
+        for columns in columns + 1..=words.panels(&runs) {
+            let there = left_out(columns);
+            told.retain(|one| there.contains(one));
+        }
     }
     told
 }
