@@ -15,7 +15,6 @@ mod camera;
 mod caption;
 mod chart;
 mod compose;
-mod crossing;
 mod ears;
 mod ends;
 mod event;

@@ -134,8 +134,8 @@ impl Strip {
         }
     }
 
-    /// Says what bands are, if a curve has any in a chart.
-    pub(super) fn explain_bands(&mut self, fonts: &Fonts, parts: &Parts) {
+    /// Says what bands are, if a curve has any in a chart, and what is then said has room.
+    pub(super) fn explain_bands(&mut self, fonts: &Fonts, parts: &Parts, has_room: impl Fn(&Self) -> bool) {
         let has_bands = parts.0.iter().any(|&(chart, span)| {
             let (times, values) = (chart.times(fonts, span), self.values_in(chart));
             let has_band = |one: &Series| values.as_ref().is_some_and(|values| one.has_band(chart, [&times, values]));
@@ -143,6 +143,9 @@ impl Strip {
         });
         if has_bands {
             self.notes.push(BAND.to_owned());
+            if !has_room(self) {
+                self.notes.pop();
+            }
         }
     }
 

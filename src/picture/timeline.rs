@@ -121,9 +121,9 @@ fn still(
             last - first >= LEAST_WIDTH && chart[1] - chart[0] >= LEAST_CHART && Scale::legible(NUMBERS * unit);
         has_room.then(|| (has_name, [first, last], Parts::new(scale, [first, last], chart, [0.0, end], split)))
     };
-    // What bands are stands below the name, beside the chart that has them.
+    // What bands are stands below the name, if that has room with it.
     let (_, _, parts) = place(strip)?;
-    strip.explain_bands(fonts, &parts);
+    strip.explain_bands(fonts, &parts, |strip| place(strip).is_some_and(|(has_name, ..)| has_name));
     let (has_name, [first, last], parts) = place(strip)?;
     let flags = (1..).zip(events).map(|(number, event)| Flag {
         at: parts.place(event.time).1,

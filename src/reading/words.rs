@@ -97,20 +97,24 @@ pub(crate) fn short(number: f64) -> String {
     significant(number, 4)
 }
 
-/// The ends of a range with up to four significant digits, rounded so that the range keeps all that is in it.
+/// The ends of a range to four significant digits of its length, or their own if these are finer, rounded so that the range
+/// keeps all that is in it.
 pub(crate) fn ends([low, high]: [f64; 2]) -> [String; 2] {
+    let magnitude = |number: f64| libm::floor(libm::log10(number.abs()));
     let out = |number: f64, is_beyond: fn(f64, f64) -> bool| {
+        // NaN for a range of length zero at zero.
+        let digits = (4.0 + magnitude(number) - magnitude(high - low)).max(4.0).min(12.0);
         let step = |digits: usize| rounded(number, digits);
         // A number that has no more digits, but for its round-off, is not rounded.
         let exact = step(12);
-        let near = step(4);
+        let near = step(digits as usize);
         if near == exact || is_beyond(near, exact) {
             return near;
         }
-        let last = libm::exp10(libm::floor(libm::log10(exact.abs())) - 3.0);
-        rounded(if is_beyond(near - last, exact) { near - last } else { near + last }, 4)
+        let last = libm::exp10(magnitude(exact) + 1.0 - digits);
+        rounded(if is_beyond(near - last, exact) { near - last } else { near + last }, digits as usize)
     };
-    [out(low, |one, other| one <= other), out(high, |one, other| one >= other)].map(|end| significant(end, 4))
+    [out(low, |one, other| one <= other), out(high, |one, other| one >= other)].map(fine)
 }
 
 /// A number with up to twelve significant digits: precise enough to be the bound of a region.
@@ -155,6 +159,20 @@ pub(crate) fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ends_keep_their_range() {
+        for (range, written) in [
+            ([-0.153_26, 0.153_24], ["-0.1533", "0.1533"]),
+            ([100.005, 100.015], ["100.005", "100.015"]),
+            ([1e6, 1e6 + 0.3], ["1e6", "1.0000003e6"]),
+            ([0.0, 0.123_456], ["0", "0.1235"]),
+            ([0.0, 0.0], ["0", "0"]),
+            ([0.123_456, 0.123_456], ["0.123456", "0.123456"]),
+        ] {
+            assert_eq!(ends(range), written, "{range:?}");
+        }
+    }
 
     #[test]
     fn the_nearest_name_is_a_similar_one() {

@@ -1,4 +1,4 @@
-//! Surfaces of bodies: the turned-over set by itself, then both sets.
+//! Surfaces of bodies: first the turned-over set, for itself and as what is seen through the body, then the other set over it.
 
 use super::panel::{Panels, has_behind, is_plain};
 use super::pass::Pass;

@@ -372,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn progress_that_diverged_nowhere_is_refused() {
+    fn progress_that_cannot_be_is_refused() {
         use crate::scene::{Limits, Scene};
         use crate::sim::snapshot::Divergence;
         let scene = Scene::parse(crate::untrusted::SCENE, "scene.toml", &Limits::default()).unwrap();
@@ -386,5 +386,11 @@ mod tests {
         };
         assert!(resumed(1, 0, None) && resumed(1, 0, Some(0)));
         assert!(!resumed(0, 0, None) && !resumed(1, 1, None) && !resumed(1, 0, Some(1)));
+        // In a scene without sleep nothing can have woken.
+        let mut progress = begun().progress().unwrap().unwrap();
+        let mut state = State::from_bytes(&progress.states[0]).unwrap();
+        state.woken = 1;
+        progress.states[0] = state.to_bytes();
+        assert!(begun().resume(progress).is_err());
     }
 }

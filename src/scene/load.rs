@@ -228,7 +228,13 @@ fn decimal_comma(text: &str, at: usize) -> Option<[&str; 2]> {
     let (before, after) = text.split_at_checked(at)?;
     let from = before.rfind('\n').map_or(0, |end| end + 1);
     let line = text[from..at + after.find('\n').unwrap_or(after.len())].trim_end();
-    let value = line[before[from..].rfind('=')? + 1..].trim_start();
+    let equals = before[from..].rfind('=')?;
+    // An equals sign in a text or a comment is none.
+    let is_outside = |quote: char| line[..equals].matches(quote).count().is_multiple_of(2);
+    if line[..equals].contains('#') || !['"', '\''].into_iter().all(is_outside) {
+        return None;
+    }
+    let value = line[equals + 1..].trim_start();
     let (whole, rest) = value.split_once(',')?;
     let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
     let unsigned = whole.trim_start_matches(['+', '-']);

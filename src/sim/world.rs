@@ -303,7 +303,8 @@ impl World {
         &self.state
     }
 
-    /// Whether a state has the numbers of nodes and of memory of these bodies, and diverged, if it did, in one of them.
+    /// Whether a state has the numbers of nodes and of memory of these bodies, and diverged and woke, if it did, where and when they
+    /// can have.
     pub(crate) fn takes(&self, state: &State) -> bool {
         let lengths = |state: &State| {
             let Memory { model, constraints, .. } = &state.memory;
@@ -317,7 +318,11 @@ impl World {
                 step > 0 && elements.is_some_and(|elements| element.is_none_or(|element| element < elements))
             }
         };
-        lengths(state) == lengths(&self.state) && place && sleep && (self.sleep.is_some() || state.sleep.is_empty())
+        let sleep = match self.sleep {
+            Some(_) => sleep && state.woken <= state.steps,
+            None => state.sleep.is_empty() && state.woken == 0,
+        };
+        lengths(state) == lengths(&self.state) && place && sleep
     }
 
     /// Continues from another state of the same bodies under the same conditions. The time step has to be the same, as

@@ -528,6 +528,9 @@ fn syntax_errors_have_their_place() {
         "duration = 3,5",
         "3:13 `3,5` has a decimal comma a number has a decimal point, not a comma: 3.5",
     );
+    // Not in a text that is not closed.
+    let mistakes = bad(&PLANE.replacen("name = 'Local shape'", "name = \"e = 0,5", 1)).to_string();
+    assert!(!mistakes.contains("decimal comma"), "{mistakes}");
     case(PLANE, "duration = 3", "duration = 3\nduration = 4", "4:1 `duration` is given a second time");
     case(PLANE, "[0, -9.8]", "[0, -9.8", "2:1 is an array before this not closed with `]`?");
     case(

@@ -1,10 +1,8 @@
 //! The body of a panel: its surfaces, lines and nodes.
 
 use super::panel::Draft;
-use crate::picture::crossing::crossings;
-use crate::picture::narrow::narrow_point;
 use crate::picture::plane::node_radius;
-use crate::picture::surface::{Border, Lines, SurfaceLines, Surroundings};
+use crate::picture::surface::{Lines, SurfaceLines, Surroundings};
 use crate::picture::wire::Wire;
 use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
 use glam::DVec3;
@@ -46,16 +44,6 @@ impl Draft<'_> {
             at += 1;
             at > of_sound || border.edge.is_none_or(|edge| !shared.contains(&edge))
         });
-        // Without a field, the colours of turned-over elements change with their depth behind the others, and so
-        // without a border.
-        if !self.flat && self.shades.is_some() {
-            let eye = (self.lens.eye - self.origin) / self.side;
-            let cuts = crossings([&sound, &turned_over], eye, self.lens.forward).into_iter();
-            lines.borders.extend(cuts.map(|ends| {
-                let [from, to] = ends.map(|at| narrow_point(at).to_array());
-                Border { line: Line { from, to, kind: LineKind::Edge, strength: 1.0 }, edge: None }
-            }));
-        }
         // With a field, strokes are drawn instead.
         if self.shades.is_none() {
             self.bare_lines(&mut lines.drawn);

@@ -216,6 +216,7 @@ impl<'a> Drawn<'a> {
         self.draft.flat
             && self.cell.scene.body.elements.iter().any(|nodes| {
                 let at = nodes.iter().position(|&other| other as usize == node);
+                let at = at.filter(|_| nodes.len() > 2);
                 at.is_some_and(|at| [1, nodes.len() - 1].iter().all(|step| nearly(nodes[(at + step) % nodes.len()])))
             })
     }

@@ -14,9 +14,6 @@ use crate::scene::figure::Sheet;
 const NAMES: f64 = 0.16;
 const NAMES_APART: f64 = 3.0;
 
-/// About how high a chart is (px in the reference picture).
-const ROUGHLY: f64 = 80.0;
-
 /// Where charts stand (px).
 pub(super) struct ChartsRoom {
     /// The middle of the rings above all charts.
@@ -55,20 +52,12 @@ impl<'a> Charts<'a> {
         };
         let of_scenes: Vec<_> = sheet.scenes.iter().zip(histories).collect();
         let one = |&diagnostic| Strip::new(diagnostic, &of_scenes, writer.palette, label);
-        let mut charts: Vec<_> = sheet.strips.iter().map(one).collect();
+        let charts: Vec<_> = sheet.strips.iter().map(one).collect();
         // The lines of all charts have the same names.
         let room = [NAMES * width, f64::INFINITY];
         let type_unit = scale.type_unit();
         let ends = charts.iter().find_map(|one| Ends::new(fonts, &one.series, type_unit, room));
         let numbers_width = charts.iter().map(|one| one.numbers_width(fonts, type_unit)).fold(0.0, f64::max);
-        // Where they stand is not known yet: what is too dense for a wider chart is so there.
-        let span = [0.0, width];
-        for one in &mut charts {
-            one.explain_bands(
-                fonts,
-                &Parts::new(scale, span, [0.0, ROUGHLY * type_unit], [sheet.from, histories[0].end], sheet.split),
-            );
-        }
         let names_width = charts.iter().map(|one| one.name_width(fonts, scale)).fold(0.0, f64::max);
         Self { sheet, end: histories[0].end, charts, ends, names_width, numbers_width }
     }
