@@ -163,7 +163,7 @@ mod tests {
         assert!(State::from_bytes(&[&bytes[..], &[0; 8]].concat()).is_none());
         assert!(State::from_bytes(&changed(0, b'L')).is_none());
         // Counts too large for any memory, and a status that does not exist.
-        assert!(State::from_bytes(&changed(MARK.len() + 6 * 8 + 7, 0xff)).is_none());
+        assert!(State::from_bytes(&changed(MARK.len() + 7 * 8 + 7, 0xff)).is_none());
         assert!(State::from_bytes(&changed(MARK.len() + 8, 2)).is_none());
     }
 }
