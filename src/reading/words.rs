@@ -102,12 +102,13 @@ pub(crate) fn short(number: f64) -> String {
 pub(crate) fn ends([low, high]: [f64; 2]) -> [String; 2] {
     let magnitude = |number: f64| libm::floor(libm::log10(number.abs()));
     let out = |number: f64, is_beyond: fn(f64, f64) -> bool| {
-        // NaN for a range of length zero at zero.
-        let digits = (4.0 + magnitude(number) - magnitude(high - low)).max(4.0).min(12.0);
-        let step = |digits: usize| rounded(number, digits);
         // A number that has no more digits, but for its round-off, is not rounded.
-        let exact = step(12);
-        let near = step(digits as usize);
+        let exact = rounded(number, 12);
+        if exact == 0.0 {
+            return exact;
+        }
+        let digits = (4.0 + magnitude(exact) - magnitude(high - low)).clamp(4.0, 12.0);
+        let near = rounded(number, digits as usize);
         if near == exact || is_beyond(near, exact) {
             return near;
         }
