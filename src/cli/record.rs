@@ -1,12 +1,10 @@
 //! The way of one scene through the program: simulate, show, write down.
 
-use super::console;
 use super::failure::{Failure, Status, with_causes};
-use super::interrupt;
 use super::options::{PrintOptions, RunOptions};
-use super::report;
 use super::results::{Pace, Pictures, Results};
 use super::scenes::{Job, with_option};
+use super::{console, interrupt, report};
 use crate::cause::Cause;
 use crate::history::History;
 use crate::output::{
@@ -323,7 +321,7 @@ impl<'a> Recording<'a> {
     }
 
     /// Notes since when bodies sleep, and when they woke.
-    fn note_sleep(&mut self, states: &[&State]) {
+    fn note_sleep<'s>(&mut self, states: impl Iterator<Item = &'s State>) {
         for (summary, state) in self.summary.runs.iter_mut().zip(states) {
             let time = |step: u64| step as f64 * summary.time_step;
             summary.asleep_since = state.asleep_since().map(time);
@@ -406,6 +404,10 @@ impl<'a> Recording<'a> {
         // Frames that are not kept cannot be continued, and states that are read need not be.
         let can_resume =
             simulation.read_from.is_none() && (results.pictures.is_none() || self.summary.frames.size.is_some());
+        if self.summary.frames.recorded > 0 {
+            // Going on: in case that it is stopped before the next frame.
+            self.note_sleep(simulation.frames.states());
+        }
         let mut pace = Pace::new();
         while !interrupt::requested() {
             if can_resume && pace.is_due() {
@@ -431,7 +433,7 @@ impl<'a> Recording<'a> {
                     if read_from.is_none() {
                         let states: Vec<_> = frames.states().collect();
                         pool.install(|| self.find_causes(&states));
-                        self.note_sleep(&states);
+                        self.note_sleep(states.into_iter());
                     }
                     self.last = Some(frame);
                 }

@@ -100,17 +100,17 @@ pub(crate) struct RunSummary {
     /// Why it diverged; absent if it did not, or its states are read.
     #[serde(flatten)]
     pub cause: Option<Cause>,
-    /// Since when its body sleeps in the last recorded frame (s); absent if it does not, or its states are read.
+    /// Since when its body sleeps (s), in the last frame that this command recorded or, before that, where it went on; absent if it
+    /// does not, or its states are read.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub asleep_since: Option<f64>,
-    /// When its body last woke, up to the last recorded frame (s); absent if it never slept and woke, or its states are
-    /// read.
+    /// When its body last woke, up to the same moment (s); absent if it never slept and woke, or its states are read.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub woke_at: Option<f64>,
     /// The frames drawn by this command in which its body leaves its panel; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cut: Vec<u64>,
-    /// The last recorded frame; `null` before the first.
+    /// The last frame that this command recorded; `null` before the first.
     pub last: Option<LastState>,
 }
 

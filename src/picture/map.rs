@@ -161,8 +161,14 @@ impl Map {
     fn draw(&self, writer: &mut Writer<'_>, [left, top, wide, high]: [f64; 4]) {
         let palette = writer.palette;
         let [name, more] = &self.name;
-        writer.left(name, Weight::SemiBold, USUAL, palette.text, left - LEFT, top - NAMES + 24.0);
-        writer.left(more, Weight::Regular, SMALL, palette.second_text, left - LEFT, top - NAMES + 43.0);
+        let heading = [
+            (name, Weight::SemiBold, USUAL, palette.text, 24.0),
+            (more, Weight::Regular, SMALL, palette.second_text, 43.0),
+        ];
+        for (text, weight, size, colour, baseline) in heading {
+            let text = writer.fonts.shortened(text, weight, size, LEFT + wide + RIGHT);
+            writer.left(&text, weight, size, colour, left - LEFT, top - NAMES + baseline);
+        }
         let [across, at_left, at_right] = &self.axes;
         writer.left(at_left, Weight::Regular, SMALL, palette.second_text, left - LEFT, top - BESIDE);
         writer.right(at_right, Weight::Regular, SMALL, palette.second_text, left + wide + RIGHT, top - BESIDE);
@@ -218,7 +224,7 @@ mod tests {
     #[test]
     fn all_is_on_the_page() {
         let map = |columns: usize, rows: usize| Map {
-            name: ["A run".to_owned(), "what it is of".to_owned()],
+            name: ["A run".to_owned(), "what it is of, ".repeat(20)],
             across: (0..columns).map(|at| libm::exp10(3.0 + at as f64 / 4.0)).collect(),
             up: (0..rows).map(|at| 0.05 + 0.1 * at as f64).collect(),
             cells: (0..columns * rows).map(|at| [Tile::Whole, Tile::TurnedOver, Tile::Diverged][at % 3]).collect(),

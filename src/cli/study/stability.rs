@@ -142,8 +142,9 @@ fn maps(results: &Results) -> Maps {
         let tick = |share: f64| (share, [short(share), format!("T/{:.1}", grid.steps_per_cycle(share))]);
         let limit = grid.limit.map(|_| (1.0, "predicted limit"));
         let stretched = grid.stretched.filter(|&share| share < 1.0).map(|share| (share, "with stretched springs"));
+        let [name, conditions, model] = results.words(grid, speed);
         Map {
-            name: results.words(grid, speed),
+            name: [name, if conditions.is_empty() { model } else { conditions }],
             across,
             up: results.shares().to_vec(),
             cells: cells.iter().map(tile).collect(),
@@ -163,7 +164,7 @@ fn maps(results: &Results) -> Maps {
                 .to_owned(),
         ],
         maps: results.maps().map(map).collect(),
-        columns: 2,
+        columns: results.speeds().clamp(2, 3),
     }
 }
 

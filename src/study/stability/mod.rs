@@ -271,17 +271,19 @@ impl Results {
         &self.protocol.shares
     }
 
-    /// The name of a map, and what it is of.
-    pub(crate) fn words(&self, grid: &Grid, speed: f64) -> [String; 2] {
+    /// The name of a map, its impacts and damping where the protocol has several, and the model.
+    pub(crate) fn words(&self, grid: &Grid, speed: f64) -> [String; 3] {
         let [name, model, _] = &self.told.runs[grid.run];
-        let mut more = model.clone();
-        if self.protocol.dampings.len() > 1 {
-            more = format!("{} × the damping, {more}", rounded(grid.damping, 3));
-        }
-        if self.protocol.speeds.len() > 1 {
-            more = format!("impacts {} × as fast, {more}", rounded(speed, 3));
-        }
-        [name.clone(), more]
+        let Protocol { speeds, dampings, .. } = &self.protocol;
+        let speed = (speeds.len() > 1).then(|| format!("impacts {} × as fast", rounded(speed, 3)));
+        let damping = (dampings.len() > 1).then(|| format!("{} × the damping", rounded(grid.damping, 3)));
+        let conditions: Vec<_> = speed.into_iter().chain(damping).collect();
+        [name.clone(), conditions.join(", "), model.clone()]
+    }
+
+    /// The number of maps of each grid.
+    pub(crate) fn speeds(&self) -> usize {
+        self.protocol.speeds.len()
     }
 
     /// The largest share up to which every step, with every stiffness, has one of these outcomes; 0 for none.

@@ -69,11 +69,11 @@ impl Results {
             short(self.protocol.stiffnesses.last().copied().unwrap_or(1.0)),
         );
         let row = |(grid, speed): (&Grid, f64)| {
-            let [name, more] = self.words(grid, speed);
+            let [name, conditions, model] = self.words(grid, speed);
             let at_most = |share: f64| if share > 0.0 { short(share) } else { "–".to_owned() };
             [
                 ("run", name),
-                ("model", more),
+                ("model", if conditions.is_empty() { model } else { format!("{conditions}, {model}") }),
                 (
                     "predicted limit",
                     grid.limit.map_or_else(|| "–".to_owned(), |limit| format!("T/{}", short(1.0 / limit))),
