@@ -255,7 +255,8 @@ fn read(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
     match outcome {
         Ok(_) if bytes.len() as u64 > limits.file => Err(SceneError::TooLong { path: path.into(), limit: limits.file }),
         Ok(_) => Ok(bytes),
-        Err(error) if error.kind() == ErrorKind::NotFound => {
+        // A slash behind the name of a file asks for a folder.
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
             Err(SceneError::Missing { path: path.into(), nearest: None })
         }
         Err(source) => Err(SceneError::Unreadable { path: path.into(), source }),

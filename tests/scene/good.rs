@@ -249,6 +249,9 @@ fn files_that_are_no_scenes_are_told_apart() {
     let missing = load(&folder.path().join("cube.toml"));
     assert!(matches!(&missing, SceneError::Missing { nearest: Some(near), .. } if near.ends_with("cubes.toml")));
     assert!(missing.to_string().contains("cubes.toml?"), "{missing}");
+    // As shells complete the name of a folder.
+    let slash = load(&folder.path().join("cubes.toml/")).to_string();
+    assert!(slash.contains("there is no such file") && slash.ends_with("/cubes.toml?"), "{slash}");
     assert!(matches!(load(&folder.path().join("cubes")), SceneError::Missing { nearest: Some(_), .. }));
     assert!(matches!(load(&folder.path().join("zzz")), SceneError::Missing { nearest: None, .. }));
     // A file of this name in a folder beside, of the kind that is wanted.
@@ -256,7 +259,7 @@ fn files_that_are_no_scenes_are_told_apart() {
         std::fs::create_dir(folder.path().join(name)).unwrap();
         put(&format!("{name}/drop.toml"), text.as_bytes());
     }
-    for name in ["drop.toml", "drop"] {
+    for name in ["drop.toml", "drop", "scnes/drop.toml"] {
         let missing = load(&folder.path().join(name)).to_string();
         assert!(missing.ends_with("scenes/drop.toml?"), "{missing}");
     }
