@@ -56,7 +56,7 @@ impl<'a> Charts<'a> {
         // The lines of all charts have the same names.
         let room = [NAMES * width, f64::INFINITY];
         let type_unit = scale.type_unit();
-        let ends = charts.iter().find_map(|one| Ends::new(fonts, &one.series, type_unit, room));
+        let ends = charts.iter().find_map(|one| Ends::new(fonts, &one.series, type_unit, room, false));
         let numbers_width = charts.iter().map(|one| one.numbers_width(fonts, type_unit)).fold(0.0, f64::max);
         let names_width = charts.iter().map(|one| one.name_width(fonts, scale)).fold(0.0, f64::max);
         Self { sheet, end: histories[0].end, charts, ends, names_width, numbers_width }
