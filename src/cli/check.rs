@@ -2,6 +2,8 @@
 
 use super::console::{print, print_json};
 use super::failure::{Failure, Status, complain, note, warn, with_causes};
+#[cfg(feature = "render")]
+use super::options::size;
 use super::options::{PrintOptions, SceneOptions};
 use super::scenes::{status_of, worse};
 use crate::reading::Mistake;
@@ -35,6 +37,11 @@ pub(super) struct Check {
 
     #[command(flatten)]
     printing: PrintOptions,
+
+    /// Width and height of the frames whose words are looked at (px) [default: that of the scene]
+    #[cfg(feature = "render")]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
 }
 
 impl Check {
@@ -43,7 +50,7 @@ impl Check {
         let mut documents = Vec::new();
         for (number, path) in self.scenes.scenes.iter().enumerate() {
             let file = path.to_string_lossy();
-            let loaded = self.scenes.load(path);
+            let loaded = self.scenes.load(path).map(|scene| self.resized(scene));
             let refused = loaded.as_ref().ok().and_then(too_small);
             match loaded {
                 Ok(_) if refused.is_some() => {
@@ -98,6 +105,19 @@ impl Check {
             print_json(&json!({ "scenes": Value::from(documents) }))?;
         }
         Ok(failed.unwrap_or(Status::Done))
+    }
+
+    /// A scene with the size that the user wants.
+    #[cfg(feature = "render")]
+    fn resized(&self, mut scene: Scene) -> Scene {
+        if let Some(size) = self.size {
+            (scene.view.size, scene.view.print) = (size, None);
+        }
+        scene
+    }
+    #[cfg(not(feature = "render"))]
+    fn resized(&self, scene: Scene) -> Scene {
+        scene
     }
 }
 

@@ -2,7 +2,7 @@
 //! lines lead to them.
 
 use super::Curve;
-use super::caption::Writer;
+use super::caption::{Writer, letter};
 use super::chart::{Chart, NUMBERS};
 use super::layout::{CURVE_NAME, Scale};
 use super::narrow::narrow;
@@ -25,6 +25,8 @@ const LEADER_ALPHA: f64 = 0.7;
 const HARDLY: f64 = 3.0;
 /// Names have room for so many letters at least (sizes of type).
 const LEAST_ROOM: f64 = 3.0;
+/// Where one is longer than this many times the room for it, the letters of panels stand instead of all names.
+const LONG: f64 = 1.2;
 
 /// The names of several curves.
 #[derive(Debug)]
@@ -39,8 +41,14 @@ pub(super) struct Ends {
 
 impl Ends {
     /// The names of curves in a room of a width and a height (px). `None` for a single run, which needs no name, and if
-    /// no name would be legible or unique.
-    pub(super) fn new(fonts: &Fonts, series: &[Series], unit: f64, [width, height]: [f64; 2]) -> Option<Self> {
+    /// no name would be legible or unique. Panels may have letters beside these names.
+    pub(super) fn new(
+        fonts: &Fonts,
+        series: &[Series],
+        unit: f64,
+        [width, height]: [f64; 2],
+        have_letters: bool,
+    ) -> Option<Self> {
         let size = NUMBERS * unit;
         let shown = series.iter().filter(|one| !one.points.is_empty()).count();
         let sample = if shown > FEW { SAMPLE.iter().sum::<f64>() * unit } else { 0.0 };
@@ -54,8 +62,13 @@ impl Ends {
             return None;
         }
         let whole: Vec<_> = series.iter().map(|one| &*one.name).collect();
-        let names = whole.iter().map(|name| fonts.told_apart(name, &whole, Weight::Regular, size, room));
-        let names: Vec<_> = names.collect();
+        let is_long = |name: &&str| fonts.width(name, Weight::Regular, size) > LONG * room;
+        let by_letter = have_letters && whole.iter().any(is_long);
+        let name = |(at, name): (usize, &&str)| match by_letter {
+            true => letter(at),
+            false => fonts.told_apart(name, &whole, Weight::Regular, size, room),
+        };
+        let names: Vec<_> = whole.iter().enumerate().map(name).collect();
         let is_alike =
             |at: usize| series.iter().zip(&names).any(|(one, name)| names[at] == *name && one.name != series[at].name);
         let are_clear: Vec<_> = (0..names.len()).map(|at| !is_alike(at)).collect();

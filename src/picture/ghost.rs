@@ -24,6 +24,8 @@ const MOSTLY: f64 = 0.9;
 /// Edges are looked at in pieces of this length, and covered this far beside them on both sides they lie inside (px).
 const PIECE: f64 = 3.0;
 const BESIDE: f64 = 1.6;
+/// Lines touch whose ends are no farther apart than this (px).
+const TOUCH: f64 = 1.0;
 
 /// A triangulated surface seen by a camera.
 pub(super) struct Ghost<'a> {
@@ -46,7 +48,7 @@ impl Ghost<'_> {
     /// The dashed outline in a colour, on a casing without dashes; nothing if a part of the surface is not in front of
     /// the camera. Where next to nothing of the body lies in the room, an arrow may point there.
     pub(super) fn draw(&self, scale: Scale, colour: Colour, halo: Colour, curves: &mut Vec<Curve>) {
-        let lines = [self.outline(), self.bars()].concat();
+        let lines = [without_stray(self.outline(), DASH[0] * scale.line()), self.bars()].concat();
         let fade = self.fade(scale);
         let whole: f64 = lines.iter().map(|line| length(line)).sum();
         // What fades is cut into dashes here.
@@ -178,6 +180,19 @@ fn length(line: &[DVec2]) -> f64 {
     line.windows(2).map(|two| two[0].distance(two[1])).sum()
 }
 
+/// Lines without those shorter than a length (px) that touch no longer one: in folds they come and go between frames.
+fn without_stray(lines: Vec<Vec<DVec2>>, least: f64) -> Vec<Vec<DVec2>> {
+    let (long, short): (Vec<_>, Vec<_>) = lines.into_iter().partition(|line| length(line) >= least);
+    let ends = |line: &[DVec2]| [line[0], line[line.len() - 1]];
+    let touches = |line: &Vec<DVec2>| {
+        let of_long = long.iter().flat_map(|line| ends(line));
+        of_long.into_iter().any(|end| ends(line).iter().any(|own| own.distance(end) <= TOUCH))
+    };
+    // A body as small as that is all short lines.
+    let kept: Vec<_> = short.into_iter().filter(|line| long.is_empty() || touches(line)).collect();
+    [long, kept].concat()
+}
+
 /// Dashes and gaps along a line, such that a closed one has whole dashes (px).
 fn dashes(line: &[DVec2], unit: f64) -> [f64; 2] {
     let dash = DASH.map(|length| length * unit);
@@ -302,6 +317,16 @@ mod tests {
     use crate::sim::body::Dimension;
 
     const ROOM: Rectangle = [0, 0, 640, 640];
+
+    #[test]
+    fn short_pieces_that_touch_nothing_are_dropped() {
+        let line = |from: [f64; 2], to: [f64; 2]| vec![DVec2::from(from), DVec2::from(to)];
+        let (long, beside) = (line([0.0, 0.0], [20.0, 0.0]), line([20.4, 0.0], [23.0, 1.0]));
+        let stray = line([10.0, 5.0], [12.0, 5.0]);
+        let all = vec![stray.clone(), long.clone(), beside.clone()];
+        assert_eq!(without_stray(all, 6.5), [long, beside]);
+        assert_eq!(without_stray(vec![stray.clone()], 6.5), [stray]);
+    }
 
     fn lens(dimension: Dimension) -> Lens {
         let mut view = View::default();

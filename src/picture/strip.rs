@@ -18,8 +18,8 @@ use crate::sim::words::elements;
 /// Size of the unit's type, and from the name to the unit (px in the reference picture).
 const UNIT: f64 = 14.0;
 const UNIT_BELOW: f64 = 19.0;
-/// What a band stands for where a count goes up and down too densely for a line.
-const BAND: &str = "band: least to most";
+/// What a band stands for where a count goes up and down too densely for a line, in one line and in two.
+const BAND: [&[&str]; 2] = [&["band: least to most"], &["band:", "least to most"]];
 /// Between the name and the numbers beside the chart (px in the reference picture).
 const BESIDE_NAME: f64 = 14.0;
 /// The first time begins at most so far left of the chart (px in the reference picture).
@@ -118,6 +118,11 @@ impl Strip {
         self.notes.iter().map(|note| below(note)).fold(name.max(below(&self.unit)), f64::max)
     }
 
+    /// The height of its name with all that stands below it (px).
+    pub(super) fn name_height(&self, scale: Scale) -> f64 {
+        scale.caption() + (1 + self.notes.len()) as f64 * UNIT_BELOW * scale.type_unit()
+    }
+
     /// Writes name and unit from a left end around a height (px).
     pub(super) fn write_name(&self, writer: &mut Writer<'_>, [left, middle]: [f64; 2]) {
         let (scale, palette) = (writer.scale, writer.palette);
@@ -141,11 +146,13 @@ impl Strip {
             let has_band = |one: &Series| values.as_ref().is_some_and(|values| one.has_band(chart, [&times, values]));
             self.series.iter().any(|one| has_band(&one.between(span)))
         });
-        if has_bands {
-            self.notes.push(BAND.to_owned());
-            if !has_room(self) {
-                self.notes.pop();
+        let without = self.notes.len();
+        for lines in BAND.iter().filter(|_| has_bands) {
+            self.notes.extend(lines.iter().map(|&line| line.to_owned()));
+            if has_room(self) {
+                return;
             }
+            self.notes.truncate(without);
         }
     }
 

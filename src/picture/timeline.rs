@@ -65,7 +65,9 @@ impl Timeline {
             });
         }
         let room = room.filter(|_| history.end > 0.0);
-        let parts = room.and_then(|room| still(&mut strip, &events, &mut writer, room.map(f64::from), history.end));
+        let parts = room.and_then(|room| {
+            still(&mut strip, &events, &mut writer, room.map(f64::from), (history.end, scene.view.labels.letter))
+        });
         let Writer { marks, curves, words, .. } = writer;
         Self { strip, events, parts, marks, curves, words }
     }
@@ -97,20 +99,20 @@ impl Timeline {
     }
 }
 
-/// Draws what does not move into a room (px), for a scene up to an end (s); returns where the chart stands, if there is
+/// Draws what does not move into a room (px), for a scene up to an end (s) whose panels may have letters; returns where the chart stands, if there is
 /// room for it.
 fn still(
     strip: &mut Strip,
     events: &[Event],
     writer: &mut Writer<'_>,
     [left, top, width, height]: [f64; 4],
-    end: f64,
+    (end, have_letters): (f64, bool),
 ) -> Option<Parts> {
     let (fonts, scale) = (writer.fonts, writer.scale);
     let unit = scale.type_unit();
     let chart = [(top + ABOVE * unit).round(), (top + height - BELOW * unit).round()];
     let names_room = [NAMES * width, chart[1] - chart[0] + (NAMES_ABOVE + BELOW) * unit];
-    let names = Ends::new(fonts, &strip.series, unit, names_room);
+    let names = Ends::new(fonts, &strip.series, unit, names_room, have_letters);
     let last = (left + width - names.as_ref().map_or(0.0, |names| names.width)).round();
     let split = event::split(&strip.series, end);
     let place = |strip: &Strip| {

@@ -172,8 +172,9 @@ impl Tracking {
         let [body, with_near] = self.all;
         let all = [with_near, body].map(standing);
         let standing = all.into_iter().find(|(pixels, _)| *pixels >= least).map(|(pixels, middle)| {
-            // Room that bodies leave above and below is for what comes near them.
-            let spare = (0.5 * (room[3] / pixels - (body[1].y - body[0].y))).max(0.0);
+            // Room that bodies leave above and below is for what comes near them. Their lowest corner is their nearest one.
+            let half = 0.5 * (body[1] - body[0]);
+            let spare = (0.5 * room[3] * (1.0 / pixels - 2.0 * depth(half)) - half.y).max(0.0);
             (pixels, middle + DVec3::Y * (all[0].1.y - middle.y).clamp(-spare, spare))
         });
         let standing = standing.filter(|_| !self.paths.is_empty());

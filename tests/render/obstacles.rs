@@ -2,11 +2,14 @@
 
 use super::{fig4b, frame, gpu, parse, renderer};
 use glam::{DVec3, Vec3};
+use localshape::moments::Moments;
 use localshape::picture::{
     Composer, LineKind, MOST_OCCLUDERS, Mark, MarkShape, Mesh, Obstacles, Occluder, Panel, Picture, compose,
+    compose_figure,
 };
 use localshape::render::Renderer;
 use localshape::scene::Scene;
+use localshape::scene::figure::{Content, Figure};
 use localshape::sim::snapshot::{Divergence, Status};
 use std::collections::HashMap;
 
@@ -457,4 +460,24 @@ fn obstacles_fade_where_they_leave_their_panel() {
     }
     // Neither where it is whole nor where nothing of it is seen.
     assert!(widest[0] > 5 && widest[1] > 10 && before == widest[1], "{widest:?}");
+}
+
+#[test]
+fn obstacles_fade_in_figures_of_forces() {
+    let covers = |with_rod: bool| {
+        let mut figure = Figure::built_in("fig3").expect("a figure of the paper");
+        let Content::Forces(forces) = &mut figure.content else { panic!("a figure of forces") };
+        if with_rod {
+            // Across the whole panel, behind the body.
+            let rod = "[[obstacle]]\nkind = 'capsule'\nfrom = [-9, 0, -2]\nto = [9, 0, -2]\nradius = 0.3\n";
+            forces.scenes[1].obstacles = scene(&[WORLD, CUBE, rod]).obstacles;
+        }
+        let picture = compose_figure(&figure, &Moments::new(&figure)).expect("room");
+        let left = picture.panels[1].viewport[0] as f32;
+        let is_cover = |mark: &&Mark| mark.colour == picture.palette.background && mark.rectangle[2] == 1.0;
+        let covers: Vec<_> = picture.marks.iter().filter(is_cover).map(|mark| mark.rectangle[0] - left).collect();
+        covers
+    };
+    let rod = covers(true);
+    assert!(covers(false).is_empty() && rod.len() > 20 && rod.contains(&0.0), "{rod:?}");
 }

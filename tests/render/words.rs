@@ -313,6 +313,20 @@ fn words_stay_where_they_are() {
 }
 
 #[test]
+fn letters_of_panels_stand_for_names_without_room_beside_a_chart() {
+    for (size, expected) in [("[500, 900]", 2), ("[3000, 1688]", 1)] {
+        let text = ALL.replace(" that nobody would read to its end", "");
+        let scene = parse(&format!("{}\nsize = {size}\n", text.replace("spring_colour = {}", "")));
+        let mut composer = Composer::new(&scene);
+        composer.set_history(&History::new(&scene, &all(&scene)));
+        let picture = composer.compose(&Runner::new(&scene, &all(&scene)).frame(0));
+        let count = |text: &str| picture.words.iter().filter(|word| word.text == text).count();
+        assert_eq!(["a", "b", "c"].map(count), [expected; 3], "{size}");
+        assert!(picture.words.iter().all(|word| !word.text.contains('…')), "{size}");
+    }
+}
+
+#[test]
 fn what_is_not_wanted_is_not_written() {
     let (mut scene, frame) = fig4b(4);
     let all = compose(&scene, &frame).words.len();

@@ -58,7 +58,8 @@ pub(in crate::scene) struct BodyFile {
     /// The nodes of each face to draw, counter-clockwise from outside. Default: the faces of the elements.
     #[schemars(inner(length(min = 3)))]
     pub(in crate::scene) faces: Option<Vec<Vec<u32>>>,
-    /// Initial position of each node (m), before `rotation`, `offset` and `lowest`. Default: the rest positions.
+    /// Initial position of each node (m), before `rotation`, `offset` and `lowest`; like all lists with an entry for each node
+    /// or element, for bodies that are given by `nodes`. Default: the rest positions.
     pub(in crate::scene) positions: Option<Vec<Coordinates>>,
     /// A degenerate, inverted or random shape in which the body starts, such as `{ shape = "cloud", seed = 1 }`. Default: its
     /// rest shape.

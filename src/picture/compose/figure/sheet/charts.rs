@@ -56,7 +56,7 @@ impl<'a> Charts<'a> {
         // The lines of all charts have the same names.
         let room = [NAMES * width, f64::INFINITY];
         let type_unit = scale.type_unit();
-        let ends = charts.iter().find_map(|one| Ends::new(fonts, &one.series, type_unit, room));
+        let ends = charts.iter().find_map(|one| Ends::new(fonts, &one.series, type_unit, room, false));
         let numbers_width = charts.iter().map(|one| one.numbers_width(fonts, type_unit)).fold(0.0, f64::max);
         let names_width = charts.iter().map(|one| one.name_width(fonts, scale)).fold(0.0, f64::max);
         Self { sheet, end: histories[0].end, charts, ends, names_width, numbers_width }
@@ -77,16 +77,17 @@ impl<'a> Charts<'a> {
         self.charts.len()
     }
 
-    /// Draws as many charts as there is room for.
-    pub(super) fn draw(&self, writer: &mut Writer<'_>, room: &ChartsRoom) {
-        let scale = writer.scale;
+    /// Draws as many charts as there is room for, and says what bands are where that has room below a name.
+    pub(super) fn draw(&mut self, writer: &mut Writer<'_>, room: &ChartsRoom) {
+        let (fonts, scale) = (writer.fonts, writer.scale);
         if !Scale::legible(NUMBERS * scale.type_unit()) || self.end <= 0.0 {
             return;
         }
-        let parts = |ends| Parts::new(scale, room.span, ends, [self.sheet.from, self.end], self.sheet.split);
+        let (sheet, end, count) = (self.sheet, self.end, room.charts.len());
+        let parts = |ends| Parts::new(scale, room.span, ends, [sheet.from, end], sheet.split);
         let all = [room.charts[0][0], room.charts[room.charts.len() - 1][1]];
         // A line through all charts at the moment of each column, with the column's letter in a ring above.
-        let columns = self.sheet.columns.iter().enumerate();
+        let columns = sheet.columns.iter().enumerate();
         let colour = writer.palette.second_text;
         let flags = columns.filter_map(|(at, column)| {
             Some(Flag { at: parts(all).place(column.time?).1, text: caption::letter(at), colour })
@@ -94,12 +95,17 @@ impl<'a> Charts<'a> {
         let mut flags: Vec<_> = flags.collect();
         flags.sort_by(|one, other| one.at.total_cmp(&other.at));
         flag::draw(writer, &flags, room.rings, room.span, all);
-        for (at, (one, &[top, bottom])) in self.charts.iter().zip(&room.charts).enumerate() {
+        for (at, (one, &[top, bottom])) in self.charts.iter_mut().zip(&room.charts).enumerate() {
             // Names may stand beside the gaps between charts, too, but not next to those of another chart.
             let beyond = 0.5 * room.between - NAMES_APART * scale.type_unit();
             let between = [top - beyond, bottom + beyond];
-            one.draw(writer, &parts([top, bottom]), at + 1 == room.charts.len(), self.ends.as_ref(), between);
+            let parts = parts([top, bottom]);
+            one.draw(writer, &parts, at + 1 == count, self.ends.as_ref(), between);
             if let Some(left) = room.names {
+                let name_room = [room.span[0] - self.numbers_width - left, bottom - top + room.between];
+                one.explain_bands(fonts, &parts, |one| {
+                    one.name_width(fonts, scale) <= name_room[0] && one.name_height(scale) <= name_room[1]
+                });
                 one.write_name(writer, [left, 0.5 * (top + bottom)]);
             }
         }

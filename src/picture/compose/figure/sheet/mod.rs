@@ -54,7 +54,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
 
     let legend = legend(&scenes, size, scale);
     let has_charts = !sheet.strips.is_empty();
-    let charts = has_charts.then(|| Charts::new(sheet, &moments.histories, &writer, f64::from(size[0])));
+    let mut charts = has_charts.then(|| Charts::new(sheet, &moments.histories, &writer, f64::from(size[0])));
     let shows_runs = |scene: &Scene| matches!(scene.view.ghost, Some(Ghost::Run(_))) || !scene.view.paths.is_empty();
     let with_sample = has_charts || scenes.iter().any(shows_runs);
     let labels = RowLabels::new(sheet, &fonts, scale, with_sample, f64::from(size[0]));
@@ -74,7 +74,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         let left = f64::from(plan.tile(0, column)[0]);
         heading.write(&mut writer, [left, plan.headings_baseline]);
     }
-    if let (Some(charts), Some(room)) = (&charts, &plan.charts) {
+    if let (Some(charts), Some(room)) = (&mut charts, &plan.charts) {
         charts.draw(&mut writer, room);
     }
 
