@@ -32,8 +32,8 @@ const VERY_MANY_FACES: usize = 12_000;
 const SMOOTH: f64 = 0.995;
 /// Edges of elements smaller than this (px) would be invisible and are left out. The shader has the same constant.
 const SMALLEST_ELEMENT: f64 = 4.0;
-/// Edges of elements smaller than this (px) do not show through the body.
-const SEEN_THROUGH: f64 = 6.5;
+/// Edges of elements smaller than this (px) do not show through the body: their opacity would be less than 1 %.
+const SEEN_THROUGH: f64 = 7.25;
 /// Elements that are drawn apart have lines of their own, which fade between these sizes of elements (px): those of many
 /// small ones would cover everything.
 const OWN_LINES: [f64; 2] = [5.0, 10.0];
