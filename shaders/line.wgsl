@@ -84,7 +84,7 @@ fn segment(
     let strength = f32(extractBits(look, KIND_BITS, STRENGTH_BITS)) / 255.0;
     let samples = vec2(first, look >> (KIND_BITS + STRENGTH_BITS));
     let reach = 0.5 * max(widest(kind) * panel.line_scale, 1.0) + 0.5;
-    let place = strip_corner(corner, ends.xy, ends.zw, reach, panel.region.zw);
+    let place = triangle_corner(corner, ends.xy, ends.zw, reach, panel.region.zw);
     let scales = vec4(panel.line_scale, panel.contour_share, panel.line_share * panel.element, panel.opacity);
     return Segment(place, ends + panel.region.xyxy, depths, kind, strength, samples, scales);
 }

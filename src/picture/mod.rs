@@ -15,6 +15,7 @@ mod camera;
 mod caption;
 mod chart;
 mod compose;
+mod cut;
 mod ears;
 mod ends;
 mod event;

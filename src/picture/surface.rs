@@ -2,6 +2,7 @@
 //! cut, so they are in one file, though it is long.
 
 use super::camera::Lens;
+use super::cut::{Cuts, Grid, Grids};
 use super::ears::Ears;
 use super::field::Shades;
 use super::narrow::{narrow, narrow_point};
@@ -31,8 +32,8 @@ const VERY_MANY_FACES: usize = 12_000;
 const SMOOTH: f64 = 0.995;
 /// Edges of elements smaller than this (px) would be invisible and are left out. The shader has the same constant.
 const SMALLEST_ELEMENT: f64 = 4.0;
-/// Edges of elements smaller than this (px) do not show through the body.
-const SEEN_THROUGH: f64 = 6.5;
+/// Edges of elements smaller than this (px) do not show through the body: their opacity would be less than 1 %.
+const SEEN_THROUGH: f64 = 7.25;
 /// Elements that are drawn apart have lines of their own, which fade between these sizes of elements (px): those of many
 /// small ones would cover everything.
 const OWN_LINES: [f64; 2] = [5.0, 10.0];
@@ -70,30 +71,6 @@ pub(super) struct Lines {
     pub(super) contour: LineKind,
 }
 
-/// The pieces into which every bilinear patch of a surface is cut.
-struct Grid {
-    /// Cells in each direction.
-    cut: usize,
-    /// The points, by their shares of the way along both directions, and how much each corner weighs there.
-    points: Vec<([f64; 2], [f64; 4])>,
-    /// The corners of the small triangles, as places in `points`.
-    triangles: Vec<[u32; 3]>,
-}
-
-impl Grid {
-    /// A grid of `cut` × `cut` cells of two triangles.
-    fn new(cut: usize) -> Self {
-        let points = (0..(cut + 1) * (cut + 1)).map(|at| {
-            let [u, v] = [at % (cut + 1), at / (cut + 1)].map(|along| along as f64 / cut as f64);
-            ([u, v], [(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v])
-        });
-        let across = (cut + 1) as u32;
-        let corners = (0..cut as u32).flat_map(|row| (0..cut as u32).map(move |column| row * across + column));
-        let triangles = corners.flat_map(|at| [[at, at + 1, at + across + 1], [at, at + across + 1, at + across]]);
-        Self { cut, points: points.collect(), triangles: triangles.collect() }
-    }
-}
-
 /// One face cut into triangles, as long as it is being worked on; its memory then serves the next one.
 #[derive(Default)]
 struct Patch {
@@ -126,8 +103,16 @@ pub(super) struct Border {
     pub(super) edge: Option<[u32; 2]>,
 }
 
-/// A side of a face: its nodes, where its values begin in [`FaceSides`], and the face.
-type FaceSide = ([u32; 2], u32, u32);
+/// A side of a face.
+#[derive(Clone, Copy, Default)]
+struct FaceSide {
+    /// Its nodes.
+    ends: [u32; 2],
+    /// Where its values begin in [`FaceSides`], and the number of its pieces.
+    first: u32,
+    pieces: u32,
+    face: u32,
+}
 
 /// The sides of all faces of a surface, cut into pieces: how far the normals of the face point towards the viewer there.
 #[derive(Default)]
@@ -145,17 +130,17 @@ impl FaceSides {
     /// The sides in the order of their edges; those of one edge stand beside each other.
     fn sorted(&self, nodes: usize) -> Vec<FaceSide> {
         // Sorted into boxes by the first node, which leaves hardly anything to sort.
-        let low = |side: &FaceSide| side.0[0].min(side.0[1]) as usize;
+        let low = |side: &FaceSide| side.ends[0].min(side.ends[1]) as usize;
         let mut starts = vec![0_u32; nodes + 1];
         self.sides.iter().for_each(|side| starts[low(side) + 1] += 1);
         (0..nodes).for_each(|node| starts[node + 1] += starts[node]);
-        let mut sorted = vec![([0; 2], 0, 0); self.sides.len()];
+        let mut sorted = vec![FaceSide::default(); self.sides.len()];
         for side in &self.sides {
             let place = &mut starts[low(side)];
             sorted[*place as usize] = *side;
             *place += 1;
         }
-        let key = |side: &FaceSide| (ordered(side.0), side.1);
+        let key = |side: &FaceSide| (ordered(side.ends), side.first);
         let mut rest = &mut sorted[..];
         while let Some(first) = rest.first().map(low) {
             let count = rest.iter().take_while(|side| low(side) == first).count();
@@ -167,35 +152,39 @@ impl FaceSides {
     }
 
     /// The value of a side at a part of its edge's length, which runs from the lower node to the higher one.
-    fn at(&self, &([from, to], first, _): &FaceSide, share: f64, cut: usize) -> f64 {
-        let along = (if from < to { share } else { 1.0 - share }) * cut as f64;
-        let piece = (along as usize).min(cut - 1);
-        let [a, b] = [0, 1].map(|end| self.facing[first as usize + piece + end]);
+    fn at(&self, side: &FaceSide, share: f64) -> f64 {
+        let [from, to] = side.ends;
+        let along = (if from < to { share } else { 1.0 - share }) * f64::from(side.pieces);
+        let piece = (along as usize).min(side.pieces as usize - 1);
+        let [a, b] = [0, 1].map(|end| self.facing[side.first as usize + piece + end]);
         a + (b - a) * (along - piece as f64)
+    }
+
+    /// The values at the ends of the pieces of a side.
+    fn of(&self, side: &FaceSide) -> &[f64] {
+        &self.facing[side.first as usize..][..=side.pieces as usize]
     }
 
     /// Whether the faces of two sides are lit differently.
     fn are_bent(&self, sides: &[FaceSide]) -> bool {
-        let normal = |side: &FaceSide| self.normals[side.2 as usize];
+        let normal = |side: &FaceSide| self.normals[side.face as usize];
         sides.iter().skip(1).any(|side| normal(side).dot(normal(&sides[0])) < SMOOTH)
     }
 
     /// Calls `draw` with the parts of an edge at which the surface turns away from the viewer: the outside of one of its
     /// sides is seen, that of another is not. An edge of one side alone is a border of the surface.
-    fn contours(&mut self, sides: &[FaceSide], cut: usize, draw: &mut dyn FnMut([f64; 2])) {
+    fn contours(&mut self, sides: &[FaceSide], draw: &mut dyn FnMut([f64; 2])) {
         // Nowhere along nearly all edges.
-        let are_away = |&(_, first, _): &FaceSide, away: bool| {
-            self.facing[first as usize..][..=cut].iter().all(|&seen| (seen < 0.0) == away)
-        };
+        let are_away = |side: &FaceSide, away: bool| self.of(side).iter().all(|&seen| (seen < 0.0) == away);
         if sides.len() > 1 && [false, true].iter().any(|&away| sides.iter().all(|side| are_away(side, away))) {
             return;
         }
         let mut changes = std::mem::take(&mut self.changes);
         changes.clear();
-        for &([from, to], first, _) in sides {
-            let values = &self.facing[first as usize..][..=cut];
+        for side in sides {
+            let ([from, to], values) = (side.ends, self.of(side));
             for (piece, two) in values.windows(2).enumerate().filter(|(_, two)| (two[0] < 0.0) != (two[1] < 0.0)) {
-                let share = (piece as f64 + two[0] / (two[0] - two[1])) / cut as f64;
+                let share = (piece as f64 + two[0] / (two[0] - two[1])) / f64::from(side.pieces);
                 changes.push(if from < to { share } else { 1.0 - share });
             }
         }
@@ -203,7 +192,7 @@ impl FaceSides {
         let (mut begin, mut from) = (None, 0.0);
         for to in changes.iter().copied().chain([1.0]) {
             let middle = f64::midpoint(from, to);
-            let away = sides.iter().filter(|side| self.at(side, middle, cut) < 0.0).count();
+            let away = sides.iter().filter(|side| self.at(side, middle) < 0.0).count();
             let is_contour = sides.len() == 1 || (away > 0 && away < sides.len());
             match begin {
                 None if is_contour => begin = Some(from),
@@ -243,12 +232,11 @@ impl Surroundings<'_> {
         if faces.is_empty() {
             return;
         }
-        let grid = Grid::new(self.cut(faces, total));
-        let cut = grid.cut;
-        let per_face = (cut + 1) * (cut + 1);
-        mesh.vertices.reserve(faces.len() * per_face);
-        mesh.triangles.reserve(faces.len() * 2 * cut * cut);
-        mesh.shades.reserve(if self.shades.is_some() { faces.len() * per_face } else { 0 });
+        let (cuts, mut grids) = (self.cuts(faces, total), Grids::default());
+        // What faces need that are not cut.
+        mesh.vertices.reserve(4 * faces.len());
+        mesh.triangles.reserve(2 * faces.len());
+        mesh.shades.reserve(if self.shades.is_some() { 4 * faces.len() } else { 0 });
         // Not for turned-over elements, whose faces are inside out: their back faces are the visible ones.
         let hides_back = self.apart
             && kinds.edge == LineKind::Edge
@@ -260,14 +248,15 @@ impl Surroundings<'_> {
         let is_inside_out = kinds.edge != LineKind::Edge;
         let (mut patch, mut borders) = (Patch::default(), FaceSides::default());
         borders.sides.reserve(4 * faces.len());
-        borders.facing.reserve(4 * (cut + 1) * faces.len());
-        for side in faces {
+        borders.facing.reserve(8 * faces.len());
+        for (at, side) in faces.iter().enumerate() {
             self.corners(side, &mut patch.nodes);
             let ears = self.ears.of(&patch.nodes);
+            let grid = bilinear(&patch.nodes, ears).map(|corners| grids.of(cuts.face(at, corners)));
             let before = [mesh.vertices.len(), mesh.shades.len(), mesh.triangles.len()];
             // Turned-over elements are hatched, flat ones among the others dotted.
             let dots = (kinds.edge == LineKind::Edge).then(|| f64::from(u8::from(self.is_flat(side))));
-            self.emit(side, ears, dots, &grid, &mut patch, mesh);
+            self.emit(side, ears, dots, grid, &mut patch, mesh);
             if hides_back && self.is_hidden(side, &patch) {
                 mesh.vertices.truncate(before[0]);
                 mesh.shades.truncate(before[1]);
@@ -276,24 +265,23 @@ impl Surroundings<'_> {
                 last.extend(mesh.triangles.drain(before[2]..));
             }
             self.inner_contours(&patch, kinds, lines);
-            note_borders(&patch, ears, cut, &mut borders);
+            note_borders(&patch, ears, grid, &cuts, &mut borders);
         }
         mesh.triangles.append(&mut last);
         let sides = borders.sorted(self.body.len());
-        for edge in sides.chunk_by(|one, other| ordered(one.0) == ordered(other.0)) {
-            self.edge(edge, &mut borders, cut, kinds, lines);
+        for edge in sides.chunk_by(|one, other| ordered(one.ends) == ordered(other.ends)) {
+            self.edge(edge, &mut borders, kinds, lines);
         }
     }
 
     /// The lines along one edge, at which the sides of some faces meet.
-    fn edge(&self, sides: &[FaceSide], borders: &mut FaceSides, cut: usize, kinds: Lines, lines: &mut SurfaceLines) {
-        let [a, b] = ordered(sides[0].0);
+    fn edge(&self, sides: &[FaceSide], borders: &mut FaceSides, kinds: Lines, lines: &mut SurfaceLines) {
+        let [a, b] = ordered(sides[0].ends);
         let (start, end) = (self.at(a), self.at(b));
         if self.own_lines() == 0.0 {
             return;
         }
-        let faces_away =
-            |&(_, first, _): &FaceSide| borders.facing[first as usize..][..=cut].iter().all(|&seen| seen < 0.0);
+        let faces_away = |side: &FaceSide| borders.of(side).iter().all(|&seen| seen < 0.0);
         let is_hidden = kinds.edge == LineKind::Edge && !self.lens.orthographic && sides.iter().all(faces_away);
         // Edges of turned-over elements are always drawn.
         let [in_front, behind] = match kinds.edge {
@@ -305,7 +293,7 @@ impl Surroundings<'_> {
             lines.drawn.push(self.line(start, end, kinds.edge, if behind { 1.0 } else { 0.0 }));
         }
         let mut is_contour = false;
-        borders.contours(sides, cut, &mut |part| {
+        borders.contours(sides, &mut |part| {
             self.contour(part.map(|at| start.lerp(end, at)), Some([a, b]), kinds, lines);
             is_contour = true;
         });
@@ -344,27 +332,31 @@ impl Surroundings<'_> {
         Line { from: relative(from), to: relative(to), kind, strength: narrow(strength) }
     }
 
-    /// Into how many cells each quadrilateral is cut in each direction, the same for all, so that neighbours fit.
-    fn cut(&self, faces: &[Side], total: usize) -> usize {
+    /// Into how many pieces faces are cut, which are among so many in all.
+    fn cuts(&self, faces: &[Side], total: usize) -> Cuts {
         if total > VERY_MANY_FACES {
-            return 1;
+            return Cuts::none();
         }
         let of_few = (CELLS_OF_FEW / total.max(1)).isqrt().clamp(FINEST_CUT, FINEST_OF_FEW);
         let affordable = if total > MANY_FACES { 2 } else { of_few };
-        let (mut nodes, mut largest) = (Vec::new(), 0.0_f64);
+        let mut cuts = Cuts::new(self.body.len());
+        let mut nodes = Vec::new();
         for side in faces {
             self.corners(side, &mut nodes);
-            let [a, b, c, d] = match nodes[..] {
-                [a, b, c, d] if self.ears.of(&nodes).is_none() => [a, b, c, d].map(|node| self.at(node)),
-                _ => continue,
-            };
-            let Some((_, distance)) = self.lens.project(a) else { continue };
-            let scale = if self.lens.orthographic { self.lens.focal } else { self.lens.focal / distance };
-            // In the middle of a patch its diagonals are half of this apart, each a quarter away from the patch.
-            largest = largest.max((a - b + c - d).length() / 4.0 * scale);
+            let corners = bilinear(&nodes, self.ears.of(&nodes));
+            cuts.add(&nodes, corners.map_or(1, |corners| self.cells(corners).min(affordable as f64) as u8));
         }
-        let needed = (largest / FLATNESS).sqrt().ceil();
-        if needed >= affordable as f64 { affordable } else { (needed as usize).max(1) }
+        cuts
+    }
+
+    /// The number of cells in each direction that a bilinear patch needs.
+    fn cells(&self, corners: [u32; 4]) -> f64 {
+        let [a, b, c, d] = corners.map(|node| self.at(node));
+        let Some((_, distance)) = self.lens.project(a) else { return 1.0 };
+        let scale = if self.lens.orthographic { self.lens.focal } else { self.lens.focal / distance };
+        // In the middle of a patch its diagonals are half of this apart, each a quarter away from the patch.
+        let off = (a - b + c - d).length() / 4.0 * scale;
+        (off / FLATNESS).sqrt().ceil().max(1.0)
     }
 
     /// Whether a face belongs to a flat element.
@@ -378,7 +370,7 @@ impl Surroundings<'_> {
         side: &Side,
         ears: Option<&[[u32; 3]]>,
         dots: Option<f64>,
-        grid: &Grid,
+        grid: Option<&Grid>,
         patch: &mut Patch,
         mesh: &mut Mesh,
     ) {
@@ -398,11 +390,11 @@ impl Surroundings<'_> {
             hatch: narrow(phase),
         };
         let shades = self.shades.map(|shades| shades.corners(nodes, side.element));
-        *is_curved = corners.len() == 4 && ears.is_none();
-        if let ([a, b, c, d], None) = (&corners[..], ears) {
+        *is_curved = grid.is_some();
+        if let (&[a, b, c, d], Some(grid)) = (&corners[..], grid) {
             for &([u, v], weights) in &grid.points {
-                let point = a.lerp(*b, u).lerp(d.lerp(*c, u), v);
-                let normal = bilinear_normal([*a, *b, *c, *d], [u, v]);
+                let point = a.lerp(b, u).lerp(d.lerp(c, u), v);
+                let normal = bilinear_normal([a, b, c, d], [u, v]);
                 mesh.vertices.push(vertex(point, normal, weighted(&weights, phases)));
                 points.push(point);
                 facing.push(self.facing(point, normal));
@@ -473,15 +465,22 @@ impl Surroundings<'_> {
     }
 }
 
+/// The corners of a face that is a bilinear patch.
+fn bilinear(nodes: &[u32], ears: Option<&[[u32; 3]]>) -> Option<[u32; 4]> {
+    nodes.try_into().ok().filter(|_| ears.is_none())
+}
+
 /// Records how far the normals along the sides of a face point towards the viewer.
-fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, cut: usize, borders: &mut FaceSides) {
+fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, grid: Option<&Grid>, cuts: &Cuts, borders: &mut FaceSides) {
     let Patch { nodes, facing, .. } = patch;
     let face = borders.normals.len() as u32;
     borders.normals.push(newell(&patch.corners).normalize_or_zero());
     for (side, ends) in around(nodes).enumerate() {
-        borders.sides.push((ends, u32::try_from(borders.facing.len()).expect("fewer than 2^32 pieces"), face));
-        if patch.is_curved {
-            borders.facing.extend((0..=cut).map(|along| facing[border_point(side, along, cut)]));
+        let first = u32::try_from(borders.facing.len()).expect("fewer than 2^32 pieces");
+        let pieces = u32::from(cuts.edge(ends));
+        borders.sides.push(FaceSide { ends, first, pieces, face });
+        if let Some(grid) = grid {
+            borders.facing.extend(grid.sides[side].iter().map(|&at| facing[at as usize]));
             continue;
         }
         let two = [side as u32, ((side + 1) % nodes.len()) as u32];
@@ -494,7 +493,7 @@ fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, cut: usize, borders: &
             None if nodes.len() == 3 => facing[0],
             None => facing[side],
         };
-        borders.facing.extend(std::iter::repeat_n(seen, cut + 1));
+        borders.facing.extend(std::iter::repeat_n(seen, pieces as usize + 1));
     }
 }
 
@@ -507,17 +506,6 @@ pub(super) fn own_lines(element: f64) -> f64 {
 /// The sum of what stands at the corners of a face, each times its weight.
 fn weighted(weights: &[f64; 4], of_corners: &[f64]) -> f64 {
     weights.iter().zip(of_corners).map(|(weight, corner)| weight * corner).sum()
-}
-
-/// The point of a [`Grid`] so many pieces along a side of the quadrilateral.
-fn border_point(side: usize, along: usize, cut: usize) -> usize {
-    let [row, column] = match side {
-        0 => [0, along],
-        1 => [along, cut],
-        2 => [cut, cut - along],
-        _ => [cut - along, 0],
-    };
-    row * (cut + 1) + column
 }
 
 /// The normal of a bilinear patch, as long as the area it stands for. It is linear in both directions, so that its

@@ -93,7 +93,7 @@ impl Borders {
         panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
             for (pipeline, lines) in &self.runs[panel] {
                 pass.set_pipeline(self.pipelines[*pipeline].as_ref().expect("prepared"));
-                pass.draw(0..4, lines.clone());
+                pass.draw(0..3, lines.clone());
             }
         });
     }

@@ -148,7 +148,7 @@ impl Lines {
             let Some(pipeline) = pipeline else { continue };
             pass.set_pipeline(pipeline);
             panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
-                pass.draw(0..4, self.ranges[panel][at].clone());
+                pass.draw(0..3, self.ranges[panel][at].clone());
             });
         }
     }
