@@ -45,9 +45,9 @@ fn triangle_corner(corner: u32, from_pixel: vec2<f32>, to_pixel: vec2<f32>, reac
     let extent = length(difference);
     let along = select(vec2(1.0, 0.0), difference / extent, extent > 1e-6);
     let across = vec2(-along.y, along.x);
-    // The base lies along the strip, twice as long; the triangle is twice as high as the strip.
-    let length = 0.5 * extent + reach;
-    let base = select(-2.0, 2.0, corner == 1u) * length * along - reach * across;
+    // The base lies along the strip, twice as long; the triangle is twice as high as the strip, whose corners lie on its sides.
+    let half = 0.5 * extent + reach;
+    let base = select(-2.0, 2.0, corner == 1u) * half * along - reach * across;
     let pixel = 0.5 * (from_pixel + to_pixel) + select(base, 3.0 * reach * across, corner == 2u);
     return vec4((pixel / size - 0.5) / FLIP, 0.5, 1.0);
 }

@@ -1,5 +1,5 @@
 // Surfaces coloured by a scalar field, lit so mildly that the colours of its scale stay what they are. Turned-over
-// elements are coloured by it, too, and keep their hatch, in vermilion; through the body only that is seen. Without a
+// elements are coloured by it, too, and keep their hatch, in vermilion; deep in the body only that is seen. Without a
 // hatch they are vermilion, lit like plain ones.
 
 // The colours of the scale, linear.
@@ -12,6 +12,9 @@ const LIGHTNESS = 0.06;
 const BRIGHTNESS = vec2<f32>(0.40, 1.15);
 // How strong stripes are that are seen through the body.
 const THROUGH = 0.75;
+// Up to this depth (soft units) behind the surface their colours are seen, too, the less the deeper: where they cut it or lie close to it,
+// there is no jagged border, and nothing that pops.
+const NEAR_DEPTH = 0.3;
 
 struct TintedCorner {
     @builtin(position) place: vec4<f32>,
@@ -111,7 +114,8 @@ fn tinted_over(colour: vec3<f32>, corner: TintedCorner) -> vec4<f32> {
     let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
     // Of a hatch only the stripes are seen, whatever lies between them.
     let alarm = select(stored.rgb * stored.rgb, panel.alarm, panel.hatch > 0.5);
-    return opaque(mix(colour, alarm, THROUGH * (1.0 - 0.4 * deep) * stored.a));
+    let through = mix(colour, alarm, THROUGH * (1.0 - 0.4 * deep) * stored.a);
+    return opaque(mix(stored.rgb * stored.rgb, through, smoothstep(0.0, NEAR_DEPTH * panel.soft, depth)));
 }
 
 @fragment

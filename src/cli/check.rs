@@ -38,7 +38,7 @@ pub(super) struct Check {
     #[command(flatten)]
     printing: PrintOptions,
 
-    /// Width and height of the frames whose words are looked at (px) [default: that of the scene]
+    /// Check as if frames had this width and height (px) [default: that of the scene]
     #[cfg(feature = "render")]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,

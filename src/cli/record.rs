@@ -404,7 +404,7 @@ impl<'a> Recording<'a> {
         // Frames that are not kept cannot be continued, and states that are read need not be.
         let can_resume =
             simulation.read_from.is_none() && (results.pictures.is_none() || self.summary.frames.size.is_some());
-        if self.summary.frames.recorded > 0 {
+        if self.summary.frames.recorded > 0 && simulation.read_from.is_none() {
             // Going on: in case that it is stopped before the next frame.
             self.note_sleep(simulation.frames.states());
         }

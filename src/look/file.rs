@@ -78,7 +78,7 @@ pub(crate) struct ViewFile {
     pub(crate) legend: bool,
     /// A diagnostic plotted over the whole time of the scene in one chart below all panels, with the current time marked. The
     /// whole scene is simulated before the first frame is drawn. Names are written at the ends of curves as far as there is
-    /// room; numbered flags, also in the panels, say when elements first turn over and when their count settles, or the
+    /// room, or the letters of their panels where there is none; numbered flags, also in the panels, say when elements first turn over and when their count settles, or the
     /// extreme value; and where nearly everything happens early, that part of the time has a larger scale. Default: none.
     pub(crate) strip: Option<Diagnostic>,
     /// Opacity of elements that are not turned over: below 1, what is behind and inside the body is seen through them.

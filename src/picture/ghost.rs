@@ -180,13 +180,14 @@ fn length(line: &[DVec2]) -> f64 {
     line.windows(2).map(|two| two[0].distance(two[1])).sum()
 }
 
-/// Lines without those shorter than a length (px) that touch no longer one: in folds they come and go between frames.
+/// Lines without those shorter than a length (px) that touch no end of a longer one: in folds they come and go between frames.
 fn without_stray(lines: Vec<Vec<DVec2>>, least: f64) -> Vec<Vec<DVec2>> {
     let (long, short): (Vec<_>, Vec<_>) = lines.into_iter().partition(|line| length(line) >= least);
     let ends = |line: &[DVec2]| [line[0], line[line.len() - 1]];
+    let of_long: Vec<_> = long.iter().flat_map(|line| ends(line)).collect();
     let touches = |line: &Vec<DVec2>| {
-        let of_long = long.iter().flat_map(|line| ends(line));
-        of_long.into_iter().any(|end| ends(line).iter().any(|own| own.distance(end) <= TOUCH))
+        let own = ends(line);
+        of_long.iter().any(|&end| own.iter().any(|own| own.distance(end) <= TOUCH))
     };
     // A body as small as that is all short lines.
     let kept: Vec<_> = short.into_iter().filter(|line| long.is_empty() || touches(line)).collect();

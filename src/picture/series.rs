@@ -20,7 +20,7 @@ const ARM: f64 = 4.0;
 /// for a count a band of this strength of its colour stands for it.
 const DENSE: f64 = 12.0;
 const TURN: f64 = 3.0;
-const BAND: f64 = 0.55;
+const BAND: f64 = 0.35;
 /// Curves are simplified as long as no point moves by more than this (px).
 pub(super) const EXACT: f64 = 0.08;
 

@@ -146,8 +146,11 @@ impl Strip {
             let has_band = |one: &Series| values.as_ref().is_some_and(|values| one.has_band(chart, [&times, values]));
             self.series.iter().any(|one| has_band(&one.between(span)))
         });
+        if !has_bands {
+            return;
+        }
         let without = self.notes.len();
-        for lines in BAND.iter().filter(|_| has_bands) {
+        for lines in BAND {
             self.notes.extend(lines.iter().map(|&line| line.to_owned()));
             if has_room(self) {
                 return;

@@ -33,7 +33,7 @@ const SMOOTH: f64 = 0.995;
 /// Edges of elements smaller than this (px) would be invisible and are left out. The shader has the same constant.
 const SMALLEST_ELEMENT: f64 = 4.0;
 /// Edges of elements smaller than this (px) do not show through the body: their opacity would be less than 1 %.
-const SEEN_THROUGH: f64 = 7.25;
+const SEEN_THROUGH: f64 = 7.2;
 /// Elements that are drawn apart have lines of their own, which fade between these sizes of elements (px): those of many
 /// small ones would cover everything.
 const OWN_LINES: [f64; 2] = [5.0, 10.0];
@@ -352,7 +352,8 @@ impl Surroundings<'_> {
     /// The number of cells in each direction that a bilinear patch needs.
     fn cells(&self, corners: [u32; 4]) -> f64 {
         let [a, b, c, d] = corners.map(|node| self.at(node));
-        let Some((_, distance)) = self.lens.project(a) else { return 1.0 };
+        let distances = [a, b, c, d].into_iter().filter_map(|corner| Some(self.lens.project(corner)?.1));
+        let Some(distance) = distances.reduce(f64::min) else { return 1.0 };
         let scale = if self.lens.orthographic { self.lens.focal } else { self.lens.focal / distance };
         // In the middle of a patch its diagonals are half of this apart, each a quarter away from the patch.
         let off = (a - b + c - d).length() / 4.0 * scale;

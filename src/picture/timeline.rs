@@ -42,14 +42,14 @@ pub(super) struct Timeline {
 }
 
 impl Timeline {
-    /// The chart of a diagnostic of all runs of a history, in a room of the picture of a writer (px). `explained` says how
-    /// many of the events of a run have room for their words in its panel.
+    /// The chart of a diagnostic of all runs of a history, in a room of the picture of a writer (px), whose panels may have letters.
+    /// `explained` says how many of the events of a run have room for their words in its panel.
     pub(super) fn new(
         diagnostic: Diagnostic,
         history: &History,
         scene: &Scene,
         mut writer: Writer<'_>,
-        room: Option<Rectangle>,
+        (room, have_letters): (Option<Rectangle>, bool),
         explained: impl Fn(&[&Event]) -> usize,
     ) -> Self {
         let mut strip = Strip::new(diagnostic, &[(scene, history)], writer.palette, str::to_owned);
@@ -65,9 +65,8 @@ impl Timeline {
             });
         }
         let room = room.filter(|_| history.end > 0.0);
-        let parts = room.and_then(|room| {
-            still(&mut strip, &events, &mut writer, room.map(f64::from), (history.end, scene.view.labels.letter))
-        });
+        let parts = room
+            .and_then(|room| still(&mut strip, &events, &mut writer, room.map(f64::from), (history.end, have_letters)));
         let Writer { marks, curves, words, .. } = writer;
         Self { strip, events, parts, marks, curves, words }
     }
@@ -99,8 +98,8 @@ impl Timeline {
     }
 }
 
-/// Draws what does not move into a room (px), for a scene up to an end (s) whose panels may have letters; returns where the chart stands, if there is
-/// room for it.
+/// Draws what does not move into a room (px), for a scene up to an end (s) whose panels may have letters; returns where the
+/// chart stands, if there is room for it.
 fn still(
     strip: &mut Strip,
     events: &[Event],

@@ -27,13 +27,13 @@ pub(crate) fn similar(path: &Path, endings: &[&str]) -> Option<String> {
     Some(similar[stems.iter().position(|&stem| stem == near)?].1.clone())
 }
 
-/// The files with the name of a missing one, with an ending if it has none, in the folders beside it, in order; if its folder is
-/// missing, too, in those beside that.
+/// The files with the name of a missing one, with an ending if it has none, in the folders beside it, in order; if its
+/// folder is missing, too, in those beside that.
 pub(crate) fn in_folders(path: &Path, ending: &str) -> Vec<PathBuf> {
     let Some(name) = path.file_name() else { return Vec::new() };
     let name = if path.extension().is_none() { Path::new(name).with_extension(ending) } else { name.into() };
     let is_there = |folder: &&Path| folder.as_os_str().is_empty() || folder.is_dir();
-    let folder = path.ancestors().skip(1).take(2).find(is_there).unwrap_or(Path::new(""));
+    let Some(folder) = path.ancestors().skip(1).take(2).find(is_there) else { return Vec::new() };
     let seen = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let entries = std::fs::read_dir(seen).into_iter().flatten().flatten().take(10_000);
     let mut found: Vec<_> = entries.map(|entry| folder.join(entry.file_name()).join(&name)).collect();

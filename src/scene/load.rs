@@ -180,14 +180,15 @@ fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistak
     let mut found: Vec<_> = errors
         .iter()
         .map(|error| {
-            let span = error.span().unwrap_or(0..0);
+            let mut span = error.span().unwrap_or(0..0);
             let (found, text) = (error.message(), source.text().get(span.clone()).unwrap_or_default());
             let not_toml = || format!("this is not TOML: {found}");
             let (message, help) = if found == "duplicate key" {
                 let is_list = ["run", "obstacle", "hold", "grab"].contains(&text);
                 let help = is_list.then(|| format!("write `[[{text}]]` before each of several"));
                 (format!("`{text}` is given a second time"), help)
-            } else if let Some([whole, part]) = decimal_comma(source.text(), span.start) {
+            } else if let Some((comma, [whole, part])) = decimal_comma(source.text(), span.start) {
+                span = comma..comma + 1;
                 let message = format!("`{whole},{part}` has a decimal comma");
                 (message, Some(format!("a number has a decimal point, not a comma: {whole}.{part}")))
             } else if let Some(key) = key_without_value(source.text(), span.start) {
@@ -222,9 +223,9 @@ fn key_without_value(text: &str, at: usize) -> Option<&str> {
     key.rsplit([' ', ',', '{']).next().filter(|key| is_end && !key.is_empty())
 }
 
-/// The digits before and after the comma of a value that would be a number with a point there, if a byte of a text
-/// lies in or after it in its line.
-fn decimal_comma(text: &str, at: usize) -> Option<[&str; 2]> {
+/// Where the comma is of a value that would be a number with a point there, and the digits before and after it, if a byte of a text
+/// lies in or after that value in its line.
+fn decimal_comma(text: &str, at: usize) -> Option<(usize, [&str; 2])> {
     let (before, after) = text.split_at_checked(at)?;
     let from = before.rfind('\n').map_or(0, |end| end + 1);
     let line = text[from..at + after.find('\n').unwrap_or(after.len())].trim_end();
@@ -241,7 +242,8 @@ fn decimal_comma(text: &str, at: usize) -> Option<[&str; 2]> {
     let (part, rest) = rest.split_at(digits(rest));
     let ends = rest.is_empty() || rest.starts_with([' ', '\t', '#', ',', '}', ']', '\r']);
     let is_number = !unsigned.is_empty() && digits(unsigned) == unsigned.len() && !part.is_empty();
-    (is_number && ends).then_some([whole, part])
+    let comma = from + line.len() - value.len() + whole.len();
+    (is_number && ends).then_some((comma, [whole, part]))
 }
 
 /// The bytes of a file.

@@ -263,6 +263,7 @@ fn files_that_are_no_scenes_are_told_apart() {
         let missing = load(&folder.path().join(name)).to_string();
         assert!(missing.ends_with("scenes/drop.toml?"), "{missing}");
     }
+    assert!(matches!(load(&folder.path().join("no/such/drop.toml")), SceneError::Missing { nearest: None, .. }));
     // A file extension that all have does not make names equal.
     put("e.toml", b"");
     assert!(matches!(load(&folder.path().join("nope.toml")), SceneError::Missing { nearest: None, .. }));

@@ -528,6 +528,12 @@ fn syntax_errors_have_their_place() {
         "duration = 3,5",
         "3:13 `3,5` has a decimal comma a number has a decimal point, not a comma: 3.5",
     );
+    case(
+        SPACE,
+        "side = 0.1",
+        "side = 0,1",
+        "5:41 `0,1` has a decimal comma a number has a decimal point, not a comma: 0.1",
+    );
     // Not in a text that is not closed.
     let mistakes = bad(&PLANE.replacen("name = 'Local shape'", "name = \"e = 0,5", 1)).to_string();
     assert!(!mistakes.contains("decimal comma"), "{mistakes}");

@@ -144,7 +144,7 @@ fn maps(results: &Results) -> Maps {
         let stretched = grid.stretched.filter(|&share| share < 1.0).map(|share| (share, "with stretched springs"));
         let [name, conditions, model] = results.words(grid, speed);
         Map {
-            name: [name, if conditions.is_empty() { model } else { conditions }],
+            name: [name, if conditions.is_empty() { model } else { format!("{conditions}, {model}") }],
             across,
             up: results.shares().to_vec(),
             cells: cells.iter().map(tile).collect(),

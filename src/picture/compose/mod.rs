@@ -232,10 +232,11 @@ impl<'a> Composer<'a> {
         let layout = self.words().around(&runs, self.columns(&runs)).layout;
         let writer = self.writer(layout.around);
         let panel = layout.panels.first().copied();
-        let panel = panel.filter(|panel| layout::written(&scene.view, panel[3].into(), layout.scale.unit).events);
-        let in_panel = self.writer(layout.scale);
+        let written = panel.map(|panel| layout::written(&scene.view, panel[3].into(), layout.scale.unit));
+        let [has_events, have_letters] = written.map_or([false; 2], |written| [written.events, written.labels.letter]);
+        let (panel, in_panel) = (panel.filter(|_| has_events), self.writer(layout.scale));
         let explained = |events: &[&Event]| panel.map_or(0, |panel| in_panel.explained(panel, events));
-        let timeline = Timeline::new(diagnostic, history, scene, writer, layout.chart, explained);
+        let timeline = Timeline::new(diagnostic, history, scene, writer, (layout.chart, have_letters), explained);
         self.timeline = Some(timeline);
     }
 
