@@ -76,10 +76,11 @@ pub(crate) struct ViewFile {
     pub(crate) scale_bar: bool,
     /// Whether a legend says what colours and arrows mean, if there are any and room for it.
     pub(crate) legend: bool,
-    /// A diagnostic plotted over the whole time of the scene in one chart below all panels, with the current time marked. The
-    /// whole scene is simulated before the first frame is drawn. Names are written at the ends of curves as far as there is
-    /// room, or the letters of their panels where there is none; numbered flags, also in the panels, say when elements first turn over and when their count settles, or the
-    /// extreme value; and where nearly everything happens early, that part of the time has a larger scale. Default: none.
+    /// A diagnostic plotted over the whole time of the scene in one chart below all panels, with the current time
+    /// marked. The whole scene is simulated before the first frame is drawn. Names are written at the ends of curves as
+    /// far as there is room, or the letters of their panels where there is none; numbered flags, also in the panels,
+    /// say when elements first turn over and when their count settles, or the extreme value; and where nearly
+    /// everything happens early, that part of the time has a larger scale. Default: none.
     pub(crate) strip: Option<Diagnostic>,
     /// Opacity of elements that are not turned over: below 1, what is behind and inside the body is seen through them.
     #[schemars(range(min = 0.1, max = 1.0))]
