@@ -3,6 +3,7 @@
 #[cfg(feature = "render")]
 use crate::gpu::InitError;
 use crate::output::OutputError;
+use crate::reading::beside::similar;
 #[cfg(feature = "render")]
 use crate::render::RenderError;
 #[cfg(feature = "render")]
@@ -10,7 +11,7 @@ use crate::scene::figure::Figure;
 use crate::scene::{Mistake, Mistakes, Scene};
 use std::error::Error;
 use std::fmt::Write as _;
-use std::io::Write as _;
+use std::io::{self, Write as _};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -119,6 +120,15 @@ impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
         Self::new(Status::Adapter, &error)
     }
+}
+
+/// Why a file that the command line names, with this ending, cannot be read.
+pub(super) fn missing(file: &Path, ending: &str, error: io::Error) -> Failure {
+    if error.kind() != io::ErrorKind::NotFound {
+        return OutputError::reading(file)(error).into();
+    }
+    let near = similar(file, &[ending]).map_or_else(String::new, |name| format!("; did you mean {name}?"));
+    Failure::usage(format!("{}: there is no such file{near}", file.display()))
 }
 
 /// An error and its causes on one line.

@@ -1,7 +1,7 @@
 //! `render`: frames, diagnostics and a summary.
 
 use super::console;
-use super::failure::{Failure, Status};
+use super::failure::{Failure, Status, missing};
 use super::film::{Films, Shared, replaceable};
 use super::frames::Shard;
 use super::interrupt;
@@ -121,6 +121,7 @@ impl Render {
         let mut jobs = self.options.jobs(scenes, !self.no_frames, self.shard, states, words)?;
         jobs.iter().try_for_each(|job| check_compared(&job.scene, &job.runs))?;
         if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {
+            file.metadata().map_err(|error| missing(file, "npz", error))?;
             job.stored = Some(StoredStates::open(file, &job.scene, &job.runs, &job.frames)?);
         }
         // Opened when all else is known to be right, and before the first folder is touched.

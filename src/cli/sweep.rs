@@ -1,11 +1,10 @@
 //! `--sweep`: variants of a scene, one for each line of a table, each in a folder of its own.
 
 use super::console::{self, columns};
-use super::failure::{Failure, Status, note, warn_of};
+use super::failure::{Failure, Status, missing, note, warn_of};
 use super::frames::Shard;
 use super::options::{PrintOptions, RunOptions, SceneOptions};
 use crate::output::{OutputError, SUMMARY_FILE, exact, read_file, write_whole};
-use crate::reading::beside::similar;
 use crate::reading::report::mistake;
 use crate::reading::source::Source;
 use crate::reading::variants::{Row, Variants, cell, decimal_comma, set, value};
@@ -17,7 +16,6 @@ use csv::ReaderBuilder;
 use serde_json::Value;
 use std::collections::HashSet;
 use std::fs;
-use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -67,7 +65,7 @@ impl Sweep {
         let name = file.display();
         let limits = scenes.limits();
         let base = scenes.load_all(options.printing.quiet)?.pop().expect("one was named");
-        let found = fs::metadata(file).map_err(|error| missing(file, error))?;
+        let found = fs::metadata(file).map_err(|error| missing(file, "csv", error))?;
         if found.is_file() && found.len() > LONGEST {
             return Err(Failure::usage(format!("{name} is longer than {LONGEST} bytes; split the sweep")));
         }
@@ -306,15 +304,6 @@ impl Sweep {
         }
         table.into_inner().expect("memory takes all")
     }
-}
-
-/// Why there is no table.
-fn missing(file: &Path, error: io::Error) -> Failure {
-    if error.kind() != io::ErrorKind::NotFound {
-        return OutputError::reading(file)(error).into();
-    }
-    let near = similar(file, &["csv"]).map_or_else(String::new, |name| format!("; did you mean {name}?"));
-    Failure::usage(format!("{}: there is no such file{near}", file.display()))
 }
 
 /// Why a variant is no scene.

@@ -37,7 +37,6 @@ impl StoredStates {
     /// # Errors
     /// If the file cannot be read, is damaged, or has other states.
     pub(crate) fn open(path: &Path, scene: &Scene, runs: &[usize], frames: &[u64]) -> Result<Self, OutputError> {
-        path.metadata().map_err(OutputError::reading(path))?;
         let open = || {
             let mut npz = Npz::open(path)?;
             let course = course(&mut npz, scene)?;

@@ -217,7 +217,7 @@ fn states_that_do_not_fit_are_refused() {
         place.run("render small.toml --from-states states/states.npz -o out").bad(status, words);
         assert!(!place.path("out").exists(), "nothing is written before it is known that it can be drawn");
     };
-    place.run("render small.toml --from-states none.npz -o out").bad(4, &["cannot read none.npz"]);
+    place.run("render small.toml --from-states none.npz -o out").bad(2, &["none.npz: there is no such file"]);
     place.run("render small.toml --from-states small.toml -o out").bad(2, &["small.toml is not a NumPy archive"]);
     place.run("render small.toml small.toml --from-states states/states.npz -o out").bad(2, &["one scene"]);
     place.run("render small.toml --from-states states/states.npz --states").bad(2, &["--from-states", "--states"]);
