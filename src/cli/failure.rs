@@ -151,7 +151,7 @@ pub(super) fn warn(file: &Path, scene: &Scene) {
 pub(super) fn warn_of(file: &Path, found: Vec<Mistake>) {
     if !found.is_empty() {
         let total = found.len();
-        let _ = writeln!(std::io::stderr(), "warning: {}", Mistakes { file: file.display().to_string(), found, total });
+        let _ = writeln!(io::stderr(), "warning: {}", Mistakes { file: file.display().to_string(), found, total });
     }
 }
 
@@ -165,10 +165,10 @@ pub(super) fn warn_of_figure(figure: &Figure) {
 
 /// Prints a warning that is no mistake in a scene.
 pub(super) fn note(message: &str) {
-    let _ = writeln!(std::io::stderr(), "warning: {message}");
+    let _ = writeln!(io::stderr(), "warning: {message}");
 }
 
 /// Prints an error on standard error. If that fails there is nowhere to report it.
 pub(super) fn complain(message: &str) {
-    let _ = writeln!(std::io::stderr(), "error: {message}");
+    let _ = writeln!(io::stderr(), "error: {message}");
 }

@@ -29,14 +29,16 @@ pub(super) struct Going {
 /// Draws arrows into one panel.
 pub(super) struct Pointers<'a> {
     pub(super) lens: &'a Lens,
-    pub(super) viewport: Rectangle,
+    /// Where there may be arrows.
+    pub(super) room: Rectangle,
     pub(super) scale: Scale,
     pub(super) palette: &'a Palette,
 }
 
 impl Pointers<'_> {
     /// The arrow of what moves at a point (m), from there on or, with `arriving`, up to there. It grows with the root
-    /// of the speed, so that it fades gently; there is none for what rests, and none outside the panel.
+    /// of the speed, so that it fades gently; there is none for what rests, and it is shorter where it
+    /// comes near the sides of its room.
     pub(super) fn draw(&self, point: DVec3, going: Going, arriving: bool, gap: f64, marks: &mut Vec<Mark>) {
         let speed = going.velocity.length();
         let share = (speed / (FAST * going.greatest)).min(1.0);
@@ -53,22 +55,24 @@ impl Pointers<'_> {
         // Motion straight towards the viewer has a short arrow.
         let length = LENGTH * unit * share.sqrt() * step.length().min(1.0);
         let Some(along) = step.try_normalize() else { return };
+        let near = DVec2::from(from) + if arriving { -gap * unit } else { gap * unit } * along;
+        let far = if arriving { -along } else { along };
+        let length = length.min(self.way(near, far));
+        let ends = [near, near + length * far];
+        let ends = if arriving { [ends[1], ends[0]] } else { ends };
         let grown = (length / (SHORTEST * unit) - 1.0) / FADING;
-        let tail = if arriving { -gap * unit - length } else { gap * unit };
-        self.mark(DVec2::from(from) + tail * along, length * along, grown, marks);
+        marks.extend(arrow(ends, unit, self.palette.pointer, self.palette.halo).faded(grown));
     }
 
-    /// An arrow, as opaque as it has grown. It fades before it reaches the sides of the panel.
-    fn mark(&self, tail: DVec2, way: DVec2, grown: f64, marks: &mut Vec<Mark>) {
+    /// How far an arrow can go from a point in a direction without coming near the sides of its room (px).
+    fn way(&self, from: DVec2, along: DVec2) -> f64 {
+        let [left, top, width, depth] = self.room.map(f64::from);
+        let sides = [(from.x, along.x, left, left + width), (from.y, along.y, top, top + depth)];
         let height = HEIGHT * self.scale.line();
-        let [left, top, width, depth] = self.viewport.map(f64::from);
-        let inside = |at: DVec2| {
-            let sides = [at.x - left, left + width - at.x, at.y - top, top + depth - at.y];
-            sides.into_iter().fold(f64::INFINITY, f64::min) / (height / 2.0) - 1.0
-        };
-        let ends = [tail, tail + way];
-        let opacity = grown.min(inside(ends[0])).min(inside(ends[1]));
-        let whole = arrow(ends, self.scale.line(), self.palette.pointer, self.palette.halo);
-        marks.extend(whole.faded(opacity));
+        let rooms = sides.into_iter().map(|(at, step, low, high)| {
+            let room = if step < 0.0 { at - low } else { high - at };
+            (room - height) / step.abs()
+        });
+        rooms.fold(f64::INFINITY, f64::min)
     }
 }

@@ -272,7 +272,7 @@ impl<'a> Draft<'a> {
         if self.flat {
             let outline = self.scene.view.outline;
             let flat = obstacle::Flat { site, line_scale: self.scale.line(), outline };
-            flat.arrows(&self.pointers(), above);
+            flat.arrows(&self.pointers(self.viewport), above);
             return flat.draw();
         }
         let staging = Staging {
@@ -285,7 +285,7 @@ impl<'a> Draft<'a> {
             start: self.composer.start_box,
             reach: &self.composer.reach,
         };
-        staging.arrows(&self.pointers(), above);
+        staging.arrows(&self.pointers(self.viewport), above);
         staging.pierced(&surfaces, lines);
         staging.draw(lines)
     }
@@ -305,7 +305,7 @@ impl<'a> Draft<'a> {
             viewport: self.viewport,
             scale: self.scale,
             palette: &self.composer.palette,
-            pointers: &self.pointers(),
+            pointers: &self.pointers(self.between_words()),
         };
         hands.draw(above);
     }
@@ -356,9 +356,9 @@ impl<'a> Draft<'a> {
         narrow_point((point - self.origin) / self.side).to_array()
     }
 
-    /// Draws the arrows of what moves.
-    fn pointers(&self) -> Pointers<'_> {
-        Pointers { lens: &self.lens, viewport: self.viewport, scale: self.scale, palette: &self.composer.palette }
+    /// Draws the arrows of what moves, in a room.
+    fn pointers(&self, room: Rectangle) -> Pointers<'_> {
+        Pointers { lens: &self.lens, room, scale: self.scale, palette: &self.composer.palette }
     }
 }
 
