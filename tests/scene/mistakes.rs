@@ -532,7 +532,7 @@ fn syntax_errors_have_their_place() {
         SPACE,
         "side = 0.1",
         "side = 0,1",
-        "5:41 `0,1` has a decimal comma a number has a decimal point, not a comma: 0.1",
+        "5:40 `0,1` has a decimal comma a number has a decimal point, not a comma: 0.1",
     );
     // Not in a text that is not closed.
     let mistakes = bad(&PLANE.replacen("name = 'Local shape'", "name = \"e = 0,5", 1)).to_string();
