@@ -142,9 +142,10 @@ fn maps(results: &Results) -> Maps {
         let tick = |share: f64| (share, [short(share), format!("T/{:.1}", grid.steps_per_cycle(share))]);
         let limit = grid.limit.map(|_| (1.0, "predicted limit"));
         let stretched = grid.stretched.filter(|&share| share < 1.0).map(|share| (share, "with stretched springs"));
+        // Of several maps of a run, what tells them apart; the model stands in the tables.
         let [name, conditions, model] = results.words(grid, speed);
         Map {
-            name: [name, if conditions.is_empty() { model } else { format!("{conditions}, {model}") }],
+            name: [name, if conditions.is_empty() { model } else { conditions }],
             across,
             up: results.shares().to_vec(),
             cells: cells.iter().map(tile).collect(),
