@@ -1,11 +1,12 @@
 //! Antialiased borders without flicker: a slight motion changes pixels slightly.
 
-use super::{all, draw, gpu, linear, parse, renderer};
+use super::{all, draw, fig4b, gpu, linear, parse, renderer};
 use image::RgbImage;
 use localshape::picture::{Composer, LineKind, Mark, MarkShape, Picture, Second, Stroke, compose};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
 use localshape::sim::snapshot::Frame;
+use std::collections::HashMap;
 
 const WORLD: &str = "
     gravity = [0, 0, 0]
@@ -208,4 +209,24 @@ fn a_wide_shadow_has_no_bands() {
         }
     }
     assert!(all > 200 && between * 10 > all * 8, "{between} of {all}");
+}
+
+/// Neighbours are cut differently, and still have the same points along their edge.
+#[test]
+fn surfaces_of_bent_faces_have_no_gaps() {
+    let (scene, frame) = fig4b(4);
+    let picture = compose(&scene, &frame);
+    for panel in &picture.panels {
+        let mesh = &panel.sound;
+        // Weights of the corners round differently from both sides of an edge.
+        let place = |at: u32| mesh.vertices[at as usize].position.map(|part| (f64::from(part) * 1e4).round() as i64);
+        let mut pieces: HashMap<_, i32> = HashMap::new();
+        for [a, b, c] in mesh.triangles.iter().map(|corners| corners.map(place)) {
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                *pieces.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+            }
+        }
+        assert!(mesh.triangles.len() > 2 * 54, "some faces are cut: {}", mesh.triangles.len());
+        assert!(pieces.values().all(|&count| count == 0), "each piece of an edge lies between two triangles");
+    }
 }
