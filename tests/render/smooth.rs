@@ -188,7 +188,7 @@ fn obstacles_are_drawn_alike_every_time() {
 #[test]
 fn a_wide_shadow_has_no_bands() {
     let Some(gpu) = gpu("a_wide_shadow_has_no_bands") else { return };
-    let (mut scene, frame) = super::fig4b(2);
+    let (mut scene, frame) = fig4b(2);
     scene.view.floor = localshape::look::FloorStyle::None;
     let mut picture = compose(&scene, &frame);
     (picture.words, picture.marks) = Default::default();
