@@ -37,8 +37,8 @@ pub(super) struct Pointers<'a> {
 
 impl Pointers<'_> {
     /// The arrow of what moves at a point (m), from there on or, with `arriving`, up to there. It grows with the root
-    /// of the speed, so that it fades gently; there is none for what rests, and it is shorter where it
-    /// comes near the sides of its room.
+    /// of the speed, so that it fades gently; there is none for what rests, and none from outside its room. It is
+    /// shorter where it comes near the sides of that.
     pub(super) fn draw(&self, point: DVec3, going: Going, arriving: bool, gap: f64, marks: &mut Vec<Mark>) {
         let speed = going.velocity.length();
         let share = (speed / (FAST * going.greatest)).min(1.0);
@@ -57,22 +57,26 @@ impl Pointers<'_> {
         let Some(along) = step.try_normalize() else { return };
         let near = DVec2::from(from) + if arriving { -gap * unit } else { gap * unit } * along;
         let far = if arriving { -along } else { along };
-        let length = length.min(self.way(near, far));
+        let (inside, way) = self.way(near, far);
+        let length = length.min(way);
         let ends = [near, near + length * far];
         let ends = if arriving { [ends[1], ends[0]] } else { ends };
         let grown = (length / (SHORTEST * unit) - 1.0) / FADING;
-        marks.extend(arrow(ends, unit, self.palette.pointer, self.palette.halo).faded(grown));
+        marks.extend(arrow(ends, unit, self.palette.pointer, self.palette.halo).faded(grown.min(inside)));
     }
 
-    /// How far an arrow can go from a point in a direction without coming near the sides of its room (px).
-    fn way(&self, from: DVec2, along: DVec2) -> f64 {
+    /// How opaque an arrow may be that begins at a point, which fades near the sides of its room, and how far it can go in a
+    /// direction without coming near them (px).
+    fn way(&self, from: DVec2, along: DVec2) -> (f64, f64) {
         let [left, top, width, depth] = self.room.map(f64::from);
         let sides = [(from.x, along.x, left, left + width), (from.y, along.y, top, top + depth)];
         let height = HEIGHT * self.scale.line();
-        let rooms = sides.into_iter().map(|(at, step, low, high)| {
+        let least = |rooms: [f64; 2]| rooms.into_iter().fold(f64::INFINITY, f64::min);
+        let inside = least(sides.map(|(at, _, low, high)| (at - low).min(high - at))) / (height / 2.0) - 1.0;
+        let rooms = sides.map(|(at, step, low, high)| {
             let room = if step < 0.0 { at - low } else { high - at };
             (room - height) / step.abs()
         });
-        rooms.fold(f64::INFINITY, f64::min)
+        (inside, least(rooms))
     }
 }

@@ -278,6 +278,16 @@ fn obstacles_in_the_plane_are_flat_and_end_at_the_floor() {
 }
 
 #[test]
+fn nothing_outside_the_panel_has_an_arrow() {
+    let grab = "[[grab]]\nnodes = [3]\npath = { keys = [{ time = 0.4 }, { time = 0.8, shift = [0.3, 0, 0] }] }\n";
+    for (target, expected) in [(0, 1), (40, 0), (-40, 0)] {
+        let still = format!("[view.camera]\nfollow = false\ntarget = [{target}, 0.5, 0]\ndistance = 10\n");
+        let scene = scene(&[WORLD, CUBE, FLOOR, grab, &still]);
+        assert_eq!(marks(&picture(&scene, 30), &[MarkShape::Arrow]).len(), expected, "{target}");
+    }
+}
+
+#[test]
 fn nodes_are_marked_only_while_they_are_held() {
     let hold = "[[hold]]\nnodes = [0, 7]\nfrom = 0.2\nuntil = 0.4\n";
     let grab = "[[grab]]\nnodes = [3]\npath = { keys = [{ time = 0.4 }, { time = 0.8, shift = [0.3, 0, 0] }] }\n";
