@@ -61,6 +61,14 @@ pub(super) fn count(count: usize) -> String {
     with_minus(count.to_string())
 }
 
+/// A text that may begin with a count, such as `1000000 cubes`.
+pub(super) fn counted(text: String) -> String {
+    match text.split_once(' ').map(|(first, rest)| (first.parse(), rest)) {
+        Some((Ok(number), rest)) => format!("{} {rest}", count(number)),
+        _ => text,
+    }
+}
+
 /// A small length (m), in the unit that suits the size of the body (m) throughout a run.
 pub(super) fn length(metres: f64, extent: f64) -> String {
     if !metres.is_finite() {
@@ -211,5 +219,7 @@ mod tests {
         assert_eq!(set("-12345.6789"), "−12\u{2009}345.6789");
         assert_eq!([set("9999"), set("1234567 J")], ["9999", "1\u{2009}234\u{2009}567 J"]);
         assert_eq!([set("-0.0"), set("1.5e-7"), count(27), count(39_304)], ["0.0", "1.5e−7", "27", "39\u{2009}304"]);
+        let texts = ["27 cubes", "39304 cubes, k = 10 kN/m", "springs"].map(|text| counted(text.to_owned()));
+        assert_eq!(texts, ["27 cubes", "39\u{2009}304 cubes, k = 10 kN/m", "springs"]);
     }
 }

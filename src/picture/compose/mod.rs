@@ -23,6 +23,7 @@ use super::event::Event;
 use super::exploded::Exploded;
 use super::layout::{self, Layout, Rectangle, Scale};
 use super::locator::Locator;
+use super::number;
 use super::shadow;
 use super::shell::Shell;
 use super::skin::Skin;
@@ -155,7 +156,7 @@ impl<'a> Composer<'a> {
         };
         let extent = body.extent().max(f64::MIN_POSITIVE);
         let tally = Tally::new(body, scene.view.side);
-        let descriptions = scene.runs.iter().map(|run| run.model.describe(body)).collect();
+        let descriptions = scene.runs.iter().map(|run| number::counted(run.model.describe(body))).collect();
         let (apart, ground) = (scene.view.explode, contact::ground(&scene.obstacles, 0.0));
         let exploded = (apart > 0.0).then(|| Exploded::new(body, apart));
         let grips = match &exploded {
