@@ -58,7 +58,7 @@ impl<'a> Drawn<'a> {
     pub(super) fn panel(&self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) -> Panel {
         // Without the ring arrows, nodes and displacements of usual pictures.
         let mut panel = self.draft.panel(under, &mut Vec::new());
-        self.draft.fade_obstacles(&panel.obstacles, above);
+        self.draft.fade_obstacles(&mut panel.obstacles, above);
         panel.floor = None;
         panel.beads.clear();
         if self.draft.flat {
