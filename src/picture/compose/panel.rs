@@ -358,7 +358,7 @@ impl<'a> Draft<'a> {
 
     /// Draws the arrows of what moves, in a room.
     fn pointers(&self, room: Rectangle) -> Pointers<'_> {
-        Pointers { lens: &self.lens, room, scale: self.scale, palette: &self.composer.palette }
+        Pointers { lens: &self.lens, room, overview: self.overview, scale: self.scale, palette: &self.composer.palette }
     }
 }
 
