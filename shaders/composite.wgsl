@@ -52,8 +52,7 @@ fn with_borders(at: vec2<i32>) -> vec4<f32> {
     return clamp(own + gained, least, most);
 }
 
-@fragment
-fn layered(corner: Corner) -> @location(0) vec4<f32> {
+fn layered_at(corner: Corner) -> vec4<f32> {
     panel.region = corner.region;
     panel.place = corner.shift;
     panel.edge = corner.edge;
@@ -67,4 +66,37 @@ fn layered(corner: Corner) -> @location(0) vec4<f32> {
     colour = over(colour, panel.alarm_line, opacity.g);
     colour = over(colour, panel.edge, opacity.a);
     return over(colour, panel.outline, opacity.b * panel.outline_alpha);
+}
+
+@fragment
+fn layered(corner: Corner) -> @location(0) vec4<f32> {
+    return layered_at(corner);
+}
+
+// Solid obstacles that leave their room fade out over this part of its width and height.
+const FADE = vec2<f32>(0.11, 0.13);
+const OBSTACLE = 254.0 / 255.0;
+// Outlines reach so far out of bodies, also where they cross pixels (px in the reference picture).
+const LINE_REACH = 2.0;
+
+// Whether something lies at a texel of the region that does not fade.
+fn stays(at: vec2<i32>) -> bool {
+    let alpha = body_at(at).a;
+    return alpha > 0.0 && abs(alpha - OBSTACLE) > 0.001;
+}
+
+@fragment
+fn layered_fading(corner: Corner) -> @location(0) vec4<f32> {
+    let colour = layered_at(corner);
+    let pixel = corner.place.xy;
+    let at = vec2<i32>(pixel - panel.place.xy);
+    // Beside bodies and obstacles lie the outer halves of their outlines.
+    let reach = i32(ceil(LINE_REACH * panel_data.line_scale));
+    let beside = body_at(at).a == 0.0 && (stays(at + vec2(reach, 0)) || stays(at - vec2(reach, 0))
+        || stays(at + vec2(0, reach)) || stays(at - vec2(0, reach)));
+    let room = panel_data.fade_room;
+    let inside = vec4(pixel - room.xy, room.zw - pixel);
+    let distance = (FADE * (room.zw - room.xy)).xyxy;
+    let left = 1.0 - panel_data.fade_strength * (1.0 - smoothstep(vec4(0.0), distance, inside));
+    return colour * select(left.x * left.y * left.z * left.w, 1.0, beside || stays(at));
 }

@@ -315,7 +315,10 @@ impl Found {
             count => Some(format!("{count} frames of this scene of {}", self.unlike_words)),
         };
         match (self.frames.len(), self.records.is_empty(), self.foreign.as_slice()) {
-            (0, true, []) => self.earlier().or(self.lost.clone()).filter(|_| !may_replace_own).or(unlike),
+            (0, true, []) => {
+                let own = |what: Option<String>| what.filter(|_| !may_replace_own);
+                own(self.earlier()).or(unlike).or_else(|| own(self.lost.clone()))
+            }
             (0, true, [name]) => Some(format!("{name}, which was not written by localshape")),
             (0, true, [name, others @ ..]) => {
                 Some(format!("{name} and {} more, which were not written by localshape", others.len()))

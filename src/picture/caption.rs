@@ -405,6 +405,23 @@ pub(super) fn wrapped(fonts: &Fonts, text: &str, weight: Weight, size: f64, room
     lines
 }
 
+/// As many lines as [`wrapped`], as evenly long as possible: no last line of one short word.
+pub(super) fn balanced(fonts: &Fonts, text: &str, weight: Weight, size: f64, room: f64) -> Vec<String> {
+    let mut best = wrapped(fonts, text, weight, size, room);
+    let (mut low, mut high) = (room / best.len().max(1) as f64, room);
+    while high - low > 0.1 * size {
+        let middle = low.midpoint(high);
+        let lines = wrapped(fonts, text, weight, size, middle);
+        // Narrower room would cut words, too.
+        let is_whole = lines.join(" ") == best.join(" ");
+        (low, high) = if lines.len() <= best.len() && is_whole { (low, middle) } else { (middle, high) };
+        if high == middle {
+            best = lines;
+        }
+    }
+    best
+}
+
 /// Size of the title above all panels (px).
 pub(super) fn title_size(around: Scale) -> f64 {
     TITLE * around.title()
@@ -476,6 +493,11 @@ mod tests {
         assert!(lines.len() > 4 && lines.iter().any(|line| line.starts_with("A new")));
         let fits = |line: &String| fonts.width(line, Weight::Regular, 16.0) <= 120.0;
         assert!(lines.iter().all(fits), "{lines:?}");
+        let title = "A rod presses a block: under it, springs turn elements inside out";
+        let [first, even] = [wrapped, balanced].map(|wrap| wrap(&fonts, title, Weight::SemiBold, 30.0, 430.0));
+        let shortest = |lines: &[String]| lines.iter().map(|line| line.chars().count()).min();
+        assert!(first.len() == even.len() && first.join(" ") == even.join(" "));
+        assert!(shortest(&first) == Some(10) && shortest(&even) == Some(19), "{first:?} {even:?}");
         assert!(wrapped(&fonts, "", Weight::Regular, 16.0, 120.0).is_empty());
     }
 }

@@ -19,7 +19,7 @@ const SAMPLE: [f64; 2] = [30.0, 6.0];
 /// part of the curve; px in the reference picture), and its opacity.
 const FREE: f64 = 3.0;
 const LEADER: f64 = 1.0;
-const DOTS: [f64; 2] = [1.0, 3.5];
+pub(super) const DOTS: [f64; 2] = [1.0, 3.5];
 const LEADER_ALPHA: f64 = 0.7;
 /// A name that is shifted by less than this needs no line (px in the reference picture).
 const HARDLY: f64 = 3.0;

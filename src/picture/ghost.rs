@@ -75,8 +75,10 @@ impl Ghost<'_> {
         if seen < (POINTER[0] * scale.line()).min(MOSTLY * whole) || whole == 0.0 {
             let pointer = self.pointer(scale, seen > 0.0);
             if !pointer.is_empty() {
-                pieces = pointer.into_iter().map(|line| (line, None, 1.0)).collect();
-                casing.clone_from(&pieces);
+                casing = pointer.iter().map(|line| (line.clone(), None, 1.0)).collect();
+                // Its shaft has the dashes by which the key names the ghost.
+                let dash = |at: usize| (at == 0).then_some(DASH.map(|length| length * scale.line()));
+                pieces = pointer.into_iter().enumerate().map(|(at, line)| (line, dash(at), 1.0)).collect();
             }
         }
         for (pieces, width, colour, alpha) in [(casing, HALO, halo, HALO_ALPHA), (pieces, WIDTH, colour, 1.0)] {

@@ -134,6 +134,17 @@ pub(crate) struct Obstacles {
     pub slabs: Vec<Slab>,
     /// In space, the obstacles near the body, which occlude its ambient light; at most [`MOST_OCCLUDERS`].
     pub occluders: Vec<Occluder>,
+    /// How its solids fade out where they leave their room; `None` if none leaves it.
+    pub fade: Option<Fading>,
+}
+
+/// How solid obstacles fade out at the sides of a room: left, top, right and bottom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Fading {
+    /// The sides (px).
+    pub(crate) room: [f32; 4],
+    /// How strongly they do so, from 0 to 1.
+    pub(crate) strength: [f32; 4],
 }
 
 /// The largest number of obstacles that occlude the ambient light of a body.

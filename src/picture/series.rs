@@ -4,6 +4,7 @@ use super::Curve;
 use super::axis::Axis;
 use super::caption::Writer;
 use super::chart::{Chart, filled};
+use super::ends::DOTS;
 use super::narrow::narrow;
 use crate::colour::mixed;
 use crate::history::TimeSeries;
@@ -16,6 +17,10 @@ use crate::sim::snapshot::Diagnostic;
 pub(super) const OWN: f64 = 2.2;
 const CROSS: f64 = 1.8;
 const ARM: f64 = 4.0;
+/// Half the width and the length of the arrowhead where the curve of a diverged run leaves its chart, and the width of the
+/// dotted line from there to the cross (px in the reference picture).
+const HEAD: [f64; 2] = [4.0, 6.0];
+const DOT: f64 = 1.0;
 /// A curve is dense where it turns four times within this length, by more than the second one (px in the reference picture);
 /// for a count a band of this strength of its colour stands for it.
 const DENSE: f64 = 12.0;
@@ -131,6 +136,25 @@ impl Series {
         }
         for part in outside(&points, &dense).iter().flat_map(|part| within(part, borders)) {
             writer.curves.push(curve(&simplified(&part, EXACT), OWN, dash.clone()));
+        }
+        if let Some(time) = self.diverged {
+            // Where the curve leaves the chart, an arrowhead and dots along its border to the cross, which has the name.
+            let leaves = points.windows(2).rposition(|two| {
+                let inside = |y: f64| (borders[0]..=borders[1]).contains(&y);
+                inside(two[0][1]) && !inside(two[1][1])
+            });
+            if let Some(part) = leaves.and_then(|at| within(&points[at..at + 2], borders).pop())
+                && let [.., from, tip] = part[..]
+            {
+                let up = if tip[1] < from[1] { -1.0 } else { 1.0 };
+                let [wing, back] = HEAD.map(|length| length * thickness);
+                let corner = |side: f64| [tip[0] + side * wing, tip[1] - up * back];
+                writer.curves.push(curve(&[corner(-1.0), tip, corner(1.0)], CROSS, Vec::new()));
+                let y = tip[1].clamp(chart.top, chart.bottom);
+                let dots = DOTS.map(|length| narrow(length * thickness)).to_vec();
+                let line = curve(&[[tip[0] + wing, y], [chart.x(times, time) - ARM * thickness, y]], DOT, dots);
+                writer.curves.extend((line.points[1][0] > line.points[0][0]).then_some(line));
+            }
         }
         if let Some((time, &[_, last])) = self.diverged.zip(points.last()) {
             let [x, y] = [chart.x(times, time), last.clamp(chart.top, chart.bottom)];

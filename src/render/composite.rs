@@ -9,10 +9,10 @@ use crate::picture::Picture;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/composite.wgsl");
 
-/// The pipeline that blends them.
+/// The pipelines that blend them: where solid obstacles do not fade at the sides of their room, and where they do.
 #[derive(Debug)]
 pub(super) struct Composite {
-    pipeline: Pipeline,
+    pipelines: [Pipeline; 2],
     layout: wgpu::BindGroupLayout,
     textures: Option<wgpu::BindGroup>,
 }
@@ -21,12 +21,15 @@ impl Composite {
     pub(super) fn new(gpu: &Gpu, panels: &Panels) -> Self {
         let module = shader(gpu, "composite", &[super::PANEL_SHADER, super::BODIES_SHADER, SHADER]);
         let layout = group_layout(gpu, "bodies", &[0, 2, 3].map(|binding| texture_entry(binding, false)));
-        let recipe = Recipe {
-            groups: &[&panels.layout, &layout],
-            blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-            ..Recipe::rectangles("composite", &module, ["corner", "layered"], PICTURE_FORMAT)
-        };
-        Self { pipeline: recipe.build(gpu), layout, textures: None }
+        let pipelines = ["layered", "layered_fading"].map(|fragment| {
+            let recipe = Recipe {
+                groups: &[&panels.layout, &layout],
+                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                ..Recipe::rectangles("composite", &module, ["corner", fragment], PICTURE_FORMAT)
+            };
+            recipe.build(gpu)
+        });
+        Self { pipelines, layout, textures: None }
     }
 
     /// Binds new textures.
@@ -37,8 +40,10 @@ impl Composite {
 
     /// Draws the bodies of all panels into the picture.
     pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, picture: &Picture) {
-        pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, self.textures.as_ref(), &[]);
-        panels.draw_regions(pass, picture.panels.iter().map(|panel| panel.region), |pass, _| pass.draw(0..4, 0..1));
+        panels.draw_regions(pass, picture.panels.iter().map(|panel| panel.region), |pass, at| {
+            pass.set_pipeline(&self.pipelines[usize::from(picture.panels[at].obstacles.fade.is_some())]);
+            pass.draw(0..4, 0..1);
+        });
     }
 }

@@ -34,6 +34,8 @@ pub(super) struct PanelUniform {
     pub(super) hatch: f32,
     pub(super) line_share: f32,
     pub(super) contour_share: f32,
+    pub(super) fade_room: Vec4,
+    pub(super) fade_strength: Vec4,
     pub(super) occluders: [OccluderUniform; MOST_OCCLUDERS],
 }
 
@@ -150,6 +152,8 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         hatch: if panel.hatch { 1.0 } else { 0.0 },
         line_share: sight.line_share,
         contour_share: sight.contour_share,
+        fade_room: Vec4::from_array(panel.obstacles.fade.map_or([0.0; 4], |fade| fade.room)),
+        fade_strength: Vec4::from_array(panel.obstacles.fade.map_or([0.0; 4], |fade| fade.strength)),
         occluders: std::array::from_fn(|at| {
             panel.obstacles.occluders.get(at).map_or(OccluderUniform::NONE, OccluderUniform::new)
         }),

@@ -342,7 +342,8 @@ mod tests {
             diagnostics(&diagnose, &now).turned_over
         };
         assert!((0..100).all(|turn| over(0.0, turn) == 0));
-        assert!((0..100).all(|turn| over(-1e-6, turn) == 1));
+        assert!((0..100).all(|turn| over(-0.9e-3, turn) == 0));
+        assert!((0..100).all(|turn| over(-1.1e-3, turn) == 1));
     }
 
     /// Elements of every kind, one by one and in runs longer and shorter than the lanes of any vector set.
@@ -374,21 +375,15 @@ mod tests {
     }
 
     #[test]
-    fn an_element_turns_over_a_billionth_below_zero() {
-        for at_rest in [1.0, 2e-6, -3.0] {
-            assert!(!is_turned_over(-0.99e-9 * at_rest, at_rest));
-            assert!(is_turned_over(-1.01e-9 * at_rest, at_rest));
+    fn an_element_is_flat_below_a_hundredth_of_its_volume_and_turned_over_below_minus_a_thousandth() {
+        let cases = [(0.011, [false; 2]), (0.009, [true, false]), (0.0, [true, false]), (-0.9e-3, [true, false])];
+        for (part, expected) in cases.into_iter().chain([(-1.1e-3, [false, true]), (-0.5, [false, true])]) {
+            for at_rest in [1.0, 2e-6, -3.0] {
+                let now = part * at_rest;
+                assert_eq!([is_flat(now, at_rest), is_turned_over(now, at_rest)], expected, "{part} of {at_rest}");
+            }
         }
         assert!(!is_turned_over(-1.0, 0.0), "what has no volume cannot turn over");
-    }
-
-    #[test]
-    fn an_element_is_flat_below_a_hundredth_of_its_volume() {
-        for at_rest in [1.0, 2e-6, -3.0] {
-            assert!(is_flat(0.009 * at_rest, at_rest) && is_flat(0.0, at_rest) && is_flat(-1e-10 * at_rest, at_rest));
-            assert!(!is_flat(0.011 * at_rest, at_rest));
-            assert!(!is_flat(-0.005 * at_rest, at_rest), "it has turned over");
-        }
         assert!(!is_flat(0.0, 0.0), "what has no volume cannot lose it");
     }
 

@@ -38,10 +38,10 @@ pub(super) struct Facts<'a> {
 
 /// An element has turned over if its signed volume is below minus this fraction of that at rest.
 ///
-/// For an element pressed exactly flat, round-off gives about 1e-16 with either sign, or 1e-12 if the body is ten
-/// thousand times its size away from the origin. Without the margin its classification would be random. For an element
-/// that really turns over the margin is only a billionth of its height.
-const ROUND_OFF: f64 = 1e-9;
+/// The sign of a volume nearer to zero says nothing. For an element pressed exactly flat it is round-off. For one that lies
+/// pressed flat on a floor it changes every few steps: in a step gravity moves nodes by g Δt² before contact moves them
+/// back, with steps of T/50 by 1/63 of m g / k. That is a ten-thousandth of the height of the cubes of `scenes/springs.toml`.
+const NO_SIGN: f64 = 1e-3;
 
 /// An element is flat if its volume is below this fraction of that at rest and it has not turned over.
 const FLAT: f64 = 0.01;
@@ -52,7 +52,7 @@ pub(super) fn is_flat(now: f64, at_rest: f64) -> bool {
 }
 
 pub(super) fn is_turned_over(now: f64, at_rest: f64) -> bool {
-    now * at_rest < -ROUND_OFF * at_rest * at_rest
+    now * at_rest < -NO_SIGN * at_rest * at_rest
 }
 
 impl Facts<'_> {

@@ -39,7 +39,7 @@ pub struct Snapshot {
     pub position: Vec<DVec3>,
     /// Velocity of each node (m/s).
     pub velocity: Vec<DVec3>,
-    /// Whether each element has turned over: its signed volume is below −1e-9 of that at rest; see
+    /// Whether each element has turned over: its signed volume is below −0.1 % of that at rest; see
     /// [`Diagnostics::turned_over`].
     pub turned_over: Vec<bool>,
     /// Whether each element is flat: its volume is below a hundredth of that at rest, and it has not turned over.

@@ -96,3 +96,33 @@ fn type_is_as_many_times_larger_as_a_figure_says() {
         assert!((large / usual - 1.5).abs() < 1e-4, "{text}: {usual} and {large}");
     }
 }
+
+#[test]
+fn a_body_at_rest_has_no_forces_and_floors_that_are_not_drawn_cut_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("a file");
+        path
+    };
+    at(
+        "rest.toml",
+        "time.duration = 0
+        body.lattice = { cells = [2, 2, 2], side = 0.1 }
+        run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e4 } }]
+        obstacle = [{ kind = 'floor', height = -0.15 }, { kind = 'sphere', centre = [0, -0.15, 0.2], radius = 0.1 }]",
+    );
+    let path = at("figure.toml", "size = [900, 900]\nforces.scenes = ['rest.toml']");
+    let figure = Figure::load(&path, &localshape::scene::Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    let picture = compose_figure(&figure, &Moments::new(&figure)).expect("room");
+    assert_eq!(counts(&picture, &["no forces"]), [1]);
+    // Of 27 nodes, the one in the middle and those that faces hide are faint, or not drawn.
+    let nodes = |opaque: bool| {
+        let is_one =
+            |mark: &&localshape::picture::Mark| mark.shape == MarkShape::Node && (mark.opacity == 255) == opaque;
+        picture.marks.iter().filter(is_one).count()
+    };
+    assert_eq!((nodes(true), nodes(false)), (19, 0));
+    let panel = &picture.panels[0];
+    assert!(panel.floor.is_none() && panel.obstacles.solids.len() == 1);
+}

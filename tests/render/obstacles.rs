@@ -449,32 +449,56 @@ fn a_rod_that_touches_darkens_the_body_below_it_and_one_that_does_not_leaves_it_
 #[test]
 fn obstacles_fade_where_they_leave_their_panel() {
     let alone = scene(&[WORLD, CUBE, FLOOR]);
-    let mut widest = [0_usize; 2];
-    let mut before = 0;
-    for step in 0..60_usize {
-        let x = -0.2 - 0.01 * step as f64;
+    let mut strengths = Vec::new();
+    for step in 0..60 {
+        let x = -0.2 - 0.01 * f64::from(step);
         let sphere = format!("[[obstacle]]\nkind = 'sphere'\ncentre = [{x}, 0.2, 0]\nradius = 0.05\n");
         let mut seen = scene(&[WORLD, CUBE, FLOOR, &sphere]);
         seen.view.camera.clone_from(&alone.view.camera);
-        let picture = picture(&seen, 0);
-        let [left, top, ..] = picture.panels[0].viewport;
-        let is_cover = |mark: &&Mark| mark.colour == picture.palette.background && mark.rectangle[2] == 1.0;
-        let covers: Vec<_> = picture.marks.iter().filter(is_cover).collect();
-        let depths: Vec<_> = covers.iter().map(|mark| mark.rectangle[0] - left as f32).collect();
-        assert!(covers.windows(2).all(|two| two[0].opacity >= two[1].opacity), "{x}");
-        assert!(covers.is_empty() || depths[0] == 0.0 && covers[0].rectangle[1] >= top as f32, "{x}");
-        if covers.len() > before {
-            widest = [step, covers.len()];
-        }
-        before = before.max(covers.len());
+        let panel = &picture(&seen, 0).panels[0];
+        let [left, _, width, _] = panel.viewport.map(|length| length as f32);
+        let is_within = |room: [f32; 4]| room[0] > left && room[2] < left + width;
+        assert!(panel.obstacles.fade.is_none_or(|fade| is_within(fade.room)), "{x}");
+        strengths.push(panel.obstacles.fade.map_or(0.0, |fade| fade.strength[0]));
     }
     // Neither where it is whole nor where nothing of it is seen.
-    assert!(widest[0] > 5 && widest[1] > 10 && before == widest[1], "{widest:?}");
+    let [first, last] = [strengths.iter().position(|&at| at > 0.0), strengths.iter().rposition(|&at| at > 0.0)];
+    let (first, last) = (first.expect("it leaves"), last.expect("it leaves"));
+    assert!(first > 5 && last < 59 && strengths[last] == 1.0, "{strengths:?}");
+    assert!(strengths[..=last].windows(2).all(|two| two[0] <= two[1]), "{strengths:?}");
+}
+
+/// The ground comes through what fades, and bodies stay as they are.
+#[test]
+fn what_fades_lets_the_ground_through() {
+    let Some(gpu) = gpu("what_fades_lets_the_ground_through") else { return };
+    let rod = "[[obstacle]]\nkind = 'capsule'\nfrom = [-9, 0.1, -0.3]\nto = [9, 0.1, -0.3]\nradius = 0.1\n";
+    let view = "[view]\nsize = [320, 240]\nlabels = []\nscale_bar = false\n\
+                camera = { target = [0, 0.2, 0], distance = 2, azimuth = 0 }\n";
+    let fading = picture(&scene(&[WORLD, CUBE, FLOOR, rod, view]), 0);
+    let [mut whole, mut bare] = [fading.clone(), fading.clone()];
+    whole.panels[0].obstacles.fade = None;
+    bare.panels[0].obstacles.solids.clear();
+    bare.panels[0].lines.retain(|line| (line.kind as u32) < 8);
+    let draw = |picture: &Picture| {
+        Renderer::new(gpu, picture.size).and_then(|mut renderer| renderer.draw(picture)).expect("drawn")
+    };
+    let [fading, whole, bare] = [&fading, &whole, &bare].map(draw);
+    let off = |one: &image::RgbImage, x: u32, range: std::ops::Range<u32>| {
+        let pixels = range.flat_map(|y| one.get_pixel(x, y).0.into_iter().zip(fading.get_pixel(x, y).0));
+        pixels.map(|(one, other)| one.abs_diff(other)).max().expect("pixels")
+    };
+    // Nothing of it is left at the sides, all of it in the middle, and between them some.
+    let side = [3, 316].map(|x| [off(&bare, x, 0..240), off(&whole, x, 40..200)]);
+    assert!(side.iter().all(|&[bare, whole]| bare <= 2 && whole > 30), "{side:?}");
+    assert_eq!((off(&whole, 160, 0..240), off(&whole, 100, 0..200)), (0, 0));
+    let between = [off(&bare, 36, 0..240), off(&whole, 36, 0..240)];
+    assert!(between.iter().all(|&off| off > 5), "{between:?}");
 }
 
 #[test]
 fn obstacles_fade_in_figures_of_forces() {
-    let covers = |with_rod: bool| {
+    let fade = |with_rod: bool| {
         let mut figure = Figure::built_in("fig3").expect("a figure of the paper");
         let Content::Forces(forces) = &mut figure.content else { panic!("a figure of forces") };
         if with_rod {
@@ -482,12 +506,8 @@ fn obstacles_fade_in_figures_of_forces() {
             let rod = "[[obstacle]]\nkind = 'capsule'\nfrom = [-9, 0, -2]\nto = [9, 0, -2]\nradius = 0.3\n";
             forces.scenes[1].obstacles = scene(&[WORLD, CUBE, rod]).obstacles;
         }
-        let picture = compose_figure(&figure, &Moments::new(&figure)).expect("room");
-        let left = picture.panels[1].viewport[0] as f32;
-        let is_cover = |mark: &&Mark| mark.colour == picture.palette.background && mark.rectangle[2] == 1.0;
-        let covers: Vec<_> = picture.marks.iter().filter(is_cover).map(|mark| mark.rectangle[0] - left).collect();
-        covers
+        compose_figure(&figure, &Moments::new(&figure)).expect("room").panels[1].obstacles.fade
     };
-    let rod = covers(true);
-    assert!(covers(false).is_empty() && rod.len() > 20 && rod.contains(&0.0), "{rod:?}");
+    let strength = fade(true).expect("it leaves the panel").strength;
+    assert!(fade(false).is_none() && strength[0] == 1.0 && strength[2] == 1.0, "{strength:?}");
 }

@@ -128,7 +128,7 @@ fn missing_keys() {
 
 #[test]
 fn wrong_types() {
-    case(PLANE, "= 3", "= '3'", "3:12 `time.duration` is the string \"3\"; expected a number Simulated time (s)");
+    case(PLANE, "= 3", "= 'x'", "3:12 `time.duration` is the string \"x\"; expected a number Simulated time (s)");
     case(PLANE, "= 3", "= [3]", "3:12 is an array of 1; expected a number");
     case(PLANE, "= 3", "= 1979-05-27", "3:12 is the date 1979-05-27; expected a number");
     case(PLANE, "'T/50'", "true", "4:8 `time.step` is true; expected a number or a string");
@@ -534,6 +534,14 @@ fn syntax_errors_have_their_place() {
         "side = 0,1",
         "5:40 `0,1` has a decimal comma a number has a decimal point, not a comma: 0.1",
     );
+    for (text, help) in [
+        ("'0,5'", "write 0.5: a number without quotation marks, with a decimal point"),
+        ("'0,5 s'", "write 0.5: a number without quotation marks, with a decimal point, without a unit"),
+        ("'2'", "write 2: a number without quotation marks"),
+    ] {
+        let found = format!("`time.duration` is the string {}; expected a number {help}", text.replace('\'', "\""));
+        case(PLANE, "duration = 3", &format!("duration = {text}"), &format!("3:12 {found}"));
+    }
     // Not in a text that is not closed.
     let mistakes = bad(&PLANE.replacen("name = 'Local shape'", "name = \"e = 0,5", 1)).to_string();
     assert!(!mistakes.contains("decimal comma"), "{mistakes}");

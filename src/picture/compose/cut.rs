@@ -3,8 +3,9 @@
 use super::panel::Draft;
 use crate::look::Labels;
 use crate::picture::fade::FADING;
+use crate::picture::narrow::narrow;
 use crate::picture::plane::sides;
-use crate::picture::{Mark, MarkShape, Obstacles};
+use crate::picture::{Fading, Mark, MarkShape, Obstacles};
 use crate::sim::contact;
 use glam::{DVec2, DVec3};
 
@@ -26,10 +27,10 @@ struct Beyond {
 }
 
 impl Draft<'_> {
-    /// Covers the sides of the panel where obstacles leave it with the background, the more the nearer to the side,
-    /// over the same distance wherever they end; those that hardly leave it less, so that nothing changes at once. The
-    /// body is left out.
-    pub(super) fn fade_obstacles(&self, obstacles: &Obstacles, marks: &mut Vec<Mark>) {
+    /// Lets solid obstacles in space fade out where they leave the part of the panel within its margins and words. Covers the
+    /// sides of the panel where others leave it with the background, without the body. All fade the more the nearer to the
+    /// side, over the same distance wherever they end; those that hardly leave it less, so that nothing changes at once.
+    pub(super) fn fade_obstacles(&self, obstacles: &mut Obstacles, marks: &mut Vec<Mark>) {
         // An inset is a piece of a picture, and has a frame. What covers obstacles would cover a slope in the plane, too.
         let ground = contact::ground(&self.scene.obstacles, self.run.snapshot.time);
         let is_slope = self.lens.orthographic && ground.is_some_and(|(normal, _)| normal != DVec3::Y);
@@ -41,7 +42,16 @@ impl Draft<'_> {
         let room = if has_words { self.between_words() } else { self.viewport };
         let solids = obstacles.solids.iter().map(|solid| solid.mesh.vertices.iter().map(|vertex| vertex.position));
         let solids = solids.filter_map(|points| self.bounds(points.map(place)));
-        self.fade(sides(room.map(f64::from)), solids, marks);
+        if self.lens.orthographic {
+            self.fade(sides(room.map(f64::from)), solids, marks);
+        } else {
+            let [left, top, right, bottom] = sides(room.map(f64::from));
+            let margin = self.scale.margin();
+            let room = [left + margin, top, right - margin, bottom];
+            let strength = self.beyond(room, solids).map(|part| part.map_or(0.0, |part| part.strength));
+            let fades = strength.iter().any(|&strength| strength > 0.0);
+            obstacles.fade = fades.then(|| Fading { room: room.map(narrow), strength: strength.map(narrow) });
+        }
         // Plates go behind words, too; walls fade by themselves.
         let slabs = obstacles.slabs.iter().filter_map(|slab| {
             let panes = slab.panes.iter().filter(|pane| !pane.grid);

@@ -157,8 +157,8 @@ impl<'a> Draft<'a> {
         let SurfaceLines { drawn: mut lines, borders } = lines;
         let of_body = lines.len();
         let mut arrows = Vec::new();
-        let (obstacles, staged) = self.obstacles([&sound, &turned_over], &mut lines, &mut arrows);
-        self.fade_obstacles(&obstacles, above);
+        let (mut obstacles, staged) = self.obstacles([&sound, &turned_over], &mut lines, &mut arrows);
+        self.fade_obstacles(&mut obstacles, above);
         above.extend(arrows);
         let borders = borders.into_iter().map(|border| border.line).chain(lines[of_body..].iter().copied()).collect();
         if !self.scene.view.outline {
@@ -358,7 +358,7 @@ impl<'a> Draft<'a> {
 
     /// Draws the arrows of what moves, in a room.
     fn pointers(&self, room: Rectangle) -> Pointers<'_> {
-        Pointers { lens: &self.lens, room, scale: self.scale, palette: &self.composer.palette }
+        Pointers { lens: &self.lens, room, overview: self.overview, scale: self.scale, palette: &self.composer.palette }
     }
 }
 

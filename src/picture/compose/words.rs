@@ -2,7 +2,7 @@
 
 use super::{Composer, cut, inset};
 use crate::look::{Difference, Ghost, Labels, LineStyle, Palette, View};
-use crate::picture::caption::{self, Heading, Writer, wrapped};
+use crate::picture::caption::{self, Heading, Writer, balanced, wrapped};
 use crate::picture::layout::{self, Layout, Scale, Wanted, Written};
 use crate::picture::legend::Legend;
 use crate::picture::series;
@@ -92,11 +92,13 @@ impl<'a> Words<'a> {
         let view = self.view();
         // Panels' margins are no wider than those around them.
         let room = f64::from(view.size[0]) - 2.0 * around.margin();
-        let title = (&view.title, Weight::SemiBold, caption::title_size(around));
-        let caption = (&view.caption, Weight::Regular, around.caption());
-        [title, caption].map(|(text, weight, size)| {
-            if Scale::legible(size) { wrapped(self.fonts, text, weight, size, room) } else { Vec::new() }
-        })
+        let lines = |text: &str, weight: Weight, size: f64, wrap: fn(&Fonts, &str, Weight, f64, f64) -> Vec<String>| {
+            if Scale::legible(size) { wrap(self.fonts, text, weight, size, room) } else { Vec::new() }
+        };
+        [
+            lines(&view.title, Weight::SemiBold, caption::title_size(around), balanced),
+            lines(&view.caption, Weight::Regular, around.caption(), wrapped),
+        ]
     }
 
     /// The key of colours and arrows, if there are any.

@@ -67,6 +67,6 @@ impl Staging<'_> {
                 }
             }
         }
-        (Obstacles { solids, slabs: self.in_order(slabs), occluders: self.occluders() }, staged)
+        (Obstacles { solids, slabs: self.in_order(slabs), occluders: self.occluders(), fade: None }, staged)
     }
 }

@@ -148,7 +148,11 @@ impl<'p> Walk<'_, '_, 'p> {
                 _ => {}
             }
         }
-        let message = format!("`{}` is {}; expected {}", self.here(), words::found(value.get_ref()), expected(schema));
+        let expected = expected(schema);
+        if let Some(text) = value.get_ref().as_str().filter(|_| expected.contains("number")) {
+            help = unquoted(text).or(help);
+        }
+        let message = format!("`{}` is {}; expected {expected}", self.here(), words::found(value.get_ref()));
         self.mistake(value.span(), message, help);
         Json::Null
     }
@@ -318,6 +322,17 @@ fn needs_shaping(character: char) -> bool {
             | 0x1_1000..=0x1_1fff
             | 0x1_e800..=0x1_efff
     )
+}
+
+/// What to write instead of a text that holds a number, perhaps with a decimal comma or a unit.
+fn unquoted(text: &str) -> Option<String> {
+    let (number, unit) = text.trim().split_once(' ').unwrap_or((text.trim(), ""));
+    let with_point = number.replacen(',', ".", 1);
+    let is_number = with_point.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+    with_point.parse::<f64>().ok().filter(|_| is_number && !unit.contains(char::is_whitespace))?;
+    let comma = if number.contains(',') { ", with a decimal point" } else { "" };
+    let unit = if unit.is_empty() { "" } else { ", without a unit" };
+    Some(format!("write {with_point}: a number without quotation marks{comma}{unit}"))
 }
 
 /// The rest of the message and the help for a text that should be a colour, but is not.

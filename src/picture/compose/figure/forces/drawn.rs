@@ -32,6 +32,8 @@ const ARROW: f64 = 5.0;
 const SHORTEST: f64 = 3.0;
 /// An arrow that leaves both sides of a corner by less than this (rad) has no halo there.
 const NARROW: f64 = 0.5;
+/// Forces that would move no node farther than this (sides) are none, but for round-off.
+const NONE: f64 = 1e-9;
 /// Opacity of what a body hides.
 const HIDDEN: f64 = 0.3;
 
@@ -56,7 +58,7 @@ impl<'a> Drawn<'a> {
     pub(super) fn panel(&self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) -> Panel {
         // Without the ring arrows, nodes and displacements of usual pictures.
         let mut panel = self.draft.panel(under, &mut Vec::new());
-        self.draft.fade_obstacles(&panel.obstacles, above);
+        self.draft.fade_obstacles(&mut panel.obstacles, above);
         panel.floor = None;
         panel.beads.clear();
         if self.draft.flat {
@@ -146,10 +148,13 @@ impl<'a> Drawn<'a> {
         let palette = &self.figure.look.palette;
         let unit = scale.unit;
         let position = &cell.snapshot().position;
-        // In the plane all nodes are seen; in space those of no face are, too.
-        let visible = cell.composer.skin.visible(position, &self.draft.lens);
-        let on_skin = |node: usize| cell.composer.skin.holds(node as u32);
-        let seen: Vec<_> = (0..position.len()).map(|at| if on_skin(at) { visible[at] } else { 1.0 }).collect();
+        // In the plane all nodes are seen; in space those of elements without faces are, too, and those inside are not.
+        let mut seen = cell.composer.skin.visible(position, &self.draft.lens);
+        let body = &cell.scene.body;
+        for node in (0..position.len()).filter(|&node| !cell.composer.skin.holds(node as u32)) {
+            let is_bare = || cell.composer.bare.iter().any(|&element| body.elements[element].contains(&(node as u32)));
+            seen[node] = if self.draft.flat || is_bare() { 1.0 } else { 0.0 };
+        }
         let [left, top, width, height] = cell.room;
         let inset = 6.0 * unit;
         let room = [left + inset, top + inset, left + width - inset, top + height - inset];
@@ -195,8 +200,18 @@ impl<'a> Drawn<'a> {
         for (&at, &seen) in position.iter().zip(&seen) {
             if seen > 0.0 {
                 let disc = Mark::around(self.pixel(at), NODE * scale.line(), MarkShape::Node, palette.node);
-                above.push(Mark { second: palette.edge, ..disc });
+                above.extend(Mark { second: palette.edge, ..disc }.faded(HIDDEN + (1.0 - HIDDEN) * seen));
             }
+        }
+        if order.is_empty() {
+            let text = if cell.ways.iter().all(|way| way.length() < NONE * cell.scene.view.side) {
+                "no forces"
+            } else {
+                "forces too small to be seen"
+            };
+            let size = scale.caption();
+            let left = left + 0.5 * (width - writer.fonts.width(text, Weight::Regular, size));
+            writer.left(text, Weight::Regular, size, palette.second_text, left, top + height - 0.4 * size);
         }
         if forces.numbers {
             for &at in &order {

@@ -16,6 +16,7 @@ use crate::picture::layout::Scale;
 use crate::picture::text::{Fonts, Weight};
 use crate::scene::Scene;
 use crate::scene::figure::{Figure, Forces};
+use crate::sim::contact::Shape;
 use cell::{Cell, fit};
 use drawn::Drawn;
 use key::Key;
@@ -99,7 +100,8 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
             let thickness = unit.round().max(1.0);
             let from = top + scale.margin() - raised;
             let line = [x, from, thickness, cells_bottom - from];
-            under.push(filled(line, palette.hairline));
+            // Above what fades at the sides of the cells.
+            above.push(filled(line, palette.hairline));
         }
     }
     if runs > 1 && rows > 1 {
@@ -117,7 +119,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     Ok(Picture { size: figure.size, palette, fonts, ramp: Vec::new(), panels, under, marks: above, curves, words })
 }
 
-/// A scene as a diagram shows it: in the figure's colours, without fields, strips, words and arrows of its own.
+/// A scene as a diagram shows it: in the figure's colours, without fields, strips, words, arrows and floors of its own.
 fn bare(scene: &Scene, figure: &Figure) -> Scene {
     let mut scene = scene.clone();
     let view = &mut scene.view;
@@ -125,5 +127,7 @@ fn bare(scene: &Scene, figure: &Figure) -> Scene {
     (view.colour, view.strip, view.spring_strain, view.explode) = (None, None, None, 0.0);
     view.visible.displacements = false;
     view.labels = Labels::default();
+    // Floors are not drawn, and so cut nothing.
+    scene.obstacles.retain(|obstacle| !matches!(obstacle.shape, Shape::Floor { .. }));
     scene
 }
