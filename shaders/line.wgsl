@@ -70,22 +70,28 @@ fn widest(kind: u32) -> f32 {
     }
 }
 
-// A line has two ends on the panel's region (px), and their depths.
+// A line: its two ends on the panel's region (px), and the bits of its depths, of the packed number, and its first sample.
+struct Line {
+    ends: vec4<f32>,
+    rest: vec4<u32>,
+}
+
+@group(2) @binding(1) var<storage, read> lines: array<Line>;
+
+// Three corners for each line: a software driver takes longer to begin an instance than to draw it.
 @vertex
-fn segment(
-    @builtin(vertex_index) corner: u32,
-    @location(0) ends: vec4<f32>,
-    @location(1) depths: vec2<f32>,
-    @location(2) look: u32,
-    @location(3) first: u32,
-) -> Segment {
+fn segment(@builtin(vertex_index) vertex: u32) -> Segment {
     panel = panel_data;
+    let line = lines[vertex / 3u];
+    let ends = line.ends;
+    let look = line.rest.z;
     let kind = extractBits(look, 0u, KIND_BITS);
     let strength = f32(extractBits(look, KIND_BITS, STRENGTH_BITS)) / 255.0;
-    let samples = vec2(first, look >> (KIND_BITS + STRENGTH_BITS));
+    let samples = vec2(line.rest.w, look >> (KIND_BITS + STRENGTH_BITS));
     let reach = 0.5 * max(widest(kind) * panel.line_scale, 1.0) + 0.5;
-    let place = triangle_corner(corner, ends.xy, ends.zw, reach, panel.region.zw);
+    let place = triangle_corner(vertex % 3u, ends.xy, ends.zw, reach, panel.region.zw);
     let scales = vec4(panel.line_scale, panel.contour_share, panel.line_share * panel.element, panel.opacity);
+    let depths = bitcast<vec2<f32>>(line.rest.xy);
     return Segment(place, ends + panel.region.xyxy, depths, kind, strength, samples, scales);
 }
 

@@ -2,15 +2,8 @@
 // The tests are made at the taps around the point of the line, so that lines end smoothly. Each kind of line has a pipeline of
 // its own, as the tests differ.
 
-// A line as `line.wgsl` reads it: its ends, and the bits of its depths, of the packed number, and its first sample.
-struct Line {
-    ends: vec4<f32>,
-    rest: vec4<u32>,
-}
-
 // Samples that follow each other along one line: the line, and the first of them on it.
 @group(2) @binding(0) var<storage, read> chunks: array<vec2<u32>>;
-@group(2) @binding(1) var<storage, read> lines: array<Line>;
 @group(2) @binding(2) var found: texture_storage_2d<rgba8unorm, write>;
 // The first of the chunks that are to be done, and how many.
 @group(2) @binding(3) var<uniform> range: vec2<u32>;

@@ -2,10 +2,8 @@
 
 use super::panel::Panels;
 use super::pass::Pass;
-use super::pipeline::{
-    BORDER_FORMAT, Pipeline, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry,
-};
-use super::segment::{self, ATTRIBUTES, Segment};
+use super::pipeline::{BORDER_FORMAT, Pipeline, Recipe, bind_textures, group_layout, shader, texture_entry};
+use super::segment::{self, Segment, bind_lines, corners, lines_layout};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Line, Picture, Rectangle};
@@ -29,6 +27,8 @@ pub(super) struct Borders {
     layout: wgpu::BindGroupLayout,
     textures: Option<wgpu::BindGroup>,
     segments: GrowingBuffer<Segment>,
+    lines_layout: wgpu::BindGroupLayout,
+    lines: wgpu::BindGroup,
     /// The borders of each panel, in runs that share a pipeline.
     runs: Vec<Vec<(usize, Range<u32>)>>,
 }
@@ -37,9 +37,12 @@ impl Borders {
     pub(super) fn new(gpu: &Gpu) -> Self {
         let entries = [texture_entry(0, false), texture_entry(1, true), texture_entry(2, true)];
         let layout = group_layout(gpu, "bodies", &entries);
-        let segments = GrowingBuffer::new(gpu, "borders", wgpu::BufferUsages::VERTEX, 1024);
+        let segments = GrowingBuffer::new(gpu, "borders", wgpu::BufferUsages::STORAGE, 1024);
+        let lines_layout = lines_layout(gpu);
+        let lines = bind_lines(gpu, &lines_layout, segments.buffer());
         let module = shader(gpu, "border", &parts());
-        Self { module, pipelines: [None, None], layout, textures: None, segments, runs: Vec::new() }
+        let pipelines = [None, None];
+        Self { module, pipelines, layout, textures: None, segments, lines_layout, lines, runs: Vec::new() }
     }
 
     /// Makes a pipeline.
@@ -48,10 +51,9 @@ impl Borders {
         let entry = ["border_colour", "alarm_border_colour"][at];
         let build = || {
             let recipe = Recipe {
-                groups: &[&panels.layout, &self.layout],
-                vertices: &[Some(for_instances::<Segment>(&ATTRIBUTES))],
+                groups: &[&panels.layout, &self.layout, &self.lines_layout],
                 blend: Some(wgpu::BlendState { color: sum, alpha: sum }),
-                ..Recipe::rectangles(entry, &self.module, ["segment", entry], BORDER_FORMAT)
+                ..Recipe::lines(entry, &self.module, ["segment", entry], BORDER_FORMAT)
             };
             recipe.build(gpu)
         };
@@ -83,17 +85,19 @@ impl Borders {
                 self.prepare(gpu, panels, at);
             }
         }
-        self.segments.write(gpu, segments);
+        if self.segments.write(gpu, segments) {
+            self.lines = bind_lines(gpu, &self.lines_layout, self.segments.buffer());
+        }
     }
 
     /// Draws the borders of all panels.
     pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
         pass.set_bind_group(1, self.textures.as_ref(), &[]);
-        pass.set_vertex_buffer(0, self.segments.buffer().slice(..));
+        pass.set_bind_group(2, &self.lines, &[]);
         panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
             for (pipeline, lines) in &self.runs[panel] {
                 pass.set_pipeline(self.pipelines[*pipeline].as_ref().expect("prepared"));
-                pass.draw(0..3, lines.clone());
+                pass.draw(corners(lines), 0..1);
             }
         });
     }

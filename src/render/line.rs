@@ -3,10 +3,8 @@
 use super::RenderError;
 use super::panel::Panels;
 use super::pass::Pass;
-use super::pipeline::{
-    LINE_FORMAT, Pipeline, Recipe, bind_textures, for_instances, group_layout, shader, texture_entry,
-};
-use super::segment::{ATTRIBUTES, Kind, Segment, parts, projected};
+use super::pipeline::{LINE_FORMAT, Pipeline, Recipe, bind_textures, group_layout, shader, texture_entry};
+use super::segment::{Kind, Segment, bind_lines, corners, lines_layout, parts, projected};
 use super::target::Bodies;
 use super::visibility::{Visibility, most_lines, most_samples};
 use crate::gpu::{Gpu, GrowingBuffer};
@@ -28,20 +26,25 @@ pub(super) struct Lines {
     found: Option<wgpu::BindGroup>,
     visibility: Visibility,
     segments: GrowingBuffer<Segment>,
+    lines_layout: wgpu::BindGroupLayout,
+    lines: wgpu::BindGroup,
     /// The lines of each panel, by kinds.
     ranges: Vec<[Range<u32>; Kind::ALL.len()]>,
 }
 
 impl Lines {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE;
+        let segments = GrowingBuffer::new(gpu, "lines", wgpu::BufferUsages::STORAGE, 1024);
+        let lines_layout = lines_layout(gpu);
         Self {
             module: shader(gpu, "line", &parts()),
             pipelines: [const { None }; Kind::ALL.len()],
             layout: group_layout(gpu, "visibility", &[texture_entry(4, false)]),
             found: None,
             visibility: Visibility::new(gpu),
-            segments: GrowingBuffer::new(gpu, "lines", usage, 1024),
+            lines: bind_lines(gpu, &lines_layout, segments.buffer()),
+            lines_layout,
+            segments,
             ranges: Vec::new(),
         }
     }
@@ -64,6 +67,9 @@ impl Lines {
             return Err(RenderError::Lines { count: segments.len(), most });
         }
         let is_new = self.segments.write(gpu, segments);
+        if is_new {
+            self.lines = bind_lines(gpu, &self.lines_layout, self.segments.buffer());
+        }
         let lines = (self.segments.contents(), self.segments.buffer(), is_new);
         if self.visibility.write(gpu, panels, bodies, lines, &self.ranges, among) || self.found.is_none() {
             self.found = Some(bind_textures(gpu, "visibility", &self.layout, &[(4, &self.visibility.found())]));
@@ -113,10 +119,9 @@ impl Lines {
         };
         let build = || {
             let recipe = Recipe {
-                groups: &[&panels.layout, &self.layout],
-                vertices: &[Some(for_instances::<Segment>(&ATTRIBUTES))],
+                groups: &[&panels.layout, &self.layout, &self.lines_layout],
                 blend: Some(wgpu::BlendState { color: largest, alpha: largest }),
-                ..Recipe::rectangles(kind.entry(), &self.module, ["segment", kind.entry()], LINE_FORMAT)
+                ..Recipe::lines(kind.entry(), &self.module, ["segment", kind.entry()], LINE_FORMAT)
             };
             recipe.build(gpu)
         };
@@ -143,12 +148,12 @@ impl Lines {
     /// Draws the lines of all panels, whose visibility was tested.
     pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
         pass.set_bind_group(1, self.found.as_ref(), &[]);
-        pass.set_vertex_buffer(0, self.segments.buffer().slice(..));
+        pass.set_bind_group(2, &self.lines, &[]);
         for (at, pipeline) in self.pipelines.iter().enumerate() {
             let Some(pipeline) = pipeline else { continue };
             pass.set_pipeline(pipeline);
             panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
-                pass.draw(0..3, self.ranges[panel][at].clone());
+                pass.draw(corners(&self.ranges[panel][at]), 0..1);
             });
         }
     }

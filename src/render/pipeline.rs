@@ -59,6 +59,17 @@ impl<'a> Recipe<'a> {
         }
     }
 
+    /// Triangles without depth.
+    pub(super) fn lines(
+        label: &'static str,
+        shader: &'a wgpu::ShaderModule,
+        entries: [&'static str; 2],
+        target: wgpu::TextureFormat,
+    ) -> Self {
+        let topology = wgpu::PrimitiveTopology::TriangleList;
+        Self { topology, ..Self::rectangles(label, shader, entries, target) }
+    }
+
     /// Opaque triangles with depth, in the textures that hold bodies.
     pub(super) fn bodies(label: &'static str, shader: &'a wgpu::ShaderModule, entries: [&'static str; 2]) -> Self {
         let topology = wgpu::PrimitiveTopology::TriangleList;
@@ -167,7 +178,7 @@ pub(super) fn uniform_entry(binding: u32, size: usize, has_dynamic_offset: bool)
 pub(super) fn storage_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
+        visibility: wgpu::ShaderStages::VERTEX | wgpu::ShaderStages::COMPUTE,
         ty: wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Storage { read_only: true },
             has_dynamic_offset: false,

@@ -1,6 +1,8 @@
 //! Lines on the regions of their panels, as the passes read them that test, draw and smooth them.
 
 use super::panel::cropped;
+use super::pipeline::{bind, group_layout, storage_entry};
+use crate::gpu::Gpu;
 use crate::picture::{Line, LineKind, Panel};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4};
@@ -25,8 +27,20 @@ pub(super) struct Segment {
 pub(super) const KIND_BITS: u32 = 4;
 pub(super) const STRENGTH_BITS: u32 = 8;
 
-pub(super) const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
-    wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x2, 2 => Uint32, 3 => Uint32];
+/// The binding of the lines that a pass draws: three vertices each.
+pub(super) fn lines_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    group_layout(gpu, "lines", &[storage_entry(1)])
+}
+
+/// Lines bound as that layout has it.
+pub(super) fn bind_lines(gpu: &Gpu, layout: &wgpu::BindGroupLayout, lines: &wgpu::Buffer) -> wgpu::BindGroup {
+    bind(gpu, "lines", layout, &[(1, lines.as_entire_binding())])
+}
+
+/// The vertices of some lines.
+pub(super) fn corners(lines: &Range<u32>) -> Range<u32> {
+    3 * lines.start..3 * lines.end
+}
 
 impl Segment {
     /// Its length (px).
