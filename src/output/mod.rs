@@ -45,6 +45,13 @@ pub(crate) use summary::{Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary, 
 pub(crate) use timing::{Clock, thread_time};
 pub use timing::{Spent, Timings};
 
+/// Rows of equal length as CSV (RFC 4180, with line feeds), quoted where necessary.
+pub(crate) fn rows_as_csv(rows: impl IntoIterator<Item = impl IntoIterator<Item = impl AsRef<[u8]>>>) -> Vec<u8> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    rows.into_iter().for_each(|row| table.write_record(row).expect("rows of equal length into memory"));
+    table.into_inner().expect("memory takes all")
+}
+
 /// A number with 17 significant digits, which identify a double precision number uniquely.
 ///
 /// Not-a-number is `nan` and infinity `inf`, which most languages can parse.
