@@ -33,7 +33,7 @@ pub(crate) use frames::{FrameWriter, PixelFrame};
 pub(crate) use lock::FolderLock;
 pub(crate) use plan::{Plan, Whose};
 #[cfg(feature = "render")]
-pub(crate) use png::image_data;
+pub(crate) use png::packed;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
 pub(crate) use png::{Texts, encode_like, encode_print, is_drawn};
 pub(crate) use sheets::SheetFiles;
