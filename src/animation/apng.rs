@@ -3,7 +3,7 @@
 use super::order::{Kept, in_order};
 use super::timeline::fraction;
 use super::{Animation, AnimationError, Image, Written, changed};
-use crate::output::image_data;
+use crate::output::packed;
 use std::io::{self, Write};
 
 const ANIMATION_CONTROL: png::chunk::ChunkType = png::chunk::ChunkType(*b"acTL");
@@ -65,7 +65,12 @@ impl Patch {
             let [r, g, b] = pixel(image, at);
             pixels.extend_from_slice(&if is_new(at) { [r, g, b, 255] } else { [0; 4] });
         }
-        Self { place, data: compressed([place[2], place[3]], &pixels) }
+        let data = packed([place[2], place[3]], png::ColorType::Rgba, &pixels, |encoder| {
+            // A third smaller than the fastest level, in twice the time.
+            encoder.set_deflate_compression(png::DeflateCompression::Level(3));
+            encoder.set_filter(png::Filter::Paeth);
+        });
+        Self { place, data }
     }
 
     /// The control chunk before the data: the part is not disposed, and is blended over the previous frame.
@@ -75,21 +80,6 @@ impl Patch {
         let delay = fraction(duration, u16::MAX.into()).map(|part| (part as u16).to_be_bytes()).concat();
         [numbers.as_slice(), &delay, &[0, 1]].concat()
     }
-}
-
-/// Pixels as the image data of a PNG file.
-fn compressed([width, height]: [u32; 2], pixels: &[u8]) -> Vec<u8> {
-    let mut file = Vec::with_capacity(pixels.len() / 8);
-    let mut encoder = png::Encoder::new(&mut file, width, height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    // A third smaller than the fastest level, in twice the time.
-    encoder.set_deflate_compression(png::DeflateCompression::Level(3));
-    encoder.set_filter(png::Filter::Paeth);
-    let mut writer = encoder.write_header().expect("a picture into memory");
-    writer.write_image_data(pixels).expect("a picture of the right length into memory");
-    writer.finish().expect("a picture into memory");
-    image_data(&file)
 }
 
 fn failed(error: png::EncodingError) -> AnimationError {

@@ -6,7 +6,7 @@ use super::interrupt;
 use super::scenes::occupied;
 use crate::output::{
     DIAGNOSTICS_FILE, Folder, OutputError, Plan, Replace, SUMMARY_FILE, Whose, document, frame_file_name, read_file,
-    read_tags, relative, write_whole,
+    read_tags, relative, rows_as_csv, write_whole,
 };
 use clap::{Args, ValueHint};
 use csv::StringRecord;
@@ -283,12 +283,8 @@ fn whole(parts: &[Part], frames: usize, words: &[OsString], folder: &Path, quiet
 
 /// The diagnostics of all shards, in the order of frames.
 fn table(parts: &[Part], frames: &[u64]) -> Vec<u8> {
-    let mut table = csv::Writer::from_writer(Vec::new());
     let rows = frames.iter().enumerate().flat_map(|(at, frame)| &parts[at % parts.len()].rows[frame]);
-    for row in std::iter::once(&parts[0].head).chain(rows) {
-        table.write_record(row).expect("rows of equal length into memory");
-    }
-    table.into_inner().expect("memory takes all")
+    rows_as_csv(std::iter::once(&parts[0].head).chain(rows))
 }
 
 fn write_summary(folder: &Path, summary: &Value) -> Result<(), OutputError> {

@@ -404,10 +404,6 @@ impl<'a> Recording<'a> {
         // Frames that are not kept cannot be continued, and states that are read need not be.
         let can_resume =
             simulation.read_from.is_none() && (results.pictures.is_none() || self.summary.frames.size.is_some());
-        if self.summary.frames.recorded > 0 && simulation.read_from.is_none() {
-            // Going on: in case that it is stopped before the next frame.
-            self.note_sleep(simulation.frames.states());
-        }
         let mut pace = Pace::new();
         while !interrupt::requested() {
             if can_resume && pace.is_due() {
@@ -433,7 +429,6 @@ impl<'a> Recording<'a> {
                     if read_from.is_none() {
                         let states: Vec<_> = frames.states().collect();
                         pool.install(|| self.find_causes(&states));
-                        self.note_sleep(states.into_iter());
                     }
                     self.last = Some(frame);
                 }
@@ -451,6 +446,10 @@ impl<'a> Recording<'a> {
         }
         if can_resume && interrupt::requested() {
             results.save(&mut simulation.frames, simulation.ahead, self.folder, self.summary)?;
+        }
+        if self.summary.frames.recorded > 0 && simulation.read_from.is_none() {
+            // On the way to the next frame, too, which may be far away.
+            self.note_sleep(simulation.frames.states());
         }
         let frames = &mut simulation.frames;
         for (run, steps) in self.summary.runs.iter_mut().zip(frames.simulated()) {

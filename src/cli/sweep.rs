@@ -4,7 +4,7 @@ use super::console::{self, columns};
 use super::failure::{Failure, Status, missing, note, warn_of};
 use super::frames::Shard;
 use super::options::{PrintOptions, RunOptions, SceneOptions};
-use crate::output::{OutputError, SUMMARY_FILE, exact, read_file, write_whole};
+use crate::output::{OutputError, SUMMARY_FILE, exact, read_file, rows_as_csv, write_whole};
 use crate::reading::report::mistake;
 use crate::reading::source::Source;
 use crate::reading::variants::{Row, Variants, cell, decimal_comma, set, value};
@@ -268,9 +268,8 @@ impl Sweep {
 
     /// How the runs of all complete variants fare: as a table, and in words.
     fn compared(&self) -> Result<(Vec<u8>, Vec<[String; 5]>), Failure> {
-        let mut table = csv::Writer::from_writer(Vec::new());
-        let mut write = |line: &[&str]| table.write_record(line).expect("rows of equal length into memory");
-        write(&["folder", "run", "status", "diverged_at_s", "turned_over", "shape_error_m"]);
+        let heads = ["folder", "run", "status", "diverged_at_s", "turned_over", "shape_error_m"];
+        let mut table = vec![heads.map(str::to_owned)];
         let mut shown = vec![["variant", "run", "status", "turned over", "shape error"].map(str::to_owned)];
         let mut lines = ReaderBuilder::new().from_reader(&self.table[..]);
         for (line, digest) in lines.records().flatten().zip(&self.digests) {
@@ -283,26 +282,23 @@ impl Sweep {
                 let [run_name, status] = ["name", "status"].map(|key| run[key].as_str().unwrap_or_default());
                 let [over, error] = ["turned_over", "shape_error"].map(|key| &run["last"][key]);
                 let over = over.as_u64().map_or_else(String::new, |count| count.to_string());
-                write(&[name, run_name, status, &number(&run["time"]), &over, &number(error)]);
+                let row = [name, run_name, status, &number(&run["time"]), &over, &number(error)];
+                table.push(row.map(str::to_owned));
                 let at = run["time"].as_f64().map_or_else(String::new, |time| format!(" at {} s", short(time)));
                 let error = error.as_f64().map_or_else(String::new, |error| quantity(error, "m"));
                 shown.push([name.to_owned(), run_name.to_owned(), format!("{status}{at}"), over, error]);
             }
         }
-        Ok((table.into_inner().expect("memory takes all"), shown))
+        Ok((rows_as_csv(table), shown))
     }
 
     fn table(&self, keys: &[String], rows: &[Row]) -> Vec<u8> {
-        let mut table = csv::Writer::from_writer(Vec::new());
         let folder = |name: &str| std::iter::once(name.to_owned());
         let head = folder("folder").chain(keys.iter().cloned()).collect::<Vec<_>>();
         let lines = self.variants.iter().zip(rows).map(|(variant, (row, _))| {
             folder(&variant.folder).chain(row.iter().map(str::to_owned)).collect::<Vec<_>>()
         });
-        for line in std::iter::once(head).chain(lines) {
-            table.write_record(line).expect("rows of equal length into memory");
-        }
-        table.into_inner().expect("memory takes all")
+        rows_as_csv(std::iter::once(head).chain(lines))
     }
 }
 

@@ -2,12 +2,9 @@
 
 use super::typed::FontFile;
 use super::view::FontFiles;
-use crate::reading::beside::{missing, similar};
+use crate::reading::beside::bytes;
 use crate::reading::report::{Report, Way};
-use crate::reading::words::size;
 use sha2::{Digest, Sha256};
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -20,43 +17,14 @@ const EXPECTED: &str = "expected a TrueType or OpenType font (.ttf, .otf, .ttc)"
 /// The fonts of a scene, looked for in its folder, or `None` after reporting what is wrong with them.
 pub(crate) fn read(folder: &Path, typed: &FontFile, report: &mut Report<'_>) -> Option<FontFiles> {
     let mut one = |key: &str, name: &str| {
-        let found = open(&folder.join(name)).and_then(|bytes| check(&bytes).map(|()| bytes).map_err(plain));
+        let found = bytes(&folder.join(name), &ENDINGS, LONGEST, "a font", EXPECTED);
+        let found = found.and_then(|bytes| check(&bytes).map(|()| Arc::from(bytes)).map_err(|message| (message, None)));
         let path = [Way::Key("view"), Way::Key("font"), Way::Key(key)];
         found.map_err(|(message, help)| report.at(&path, format!("`{name}` {message}"), help)).ok()
     };
     let regular = one("regular", &typed.regular);
     let semi_bold = typed.semi_bold.as_ref().map(|name| one("semi_bold", name));
     Some(FontFiles { regular: Some(regular?), semi_bold: semi_bold.map_or(Some(None), |font| font.map(Some))? })
-}
-
-/// What is wrong with a file, and what to do.
-type Mistake = (String, Option<String>);
-
-fn plain(message: String) -> Mistake {
-    (message, None)
-}
-
-/// The bytes of a file of a font.
-fn open(path: &Path) -> Result<Arc<[u8]>, Mistake> {
-    if !path.exists() {
-        let near = similar(path, &ENDINGS).map(|near| format!("did you mean {near:?}?"));
-        return Err((missing(path), near));
-    }
-    if path.is_dir() {
-        return Err(plain(format!("is a folder; {EXPECTED}")));
-    }
-    // Reading a pipe could block for ever.
-    if !path.is_file() {
-        return Err(plain(format!("is not a regular file; {EXPECTED}")));
-    }
-    let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes));
-    read.map_err(|error| plain(format!("cannot be read: {error}")))?;
-    if bytes.len() as u64 > LONGEST {
-        let message = format!("is larger than {}, the most that a font may have", size(LONGEST.into()));
-        return Err(plain(message));
-    }
-    Ok(bytes.into())
 }
 
 /// Why bytes are not a usable font.

@@ -1,14 +1,12 @@
 //! Points that were measured elsewhere, from a file of comma-separated values beside the scene.
 
 use super::file::PointsFile;
-use crate::reading::beside::{missing, similar};
+use crate::reading::beside::{Wrong, bytes};
 use crate::reading::report::{Report, Way};
-use crate::reading::words::{list, quoted, size};
+use crate::reading::words::{list, quoted};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use glam::DVec3;
 use sha2::{Digest, Sha256};
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -36,35 +34,15 @@ impl PointsRead {
     }
 }
 
-/// What is wrong with a file, and what to do.
-type Mistake = (String, Option<String>);
-
 /// The points of a scene, looked for in its folder, or `None` after reporting what is wrong with them.
 pub(crate) fn read(folder: &Path, typed: &PointsFile, report: &mut Report<'_>) -> Option<PointsRead> {
     let path = [Way::Key("view"), Way::Key("points"), Way::Key("file")];
-    let found = bytes(&folder.join(&typed.file)).and_then(|bytes| parse(&bytes));
+    let expected = "expected comma-separated values";
+    let found = bytes(&folder.join(&typed.file), &ENDINGS, LONGEST, "points", expected).and_then(|bytes| parse(&bytes));
     found.map_err(|(message, help)| report.at(&path, format!("`{}` {message}", typed.file), help)).ok()
 }
 
-fn bytes(path: &Path) -> Result<Vec<u8>, Mistake> {
-    if !path.exists() {
-        let near = similar(path, &ENDINGS).map(|near| format!("did you mean {near:?}?"));
-        return Err((missing(path), near));
-    }
-    // Reading a pipe could block for ever.
-    if !path.is_file() {
-        return Err(("is not a regular file; expected comma-separated values".to_owned(), None));
-    }
-    let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes));
-    read.map_err(|error| (format!("cannot be read: {error}"), None))?;
-    if bytes.len() as u64 > LONGEST {
-        return Err((format!("is larger than {}, the most that points may have", size(LONGEST.into())), None));
-    }
-    Ok(bytes)
-}
-
-fn parse(bytes: &[u8]) -> Result<PointsRead, Mistake> {
+fn parse(bytes: &[u8]) -> Result<PointsRead, Wrong> {
     let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_reader(bytes);
     let broken = |error: csv::Error| (format!("is no table of comma-separated values: {error}"), None);
     let headers = reader.headers().map_err(broken)?.clone();
@@ -99,7 +77,7 @@ fn parse(bytes: &[u8]) -> Result<PointsRead, Mistake> {
 }
 
 /// A number of a line.
-fn number(record: &StringRecord, headers: &StringRecord, at: usize) -> Result<f64, Mistake> {
+fn number(record: &StringRecord, headers: &StringRecord, at: usize) -> Result<f64, Wrong> {
     let text = record.get(at).unwrap_or_default();
     text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
         let line = record.position().map_or(0, csv::Position::line);

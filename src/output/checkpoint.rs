@@ -75,14 +75,8 @@ impl Checkpoint {
             return Err(damaged());
         }
         let (origin, rest): (Origin, _) = postcard::take_from_bytes(rest).map_err(|_| damaged())?;
-        let version = env!("CARGO_PKG_VERSION");
-        if origin.version != version {
-            return Err(format!("was written by localshape {}, and this is {version}", origin.version));
-        }
-        if origin.digest != whose.digest || whose.digest.is_empty() {
-            let (found, expected) = (origin.title, &whose.title);
-            let other = if found == *expected { "another version of" } else { "another scene," };
-            return Err(format!("belongs to {other} “{found}”; expected “{expected}” as it is now"));
+        if let Some(why) = origin.refusal(&whose.digest, &whose.title) {
+            return Err(why);
         }
         let found: Self = postcard::from_bytes(rest).map_err(|_| damaged())?;
         if found.plan != digest(plan) {

@@ -1,7 +1,7 @@
 //! `diagnostics.csv`: one row for each run and frame.
 
 use super::atomic::open_growing;
-use super::{OutputError, exact};
+use super::{OutputError, exact, rows_as_csv};
 use crate::scene::Scene;
 use crate::sim::diagnostics::{Diagnostic, Value};
 use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
@@ -42,7 +42,7 @@ impl DiagnosticsWriter {
     /// Creates the file in `folder`.
     pub(crate) fn create(folder: &Path, scene: &Scene) -> Result<Self, OutputError> {
         let mut writer = Self::open(folder, scene, Rows::default())?;
-        writer.append(&rows([cells("", 0, &Snapshot::default()).into_iter().map(|(head, _)| head)]))?;
+        writer.append(&rows_as_csv([cells("", 0, &Snapshot::default()).into_iter().map(|(head, _)| head)]))?;
         Ok(writer)
     }
 
@@ -75,7 +75,7 @@ impl DiagnosticsWriter {
     pub(crate) fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
         let names = &self.names;
         let row = |run: &RunFrame| cells(&names[run.run], frame.index, &run.snapshot).into_iter().map(|(_, cell)| cell);
-        self.append(&rows(frame.runs.iter().map(row)))
+        self.append(&rows_as_csv(frame.runs.iter().map(row)))
     }
 
     fn append(&mut self, text: &[u8]) -> Result<(), OutputError> {
@@ -143,13 +143,4 @@ fn cells(name: &str, frame: u64, snapshot: &Snapshot) -> Vec<(String, String)> {
     }
     cells.push(plain("status", status.to_owned()));
     cells
-}
-
-/// Rows as CSV, quoted where necessary.
-fn rows(rows: impl IntoIterator<Item = impl Iterator<Item = String>>) -> Vec<u8> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in rows {
-        writer.write_record(row.collect::<Vec<_>>()).expect("rows of equal length into memory");
-    }
-    writer.into_inner().expect("memory takes all")
 }

@@ -33,7 +33,7 @@ pub(crate) use frames::{FrameWriter, PixelFrame};
 pub(crate) use lock::FolderLock;
 pub(crate) use plan::{Plan, Whose};
 #[cfg(feature = "render")]
-pub(crate) use png::image_data;
+pub(crate) use png::packed;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
 pub(crate) use png::{Texts, encode_like, encode_print, is_drawn};
 pub(crate) use sheets::SheetFiles;
@@ -44,6 +44,13 @@ pub(crate) use summary::relative;
 pub(crate) use summary::{Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary, document};
 pub(crate) use timing::{Clock, thread_time};
 pub use timing::{Spent, Timings};
+
+/// Rows of equal length as CSV (RFC 4180, with line feeds), quoted where necessary.
+pub(crate) fn rows_as_csv(rows: impl IntoIterator<Item = impl IntoIterator<Item = impl AsRef<[u8]>>>) -> Vec<u8> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    rows.into_iter().for_each(|row| table.write_record(row).expect("rows of equal length into memory"));
+    table.into_inner().expect("memory takes all")
+}
 
 /// A number with 17 significant digits, which identify a double precision number uniquely.
 ///

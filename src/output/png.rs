@@ -155,18 +155,8 @@ pub(crate) fn encode_like(
     texts: &[(&'static str, String)],
     dpi: Option<f64>,
 ) -> Vec<u8> {
-    // Behind the signature, each chunk has its length, its name, its data and a sum.
-    const SIGNATURE: usize = 8;
     file(size, length, texts, Compression::Fast, dpi, |writer| {
-        let mut rest = &file_before[SIGNATURE..];
-        while let Some((head, behind)) = rest.split_at_checked(8) {
-            let length = u32::from_be_bytes([head[0], head[1], head[2], head[3]]) as usize;
-            if head[4..] == png::chunk::IDAT.0 {
-                writer.write_chunk(png::chunk::IDAT, &behind[..length])?;
-            }
-            rest = &behind[length + 4..];
-        }
-        Ok(())
+        image_chunks(file_before).try_for_each(|data| writer.write_chunk(png::chunk::IDAT, data))
     })
 }
 
@@ -209,20 +199,38 @@ fn file(
     bytes
 }
 
-/// The packed pixels in a PNG file: the contents of its `IDAT` chunks.
+/// Pixels of a kind, filtered and packed as in a PNG file, with the settings of `set`: the contents of its `IDAT` chunks.
 #[cfg(feature = "render")]
-pub(crate) fn image_data(file: &[u8]) -> Vec<u8> {
-    let mut data = Vec::with_capacity(file.len());
+pub(crate) fn packed(
+    [width, height]: [u32; 2],
+    kind: png::ColorType,
+    pixels: &[u8],
+    set: impl FnOnce(&mut png::Encoder<'_, &mut Vec<u8>>),
+) -> Vec<u8> {
+    let mut file = Vec::with_capacity(pixels.len() / 8);
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(kind);
+    encoder.set_depth(png::BitDepth::Eight);
+    set(&mut encoder);
+    let written = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(pixels)?;
+        writer.finish()
+    });
+    written.expect("pixels of the right length into memory");
+    image_chunks(&file).collect::<Vec<_>>().concat()
+}
+
+/// The contents of the `IDAT` chunks of a PNG file.
+fn image_chunks(file: &[u8]) -> impl Iterator<Item = &[u8]> {
     // After the signature: length, name, data and checksum of each chunk.
     let mut rest = &file[8..];
-    while let Some((head, tail)) = rest.split_first_chunk::<8>() {
-        let length = u32::from_be_bytes([head[0], head[1], head[2], head[3]]) as usize;
-        if &head[4..] == b"IDAT" {
-            data.extend_from_slice(&tail[..length]);
-        }
-        rest = &tail[length + 4..];
-    }
-    data
+    let chunks = std::iter::from_fn(move || {
+        let (head, tail) = rest.split_first_chunk::<8>()?;
+        let (data, end) = tail.split_at(u32::from_be_bytes([head[0], head[1], head[2], head[3]]) as usize);
+        rest = &end[4..];
+        Some((head[4..] == png::chunk::IDAT.0, data))
+    });
+    chunks.filter_map(|(is_image, data)| is_image.then_some(data))
 }
 
 /// Reads width and height of a picture (px) and its metadata, without its pixels; `None` if the file is not a PNG file

@@ -110,6 +110,17 @@ impl Origin {
         let version = env!("CARGO_PKG_VERSION").to_owned();
         Self { version, digest: whose.digest.clone(), title: whose.title.clone() }
     }
+
+    /// Why what comes from here is of no use for a scene, in words; `None` if it is.
+    pub(super) fn refusal(&self, digest: &str, title: &str) -> Option<String> {
+        let (version, found) = (env!("CARGO_PKG_VERSION"), &self.title);
+        if self.version != version {
+            return Some(format!("was written by localshape {}, and this is {version}", self.version));
+        }
+        let other = if found == title { "another version of" } else { "another scene," };
+        (self.digest != digest || digest.is_empty())
+            .then(|| format!("belongs to {other} “{found}”; expected “{title}” as it is now"))
+    }
 }
 
 impl Course {

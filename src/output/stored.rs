@@ -76,14 +76,8 @@ fn course(npz: &mut Npz, scene: &Scene) -> Result<Course, String> {
     };
     let damaged = |_| format!("is damaged: `{COURSE}` is not what this program writes; {again}");
     let (origin, rest): (Origin, _) = postcard::take_from_bytes(bytes.bytes()).map_err(damaged)?;
-    let version = env!("CARGO_PKG_VERSION");
-    if origin.version != version {
-        return Err(format!("was written by localshape {}, and this is {version}; {again}", origin.version));
-    }
-    if origin.digest != scene.digest || scene.digest.is_empty() {
-        let (found, expected) = (origin.title, &scene.title);
-        let whose = if found == *expected { "another version of" } else { "another scene," };
-        return Err(format!("has states of {whose} “{found}”; expected those of “{expected}” as it is now; {again}"));
+    if let Some(why) = origin.refusal(&scene.digest, &scene.title) {
+        return Err(format!("{why}; {again}"));
     }
     postcard::from_bytes(rest).map_err(damaged)
 }

@@ -1,7 +1,31 @@
 //! Files in the folder of a scene that belong to it.
 
-use super::words::nearest;
+use super::words::{nearest, size};
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
+
+/// What is wrong with a file, and what to do.
+pub(crate) type Wrong = (String, Option<String>);
+
+/// The bytes of a file, of which there are at most so many. `endings` are those of such files, `what` may not be longer.
+pub(crate) fn bytes(path: &Path, endings: &[&str], longest: u64, what: &str, expected: &str) -> Result<Vec<u8>, Wrong> {
+    if !path.exists() {
+        return Err((missing(path), similar(path, endings).map(|near| format!("did you mean {near:?}?"))));
+    }
+    // Reading a pipe could block for ever.
+    if !path.is_file() {
+        let kind = if path.is_dir() { "a folder" } else { "not a regular file" };
+        return Err((format!("is {kind}; {expected}"), None));
+    }
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(longest + 1).read_to_end(&mut bytes));
+    read.map_err(|error| (format!("cannot be read: {error}"), None))?;
+    match bytes.len() as u64 > longest {
+        true => Err((format!("is larger than {}, the most that {what} may have", size(longest.into())), None)),
+        false => Ok(bytes),
+    }
+}
 
 /// The message for a missing file.
 pub(crate) fn missing(path: &Path) -> String {

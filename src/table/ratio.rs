@@ -8,7 +8,7 @@
 //! time.
 
 use super::sheet::figure;
-use super::{Sheet, Spread, Watch, scene};
+use super::{Sheet, Spread, Watch, scene, take_turns};
 use crate::output::{Clock, Spent, exact};
 use crate::scene::Scene;
 use crate::sim::topology::Springs;
@@ -124,7 +124,17 @@ pub fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Ratios> {
     let time = Time::of(threads, Clock::thread().spent().cpu.is_some());
     for &side in &protocol.sides {
         let scene = block(side);
-        let times = take_turns(&scene, protocol, time, watch)?;
+        let mut worlds: Vec<_> = (0..scene.runs.len()).map(|run| scene.world(run)).collect();
+        let cubes = scene.body.elements.len() as u64;
+        let steps = (protocol.turn / cubes).max(1);
+        // The first access to memory is not timed.
+        worlds.iter_mut().for_each(|world| world.advance(1));
+        // ns for one cube and step.
+        let times = take_turns(worlds.len(), protocol.rounds, watch, |run| {
+            let clock = Clock::thread();
+            worlds[run].advance(steps);
+            time.of_spent(clock.spent()) * 1e9 / (steps * cubes) as f64
+        })?;
         let (shape, others) = times.split_first()?;
         for ((&springs, times), run) in SPRINGS.iter().zip(others).zip(&scene.runs[1..]) {
             comparisons.push(Comparison {
@@ -161,29 +171,6 @@ fn block(side: u32) -> Scene {
         );
     }
     scene(&text, "ratio")
-}
-
-/// The times of each run's turns (ns for one cube and step), round by round.
-fn take_turns(scene: &Scene, protocol: &Protocol, time: Time, watch: &Watch<'_>) -> Option<Vec<Vec<f64>>> {
-    let mut worlds: Vec<_> = (0..scene.runs.len()).map(|run| scene.world(run)).collect();
-    let mut times = vec![Vec::new(); worlds.len()];
-    let cubes = scene.body.elements.len() as u64;
-    let steps = (protocol.turn / cubes).max(1);
-    // The first access to memory is not timed.
-    worlds.iter_mut().for_each(|world| world.advance(1));
-    for round in 0..protocol.rounds as usize {
-        for turn in 0..worlds.len() {
-            // The order is rotated, so that no model always follows the same one.
-            let run = (round + turn) % worlds.len();
-            let clock = Clock::thread();
-            worlds[run].advance(steps);
-            times[run].push(time.of_spent(clock.spent()) * 1e9 / (steps * cubes) as f64);
-            if !watch(1) {
-                return None;
-            }
-        }
-    }
-    Some(times)
 }
 
 impl Ratios {

@@ -1,5 +1,7 @@
 //! Rows and columns as CSV and as Markdown.
 
+use crate::output::rows_as_csv;
+
 /// A table of texts.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Sheet {
@@ -19,13 +21,10 @@ impl Sheet {
         sheet
     }
 
-    /// As CSV (RFC 4180, with line feeds).
+    /// As CSV.
     pub(crate) fn csv(&self) -> String {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(&self.heads).expect("memory takes all");
-        self.rows.iter().for_each(|row| writer.write_record(row).expect("rows of equal length"));
-        let bytes = writer.into_inner().expect("memory takes all");
-        String::from_utf8(bytes).expect("made of texts")
+        let rows = std::iter::once(&self.heads).chain(&self.rows);
+        String::from_utf8(rows_as_csv(rows)).expect("made of texts")
     }
 
     /// As Markdown, with the first `left` columns aligned left and the others, numbers, aligned right.

@@ -3,7 +3,6 @@
 use super::Page;
 use super::drawing::{Image, Item, Paint, Path, Pen, Step};
 use super::font::Subset;
-use crate::output::image_data;
 use crate::picture::{Colour, TextRun};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
@@ -340,17 +339,7 @@ fn packed(bytes: &[u8]) -> Vec<u8> {
     encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("into memory")
 }
 
-/// Rows of pixels, filtered and packed as in PNG: the contents of its `IDAT` chunks.
-fn rows_of_png([width, height]: [u32; 2], kind: png::ColorType, pixels: &[u8]) -> Vec<u8> {
-    let mut file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut file, width, height);
-    encoder.set_color(kind);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::High);
-    let written = encoder.write_header().and_then(|mut writer| {
-        writer.write_image_data(pixels)?;
-        writer.finish()
-    });
-    written.expect("pixels of the right length into memory");
-    image_data(&file)
+/// Rows of pixels, filtered and packed as in PNG.
+fn rows_of_png(size: [u32; 2], kind: png::ColorType, pixels: &[u8]) -> Vec<u8> {
+    crate::output::packed(size, kind, pixels, |encoder| encoder.set_compression(png::Compression::High))
 }

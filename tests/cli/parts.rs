@@ -223,12 +223,9 @@ fn states_that_do_not_fit_are_refused() {
     place.run("render small.toml --from-states states/states.npz --states").bad(2, &["--from-states", "--states"]);
     place.run("render small.toml --frames 1 --from-states states/states.npz -o a.png").bad(2, &["--from-states"]);
     place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.6"));
-    refused(
-        2,
-        &["states.npz has states of another version of “Two cubes”; expected those of “Two cubes” as it is now"],
-    );
+    refused(2, &["states.npz belongs to another version of “Two cubes”; expected “Two cubes” as it is now"]);
     place.write("small.toml", &SMALL.replace("Two cubes", "Cubes"));
-    refused(2, &["states.npz has states of another scene, “Two cubes”; expected those of “Cubes”", "--states"]);
+    refused(2, &["states.npz belongs to another scene, “Two cubes”; expected “Cubes”", "--states"]);
     place.write("small.toml", SMALL);
     std::fs::write(place.path("states/states.npz"), &states[..states.len() / 2]).unwrap();
     refused(2, &["states/states.npz is a damaged NumPy archive, or is cut short"]);

@@ -22,9 +22,7 @@ impl BodyBuilder {
         nodes: impl IntoIterator<Item = impl Into<Coordinates>>,
         elements: impl IntoIterator<Item = impl Into<Vec<u32>>>,
     ) -> Self {
-        let nodes = Some(nodes.into_iter().map(Into::into).collect());
-        let elements = Some(elements.into_iter().map(Into::into).collect());
-        Self(BodyFile { nodes, elements, ..BodyFile::default() })
+        Self(BodyFile { nodes: all(nodes), elements: all(elements), ..BodyFile::default() })
     }
 
     /// A block of cells.
@@ -54,83 +52,39 @@ impl BodyBuilder {
         Self(BodyFile { bars: Some(bars), ..BodyFile::default() })
     }
 
-    /// Takes elements in space for the convex hulls of their nodes, listed in any order.
-    pub fn convex(mut self) -> Self {
-        self.0.convex = true;
-        self
+    setters! {
+        /// Takes elements in space for the convex hulls of their nodes, listed in any order.
+        convex() 0.convex = true;
+        /// Springs by hand, pairs of nodes, for mass-spring models without a named topology. Only with [`Self::arrays`].
+        springs(springs: impl IntoIterator<Item = [u32; 2]>) 0.springs = all(springs);
+        /// Faces to draw instead of those of the elements, counter-clockwise from outside. Only with [`Self::arrays`].
+        faces(faces: impl IntoIterator<Item = impl Into<Vec<u32>>>) 0.faces = all(faces);
+        /// Mass of every node (kg), instead of 1.
+        mass(mass: f64) 0.mass = Some(mass);
+        /// Mass of each node (kg). Only with [`Self::arrays`].
+        masses(masses: impl IntoIterator<Item = f64>) 0.masses = Some(masses.into_iter().map(Positive).collect());
+        /// Initial position of each node (m), instead of that at rest. Only with [`Self::arrays`].
+        positions(positions: impl IntoIterator<Item = impl Into<Coordinates>>) 0.positions = all(positions);
+        /// Initial velocity of each node (m/s). Only with [`Self::arrays`].
+        velocities(velocities: impl IntoIterator<Item = impl Into<Coordinates>>) 0.velocities = all(velocities);
+        /// Starts the body without depth, turned inside out, or at random places.
+        start(start: Start) 0.start = Some(start);
+        /// A turn about the mean of the nodes before the start.
+        rotation(rotation: Rotation) 0.rotation = Some(rotation);
+        /// A shift after the turn (m).
+        offset(offset: impl Into<Coordinates>) 0.offset = Some(offset.into());
+        /// Height at which the lowest node starts, along y (m).
+        lowest(height: f64) 0.lowest = Some(height);
+        /// Initial velocity of all nodes (m/s).
+        velocity(velocity: impl Into<Coordinates>) 0.velocity = Some(velocity.into());
+        /// A rigid spin about the mean of the nodes: the rotation of one second (rad/s).
+        spin(rotation: Rotation) 0.spin = Some(SpinFile { axis: rotation.axis, rate: rotation.angle });
     }
+}
 
-    /// Springs by hand, pairs of nodes, for mass-spring models without a named topology. Only with [`Self::arrays`].
-    pub fn springs(mut self, springs: impl IntoIterator<Item = [u32; 2]>) -> Self {
-        self.0.springs = Some(springs.into_iter().collect());
-        self
-    }
-
-    /// Faces to draw instead of those of the elements, counter-clockwise from outside. Only with [`Self::arrays`].
-    pub fn faces(mut self, faces: impl IntoIterator<Item = impl Into<Vec<u32>>>) -> Self {
-        self.0.faces = Some(faces.into_iter().map(Into::into).collect());
-        self
-    }
-
-    /// Mass of every node (kg), instead of 1.
-    pub fn mass(mut self, mass: f64) -> Self {
-        self.0.mass = Some(mass);
-        self
-    }
-
-    /// Mass of each node (kg). Only with [`Self::arrays`].
-    pub fn masses(mut self, masses: impl IntoIterator<Item = f64>) -> Self {
-        self.0.masses = Some(masses.into_iter().map(Positive).collect());
-        self
-    }
-
-    /// Initial position of each node (m), instead of that at rest. Only with [`Self::arrays`].
-    pub fn positions(mut self, positions: impl IntoIterator<Item = impl Into<Coordinates>>) -> Self {
-        self.0.positions = Some(positions.into_iter().map(Into::into).collect());
-        self
-    }
-
-    /// Initial velocity of each node (m/s). Only with [`Self::arrays`].
-    pub fn velocities(mut self, velocities: impl IntoIterator<Item = impl Into<Coordinates>>) -> Self {
-        self.0.velocities = Some(velocities.into_iter().map(Into::into).collect());
-        self
-    }
-
-    /// Starts the body without depth, turned inside out, or at random places.
-    pub fn start(mut self, start: Start) -> Self {
-        self.0.start = Some(start);
-        self
-    }
-
-    /// A turn about the mean of the nodes before the start.
-    pub fn rotation(mut self, rotation: Rotation) -> Self {
-        self.0.rotation = Some(rotation);
-        self
-    }
-
-    /// A shift after the turn (m).
-    pub fn offset(mut self, offset: impl Into<Coordinates>) -> Self {
-        self.0.offset = Some(offset.into());
-        self
-    }
-
-    /// Height at which the lowest node starts, along y (m).
-    pub fn lowest(mut self, height: f64) -> Self {
-        self.0.lowest = Some(height);
-        self
-    }
-
-    /// Initial velocity of all nodes (m/s).
-    pub fn velocity(mut self, velocity: impl Into<Coordinates>) -> Self {
-        self.0.velocity = Some(velocity.into());
-        self
-    }
-
-    /// A rigid spin about the mean of the nodes: the rotation of one second (rad/s).
-    pub fn spin(mut self, rotation: Rotation) -> Self {
-        self.0.spin = Some(SpinFile { axis: rotation.axis, rate: rotation.angle });
-        self
-    }
+/// A list of entries that are given.
+fn all<T>(entries: impl IntoIterator<Item = impl Into<T>>) -> Option<Vec<T>> {
+    Some(entries.into_iter().map(Into::into).collect())
 }
 
 impl Lattice {
@@ -139,24 +93,15 @@ impl Lattice {
         Self { cells: cells.into(), side: SideFile::Equal(side), elements: Cells::Cells, irregular: 0.0, seed: 1 }
     }
 
-    /// Cells of another length along each axis (m).
-    pub fn sides(self, sides: impl IntoIterator<Item = f64>) -> Self {
-        Self { side: SideFile::PerAxis(sides.into_iter().map(Positive).collect()), ..self }
-    }
-
-    /// Cuts the cells, or joins them.
-    pub fn elements(self, elements: Cells) -> Self {
-        Self { elements, ..self }
-    }
-
-    /// Moves nodes at random by up to this part of a cell's shortest side, at most 0.4. No element comes out flat.
-    pub fn irregular(self, part: f64) -> Self {
-        Self { irregular: part, ..self }
-    }
-
-    /// Chooses another of the random blocks.
-    pub fn seed(self, seed: u32) -> Self {
-        Self { seed, ..self }
+    setters! {
+        /// Cells of another length along each axis (m).
+        sides(sides: impl IntoIterator<Item = f64>) side = SideFile::PerAxis(sides.into_iter().map(Positive).collect());
+        /// Cuts the cells, or joins them.
+        elements(elements: Cells) elements = elements;
+        /// Moves nodes at random by up to this part of a cell's shortest side, at most 0.4. No element comes out flat.
+        irregular(part: f64) irregular = part;
+        /// Chooses another of the random blocks.
+        seed(seed: u32) seed = seed;
     }
 }
 
@@ -166,14 +111,11 @@ impl Start {
         Self { shape, direction: None, seed: 1 }
     }
 
-    /// Where the line leads, or where plane and mirror face.
-    pub fn direction(self, direction: impl Into<Coordinates>) -> Self {
-        Self { direction: Some(direction.into()), ..self }
-    }
-
-    /// Chooses another of the clouds.
-    pub fn seed(self, seed: u32) -> Self {
-        Self { seed, ..self }
+    setters! {
+        /// Where the line leads, or where plane and mirror face.
+        direction(direction: impl Into<Coordinates>) direction = Some(direction.into());
+        /// Chooses another of the clouds.
+        seed(seed: u32) seed = seed;
     }
 }
 

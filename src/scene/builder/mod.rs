@@ -1,6 +1,17 @@
 //! Scenes made in code. Builders fill in the same description that a scene file is, so that both mean the same, have the same
 //! limits, and are checked by the same code.
 
+/// Functions that set a part of what is made: name, arguments, the part, and its value.
+macro_rules! setters {
+    ($($(#[$doc:meta])* $name:ident($($argument:ident: $type:ty),*) $($part:tt).+ = $value:expr;)*) => {$(
+        $(#[$doc])*
+        pub fn $name(mut self, $($argument: $type),*) -> Self {
+            self.$($part).+ = $value;
+            self
+        }
+    )*};
+}
+
 mod body;
 mod obstacle;
 
@@ -89,54 +100,26 @@ impl Scene {
 }
 
 impl SceneBuilder {
-    /// Acceleration of gravity (m/s²).
-    pub fn gravity(mut self, acceleration: impl Into<Coordinates>) -> Self {
-        self.0.gravity = Some(acceleration.into());
-        self
-    }
-
-    /// Simulated time (s).
-    pub fn duration(mut self, seconds: f64) -> Self {
-        self.0.time.duration = seconds;
-        self
-    }
-
-    /// Time step ΔT of all runs that have none of their own (s).
-    pub fn step(mut self, seconds: f64) -> Self {
-        self.0.time.step = Some(StepFile::Seconds(seconds));
-        self
-    }
-
-    /// So many steps in the shortest period T = 2π√(m/k) of all runs, instead of 50, for runs without a step of their own.
-    pub fn steps_per_cycle(mut self, steps: f64) -> Self {
-        self.0.time.step = Some(StepFile::Named(NamedStep::Divided(steps)));
-        self
-    }
-
-    /// The error allowed in each step of an integrator that finds its own, as a share of the size of the body, for runs without a
-    /// tolerance of their own.
-    pub fn tolerance(mut self, share: f64) -> Self {
-        self.0.time.tolerance = Some(share);
-        self
-    }
-
-    /// How positions and velocities move from one step to the next, in all runs that do not say it themselves.
-    pub fn integrator(mut self, integrator: Integrator) -> Self {
-        self.0.time.integrator = integrator;
-        self
-    }
-
-    /// Lets the body of each run sleep after a time (s) in which no node has moved farther than a distance (m); see
-    /// [`Sleep`](crate::sim::Sleep).
-    pub fn sleep(mut self, distance: f64, after: f64) -> Self {
-        self.0.time.sleep = Some(SleepFile { distance: Positive(distance), after: Positive(after) });
-        self
-    }
-
-    /// Frames per second of simulated time (1/s).
-    pub fn frames_per_second(mut self, rate: f64) -> Self {
-        self.0.time.frames_per_second = rate;
-        self
+    setters! {
+        /// Acceleration of gravity (m/s²).
+        gravity(acceleration: impl Into<Coordinates>) 0.gravity = Some(acceleration.into());
+        /// Simulated time (s).
+        duration(seconds: f64) 0.time.duration = seconds;
+        /// Time step ΔT of all runs that have none of their own (s).
+        step(seconds: f64) 0.time.step = Some(StepFile::Seconds(seconds));
+        /// So many steps in the shortest period T = 2π√(m/k) of all runs, instead of 50, for runs without a step of their own.
+        steps_per_cycle(steps: f64) 0.time.step = Some(StepFile::Named(NamedStep::Divided(steps)));
+        /// The error allowed in each step of an integrator that finds its own, as a share of the size of the body, for runs without a
+        /// tolerance of their own.
+        tolerance(share: f64) 0.time.tolerance = Some(share);
+        /// How positions and velocities move from one step to the next, in all runs that do not say it themselves.
+        integrator(integrator: Integrator) 0.time.integrator = integrator;
+        /// Lets the body of each run sleep after a time (s) in which no node has moved farther than a distance (m); see
+        /// [`Sleep`](crate::sim::Sleep).
+        sleep(distance: f64, after: f64)
+            0.time.sleep = Some(SleepFile { distance: Positive(distance), after: Positive(after) });
+        /// Frames per second of simulated time (1/s).
+        frames_per_second(rate: f64) 0.time.frames_per_second = rate;
     }
 
     /// Adds a run: a model on the body, and a panel of the picture. Each run has a name of its own. It is stepped like the
@@ -168,34 +151,17 @@ impl SceneBuilder {
         self
     }
 
-    /// Width and height of pictures (px).
-    pub fn size(mut self, size: [u32; 2]) -> Self {
-        self.0.view.size = SizeFile::Pixels(size);
-        self
-    }
-
-    /// The colours of pictures.
-    pub fn theme(mut self, theme: Theme) -> Self {
-        self.0.view.theme = theme;
-        self
-    }
-
-    /// Colours the body by a field.
-    pub fn colour_by(mut self, field: Field) -> Self {
-        self.0.view.colour = Some(ColourFile { by: field, range: None, map: ColourMap::default() });
-        self
-    }
-
-    /// Opacity of elements that are not turned over, from 0.1 to 1.
-    pub fn opacity(mut self, opacity: f64) -> Self {
-        self.0.view.opacity = opacity;
-        self
-    }
-
-    /// Draws a diagnostic over time below each panel.
-    pub fn strip(mut self, diagnostic: Diagnostic) -> Self {
-        self.0.view.strip = Some(diagnostic);
-        self
+    setters! {
+        /// Width and height of pictures (px).
+        size(size: [u32; 2]) 0.view.size = SizeFile::Pixels(size);
+        /// The colours of pictures.
+        theme(theme: Theme) 0.view.theme = theme;
+        /// Colours the body by a field.
+        colour_by(field: Field) 0.view.colour = Some(ColourFile { by: field, range: None, map: ColourMap::default() });
+        /// Opacity of elements that are not turned over, from 0.1 to 1.
+        opacity(opacity: f64) 0.view.opacity = opacity;
+        /// Draws a diagnostic over time below each panel.
+        strip(diagnostic: Diagnostic) 0.view.strip = Some(diagnostic);
     }
 
     /// Turns the camera to the right around the vertical, and raises it above the horizon (rad).
@@ -287,40 +253,19 @@ impl RunBuilder {
         Self(RunFile { own: Some(model), ..run })
     }
 
-    /// Time step ΔT of this run (s).
-    pub fn step(mut self, seconds: f64) -> Self {
-        self.0.step = Some(StepFile::Seconds(seconds));
-        self
-    }
-
-    /// So many steps of this run in the shortest period T = 2π√(m/k) of all runs.
-    pub fn steps_per_cycle(mut self, steps: f64) -> Self {
-        self.0.step = Some(StepFile::Named(NamedStep::Divided(steps)));
-        self
-    }
-
-    /// The error allowed in each step of this run, for an integrator that finds its own, as a share of the size of the body.
-    pub fn tolerance(mut self, share: f64) -> Self {
-        self.0.tolerance = Some(share);
-        self
-    }
-
-    /// How positions and velocities of this run move from one step to the next.
-    pub fn integrator(mut self, integrator: Integrator) -> Self {
-        self.0.integrator = Some(integrator);
-        self
-    }
-
-    /// How a step of this run is computed, instead of in the fastest way that its model has.
-    pub fn kernel(mut self, kernel: Kernel) -> Self {
-        self.0.kernel = Some(kernel);
-        self
-    }
-
-    /// The colour of its lines. It must stand out from the background and from elements that are turned over.
-    pub fn colour(mut self, colour: Colour) -> Self {
-        self.0.colour = Some(TypedColour(colour));
-        self
+    setters! {
+        /// Time step ΔT of this run (s).
+        step(seconds: f64) 0.step = Some(StepFile::Seconds(seconds));
+        /// So many steps of this run in the shortest period T = 2π√(m/k) of all runs.
+        steps_per_cycle(steps: f64) 0.step = Some(StepFile::Named(NamedStep::Divided(steps)));
+        /// The error allowed in each step of this run, for an integrator that finds its own, as a share of the size of the body.
+        tolerance(share: f64) 0.tolerance = Some(share);
+        /// How positions and velocities of this run move from one step to the next.
+        integrator(integrator: Integrator) 0.integrator = Some(integrator);
+        /// How a step of this run is computed, instead of in the fastest way that its model has.
+        kernel(kernel: Kernel) 0.kernel = Some(kernel);
+        /// The colour of its lines. It must stand out from the background and from elements that are turned over.
+        colour(colour: Colour) 0.colour = Some(TypedColour(colour));
     }
 }
 

@@ -50,40 +50,19 @@ impl ObstacleBuilder {
         Self::new(ShapeFile::Box { centre: centre.into(), size: size.into(), rotation: Some(rotation) })
     }
 
-    /// Restitution coefficient e, 0 to 1: the part of the normal velocity that a rebound gives back.
-    pub fn restitution(mut self, coefficient: f64) -> Self {
-        self.0.restitution = coefficient;
-        self
-    }
-
-    /// Friction coefficient μ.
-    pub fn friction(mut self, coefficient: f64) -> Self {
-        self.0.friction = coefficient;
-        self
-    }
-
-    /// What friction acts on.
-    pub fn friction_of(mut self, what: FrictionOf) -> Self {
-        self.0.friction_of = Some(what);
-        self
-    }
-
-    /// The point about which it turns when it moves (m), instead of its middle.
-    pub fn about(mut self, point: impl Into<Coordinates>) -> Self {
-        self.0.about = Some(point.into());
-        self
-    }
-
-    /// Moves it along a path, and not by a swing.
-    pub fn path(mut self, path: MotionPath) -> Self {
-        self.0.path = Some(path);
-        self
-    }
-
-    /// Moves it to and fro, and not along a path.
-    pub fn swing(mut self, swing: Swing) -> Self {
-        self.0.swing = Some(swing);
-        self
+    setters! {
+        /// Restitution coefficient e, 0 to 1: the part of the normal velocity that a rebound gives back.
+        restitution(coefficient: f64) 0.restitution = coefficient;
+        /// Friction coefficient μ.
+        friction(coefficient: f64) 0.friction = coefficient;
+        /// What friction acts on.
+        friction_of(what: FrictionOf) 0.friction_of = Some(what);
+        /// The point about which it turns when it moves (m), instead of its middle.
+        about(point: impl Into<Coordinates>) 0.about = Some(point.into());
+        /// Moves it along a path, and not by a swing.
+        path(path: MotionPath) 0.path = Some(path);
+        /// Moves it to and fro, and not along a path.
+        swing(swing: Swing) 0.swing = Some(swing);
     }
 }
 
@@ -106,9 +85,9 @@ impl MotionPath {
         self
     }
 
-    /// How it runs between two keys.
-    pub fn ease(self, ease: Ease) -> Self {
-        Self { ease, ..self }
+    setters! {
+        /// How it runs between two keys.
+        ease(ease: Ease) ease = ease;
     }
 
     /// Begins again at the last key, which must be where the first one is.
@@ -123,18 +102,12 @@ impl Swing {
         Self { period, phase: 0.0, shift: None, rotation: None }
     }
 
-    /// Where in the swing it is at the start (rad).
-    pub fn phase(self, phase: f64) -> Self {
-        Self { phase, ..self }
-    }
-
-    /// The farthest shift (m).
-    pub fn shift(self, shift: impl Into<Coordinates>) -> Self {
-        Self { shift: Some(shift.into()), ..self }
-    }
-
-    /// The farthest turn.
-    pub fn rotation(self, rotation: Rotation) -> Self {
-        Self { rotation: Some(rotation), ..self }
+    setters! {
+        /// Where in the swing it is at the start (rad).
+        phase(phase: f64) phase = phase;
+        /// The farthest shift (m).
+        shift(shift: impl Into<Coordinates>) shift = Some(shift.into());
+        /// The farthest turn.
+        rotation(rotation: Rotation) rotation = Some(rotation);
     }
 }

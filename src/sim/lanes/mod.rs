@@ -13,80 +13,20 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// An array of two, three, four or eight values, each by an expression of its index. `array::map` is not used because
 /// closures are separate functions, compiled without the vector set and not always inlined.
 macro_rules! each {
-    (2, $at:ident => $value:expr) => {
-        [
-            {
-                let $at = 0usize;
-                $value
-            },
-            {
-                let $at = 1usize;
-                $value
-            },
-        ]
+    (2, $at:ident => $value:expr) => { each!([0, 1], $at => $value) };
+    (3, $at:ident => $value:expr) => { each!([0, 1, 2], $at => $value) };
+    (4, $at:ident => $value:expr) => { each!([0, 1, 2, 3], $at => $value) };
+    (8, $at:ident => $value:expr) => { each!([0, 1, 2, 3, 4, 5, 6, 7], $at => $value) };
+    ([$($index:literal),*], $at:ident => $value:expr) => {
+        [$({ let $at: usize = $index; $value }),*]
     };
-    (3, $at:ident => $value:expr) => {
-        [
-            {
-                let $at = 0usize;
-                $value
-            },
-            {
-                let $at = 1usize;
-                $value
-            },
-            {
-                let $at = 2usize;
-                $value
-            },
-        ]
-    };
-    (4, $at:ident => $value:expr) => {
-        [
-            {
-                let $at = 0usize;
-                $value
-            },
-            {
-                let $at = 1usize;
-                $value
-            },
-            {
-                let $at = 2usize;
-                $value
-            },
-            {
-                let $at = 3usize;
-                $value
-            },
-        ]
-    };
-    (8, $at:ident => $value:expr) => {{
-        let [a, b, c, d] = each!(4, $at => $value);
-        let [e, f, g, h] = each!(4, low => {
-            let $at = low + 4;
-            $value
-        });
-        [a, b, c, d, e, f, g, h]
-    }};
 }
 pub(in crate::sim) use each;
 
 /// An unrolled loop over 0, 1, 2: if the compiler keeps a loop, it keeps its vectors in memory.
 macro_rules! thrice {
     ($at:ident => $body:expr) => {{
-        {
-            let $at = 0usize;
-            $body
-        }
-        {
-            let $at = 1usize;
-            $body
-        }
-        {
-            let $at = 2usize;
-            $body
-        }
+        each!(3, $at => $body);
     }};
 }
 pub(in crate::sim) use thrice;
@@ -333,6 +273,38 @@ macro_rules! operators {
                 let $c = self.0;
                 Self($neg)
             }
+        }
+    };
+}
+
+/// Functions of [`Lanes`] that make vectors of vectors, and then those that compare them, by what they do with the values inside.
+macro_rules! lanewise {
+    ($($name:ident($a:ident $(, $b:ident)*) $value:expr;)*; $($test:ident($c:ident, $d:ident) $mask:expr;)*) => {
+        $(#[inline(always)]
+        fn $name(self $(, $b: Self)*) -> Self {
+            let ($a, $($b,)*) = (self.0, $($b.0,)*);
+            Self($value)
+        })*
+        $(#[inline(always)]
+        fn $test(self, other: Self) -> Self::Mask {
+            let ($c, $d) = (self.0, other.0);
+            $mask
+        })*
+    };
+}
+
+/// How vectors that are no whole cache line are loaded from a distance.
+macro_rules! consecutive {
+    () => {
+        type Distance = usize;
+        #[inline(always)]
+        fn distance(values: usize) -> usize {
+            values
+        }
+        #[inline(always)]
+        unsafe fn load_beyond(from: *const f64, distance: usize, _: usize) -> Self {
+            // SAFETY: the caller's.
+            unsafe { Self::load(from.add(distance)) }
         }
     };
 }

@@ -16,16 +16,7 @@ operators! { Vector,
 
 impl Lanes for Vector {
     type Mask = uint64x2_t;
-    type Distance = usize;
-    #[inline(always)]
-    fn distance(values: usize) -> usize {
-        values
-    }
-    #[inline(always)]
-    unsafe fn load_beyond(from: *const f64, distance: usize, _: usize) -> Self {
-        // SAFETY: the caller's.
-        unsafe { Self::load(from.add(distance)) }
-    }
+    consecutive!();
     const WIDTH: usize = 2;
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -39,53 +30,22 @@ impl Lanes for Vector {
     unsafe fn store(self, to: *mut f64) {
         unsafe { vst1q_f64(to, self.0) }
     }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, summand: Self) -> Self {
-        Self(unsafe { vfmaq_f64(summand.0, self.0, factor.0) })
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, factor: Self, summand: Self) -> Self {
-        Self(unsafe { vfmsq_f64(summand.0, self.0, factor.0) })
-    }
-    #[inline(always)]
-    fn mul_sub(self, factor: Self, minuend: Self) -> Self {
-        self.mul_add(factor, -minuend)
-    }
-    #[inline(always)]
-    fn div(self, divisor: Self) -> Self {
-        Self(unsafe { vdivq_f64(self.0, divisor.0) })
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(unsafe { vsqrtq_f64(self.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        self.select(other.lt(self), other)
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(unsafe { vabsq_f64(self.0) })
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> uint64x2_t {
-        unsafe { vcltq_f64(self.0, other.0) }
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> uint64x2_t {
-        unsafe { vcleq_f64(self.0, other.0) }
+    lanewise! {
+        mul_add(a, b, c) unsafe { vfmaq_f64(c, a, b) };
+        neg_mul_add(a, b, c) unsafe { vfmsq_f64(c, a, b) };
+        mul_sub(a, b, c) unsafe { vfmaq_f64(vnegq_f64(c), a, b) };
+        div(a, b) unsafe { vdivq_f64(a, b) };
+        sqrt(a) unsafe { vsqrtq_f64(a) };
+        max(a, b) unsafe { vbslq_f64(vcltq_f64(b, a), a, b) };
+        abs(a) unsafe { vabsq_f64(a) };
+        shift_in(a, previous) unsafe { vextq_f64::<1>(previous, a) };
+        shift_out(a, next) unsafe { vextq_f64::<1>(a, next) };;
+        lt(a, b) unsafe { vcltq_f64(a, b) };
+        le(a, b) unsafe { vcleq_f64(a, b) };
     }
     #[inline(always)]
     fn select(self, mask: uint64x2_t, other: Self) -> Self {
         Self(unsafe { vbslq_f64(mask, self.0, other.0) })
-    }
-    #[inline(always)]
-    fn shift_in(self, previous: Self) -> Self {
-        Self(unsafe { vextq_f64::<1>(previous.0, self.0) })
-    }
-    #[inline(always)]
-    fn shift_out(self, next: Self) -> Self {
-        Self(unsafe { vextq_f64::<1>(self.0, next.0) })
     }
     #[inline(always)]
     fn bits(mask: uint64x2_t) -> u32 {

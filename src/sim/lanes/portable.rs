@@ -15,29 +15,9 @@ operators! { Vector,
     -a from_fn(|at| -a[at])
 }
 
-impl Vector {
-    #[inline(always)]
-    fn each(self, other: Self, one: impl Fn(f64, f64) -> f64) -> Self {
-        Self(from_fn(|at| one(self.0[at], other.0[at])))
-    }
-    #[inline(always)]
-    fn test(self, other: Self, one: impl Fn(f64, f64) -> bool) -> [bool; N] {
-        from_fn(|at| one(self.0[at], other.0[at]))
-    }
-}
-
 impl Lanes for Vector {
     type Mask = [bool; N];
-    type Distance = usize;
-    #[inline(always)]
-    fn distance(values: usize) -> usize {
-        values
-    }
-    #[inline(always)]
-    unsafe fn load_beyond(from: *const f64, distance: usize, _: usize) -> Self {
-        // SAFETY: the caller's.
-        unsafe { Self::load(from.add(distance)) }
-    }
+    consecutive!();
     const WIDTH: usize = N;
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -53,53 +33,22 @@ impl Lanes for Vector {
         // SAFETY: as above.
         unsafe { *to.cast::<[f64; N]>() = self.0 }
     }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, summand: Self) -> Self {
-        Self(from_fn(|at| self.0[at].mul_add(factor.0[at], summand.0[at])))
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, factor: Self, summand: Self) -> Self {
-        (-self).mul_add(factor, summand)
-    }
-    #[inline(always)]
-    fn mul_sub(self, factor: Self, minuend: Self) -> Self {
-        self.mul_add(factor, -minuend)
-    }
-    #[inline(always)]
-    fn div(self, divisor: Self) -> Self {
-        self.each(divisor, |a, b| a / b)
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(self.0.map(f64::sqrt))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        self.each(other, |a, b| if a > b { a } else { b })
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(self.0.map(f64::abs))
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> [bool; N] {
-        self.test(other, |a, b| a < b)
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> [bool; N] {
-        self.test(other, |a, b| a <= b)
+    lanewise! {
+        mul_add(a, b, c) from_fn(|at| a[at].mul_add(b[at], c[at]));
+        neg_mul_add(a, b, c) from_fn(|at| (-a[at]).mul_add(b[at], c[at]));
+        mul_sub(a, b, c) from_fn(|at| a[at].mul_add(b[at], -c[at]));
+        div(a, b) from_fn(|at| a[at] / b[at]);
+        sqrt(a) a.map(f64::sqrt);
+        max(a, b) from_fn(|at| if a[at] > b[at] { a[at] } else { b[at] });
+        abs(a) a.map(f64::abs);
+        shift_in(a, previous) from_fn(|at| if at == 0 { previous[N - 1] } else { a[at - 1] });
+        shift_out(a, next) from_fn(|at| if at == N - 1 { next[0] } else { a[at + 1] });;
+        lt(a, b) from_fn(|at| a[at] < b[at]);
+        le(a, b) from_fn(|at| a[at] <= b[at]);
     }
     #[inline(always)]
     fn select(self, mask: [bool; N], other: Self) -> Self {
         Self(from_fn(|at| if mask[at] { self.0[at] } else { other.0[at] }))
-    }
-    #[inline(always)]
-    fn shift_in(self, previous: Self) -> Self {
-        Self(from_fn(|at| if at == 0 { previous.0[N - 1] } else { self.0[at - 1] }))
-    }
-    #[inline(always)]
-    fn shift_out(self, next: Self) -> Self {
-        Self(from_fn(|at| if at == N - 1 { next.0[0] } else { self.0[at + 1] }))
     }
     #[inline(always)]
     fn bits(mask: [bool; N]) -> u32 {

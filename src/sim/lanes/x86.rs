@@ -92,18 +92,16 @@ fn transposed_8(r: [__m512d; 8]) -> [Avx512; 8] {
     }
 }
 
+/// Eight lanes of two vectors after one another, from a lane of the first on.
+#[inline(always)]
+unsafe fn rotated<const FROM: i32>(low: __m512d, high: __m512d) -> __m512d {
+    let (low, high) = unsafe { (_mm512_castpd_si512(low), _mm512_castpd_si512(high)) };
+    unsafe { _mm512_castsi512_pd(_mm512_alignr_epi64::<FROM>(high, low)) }
+}
+
 impl Lanes for Avx2 {
     type Mask = __m256d;
-    type Distance = usize;
-    #[inline(always)]
-    fn distance(values: usize) -> usize {
-        values
-    }
-    #[inline(always)]
-    unsafe fn load_beyond(from: *const f64, distance: usize, _: usize) -> Self {
-        // SAFETY: the caller's.
-        unsafe { Self::load(from.add(distance)) }
-    }
+    consecutive!();
     const WIDTH: usize = 4;
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -117,56 +115,24 @@ impl Lanes for Avx2 {
     unsafe fn store(self, to: *mut f64) {
         unsafe { _mm256_storeu_pd(to, self.0) }
     }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, summand: Self) -> Self {
-        Self(unsafe { _mm256_fmadd_pd(self.0, factor.0, summand.0) })
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, factor: Self, summand: Self) -> Self {
-        Self(unsafe { _mm256_fnmadd_pd(self.0, factor.0, summand.0) })
-    }
-    #[inline(always)]
-    fn mul_sub(self, factor: Self, minuend: Self) -> Self {
-        Self(unsafe { _mm256_fmsub_pd(self.0, factor.0, minuend.0) })
-    }
-    #[inline(always)]
-    fn div(self, divisor: Self) -> Self {
-        Self(unsafe { _mm256_div_pd(self.0, divisor.0) })
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(unsafe { _mm256_sqrt_pd(self.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Self(unsafe { _mm256_max_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> __m256d {
-        unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0) }
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> __m256d {
-        unsafe { _mm256_cmp_pd::<_CMP_LE_OQ>(self.0, other.0) }
+    lanewise! {
+        mul_add(a, b, c) unsafe { _mm256_fmadd_pd(a, b, c) };
+        neg_mul_add(a, b, c) unsafe { _mm256_fnmadd_pd(a, b, c) };
+        mul_sub(a, b, c) unsafe { _mm256_fmsub_pd(a, b, c) };
+        div(a, b) unsafe { _mm256_div_pd(a, b) };
+        sqrt(a) unsafe { _mm256_sqrt_pd(a) };
+        max(a, b) unsafe { _mm256_max_pd(a, b) };
+        abs(a) unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), a) };
+        // The upper half of `previous` and the lower half of `a`, then the odd lanes of that and the even ones of `a`.
+        shift_in(a, previous) unsafe { _mm256_shuffle_pd::<0b0101>(_mm256_permute2f128_pd::<0x21>(previous, a), a) };
+        // The odd lanes of `a`, and the even ones of its upper half and the lower half of `next`.
+        shift_out(a, next) unsafe { _mm256_shuffle_pd::<0b0101>(a, _mm256_permute2f128_pd::<0x21>(a, next)) };;
+        lt(a, b) unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(a, b) };
+        le(a, b) unsafe { _mm256_cmp_pd::<_CMP_LE_OQ>(a, b) };
     }
     #[inline(always)]
     fn select(self, mask: __m256d, other: Self) -> Self {
         Self(unsafe { _mm256_blendv_pd(other.0, self.0, mask) })
-    }
-    #[inline(always)]
-    fn shift_in(self, previous: Self) -> Self {
-        // The upper half of `previous` and the lower half of `self`, then the odd lanes of that and the even ones
-        // of `self`.
-        Self(unsafe { _mm256_shuffle_pd::<0b0101>(_mm256_permute2f128_pd::<0x21>(previous.0, self.0), self.0) })
-    }
-    #[inline(always)]
-    fn shift_out(self, next: Self) -> Self {
-        // The odd lanes of `self`, and the even ones of its upper half and the lower half of `next`.
-        Self(unsafe { _mm256_shuffle_pd::<0b0101>(self.0, _mm256_permute2f128_pd::<0x21>(self.0, next.0)) })
     }
     #[inline(always)]
     fn bits(mask: __m256d) -> u32 {
@@ -246,59 +212,22 @@ impl Lanes for Avx512 {
     unsafe fn store(self, to: *mut f64) {
         unsafe { _mm512_storeu_pd(to, self.0) }
     }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, summand: Self) -> Self {
-        Self(unsafe { _mm512_fmadd_pd(self.0, factor.0, summand.0) })
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, factor: Self, summand: Self) -> Self {
-        Self(unsafe { _mm512_fnmadd_pd(self.0, factor.0, summand.0) })
-    }
-    #[inline(always)]
-    fn mul_sub(self, factor: Self, minuend: Self) -> Self {
-        Self(unsafe { _mm512_fmsub_pd(self.0, factor.0, minuend.0) })
-    }
-    #[inline(always)]
-    fn div(self, divisor: Self) -> Self {
-        Self(unsafe { _mm512_div_pd(self.0, divisor.0) })
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(unsafe { _mm512_sqrt_pd(self.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Self(unsafe { _mm512_max_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(unsafe { _mm512_abs_pd(self.0) })
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> __mmask8 {
-        unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0) }
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> __mmask8 {
-        unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, other.0) }
+    lanewise! {
+        mul_add(a, b, c) unsafe { _mm512_fmadd_pd(a, b, c) };
+        neg_mul_add(a, b, c) unsafe { _mm512_fnmadd_pd(a, b, c) };
+        mul_sub(a, b, c) unsafe { _mm512_fmsub_pd(a, b, c) };
+        div(a, b) unsafe { _mm512_div_pd(a, b) };
+        sqrt(a) unsafe { _mm512_sqrt_pd(a) };
+        max(a, b) unsafe { _mm512_max_pd(a, b) };
+        abs(a) unsafe { _mm512_abs_pd(a) };
+        shift_in(a, previous) unsafe { rotated::<7>(previous, a) };
+        shift_out(a, next) unsafe { rotated::<1>(a, next) };;
+        lt(a, b) unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, b) };
+        le(a, b) unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(a, b) };
     }
     #[inline(always)]
     fn select(self, mask: __mmask8, other: Self) -> Self {
         Self(unsafe { _mm512_mask_blend_pd(mask, other.0, self.0) })
-    }
-    #[inline(always)]
-    fn shift_in(self, previous: Self) -> Self {
-        Self(unsafe {
-            let (low, high) = (_mm512_castpd_si512(previous.0), _mm512_castpd_si512(self.0));
-            _mm512_castsi512_pd(_mm512_alignr_epi64::<7>(high, low))
-        })
-    }
-    #[inline(always)]
-    fn shift_out(self, next: Self) -> Self {
-        Self(unsafe {
-            let (low, high) = (_mm512_castpd_si512(self.0), _mm512_castpd_si512(next.0));
-            _mm512_castsi512_pd(_mm512_alignr_epi64::<1>(high, low))
-        })
     }
     #[inline(always)]
     fn bits(mask: __mmask8) -> u32 {

@@ -15,7 +15,7 @@ mod solver_tests;
 mod text;
 
 use crate::output::Clock;
-use crate::table::{Spread, Watch};
+use crate::table::{Spread, Watch, take_turns};
 use degenerate::{CLASSES, Outcome};
 use glam::DQuat;
 use method::Method;
@@ -101,7 +101,17 @@ pub(crate) fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Results>
     let mut measured = Vec::new();
     for kind in protocol.kinds() {
         let (elements, sought): (Vec<_>, Vec<_>) = sample::samples(kind, protocol.elements).into_iter().unzip();
-        let times = take_turns(protocol, &methods, &elements, watch)?;
+        let turn = |number: usize| {
+            let (method, clock) = (black_box(&methods[number]), Clock::thread());
+            for _ in 0..protocol.repeats {
+                elements.iter().for_each(|element| method.work(black_box(element)));
+            }
+            let spent = clock.spent();
+            spent.cpu.unwrap_or(spent.wall) * 1e9 / (f64::from(protocol.repeats) * elements.len() as f64)
+        };
+        // The first turns warm caches and are not counted.
+        let _ = (0..methods.len()).map(turn).sum::<f64>();
+        let times = take_turns(methods.len(), protocol.rounds, watch, turn)?;
         for (number, (method, times)) in methods.iter().zip(times).enumerate() {
             let mut errors: Vec<_> =
                 elements.iter().zip(&sought).map(|(one, &sought)| error(method, one, sought)).collect();
@@ -132,39 +142,6 @@ pub(crate) fn measure(protocol: &Protocol, watch: &Watch<'_>) -> Option<Results>
 fn error(method: &Method, element: &Sample, sought: DQuat) -> f64 {
     let found = method.rotation(element);
     if found.is_finite() { reference::angle(found, sought) } else { f64::INFINITY }
-}
-
-/// The times of each method's turns (ns for each element).
-fn take_turns(
-    protocol: &Protocol,
-    methods: &[Method],
-    elements: &[Sample],
-    watch: &Watch<'_>,
-) -> Option<Vec<Vec<f64>>> {
-    let mut times = vec![Vec::new(); methods.len()];
-    // The first round warms caches and is not counted.
-    for round in 0..=protocol.rounds as usize {
-        for turn in 0..methods.len() {
-            let number = (round + turn) % methods.len();
-            let method = black_box(&methods[number]);
-            let clock = Clock::thread();
-            for _ in 0..protocol.repeats {
-                for element in elements {
-                    method.work(black_box(element));
-                }
-            }
-            let spent = clock.spent();
-            if round == 0 {
-                continue;
-            }
-            let count = f64::from(protocol.repeats) * elements.len() as f64;
-            times[number].push(spent.cpu.unwrap_or(spent.wall) * 1e9 / count);
-            if !watch(1) {
-                return None;
-            }
-        }
-    }
-    Some(times)
 }
 
 impl Results {

@@ -19,7 +19,7 @@ use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use crate::sim::model::shape_based::{RotationReading, ShapeBased};
 use crate::sim::world::Kernel;
-use crate::table::{Spread, Watch};
+use crate::table::{Spread, Watch, take_turns};
 use count::Counting;
 use reference::{farthest, reference};
 use std::sync::Arc;
@@ -277,25 +277,16 @@ fn study(protocol: Protocol, subject: &Subject, watch: &Watch<'_>) -> Option<Stu
         }
     }
     let turns: Vec<_> = (0..ways.len()).filter(|&at| study.measured[at].error.is_some()).collect();
-    let mut times = vec![Vec::new(); ways.len()];
     // What counted evaluations has warmed caches.
-    for round in 0..protocol.rounds as usize {
-        for turn in 0..turns.len() {
-            let at = turns[(round + turn) % turns.len()];
-            let (way, model) = ways[at];
-            let mut world = way.world(subject, model.as_ref());
-            let clock = Clock::thread();
-            world.advance(way.steps);
-            let spent = clock.spent();
-            times[at].push(spent.cpu.unwrap_or(spent.wall));
-            if !watch(1) {
-                return None;
-            }
-        }
-    }
-    for (one, times) in study.measured.iter_mut().zip(times) {
-        one.time = Spread::of(times);
-    }
+    let times = take_turns(turns.len(), protocol.rounds, watch, |turn| {
+        let (way, model) = ways[turns[turn]];
+        let mut world = way.world(subject, model.as_ref());
+        let clock = Clock::thread();
+        world.advance(way.steps);
+        let spent = clock.spent();
+        spent.cpu.unwrap_or(spent.wall)
+    })?;
+    turns.into_iter().zip(times).for_each(|(at, times)| study.measured[at].time = Spread::of(times));
     Some(study)
 }
 
