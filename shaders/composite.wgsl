@@ -79,10 +79,11 @@ const OBSTACLE = 254.0 / 255.0;
 // Outlines reach so far out of bodies, also where they cross pixels (px in the reference picture).
 const LINE_REACH = 2.0;
 
-// Whether something lies at a texel of the region that does not fade.
+// Whether a body lies at a texel of the region. Less than an obstacle's opacity is that of a transparent body, or else of the
+// rim of an obstacle.
 fn stays(at: vec2<i32>) -> bool {
     let alpha = body_at(at).a;
-    return alpha > 0.0 && abs(alpha - OBSTACLE) > 0.001;
+    return alpha > OBSTACLE + 0.001 || (panel_data.opacity < 1.0 && alpha > 0.0 && alpha < OBSTACLE - 0.001);
 }
 
 @fragment
@@ -90,7 +91,7 @@ fn layered_fading(corner: Corner) -> @location(0) vec4<f32> {
     let colour = layered_at(corner);
     let pixel = corner.place.xy;
     let at = vec2<i32>(pixel - panel.place.xy);
-    // Beside bodies and obstacles lie the outer halves of their outlines.
+    // Beside bodies lie the outer halves of their outlines.
     let reach = i32(ceil(LINE_REACH * panel_data.line_scale));
     let beside = body_at(at).a == 0.0 && (stays(at + vec2(reach, 0)) || stays(at - vec2(reach, 0))
         || stays(at + vec2(0, reach)) || stays(at - vec2(0, reach)));

@@ -1,10 +1,12 @@
 //! Smooth borders of surfaces: pixels that a line crosses at which colours change.
 
+use super::RenderError;
 use super::panel::Panels;
 use super::pass::Pass;
 use super::pipeline::{BORDER_FORMAT, Pipeline, Recipe, bind_textures, group_layout, shader, texture_entry};
 use super::segment::{self, Segment, bind_lines, corners, lines_layout};
 use super::target::Bodies;
+use super::visibility::most_lines;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Line, Picture, Rectangle};
 use std::ops::Range;
@@ -67,7 +69,10 @@ impl Borders {
     }
 
     /// Uploads the borders of a picture.
-    pub(super) fn write(&mut self, gpu: &Gpu, panels: &Panels, picture: &Picture) {
+    ///
+    /// # Errors
+    /// More borders than the device can bind.
+    pub(super) fn write(&mut self, gpu: &Gpu, panels: &Panels, picture: &Picture) -> Result<(), RenderError> {
         let mut segments = Vec::new();
         self.runs.clear();
         for panel in &picture.panels {
@@ -80,6 +85,10 @@ impl Borders {
             let of_one = panel.borders.chunk_by(|one, other| one.kind.is_alarm() == other.kind.is_alarm());
             self.runs.push(of_one.map(&mut run).filter(|(_, lines)| !lines.is_empty()).collect());
         }
+        let most = most_lines::<Segment>(gpu);
+        if segments.len() > most {
+            return Err(RenderError::Lines { count: segments.len(), most });
+        }
         for at in 0..self.pipelines.len() {
             if self.runs.iter().flatten().any(|(pipeline, _)| *pipeline == at) {
                 self.prepare(gpu, panels, at);
@@ -88,6 +97,7 @@ impl Borders {
         if self.segments.write(gpu, segments) {
             self.lines = bind_lines(gpu, &self.lines_layout, self.segments.buffer());
         }
+        Ok(())
     }
 
     /// Draws the borders of all panels.

@@ -218,7 +218,7 @@ impl Renderer {
         };
         self.panels.write(&gpu, picture, &places);
         self.surfaces.write(&gpu, picture);
-        self.borders.write(&gpu, &self.panels, picture);
+        self.borders.write(&gpu, &self.panels, picture)?;
         self.grounds.write(&gpu, picture);
         self.overlay.write(&gpu, picture);
         if !picture.curves.is_empty() {

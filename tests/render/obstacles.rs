@@ -450,7 +450,7 @@ fn a_rod_that_touches_darkens_the_body_below_it_and_one_that_does_not_leaves_it_
 fn obstacles_fade_where_they_leave_their_panel() {
     let alone = scene(&[WORLD, CUBE, FLOOR]);
     let mut strengths = Vec::new();
-    for step in 0..60 {
+    for step in 0..80 {
         let x = -0.2 - 0.01 * f64::from(step);
         let sphere = format!("[[obstacle]]\nkind = 'sphere'\ncentre = [{x}, 0.2, 0]\nradius = 0.05\n");
         let mut seen = scene(&[WORLD, CUBE, FLOOR, &sphere]);
@@ -464,7 +464,7 @@ fn obstacles_fade_where_they_leave_their_panel() {
     // Neither where it is whole nor where nothing of it is seen.
     let [first, last] = [strengths.iter().position(|&at| at > 0.0), strengths.iter().rposition(|&at| at > 0.0)];
     let (first, last) = (first.expect("it leaves"), last.expect("it leaves"));
-    assert!(first > 5 && last < 59 && strengths[last] == 1.0, "{strengths:?}");
+    assert!(first > 5 && last < 79 && strengths[last] == 1.0, "{strengths:?}");
     assert!(strengths[..=last].windows(2).all(|two| two[0] <= two[1]), "{strengths:?}");
 }
 

@@ -6,7 +6,6 @@ use crate::picture::fade::FADING;
 use crate::picture::narrow::narrow;
 use crate::picture::plane::sides;
 use crate::picture::{Fading, Mark, MarkShape, Obstacles};
-use crate::sim::contact;
 use glam::{DVec2, DVec3};
 
 /// Free around the body, which is not faded with them (px in the reference picture).
@@ -27,31 +26,25 @@ struct Beyond {
 }
 
 impl Draft<'_> {
-    /// Lets solid obstacles in space fade out where they leave the part of the panel within its margins and words. Covers the
-    /// sides of the panel where others leave it with the background, without the body. All fade the more the nearer to the
-    /// side, over the same distance wherever they end; those that hardly leave it less, so that nothing changes at once.
+    /// Lets solid obstacles fade out where they leave the part of the panel between its words and half of its margins. Covers the sides of the panel
+    /// where plates leave it with the background, without the body. Both fade the more the nearer to the side, over the
+    /// same distance wherever they end; those that hardly leave it less, so that nothing changes at once.
     pub(super) fn fade_obstacles(&self, obstacles: &mut Obstacles, marks: &mut Vec<Mark>) {
-        // An inset is a piece of a picture, and has a frame. What covers obstacles would cover a slope in the plane, too.
-        let ground = contact::ground(&self.scene.obstacles, self.run.snapshot.time);
-        let is_slope = self.lens.orthographic && ground.is_some_and(|(normal, _)| normal != DVec3::Y);
-        if self.enlarged != 1.0 || is_slope {
+        // An inset is a piece of a picture, and has a frame.
+        if self.enlarged != 1.0 {
             return;
         }
         let place = |at: [f32; 3]| self.origin + self.side * DVec3::from(at.map(f64::from));
         let has_words = self.scene.view.labels != Labels::default();
         let room = if has_words { self.between_words() } else { self.viewport };
+        let [left, top, right, bottom] = sides(room.map(f64::from));
+        let beside = 0.5 * self.scale.margin();
+        let room = [left + beside, top, right - beside, bottom];
         let solids = obstacles.solids.iter().map(|solid| solid.mesh.vertices.iter().map(|vertex| vertex.position));
         let solids = solids.filter_map(|points| self.bounds(points.map(place)));
-        if self.lens.orthographic {
-            self.fade(sides(room.map(f64::from)), solids, marks);
-        } else {
-            let [left, top, right, bottom] = sides(room.map(f64::from));
-            let margin = self.scale.margin();
-            let room = [left + margin, top, right - margin, bottom];
-            let strength = self.beyond(room, solids).map(|part| part.map_or(0.0, |part| part.strength));
-            let fades = strength.iter().any(|&strength| strength > 0.0);
-            obstacles.fade = fades.then(|| Fading { room: room.map(narrow), strength: strength.map(narrow) });
-        }
+        let strength = self.beyond(room, solids).map(|part| part.map_or(0.0, |part| part.strength));
+        let fades = strength.iter().any(|&strength| strength > 0.0);
+        obstacles.fade = fades.then(|| Fading { room: room.map(narrow), strength: strength.map(narrow) });
         // Plates go behind words, too; walls fade by themselves.
         let slabs = obstacles.slabs.iter().filter_map(|slab| {
             let panes = slab.panes.iter().filter(|pane| !pane.grid);
