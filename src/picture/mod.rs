@@ -49,6 +49,7 @@ mod text;
 mod timeline;
 mod tracking;
 mod wire;
+mod wrap;
 
 pub(crate) use crate::colour::Colour;
 pub(crate) use crate::look::{Palette, SHADES};

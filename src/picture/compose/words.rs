@@ -2,11 +2,12 @@
 
 use super::{Composer, cut, inset};
 use crate::look::{Difference, Ghost, Labels, LineStyle, Palette, View};
-use crate::picture::caption::{self, Heading, Writer, balanced, wrapped};
+use crate::picture::caption::{self, Heading, Writer};
 use crate::picture::layout::{self, Layout, Scale, Wanted, Written};
 use crate::picture::legend::Legend;
 use crate::picture::series;
 use crate::picture::text::{Fonts, Weight};
+use crate::picture::wrap::{balanced, wrapped};
 use crate::picture::{event, locator};
 use crate::scene::Scene;
 

@@ -1,10 +1,11 @@
 //! The header of a figure: title and caption at the left, a key at the right.
 
-use crate::picture::caption::{Writer, wrapped};
+use crate::picture::caption::Writer;
 use crate::picture::compose::cut;
 use crate::picture::layout::{CAPTION_LINE, Scale};
 use crate::picture::tally::hollow;
 use crate::picture::text::Weight;
+use crate::picture::wrap::wrapped;
 use crate::picture::{Mark, MarkShape};
 use crate::scene::figure::Figure;
 

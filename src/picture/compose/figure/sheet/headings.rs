@@ -1,9 +1,10 @@
 //! The headings of the columns of a contact sheet.
 
-use crate::picture::caption::{self, Writer, wrapped};
+use crate::picture::caption::{self, Writer};
 use crate::picture::layout::Scale;
 use crate::picture::number;
 use crate::picture::text::{Fonts, Weight};
+use crate::picture::wrap::wrapped;
 use crate::scene::figure::Sheet;
 
 /// Between two lines of a heading, between the letter of a column and what stands beside it, and between columns (px in

@@ -1,12 +1,13 @@
 //! The names and notes of the rows of a contact sheet.
 
 use super::plan::Plan;
-use crate::picture::caption::{Writer, wrapped};
+use crate::picture::caption::Writer;
 use crate::picture::compose::cut;
 use crate::picture::layout::Scale;
 use crate::picture::number;
 use crate::picture::series;
 use crate::picture::text::{Fonts, Weight};
+use crate::picture::wrap::wrapped;
 use crate::scene::Scene;
 use crate::scene::figure::{Row, Sheet};
 
