@@ -73,17 +73,18 @@ fn layered(corner: Corner) -> @location(0) vec4<f32> {
     return layered_at(corner);
 }
 
-// Solid obstacles that leave their room fade out over this part of its width and height.
-const FADE = vec2<f32>(0.11, 0.13);
 const OBSTACLE = 254.0 / 255.0;
 // Outlines reach so far out of bodies, also where they cross pixels (px in the reference picture).
 const LINE_REACH = 2.0;
 
-// Whether a body lies at a texel of the region. Less than an obstacle's opacity is that of a transparent body, or else of the
-// rim of an obstacle.
+// The most that is stored for a transparent surface, as `surface.wgsl` has it.
+const MOST_OPACITY = 252.0 / 255.0;
+
+// Whether a body lies at a texel of the region: it has its own opacity. Rims of obstacles have less than their insides.
 fn stays(at: vec2<i32>) -> bool {
     let alpha = body_at(at).a;
-    return alpha > OBSTACLE + 0.001 || (panel_data.opacity < 1.0 && alpha > 0.0 && alpha < OBSTACLE - 0.001);
+    return alpha > OBSTACLE + 0.001
+        || (panel_data.opacity < 1.0 && abs(alpha - min(panel_data.opacity, MOST_OPACITY)) < 0.003);
 }
 
 @fragment
@@ -97,7 +98,6 @@ fn layered_fading(corner: Corner) -> @location(0) vec4<f32> {
         || stays(at + vec2(0, reach)) || stays(at - vec2(0, reach)));
     let room = panel_data.fade_room;
     let inside = vec4(pixel - room.xy, room.zw - pixel);
-    let distance = (FADE * (room.zw - room.xy)).xyxy;
-    let left = 1.0 - panel_data.fade_strength * (1.0 - smoothstep(vec4(0.0), distance, inside));
+    let left = 1.0 - panel_data.fade_strength * (1.0 - smoothstep(vec4(0.0), panel_data.fade_distance, inside));
     return colour * select(left.x * left.y * left.z * left.w, 1.0, beside || stays(at));
 }

@@ -49,9 +49,10 @@ struct Panel {
     line_share: f32,
     // How wide contours of bodies are, from 0 to 1.
     contour_share: f32,
-    // Left, upper, right and lower side of the room in which solid obstacles fade out (px), and how strongly they do so
-    // at each.
+    // Left, upper, right and lower side of the room in which solid obstacles fade out (px), over how far (px) and how
+    // strongly they do so at each.
     fade_room: vec4<f32>,
+    fade_distance: vec4<f32>,
     fade_strength: vec4<f32>,
     // The obstacles near the body; unused entries reach nothing.
     occluders: array<Occluder, 5>,

@@ -262,6 +262,10 @@ impl<'a> Recording<'a> {
 
         let mut results = Results { diagnostics, states, pictures, warned: options.printing.quiet };
         let made = self.simulate(pool, options.printing, &mut simulation, &mut results);
+        if self.summary.frames.recorded > 0 && simulation.read_from.is_none() {
+            // On the way to the next frame, too, which may be far away.
+            self.note_sleep(simulation.frames.states());
+        }
         let Results { diagnostics, mut states, pictures, .. } = results;
         if let Some(states) = &mut states {
             (0..self.runs.len()).for_each(|place| states.set_last_fit(place, simulation.frames.last_fit(place)));
@@ -446,10 +450,6 @@ impl<'a> Recording<'a> {
         }
         if can_resume && interrupt::requested() {
             results.save(&mut simulation.frames, simulation.ahead, self.folder, self.summary)?;
-        }
-        if self.summary.frames.recorded > 0 && simulation.read_from.is_none() {
-            // On the way to the next frame, too, which may be far away.
-            self.note_sleep(simulation.frames.states());
         }
         let frames = &mut simulation.frames;
         for (run, steps) in self.summary.runs.iter_mut().zip(frames.simulated()) {

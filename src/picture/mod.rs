@@ -144,6 +144,8 @@ pub(crate) struct Obstacles {
 pub(crate) struct Fading {
     /// The sides (px).
     pub(crate) room: [f32; 4],
+    /// Over how far they do so, across and up (px).
+    pub(crate) distance: [f32; 2],
     /// How strongly they do so, from 0 to 1.
     pub(crate) strength: [f32; 4],
 }

@@ -138,22 +138,17 @@ impl Series {
             writer.curves.push(curve(&simplified(&part, EXACT), OWN, dash.clone()));
         }
         if let Some(time) = self.diverged {
-            // Where the curve leaves the chart, an arrowhead and dots along its border to the cross, which has the name.
-            let leaves = points.windows(2).rposition(|two| {
-                let inside = |y: f64| (borders[0]..=borders[1]).contains(&y);
-                inside(two[0][1]) && !inside(two[1][1])
-            });
-            if let Some(part) = leaves.and_then(|at| within(&points[at..at + 2], borders).pop())
-                && let [.., from, tip] = part[..]
-            {
+            let to = chart.x(times, time) - ARM * thickness;
+            if let Some(part) = leaving(&points, borders).filter(|[_, tip]| tip[0] + HEAD[0] * thickness < to) {
+                // An arrowhead, and dots along the border to the cross, which has the name.
+                let [from, tip] = part;
                 let up = if tip[1] < from[1] { -1.0 } else { 1.0 };
                 let [wing, back] = HEAD.map(|length| length * thickness);
                 let corner = |side: f64| [tip[0] + side * wing, tip[1] - up * back];
                 writer.curves.push(curve(&[corner(-1.0), tip, corner(1.0)], CROSS, Vec::new()));
-                let y = tip[1].clamp(chart.top, chart.bottom);
                 let dots = DOTS.map(|length| narrow(length * thickness)).to_vec();
-                let line = curve(&[[tip[0] + wing, y], [chart.x(times, time) - ARM * thickness, y]], DOT, dots);
-                writer.curves.extend((line.points[1][0] > line.points[0][0]).then_some(line));
+                let y = tip[1].clamp(chart.top, chart.bottom);
+                writer.curves.push(curve(&[[tip[0] + wing, y], [to, y]], DOT, dots));
             }
         }
         if let Some((time, &[_, last])) = self.diverged.zip(points.last()) {
@@ -165,6 +160,14 @@ impl Series {
             }
         }
     }
+}
+
+/// The last piece of a curve within the borders of its chart, if the curve leaves it there for good.
+fn leaving(points: &[[f64; 2]], borders: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    let inside = |y: f64| (borders[0]..=borders[1]).contains(&y);
+    let at = points.iter().rposition(|&[_, y]| inside(y)).filter(|&at| at + 1 < points.len())?;
+    let part = within(&points[at..at + 2], borders).pop()?;
+    part.last_chunk().copied()
 }
 
 /// A value of a time series at a time (s); `None` before its start and after its end. Counts keep their value up to the next one.

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 /// What is wrong with a file, and what to do.
 pub(crate) type Wrong = (String, Option<String>);
 
-/// The bytes of a file, of which there are at most so many. `endings` are those of such files, `what` may not be longer.
+/// The bytes of a file, at most `longest`. Names with one of the `endings` are suggested for a missing file; `what` and
+/// `expected` are words of messages.
 pub(crate) fn bytes(path: &Path, endings: &[&str], longest: u64, what: &str, expected: &str) -> Result<Vec<u8>, Wrong> {
     if !path.exists() {
         return Err((missing(path), similar(path, endings).map(|near| format!("did you mean {near:?}?"))));

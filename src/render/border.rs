@@ -6,7 +6,7 @@ use super::pass::Pass;
 use super::pipeline::{BORDER_FORMAT, Pipeline, Recipe, bind_textures, group_layout, shader, texture_entry};
 use super::segment::{self, Segment, bind_lines, corners, lines_layout};
 use super::target::Bodies;
-use super::visibility::most_lines;
+use super::visibility::most_bound;
 use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Line, Picture, Rectangle};
 use std::ops::Range;
@@ -85,7 +85,7 @@ impl Borders {
             let of_one = panel.borders.chunk_by(|one, other| one.kind.is_alarm() == other.kind.is_alarm());
             self.runs.push(of_one.map(&mut run).filter(|(_, lines)| !lines.is_empty()).collect());
         }
-        let most = most_lines::<Segment>(gpu);
+        let most = most_bound::<Segment>(gpu);
         if segments.len() > most {
             return Err(RenderError::Lines { count: segments.len(), most });
         }

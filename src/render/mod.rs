@@ -77,10 +77,10 @@ pub enum RenderError {
     },
     /// A picture has more lines than the device can draw.
     #[error(
-        "the picture has {count} lines, this device can draw {most}: leave out edges (`view.edges`), or draw fewer panels"
+        "the picture has {count} lines, this device can draw {most}: leave out edges (`view.edges`), draw fewer panels, or a coarser body"
     )]
     Lines {
-        /// Edges and contours in the picture.
+        /// Edges and contours in the picture, or borders of surfaces.
         count: usize,
         /// The most that the device can draw.
         most: usize,

@@ -3,7 +3,7 @@
 use super::pass::Pass;
 use super::pipeline::{bind, element, group_layout, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{Colour, MOST_OCCLUDERS, Occluder, Panel, Picture, Rectangle};
+use crate::picture::{Colour, Fading, MOST_OCCLUDERS, Occluder, Panel, Picture, Rectangle};
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
 
@@ -35,6 +35,7 @@ pub(super) struct PanelUniform {
     pub(super) line_share: f32,
     pub(super) contour_share: f32,
     pub(super) fade_room: Vec4,
+    pub(super) fade_distance: Vec4,
     pub(super) fade_strength: Vec4,
     pub(super) occluders: [OccluderUniform; MOST_OCCLUDERS],
 }
@@ -153,6 +154,7 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         line_share: sight.line_share,
         contour_share: sight.contour_share,
         fade_room: Vec4::from_array(panel.obstacles.fade.map_or([0.0; 4], |fade| fade.room)),
+        fade_distance: panel.obstacles.fade.map_or(Vec4::ONE, |Fading { distance: [x, y], .. }| Vec4::new(x, y, x, y)),
         fade_strength: Vec4::from_array(panel.obstacles.fade.map_or([0.0; 4], |fade| fade.strength)),
         occluders: std::array::from_fn(|at| {
             panel.obstacles.occluders.get(at).map_or(OccluderUniform::NONE, OccluderUniform::new)
@@ -161,7 +163,7 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
 }
 
 /// The distance between two panels' data in the buffer (bytes).
-const STRIDE: usize = 512;
+const STRIDE: usize = 768;
 
 /// The data of all panels, twice: as seen in the bodies' regions, and in the whole panels.
 #[derive(Debug)]

@@ -59,7 +59,7 @@ impl<'a> Recipe<'a> {
         }
     }
 
-    /// Triangles without depth.
+    /// Like [`Self::rectangles`], of triangles: three vertices for each line.
     pub(super) fn lines(
         label: &'static str,
         shader: &'a wgpu::ShaderModule,

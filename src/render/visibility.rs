@@ -195,10 +195,14 @@ pub(super) fn most_samples(gpu: &Gpu) -> u64 {
 
 /// The number of lines for which a device has room: two samples each use half of that for samples.
 pub(super) fn most_lines<T>(gpu: &Gpu) -> usize {
+    most_bound::<T>(gpu).min((most_samples(gpu) / 4) as usize)
+}
+
+/// The number of lines that a device can bind.
+pub(super) fn most_bound<T>(gpu: &Gpu) -> usize {
     let in_buffer = gpu.device().limits().max_storage_buffer_binding_size / size_of::<T>() as u64;
     // Buffers grow to powers of two.
-    let in_buffer = if in_buffer.is_power_of_two() { in_buffer } else { in_buffer.next_power_of_two() / 2 };
-    in_buffer.min(most_samples(gpu) / 4) as usize
+    (if in_buffer.is_power_of_two() { in_buffer } else { in_buffer.next_power_of_two() / 2 }) as usize
 }
 
 fn texture(gpu: &Gpu, height: u32) -> wgpu::Texture {

@@ -3,7 +3,7 @@
 use super::drawing::{Item, Paint, Path, Pen};
 use super::marks::winding;
 use crate::colour::{encoded, linear};
-use crate::picture::{Bead, Colour, Line, LineKind, Mesh, Panel, Picture, Second, Solid, Stroke};
+use crate::picture::{Bead, Colour, Fading, Line, LineKind, Mesh, Panel, Picture, Second, Solid, Stroke};
 use glam::{Vec2, Vec3, Vec4Swizzles};
 
 /// The hatch of turned-over elements: its period (px in the reference picture), how much of that is dark, and how dark.
@@ -45,6 +45,11 @@ pub(super) fn panel(picture: &Picture, panel: &Panel, items: &mut Vec<Item<'_>>)
     let room = || Item::Clip(Path::rectangle(Vec2::new(left, top), Vec2::new(width, height)));
     items.push(room());
     panel.obstacles.solids.iter().for_each(|solid| flat.solid(solid, items));
+    if let Some(fading) = panel.obstacles.fade {
+        items.push(Item::Unclip);
+        flat.fade(fading, [left, top, left + width, top + height], items);
+        items.push(room());
+    }
     flat.surface(&panel.sound, items);
     flat.surface(&panel.turned_over, items);
     if panel.hatch && !panel.turned_over.triangles.is_empty() {
@@ -90,6 +95,41 @@ impl Flat<'_> {
         } else {
             items.push(Item::Fill { path: inside(f32::NEG_INFINITY), paint: solid.colour.into() });
         }
+    }
+
+    /// Lets obstacles fade out at the sides of their room, before the body is drawn: covers them with the background, in strips of
+    /// a pixel within the region (left, top, right and bottom, px).
+    fn fade(&self, Fading { room, distance, strength }: Fading, region: [f32; 4], items: &mut Vec<Item<'_>>) {
+        let solids = self.panel.obstacles.solids.iter();
+        let triangles = solids.flat_map(|solid| self.triangles(&solid.mesh, |at| solid.mesh.vertices[at].hatch));
+        items.push(Item::Clip(path_of(triangles.map(|triangle| triangle.map(|(at, _)| at).to_vec()))));
+        let cover = |[left, top, right, bottom]: [f32; 4], alpha: f32, items: &mut Vec<Item<'_>>| {
+            let [from, to] = [Vec2::new(left, top), Vec2::new(right, bottom)];
+            let [from, to] =
+                [from, to].map(|at| at.clamp(Vec2::new(region[0], region[1]), Vec2::new(region[2], region[3])));
+            if alpha > 0.002 && to.cmpgt(from).all() {
+                let colour = self.picture.palette.background;
+                items.push(Item::Fill { path: Path::rectangle(from, to - from), paint: Paint { colour, alpha } });
+            }
+        };
+        for side in 0..4 {
+            // From the side of the region to that of the room, and from there inwards.
+            let strip = |from: f32, to: f32| {
+                let mut strip = region;
+                let inwards = if side < 2 { 1.0 } else { -1.0 };
+                let [one, other] = [from, to].map(|depth| room[side] + inwards * depth);
+                (strip[side % 2], strip[side % 2 + 2]) = (one.min(other), one.max(other));
+                strip
+            };
+            cover(strip(-region[2].max(region[3]), 0.0), strength[side], items);
+            let far = distance[side % 2];
+            for depth in 0..far.ceil() as u32 {
+                let share = ((depth as f32 + 0.5) / far).min(1.0);
+                let left = 1.0 - share * share * (3.0 - 2.0 * share);
+                cover(strip(depth as f32, depth as f32 + 1.0), strength[side] * left, items);
+            }
+        }
+        items.push(Item::Unclip);
     }
 
     /// The surface of elements, in the colour of their kind or in those of a field.

@@ -29,7 +29,8 @@ fn larger(picture: &Picture) -> Picture {
         // `element` is not scaled: it determines how faint the edges of small elements are.
         sight.middle = sight.middle.map(|at| at * times);
         panel.floor.iter_mut().for_each(|floor| floor.fade_above *= times);
-        panel.obstacles.fade.iter_mut().flat_map(|fade| &mut fade.room).for_each(|at| *at *= times);
+        let fades = panel.obstacles.fade.iter_mut();
+        fades.flat_map(|fade| fade.room.iter_mut().chain(&mut fade.distance)).for_each(|at| *at *= times);
         if sight.flat {
             let meshes = panel.obstacles.solids.iter_mut().map(|solid| &mut solid.mesh);
             meshes.flat_map(|mesh| &mut mesh.vertices).for_each(|corner| corner.hatch *= times);

@@ -445,7 +445,7 @@ fn a_rod_that_touches_darkens_the_body_below_it_and_one_that_does_not_leaves_it_
     assert!(touching < 0.85 && (hovering - 1.0).abs() < 0.05, "{touching} {hovering}");
 }
 
-/// Over a distance that grows as the obstacle leaves, so that nothing changes at once.
+/// The more, the farther the obstacle leaves, so that nothing changes at once.
 #[test]
 fn obstacles_fade_where_they_leave_their_panel() {
     let alone = scene(&[WORLD, CUBE, FLOOR]);
@@ -466,6 +466,8 @@ fn obstacles_fade_where_they_leave_their_panel() {
     let (first, last) = (first.expect("it leaves"), last.expect("it leaves"));
     assert!(first > 5 && last < 79 && strengths[last] == 1.0, "{strengths:?}");
     assert!(strengths[..=last].windows(2).all(|two| two[0] <= two[1]), "{strengths:?}");
+    // It takes more than one of these steps to fade wholly: 1 % of the scene's 1 m each.
+    assert!((0.0..1.0).contains(&strengths[first]), "{strengths:?}");
 }
 
 /// The ground comes through what fades, and bodies stay as they are.
@@ -494,6 +496,28 @@ fn what_fades_lets_the_ground_through() {
     assert_eq!((off(&whole, 160, 0..240), off(&whole, 100, 0..200)), (0, 0));
     let between = [off(&bare, 36, 0..240), off(&whole, 36, 0..240)];
     assert!(between.iter().all(|&off| off > 5), "{between:?}");
+}
+
+/// In the plane obstacles have smooth rims of their own, beside opaque bodies and transparent ones.
+#[test]
+fn rims_fade_with_their_obstacles() {
+    let Some(gpu) = gpu("rims_fade_with_their_obstacles") else { return };
+    let rod = "[[obstacle]]\nkind = 'capsule'\nfrom = [-9, 0.9]\nto = [9, 0.7]\nradius = 0.05\n";
+    for opacity in ["0.5", "1.0"] {
+        let view = format!("[view]\nsize = [320, 240]\nlabels = []\nscale_bar = false\nopacity = {opacity}\n");
+        let fading = picture(&scene(&[WORLD, TRIANGLE, rod, &view]), 0);
+        let mut bare = fading.clone();
+        bare.panels[0].obstacles.solids.clear();
+        let draw = |picture: &Picture| {
+            Renderer::new(gpu, picture.size).and_then(|mut renderer| renderer.draw(picture)).expect("drawn")
+        };
+        let [fading, bare] = [&fading, &bare].map(draw);
+        let off = |x: u32| {
+            let pixels = (0..240).flat_map(|y| bare.get_pixel(x, y).0.into_iter().zip(fading.get_pixel(x, y).0));
+            pixels.map(|(one, other)| one.abs_diff(other)).max().expect("pixels")
+        };
+        assert!(off(2) <= 2 && off(317) <= 2 && off(12) < 20 && off(60) > 30, "{opacity}: {:?}", [2, 12, 60].map(off));
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Pictures as SVG and PDF: text stays text in fonts that are embedded, what is flat is made of paths, and what is lit is an
 //! image.
 
-use super::fig4b;
+use super::{fig4b, frame, parse};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use localshape::look::Theme;
@@ -136,6 +136,25 @@ fn lit_bodies_are_images_without_words() {
     assert_eq!(texts(&svg).len(), picture.words.len());
     let pdf = write(&page(&picture, Some(&pixels)), Format::Pdf).expect("a page");
     assert!(String::from_utf8_lossy(&pdf).contains("/Width 3"));
+}
+
+/// In strips inside the obstacle, which reach across its room's left side.
+#[test]
+fn obstacles_that_leave_their_panel_fade() {
+    let mut scene = parse(
+        "time = { duration = 1, step = 'T/50', frames_per_second = 50 }
+        run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e3 } }]
+        body = { nodes = [[0, 1], [1, 1], [0.5, 1.8]], elements = [[0, 1, 2]] }
+        obstacle = [{ kind = 'capsule', from = [-9, 0.9], to = [0.2, 0.7], radius = 0.05 }]",
+    );
+    scene.view.camera.follow = false;
+    let mut picture = compose(&scene, &frame(&scene, 0));
+    let fading = picture.panels[0].obstacles.fade.expect("it leaves the panel");
+    assert_eq!(fading.strength, [1.0, 0.0, 0.0, 0.0]);
+    let strips = |picture: &Picture| svg(picture).matches("fill-opacity").count();
+    let with = strips(&picture);
+    picture.panels[0].obstacles.fade = None;
+    assert!((with - strips(&picture)).abs_diff(fading.distance[0] as usize) < 4, "{with}");
 }
 
 #[test]

@@ -16,6 +16,10 @@ const BEGINS: [f64; 2] = [0.5, 8.0];
 /// Room for the lines of an obstacle (px in the reference picture).
 const LINE_ROOM: f64 = 3.0;
 
+/// Solid obstacles fade out over this part of the width and of the height: so far that thick rods do not end like cut ones, and
+/// most of the picture is left.
+const FADE: [f64; 2] = [0.11, 0.13];
+
 /// What of obstacles goes on beyond a side.
 #[derive(Clone, Copy)]
 struct Beyond {
@@ -26,9 +30,9 @@ struct Beyond {
 }
 
 impl Draft<'_> {
-    /// Lets solid obstacles fade out where they leave the part of the panel between its words and half of its margins. Covers the sides of the panel
-    /// where plates leave it with the background, without the body. Both fade the more the nearer to the side, over the
-    /// same distance wherever they end; those that hardly leave it less, so that nothing changes at once.
+    /// Lets solid obstacles fade out where they leave the part of the panel between its words and half of its margins. Covers the sides of
+    /// the panel where plates leave it with the background, without the body. Both fade the more the nearer to the side; those
+    /// that hardly leave it less, so that nothing changes at once.
     pub(super) fn fade_obstacles(&self, obstacles: &mut Obstacles, marks: &mut Vec<Mark>) {
         // An inset is a piece of a picture, and has a frame.
         if self.enlarged != 1.0 {
@@ -44,17 +48,18 @@ impl Draft<'_> {
         let solids = solids.filter_map(|points| self.bounds(points.map(place)));
         let strength = self.beyond(room, solids).map(|part| part.map_or(0.0, |part| part.strength));
         let fades = strength.iter().any(|&strength| strength > 0.0);
-        obstacles.fade = fades.then(|| Fading { room: room.map(narrow), strength: strength.map(narrow) });
+        let distance = [FADE[0] * (room[2] - room[0]), FADE[1] * (room[3] - room[1])].map(narrow);
+        obstacles.fade = fades.then(|| Fading { room: room.map(narrow), distance, strength: strength.map(narrow) });
         // Plates go behind words, too; walls fade by themselves.
         let slabs = obstacles.slabs.iter().filter_map(|slab| {
             let panes = slab.panes.iter().filter(|pane| !pane.grid);
             self.bounds(panes.flat_map(|pane| &pane.corners).map(|corner| place(corner.position)))
         });
-        self.fade(sides(self.viewport.map(f64::from)), slabs, marks);
+        self.cover_plates(sides(self.viewport.map(f64::from)), slabs, marks);
     }
 
-    /// Does so at the sides of a room (px: left, top, right and bottom) for boxes around obstacles (px).
-    fn fade(
+    /// Covers the sides of a room (px: left, top, right and bottom) where plates in boxes (px) leave it.
+    fn cover_plates(
         &self,
         [left, top, right, bottom]: [f64; 4],
         boxes: impl Iterator<Item = [DVec2; 2]>,

@@ -324,15 +324,15 @@ fn needs_shaping(character: char) -> bool {
     )
 }
 
-/// What to write instead of a text that holds a number, perhaps with a decimal comma or a unit.
+/// What to write instead of a text that holds a number, perhaps with a decimal comma.
 fn unquoted(text: &str) -> Option<String> {
-    let (number, unit) = text.trim().split_once(' ').unwrap_or((text.trim(), ""));
-    let with_point = number.replacen(',', ".", 1);
-    let is_number = with_point.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
-    with_point.parse::<f64>().ok().filter(|_| is_number && !unit.contains(char::is_whitespace))?;
-    let comma = if number.contains(',') { ", with a decimal point" } else { "" };
-    let unit = if unit.is_empty() { "" } else { ", without a unit" };
-    Some(format!("write {with_point}: a number without quotation marks{comma}{unit}"))
+    let number = text.trim().replacen(',', ".", 1);
+    let is_one = number.chars().all(|c| c.is_ascii_digit() || "+-.eE_".contains(c));
+    let table = format!("number = {number}");
+    let typed = DeTable::parse(&table).ok().filter(|_| is_one)?;
+    typed.get_ref().get("number").filter(|one| matches!(one.get_ref(), DeValue::Float(_) | DeValue::Integer(_)))?;
+    let comma = if text.contains(',') { ", with a decimal point" } else { "" };
+    Some(format!("write {number}: a number without quotation marks{comma}"))
 }
 
 /// The rest of the message and the help for a text that should be a colour, but is not.

@@ -200,7 +200,7 @@ impl<'a> Drawn<'a> {
         for (&at, &seen) in position.iter().zip(&seen) {
             if seen > 0.0 {
                 let disc = Mark::around(self.pixel(at), NODE * scale.line(), MarkShape::Node, palette.node);
-                above.extend(Mark { second: palette.edge, ..disc }.faded(HIDDEN + (1.0 - HIDDEN) * seen));
+                above.extend(Mark { second: palette.edge, ..disc }.faded(seen));
             }
         }
         if order.is_empty() {
@@ -211,7 +211,9 @@ impl<'a> Drawn<'a> {
             };
             let size = scale.caption();
             let left = left + 0.5 * (width - writer.fonts.width(text, Weight::Regular, size));
-            writer.left(text, Weight::Regular, size, palette.second_text, left, top + height - 0.4 * size);
+            let lowest = position.iter().map(|&at| self.pixel(at).y).fold(0.0, f64::max);
+            let baseline = lowest + NODE * scale.line() + 1.2 * size;
+            writer.left(text, Weight::Regular, size, palette.second_text, left, baseline);
         }
         if forces.numbers {
             for &at in &order {
