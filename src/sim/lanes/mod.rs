@@ -277,7 +277,8 @@ macro_rules! operators {
     };
 }
 
-/// Functions of [`Lanes`] that make vectors of vectors, and then those that compare them, by what they do with the values inside.
+/// Functions of [`Lanes`] that make vectors of vectors, and after two semicolons those that compare them, by what they do with the
+/// values inside.
 macro_rules! lanewise {
     ($($name:ident($a:ident $(, $b:ident)*) $value:expr;)*; $($test:ident($c:ident, $d:ident) $mask:expr;)*) => {
         $(#[inline(always)]
