@@ -6,7 +6,7 @@ use super::caption::{Writer, letter};
 use super::chart::{Chart, NUMBERS};
 use super::layout::{CURVE_NAME, Scale};
 use super::narrow::narrow;
-use super::series::{OWN, Series};
+use super::series::{DOTS, OWN, Series};
 use super::text::{Fonts, Weight};
 
 /// From the chart to the names: the mark of the present moment has room there (px in the reference picture).
@@ -15,11 +15,10 @@ const GAP: f64 = 14.0;
 /// the reference picture).
 const FEW: usize = 4;
 const SAMPLE: [f64; 2] = [30.0, 6.0];
-/// Free at both ends of a leader line, its width, its dots and gaps where its curve ends early (or it would look like a
-/// part of the curve; px in the reference picture), and its opacity.
+/// Free at both ends of a leader line, its width (px in the reference picture), and its opacity. It is dotted where its curve ends
+/// early, or it would look like a part of the curve.
 const FREE: f64 = 3.0;
 const LEADER: f64 = 1.0;
-pub(super) const DOTS: [f64; 2] = [1.0, 3.5];
 const LEADER_ALPHA: f64 = 0.7;
 /// A name that is shifted by less than this needs no line (px in the reference picture).
 const HARDLY: f64 = 3.0;

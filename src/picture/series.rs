@@ -4,7 +4,6 @@ use super::Curve;
 use super::axis::Axis;
 use super::caption::Writer;
 use super::chart::{Chart, filled};
-use super::ends::DOTS;
 use super::narrow::narrow;
 use crate::colour::mixed;
 use crate::history::TimeSeries;
@@ -17,6 +16,8 @@ use crate::sim::snapshot::Diagnostic;
 pub(super) const OWN: f64 = 2.2;
 const CROSS: f64 = 1.8;
 const ARM: f64 = 4.0;
+/// Dots of thin lines and the gaps between them (px in the reference picture).
+pub(super) const DOTS: [f64; 2] = [1.0, 3.5];
 /// Half the width and the length of the arrowhead where the curve of a diverged run leaves its chart, and the width of the
 /// dotted line from there to the cross (px in the reference picture).
 const HEAD: [f64; 2] = [4.0, 6.0];
