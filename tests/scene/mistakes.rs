@@ -541,6 +541,8 @@ fn syntax_errors_have_their_place() {
         let found = format!("`time.duration` is the string {}; expected a number {help}", text.replace('\'', "\""));
         case(PLANE, "duration = 3", &format!("duration = {text}"), &format!("3:12 {found}"));
     }
+    let whole = "20:11 `view.columns` is the string \"2.5\"; expected a whole number Number of panels in a row.";
+    case(PLANE, "size = [640, 360]", "columns = '2.5'", whole);
     // Not in a text that is not closed.
     let mistakes = bad(&PLANE.replacen("name = 'Local shape'", "name = \"e = 0,5", 1)).to_string();
     assert!(!mistakes.contains("decimal comma"), "{mistakes}");

@@ -148,11 +148,10 @@ impl<'p> Walk<'_, '_, 'p> {
                 _ => {}
             }
         }
-        let expected = expected(schema);
-        if let Some(text) = value.get_ref().as_str().filter(|_| expected.contains("number")) {
-            help = unquoted(text).or(help);
+        if let (Some(text), Some(kind @ ("number" | "integer"))) = (value.get_ref().as_str(), schema["type"].as_str()) {
+            help = unquoted(text, kind == "integer").or(help);
         }
-        let message = format!("`{}` is {}; expected {expected}", self.here(), words::found(value.get_ref()));
+        let message = format!("`{}` is {}; expected {}", self.here(), words::found(value.get_ref()), expected(schema));
         self.mistake(value.span(), message, help);
         Json::Null
     }
@@ -324,13 +323,14 @@ fn needs_shaping(character: char) -> bool {
     )
 }
 
-/// What to write instead of a text that holds a number, perhaps with a decimal comma.
-fn unquoted(text: &str) -> Option<String> {
+/// What to write instead of a text that holds a number, perhaps with a decimal comma, or a whole number.
+fn unquoted(text: &str, is_whole: bool) -> Option<String> {
     let number = text.trim().replacen(',', ".", 1);
     let is_one = number.chars().all(|c| c.is_ascii_digit() || "+-.eE_".contains(c));
     let table = format!("number = {number}");
     let typed = DeTable::parse(&table).ok().filter(|_| is_one)?;
-    typed.get_ref().get("number").filter(|one| matches!(one.get_ref(), DeValue::Float(_) | DeValue::Integer(_)))?;
+    let kind = |one: &DeValue<'_>| matches!(one, DeValue::Integer(_)) || !is_whole && matches!(one, DeValue::Float(_));
+    typed.get_ref().get("number").filter(|one| kind(one.get_ref()))?;
     let comma = if text.contains(',') { ", with a decimal point" } else { "" };
     Some(format!("write {number}: a number without quotation marks{comma}"))
 }
