@@ -73,12 +73,8 @@ fn layered(corner: Corner) -> @location(0) vec4<f32> {
     return layered_at(corner);
 }
 
-const OBSTACLE = 254.0 / 255.0;
 // Outlines reach so far out of bodies, also where they cross pixels (px in the reference picture).
 const LINE_REACH = 2.0;
-
-// The most that is stored for a transparent surface, as `surface.wgsl` has it.
-const MOST_OPACITY = 252.0 / 255.0;
 
 // Whether a body lies at a texel of the region: it has its own opacity. Rims of obstacles have less than their insides.
 fn stays(at: vec2<i32>) -> bool {

@@ -1,7 +1,5 @@
 // Lines in panels with solid obstacles, which are marked by their opacity.
 
-const OBSTACLE = 254.0 / 255.0;
-
 fn is_obstacle(place: vec2<f32>, tap: u32) -> bool {
     let opacity = textureLoad(body_colour, texel_around(place, tap), 0).a;
     return abs(opacity - OBSTACLE) < 0.001;

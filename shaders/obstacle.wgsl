@@ -25,9 +25,6 @@ fn unpack_solid(corner: SolidCorner) {
 // Width of the rim (px in the reference picture).
 const RIM_WIDTH = 2.0;
 
-// The opacity stored for an obstacle, by which later passes recognise it. The difference to opaque is invisible.
-const OBSTACLE = 254.0 / 255.0;
-
 @vertex
 fn solid_corner(
     @location(0) position: vec3<f32>,

@@ -1,5 +1,10 @@
 // The data of a panel that every pass reads. Lengths are in sides from the panel's origin, colours are linear.
 
+// The opacity stored for an obstacle, by which later passes recognise it. The difference to opaque is invisible.
+const OBSTACLE = 254.0 / 255.0;
+// The highest opacity stored for a transparent surface.
+const MOST_OPACITY = 252.0 / 255.0;
+
 struct Occluder {
     // The middle of a box, and how far around it the obstacle reaches.
     first: vec4<f32>,

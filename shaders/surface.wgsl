@@ -73,8 +73,6 @@ const DOT = 1.3;
 const DOT_ALPHA = 0.6;
 // The depth (soft units) behind the visible surface from which on a turned-over element no longer gains from being near.
 const THROUGH_DEPTH = 0.6;
-// The highest opacity stored for a transparent surface; solid obstacles have a higher one.
-const MOST_OPACITY = 252.0 / 255.0;
 // What lies behind with a higher alpha is no turned-over element but a solid obstacle.
 const SOLID_BEHIND = 0.99;
 // The brightness of a surface that is drawn without light.

@@ -5,31 +5,41 @@ use super::pass::Pass;
 use super::pipeline::{PICTURE_FORMAT, Pipeline, Recipe, bind_textures, group_layout, shader, texture_entry};
 use super::target::Bodies;
 use crate::gpu::Gpu;
-use crate::picture::Picture;
+use crate::picture::{Panel, Picture};
 
 pub(super) const SHADER: &str = include_str!("../../shaders/composite.wgsl");
 
-/// The pipelines that blend them: where solid obstacles do not fade at the sides of their room, and where they do.
+/// The pipelines that blend them, made when they are first needed: where solid obstacles do not fade at the sides of their room,
+/// and where they do.
 #[derive(Debug)]
 pub(super) struct Composite {
-    pipelines: [Pipeline; 2],
+    module: wgpu::ShaderModule,
+    pipelines: [Option<Pipeline>; 2],
     layout: wgpu::BindGroupLayout,
     textures: Option<wgpu::BindGroup>,
 }
 
 impl Composite {
-    pub(super) fn new(gpu: &Gpu, panels: &Panels) -> Self {
+    pub(super) fn new(gpu: &Gpu) -> Self {
         let module = shader(gpu, "composite", &[super::PANEL_SHADER, super::BODIES_SHADER, SHADER]);
         let layout = group_layout(gpu, "bodies", &[0, 2, 3].map(|binding| texture_entry(binding, false)));
-        let pipelines = ["layered", "layered_fading"].map(|fragment| {
-            let recipe = Recipe {
-                groups: &[&panels.layout, &layout],
-                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                ..Recipe::rectangles("composite", &module, ["corner", fragment], PICTURE_FORMAT)
+        Self { module, pipelines: [None, None], layout, textures: None }
+    }
+
+    /// Prepares to draw a picture.
+    pub(super) fn write(&mut self, gpu: &Gpu, panels: &Panels, picture: &Picture) {
+        for at in picture.panels.iter().map(way) {
+            let [label, fragment] = [["composite", "layered"], ["composite_fading", "layered_fading"]][at];
+            let build = || {
+                let recipe = Recipe {
+                    groups: &[&panels.layout, &self.layout],
+                    blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                    ..Recipe::rectangles(label, &self.module, ["corner", fragment], PICTURE_FORMAT)
+                };
+                recipe.build(gpu)
             };
-            recipe.build(gpu)
-        });
-        Self { pipelines, layout, textures: None }
+            self.pipelines[at].get_or_insert_with(build);
+        }
     }
 
     /// Binds new textures.
@@ -42,8 +52,13 @@ impl Composite {
     pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, picture: &Picture) {
         pass.set_bind_group(1, self.textures.as_ref(), &[]);
         panels.draw_regions(pass, picture.panels.iter().map(|panel| panel.region), |pass, at| {
-            pass.set_pipeline(&self.pipelines[usize::from(picture.panels[at].obstacles.fade.is_some())]);
+            pass.set_pipeline(self.pipelines[way(&picture.panels[at])].as_ref().expect("prepared"));
             pass.draw(0..4, 0..1);
         });
     }
+}
+
+/// Which of the pipelines draws a panel.
+fn way(panel: &Panel) -> usize {
+    usize::from(panel.obstacles.fade.is_some())
 }

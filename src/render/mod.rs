@@ -135,7 +135,7 @@ impl Renderer {
             solids: None,
             slabs: None,
             grounds: ground::Grounds::new(gpu, &panels),
-            composite: composite::Composite::new(gpu, &panels),
+            composite: composite::Composite::new(gpu),
             strokes: None,
             tint: None,
             overlay: overlay::Overlay::new(gpu),
@@ -219,6 +219,7 @@ impl Renderer {
         self.panels.write(&gpu, picture, &places);
         self.surfaces.write(&gpu, picture);
         self.borders.write(&gpu, &self.panels, picture)?;
+        self.composite.write(&gpu, &self.panels, picture);
         self.grounds.write(&gpu, picture);
         self.overlay.write(&gpu, picture);
         if !picture.curves.is_empty() {

@@ -162,7 +162,7 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
     }
 }
 
-/// The distance between two panels' data in the buffer (bytes).
+/// The distance between two panels' data in the buffer (bytes): a multiple of 256, to which devices may align it.
 const STRIDE: usize = 768;
 
 /// The data of all panels, twice: as seen in the bodies' regions, and in the whole panels.
