@@ -30,9 +30,9 @@ struct Beyond {
 }
 
 impl Draft<'_> {
-    /// Lets solid obstacles fade out where they leave the part of the panel between its words and half of its margins. Covers the sides of
-    /// the panel where plates leave it with the background, without the body. Both fade the more the nearer to the side; those
-    /// that hardly leave it less, so that nothing changes at once.
+    /// Lets solid obstacles fade out where they leave the part of the panel between its words and half of its margins. Covers
+    /// the sides of the panel where plates leave it with the background, without the body. Both fade the more the nearer to
+    /// the side; those that hardly leave it less, so that nothing changes at once.
     pub(super) fn fade_obstacles(&self, obstacles: &mut Obstacles, marks: &mut Vec<Mark>) {
         // An inset is a piece of a picture, and has a frame.
         if self.enlarged != 1.0 {

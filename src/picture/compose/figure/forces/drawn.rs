@@ -59,7 +59,6 @@ impl<'a> Drawn<'a> {
         // Without the ring arrows, nodes and displacements of usual pictures.
         let mut panel = self.draft.panel(under, &mut Vec::new());
         self.draft.fade_obstacles(&mut panel.obstacles, above);
-        panel.floor = None;
         panel.beads.clear();
         if self.draft.flat {
             panel.obstacles.solids.insert(0, self.ghost_in_plane());
