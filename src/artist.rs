@@ -1,10 +1,10 @@
 //! Makes images of frames and figures: composes pictures, then draws them.
 
 use crate::gpu::{Gpu, Pending};
-use crate::history::History;
-use crate::moments::Moments;
 use crate::picture::{Composer, NoRoom, Picture, compose_figure};
 use crate::render::{RenderError, Renderer};
+use crate::runner::history::History;
+use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::Figure;
 use crate::sim::snapshot::{Diagnostic, Frame, RunFrame, Snapshot};

@@ -86,16 +86,14 @@ pub use scene::{
 pub mod animation;
 #[cfg(feature = "render")]
 mod artist;
-mod cause;
 mod cli;
 mod colour;
 pub mod golden;
 #[cfg(feature = "render")]
 pub mod gpu;
-mod history;
-mod last_fit;
+#[doc(hidden)]
+pub mod internals;
 pub mod look;
-mod moments;
 mod output;
 #[allow(rustdoc::private_intra_doc_links, reason = "it maps equations to code inside, which few readers build")]
 pub mod paper;
@@ -106,32 +104,11 @@ mod reading;
 pub mod render;
 pub mod runner;
 pub mod scene;
-mod shell;
 pub mod sim;
 mod study;
 mod table;
-mod untrusted;
 #[cfg(feature = "render")]
 mod vector;
-
-/// What the program, the benchmarks and the tests that run the program need from outside. It may change at any time.
-#[doc(hidden)]
-pub mod internals {
-    pub use crate::cli::run;
-    #[cfg(feature = "render")]
-    pub use crate::cli::settle;
-    pub use crate::colour::{ciede2000, lab, linear};
-    pub use crate::golden::Pixels;
-    pub use crate::golden::report::{PicturePair, Report};
-    pub use crate::golden::{Displacement, FrameDifference, RunDifference};
-    pub use crate::output::{Compression, Shown, Spent, Tags, Timings, encode, read_tags};
-    pub use crate::sim::floor::{lanes, limit_lanes, multiply_adds};
-    pub use crate::table::ratio;
-    /// Readers of files, to be tested with any bytes.
-    pub mod untrusted {
-        pub use crate::untrusted::{READERS, Reader, SCENE, checkpoint_of_scene, read};
-    }
-}
 
 // Tests of what is inside, as large as other crates.
 #[cfg(test)]

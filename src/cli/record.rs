@@ -5,13 +5,13 @@ use super::options::{PrintOptions, RunOptions};
 use super::results::{Pace, Pictures, Results};
 use super::scenes::{Job, with_option};
 use super::{console, interrupt, report};
-use crate::cause::Cause;
-use crate::history::History;
 use crate::output::{
     Checkpoint, Claimed, Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, OutputError, STATES_FILE,
     SUMMARY_FILE, Spent, StatesWriter, StoredStates, Summary, Timings, frame_file_name, open_growing, read_file,
     thread_time, waiting_states,
 };
+use crate::runner::cause::Cause;
+use crate::runner::history::History;
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::Scene;
 use crate::sim::body::Body;

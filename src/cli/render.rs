@@ -15,15 +15,15 @@ use super::sweep::Sweep;
 use crate::animation::{Format, Sheet, Spool};
 use crate::artist::{Artist, Begun, compose_frame};
 use crate::gpu::{Gpu, GpuError};
-use crate::history::History;
 use crate::look::Ghost;
+use crate::output::shell;
 use crate::output::{
     AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Spent, StoredStates, Summary, Tags, Tap,
     Texts, Timings, folder_of, frame_file_name, is_drawn, read_tags,
 };
 use crate::render::RenderError;
+use crate::runner::history::History;
 use crate::scene::Scene;
-use crate::shell;
 use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::Frame;
 use clap::{Args, ValueHint};

@@ -1,8 +1,8 @@
 //! What becomes of frames, and the checkpoints from which an interrupted command goes on.
 
 use super::failure::{Failure, note, with_causes};
-use crate::history::History;
 use crate::output::{Checkpoint, Claimed, DiagnosticsWriter, OutputError, StatesWriter, Summary, Timings};
+use crate::runner::history::History;
 use crate::runner::{Frames, Next};
 use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::Frame;

@@ -2,10 +2,10 @@
 
 use super::record::Record;
 use crate::gpu::Gpu;
-use crate::history::History;
 use crate::look::{ColourMap, ColourScale};
 use crate::picture::Composer;
 use crate::render::{RenderError, Renderer};
+use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::apart::distances;
 use crate::sim::field::Field;

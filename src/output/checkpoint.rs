@@ -8,8 +8,8 @@ use super::diagnostics::Rows;
 use super::plan::{Plan, Whose};
 use super::states::{Course, Origin};
 use super::{OutputError, read_file, write_whole};
-use crate::cause::Cause;
 use crate::runner::Progress;
+use crate::runner::cause::Cause;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -82,7 +82,7 @@ impl Checkpoint {
         if found.plan != digest(plan) {
             return Err(format!(
                 "belongs to a command with other frames, runs, states or size; to go on from it, type that command with --resume: {}",
-                crate::shell::line(&found.command)
+                super::shell::line(&found.command)
             ));
         }
         Ok(found)

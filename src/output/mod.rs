@@ -15,6 +15,7 @@ mod lock;
 mod plan;
 mod png;
 mod sheets;
+pub(crate) mod shell;
 mod states;
 #[cfg_attr(not(feature = "render"), allow(dead_code, reason = "only drawing reads states"))]
 mod stored;

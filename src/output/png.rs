@@ -1,7 +1,7 @@
 //! Pictures as PNG files, with metadata in text chunks.
 
 use super::{OutputError, exact, state_digest};
-use crate::moments::Moments;
+use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::Figure;
 use crate::sim::snapshot::{Frame, RunFrame};

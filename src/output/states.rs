@@ -2,7 +2,7 @@
 
 use super::atomic::open_growing;
 use super::{AtomicFile, OutputError, Whose};
-use crate::history::History;
+use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::body::Body;
 use crate::sim::snapshot::{Divergence, Frame, Status};

@@ -2,8 +2,8 @@
 
 use super::OutputError;
 use super::states::{COURSE, Course, Origin};
-use crate::history::History;
 use crate::runner::Stored;
+use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::scene::npz::{Array, Npz};
 use crate::sim::snapshot::Status;

@@ -1,7 +1,7 @@
 //! `run.json`: what was made, how, and with what outcome.
 
 use super::{OutputError, Timings, state_digest, write_whole};
-use crate::cause::Cause;
+use crate::runner::cause::Cause;
 use crate::scene::Scene;
 use crate::sim::diagnostics::{Chosen, Reach};
 use crate::sim::snapshot::{Frame, Status};

@@ -11,7 +11,7 @@ use super::narrow::narrow;
 use super::strip::{Parts, Strip};
 use super::text::TextRun;
 use super::{Colour, Curve, Mark};
-use crate::history::History;
+use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::snapshot::{Diagnostic, Frame, Status};
 

@@ -7,8 +7,8 @@
 
 use super::camera::{Framing, Lens};
 use super::layout::{self, Rectangle, Scale};
-use crate::history::{History, TimeSeries};
 use crate::look::{Place, axes};
+use crate::runner::history::{History, TimeSeries};
 use crate::scene::Scene;
 use crate::sim::body::Dimension;
 use crate::sim::snapshot::{RunFrame, Status};

@@ -1,8 +1,8 @@
 //! Frames in rising order: simulated as they are asked for, all before the first one, or read from stored states; and where their
 //! simulation has come to, so that another process can go on from there.
 
+use super::last_fit::Fitting;
 use super::{History, Runner, Running};
-use crate::last_fit::Fitting;
 use crate::sim::snapshot::{Frame, Status};
 use crate::sim::state::State;
 use rayon::prelude::*;
@@ -375,7 +375,7 @@ mod tests {
     fn progress_that_cannot_be_is_refused() {
         use crate::scene::{Limits, Scene};
         use crate::sim::snapshot::Divergence;
-        let scene = Scene::parse(crate::untrusted::SCENE, "scene.toml", &Limits::default()).unwrap();
+        let scene = Scene::parse(crate::internals::untrusted::SCENE, "scene.toml", &Limits::default()).unwrap();
         let begun = || Frames::new(Runner::new(&scene, &[0, 1]), &[2, 4], None);
         let resumed = |step, part, element| {
             let mut progress = begun().progress().unwrap().unwrap();

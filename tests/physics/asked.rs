@@ -1,8 +1,8 @@
 //! Energies are computed only for whoever asks.
 
 use glam::DVec3;
-use localshape::moments::Taking;
 use localshape::runner::Runner;
+use localshape::runner::moments::Taking;
 use localshape::scene::figure::{Content, Figure};
 use localshape::scene::{Limits, Scene};
 use localshape::sim::body::Body;

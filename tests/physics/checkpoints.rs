@@ -1,6 +1,6 @@
 //! A simulation that goes on in another process, wherever the first one stopped, has the bits of one that never stopped.
 
-use localshape::history::History;
+use localshape::runner::history::History;
 use localshape::runner::{Frames, Next, Progress, Runner};
 use localshape::scene::{Limits, Scene};
 use localshape::sim::diagnostics::Diagnostic;

@@ -1,8 +1,8 @@
 //! Cameras that follow, over the whole course of all shipped scenes, by the numbers in their pictures: no device needed.
 
-use localshape::history::History;
 use localshape::picture::{Composer, Curve, Panel, Picture, compose};
 use localshape::runner::Runner;
+use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
 use std::path::{Path, PathBuf};
 

@@ -2,12 +2,12 @@
 
 use super::{fig4b, gpu};
 use glam::DVec3;
-use localshape::history::History;
 use localshape::look::{Difference, Ghost, Inset, Points, Style, Theme, Traced};
-use localshape::moments::Moments;
 use localshape::picture::{Composer, Curve, MarkShape, Panel, Picture};
 use localshape::render::Renderer;
 use localshape::runner::Runner;
+use localshape::runner::history::History;
+use localshape::runner::moments::Moments;
 use localshape::scene::figure::Figure;
 use localshape::scene::{Limits, Scene};
 use localshape::sim::snapshot::Frame;

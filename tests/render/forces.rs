@@ -1,7 +1,7 @@
 //! Diagrams of forces: the numbers of Figs. 1 and 2, and legibility.
 
-use localshape::moments::Moments;
 use localshape::picture::{MarkShape, Picture, TextRun, compose_figure};
+use localshape::runner::moments::Moments;
 use localshape::scene::figure::Figure;
 
 fn picture(name: &str, size: [u32; 2]) -> Picture {

@@ -4,10 +4,10 @@ use super::{all, fig4b, frame, gpu, parse, renderer};
 use glam::DVec3;
 use image::{Rgb, RgbImage, RgbaImage};
 use localshape::gpu::Gpu;
-use localshape::history::History;
 use localshape::look::{FontFiles, Style, Theme};
 use localshape::picture::{Composer, Line, LineKind, Mark, MarkShape, Mesh, Obstacles, Picture, Weight, compose};
 use localshape::runner::Runner;
+use localshape::runner::history::History;
 use localshape::scene::Scene;
 use localshape::sim::snapshot::Frame;
 

@@ -2,12 +2,12 @@
 
 use super::{fig4b, frame, gpu, parse, renderer};
 use glam::{DVec3, Vec3};
-use localshape::moments::Moments;
 use localshape::picture::{
     Composer, LineKind, MOST_OCCLUDERS, Mark, MarkShape, Mesh, Obstacles, Occluder, Panel, Picture, compose,
     compose_figure,
 };
 use localshape::render::Renderer;
+use localshape::runner::moments::Moments;
 use localshape::scene::Scene;
 use localshape::scene::figure::{Content, Figure};
 use localshape::sim::snapshot::{Divergence, Status};

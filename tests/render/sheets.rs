@@ -3,8 +3,8 @@
 use super::assert_words_are_clear;
 use super::strips::alike;
 use glam::Vec3;
-use localshape::moments::Moments;
 use localshape::picture::{Mark, MarkShape, Panel, Picture, TextRun, Weight, compose_figure};
+use localshape::runner::moments::Moments;
 use localshape::scene::Limits;
 use localshape::scene::figure::{Content, Figure, Sheet};
 use localshape::sim::snapshot::Status;

@@ -2,10 +2,10 @@
 
 use super::{fig4b, frame, parse};
 use localshape::colour::contrast;
-use localshape::history::History;
 use localshape::look::{ColourMap, Palette, Theme};
 use localshape::picture::{Composer, LineKind, Mark, MarkShape, Mesh, Picture, TextRun, Weight, compose};
 use localshape::runner::Runner;
+use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
 use localshape::sim::snapshot::{Divergence, Frame, Status};
 use std::collections::HashMap;

@@ -1,10 +1,10 @@
 //! Diagnostics over time below the panels.
 
 use super::{assert_words_are_clear, fig4b, gpu, parse, renderer};
-use localshape::history::History;
 use localshape::look::{Style, Theme};
 use localshape::picture::{Composer, Curve, Mark, MarkShape, Picture, TextRun, Weight};
 use localshape::runner::Runner;
+use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
 use localshape::sim::snapshot::{Diagnostic, Frame, Status};
 

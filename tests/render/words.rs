@@ -1,10 +1,10 @@
 //! Positions of texts: nowhere overlapping, and the same in every frame.
 
 use super::{all, assert_words_are_clear, fig4b, frame, parse};
-use localshape::history::History;
 use localshape::look::Labels;
 use localshape::picture::{Composer, Mark, MarkShape, Picture, compose};
 use localshape::runner::Runner;
+use localshape::runner::history::History;
 use localshape::scene::Scene;
 
 /// All texts, in a scene that diverges, beside one that does not.

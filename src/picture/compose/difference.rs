@@ -3,7 +3,6 @@
 
 use super::Composer;
 use super::panel::Draft;
-use crate::history::History;
 use crate::look::ColourScale;
 use crate::picture::axis::{Axis, Kind};
 use crate::picture::caption::{self, Heading, Writer};
@@ -13,6 +12,7 @@ use crate::picture::narrow::narrow;
 use crate::picture::series::{EXACT, OWN, simplified};
 use crate::picture::text::Weight;
 use crate::picture::{Curve, Framing, Mark, Panel};
+use crate::runner::history::History;
 use crate::sim::apart;
 use crate::sim::field::Field;
 use crate::sim::snapshot::{Frame, RunFrame};

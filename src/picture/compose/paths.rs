@@ -2,7 +2,6 @@
 
 use super::Composer;
 use super::panel::Draft;
-use crate::history::TimeSeries;
 use crate::look::Traced;
 use crate::picture::chart::dot;
 use crate::picture::fade::{FADING, Fade};
@@ -11,6 +10,7 @@ use crate::picture::narrow::narrow;
 use crate::picture::plane::{clipped, sides};
 use crate::picture::series::{EXACT, simplified};
 use crate::picture::{Curve, Mark, MarkShape};
+use crate::runner::history::TimeSeries;
 use crate::sim::snapshot::Snapshot;
 use glam::{DVec2, DVec3};
 

@@ -3,9 +3,9 @@
 use super::half_space::HalfSpace;
 use super::shapes::{corners, rod};
 use super::{Site, Staged};
-use crate::history::Reach;
 use crate::picture::skin::Skin;
 use crate::picture::{Line, Obstacles};
+use crate::runner::history::Reach;
 use crate::sim::contact::Shape;
 use glam::DVec3;
 

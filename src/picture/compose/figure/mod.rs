@@ -5,8 +5,8 @@ mod header;
 mod labels;
 mod sheet;
 
-use crate::moments::Moments;
 use crate::picture::Picture;
+use crate::runner::moments::Moments;
 use crate::scene::figure::{Content, Figure};
 
 /// There is no room for a figure.

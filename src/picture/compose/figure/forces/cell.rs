@@ -1,10 +1,10 @@
 //! The cells of a diagram of forces: what each shows, and where its body stands.
 
-use crate::moments;
 use crate::picture::camera::{Framing, Lens};
 use crate::picture::compose::Composer;
 use crate::picture::compose::panel::Draft;
 use crate::picture::layout::{Rectangle, Scale};
+use crate::runner::moments;
 use crate::scene::Scene;
 use crate::sim::snapshot::{RunFrame, Snapshot};
 use glam::{DVec2, DVec3};

@@ -7,13 +7,13 @@ mod marks;
 
 use super::{NoRoom, header};
 use crate::look::Labels;
-use crate::moments::Moments;
 use crate::picture::Picture;
 use crate::picture::caption::Writer;
 use crate::picture::chart::filled;
 use crate::picture::compose::Composer;
 use crate::picture::layout::Scale;
 use crate::picture::text::{Fonts, Weight};
+use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::{Figure, Forces};
 use crate::sim::contact::Shape;

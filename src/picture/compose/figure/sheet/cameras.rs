@@ -2,12 +2,12 @@
 //! cut.
 
 use super::plan::Plan;
-use crate::history::Reach;
 use crate::look::Ghost;
-use crate::moments::Moments;
 use crate::picture::camera::{Framing, Lens};
 use crate::picture::exploded::Exploded;
 use crate::picture::obstacle::{Site, Staging};
+use crate::runner::history::Reach;
+use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::Sheet;
 use crate::sim::body::{Dimension, bounds};

@@ -1,12 +1,12 @@
 //! Charts below the tiles: diagnostics of all rows over the time of their scene, and the moments of the columns.
 
-use crate::history::History;
 use crate::picture::caption::{self, Writer};
 use crate::picture::chart::NUMBERS;
 use crate::picture::ends::Ends;
 use crate::picture::flag::{self, Flag};
 use crate::picture::layout::{CURVE_NAME, Scale};
 use crate::picture::strip::{Parts, Strip};
+use crate::runner::history::History;
 use crate::scene::figure::Sheet;
 
 /// The part of the picture's width that names at the ends of curves take at most, and half of what is free between those

@@ -22,7 +22,6 @@ mod rows;
 
 use super::header;
 use crate::look::{Ghost, Labels, View, print};
-use crate::moments::Moments;
 use crate::picture::caption::Writer;
 use crate::picture::compose::Composer;
 use crate::picture::compose::panel::Draft;
@@ -31,6 +30,7 @@ use crate::picture::legend::Legend;
 use crate::picture::narrow::narrow;
 use crate::picture::text::Fonts;
 use crate::picture::{Colour, Curve, Framing, Picture};
+use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::{Figure, Sheet};
 use crate::sim::snapshot::Frame;

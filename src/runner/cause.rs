@@ -1,6 +1,6 @@
 //! Why a run diverges: found by simulating the way into it once more, also with smaller steps.
 
-use crate::last_fit::fits;
+use super::last_fit::fits;
 use crate::scene::{Run, Scene};
 use crate::sim::body::bounds;
 use crate::sim::crew::Crew;

@@ -1,10 +1,12 @@
 //! Advances runs of a scene, in parallel, to requested moments: frames, states of a figure, moments of a time series.
 //! All other code simulates through this one.
 
+pub(crate) mod cause;
 mod frames;
+pub(crate) mod history;
+mod last_fit;
+pub(crate) mod moments;
 
-pub use crate::history::{History, TimeSeries};
-use crate::last_fit::{Fitting, Search, fits};
 use crate::look::Traced;
 use crate::scene::Scene;
 use crate::sim::apart;
@@ -15,6 +17,8 @@ use crate::sim::integrate::Integrator;
 use crate::sim::snapshot::{Frame, RunFrame, Status};
 use crate::sim::world::{Moment, Stepping, Surroundings, World};
 pub(crate) use frames::{Frames, Next, Progress, Stored};
+pub use history::{History, TimeSeries};
+use last_fit::{Fitting, Search, fits};
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 
@@ -130,7 +134,7 @@ impl<'a> Runner<'a> {
             running.wanted = wanted.to_vec();
             running.traced = self.scene.view.paths.clone();
             running.series.paths = vec![Vec::new(); running.traced.len()];
-            running.notes = crate::history::moments(self.scene, &running.world, closer, shown);
+            running.notes = history::moments(self.scene, &running.world, closer, shown);
         }
         self
     }
@@ -140,7 +144,7 @@ impl<'a> Runner<'a> {
         let place = |run: usize| self.runs.iter().position(|running| running.run == run);
         let places = self.scene.view.difference.map(|difference| (difference, difference.runs.map(place)));
         if let Some((difference, [Some(one), Some(other)])) = places {
-            let notes = crate::history::moments(self.scene, &self.runs[one].world, None, &[]);
+            let notes = history::moments(self.scene, &self.runs[one].world, None, &[]);
             let after_fit = difference.after_fit;
             self.apart = Some(Apart { runs: [one, other], after_fit, notes, course: Vec::new() });
         }

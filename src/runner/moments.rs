@@ -1,8 +1,8 @@
 //! The simulations of figures: states of runs at chosen moments, and the time series of a scene for strips.
 
-use crate::history::History;
 use crate::look::Ghost;
 use crate::runner::Runner;
+use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::scene::figure::{Content, Figure, Sheet};
 use crate::sim::diagnostics::{Diagnostic, Reach};

@@ -105,7 +105,7 @@ mod tests {
     use crate::scene::Limits;
 
     fn scene() -> Scene {
-        let text = include_str!("../scenes/explicit-euler.toml");
+        let text = include_str!("../../scenes/explicit-euler.toml");
         Scene::parse(text, "explicit-euler.toml", &Limits::default()).expect("the shipped scene is sound")
     }
 

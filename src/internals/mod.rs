@@ -1,0 +1,13 @@
+//! What the program, the benchmarks and the tests that run the program need from outside. It may change at any time.
+
+pub use crate::cli::run;
+#[cfg(feature = "render")]
+pub use crate::cli::settle;
+pub use crate::colour::{ciede2000, lab, linear};
+pub use crate::golden::Pixels;
+pub use crate::golden::report::{PicturePair, Report};
+pub use crate::golden::{Displacement, FrameDifference, RunDifference};
+pub use crate::output::{Compression, Shown, Spent, Tags, Timings, encode, read_tags};
+pub use crate::sim::floor::{lanes, limit_lanes, multiply_adds};
+pub use crate::table::ratio;
+pub mod untrusted;
