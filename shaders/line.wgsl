@@ -19,7 +19,6 @@ fn unpack(segment: Segment) {
     panel.contour_share = segment.scales.y;
     panel.element = segment.scales.z;
     panel.opacity = segment.scales.w;
-    panel.line_share = 1.0;
 }
 
 const EDGE = 0u;
@@ -90,7 +89,7 @@ fn segment(@builtin(vertex_index) vertex: u32) -> Segment {
     let samples = vec2(line.rest.w, look >> (KIND_BITS + STRENGTH_BITS));
     let reach = 0.5 * max(widest(kind) * panel.line_scale, 1.0) + 0.5;
     let place = triangle_corner(vertex % 3u, ends.xy, ends.zw, reach, panel.region.zw);
-    let scales = vec4(panel.line_scale, panel.contour_share, panel.line_share * panel.element, panel.opacity);
+    let scales = vec4(panel.line_scale, panel.contour_share, panel.element, panel.opacity);
     let depths = bitcast<vec2<f32>>(line.rest.xy);
     return Segment(place, ends + panel.region.xyxy, depths, kind, strength, samples, scales);
 }
@@ -129,8 +128,7 @@ fn beside(segment: Segment) -> Beside {
 
 // The opacity of edges, but for what they are of.
 fn edge_strength() -> f32 {
-    let element = panel.line_share * panel.element;
-    return min(1.0, element / SMALL_ELEMENT) * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, element);
+    return min(1.0, panel.element / SMALL_ELEMENT) * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, panel.element);
 }
 
 // What was found of the visibility of lines, line after line: see `visibility.wgsl`.
@@ -219,7 +217,7 @@ fn alarm_contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let at = beside(segment);
     let shares = visibility_at(segment, at.share);
     let look = contour_look(at.distance, segment, shares);
-    let smallness = min(1.0, panel.line_share * panel.element / SMALL_FOLDED);
+    let smallness = min(1.0, panel.element / SMALL_FOLDED);
     // Where the set ends, its outline is drawn at full strength.
     let fold = mix(smallness * smallness, 1.0, shares.w);
     return vec4(0.0, look.step + fold * look.hidden, look.outline, 0.0);

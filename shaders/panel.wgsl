@@ -50,8 +50,7 @@ struct Panel {
     opacity: f32,
     // 1 if turned-over elements are hatched, else 0.
     hatch: f32,
-    // How much is drawn of the lines of elements, from 0 to 1.
-    line_share: f32,
+    unused: f32,
     // How wide contours of bodies are, from 0 to 1.
     contour_share: f32,
     // Left, upper, right and lower side of the room in which solid obstacles fade out (px), over how far (px) and how

@@ -15,7 +15,6 @@ const REST: &str = "rest";
 pub(super) fn ghost(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<Ghost> {
     let name = typed.ghost.as_deref()?;
     let path = [Way::Key("view"), Way::Key("ghost")];
-    check_whole(typed, "ghost", report);
     let run = scene.runs.iter().position(|(known, _)| *known == name);
     match run {
         Some(at) if name == REST => {
@@ -45,7 +44,6 @@ pub(super) fn difference(typed: &ViewFile, scene: &Subject<'_>, report: &mut Rep
         }
         return None;
     };
-    check_whole(typed, "difference", report);
     let mut find = |at: usize| {
         let path = [Way::Key("view"), Way::Key("difference"), Way::Index(at)];
         let run = scene.runs.iter().position(|(known, _)| *known == names[at]);
@@ -67,7 +65,6 @@ pub(super) fn difference(typed: &ViewFile, scene: &Subject<'_>, report: &mut Rep
 /// What leaves a path; empty also after a mistake.
 pub(super) fn paths(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Vec<Traced> {
     let Some(paths) = &typed.paths else { return Vec::new() };
-    check_whole(typed, "paths", report);
     if let Some(at) = (1..paths.len()).find(|&at| paths[..at].contains(&paths[at])) {
         let path = [Way::Key("view"), Way::Key("paths"), Way::Index(at)];
         report.at(&path, "this path is asked for a second time".to_owned(), "remove it".to_owned());
@@ -85,7 +82,6 @@ pub(super) fn paths(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'
 /// What is enlarged; `None` also after a mistake.
 pub(super) fn inset(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<Inset> {
     let inset = typed.inset.as_ref()?;
-    check_whole(typed, "inset", report);
     let path = [Way::Key("view"), Way::Key("inset"), Way::Key("node")];
     let node = known_node(inset.node, &path, scene, report)?;
     Some(Inset { node, times: inset.times })
@@ -146,14 +142,6 @@ pub(super) fn points(
         }
     };
     Some(Points { run, samples: read.samples })
-}
-
-/// Reports that a key is used where elements are drawn apart.
-fn check_whole(typed: &ViewFile, key: &'static str, report: &mut Report<'_>) {
-    if typed.explode > 0.0 {
-        let message = format!("`view.explode` draws elements apart, so `{key}` cannot be shown");
-        report.at_key(&[Way::Key("view"), Way::Key(key)], message, format!("remove `explode` or `{key}`"));
-    }
 }
 
 /// Reports a run that is not there, unless there are mistakes in the runs themselves.

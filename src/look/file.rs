@@ -85,34 +85,28 @@ pub(crate) struct ViewFile {
     /// Opacity of elements that are not turned over: below 1, what is behind and inside the body is seen through them.
     #[schemars(range(min = 0.1, max = 1.0))]
     pub(crate) opacity: f64,
-    /// Exploded view: how far elements are drawn apart, in parts of their distance from the body's centre. Not together with
-    /// springs and displacements.
-    #[schemars(range(min = 0.0, max = 3.0))]
-    pub(crate) explode: f64,
     /// Colours springs by their strain, the change of length over the length at rest: `{}` for shortened springs in violet and
     /// lengthened ones in green. Needs `"springs"` in `show`. Default: one colour for all springs.
     pub(crate) spring_colour: Option<SpringColourFile>,
     /// A dashed outline over each body: `"rest"` for the rest shape in its best rigid fit, or the name of a run for its body at the
-    /// same moment, in the colour of that run. All runs then have the time step of that one. Not in an exploded view. Default:
-    /// none.
+    /// same moment, in the colour of that run. All runs then have the time step of that one. Default: none.
     #[schemars(length(min = 1, max = 80))]
     pub(crate) ghost: Option<String>,
     /// Two runs, such as `["Local shape", "Mass-spring"]`, whose difference has a panel of its own: the body of the first,
     /// coloured by the distance of each node from the same node of the second, whose outline is dashed. Below it, the largest of
     /// these distances is plotted over the whole time of the scene, which is simulated before the first frame is drawn; the
-    /// colour bar ends at its maximum. Both runs have the same time step. Not in an exploded view. Default: none.
+    /// colour bar ends at its maximum. Both runs have the same time step. Default: none.
     pub(crate) difference: Option<[String; 2]>,
     /// How these distances are measured. Default: `"positions"`.
     pub(crate) difference_of: Option<DifferenceOfFile>,
     /// Points of the body whose paths are drawn up to the present moment, in the colours of runs: `"centre"` for the centre of mass,
-    /// and nodes, counted from 0, such as `["centre", 26]`. The whole scene is simulated before the first frame is drawn. Not in
-    /// an exploded view. Default: none.
+    /// and nodes, counted from 0, such as `["centre", 26]`. The whole scene is simulated before the first frame is drawn. Default: none.
     #[schemars(length(min = 1, max = 64))]
     pub(crate) paths: Option<Vec<PathFile>>,
     /// Points that were measured elsewhere, such as `{ file = "camera.csv" }`: rings where they are now, dots where they were.
     /// Default: none.
     pub(crate) points: Option<PointsFile>,
-    /// A part of each body that is enlarged beside it, such as `{ node = 26, times = 4.0 }`. Not in an exploded view. Default: none.
+    /// A part of each body that is enlarged beside it, such as `{ node = 26, times = 4.0 }`. Default: none.
     pub(crate) inset: Option<InsetFile>,
     /// Direction of the light, in space, such as `{ azimuth = -0.9 }`.
     pub(crate) light: Light,
@@ -124,7 +118,7 @@ pub(crate) struct ViewFile {
     pub(crate) edges: EdgesFile,
     /// Whether silhouettes are drawn: outlines and occluding contours of solid obstacles and of elements that are not turned
     /// over. With `outline = false` and `edges = "outline"` such elements have no lines at all. Outlines of turned-over
-    /// elements are always drawn, unless elements in an exploded view are too small for lines.
+    /// elements are always drawn.
     pub(crate) outline: bool,
     /// Whether turned-over elements are hatched. Without hatching only their colour marks them, also where a field colours
     /// surfaces; the field then needs a colour map that differs from it, also with colour blindness.
@@ -158,7 +152,6 @@ impl Default for ViewFile {
             legend: true,
             strip: None,
             opacity: 1.0,
-            explode: 0.0,
             spring_colour: None,
             ghost: None,
             difference: None,
@@ -274,8 +267,7 @@ pub(crate) enum EdgesFile {
     All,
     /// The outline, unless `outline = false`, and visible edges.
     Visible,
-    /// Only the outline, unless `outline = false`. Edges of turned-over elements are always drawn, unless elements in an
-    /// exploded view are too small for lines.
+    /// Only the outline, unless `outline = false`. Edges of turned-over elements are always drawn.
     Outline,
 }
 

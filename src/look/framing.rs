@@ -7,7 +7,6 @@ use super::view::{Camera, axes};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{self, Obstacle, Shape};
 use glam::{DVec2, DVec3};
-use std::borrow::Cow;
 
 /// Azimuth, elevation and field of view that show a cube's three sides well and with little perspective (rad).
 const AZIMUTH: f64 = 31.0 / 180.0 * std::f64::consts::PI;
@@ -23,9 +22,8 @@ const DISTANCE: f64 = 8.5;
 /// shape: clear of margins and of words. Pictures of other shapes show everything smaller and have as much room.
 const ROOM: [f64; 3] = [0.388, 0.395, 0.34];
 
-/// The camera of a scene: as typed, and where nothing is typed so that it shows the body and what comes near it. Elements
-/// may be drawn `apart`, in parts of their distance from the body's middle.
-pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, apart: f64, scene: &Subject<'_>) -> Camera {
+/// The camera of a scene: as typed, and where nothing is typed so that it shows the body and what comes near it.
+pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, scene: &Subject<'_>) -> Camera {
     let (dimension, obstacles) = (scene.body.dimension, scene.obstacles);
     let (azimuth, elevation) = match dimension {
         Dimension::Plane => (0.0, 0.0),
@@ -34,14 +32,14 @@ pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, apart: f64, scen
             (typed.azimuth.unwrap_or(AZIMUTH), typed.elevation.unwrap_or(elevation))
         }
     };
-    let start = &spread(&scene.initial.position, apart, obstacles);
+    let start = &scene.initial.position;
     let standing = standing(start, obstacles);
     let mut chosen = Camera {
         azimuth,
         elevation,
         field_of_view: typed.field_of_view.unwrap_or(FIELD_OF_VIEW),
         target: standing,
-        distance: typed.distance.unwrap_or_else(|| DISTANCE * size(scene) * (1.0 + apart)),
+        distance: typed.distance.unwrap_or_else(|| DISTANCE * size(scene)),
         rise: 0.0,
         follow: typed.follow && target.is_none() && typed.distance.is_none(),
         near: Vec::new(),
@@ -72,19 +70,6 @@ fn size(scene: &Subject<'_>) -> f64 {
     let (low, high) = bounds(&scene.initial.position);
     let start = (high - low).max_element();
     if start > 0.0 { start } else { scene.body.extent() }
-}
-
-/// The nodes (m) of a body that is drawn with its elements apart, a little larger than it is drawn.
-pub(super) fn spread<'s>(start: &'s [DVec3], apart: f64, obstacles: &[Obstacle]) -> Cow<'s, [DVec3]> {
-    if apart == 0.0 || start.is_empty() {
-        return Cow::Borrowed(start);
-    }
-    let mut anchor = start.iter().sum::<DVec3>() / start.len() as f64;
-    if let Some((normal, _)) = contact::ground(obstacles, 0.0) {
-        let lowest = start.iter().map(|at| at.dot(normal)).fold(f64::INFINITY, f64::min);
-        anchor += (lowest - anchor.dot(normal)) * normal;
-    }
-    Cow::Owned(start.iter().map(|&at| at + apart * (at - anchor)).collect())
 }
 
 /// The middle of the body moved down or up until it stands on the first floor that faces upwards.

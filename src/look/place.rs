@@ -1,9 +1,7 @@
 //! Where a body is, as a camera sees it.
 
-use super::framing::spread;
 use super::view::{View, axes};
 use crate::sim::body::Dimension;
-use crate::sim::contact::Obstacle;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -20,8 +18,7 @@ pub(crate) struct Place {
 
 impl Place {
     /// The place of a body whose nodes are at positions (m); `None` if it has none, or not all are finite.
-    pub(crate) fn new(view: &View, dimension: Dimension, obstacles: &[Obstacle], position: &[DVec3]) -> Option<Self> {
-        let position = spread(position, view.explode, obstacles);
+    pub(crate) fn new(view: &View, dimension: Dimension, position: &[DVec3]) -> Option<Self> {
         let [right, up, towards] = match dimension {
             Dimension::Space => axes(view.camera.azimuth, view.camera.elevation),
             Dimension::Plane => DVec3::AXES,

@@ -38,7 +38,7 @@ pub(crate) fn resolve(
         Some(target) => Some(vector(target, dimension, &camera("target"), report)?),
         None => None,
     };
-    let chosen = framing::camera(&typed.camera, target, typed.explode, scene);
+    let chosen = framing::camera(&typed.camera, target, scene);
     if dimension == Dimension::Space && !chosen.follow && is_inside(chosen.eye(), body, &scene.initial.position) {
         let [x, y, z] = chosen.eye().to_array().map(|length| rounded(length, 3));
         let message = format!("the camera is at [{x}, {y}, {z}], inside the body at its start");
@@ -80,11 +80,6 @@ pub(crate) fn resolve(
     let points = points.and_then(|points| compared::points(typed, points, scene, report));
     let inset = compared::inset(typed, scene, report);
     let at = |key| [Way::Key("view"), Way::Key(key)];
-    if typed.explode > 0.0 && (visible.springs || visible.displacements) {
-        let what = if visible.springs { "springs" } else { "displacements" };
-        let message = format!("`view.explode` draws elements apart, so {what} cannot be shown");
-        report.at_key(&at("explode"), message, format!("remove `explode` or `\"{what}\"`"));
-    }
     let spring_strain = match &typed.spring_colour {
         Some(_) if !visible.springs => {
             let message = "`view.spring_colour` is given, but springs are not shown".to_owned();
@@ -125,7 +120,6 @@ pub(crate) fn resolve(
         legend: typed.legend,
         strip: typed.strip,
         opacity: typed.opacity,
-        explode: typed.explode,
         spring_strain,
         ghost,
         difference,

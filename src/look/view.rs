@@ -50,8 +50,6 @@ pub struct View {
     pub strip: Option<Diagnostic>,
     /// Opacity of elements that are not turned over, from 0.1 to 1.
     pub opacity: f64,
-    /// How far elements are drawn apart, in parts of their distance from the body's middle; 0 leaves them together.
-    pub explode: f64,
     /// The colours of the strain of springs, if it is shown.
     pub spring_strain: Option<StrainScale>,
     /// What is outlined over each body, if anything.
@@ -116,7 +114,6 @@ impl Default for View {
             legend: true,
             strip: None,
             opacity: 1.0,
-            explode: 0.0,
             spring_strain: None,
             ghost: None,
             difference: None,

@@ -19,7 +19,6 @@ mod cut;
 mod ears;
 mod ends;
 mod event;
-mod exploded;
 mod fade;
 mod field;
 mod flag;
@@ -237,8 +236,6 @@ pub(crate) struct Sight {
     pub line_scale: f32,
     /// Length of an element's edge at the body's distance (px).
     pub element: f32,
-    /// Opacity of the lines of elements, from 0 to 1: below 1 where many small elements are drawn apart.
-    pub line_share: f32,
     /// Width of the body's contours, from 0 to 1: below 1 where the body is small.
     pub contour_share: f32,
     /// The pixel of the body's middle, to which the hatch of flat bodies is fixed.

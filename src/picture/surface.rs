@@ -17,8 +17,6 @@ use std::collections::HashMap;
 const HATCH_PERIOD: f64 = 0.30;
 /// A patch is cut so finely that its flat pieces are nowhere farther from it than this (px).
 const FLATNESS: f64 = 0.35;
-/// Faces seen at a smaller cosine than this are drawn though they are turned away: rounding could show them.
-const GRAZING: f64 = 0.02;
 /// The finest cut of a patch in each direction, and that of few faces: as fine as gives so many cells in all.
 const FINEST_CUT: usize = 6;
 const FINEST_OF_FEW: usize = 24;
@@ -34,10 +32,6 @@ const SMOOTH: f64 = 0.995;
 const SMALLEST_ELEMENT: f64 = 4.0;
 /// Edges of elements smaller than this (px) do not show through the body: their opacity would be less than 1 %.
 const SEEN_THROUGH: f64 = 7.2;
-/// Elements that are drawn apart have lines of their own, which fade between these sizes of elements (px): those of many
-/// small ones would cover everything.
-const OWN_LINES: [f64; 2] = [5.0, 10.0];
-
 /// What is needed to turn faces into what a panel shows.
 pub(super) struct Surroundings<'a> {
     pub(super) body: &'a Body,
@@ -60,8 +54,6 @@ pub(super) struct Surroundings<'a> {
     pub(super) shades: Option<&'a Shades>,
     /// Whether edges of elements that are not turned over are drawn in front, and behind surfaces.
     pub(super) edges: [bool; 2],
-    /// Whether each element has a closed surface of its own.
-    pub(super) apart: bool,
 }
 
 /// Kinds of lines on a surface.
@@ -237,12 +229,6 @@ impl Surroundings<'_> {
         mesh.vertices.reserve(4 * faces.len());
         mesh.triangles.reserve(2 * faces.len());
         mesh.shades.reserve(if self.shades.is_some() { 4 * faces.len() } else { 0 });
-        // Not for turned-over elements, whose faces are inside out: their back faces are the visible ones.
-        let hides_back = self.apart
-            && kinds.edge == LineKind::Edge
-            && self.opacity == 1.0
-            && total > VERY_MANY_FACES
-            && !self.lens.orthographic;
         // Faces on the side of the body that is turned away are drawn last: the others hide them, so that they need no light.
         let mut last = Vec::new();
         let is_inside_out = kinds.edge != LineKind::Edge;
@@ -253,16 +239,12 @@ impl Surroundings<'_> {
             self.corners(side, &mut patch.nodes);
             let ears = self.ears.of(&patch.nodes);
             let grid = bilinear(&patch.nodes, ears).map(|corners| grids.of(cuts.face(at, corners)));
-            let before = [mesh.vertices.len(), mesh.shades.len(), mesh.triangles.len()];
+            let before = mesh.triangles.len();
             // Turned-over elements are hatched, flat ones among the others dotted.
             let dots = (kinds.edge == LineKind::Edge).then(|| f64::from(u8::from(self.is_flat(side))));
             self.emit(side, ears, dots, grid, &mut patch, mesh);
-            if hides_back && self.is_hidden(side, &patch) {
-                mesh.vertices.truncate(before[0]);
-                mesh.shades.truncate(before[1]);
-                mesh.triangles.truncate(before[2]);
-            } else if patch.facing.iter().all(|&seen| (seen < 0.0) != is_inside_out) {
-                last.extend(mesh.triangles.drain(before[2]..));
+            if patch.facing.iter().all(|&seen| (seen < 0.0) != is_inside_out) {
+                last.extend(mesh.triangles.drain(before..));
             }
             self.inner_contours(&patch, kinds, lines);
             note_borders(&patch, ears, grid, &cuts, &mut borders);
@@ -278,9 +260,6 @@ impl Surroundings<'_> {
     fn edge(&self, sides: &[FaceSide], borders: &mut FaceSides, kinds: Lines, lines: &mut SurfaceLines) {
         let [a, b] = ordered(sides[0].ends);
         let (start, end) = (self.at(a), self.at(b));
-        if self.own_lines() == 0.0 {
-            return;
-        }
         let faces_away = |side: &FaceSide| borders.of(side).iter().all(|&seen| seen < 0.0);
         let is_hidden = kinds.edge == LineKind::Edge && !self.lens.orthographic && sides.iter().all(faces_away);
         // Edges of turned-over elements are always drawn.
@@ -304,7 +283,7 @@ impl Surroundings<'_> {
 
     /// A place where the surface turns away from the viewer.
     fn contour(&self, [from, to]: [DVec3; 2], edge: Option<[u32; 2]>, kinds: Lines, lines: &mut SurfaceLines) {
-        let line = self.line(from, to, kinds.contour, self.own_lines());
+        let line = self.line(from, to, kinds.contour, 1.0);
         lines.drawn.push(line);
         lines.borders.push(Border { line, edge });
     }
@@ -312,19 +291,6 @@ impl Surroundings<'_> {
     /// How far an outward normal at a point points towards the viewer, in parts of its length times the distance.
     fn facing(&self, point: DVec3, normal: DVec3) -> f64 {
         -normal.dot(if self.lens.orthographic { self.lens.forward } else { point - self.lens.eye })
-    }
-
-    /// Whether a face of an element of its own is turned away from the viewer: the element hides it.
-    fn is_hidden(&self, side: &Side, patch: &Patch) -> bool {
-        // A flat element does not hide its own face.
-        let is_solid = side.element.is_some_and(|element| !self.body.topology().is_flat(element as usize));
-        let turned = || self.lens.facing(patch.corners[0], newell(&patch.corners)) < -GRAZING;
-        is_solid && patch.facing.iter().all(|&seen| seen < 0.0) && turned()
-    }
-
-    /// Opacity of the lines of elements that are drawn apart. At 0 the gaps still separate them.
-    fn own_lines(&self) -> f64 {
-        if self.apart { own_lines(self.element) } else { 1.0 }
     }
 
     fn line(&self, from: DVec3, to: DVec3, kind: LineKind, strength: f64) -> Line {
@@ -439,7 +405,7 @@ impl Surroundings<'_> {
     fn inner_contours(&self, patch: &Patch, kinds: Lines, lines: &mut SurfaceLines) {
         let Patch { points, triangles, is_curved, facing, .. } = patch;
         let is_away = |at: usize| facing[at] < 0.0;
-        if self.own_lines() == 0.0 || (1..facing.len()).all(|at| is_away(at) == is_away(0)) {
+        if (1..facing.len()).all(|at| is_away(at) == is_away(0)) {
             return;
         }
         let mut draw = |ends: [DVec3; 2]| self.contour(ends, None, kinds, lines);
@@ -496,12 +462,6 @@ fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, grid: Option<&Grid>, c
         };
         borders.facing.extend(std::iter::repeat_n(seen, pieces as usize + 1));
     }
-}
-
-/// Opacity of the lines of elements of a size (px) that are drawn apart.
-pub(super) fn own_lines(element: f64) -> f64 {
-    let [none, all] = OWN_LINES;
-    ((element - none) / (all - none)).clamp(0.0, 1.0)
 }
 
 /// The sum of what stands at the corners of a face, each times its weight.

@@ -77,8 +77,8 @@ impl Tracking {
     /// For a scene and its time series; `None` if nothing is known of where its body is.
     pub(super) fn new(scene: &Scene, history: &History) -> Option<Self> {
         let (view, dimension) = (&scene.view, scene.body.dimension);
-        let start = Place::new(view, dimension, &scene.obstacles, &scene.initial.position)?;
-        let usual = start.size().max((1.0 + view.explode) * scene.body.extent()).max(f64::MIN_POSITIVE);
+        let start = Place::new(view, dimension, &scene.initial.position)?;
+        let usual = start.size().max(scene.body.extent()).max(f64::MIN_POSITIVE);
         let largest = |course: &TimeSeries| course.places.iter().map(|(_, place)| place.size()).fold(0.0, f64::max);
         let sound = history.series.iter().filter(|course| course.divergence.is_none());
         let largest = sound.map(largest).reduce(f64::max);
@@ -349,7 +349,7 @@ mod tests {
                 .runs
                 .iter()
                 .map(|run| {
-                    let place = Place::new(&scene.view, scene.body.dimension, &scene.obstacles, &run.snapshot.position);
+                    let place = Place::new(&scene.view, scene.body.dimension, &run.snapshot.position);
                     let seen = tracking.framing(&scene, &shot, run, place, (viewport, scale));
                     assert!((seen.target - shot.offset).distance(place.unwrap().middle) <= 1.0001 * tracking.slack());
                     (seen.target, seen.distance)

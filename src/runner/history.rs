@@ -71,7 +71,7 @@ impl TimeSeries {
         self.times.push(time);
         self.diagnostics.push(diagnostics);
         if scene.view.camera.follow {
-            let place = Place::new(&scene.view, scene.body.dimension, &scene.obstacles, position);
+            let place = Place::new(&scene.view, scene.body.dimension, position);
             self.places.extend(place.map(|place| (time, place)));
         }
         self.reach.add(scene, time, position);

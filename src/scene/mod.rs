@@ -15,6 +15,7 @@ mod error;
 pub(crate) mod figure;
 mod file;
 mod generate;
+mod gone;
 mod limits;
 mod load;
 pub(crate) mod npz;

@@ -221,7 +221,7 @@ impl Flat<'_> {
     /// Edges and contours. Those of one kind are one path, so that joints are even.
     fn lines(&self, items: &mut Vec<Item<'_>>) {
         let (palette, sight) = (&self.picture.palette, &self.panel.sight);
-        let element = sight.line_share * sight.element;
+        let element = sight.element;
         let [low, high] = SMALLEST_ELEMENT;
         let share = ((element - low) / (high - low)).clamp(0.0, 1.0);
         let strength = (element / SMALL_ELEMENT).min(1.0) * share * share * (3.0 - 2.0 * share);

@@ -110,7 +110,6 @@ fn borders_are_as_smooth_as_in_larger_pictures() {
     for name in [
         "arrows",
         "cubes",
-        "exploded",
         "field",
         "grid",
         "lines",

@@ -1,9 +1,9 @@
-//! The inside of a body and what is behind it: transparent and exploded views.
+//! The inside of a body and what is behind it: transparent views.
 
 use super::{draw, fig4b, gpu, parse, renderer};
 use glam::Vec3;
 use image::RgbImage;
-use localshape::picture::{LineKind, Picture, compose};
+use localshape::picture::{LineKind, compose};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
 use localshape::sim::snapshot::Frame;
@@ -38,10 +38,6 @@ fn an_element_turned_over_inside_is_seen_and_the_better_the_clearer_the_others_a
     assert!(seen[0] > 100_000, "{seen:?}");
     assert!(seen.windows(2).all(|two| two[1] > two[0]), "{seen:?}");
     assert!(seen[2] as f64 > 1.3 * seen[0] as f64, "{seen:?}");
-    scene.view.opacity = 1.0;
-    scene.view.explode = 1.0;
-    assert!(orange(&draw(gpu, &compose(&scene, &frame))) > 100_000);
-    assert_eq!(orange(&draw(gpu, &compose(&scene, &sound))), 0, "nothing has turned over");
 }
 
 #[test]
@@ -118,93 +114,4 @@ fn solids_are_seen_through_clear_surfaces_only() {
     assert!((bare - covered).abs() < 1.0, "nothing is seen through an opaque body: {bare} {covered}");
     let [bare, covered] = ["", ball].map(|ball| middle(ball, 0.3));
     assert!((bare - covered).abs() > 8.0, "a clear body shows the ball: {bare} {covered}");
-}
-
-/// So many cubes along each axis that they have more than 12 000 faces, above which those turned away are left out.
-const MANY: usize = 13;
-
-/// That many cubes, the first of which has turned over, and a flat element of seven nodes before them, drawn apart.
-fn many_apart() -> (Scene, Frame) {
-    let across = MANY + 1;
-    let nodes = (0..across.pow(3)).map(|at| [at % across, at / across % across, at / across / across]);
-    let mut nodes: Vec<_> = nodes.map(|[x, y, z]| format!("[{x}, {y}, {z}]")).collect();
-    let cells = (0..MANY.pow(3)).map(|at| at % MANY + across * (at / MANY % MANY + across * (at / MANY / MANY)));
-    let corner = |cell: usize, at: usize| cell + (at & 1) + across * ((at >> 1 & 1) + across * (at >> 2));
-    let mut elements: Vec<_> =
-        cells.map(|cell| format!("{:?}", (0..8).map(|at| corner(cell, at)).collect::<Vec<_>>())).collect();
-    let first = nodes.len();
-    let heptagon = [[2, 0], [4, 0], [5, 1], [5, 3], [3, 5], [1, 4], [0, 2]];
-    nodes.extend(heptagon.map(|[x, y]| format!("[{x}, {y}, 20]")));
-    elements.push(format!("{:?}", (first..first + 7).collect::<Vec<_>>()));
-    let text = format!(
-        "gravity = [0, 0, 0]
-        time = {{ duration = 1, step = 0.01 }}
-        run = [{{ name = 'one', model = {{ kind = 'shape-based', stiffness = 1 }} }}]
-        body = {{ nodes = [{}], elements = [{}] }}
-        view = {{ explode = 1, camera = {{ azimuth = 0, elevation = 0.3, target = [6, 6, 6], distance = 300 }} }}",
-        nodes.join(", "),
-        elements.join(", ")
-    );
-    let scene = parse(&text);
-    let mut frame = Runner::new(&scene, &[0]).frame(0);
-    frame.runs[0].snapshot.turned_over[0] = true;
-    (scene, frame)
-}
-
-/// The middles of the cubes' faces, each of four corners.
-fn middles(corners: &[Vec3]) -> Vec<Vec3> {
-    corners.chunks(4).map(|face| face.iter().sum::<Vec3>() / 4.0).collect()
-}
-
-#[test]
-fn of_very_many_elements_apart_all_is_drawn_that_can_be_seen() {
-    let (mut scene, frame) = many_apart();
-    for azimuth in [0.0, std::f64::consts::PI] {
-        scene.view.camera.azimuth = azimuth;
-        // Through transparent surfaces all of them are visible.
-        let [clear, opaque] = [0.9, 1.0].map(|opacity| {
-            scene.view.opacity = opacity;
-            compose(&scene, &frame)
-        });
-        let corners = |picture: &Picture| {
-            let sound = &picture.panels[0].sound;
-            sound.vertices.iter().map(|vertex| Vec3::from(vertex.position)).collect::<Vec<_>>()
-        };
-        let [all, kept] = [&clear, &opaque].map(corners);
-        // The flat element comes last: seven corners and a centre.
-        let [(all, flat), (kept, of_flat)] = [&all, &kept].map(|corners| corners.split_at(corners.len() - 8));
-        assert_eq!(all.len(), 4 * 6 * (MANY.pow(3) - 1));
-        assert_eq!(flat, of_flat, "a flat element is seen from both sides");
-        assert_eq!(opaque.panels[0].sound.triangles.len(), kept.len() / 2 + 7);
-        let eye = opaque.panels[0].sight.eye;
-        let kept = middles(kept);
-        let mut found = kept.iter().peekable();
-        for element in middles(all).chunks(6) {
-            let middle = element.iter().sum::<Vec3>() / 6.0;
-            for face in element {
-                let outwards = (face - middle).normalize().dot((eye - face).normalize());
-                let is_kept = found.next_if(|kept| **kept == *face).is_some();
-                assert!(if is_kept { outwards > -0.03 } else { outwards < -0.01 }, "{outwards} {is_kept}");
-            }
-        }
-        assert!(found.next().is_none() && kept.len() < 6 * MANY.pow(3) * 2 / 3);
-        let [clear, opaque] = [clear, opaque].map(|picture| picture.panels[0].turned_over.clone());
-        assert!(opaque.triangles.len() == 12 && opaque == clear, "a turned-over element keeps all its faces");
-    }
-}
-
-#[test]
-fn elements_apart_have_lines_of_their_own_unless_they_are_too_small() {
-    let (mut scene, frame) = many_apart();
-    let kinds = [LineKind::Edge, LineKind::Contour, LineKind::AlarmEdge, LineKind::AlarmContour];
-    let element = compose(&scene, &frame).panels[0].sight.element;
-    let pixels = f64::from(element) * scene.view.camera.distance;
-    for (size, has_lines) in [(4.9, false), (10.1, true)] {
-        scene.view.camera.distance = pixels / size;
-        let panel = compose(&scene, &frame).panels.remove(0);
-        assert!((f64::from(panel.sight.element) - size).abs() < 1e-3 && panel.sight.line_share == f32::from(has_lines));
-        for kind in kinds {
-            assert_eq!(panel.lines.iter().any(|line| line.kind == kind), has_lines, "{kind:?} at {size}");
-        }
-    }
 }

@@ -469,15 +469,12 @@ fn mistakes_of_ghosts_and_differences() {
     view("ghost = 'Mass spring'", "20:9 there is no run \"Mass spring\" did you mean \"Mass-spring\"?");
     let all = "expected \"Local shape\", \"Mass-spring\" or \"rest\"";
     view("ghost = 'nobody'", &format!("20:9 {all}"));
-    view("ghost = 'rest'\nexplode = 0.5", "20:1 `view.explode` draws elements apart, so `ghost` cannot be shown");
     let pair = |name: &str| format!("difference = ['Local shape', '{name}']");
     view(&pair("Mass"), "20:30 there is no run \"Mass\" did you mean \"Mass-spring\"?");
     view(&pair("rest"), "20:30 there is no run \"rest\"");
     view(&pair("Local shape"), "20:14 \"Local shape\" is compared with itself name two different runs");
     view("difference = ['Local shape']", "20:14 `view.difference` has 1 entry; expected 2");
     view("difference_of = 'shapes'", "20:1 `view.difference_of` is given, but no `view.difference`");
-    let exploded = format!("{}\nexplode = 0.5", pair("Mass-spring"));
-    view(&exploded, "20:1 so `difference` cannot be shown remove `explode` or `difference`");
     // Frames of runs with different steps are not at the same moments.
     let other_step = PLANE.replace("name = 'Mass-spring'\n", "name = 'Mass-spring'\nstep = 0.001\n");
     let ghost = |name: &str| format!("ghost = '{name}'");
@@ -530,9 +527,7 @@ fn paths_and_points_are_read() {
         ("paths = [1, 'centre', 1]", csv, 23, "this path is asked for a second time"),
         ("inset = { node = 4, times = 3 }", csv, 18, "there is no node 4; the body has 4, counted from 0"),
         ("inset = { node = 3, times = 1 }", csv, 29, "expected a number from 1.5 to 50"),
-        ("inset = { node = 3, times = 2 }\nexplode = 1", csv, 1, "so `inset` cannot be shown"),
         ("points = { file = 'camera.csv' }", "time;x;y\n0;1;2\n", 19, "separates its columns with semicolons"),
-        ("paths = ['centre']\nexplode = 1", csv, 1, "so `paths` cannot be shown"),
         ("points = { file = 'camara.csv' }", csv, 19, "is not there"),
         ("points = { file = 'camera.csv' }", "time,x,y\n0,1,b\n", 19, "has \"b\" as `y` in line 2"),
         (

@@ -665,15 +665,6 @@ fn mistakes_of_what_is_shown() {
     view("caption = \"a\\tb\"", "20:11 contains the control character '\\t'; it is lines of text");
     view("strip = 'turned over'", "20:9 did you mean \"turned_over\"?");
     view("opacity = 0", "20:11 expected a number from 0.1 to 1");
-    view("explode = -1", "20:11 expected a number from 0 to 3");
-    view(
-        "explode = 1\nshow = ['surfaces', 'springs']",
-        "20:1 `view.explode` draws elements apart, so springs cannot be shown",
-    );
-    view(
-        "explode = 1\nshow = ['surfaces', 'displacements']",
-        "20:1 `view.explode` draws elements apart, so displacements cannot be shown",
-    );
     view("spring_colour = {}", "20:1 `view.spring_colour` is given, but springs are not shown");
     view(
         "show = ['springs']\nspring_colour = { range = [1, 1] }",

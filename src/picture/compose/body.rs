@@ -24,7 +24,6 @@ impl Draft<'_> {
             side: self.side,
             soft: self.composer.soft * self.side / self.enlarged,
             edges: self.scene.view.edges,
-            apart: self.composer.exploded.is_some(),
             element: self.element,
             opacity: self.scene.view.opacity,
             flat: &self.run.snapshot.flat,

@@ -56,10 +56,10 @@ impl Composer<'_> {
         let Some((tracking, shot)) = self.tracking.as_ref().zip(shot) else {
             return Framing::still(&self.scene.view.camera);
         };
-        let Scene { view, body, obstacles, .. } = self.scene;
+        let Scene { view, body, .. } = self.scene;
         let position = &run.shown().position;
         let is_known = position.len() == body.len();
-        let place = is_known.then(|| Place::new(view, body.dimension, obstacles, position)).flatten();
+        let place = is_known.then(|| Place::new(view, body.dimension, position)).flatten();
         tracking.framing(self.scene, shot, run, place, panel)
     }
 

@@ -43,8 +43,7 @@ impl Draft<'_> {
         let (plane, anchor) = self.plane(normal, height);
         let view = &self.scene.view;
         let farther = self.farther(&plane);
-        let fade = FLOOR_FADE
-            .map(|sizes| sizes * self.composer.extent * self.composer.spread / self.side * self.widening() + farther);
+        let fade = FLOOR_FADE.map(|sizes| sizes * self.composer.extent / self.side * self.widening() + farther);
         // Around the point looked at, which is the origin, projected onto the floor.
         let middle = DVec2::ZERO;
         let cell = self.cell();
@@ -74,7 +73,7 @@ impl Draft<'_> {
             return 0.0;
         }
         let middle = self.position.iter().sum::<DVec3>() / self.position.len() as f64;
-        let size = self.composer.extent * self.composer.spread / self.side;
+        let size = self.composer.extent / self.side;
         let gone = plane.shadow((middle - self.origin) / self.side, self.key).length();
         // A smooth start.
         let beyond = (gone - STILL_NEAR * size).clamp(0.0, FARTHEST_SHADOW * size);
@@ -132,7 +131,7 @@ impl Draft<'_> {
     /// How many times wider than usual the floor is drawn: what lies farther away fades at about the same place in the
     /// panel. A camera that a scene places far away shows more than a body, on one floor throughout.
     pub(super) fn widening(&self) -> f64 {
-        let usual = USUAL_DISTANCE * self.composer.extent * self.composer.spread;
+        let usual = USUAL_DISTANCE * self.composer.extent;
         let farther = (self.framing.distance / usual).max(1.0);
         if self.scene.view.camera.follow { farther.sqrt() } else { farther }
     }
@@ -144,7 +143,7 @@ impl Draft<'_> {
         // Cameras do not zoom, so cells do not change between frames.
         let pixels =
             self.lens.focal * self.side / self.framing.distance * libm::sin(camera.elevation).abs().max(FLATTEST);
-        cell(self.composer.extent * self.composer.spread / self.side, most, LEAST_CELL / pixels)
+        cell(self.composer.extent / self.side, most, LEAST_CELL / pixels)
     }
 }
 

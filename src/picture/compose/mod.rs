@@ -20,7 +20,6 @@ use super::camera::Lens;
 use super::caption::{self, Writer};
 use super::ears::{Ears, bare_elements};
 use super::event::Event;
-use super::exploded::Exploded;
 use super::layout::{self, Layout, Rectangle, Scale};
 use super::locator::Locator;
 use super::number;
@@ -39,14 +38,11 @@ use crate::look::{ColourMap, Palette};
 use crate::runner::history::{History, Reach, TimeSeries};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
-use crate::sim::contact;
-use crate::sim::grip::Grip;
 use crate::sim::snapshot::{Frame, Snapshot, Status};
 pub(crate) use figure::{NoRoom, compose_figure};
 use glam::DVec3;
 use inset::Sinks;
 use panel::Draft;
-use std::borrow::Cow;
 use std::sync::OnceLock;
 use words::{Around, Clock, Words};
 pub(crate) use words::{left_out, type_left_out};
@@ -81,18 +77,12 @@ pub struct Composer<'a> {
     ramp: Vec<Colour>,
     /// The colours of the strain of springs, if it is shown.
     spring_ramp: Vec<Colour>,
-    /// The body with its elements apart, if that is how it is drawn. What follows is about that one, then.
-    exploded: Option<Exploded>,
-    /// The nodes that are held and dragged.
-    grips: Cow<'a, [Grip]>,
     /// The edges of the elements, if surfaces are not shown.
     edges: Edges,
     /// The nodes that get arrows.
     bearers: Vec<u32>,
     /// The size of the body (m).
     extent: f64,
-    /// How many times larger it is drawn where its elements are drawn apart.
-    spread: f64,
     /// The box around the nodes at the start (m).
     start_box: [DVec3; 2],
     /// The unit of soft distances (sides).
@@ -157,20 +147,6 @@ impl<'a> Composer<'a> {
         let extent = body.extent().max(f64::MIN_POSITIVE);
         let tally = Tally::new(body, scene.view.side);
         let descriptions = scene.runs.iter().map(|run| number::counted(run.model.describe(body))).collect();
-        let (apart, ground) = (scene.view.explode, contact::ground(&scene.obstacles, 0.0));
-        let exploded = (apart > 0.0).then(|| Exploded::new(body, apart));
-        let grips = match &exploded {
-            Some(exploded) => {
-                let apart = |grip: &Grip| Grip { nodes: exploded.copies(&grip.nodes), ..grip.clone() };
-                Cow::Owned(scene.grips.iter().map(apart).collect())
-            }
-            None => Cow::Borrowed(&scene.grips[..]),
-        };
-        let start = match &exploded {
-            Some(exploded) => Cow::Owned(exploded.positions(&scene.initial.position, ground.map(|(normal, _)| normal))),
-            None => Cow::Borrowed(&scene.initial.position),
-        };
-        let body = exploded.as_ref().map_or(body, |exploded| &exploded.body);
         let ears = Ears::new(body);
         let skin = Skin::new(body, &ears);
         let throws_shadow = scene.view.shadow && body.dimension == Dimension::Space;
@@ -197,8 +173,7 @@ impl<'a> Composer<'a> {
             ears,
             bare,
             extent,
-            spread: 1.0 + apart,
-            start_box: bounds(&start).into(),
+            start_box: bounds(&scene.initial.position).into(),
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
             timeline: None,
             largest_distance: None,
@@ -207,8 +182,6 @@ impl<'a> Composer<'a> {
             locator: None,
             reach: Reach::default(),
             arranged: OnceLock::new(),
-            grips,
-            exploded,
         }
     }
 

@@ -13,12 +13,10 @@ use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
 use crate::picture::shadow::key_light;
 use crate::picture::surface::SurfaceLines;
-use crate::picture::surface::own_lines;
 use crate::picture::{Framing, Line, LineKind, Mark, Mesh, Obstacles, Panel, Sight};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
-use crate::sim::field::Support;
 use crate::sim::snapshot::{RunFrame, Snapshot, Status};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
@@ -95,22 +93,10 @@ impl<'a> Draft<'a> {
         let lens = Lens::new(view, framing, body.dimension, viewport.map(f64::from), scale.unit);
         // Without positions nothing is drawn.
         let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
-        let mut position = finite(position, FARTHEST * view.side);
+        let position = finite(position, FARTHEST * view.side);
         // Without values, a greyed body has its own colour.
-        let mut field = Cow::Borrowed(if greyed { &[][..] } else { &run.snapshot.field[..] });
-        let mut drawn = body;
-        if let Some(exploded) = &composer.exploded {
-            let ground = contact::ground(&scene.obstacles, run.snapshot.time).map(|(normal, _)| normal);
-            if !position.is_empty() {
-                position = Cow::Owned(exploded.positions(&position, ground));
-            }
-            if view.colour.is_some_and(|scale| scale.field.support() == Support::Nodes) {
-                field = Cow::Owned(exploded.of_nodes(&field, body.len()));
-            }
-            drawn = &exploded.body;
-        }
-        let body = drawn;
-        let shades = view.colour.as_ref().map(|scale| Shades::new(body, scale, &field));
+        let field = if greyed { &[][..] } else { &run.snapshot.field[..] };
+        let shades = view.colour.as_ref().map(|scale| Shades::new(body, scale, field));
         let of_nodes = match &shades {
             Some(shades) if !view.visible.surfaces || !composer.bare.is_empty() => shades.of_nodes(body),
             _ => Vec::new(),
@@ -199,7 +185,6 @@ impl<'a> Draft<'a> {
             line_scale: narrow(self.scale.line()),
             soft: narrow(self.composer.soft),
             element: narrow(self.element),
-            line_share: narrow(if self.composer.exploded.is_some() { own_lines(self.element) } else { 1.0 }),
             contour_share: narrow(self.contour_share()),
             middle: self.middle(),
         }
@@ -296,7 +281,7 @@ impl<'a> Draft<'a> {
             return;
         }
         let hands = Hands {
-            grips: &self.composer.grips,
+            grips: &self.scene.grips,
             time: self.run.snapshot.time,
             frame: 1.0 / self.scene.frames_per_second,
             position: &self.position,

@@ -4,7 +4,6 @@
 use super::plan::Plan;
 use crate::look::Ghost;
 use crate::picture::camera::{Framing, Lens};
-use crate::picture::exploded::Exploded;
 use crate::picture::obstacle::{Site, Staging};
 use crate::runner::history::Reach;
 use crate::runner::moments::Moments;
@@ -40,12 +39,10 @@ pub(super) struct Cell {
 
 /// The cells of a sheet, row by row.
 pub(super) fn cells(scenes: &[Scene], reaches: &[Reach], sheet: &Sheet, moments: &Moments) -> Vec<Vec<Cell>> {
-    let exploded = |scene: &Scene| (scene.view.explode > 0.0).then(|| Exploded::new(&scene.body, scene.view.explode));
-    let exploded: Vec<_> = scenes.iter().map(exploded).collect();
     let cell = |column: usize, run: &RunFrame, other: Option<&RunFrame>| {
         let at = sheet.columns[column].scene;
         let ghost = ghost(&scenes[at], run, other);
-        Cell { scene: at, points: points(&scenes[at], exploded[at].as_ref(), &reaches[at], run, ghost) }
+        Cell { scene: at, points: points(&scenes[at], &reaches[at], run, ghost) }
     };
     let row = |(runs, others): (&Vec<RunFrame>, &Vec<Option<RunFrame>>)| {
         runs.iter().zip(others).enumerate().map(|(column, (run, other))| cell(column, run, other.as_ref())).collect()
@@ -75,14 +72,12 @@ fn ghost(scene: &Scene, run: &RunFrame, other: Option<&RunFrame>) -> Vec<DVec3> 
 }
 
 /// The points of a run at a time (m): nodes, and obstacles and the nodes of a ghost near them.
-fn points(scene: &Scene, exploded: Option<&Exploded>, reach: &Reach, run: &RunFrame, ghost: Vec<DVec3>) -> Vec<DVec3> {
+fn points(scene: &Scene, reach: &Reach, run: &RunFrame, ghost: Vec<DVec3>) -> Vec<DVec3> {
     let snapshot = run.shown();
     if snapshot.position.len() != scene.body.len() {
         return Vec::new();
     }
-    let ground = contact::ground(&scene.obstacles, snapshot.time).map(|(normal, _)| normal);
-    let mut points =
-        exploded.map_or_else(|| snapshot.position.clone(), |one| one.positions(&snapshot.position, ground));
+    let mut points = snapshot.position.clone();
     points.retain(|point| point.is_finite());
     if points.is_empty() {
         return points;

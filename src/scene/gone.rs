@@ -1,0 +1,60 @@
+//! Keys and values of scene files that are gone, and what to write instead.
+
+use crate::reading::report::Way;
+
+/// A key or a value that is gone.
+struct Gone {
+    /// The path of the key, without the indices of entries.
+    key: &'static str,
+    /// The value that is gone, or `None` if the whole key is.
+    value: Option<&'static str>,
+    /// What to write instead.
+    instead: &'static str,
+}
+
+const fn key(key: &'static str, instead: &'static str) -> Gone {
+    Gone { key, value: None, instead }
+}
+
+const GONE: &[Gone] = &[key("view.explode", "remove it")];
+
+/// What to write instead of a key that is gone, or of one of its values.
+pub(super) fn instead(path: &[Way<'_>], value: Option<&str>) -> Option<&'static str> {
+    let keys = path.iter().filter_map(|way| if let Way::Key(key) = way { Some(*key) } else { None });
+    let is_at = |gone: &&Gone| gone.value == value && gone.key.split('.').eq(keys.clone());
+    GONE.iter().find(is_at).map(|gone| gone.instead)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::GONE;
+    use crate::scene::{Limits, Scene};
+    use toml::{Table, Value};
+
+    #[test]
+    fn each_key_that_is_gone_has_one_message() {
+        let scene = "
+            time.duration = 1
+            body.lattice = { cells = [1, 1, 1], side = 0.1 }
+            run = [{ name = 'Local shape', model = { kind = 'shape-based', stiffness = 1e4 } }]
+            view.theme = 'light'";
+        for gone in GONE {
+            let mut scene: Table = scene.parse().expect("TOML");
+            let (tables, last) = gone.key.rsplit_once('.').expect("a key of a table");
+            let table = tables.split('.').fold(&mut scene, |table, key| {
+                let inner = table.entry(key).or_insert_with(|| Value::Table(Table::new()));
+                match inner {
+                    Value::Array(entries) => entries[0].as_table_mut(),
+                    inner => inner.as_table_mut(),
+                }
+                .expect("a table")
+            });
+            table.insert(last.to_owned(), gone.value.unwrap_or("anything").into());
+            let error = Scene::parse(&scene.to_string(), "old.toml", &Limits::default()).expect_err(gone.key);
+            let [mistake] = error.mistakes() else { panic!("{error}") };
+            let value = gone.value.map_or_else(String::new, |value| format!(" = \"{value}\""));
+            assert!(mistake.message.ends_with(&format!("{last}{value}` is gone")), "{error}");
+            assert_eq!(mistake.help.as_deref(), Some(gone.instead));
+        }
+    }
+}
