@@ -1,9 +1,9 @@
-//! Resolves what stands over and beside bodies: ghosts, differences, their own paths, points measured elsewhere, and insets.
+//! Resolves what stands over and beside bodies: ghosts, differences, their own paths, and points measured elsewhere.
 
 use super::file::{DifferenceOfFile, PathFile, PathPointFile, PointsFile, ViewFile};
 use super::points::PointsRead;
 use super::subject::Subject;
-use super::view::{Difference, Ghost, Inset, Points, Traced};
+use super::view::{Difference, Ghost, Points, Traced};
 use crate::reading::report::{Report, Way};
 use crate::reading::words::{list, nearest, quoted, short};
 use crate::sim::body::Dimension;
@@ -77,14 +77,6 @@ pub(super) fn paths(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'
         }
     };
     paths.iter().enumerate().filter_map(one).collect()
-}
-
-/// What is enlarged; `None` also after a mistake.
-pub(super) fn inset(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<Inset> {
-    let inset = typed.inset.as_ref()?;
-    let path = [Way::Key("view"), Way::Key("inset"), Way::Key("node")];
-    let node = known_node(inset.node, &path, scene, report)?;
-    Some(Inset { node, times: inset.times })
 }
 
 /// A node, or `None` after reporting that there is none of this number.

@@ -106,8 +106,6 @@ pub(crate) struct ViewFile {
     /// Points that were measured elsewhere, such as `{ file = "camera.csv" }`: rings where they are now, dots where they were.
     /// Default: none.
     pub(crate) points: Option<PointsFile>,
-    /// A part of each body that is enlarged beside it, such as `{ node = 26, times = 4.0 }`. Default: none.
-    pub(crate) inset: Option<InsetFile>,
     /// Direction of the light, in space, such as `{ azimuth = -0.9 }`.
     pub(crate) light: Light,
     /// Whether bodies and obstacles cast shadows on the floor.
@@ -158,7 +156,6 @@ impl Default for ViewFile {
             difference_of: None,
             paths: None,
             points: None,
-            inset: None,
             light: Light::default(),
             shadow: true,
             floor: FloorStyle::default(),
@@ -245,17 +242,6 @@ pub(crate) struct PointsFile {
     /// The name of the run over which they are drawn. Default: all runs.
     #[schemars(length(min = 1, max = 80))]
     pub(crate) run: Option<String>,
-}
-
-/// A part of each body that is enlarged.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct InsetFile {
-    /// The node in its middle, counted from 0.
-    pub(crate) node: u32,
-    /// How many times larger it is drawn.
-    #[schemars(range(min = 1.5, max = 50.0))]
-    pub(crate) times: f64,
 }
 
 /// Which lines are drawn on surfaces.

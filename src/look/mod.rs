@@ -32,6 +32,6 @@ pub(crate) use subject::Subject;
 #[cfg(feature = "render")]
 pub(crate) use view::axes;
 pub use view::{
-    Camera, ColourMap, ColourScale, Difference, FloorStyle, FontFiles, Ghost, Inset, Labels, Light, Points,
-    StrainScale, Style, Traced, View, Visible,
+    Camera, ColourMap, ColourScale, Difference, FloorStyle, FontFiles, Ghost, Labels, Light, Points, StrainScale,
+    Style, Traced, View, Visible,
 };

@@ -78,7 +78,6 @@ pub(crate) fn resolve(
     let (ghost, difference) = (compared::ghost(typed, scene, report), compared::difference(typed, scene, report));
     let paths = compared::paths(typed, scene, report);
     let points = points.and_then(|points| compared::points(typed, points, scene, report));
-    let inset = compared::inset(typed, scene, report);
     let at = |key| [Way::Key("view"), Way::Key(key)];
     let spring_strain = match &typed.spring_colour {
         Some(_) if !visible.springs => {
@@ -125,7 +124,6 @@ pub(crate) fn resolve(
         difference,
         paths,
         points,
-        inset,
         light: typed.light,
         shadow: typed.shadow,
         floor: typed.floor,

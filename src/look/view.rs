@@ -60,8 +60,6 @@ pub struct View {
     pub paths: Vec<Traced>,
     /// Points that were measured elsewhere, if they are shown.
     pub points: Option<Points>,
-    /// What is enlarged beside each body, if anything.
-    pub inset: Option<Inset>,
     /// From where the light falls.
     pub light: Light,
     /// Whether there are shadows.
@@ -119,7 +117,6 @@ impl Default for View {
             difference: None,
             paths: Vec::new(),
             points: None,
-            inset: None,
             light: Light::default(),
             shadow: true,
             floor: FloorStyle::default(),
@@ -345,15 +342,6 @@ pub struct Points {
     pub run: Option<usize>,
     /// Times (s), rising, and places (m).
     pub samples: Arc<[(f64, DVec3)]>,
-}
-
-/// A part of each body that is enlarged beside it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inset {
-    /// The node in its middle.
-    pub node: u32,
-    /// How many times larger it is drawn.
-    pub times: f64,
 }
 
 /// A perspective camera that looks at a point.

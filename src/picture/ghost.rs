@@ -40,8 +40,6 @@ pub(super) struct Ghost<'a> {
     pub(super) room: Rectangle,
     /// Where an overview covers it (px: left, top, width and height).
     pub(super) overview: Option<[f64; 4]>,
-    /// Whether an arrow points to a body outside of it, and lines fade where they leave it.
-    pub(super) is_pointed_at: bool,
 }
 
 impl Ghost<'_> {
@@ -99,8 +97,7 @@ impl Ghost<'_> {
         let [left, top, right, bottom] = sides(self.room.map(f64::from));
         let [low, high] = self.bounds();
         let over = [left - low.x, top - low.y, high.x - right, high.y - bottom];
-        let most = if self.is_pointed_at { FADING * scale.unit } else { 0.0 };
-        Fade::new(self.room, over.map(|over| over.clamp(0.0, most)), self.overview, scale.unit)
+        Fade::new(self.room, over.map(|over| over.clamp(0.0, FADING * scale.unit)), self.overview, scale.unit)
     }
 
     /// The corners of the box around all nodes before the camera (px).
@@ -115,7 +112,7 @@ impl Ghost<'_> {
         let [left, top, right, bottom] = sides(self.room.map(f64::from));
         let [low, high] = self.bounds();
         let reaches_in = low.cmplt(DVec2::new(right, bottom)).all() && high.cmpgt(DVec2::new(left, top)).all();
-        if !self.is_pointed_at || !is_seen && reaches_in {
+        if !is_seen && reaches_in {
             return Vec::new();
         }
         let middle = self.position.iter().sum::<DVec3>() / self.position.len().max(1) as f64;
@@ -339,8 +336,7 @@ mod tests {
 
     fn outline(lens: &Lens, position: &[DVec3], triangles: &[[u32; 3]], room: Rectangle) -> Vec<Vec<DVec2>> {
         let nodes: Vec<u32> = (0..position.len() as u32).collect();
-        Ghost { lens, position, nodes: &nodes, triangles, bars: &[], room, overview: None, is_pointed_at: true }
-            .outline()
+        Ghost { lens, position, nodes: &nodes, triangles, bars: &[], room, overview: None }.outline()
     }
 
     /// A cube with outward triangles.
@@ -379,7 +375,6 @@ mod tests {
             bars: &[],
             room: ROOM,
             overview: None,
-            is_pointed_at: true,
         };
         let mut curves = Vec::new();
         ghost.draw(Scale::REFERENCE, [0; 3], [255; 3], &mut curves);
@@ -398,7 +393,7 @@ mod tests {
         let nodes: Vec<u32> = (0..8).collect();
         let drawn = |room: Rectangle, overview| {
             let (lens, position, nodes, triangles) = (&lens, &position, &nodes, &triangles);
-            let ghost = Ghost { lens, position, nodes, triangles, bars: &[], room, overview, is_pointed_at: true };
+            let ghost = Ghost { lens, position, nodes, triangles, bars: &[], room, overview };
             let mut curves = Vec::new();
             ghost.draw(Scale::REFERENCE, [0; 3], [255; 3], &mut curves);
             curves.retain(|curve| curve.colour == [0; 3]);

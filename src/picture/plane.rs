@@ -148,7 +148,7 @@ impl Flat<'_> {
         let Some((pixel, _)) = self.lens.project(DVec3::new(self.lens.eye.x, level, 0.0)) else { return };
         let [left, top, width, height] = self.viewport.map(f64::from);
         let (y, unit) = (sharpened(pixel[1] + alignment), self.scale.unit);
-        // Where there are no words, as in insets, it goes on to the border.
+        // Where there are no words it goes on to the border.
         let margin = if self.clear == self.viewport { 0.0 } else { self.scale.margin() };
         let length = width - 2.0 * margin;
         // Below the captions it would look like an underline; but under a body it is drawn in any case.

@@ -141,14 +141,12 @@ impl Tracking {
         halved.take_while(|window| *window > 0.25 / frames_per_second).find(|&window| fits(window)).unwrap_or(0.0)
     }
 
-    /// How the room for bodies in a panel of a width (px) is seen, in a picture with type of a scale. The part of it that is
-    /// `taken` at its upper right is kept free, if that is possible (px: left, top, width and height). A metre has `most`
-    /// pixels at the most.
+    /// How a panel is seen, in a picture with type of a scale. The part of it that is `taken` at its upper right is kept
+    /// free, if that is possible (px: left, top, width and height). A metre has `most` pixels at the most.
     pub(super) fn shot(
         &self,
         scene: &Scene,
         (viewport, scale): (Rectangle, Scale),
-        width: u32,
         taken: Option<[f64; 4]>,
         most: f64,
     ) -> Shot {
@@ -164,8 +162,8 @@ impl Tracking {
             let depth = depth(half);
             (room[2] / (2.0 * half.x + room[2] * depth)).min(room[3] / (2.0 * half.y + room[3] * depth))
         };
-        let part = |part: f64, width: u32| part * f64::from(width.max(1)) / self.widest;
-        let (filled, least) = (part(FILLED, width), part(LEAST_FILLED, viewport[2]));
+        let part = |part: f64| part * f64::from(viewport[2].max(1)) / self.widest;
+        let (filled, least) = (part(FILLED), part(LEAST_FILLED));
         let following = filled.min(fit(self.half + self.slack())).min(most);
         let least = least.min(following);
         let standing = |[low, high]: [DVec3; 2]| (fit(0.5 * (high - low)).min(following), low.midpoint(high));
@@ -340,7 +338,7 @@ mod tests {
         let scene = Scene::parse(text, "fig4b.toml", &crate::scene::Limits::default()).unwrap();
         let tracking = Tracking::new(&scene, &History::new(&scene, &[0, 1])).unwrap();
         let (viewport, scale) = ([0, 0, 640, 600], Scale::at(1.0));
-        let shot = tracking.shot(&scene, (viewport, scale), viewport[2], None, f64::INFINITY);
+        let shot = tracking.shot(&scene, (viewport, scale), None, f64::INFINITY);
         assert!(!shot.is_still && tracking.window > 0.0, "{shot:?} {}", tracking.window);
         let (mut runner, mut last) = (crate::runner::Runner::new(&scene, &[0, 1]), None);
         for index in 0..=scene.last_frame() {

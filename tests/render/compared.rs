@@ -2,7 +2,7 @@
 
 use super::{fig4b, gpu};
 use glam::DVec3;
-use localshape::look::{Difference, Ghost, Inset, Points, Style, Theme, Traced};
+use localshape::look::{Difference, Ghost, Points, Style, Theme, Traced};
 use localshape::picture::{Composer, Curve, MarkShape, Panel, Picture};
 use localshape::render::Renderer;
 use localshape::runner::Runner;
@@ -274,35 +274,6 @@ fn sheets_have_paths_and_measured_points() {
         assert_eq!(rings.count(), 1 + at % 2, "{at}");
     }
     assert!(["path of the centre", "measured"].iter().all(|name| picture.words.iter().any(|run| run.text == *name)));
-}
-
-#[test]
-fn an_inset_shows_its_node_in_its_middle_larger_than_beside() {
-    let (mut scene, frame) = fig4b(4);
-    scene.view.inset = Some(Inset { node: 3, times: 3.0 });
-    scene.view.paths = vec![Traced::Node(3)];
-    let history = History::new(&scene, &[0, 1]);
-    let mut composer = Composer::new(&scene);
-    composer.set_history(&history);
-    let picture = composer.compose(&frame);
-    let [one, two, insets @ ..] = &picture.panels[..] else { panic!("panels") };
-    assert_eq!(insets.len(), 2);
-    for (body, inset) in [one, two].into_iter().zip(insets) {
-        let [left, top, width, height] = inset.viewport;
-        assert!(body.viewport[0] + body.viewport[2] <= left, "they stand side by side");
-        assert_eq!(width, height);
-        assert!((inset.sight.element / body.sight.element - 3.0).abs() < 1e-6);
-        // The path of the node ends in the middle of the inset.
-        let middle = [left + width / 2, top + height / 2].map(|at| at as f32);
-        let ends_there = |curve: &Curve| {
-            curve.points.len() == 1 && curve.points[0].iter().zip(middle).all(|(at, middle)| (at - middle).abs() < 1.0)
-        };
-        assert!(picture.curves.iter().any(ends_there), "{:?}", inset.viewport);
-    }
-    assert_eq!(picture.words.iter().filter(|run| run.text == "×\u{2009}3").count(), 2);
-    // Where there is no room, the body has all of the panel, and `check` says so.
-    scene.view.size = [120, 400];
-    assert_eq!(Composer::new(&scene).compose(&frame).panels.len(), 2);
 }
 
 /// Bars have no faces: each is a dashed line.

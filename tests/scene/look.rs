@@ -525,8 +525,6 @@ fn paths_and_points_are_read() {
         ("paths = ['middle']", csv, 10, "\"middle\""),
         ("paths = [0, 4]", csv, 13, "there is no node 4; the body has 4, counted from 0"),
         ("paths = [1, 'centre', 1]", csv, 23, "this path is asked for a second time"),
-        ("inset = { node = 4, times = 3 }", csv, 18, "there is no node 4; the body has 4, counted from 0"),
-        ("inset = { node = 3, times = 1 }", csv, 29, "expected a number from 1.5 to 50"),
         ("points = { file = 'camera.csv' }", "time;x;y\n0;1;2\n", 19, "separates its columns with semicolons"),
         ("points = { file = 'camara.csv' }", csv, 19, "is not there"),
         ("points = { file = 'camera.csv' }", "time,x,y\n0,1,b\n", 19, "has \"b\" as `y` in line 2"),

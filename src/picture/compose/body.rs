@@ -22,7 +22,7 @@ impl Draft<'_> {
             lens: &self.lens,
             origin: self.origin,
             side: self.side,
-            soft: self.composer.soft * self.side / self.enlarged,
+            soft: self.composer.soft * self.side,
             edges: self.scene.view.edges,
             element: self.element,
             opacity: self.scene.view.opacity,

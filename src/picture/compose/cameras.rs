@@ -1,7 +1,6 @@
 //! How the panels of a frame are seen: their arrangement, their cameras and their overviews.
 
 use super::Composer;
-use super::inset::Enlarged;
 use super::panel::Draft;
 use crate::look::Place;
 use crate::picture::Framing;
@@ -24,9 +23,8 @@ impl Composer<'_> {
         let pixels = |columns: usize| {
             let layout = words.around(runs, columns).layout;
             let panel = *layout.panels.first()?;
-            let viewport = self.body_room(panel, layout.scale).0;
-            let shot = self.shot(viewport, panel[2], layout.scale, f64::INFINITY).map(|shot| shot.pixels);
-            let still = || self.pixels_a_metre(viewport, &Framing::still(&view.camera), layout.scale);
+            let shot = self.shot(panel, layout.scale, f64::INFINITY).map(|shot| shot.pixels);
+            let still = || self.pixels_a_metre(panel, &Framing::still(&view.camera), layout.scale);
             Some(shot.unwrap_or_else(still))
         };
         let panels = words.panels(runs);
@@ -43,12 +41,10 @@ impl Composer<'_> {
         view.columns.map_or_else(chosen, |columns| columns.clamp(1, panels.max(1)))
     }
 
-    /// How a camera that follows sees the room for bodies in a panel of a width (px), with `most` pixels for a metre.
-    pub(super) fn shot(&self, viewport: Rectangle, width: u32, scale: Scale, most: f64) -> Option<Shot> {
-        // Beside an inset, the overview stands above that.
-        let locator = self.locator.as_ref().filter(|_| viewport[2] == width);
-        let taken = locator.and_then(|locator| locator.place(&self.scene.view, viewport, scale));
-        Some(self.tracking.as_ref()?.shot(self.scene, (viewport, scale), width, taken, most))
+    /// How a camera that follows sees bodies in a panel, with `most` pixels for a metre.
+    pub(super) fn shot(&self, viewport: Rectangle, scale: Scale, most: f64) -> Option<Shot> {
+        let taken = self.locator.as_ref().and_then(|locator| locator.place(&self.scene.view, viewport, scale));
+        Some(self.tracking.as_ref()?.shot(self.scene, (viewport, scale), taken, most))
     }
 
     /// What the camera of a run looks at in a panel.
@@ -64,16 +60,9 @@ impl Composer<'_> {
     }
 
     /// Where the overview of a panel stands (px: left, top, width and height), if its camera moves.
-    pub(super) fn overview(
-        &self,
-        panel: Rectangle,
-        enlarged: Option<&Enlarged>,
-        shot: &Shot,
-        scale: Scale,
-    ) -> Option<[f64; 4]> {
+    pub(super) fn overview(&self, panel: Rectangle, shot: &Shot, scale: Scale) -> Option<[f64; 4]> {
         let locator = self.locator.as_ref().filter(|_| !shot.is_still)?;
-        let place = locator.place(&self.scene.view, panel, scale)?;
-        enlarged.is_none_or(|enlarged| enlarged.leaves_free(place)).then_some(place)
+        locator.place(&self.scene.view, panel, scale)
     }
 
     /// Draws the overview of a panel, if it has one.

@@ -34,10 +34,6 @@ impl Draft<'_> {
     /// the sides of the panel where plates leave it with the background, without the body. Both fade the more the nearer to
     /// the side; those that hardly leave it less, so that nothing changes at once.
     pub(super) fn fade_obstacles(&self, obstacles: &mut Obstacles, marks: &mut Vec<Mark>) {
-        // An inset is a piece of a picture, and has a frame.
-        if self.enlarged != 1.0 {
-            return;
-        }
         let place = |at: [f32; 3]| self.origin + self.side * DVec3::from(at.map(f64::from));
         let has_words = self.scene.view.labels != Labels::default();
         let room = if has_words { self.between_words() } else { self.viewport };

@@ -56,7 +56,6 @@ impl Draft<'_> {
             bars: &bars,
             room,
             overview: self.overview,
-            is_pointed_at: self.enlarged == 1.0,
         };
         ghost.draw(self.scale, colour, self.composer.palette.halo, curves);
     }

@@ -49,7 +49,7 @@ impl Draft<'_> {
         let cell = self.cell();
         let grid = plane.axes.map(|axis| narrow(((self.origin - anchor) / self.side).dot(axis).rem_euclid(cell)));
         let [_, below] = layout::rooms(view, f64::from(self.viewport[3]), self.scale.unit);
-        // Where there are no words, as in insets, it goes on to the border.
+        // Where there are no words it goes on to the border.
         let fade_above = if self.clear == self.viewport { 1.0 } else { (below + FADE_ABOVE) * self.scale.unit };
         Some(Floor {
             normal: narrow_point(plane.normal),

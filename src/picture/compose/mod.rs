@@ -7,7 +7,6 @@ mod difference;
 mod figure;
 mod ghost;
 mod ground;
-mod inset;
 mod key;
 mod panel;
 mod paths;
@@ -31,7 +30,7 @@ use super::text::Fonts;
 use super::timeline::Timeline;
 use super::tracking::{Shot, Tracking};
 use super::wire::Edges;
-use super::{Curve, Framing, Picture};
+use super::{Framing, Picture};
 use crate::colour::Colour;
 use crate::look::ramp::ramp;
 use crate::look::{ColourMap, Palette};
@@ -41,7 +40,6 @@ use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::snapshot::{Frame, Snapshot, Status};
 pub(crate) use figure::{NoRoom, compose_figure};
 use glam::DVec3;
-use inset::Sinks;
 use panel::Draft;
 use std::sync::OnceLock;
 use words::{Around, Clock, Words};
@@ -242,9 +240,8 @@ impl<'a> Composer<'a> {
         let Arranged { columns, around, shot, shot_of_difference, .. } = arranged;
         let (columns, Around { layout, title, caption, legend, clock }) = (*columns, around);
         let scale = layout.scale;
-        let rooms: Vec<_> = layout.panels.iter().take(runs.len()).map(|&panel| self.body_room(panel, scale)).collect();
-        let places = rooms.iter().zip(&frame.runs);
-        let framings = places.map(|((room, _), run)| self.framing(shot.as_ref(), run, (*room, scale)));
+        let places = layout.panels.iter().zip(&frame.runs);
+        let framings = places.map(|(&panel, run)| self.framing(shot.as_ref(), run, (panel, scale)));
         let framings: Vec<_> = framings.collect();
         let mut writer = self.writer(scale);
         writer.hairlines(layout);
@@ -264,30 +261,20 @@ impl<'a> Composer<'a> {
             writer.clock_alone(layout.around, [f64::from(size[0]), baseline], frame.time, &view.clock);
         }
         writer.caption(layout.around, caption, layout.caption);
-        if let Some(((legend, (room, _)), framing)) = (*legend).zip(rooms.first()).zip(framings.first()) {
-            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, *room, framing, scale));
+        if let Some(((legend, &panel), framing)) = (*legend).zip(layout.panels.first()).zip(framings.first()) {
+            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, panel, framing, scale));
             let bars = self.bars(frame, compared.map(|(compared, _)| compared));
             legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &self.samples(), &bars);
         }
         let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::with_capacity(runs.len()));
-        let (mut ghosts, mut insets) = (Vec::new(), Vec::new());
-        let over = |draft: &Draft<'_>, curves: &mut Vec<Curve>| {
-            draft.ghost(&frame.runs, draft.between_words(), curves);
-            draft.paths(&self.traced, draft.between_words(), curves);
-        };
-        for ((((room, enlarged), &place), run), framing) in
-            rooms.iter().zip(&layout.panels).zip(&frame.runs).zip(&framings)
-        {
-            let mut draft = Draft::new(self, *room, run, framing, scale);
-            draft.overview = shot.as_ref().and_then(|shot| self.overview(place, enlarged.as_ref(), shot, scale));
-            over(&draft, &mut ghosts);
+        let mut ghosts = Vec::new();
+        for ((&panel, run), framing) in layout.panels.iter().zip(&frame.runs).zip(&framings) {
+            let mut draft = Draft::new(self, panel, run, framing, scale);
+            draft.overview = shot.as_ref().and_then(|shot| self.overview(panel, shot, scale));
+            draft.ghost(&frame.runs, draft.between_words(), &mut ghosts);
+            draft.paths(&self.traced, draft.between_words(), &mut ghosts);
             panels.push(draft.panel(&mut under, &mut marks));
             draft.points(draft.between_words(), &mut marks);
-            if let Some(enlarged) = enlarged {
-                let sinks =
-                    Sinks { under: &mut under, above: &mut marks, curves: &mut ghosts, words: &mut writer.words };
-                insets.extend(Draft::new(self, *room, run, framing, scale).enlarged(enlarged, over, sinks));
-            }
             if let Some((shot, tracking)) = shot.as_ref().zip(self.tracking.as_ref()) {
                 self.locate(&draft, shot, tracking, &mut writer);
             }
@@ -299,7 +286,6 @@ impl<'a> Composer<'a> {
             let marks = [&mut under, &mut marks];
             panels.push(self.draw_difference(compared, place, &framing, scale, marks, &mut ghosts));
         }
-        panels.extend(insets);
         let Writer { marks: above, curves: in_front, mut words, .. } = writer;
         let (outlines, mut curves) = (ghosts.len(), ghosts);
         curves.extend(in_front);
@@ -321,10 +307,9 @@ impl<'a> Composer<'a> {
         let (layout, scale) = (&around.layout, around.layout.scale);
         // The chart of a difference takes room from its body, which is as large as the others.
         let difference = layout.panels.get(runs.len()).map(|&panel| self.rooms(panel, scale).0);
-        let width = layout.panels.first().map_or(0, |panel| panel[2]);
-        let largest = |room: Option<Rectangle>, most: f64| room.and_then(|room| self.shot(room, width, scale, most));
+        let largest = |room: Option<Rectangle>, most: f64| room.and_then(|room| self.shot(room, scale, most));
         let most = largest(difference, f64::INFINITY).map_or(f64::INFINITY, |shot| shot.pixels);
-        let shot = largest(layout.panels.first().map(|&panel| self.body_room(panel, scale).0), most);
+        let shot = largest(layout.panels.first().copied(), most);
         let shot_of_difference = largest(difference, shot.map_or(f64::INFINITY, |shot| shot.pixels));
         Arranged { runs: runs.to_vec(), columns, around, shot, shot_of_difference }
     }

@@ -55,8 +55,6 @@ pub(super) struct Draft<'a> {
     pub(super) of_nodes: Vec<f32>,
     /// Where an overview lies over it (px: left, top, width and height).
     pub(super) overview: Option<[f64; 4]>,
-    /// How many times it is enlarged, in an inset: its hatch keeps its distance on the picture.
-    pub(super) enlarged: f64,
     /// Length of an element's edge at the body's distance (px).
     pub(super) element: f64,
     /// Whether the body lies in the plane.
@@ -118,7 +116,6 @@ impl<'a> Draft<'a> {
             shades,
             of_nodes,
             overview: None,
-            enlarged: 1.0,
             element: lens.focal * view.side / if flat { 1.0 } else { framing.distance },
             flat,
             diverged,

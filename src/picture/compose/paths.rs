@@ -66,7 +66,7 @@ impl Draft<'_> {
             let way = path.iter().take(past).copied().chain([now]);
             let lines = within(way.map(|at| self.lens.project(at).map(|(pixel, _)| DVec2::from(pixel))), room);
             let pieces = lines.iter().flat_map(|line| parted(simplified(line, EXACT)));
-            // In an inset they go on to its frame.
+            // Where there are no words they go on to the border.
             let fading = if self.clear == self.viewport { 0.0 } else { FADING * self.scale.unit };
             let fade = Fade::new(room, [fading; 4], self.overview, self.scale.unit);
             let pieces: Vec<_> = pieces.flat_map(|piece| fade.parts(&piece)).collect();

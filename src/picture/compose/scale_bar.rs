@@ -20,7 +20,7 @@ impl Composer<'_> {
         writer: &mut Writer<'_>,
     ) -> Option<f64> {
         let room = between[1] - between[0] - 2.0 * writer.scale.gap();
-        let (metres, pixels) = self.scale_bar(self.body_room(panel, writer.scale).0, framing, writer.scale, room);
+        let (metres, pixels) = self.scale_bar(panel, framing, writer.scale, room);
         // Words of a shorter one may be narrower.
         let shorter = number::round_below(0.9 * metres);
         let bars = [(metres, pixels), (shorter, pixels * shorter / metres)].into_iter();
@@ -50,9 +50,8 @@ impl Composer<'_> {
             from = writer.count(panel, &self.tally, &start.snapshot);
         }
         to = to.min(writer.left_of_numbers(panel, &caption::number(self.extent, &start.snapshot, area)));
-        let room = self.body_room(panel, layout.scale).0;
-        let shot = self.shot(room, panel[2], layout.scale, f64::INFINITY);
-        let framing = self.framing(shot.as_ref(), &start, (room, layout.scale));
+        let shot = self.shot(panel, layout.scale, f64::INFINITY);
+        let framing = self.framing(shot.as_ref(), &start, (panel, layout.scale));
         !scale_bar || self.draw_bar(panel, &framing, [from, to], &mut writer).is_none()
     }
 

@@ -1,6 +1,6 @@
 //! The words of a scene's pictures: what stands where, whatever the frame, and what finds no room.
 
-use super::{Composer, cut, inset};
+use super::{Composer, cut};
 use crate::look::{Difference, Ghost, Labels, LineStyle, Palette, View};
 use crate::picture::caption::{self, Heading, Writer};
 use crate::picture::layout::{self, Layout, Scale, Wanted, Written};
@@ -201,8 +201,6 @@ impl<'a> Words<'a> {
         tell(view.strip.is_some() && layout.chart.is_none(), "the chart is left out");
         tell(around.clock == Clock::Above(None), "the clock is left out");
         let Some(panel) = layout.panels.first() else { return told };
-        let has_inset = inset::rooms(view, *panel, layout.scale).1.is_some();
-        tell(view.inset.is_some() && !has_inset, "insets are left out");
         let written = layout::written(view, f64::from(panel[3]), layout.scale.unit);
         let has = |one: fn(Labels) -> bool| one(view.labels) && !one(written.labels);
         tell(view.strip.is_some() && !written.events, "panels do not say what happens in the chart");

@@ -153,7 +153,7 @@ fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
         view.look = figure.look.clone();
         view.labels = Labels::default();
         view.scale_bar = false;
-        (view.strip, view.difference, view.inset) = (None, None, None);
+        (view.strip, view.difference) = (None, None);
         // One scale of colours for all, or none.
         view.colour = view.colour.filter(|_| is_shared);
         view.spring_strain = view.spring_strain.filter(|_| is_shared);
