@@ -81,7 +81,6 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
         "scene" => [files("scenes", "toml"), files("scenes/elements", "toml")].concat(),
         "figure" => files("figures", "toml"),
         "body" => files("tests/cli", "npz"),
-        "points" => vec![b"time,x,y,z\n0,0,0.1,0\n0.1,0,0.2,0\n".to_vec()],
         "states" => vec![states()],
         "checkpoint" => vec![checkpoint_of_scene()],
         "sweep" => {

@@ -279,8 +279,7 @@ fn check_compared(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
         _ => None,
     };
     let difference = scene.view.difference.iter().flat_map(|difference| difference.runs.map(|run| ("difference", run)));
-    let points = scene.view.points.as_ref().and_then(|points| points.run.map(|run| ("points", run)));
-    match ghost.into_iter().chain(difference).chain(points).find(|(_, run)| !runs.contains(run)) {
+    match ghost.into_iter().chain(difference).find(|(_, run)| !runs.contains(run)) {
         None => Ok(()),
         Some((key, run)) => {
             let (title, name) = (&scene.title, &scene.runs[run].name);

@@ -23,11 +23,10 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 10] = [
+pub const READERS: [Reader; 9] = [
     Reader { name: "scene", read: scene },
     Reader { name: "figure", read: figure },
     Reader { name: "body", read: body },
-    Reader { name: "points", read: points },
     Reader { name: "states", read: states },
     Reader { name: "checkpoint", read: checkpoint },
     Reader { name: "state", read: |bytes| drop(State::from_bytes(bytes)) },
@@ -90,13 +89,6 @@ fn figure(bytes: &[u8]) {
 fn body(bytes: &[u8]) {
     in_folder("body.npz", bytes, |path| {
         let text = SCENE.replace("body.lattice = { cells = [1, 1, 1], side = 0.1 }", "body.file = 'body.npz'");
-        begin(Scene::load_text(&text, &path.with_file_name("scene.toml"), &LIMITS));
-    });
-}
-
-fn points(bytes: &[u8]) {
-    in_folder("points.csv", bytes, |path| {
-        let text = format!("{SCENE}\n[view]\npoints.file = 'points.csv'");
         begin(Scene::load_text(&text, &path.with_file_name("scene.toml"), &LIMITS));
     });
 }

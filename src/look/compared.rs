@@ -1,12 +1,10 @@
-//! Resolves what stands over and beside bodies: ghosts, differences, their own paths, and points measured elsewhere.
+//! Resolves what stands over and beside bodies: ghosts, differences and paths.
 
-use super::file::{DifferenceOfFile, PathFile, PathPointFile, PointsFile, ViewFile};
-use super::points::PointsRead;
+use super::file::{DifferenceOfFile, PathFile, PathPointFile, ViewFile};
 use super::subject::Subject;
-use super::view::{Difference, Ghost, Points, Traced};
+use super::view::{Difference, Ghost, Traced};
 use crate::reading::report::{Report, Way};
 use crate::reading::words::{list, nearest, quoted, short};
-use crate::sim::body::Dimension;
 
 /// What a ghost of the rest shape is called.
 const REST: &str = "rest";
@@ -88,52 +86,6 @@ fn known_node(node: u32, path: &[Way<'_>], scene: &Subject<'_>, report: &mut Rep
     let message = format!("there is no node {node}; the body has {nodes}, counted from 0");
     report.at(path, message, None);
     None
-}
-
-/// Points that were measured elsewhere, if they fit the scene.
-pub(super) fn points(
-    typed: &ViewFile,
-    read: PointsRead,
-    scene: &Subject<'_>,
-    report: &mut Report<'_>,
-) -> Option<Points> {
-    let PointsFile { file, run } = typed.points.as_ref()?;
-    let at = |key| [Way::Key("view"), Way::Key("points"), Way::Key(key)];
-    match (scene.body.dimension, read.has_z) {
-        (Dimension::Space, false) => {
-            let message = format!("`{file}` has no column `z`, but the body is in space");
-            report.at(&at("file"), message, "add the third coordinate".to_owned());
-        }
-        (Dimension::Plane, true) => {
-            let message = format!("`{file}` has a column `z`, but the body is in the plane");
-            report.at(&at("file"), message, "remove it".to_owned());
-        }
-        _ => {}
-    }
-    if let (Some((first, _)), Some((last, _))) = (read.samples.first(), read.samples.last())
-        && (*first > scene.duration || *last < 0.0)
-    {
-        let [first, last, end] = [*first, *last, scene.duration].map(short);
-        let message = format!(
-            "the points of `{file}` were measured from {first} s to {last} s, the scene goes from 0 to {end} s"
-        );
-        report.at(&at("file"), message, "let their times count from the start of the scene".to_owned());
-    }
-    let late = read.samples.iter().filter(|(time, _)| *time > scene.duration).count();
-    if late > 0 && late < read.samples.len() {
-        let (all, end) = (read.samples.len(), short(scene.duration));
-        let message =
-            format!("{late} of the {all} points of `{file}` were measured after the end of the scene at {end} s");
-        report.warn(&at("file"), message, "they are not drawn; make `time.duration` longer".to_owned());
-    }
-    let run = match run {
-        None => None,
-        Some(name) => {
-            let known = scene.runs.iter().position(|(known, _)| known == name);
-            Some(known.or_else(|| unknown(name, &[], &at("run"), scene, report))?)
-        }
-    };
-    Some(Points { run, samples: read.samples })
 }
 
 /// Reports a run that is not there, unless there are mistakes in the runs themselves.

@@ -103,9 +103,6 @@ pub(crate) struct ViewFile {
     /// and nodes, counted from 0, such as `["centre", 26]`. The whole scene is simulated before the first frame is drawn. Default: none.
     #[schemars(length(min = 1, max = 64))]
     pub(crate) paths: Option<Vec<PathFile>>,
-    /// Points that were measured elsewhere, such as `{ file = "camera.csv" }`: rings where they are now, dots where they were.
-    /// Default: none.
-    pub(crate) points: Option<PointsFile>,
     /// Direction of the light, in space, such as `{ azimuth = -0.9 }`.
     pub(crate) light: Light,
     /// Whether bodies and obstacles cast shadows on the floor.
@@ -155,7 +152,6 @@ impl Default for ViewFile {
             difference: None,
             difference_of: None,
             paths: None,
-            points: None,
             light: Light::default(),
             shadow: true,
             floor: FloorStyle::default(),
@@ -229,19 +225,6 @@ pub(crate) enum PathFile {
 pub(crate) enum PathPointFile {
     /// The centre of mass.
     Centre,
-}
-
-/// Points that were measured elsewhere.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct PointsFile {
-    /// A file of comma-separated values beside the scene file. Its first line names the columns: `time` (s), `x`, `y` and, in
-    /// space, `z` (m); other columns are not read. Times may occur several times, for several points.
-    #[schemars(length(min = 1))]
-    pub(crate) file: String,
-    /// The name of the run over which they are drawn. Default: all runs.
-    #[schemars(length(min = 1, max = 80))]
-    pub(crate) run: Option<String>,
 }
 
 /// Which lines are drawn on surfaces.

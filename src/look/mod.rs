@@ -8,7 +8,6 @@ pub(crate) mod font;
 mod framing;
 mod palette;
 mod place;
-pub(crate) mod points;
 pub(crate) mod print;
 pub(crate) mod ramp;
 mod reach;
@@ -32,6 +31,6 @@ pub(crate) use subject::Subject;
 #[cfg(feature = "render")]
 pub(crate) use view::axes;
 pub use view::{
-    Camera, ColourMap, ColourScale, Difference, FloorStyle, FontFiles, Ghost, Labels, Light, Points, StrainScale,
-    Style, Traced, View, Visible,
+    Camera, ColourMap, ColourScale, Difference, FloorStyle, FontFiles, Ghost, Labels, Light, StrainScale, Style,
+    Traced, View, Visible,
 };

@@ -4,7 +4,6 @@ use super::compared;
 use super::contrast;
 use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
 use super::framing;
-use super::points::PointsRead;
 use super::print::{TextScaleFile, unit};
 use super::subject::Subject;
 use super::view::{ColourScale, FontFiles, Labels, StrainScale, View, Visible};
@@ -22,7 +21,6 @@ pub(crate) fn resolve(
     typed: &ViewFile,
     scene: &Subject<'_>,
     font: Option<FontFiles>,
-    points: Option<PointsRead>,
     report: &mut Report<'_>,
 ) -> Option<View> {
     let body = scene.body;
@@ -77,7 +75,6 @@ pub(crate) fn resolve(
     let look = contrast::resolve(typed, font.unwrap_or_default(), text_scale, report)?;
     let (ghost, difference) = (compared::ghost(typed, scene, report), compared::difference(typed, scene, report));
     let paths = compared::paths(typed, scene, report);
-    let points = points.and_then(|points| compared::points(typed, points, scene, report));
     let at = |key| [Way::Key("view"), Way::Key(key)];
     let spring_strain = match &typed.spring_colour {
         Some(_) if !visible.springs => {
@@ -123,7 +120,6 @@ pub(crate) fn resolve(
         ghost,
         difference,
         paths,
-        points,
         light: typed.light,
         shadow: typed.shadow,
         floor: typed.floor,

@@ -58,8 +58,6 @@ pub struct View {
     pub difference: Option<Difference>,
     /// What leaves a path behind it.
     pub paths: Vec<Traced>,
-    /// Points that were measured elsewhere, if they are shown.
-    pub points: Option<Points>,
     /// From where the light falls.
     pub light: Light,
     /// Whether there are shadows.
@@ -116,7 +114,6 @@ impl Default for View {
             ghost: None,
             difference: None,
             paths: Vec::new(),
-            points: None,
             light: Light::default(),
             shadow: true,
             floor: FloorStyle::default(),
@@ -333,15 +330,6 @@ impl Traced {
             Self::Node(node) => position[node as usize],
         }
     }
-}
-
-/// Points that were measured elsewhere.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Points {
-    /// The run over which they are drawn, by its index; none for all runs.
-    pub run: Option<usize>,
-    /// Times (s), rising, and places (m).
-    pub samples: Arc<[(f64, DVec3)]>,
 }
 
 /// A perspective camera that looks at a point.

@@ -35,9 +35,8 @@ const TICK: f64 = 5.0;
 const MOST_TICKS: usize = 5;
 /// Between the two parts of the key (px in the reference picture).
 const APART: f64 = 44.0;
-/// The length and the width of the sample of a line, and the radius of a ring (px in the reference picture).
+/// The length and the width of the sample of a line (px in the reference picture).
 const SAMPLE: [f64; 2] = [48.0, 2.0];
-const RING: f64 = 5.0;
 /// About how long the key's arrow is where nothing moves (px in the reference picture).
 const ARROW: f64 = 64.0;
 /// The least distance of a thick one from the text above, which ends half a margin above the key or higher (px in the
@@ -87,8 +86,6 @@ pub(super) enum SampleKind {
     Ghost(Colour),
     /// Paths, each of a run in its colour.
     Path(Vec<Colour>),
-    /// A measured point.
-    Ring(Colour),
 }
 
 /// Sizes of the key of a picture.
@@ -185,26 +182,18 @@ impl Legend {
             let points = [from, to].map(|x| [x, middle].map(narrow)).to_vec();
             Curve { points, width, dash, colour, alpha: 1.0 }
         };
-        let length = match sample.kind {
+        match sample.kind {
             SampleKind::Ghost(colour) => {
                 let dash = ghost::DASH.map(|length| narrow(length * line)).to_vec();
                 writer.curves.push(curve([left, left + length], dash, colour));
-                length
             }
             SampleKind::Path(ref colours) => {
                 // A part for each run.
                 let at = |part: usize| left + length * part as f64 / colours.len() as f64;
                 let part = |(part, &colour)| curve([at(part), at(part + 1)], Vec::new(), colour);
                 writer.curves.extend(colours.iter().enumerate().map(part));
-                length
             }
-            SampleKind::Ring(colour) => {
-                let ring =
-                    Mark::around(DVec2::new(left + RING * line, middle), RING * line, MarkShape::Node, palette.halo);
-                writer.marks.push(Mark { second: colour, ..ring });
-                2.0 * RING * line
-            }
-        };
+        }
         let before = length + 12.0 * unit;
         let fonts = writer.fonts;
         let fits = |name: &&Cow<'_, str>| fonts.width(name, Weight::Regular, 16.0 * unit) <= room - before;

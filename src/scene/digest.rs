@@ -16,8 +16,6 @@ pub(super) struct FileDigests {
     pub(super) regular: Option<String>,
     /// The font file for names and counts.
     pub(super) semi_bold: Option<String>,
-    /// The file of measured points.
-    pub(super) points: Option<String>,
 }
 
 /// SHA-256 of the typed scene as canonical JSON, 64 hexadecimal digits. `typed` is the scene without the lists of its body,
@@ -37,9 +35,6 @@ pub(super) fn digest(typed: &impl Serialize, lists: &BodyFile, files: FileDigest
     }
     if let Some(regular) = files.regular {
         value["view"]["font"] = json!({ "regular": regular, "semi_bold": files.semi_bold });
-    }
-    if let Some(points) = files.points {
-        value["view"]["points"]["file"] = points.into();
     }
     without_nulls(&mut value);
     without_defaults(&mut value, &SCHEMA);

@@ -141,7 +141,6 @@ impl Scene {
         let view = &self.view;
         let is_moved = |grip: &Grip| grip.motion != Motion::Still || grip.from > 0.0 || grip.until.is_finite();
         view.labels.clock
-            || view.points.is_some()
             || self.time_series().is_some()
             || self.obstacles.iter().any(|obstacle| obstacle.motion != Motion::Still)
             || self.grips.iter().any(is_moved)

@@ -382,12 +382,6 @@ fn runs_that_others_are_compared_with_cannot_be_left_out() {
     place.run("render ghost.toml --only Mass-spring").bad(2, &[told]);
     place.write("apart.toml", &format!("{SMALL}difference = [\"Mass-spring\", \"Local shape\"]\n"));
     place.run("render apart.toml --only Mass-spring").bad(2, &["which `view.difference` of “Two cubes” needs"]);
-    place.write("camera.csv", "time,x,y,z\n0,0,0,0\n");
-    place.write("points.toml", &format!("{SMALL}points = {{ file = \"camera.csv\", run = \"Local shape\" }}\n"));
-    for out in ["", " --frames 0 -o one.png"] {
-        let told = "which `view.points` of “Two cubes” needs";
-        place.run(&format!("render points.toml --only Mass-spring{out}")).bad(2, &[told]);
-    }
     place.run("simulate ghost.toml --only Mass-spring").good();
     if can_draw() {
         place.run("render ghost.toml apart.toml --frames 2").good();

@@ -1,9 +1,8 @@
 //! Ghosts over bodies, and the panel of the difference of two runs.
 
 use super::{fig4b, gpu};
-use glam::DVec3;
-use localshape::look::{Difference, Ghost, Points, Style, Theme, Traced};
-use localshape::picture::{Composer, Curve, MarkShape, Panel, Picture};
+use localshape::look::{Difference, Ghost, Style, Theme, Traced};
+use localshape::picture::{Composer, Curve, Panel, Picture};
 use localshape::render::Renderer;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
@@ -224,36 +223,10 @@ fn paths_end_where_bodies_are_and_begin_where_they_started() {
 }
 
 #[test]
-fn measured_points_are_rings_now_and_dots_before() {
-    let (mut scene, frame) = fig4b(6);
-    let samples = [0.0, 0.05, 0.1, 0.1, 0.15].map(|time| (time, DVec3::new(0.0, 0.1 + time, 0.0)));
-    for (run, panels) in [(None, [3, 3]), (Some(1), [0, 3])] {
-        scene.view.points = Some(Points { run, samples: samples.into() });
-        let picture = Composer::new(&scene).compose(&frame);
-        let of = |panel: usize| {
-            let [left, top, width, height] = picture.panels[panel].viewport.map(|length| length as f32);
-            let inside = move |[x, y, wide, high]: [f32; 4]| {
-                (left..left + width).contains(&(x + wide / 2.0)) && (top..top + height).contains(&(y + high / 2.0))
-            };
-            picture.marks.iter().filter(move |mark| mark.shape == MarkShape::Node && inside(mark.rectangle))
-        };
-        // The frame is at 100 ms: two dots before, and two rings at one place. The key has a ring, too, below the panels.
-        for (panel, count) in panels.into_iter().enumerate() {
-            let widths: Vec<_> = of(panel).map(|mark| mark.rectangle[2]).collect();
-            assert_eq!(widths.len(), if count > 0 { 4 } else { 0 }, "{run:?} {panel}");
-            assert!(widths.is_empty() || (widths[0] == widths[1] && widths[1] < widths[2] && widths[2] == widths[3]));
-        }
-        assert!(picture.words.iter().any(|run| run.text == "measured"));
-    }
-}
-
-#[test]
-fn sheets_have_paths_and_measured_points() {
+fn sheets_have_paths() {
     let folder = tempfile::tempdir().expect("a folder");
-    let view = "[view]\npaths = ['centre']\npoints = { file = 'camera.csv' }\n";
-    let scene = include_str!("../../scenes/fig4b.toml").replace("[view]\n", view);
+    let scene = include_str!("../../scenes/fig4b.toml").replace("[view]\n", "[view]\npaths = ['centre']\n");
     std::fs::write(folder.path().join("scene.toml"), scene).expect("a file");
-    std::fs::write(folder.path().join("camera.csv"), "time,x,y,z\n0,0,0.1,0\n0.05,0,0.1,0\n").expect("a file");
     let text = "[sheet]\nscene = 'scene.toml'\nmoments = [0.0, 0.05]\n";
     std::fs::write(folder.path().join("figure.toml"), text).expect("a file");
     let figure = Figure::load(&folder.path().join("figure.toml"), &Limits::default());
@@ -267,13 +240,8 @@ fn sheets_have_paths_and_measured_points() {
         let here = |curve: &&Curve| curve.colour == colour && inside(panel.viewport, curve.points[0]);
         let (dots, lines): (Vec<_>, Vec<_>) = picture.curves.iter().filter(here).partition(|one| one.points.len() == 1);
         assert_eq!((dots.len(), lines.is_empty()), (1, at % 2 == 0), "{at}");
-        let rings = picture.marks.iter().filter(|mark| {
-            let [x, y, width, height] = mark.rectangle;
-            mark.shape == MarkShape::Node && inside(panel.viewport, [x + width / 2.0, y + height / 2.0])
-        });
-        assert_eq!(rings.count(), 1 + at % 2, "{at}");
     }
-    assert!(["path of the centre", "measured"].iter().all(|name| picture.words.iter().any(|run| run.text == *name)));
+    assert!(picture.words.iter().any(|run| run.text == "path of the centre"));
 }
 
 /// Bars have no faces: each is a dashed line.

@@ -498,53 +498,14 @@ fn charts_of_what_no_run_has_are_refused() {
 }
 
 #[test]
-fn paths_and_points_are_read() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let scene = |view: &str, csv: &str| {
-        std::fs::write(folder.path().join("camera.csv"), csv).expect("a file");
-        let path = folder.path().join("scene.toml");
-        std::fs::write(&path, PLANE.replace("[view]\n", &format!("[view]\n{view}\n"))).expect("a file");
-        Scene::load(&path, &Limits::default())
-    };
-    let csv = "time,x,y\n0,1,2\n0.5,3,4\n";
-    let points = "paths = ['centre', 3]\npoints = { file = 'camera.csv', run = 'Mass-spring' }";
-    let good = scene(points, csv).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(good.view.paths, [Traced::Centre, Traced::Node(3)]);
-    let read = good.view.points.as_ref().expect("points");
-    assert_eq!((read.run, read.samples.len(), read.samples[1].1.y), (Some(1), 2, 4.0));
-    let late = scene(points, "time,x,y\n0,1,2\n9,3,4\n").unwrap_or_else(|error| panic!("{error}"));
-    let [warning] = &late.warnings[..] else { panic!("{:?}", late.warnings) };
-    assert!(warning.message.contains("1 of the 2 points of `camera.csv` were measured after the end"), "{warning:?}");
-    // What is in the file counts, not its name.
-    let other = scene(points, &csv.replace('4', "5")).unwrap_or_else(|error| panic!("{error}"));
-    assert_ne!(good.digest, other.digest);
-    std::fs::copy(folder.path().join("camera.csv"), folder.path().join("copy.csv")).expect("a file");
-    let same = scene(&points.replace("camera", "copy"), "").unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(same.digest, other.digest);
-    for (view, csv, column, expected) in [
-        ("paths = ['middle']", csv, 10, "\"middle\""),
-        ("paths = [0, 4]", csv, 13, "there is no node 4; the body has 4, counted from 0"),
-        ("paths = [1, 'centre', 1]", csv, 23, "this path is asked for a second time"),
-        ("points = { file = 'camera.csv' }", "time;x;y\n0;1;2\n", 19, "separates its columns with semicolons"),
-        ("points = { file = 'camara.csv' }", csv, 19, "is not there"),
-        ("points = { file = 'camera.csv' }", "time,x,y\n0,1,b\n", 19, "has \"b\" as `y` in line 2"),
-        (
-            "points = { file = 'camera.csv' }",
-            "time,x,y,z\n0,1,2,3\n",
-            19,
-            "has a column `z`, but the body is in the plane",
-        ),
-        (
-            "points = { file = 'camera.csv' }",
-            "time,x,y\n5,1,2\n7,1,2\n",
-            19,
-            "from 5 s to 7 s, the scene goes from 0 to 3 s",
-        ),
-        ("points = { file = 'camera.csv', run = 'Mass' }", csv, 39, "there is no run \"Mass\""),
+fn paths_are_read() {
+    let view = |typed: &str| PLANE.replace("size = [640, 360]", typed);
+    assert_eq!(good(&view("paths = ['centre', 3]")).view.paths, [Traced::Centre, Traced::Node(3)]);
+    for (typed, expected) in [
+        ("paths = ['middle']", "20:10 \"middle\""),
+        ("paths = [0, 4]", "20:13 there is no node 4; the body has 4, counted from 0"),
+        ("paths = [1, 'centre', 1]", "20:23 this path is asked for a second time"),
     ] {
-        let error = scene(view, csv).expect_err(view);
-        let [found] = error.mistakes() else { panic!("{error}") };
-        assert_eq!((found.line, found.column), (20, column), "{error}");
-        assert!(found.message.contains(expected), "{error}");
+        expect(&bad(&view(typed)), 0, expected);
     }
 }

@@ -19,10 +19,7 @@ impl Composer<'_> {
         let path = Some(path).filter(|names| !names.is_empty());
         let colours = self.traced.iter().map(|series| self.scene.runs[series.run].line(&self.palette).colour).collect();
         let path = path.map(|names| Sample { names, kind: SampleKind::Path(colours) });
-        let points = self.scene.view.points.as_ref();
-        let points =
-            points.map(|_| Sample { names: vec!["measured".into()], kind: SampleKind::Ring(self.palette.text) });
-        ghost.into_iter().chain(path).chain(points).collect()
+        ghost.into_iter().chain(path).collect()
     }
 
     /// The scales of colours in a frame.

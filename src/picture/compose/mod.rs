@@ -274,7 +274,6 @@ impl<'a> Composer<'a> {
             draft.ghost(&frame.runs, draft.between_words(), &mut ghosts);
             draft.paths(&self.traced, draft.between_words(), &mut ghosts);
             panels.push(draft.panel(&mut under, &mut marks));
-            draft.points(draft.between_words(), &mut marks);
             if let Some((shot, tracking)) = shot.as_ref().zip(self.tracking.as_ref()) {
                 self.locate(&draft, shot, tracking, &mut writer);
             }

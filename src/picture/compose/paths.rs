@@ -1,18 +1,17 @@
-//! Paths of bodies up to the present moment, and points that were measured elsewhere.
+//! Paths of bodies up to the present moment.
 
 use super::Composer;
 use super::panel::Draft;
 use crate::look::Traced;
+use crate::picture::Curve;
 use crate::picture::chart::dot;
 use crate::picture::fade::{FADING, Fade};
 use crate::picture::layout::Rectangle;
 use crate::picture::narrow::narrow;
 use crate::picture::plane::{clipped, sides};
 use crate::picture::series::{EXACT, simplified};
-use crate::picture::{Curve, Mark, MarkShape};
 use crate::runner::history::TimeSeries;
-use crate::sim::snapshot::Snapshot;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 /// Widths of the paths of the centre and of a node, and how much wider their halo is (px in the reference picture), and its
 /// opacity.
@@ -22,9 +21,6 @@ const HALO: f64 = 2.0;
 const HALO_ALPHA: f64 = 0.6;
 /// Radius of the dot at the end of a path, in widths.
 const DOT: f64 = 1.7;
-/// Radius of a measured point of the present moment and of earlier ones (px in the reference picture).
-const RING: f64 = 5.0;
-const PAST: f64 = 2.6;
 
 impl Composer<'_> {
     /// What the paths are called in the key, from the longest wording to the shortest; none if there are none. The one
@@ -84,40 +80,6 @@ impl Draft<'_> {
             }
         }
     }
-
-    /// The points that were measured up to the present moment inside a part of the picture: rings where they are now, dots
-    /// where they were.
-    pub(super) fn points(&self, room: Rectangle, marks: &mut Vec<Mark>) {
-        let Some(points) = &self.scene.view.points else { return };
-        if points.run.is_some_and(|run| run != self.run.run) {
-            return;
-        }
-        let palette = &self.composer.palette;
-        let present = present(&points.samples, self.run.snapshot, 0.5 / self.scene.frames_per_second);
-        for &(time, at) in points.samples.iter().take_while(|(time, _)| *time <= present.1) {
-            let Some(pixel) = self.lens.project(at).map(|(pixel, _)| DVec2::from(pixel)) else { continue };
-            let is_now = Some(time) == present.0;
-            let radius = if is_now { RING } else { PAST } * self.scale.line();
-            if !holds(room, pixel) {
-                continue;
-            }
-            let disc = Mark::around(pixel, radius, MarkShape::Node, if is_now { palette.halo } else { palette.text });
-            marks.push(Mark { second: if is_now { palette.text } else { palette.halo }, ..disc });
-        }
-    }
-}
-
-/// The time of the points that are drawn as those of the present moment, if there are any, and up to when points are past
-/// (s). A time belongs to the present until the next one comes; the last one for as long as the one before it.
-fn present(samples: &[(f64, DVec3)], snapshot: &Snapshot, half_frame: f64) -> (Option<f64>, f64) {
-    let now = snapshot.time + half_frame;
-    let mut known: Vec<f64> = samples.iter().map(|(time, _)| *time).collect();
-    known.dedup();
-    let past = known.partition_point(|time| *time <= now);
-    let Some(last) = past.checked_sub(1) else { return (None, now) };
-    let before = last.checked_sub(1).map_or(2.0 * half_frame, |before| known[last] - known[before]);
-    let until = known.get(past).copied().unwrap_or(known[last] + before);
-    ((snapshot.time < until).then_some(known[last]), now)
 }
 
 fn holds(room: Rectangle, pixel: DVec2) -> bool {
@@ -189,12 +151,5 @@ mod tests {
         let line = vec![[5.0, 5.0], [5.0, 9.0], [5.001, 1.0], [9.0, 1.0]];
         assert_eq!(parted(line), [vec![[5.0, 5.0], [5.0, 9.0]], vec![[5.0, 9.0], [5.001, 1.0], [9.0, 1.0]]]);
         assert!(parted(vec![[1.0, 1.0]]).is_empty());
-    }
-
-    #[test]
-    fn points_are_of_the_present_until_the_next_ones() {
-        let samples: Vec<_> = [0.1, 0.1, 0.2].map(|time| (time, DVec3::ZERO)).into();
-        let at = |time: f64| present(&samples, &Snapshot { time, ..Snapshot::default() }, 0.01).0;
-        assert_eq!([0.05, 0.1, 0.15, 0.2, 0.28, 0.5].map(at), [None, Some(0.1), Some(0.1), Some(0.2), Some(0.2), None]);
     }
 }

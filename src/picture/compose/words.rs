@@ -107,7 +107,7 @@ impl<'a> Words<'a> {
         let view = self.view();
         let count = |shown: &[bool]| shown.iter().filter(|&&is_shown| is_shown).count();
         let bars = count(&[view.colour.is_some(), view.spring_strain.is_some(), view.difference.is_some()]);
-        let samples = count(&[view.ghost.is_some(), !view.paths.is_empty(), view.points.is_some()]);
+        let samples = count(&[view.ghost.is_some(), !view.paths.is_empty()]);
         let arrow = view.visible.displacements;
         if !view.legend || !arrow && samples + bars == 0 {
             return None;

@@ -16,7 +16,6 @@ use super::limits::Limits;
 use super::structure::Checked;
 use super::{Run, Scene};
 use crate::look::file::ViewFile;
-use crate::look::points::{self, PointsRead};
 use crate::look::{self, FontFiles, View, font};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::report::{Report, Way, way};
@@ -62,9 +61,6 @@ pub(super) struct Parts {
     /// The fonts that the view names; `None` if there is a mistake in them.
     #[serde(skip)]
     font: Option<FontFiles>,
-    /// The points that the view names; `None` if there are none, or a mistake in them.
-    #[serde(skip)]
-    points: Option<PointsRead>,
 }
 
 impl Parts {
@@ -86,8 +82,6 @@ impl Parts {
             Some(typed) => font::read(folder, typed, report),
             None => Some(FontFiles::default()),
         };
-        let points = view.as_ref().and_then(|view| view.points.as_ref());
-        let points = points.and_then(|typed| points::read(folder, typed, report));
         Self {
             title: part(file, "title", report),
             gravity: part(file, "gravity", report),
@@ -101,7 +95,6 @@ impl Parts {
             grabs: several(file, "grab", report),
             view,
             font,
-            points,
         }
     }
 
@@ -129,8 +122,7 @@ impl Parts {
             Some(font) => [&font.regular, &font.semi_bold].map(|font| font.as_ref().map(|bytes| font::digest(bytes))),
             None => [None, None],
         };
-        let points = self.points.as_ref().map(|points| points.digest().to_owned());
-        let files = FileDigests { body: self.beside.as_ref().map(Lists::digest), regular, semi_bold, points };
+        let files = FileDigests { body: self.beside.as_ref().map(Lists::digest), regular, semi_bold };
         let mut lists = BodyFile::default();
         self.body.iter_mut().for_each(|body| body.swap_lists(&mut lists));
         let digest = digest(self, &lists, files);
@@ -270,7 +262,7 @@ fn view(parts: &Parts, physics: &Physics, report: &mut Report<'_>) -> Option<Vie
         runs: runs.iter().flatten().map(|run| (run.name.as_str(), run.step)).collect(),
         models: runs.iter().flatten().map(|run| &*run.model).collect(),
     };
-    let view = look::resolve(parts.view.as_ref()?, &around, parts.font.clone(), parts.points.clone(), report)?;
+    let view = look::resolve(parts.view.as_ref()?, &around, parts.font.clone(), report)?;
     let chosen: Vec<_> = parts.runs.iter().map(|run| Some(run.as_ref()?.colour?.0)).collect();
     look::check_runs(&chosen, &view.look.palette, report);
     Some(view)

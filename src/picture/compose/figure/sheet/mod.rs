@@ -125,7 +125,6 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
             draft.ghost(moments.others[row][column].as_slice(), room, &mut curves);
             draft.paths(&composer.traced, room, &mut curves);
             panels.push(draft.panel(&mut under, &mut marks));
-            draft.points(room, &mut marks);
             // Surfaces without width do not show.
             let ends = cameras::collapsed(&scenes[sheet.columns[column].scene], &plan, [row, column], framing, run);
             curves.extend(ends.map(|ends| collapsed(ends, plan.tile_scale, palette.outline)));
@@ -186,8 +185,7 @@ fn legend(scenes: &[Scene], size: [u32; 2], scale: Scale) -> Option<Legend> {
     let view = &scenes.first()?.view;
     let bars = usize::from(view.colour.is_some()) + usize::from(view.spring_strain.is_some());
     let arrow = view.visible.displacements;
-    let samples = [view.ghost.is_some(), !view.paths.is_empty(), view.points.is_some()];
-    let samples = samples.into_iter().filter(|&is_shown| is_shown).count();
+    let samples = usize::from(view.ghost.is_some()) + usize::from(!view.paths.is_empty());
     let any = view.legend && (arrow || samples + bars > 0);
     any.then(|| Legend::new(size, scale, arrow, samples, bars)).flatten()
 }
