@@ -69,6 +69,8 @@
 
 /// The vectors in which positions are given, of the version that this crate uses.
 pub use glam;
+/// The simulation.
+pub use localshape_sim as sim;
 
 #[cfg(test)]
 extern crate self as localshape;
@@ -104,7 +106,6 @@ mod reading;
 pub mod render;
 pub mod runner;
 pub mod scene;
-pub mod sim;
 mod study;
 mod table;
 #[cfg(feature = "render")]

@@ -1,6 +1,6 @@
 use glam::DVec3;
-use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch, Share};
-use localshape::sim::{Body, Nodes, Springs};
+use localshape_sim::model::{ElasticModel, ForceModel, Report, Scratch, Share};
+use localshape_sim::{Body, Nodes, Springs};
 use std::sync::Arc;
 
 /// The model with its parameters.

@@ -1,0 +1,153 @@
+//! The [`Body`]: nodes, masses and elements at rest.
+
+pub use super::element::{Dimension, ElementKind, Solids};
+use super::element::{around, kind};
+use super::hull::Hulls;
+pub use super::hull::bounds;
+pub use super::lists::IndexLists;
+pub use super::topology::Faces;
+use super::topology::{Elements, assign_faces};
+use glam::DVec3;
+
+/// A deformable body at rest. It is immutable, and all runs of a scene share it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Whether it is in the plane or in space.
+    pub dimension: Dimension,
+    /// Rest position of each node (m).
+    pub rest: Vec<DVec3>,
+    /// Mass of each node (kg), positive.
+    pub mass: Vec<f64>,
+    /// The nodes of each element, two or more.
+    pub elements: IndexLists,
+    /// The kind of each element.
+    pub kinds: Vec<ElementKind>,
+    /// The faces at rest of the elements of kind [`ElementKind::Other`].
+    pub hulls: Hulls,
+    /// The faces of the elements, or the listed ones.
+    pub faces: Faces,
+}
+
+impl Body {
+    /// Makes a body from its nodes and elements. The kind of an element follows from the number of its nodes and from
+    /// `solids`; its faces follow from its kind, or are those of the convex hull of its nodes.
+    ///
+    /// `faces`, if given, replace the elements' own faces. Each is assigned to the element out of which its normal
+    /// points and the one into which it points, among the elements that contain all its nodes.
+    ///
+    /// # Panics
+    /// If an index is out of range or the lengths of `rest` and `mass` differ: the caller has to check its input.
+    pub fn new(
+        dimension: Dimension,
+        rest: Vec<DVec3>,
+        mass: Vec<f64>,
+        elements: IndexLists,
+        solids: Solids,
+        faces: Option<&IndexLists>,
+    ) -> Self {
+        assert_eq!(rest.len(), mass.len(), "one mass per node");
+        assert!(elements.indices().iter().all(|&node| (node as usize) < rest.len()), "node indices in range");
+        let kinds: Vec<_> = elements.iter().map(|nodes| kind(dimension, solids, nodes.len())).collect();
+        let hulls = Hulls::new(&elements, &kinds, &rest);
+        let faces = match faces {
+            Some(given) => {
+                assign_faces(given, &elements, |face, element| looks_out(face, &elements[element as usize], &rest))
+            }
+            None => Elements { nodes: &elements, kinds: &kinds, hulls: &hulls, rest: &rest }.shared_faces(),
+        };
+        Self { dimension, rest, mass, elements, kinds, hulls, faces }
+    }
+
+    /// The elements with their faces, edges and named springs.
+    pub fn topology(&self) -> Elements<'_> {
+        Elements { nodes: &self.elements, kinds: &self.kinds, hulls: &self.hulls, rest: &self.rest }
+    }
+
+    /// The number of nodes.
+    pub fn len(&self) -> usize {
+        self.rest.len()
+    }
+
+    /// Whether the body has no node.
+    pub fn is_empty(&self) -> bool {
+        self.rest.is_empty()
+    }
+
+    /// The mass of the lightest node (kg).
+    pub fn lightest(&self) -> f64 {
+        self.mass.iter().fold(f64::INFINITY, |least, &mass| least.min(mass))
+    }
+
+    /// The largest side of the box around the body at rest (m).
+    pub fn extent(&self) -> f64 {
+        let (low, high) = bounds(&self.rest);
+        (high - low).max_element()
+    }
+}
+
+/// Whether the normal of a face points out of an element at rest. It does for an element in the plane of the face.
+fn looks_out(face: &[u32], element: &[u32], rest: &[DVec3]) -> bool {
+    let mean = |nodes: &[u32]| nodes.iter().map(|&node| rest[node as usize]).sum::<DVec3>() / nodes.len() as f64;
+    let middle = mean(face);
+    let at = |node: u32| rest[node as usize] - middle;
+    let area: DVec3 = around(face).map(|[a, b]| at(a).cross(at(b))).sum();
+    let inwards = mean(element) - middle;
+    area.dot(inwards) <= 1e-9 * area.length() * inwards.length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::topology::Springs;
+
+    /// Layers of regular pentagons at a distance of 1.
+    fn pentagons(layers: u32) -> Vec<DVec3> {
+        let corner = |at: u32| {
+            let angle = std::f64::consts::TAU / 5.0 * f64::from(at % 5);
+            DVec3::new(angle.cos(), angle.sin(), f64::from(at / 5))
+        };
+        (0..5 * layers).map(corner).collect()
+    }
+
+    /// Two prisms, one on the other, with their nodes in any order.
+    fn two_prisms(faces: Option<&IndexLists>) -> Body {
+        let elements =
+            [&[3, 1, 4, 0, 2, 9, 5, 7, 6, 8][..], &[5, 6, 7, 8, 9, 10, 11, 12, 13, 14]].into_iter().collect();
+        Body::new(Dimension::Space, pentagons(3), vec![1.0; 15], elements, Solids::Ordered, faces)
+    }
+
+    #[test]
+    fn elements_of_any_shape_have_faces_edges_and_springs() {
+        let body = two_prisms(None);
+        assert_eq!(body.kinds, [ElementKind::Other; 2]);
+        assert_eq!(body.faces.nodes.len(), 13);
+        let inner: Vec<_> = (0..13).filter(|&face| body.faces.outer[face].is_some()).collect();
+        assert_eq!(inner.iter().map(|&face| &body.faces.nodes[face]).collect::<Vec<_>>(), [&[9, 5, 6, 7, 8]]);
+        assert_eq!((body.faces.inner[inner[0]], body.faces.outer[inner[0]]), (Some(0), Some(1)));
+        assert_eq!(body.topology().edges_of(0).len(), 15);
+        let springs = |named| body.topology().springs(named).len();
+        assert_eq!(springs(Springs::Edges), 25);
+        assert_eq!(springs(Springs::EdgesOneDiagonal), 25 + 10 + 3 * 2);
+        assert_eq!(springs(Springs::EdgesFaceDiagonals), 25 + 20 + 3 * 5);
+        assert_eq!(springs(Springs::EdgesBodyDiagonals), 25 + 2 * 10);
+        assert_eq!(springs(Springs::All), 2 * 45 - 10);
+    }
+
+    #[test]
+    fn a_flat_element_is_a_face_of_its_own_that_bounds_nothing() {
+        let rest: Vec<_> = (0..7).map(f64::from).map(|at| DVec3::new(at, at * at, 0.5 * at)).collect();
+        let elements = [&[0, 1, 2, 3, 4, 5, 6][..]; 2].into_iter().collect();
+        let body = Body::new(Dimension::Space, rest, vec![1.0; 7], elements, Solids::Ordered, None);
+        assert_eq!(body.faces.inner, [Some(0), Some(1)]);
+        assert_eq!(body.faces.outer, [None, None]);
+        assert_eq!(body.topology().springs(Springs::Edges).len(), 7);
+    }
+
+    #[test]
+    fn listed_faces_lie_between_the_elements_that_hold_them() {
+        let listed = [&[9, 8, 7, 6, 5][..], &[5, 6, 7, 8, 9], &[4, 3, 2, 1, 0], &[0, 1, 2], &[0, 1, 11, 10]];
+        let faces = two_prisms(Some(&listed.into_iter().collect())).faces;
+        assert_eq!(faces.inner, [Some(1), Some(0), Some(0), None, None]);
+        assert_eq!(faces.outer, [Some(0), Some(1), None, Some(0), None]);
+    }
+}

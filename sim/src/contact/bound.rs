@@ -1,0 +1,35 @@
+//! What kernels use of obstacles: bounds of where they are, and floors, which kernels treat themselves.
+
+use glam::DVec3;
+
+/// A region outside of which no node can be in contact with an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Bound {
+    /// All points with `normal · x < height`.
+    HalfSpace {
+        /// Unit vector out of it.
+        normal: DVec3,
+        /// Distance of the surface from the origin along `normal` (m).
+        height: f64,
+    },
+    /// All points strictly between two corners.
+    Box {
+        /// The corner with the least coordinates (m).
+        low: DVec3,
+        /// The corner with the greatest (m).
+        high: DVec3,
+    },
+}
+
+/// A half-space that nodes bounce off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Floor {
+    /// Unit vector out of it.
+    pub(crate) normal: DVec3,
+    /// Distance of the surface from the origin along `normal` (m).
+    pub(crate) height: f64,
+    /// Restitution coefficient `e`.
+    pub(crate) restitution: f64,
+    /// Friction coefficient `μ`.
+    pub(crate) friction: f64,
+}

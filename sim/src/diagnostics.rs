@@ -1,0 +1,350 @@
+//! The diagnostics: numbers that describe a state. One table defines the name, key, unit, meaning and formula of each;
+//! files, strips, figures, goldens and the schema are derived from it.
+
+use super::model::Report;
+use super::snapshot::Placement;
+use super::state::Nodes;
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::ser::SerializeMap;
+use serde::{Deserialize, Serialize, Serializer};
+use std::cell::LazyCell;
+use std::fmt;
+
+/// A value that is computed when it is first used.
+pub(super) type Lazy<'a, T> = LazyCell<T, Box<dyn FnOnce() -> T + 'a>>;
+
+/// The quantities from which diagnostics are computed.
+pub(super) struct Facts<'a> {
+    /// Mass of each node (kg).
+    pub(super) mass: &'a [f64],
+    pub(super) state: Nodes<'a>,
+    /// Acceleration of gravity (m/s²).
+    pub(super) gravity: DVec3,
+    /// Rotations that the global solver has computed.
+    pub(super) global_rotations: f64,
+    /// Energy and residuals from the model.
+    pub(super) report: Lazy<'a, Report>,
+    /// Signed volume of each element (m³, in the plane m²).
+    pub(super) volumes: Lazy<'a, Vec<f64>>,
+    /// The same at rest.
+    pub(super) volumes_at_rest: &'a [f64],
+    /// Their sum.
+    pub(super) volume_at_rest: f64,
+    pub(super) placement: Lazy<'a, Placement>,
+    /// Rest positions relative to their mean (m).
+    pub(super) centred: &'a [DVec3],
+}
+
+/// An element has turned over if its signed volume is below minus this fraction of that at rest.
+///
+/// The sign of a volume nearer to zero says nothing. For an element pressed exactly flat it is round-off. For one that lies
+/// pressed flat on a floor it changes every few steps: in a step gravity moves nodes by g Δt² before contact moves them
+/// back, with steps of T/50 by 1/63 of m g / k. That is a ten-thousandth of the height of the cubes of `scenes/springs.toml`.
+const NO_SIGN: f64 = 1e-3;
+
+/// An element is flat if its volume is below this fraction of that at rest and it has not turned over.
+const FLAT: f64 = 0.01;
+
+/// Whether an element with a volume at rest has lost it.
+pub(super) fn is_flat(now: f64, at_rest: f64) -> bool {
+    now.abs() < FLAT * at_rest.abs() && !is_turned_over(now, at_rest)
+}
+
+pub(super) fn is_turned_over(now: f64, at_rest: f64) -> bool {
+    now * at_rest < -NO_SIGN * at_rest * at_rest
+}
+
+impl Facts<'_> {
+    /// The sum over all nodes, in order, of a function of mass (kg), position (m) and velocity (m/s).
+    fn sum<T: Default + std::ops::AddAssign>(&self, of_node: impl Fn(f64, DVec3, DVec3) -> T) -> T {
+        let Nodes { position, velocity } = self.state;
+        let mut sum = T::default();
+        for ((&mass, &position), &velocity) in self.mass.iter().zip(position).zip(velocity) {
+            sum += of_node(mass, position, velocity);
+        }
+        sum
+    }
+
+    /// Whether each element has turned over.
+    pub(super) fn turned_over(&self) -> impl Iterator<Item = bool> {
+        self.volumes.iter().zip(self.volumes_at_rest).map(|(&now, &at_rest)| is_turned_over(now, at_rest))
+    }
+
+    /// Whether each element is flat.
+    pub(super) fn flat(&self) -> impl Iterator<Item = bool> {
+        self.volumes.iter().zip(self.volumes_at_rest).map(|(&now, &at_rest)| is_flat(now, at_rest))
+    }
+
+    /// RMS distance of the nodes from the placement (m).
+    fn shape_error(&self) -> f64 {
+        let Placement { centre, turn, .. } = *self.placement;
+        let squared = self.centred.iter().zip(self.state.position);
+        let squared = squared.map(|(&rest, &now)| (now - centre - turn * rest).length_squared());
+        (squared.sum::<f64>() / self.state.position.len() as f64).sqrt()
+    }
+}
+
+/// The value of a diagnostic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// A count.
+    Count(usize),
+    /// A number; NaN where a model or a body has none.
+    Number(f64),
+    /// A vector: three columns in files; where one number is shown, its length.
+    Vector(DVec3),
+}
+
+impl Value {
+    /// One number: for vectors, the length.
+    pub fn size(self) -> f64 {
+        match self {
+            Self::Count(count) => count as f64,
+            Self::Number(number) => number,
+            Self::Vector(vector) => vector.length(),
+        }
+    }
+}
+
+impl From<usize> for Value {
+    fn from(count: usize) -> Self {
+        Self::Count(count)
+    }
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<DVec3> for Value {
+    fn from(vector: DVec3) -> Self {
+        Self::Vector(vector)
+    }
+}
+
+/// Where a diagnostic is written, besides `diagnostics.csv` and charts over time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reach {
+    /// Nowhere else.
+    Frames,
+    /// Also to goldens. Adding one changes the format of goldens.
+    Goldens,
+    /// Also to goldens and to summaries of single states: `run.json`, and the JSON of figures.
+    Summaries,
+}
+
+/// Defines a field of [`Diagnostics`] and a variant of [`Diagnostic`] for each entry. An entry has its meaning, with
+/// the unit in parentheses; its name in code, its key in files and its type; its name in captions; its unit; its
+/// [`Reach`]; and its formula, which can use the facts and the entries before it.
+macro_rules! diagnostics {
+    ($facts:ident: $(
+        $(#[doc = $meaning:literal])+
+        $variant:ident, $key:ident: $type:ty, $name:literal, $unit:literal, $reach:ident = $value:expr;
+    )+) => {
+        /// Numbers that describe a state, in SI units; in the plane volumes are areas. A number that the model or the
+        /// body does not have is NaN: the elastic energy, `residual` and `global_rotations` of some models, the volume ratio of a cloth.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+        pub struct Diagnostics {
+            $($(#[doc = $meaning])+ pub $key: $type,)+
+        }
+
+        impl Diagnostics {
+            /// The wanted diagnostics; the others are zero.
+            pub(super) fn of($facts: &Facts<'_>, wanted: &[Diagnostic]) -> Self {
+                use Diagnostic::{Elastic, Energy, Gravitational, Kinetic};
+                let is_part = |one| wanted.contains(&Energy) && [Kinetic, Elastic, Gravitational].contains(&one);
+                let is_wanted = |one| wanted.contains(&one) || is_part(one);
+                $(let $key: $type = if is_wanted(Diagnostic::$variant) { $value } else { Default::default() };)+
+                Self { $($key),+ }
+            }
+        }
+
+        /// A number that describes a state, to be shown over time.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Diagnostic {
+            $($(#[doc = $meaning])+ $variant,)+
+        }
+
+        impl Diagnostic {
+            /// All diagnostics, in the order of files.
+            pub const ALL: &[Self] = &[$(Self::$variant),+];
+
+            /// Its value.
+            pub fn value(self, all: &Diagnostics) -> Value {
+                match self {
+                    $(Self::$variant => all.$key.into(),)+
+                }
+            }
+
+            /// Its name in files.
+            pub fn key(self) -> &'static str {
+                match self {
+                    $(Self::$variant => stringify!($key),)+
+                }
+            }
+
+            /// Its name in captions.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)+
+                }
+            }
+
+            /// Its unit; empty for a dimensionless number.
+            pub fn unit(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $unit,)+
+                }
+            }
+
+            /// Its meaning: a sentence with the unit.
+            pub fn meaning(self) -> &'static str {
+                match self {
+                    $(Self::$variant => concat!($($meaning),+).trim_ascii(),)+
+                }
+            }
+
+            /// Where it is written.
+            pub(crate) fn reach(self) -> Reach {
+                match self {
+                    $(Self::$variant => Reach::$reach,)+
+                }
+            }
+        }
+    };
+}
+
+diagnostics! { facts:
+    /// Kinetic energy (J).
+    Kinetic, kinetic: f64, "kinetic energy", "J", Goldens =
+        facts.sum(|mass, _, velocity| 0.5 * mass * velocity.length_squared());
+
+    /// Elastic energy (J).
+    Elastic, elastic: f64, "elastic energy", "J", Goldens = facts.report.energy.unwrap_or(f64::NAN);
+
+    /// Potential energy in the field of gravity (J), zero at the origin.
+    Gravitational, gravitational: f64, "energy in gravity", "J", Goldens =
+        facts.sum(|mass, position, _| -(mass * facts.gravity.dot(position)));
+
+    /// Momentum (kg m/s); as one number, its length.
+    Momentum, momentum: DVec3, "momentum", "kg m/s", Frames = facts.sum(|mass, _, velocity| velocity * mass);
+
+    /// Angular momentum about the origin (kg m²/s); as one number, its length.
+    AngularMomentum, angular_momentum: DVec3, "angular momentum", "kg m²/s", Frames =
+        facts.sum(|mass, position, velocity| position.cross(velocity) * mass);
+
+    /// The largest angular acceleration that errors of the rotations cause (rad/s²), α of Eq. (18).
+    Residual, residual: f64, "residual α", "rad/s²", Frames = facts.report.residual(Report::ROTATION).unwrap_or(f64::NAN);
+
+    /// Number of elements that have turned over.
+    TurnedOver, turned_over: usize, "turned over", "", Summaries =
+        facts.turned_over().filter(|&turned| turned).count();
+
+    /// Total signed volume divided by that at rest; in the plane, area.
+    VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries = facts.volumes.iter().sum::<f64>() / facts.volume_at_rest;
+
+    /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
+    ShapeError, shape_error: f64, "shape error", "m", Summaries = facts.shape_error();
+
+    /// Total energy (J): kinetic, elastic and gravitational.
+    Energy, energy: f64, "total energy", "J", Frames = kinetic + elastic + gravitational;
+
+    /// Number of rotations since the start that took the global solver: of elements that are pressed flat, are turned inside
+    /// out, or have turned far in one step.
+    GlobalRotations, global_rotations: f64, "global rotations", "", Frames = facts.global_rotations;
+}
+
+impl Diagnostic {
+    /// Its value as one number; NaN where a model or a body has none.
+    pub fn of(self, all: &Diagnostics) -> f64 {
+        self.value(all).size()
+    }
+
+    /// Those that are written at least so widely.
+    pub fn within(reach: Reach) -> impl Iterator<Item = Self> {
+        Self::ALL.iter().copied().filter(move |diagnostic| diagnostic.reach() >= reach)
+    }
+}
+
+/// Some diagnostics of a state. Serialised as a table from keys to numbers.
+#[derive(Clone, PartialEq)]
+pub struct Chosen(Vec<(Diagnostic, Value)>);
+
+impl Chosen {
+    /// Those that are written at least so widely.
+    pub fn within(reach: Reach, all: &Diagnostics) -> Self {
+        Self(Diagnostic::within(reach).map(|diagnostic| (diagnostic, diagnostic.value(all))).collect())
+    }
+
+    /// The same, each parsed from a text; `None` if a text is not a number, or if a count is not whole.
+    pub fn read<'t>(reach: Reach, text_of: impl Fn(usize, Diagnostic) -> Option<&'t str>) -> Option<Self> {
+        let read = |(at, diagnostic): (usize, Diagnostic)| {
+            let text = text_of(at, diagnostic)?;
+            let value = match diagnostic.value(&Diagnostics::default()) {
+                Value::Count(_) => Value::Count(text.parse().ok()?),
+                Value::Number(_) => Value::Number(text.parse().ok()?),
+                Value::Vector(_) => return None,
+            };
+            Some((diagnostic, value))
+        };
+        Diagnostic::within(reach).enumerate().map(read).collect::<Option<_>>().map(Self)
+    }
+
+    /// Each with its value.
+    pub fn iter(&self) -> impl Iterator<Item = (Diagnostic, Value)> {
+        self.0.iter().copied()
+    }
+
+    /// The value of one of them as one number; NaN if it is not among them.
+    pub fn get(&self, diagnostic: Diagnostic) -> f64 {
+        self.iter().find(|&(one, _)| one == diagnostic).map_or(f64::NAN, |(_, value)| value.size())
+    }
+}
+
+impl fmt::Debug for Chosen {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_map().entries(self.iter().map(|(diagnostic, value)| (diagnostic.key(), value.size()))).finish()
+    }
+}
+
+impl Serialize for Chosen {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (diagnostic, value) in self.iter() {
+            match value {
+                Value::Count(count) => map.serialize_entry(diagnostic.key(), &count)?,
+                Value::Number(number) => map.serialize_entry(diagnostic.key(), &number)?,
+                Value::Vector(vector) => map.serialize_entry(diagnostic.key(), &vector.to_array())?,
+            }
+        }
+        map.end()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_are_those_of_scene_files() {
+        for diagnostic in Diagnostic::ALL {
+            assert_eq!(serde_json::to_value(diagnostic).expect("a key"), diagnostic.key());
+        }
+    }
+
+    #[test]
+    fn what_is_chosen_is_read_as_it_was_written() {
+        let all = Diagnostics { kinetic: 0.1, turned_over: 3, volume_ratio: f64::NAN, ..Diagnostics::default() };
+        let chosen = Chosen::within(Reach::Goldens, &all);
+        let texts: Vec<_> = chosen.iter().map(|(_, value)| value.size().to_string()).collect();
+        let read = Chosen::read(Reach::Goldens, |at, _| Some(&texts[at])).expect("numbers");
+        assert_eq!(format!("{read:?}"), format!("{chosen:?}"));
+        assert_eq!(Chosen::read(Reach::Goldens, |_, _| Some("0.5")), None, "no half element turns over");
+        let json = serde_json::to_string(&Chosen::within(Reach::Summaries, &all)).expect("plain data");
+        assert_eq!(json, r#"{"turned_over":3,"volume_ratio":null,"shape_error":0.0}"#);
+    }
+}

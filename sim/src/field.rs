@@ -1,0 +1,128 @@
+//! Scalar fields over a body, by which a picture can be coloured.
+
+use super::body::Body;
+use super::crew::Crew;
+use super::kernel;
+use super::lanes::Set;
+use super::snapshot::Placement;
+use super::state::Nodes;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A number for each node or each element of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Field {
+    /// Relative deformation of each element: `√(Σ |r − M R0|² / Σ |R0|²)` with the best rotation `M`. Zero for any
+    /// rigid motion, and `a` for an element scaled by `1 + a`.
+    Strain,
+    /// Distance of each node from its position in the best rigid placement of the whole rest shape (m).
+    Displacement,
+    /// Speed of each node (m/s).
+    Speed,
+    /// Elastic energy of each node (J). A node has the part of an element's energy that belongs to its own displacement
+    /// from the equilibrium shape, and half of a spring's energy. The sum over all nodes is the elastic energy of the
+    /// body.
+    ElasticEnergy,
+}
+
+/// Where the values of a field are defined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Support {
+    /// One for each node.
+    Nodes,
+    /// One for each element.
+    Elements,
+}
+
+impl Field {
+    /// Where its values are defined.
+    pub fn support(self) -> Support {
+        match self {
+            Self::Strain => Support::Elements,
+            Self::Displacement | Self::Speed | Self::ElasticEnergy => Support::Nodes,
+        }
+    }
+
+    /// Its name in captions.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Strain => "strain",
+            Self::Displacement => "displacement",
+            Self::Speed => "speed",
+            Self::ElasticEnergy => "elastic energy",
+        }
+    }
+
+    /// Its unit; empty for a dimensionless number.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Strain => "",
+            Self::Displacement => "m",
+            Self::Speed => "m/s",
+            Self::ElasticEnergy => "J",
+        }
+    }
+
+    /// What it is, in a few words beside its name in keys.
+    pub fn definition(self) -> &'static str {
+        match self {
+            Self::Strain => "RMS distance from the rest shape, over its size",
+            Self::Displacement => "distance from the best fit of the rest shape",
+            Self::Speed => "of each node",
+            Self::ElasticEnergy => "share of each node",
+        }
+    }
+
+    /// The field at a state. `energies` is the elastic energy of each node (J), for [`Field::ElasticEnergy`].
+    pub(super) fn values(
+        self,
+        body: &Body,
+        state: Nodes<'_>,
+        placement: &Placement,
+        energies: Vec<f64>,
+        crew: &Crew,
+    ) -> Vec<f64> {
+        match self {
+            Self::Strain => kernel::strains(Set::best(), body, state.position, placement.turn, crew),
+            Self::Displacement => {
+                let nodes = body.rest.iter().zip(state.position);
+                nodes.map(|(&rest, &now)| now.distance(placement.place(rest))).collect()
+            }
+            Self::Speed => state.velocity.iter().map(|velocity| velocity.length()).collect(),
+            Self::ElasticEnergy => energies,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::Dimension;
+    use crate::body::Solids;
+    use crate::state::State;
+    use glam::{DQuat, DVec3};
+
+    #[test]
+    fn strain_is_the_scale_of_a_scaled_element_and_nothing_for_a_turned_one() {
+        let rest = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y, DVec3::new(0.4, 0.5, 1.0)];
+        let turn = DQuat::from_xyzw(0.3, -0.4, 0.1, 0.8).normalize();
+        for dimension in [Dimension::Plane, Dimension::Space] {
+            let body = Body::new(
+                dimension,
+                rest.clone(),
+                vec![1.0; 5],
+                [&[0, 1, 2, 3][..]].into_iter().collect(),
+                Solids::Ordered,
+                None,
+            );
+            let turn = if dimension == Dimension::Plane { DQuat::from_xyzw(0.0, 0.0, 0.6, 0.8) } else { turn };
+            for scale in [1.0, 1.25, 0.4] {
+                let now = State::at_rest(rest.iter().map(|&point| DVec3::ONE + scale * (turn * point)).collect());
+                let crew = Crew::new(1);
+                let strain = Field::Strain.values(&body, now.nodes(), &Placement::default(), Vec::new(), &crew);
+                assert!((strain[0] - (scale - 1.0).abs()).abs() < 1e-14, "{scale}: {strain:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Kinematic constraints: nodes that are held, or gripped, dragged along a path and released (the manipulation in the
+//! title of the paper).
+
+use super::motion::{Interval, Motion, Pose};
+use super::state::State;
+use glam::DVec3;
+
+/// A kinematic constraint: from one time to another its nodes follow a path, whatever forces act on them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grip {
+    /// The nodes.
+    pub nodes: Vec<u32>,
+    /// When the nodes are gripped (s).
+    pub from: f64,
+    /// When they are released (s); infinite for never.
+    pub until: f64,
+    /// How they move. Only the displacement since `from` matters. It rotates about the mean of the gripped positions.
+    pub motion: Motion,
+}
+
+impl Grip {
+    /// The displacement since the nodes were gripped, at a time (s), about the mean of the nodes then.
+    pub fn way(&self, time: f64) -> Pose {
+        let (first, now) = (self.motion.pose(self.from), self.motion.pose(time));
+        Pose { shift: now.shift - first.shift, rotation: now.rotation * first.rotation.conjugate() }
+    }
+
+    /// Whether the nodes follow the path at a time (s).
+    pub fn holds(&self, time: f64) -> bool {
+        self.from <= time && time <= self.until
+    }
+}
+
+/// The memory of a grip: whether it is active (0 or 1), then the position of each node when it was gripped (m).
+impl Grip {
+    /// Length of the memory.
+    pub(super) fn width(&self) -> usize {
+        1 + 3 * self.nodes.len()
+    }
+
+    /// The initial memory. Nodes that are held from the start get zero velocity.
+    pub(super) fn start(&self, state: &mut State) -> Vec<f64> {
+        let mut memory = vec![0.0; self.width()];
+        if self.holds(0.0) {
+            self.nodes.iter().for_each(|&node| state.velocity[node as usize] = DVec3::ZERO);
+            self.take(&mut memory, |node| state.position[node as usize]);
+        }
+        memory
+    }
+
+    /// Grips the nodes at their positions at the start of a step, if they are to be held at its end (s).
+    pub(super) fn reach(&self, end: f64, memory: &mut [f64], position: impl FnMut(u32) -> DVec3) {
+        if self.takes(end, memory) {
+            self.take(memory, position);
+        }
+    }
+
+    /// Whether the nodes are gripped at the start of a step that ends at a time (s).
+    pub(super) fn takes(&self, end: f64, memory: &[f64]) -> bool {
+        memory[0] == 0.0 && self.moves(end)
+    }
+
+    /// Whether the grip moves nodes in a step that ends at a time (s): not in a step that ends exactly when they are
+    /// gripped.
+    pub(super) fn moves(&self, end: f64) -> bool {
+        self.from < end && end <= self.until
+    }
+
+    /// Whether it takes, drags or releases nodes in a step.
+    pub(super) fn changes_in(&self, interval: Interval) -> bool {
+        let Interval { begin, end, .. } = interval;
+        self.moves(begin) != self.moves(end) || self.moves(end) && self.way(begin) != self.way(end)
+    }
+
+    fn take(&self, memory: &mut [f64], mut position: impl FnMut(u32) -> DVec3) {
+        memory[0] = 1.0;
+        for (&node, gripped) in self.nodes.iter().zip(memory[1..].as_chunks_mut::<3>().0) {
+            *gripped = position(node).to_array();
+        }
+    }
+
+    /// For each node that is held at the end of a step: its position then (m), and its velocity (m/s), which is its
+    /// displacement in the step divided by the step. With that velocity it moves on when it is released.
+    pub(super) fn moved(&self, interval: Interval, memory: &[f64]) -> impl Iterator<Item = (usize, DVec3, DVec3)> {
+        let Interval { begin, end, step } = interval;
+        let is_held = self.moves(end) && memory[0] == 1.0;
+        let gripped = memory[1..].as_chunks::<3>().0.iter().map(|&at| DVec3::from_array(at));
+        let middle = gripped.clone().sum::<DVec3>() / self.nodes.len().max(1) as f64;
+        let (way, before) = (self.way(end), self.moves(begin).then(|| self.way(begin)));
+        let nodes = self.nodes.iter().zip(gripped).take(if is_held { usize::MAX } else { 0 });
+        nodes.map(move |(&node, start)| {
+            let to = way.apply(middle, start);
+            let from = before.map_or(start, |before| before.apply(middle, start));
+            (node as usize, to, (to - from) / step)
+        })
+    }
+
+    /// Writes the positions and velocities of the nodes that are held at the end of a step.
+    pub(super) fn drag(&self, interval: Interval, memory: &[f64], position: &mut [DVec3], velocity: &mut [DVec3]) {
+        for (node, to, speed) in self.moved(interval, memory) {
+            (position[node], velocity[node]) = (to, speed);
+        }
+    }
+
+    /// Like [`Self::moved`], with the positions after a `share` of the step.
+    pub(super) fn moved_by(
+        &self,
+        interval: Interval,
+        share: f64,
+        memory: &[f64],
+    ) -> impl Iterator<Item = (usize, DVec3, DVec3)> {
+        let left = (1.0 - share) * interval.step;
+        self.moved(interval, memory).map(move |(node, to, speed)| (node, to - speed * left, speed))
+    }
+
+    /// Writes the velocities of the nodes that are held at the end of a step, after the integrator has changed them.
+    pub(super) fn hold(&self, interval: Interval, memory: &[f64], velocity: &mut [DVec3]) {
+        for (node, _, speed) in self.moved(interval, memory) {
+            velocity[node] = speed;
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! Whether a point, such as that of a camera, lies inside a body.
+
+use super::body::Body;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Whether a point (m) lies inside the surface of a body whose nodes are at `position` (m).
+pub fn is_inside(point: DVec3, body: &Body, position: &[DVec3]) -> bool {
+    let outside = body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none());
+    // The solid angle of a closed surface is 4π seen from inside and 0 from outside.
+    let sky: f64 = outside
+        .flat_map(|(face, _)| (2..face.len()).map(move |at| [face[0], face[at - 1], face[at]]))
+        .map(|nodes| solid_angle(nodes.map(|node| position[node as usize] - point)))
+        .sum();
+    sky.abs() > 2.0 * PI
+}
+
+/// The solid angle of a triangle seen from the origin, positive if its corners run counter-clockwise from outside (A. van
+/// Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983).
+fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
+    let [x, y, z] = [a.length(), b.length(), c.length()];
+    let above = a.dot(b.cross(c));
+    let below = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;
+    2.0 * libm::atan2(above, below)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_corner_of_a_cube_fills_an_eighth_of_the_sky() {
+        assert!((solid_angle([DVec3::X, DVec3::Y, DVec3::Z]) - PI / 2.0).abs() < 1e-12);
+        assert!((solid_angle([DVec3::Y, DVec3::X, DVec3::Z]) + PI / 2.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,193 @@
+//! One pass: the elements of a part and the motion of its nodes, then the motion of the nodes of several parts.
+
+use super::elements::Elements;
+use super::{Constants, General, Law, NONE, Place, RECORD, SUM, first_of};
+use crate::kernel::memory::Aligned;
+use crate::kernel::motion::{Motion, Nodes, Stage};
+use crate::kernel::rotation::{Arctangent, Optimum};
+use crate::kernel::stepper::Pass;
+use crate::kernel::{Around, Rotation};
+use crate::lanes::{Lanes, MOST, Work, each};
+use std::ops::Range;
+
+/// The elements of a part, and the motion of the nodes of this part only.
+pub(super) struct OnePart<'a> {
+    pub(super) body: &'a General,
+    pub(super) part: usize,
+    /// Zeros, at least one row more than the part has records.
+    pub(super) sums: &'a Aligned,
+    pub(super) pass: Pass,
+    pub(super) around: Around<'a>,
+}
+
+impl Work for OnePart<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u32 {
+        let part = &self.body.parts[self.part];
+        let Pass { stage, number, commit, .. } = self.pass;
+        if stage.has_forces() {
+            for class in &part.classes {
+                let tally = &self.body.tally;
+                let is_large = self.body.is_large();
+                let (constants, sums) = (&self.body.constants, self.sums);
+                let elements = Elements { part, sums, class, constants, commit, tally, is_large };
+                match (self.body.law, self.body.constants.damping > 0.0) {
+                    (Law::Plane, true) => elements.plane::<L, true>(),
+                    (Law::Plane, false) => elements.plane::<L, false>(),
+                    (Law::Space(Rotation::Arctangent { passes }), true) => {
+                        elements.space::<L, true>(Arctangent { passes });
+                    }
+                    (Law::Space(Rotation::Arctangent { passes }), false) => {
+                        elements.space::<L, false>(Arctangent { passes });
+                    }
+                    (Law::Space(Rotation::Optimum), true) => elements.space::<L, true>(Optimum),
+                    (Law::Space(Rotation::Optimum), false) => elements.space::<L, false>(Optimum),
+                    (Law::Spring, true) => elements.springs::<L, true>(),
+                    (Law::Spring, false) => elements.springs::<L, false>(),
+                }
+            }
+        }
+        let Constants { step, gravity, .. } = self.body.constants;
+        let motion = Motion::<L>::new(stage, step, gravity, number, self.around);
+        let own = Own { motion, stage, constants: &self.body.constants };
+        let (records, sums) = (part.records.pointer(), self.sums.pointer());
+        let mut lost = NONE;
+        for first in (0..part.own * MOST).step_by(L::WIDTH) {
+            // SAFETY: these are records of the part, which is this thread's.
+            unsafe {
+                let accelerations = part.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
+                let [x, y, z, _] = sums_of::<L>(|lane| sums.add((first + lane) * SUM));
+                let lanes = own.advance(|lane| records.add((first + lane) * RECORD), [x, y, z], accelerations);
+                lost = first_of(lost, lanes, |lane| part.index[first + lane]);
+            }
+        }
+        // What the next part must not find, and `SharedNodes` needs. The last row is that of lanes without an element.
+        // SAFETY: the sums are this thread's, and so are those of the part.
+        unsafe {
+            let own = part.own * MOST;
+            let (of_shared, count) = (sums.add(own * SUM), (part.index.len() - own) * SUM);
+            part.sums.pointer().copy_from_nonoverlapping(of_shared, count);
+            of_shared.write_bytes(0, count + SUM);
+        }
+        lost
+    }
+}
+
+/// The columns of sums, which are then set to zero.
+///
+/// # Safety
+/// The rows belong to this thread alone.
+#[inline(always)]
+unsafe fn sums_of<L: Lanes>(row: impl Fn(usize) -> *mut f64) -> [L; 4] {
+    // SAFETY: the caller's.
+    unsafe {
+        let sums = L::columns_4(|lane| row(lane).cast_const());
+        for lane in 0..L::WIDTH {
+            *row(lane).cast::<[f64; SUM]>() = [0.0; SUM];
+        }
+        sums
+    }
+}
+
+/// The motion of nodes by their records.
+struct Own<'a, L> {
+    motion: Motion<'a, L>,
+    stage: Stage,
+    constants: &'a Constants,
+}
+
+impl<L: Lanes> Own<'_, L> {
+    /// Moves a vector of nodes by the forces of their elements, to which `−w` of the nodes is added.
+    ///
+    /// # Safety
+    /// Records and accelerations belong to this thread alone.
+    #[inline(always)]
+    unsafe fn advance(&self, record: impl Fn(usize) -> *mut f64, sum: [L; 3], accelerations: *mut f64) -> u32 {
+        // SAFETY: the caller's.
+        unsafe {
+            let [px, py, vx, vy, pz, vz, inverse_mass, valence] = L::columns(|lane| record(lane).cast_const());
+            let (k, d) = (L::splat(self.constants.stiffness), L::splat(self.constants.damping));
+            let (k, d) = (k * valence, d * valence);
+            let (position, velocity) = ([px, py, pz], [vx, vy, vz]);
+            let force: [L; 3] =
+                each!(3, axis => d.neg_mul_add(velocity[axis], k.neg_mul_add(position[axis], sum[axis])));
+            let mut acceleration = [L::splat(0.0); 3];
+            if self.stage.loads_acceleration() {
+                acceleration = each!(3, axis => L::load(accelerations.add(axis * MOST)));
+            }
+            let mut nodes = Nodes { position, velocity, acceleration };
+            let lost = self.motion.advance(&mut nodes, force, inverse_mass);
+            if self.stage.stores_acceleration() {
+                each!(3, axis => nodes.acceleration[axis].store(accelerations.add(axis * MOST)));
+            }
+            let ([px, py, pz], [vx, vy, vz]) = (nodes.position, nodes.velocity);
+            L::put_rows([px, py, vx, vy, pz, vz, inverse_mass, valence], record);
+            lost
+        }
+    }
+}
+
+/// The motion of the nodes that belong to several parts.
+pub(super) struct SharedNodes<'a> {
+    pub(super) body: &'a General,
+    pub(super) blocks: Range<usize>,
+    pub(super) pass: Pass,
+    pub(super) around: Around<'a>,
+}
+
+impl Work for SharedNodes<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u32 {
+        let Self { body, blocks, pass, around } = self;
+        let General { shared, parts, constants, .. } = body;
+        let Pass { stage, number, .. } = pass;
+        let motion = Motion::<L>::new(stage, constants.step, constants.gravity, number, around);
+        let own = Own { motion, stage, constants };
+        let is_large = body.is_large();
+        let record =
+            |place: &Place| parts[place.part as usize].records.pointer().wrapping_add(place.record as usize * RECORD);
+        let sum = |place: &Place| {
+            let part = &parts[place.part as usize];
+            part.sums.pointer().wrapping_add((place.record as usize - part.own * MOST) * SUM)
+        };
+        let mut lost = NONE;
+        for first in (blocks.start * MOST..blocks.end * MOST).step_by(L::WIDTH) {
+            let places = |lane: usize| shared.of(first + lane);
+            if is_large {
+                let start = |lane: usize| shared.starts[shared.index.len().min(first + lane)] as usize;
+                for place in &shared.places[start(2 * L::WIDTH)..start(3 * L::WIDTH)] {
+                    L::expect(record(place));
+                    L::expect(sum(place));
+                }
+            }
+            let (mut padding, mut rows) = ([[0.0; RECORD]; MOST], [std::ptr::null_mut(); MOST]);
+            let mut sums = [[0.0; SUM]; MOST];
+            // SAFETY: all parts are done, and these nodes belong to this thread, wherever their records are. Lanes
+            // without a node have rows of their own.
+            unsafe {
+                for lane in 0..L::WIDTH {
+                    let places = places(lane);
+                    rows[lane] = places.first().map_or(padding[lane].as_mut_ptr(), record);
+                    for place in places {
+                        let row = &*sum(place).cast::<[f64; SUM]>();
+                        sums[lane].iter_mut().zip(row).for_each(|(sum, value)| *sum += value);
+                    }
+                }
+                let [x, y, z, _] = L::columns_4(|lane| sums[lane].as_ptr());
+                let accelerations = shared.accelerations.pointer().add(first / MOST * 3 * MOST + first % MOST);
+                let lanes = own.advance(|lane| rows[lane], [x, y, z], accelerations);
+                lost = first_of(lost, lanes, |lane| shared.index[first + lane]);
+                for (lane, row) in rows.iter().enumerate().take(L::WIDTH) {
+                    for place in places(lane).iter().skip(1) {
+                        record(place).copy_from_nonoverlapping(*row, RECORD);
+                    }
+                }
+            }
+        }
+        lost
+    }
+}

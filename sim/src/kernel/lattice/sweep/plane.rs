@@ -1,0 +1,424 @@
+//! One plane of boxes and the nodes below it: gather, moments, rotations, forces and motion in lanes.
+
+use super::Sweep;
+use crate::kernel::lattice::{ACCELERATION, CHUNK, INVERSE_MASS, MEAN, TURN, VELOCITY, slot};
+use crate::kernel::motion::{Motion, Nodes};
+use crate::kernel::rotation::{Moments, Solver, choose, matrix, turn, turned_back};
+use crate::lanes::{Lanes, MOST, each, thrice};
+
+impl Sweep<'_> {
+    /// Evaluates the boxes above a plane of nodes, and steps its nodes. Their forces on the next plane are written to
+    /// `above`. If the plane `is_shared`, its nodes are not stepped yet.
+    #[inline(always)]
+    pub(super) unsafe fn plane<L: Lanes, S: Solver, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        motion: &Motion<'_, L>,
+        solver: S,
+        commit: bool,
+        above: *mut f64,
+        is_shared: bool,
+    ) -> Option<usize> {
+        let zero = L::splat(0.0);
+        let layer = self.grid.layer();
+        let (mut pull_before, mut rise_before) = ([zero; 3], [zero; 3]);
+        // The place in the ring buffer of rows, and how far the ring buffer of squares is filled.
+        let mut own = 0;
+        let mut filled = (0, 0);
+        // SAFETY: `at` is a multiple of a width, below `layer`, and below the stride of boxes where boxes are read. A
+        // chunk of `work` has room for what is written. The ring buffer has more than a row in whole vectors; the row
+        // before the first is zero.
+        unsafe {
+            let (below, lowest) = (self.slabs.add(self.slab.below), self.slabs.add(self.slab.lowest));
+            let row = self.grid.row().next_multiple_of(MOST);
+            for at in (self.ring - row..self.ring).step_by(L::WIDTH) {
+                self.put::<L, 3>(self.slabs.add(self.slab.rows), at, &[[zero; 3]; 3]);
+            }
+            for chunk in (0..layer).step_by(CHUNK) {
+                let boxes = self.box_stride.min(chunk + CHUNK);
+                let end = layer.min(chunk + CHUNK);
+                filled = self.boxes::<L, S, DAMPED>(plane, [chunk, boxes], own, filled, solver, commit);
+                for at in (chunk..end).step_by(L::WIDTH) {
+                    let (pull, rise) = self.along_y::<L>(at, own, at < boxes);
+                    own = self.next(own, L::WIDTH);
+                    let work = self.work.add(at % CHUNK);
+                    let first = slot(at, 3);
+                    // Along x, and then along z.
+                    thrice!(axis => {
+                        let (high, low) = pull[axis];
+                        let here = high.shift_in(pull_before[axis]) + low;
+                        let up = rise[axis].shift_in(rise_before[axis]) + rise[axis];
+                        (pull_before[axis], rise_before[axis]) = (high, rise[axis]);
+                        let force = if is_shared {
+                            (here - up).store(lowest.add(first + axis * MOST));
+                            zero
+                        } else {
+                            L::load(below.add(first + axis * MOST)) + (here - up)
+                        };
+                        force.store(work.add(axis * CHUNK));
+                        (here + up).store(above.add(first + axis * MOST));
+                    });
+                }
+                if !is_shared {
+                    let force = |at: usize| each!(3, axis => L::load(self.work.add(axis * CHUNK + at % CHUNK)));
+                    if let Some(node) = self.update::<L, DAMPED>(plane, [chunk, end], motion, force) {
+                        return Some(node);
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// Steps the nodes of a plane between boxes on both sides, whose forces (N) are known.
+    #[inline(always)]
+    pub(super) unsafe fn nodes_between<L: Lanes, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        motion: &Motion<'_, L>,
+        pulls: impl Fn(usize) -> (L, L),
+    ) -> Option<usize> {
+        let force = |at: usize| {
+            each!(3, axis => {
+                let (below, above) = pulls(slot(at, 3) + axis * MOST);
+                below + above
+            })
+        };
+        // SAFETY: these are the nodes of a plane.
+        unsafe { self.update::<L, DAMPED>(plane, [0, self.grid.layer()], motion, force) }
+    }
+
+    /// The place in a ring buffer that is `way` after another.
+    #[inline(always)]
+    fn next(&self, place: usize, way: usize) -> usize {
+        let next = place + way;
+        if next >= self.ring { next - self.ring } else { next }
+    }
+
+    /// Writes one number of each part to a ring buffer; what is within a vector of its start is repeated after its end.
+    #[inline(always)]
+    unsafe fn put<L: Lanes, const PARTS: usize>(&self, ring: *mut f64, place: usize, values: &[[L; 3]; PARTS]) {
+        let (first, part) = self.ring_place::<L>(place, 3 * PARTS);
+        // SAFETY: a ring buffer has an additional vector for each part, and places are multiples of a width.
+        unsafe {
+            let to = ring.add(first);
+            for group in 0..PARTS {
+                thrice!(axis => values[group][axis].store(to.add((3 * group + axis) * part)));
+            }
+            if place < MOST {
+                let (first, _) = self.ring_place::<L>(place + self.ring, 3 * PARTS);
+                let to = ring.add(first);
+                for group in 0..PARTS {
+                    thrice!(axis => values[group][axis].store(to.add((3 * group + axis) * part)));
+                }
+            }
+        }
+    }
+
+    /// Computes the rotations of a chunk of boxes, and their `w̄`. `own` is the place of the first box in the ring
+    /// buffers. The squares have been written up to box `filled`; the next ones go to `place`. Both are returned for
+    /// the next chunk.
+    ///
+    /// In several short loops: a rotation is a long chain of dependent operations, and a processor overlaps several of
+    /// them in a short loop.
+    #[inline(always)]
+    unsafe fn boxes<L: Lanes, S: Solver, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        [first, end]: [usize; 2],
+        own: usize,
+        (mut filled, mut place): (usize, usize),
+        solver: S,
+        commit: bool,
+    ) -> (usize, usize) {
+        let passes = solver.passes();
+        let scale = L::splat(self.scale);
+        // For each vector the lanes that are not finished, those where the pass was valid, and those where it was the
+        // last.
+        let mut lanes = [[0u8; 3]; CHUNK];
+        // SAFETY: `live` and the rotations have all boxes of a plane in whole vectors, and `work` those of a chunk.
+        unsafe {
+            if first < end {
+                let needed = (end - L::WIDTH + self.grid.row()) / MOST * MOST + 2 * MOST;
+                place = self.squares::<L, DAMPED>(plane, filled, needed, place);
+                filled = needed;
+            }
+            for pass in 0..passes {
+                let is_last = pass + 1 == passes;
+                let mut here = own;
+                for at in (first..end).step_by(L::WIDTH) {
+                    let live = L::load(self.live.add(at));
+                    if pass == 0 {
+                        lanes[at % CHUNK][0] = L::bits(L::splat(0.0).lt(live)) as u8;
+                    }
+                    let edges = self.edges::<L, DAMPED>(at, here, live);
+                    here = self.next(here, L::WIDTH);
+                    let b = turned_back(&edges, &matrix(self.turns::<L>(plane, at, pass == 0), scale));
+                    let work = self.work.add(at % CHUNK);
+                    thrice!(row => thrice!(column => b[row][column].store(work.add((3 * row + column) * CHUNK))));
+                }
+                for at in (first..end).step_by(L::WIDTH) {
+                    let work = self.work.add(at % CHUNK);
+                    let b = each!(3, row => each!(3, column => L::load(work.add((3 * row + column) * CHUNK))));
+                    let (turn, sound, last) = solver.pass(&b);
+                    self.expect::<L>(plane, at + CHUNK);
+                    let _ = each!(4, part => turn[part].store(work.add(part * CHUNK)));
+                    lanes[at % CHUNK][1] = L::bits(sound) as u8;
+                    lanes[at % CHUNK][2] = L::bits(last) as u8;
+                }
+                let mut here = own;
+                for at in (first..end).step_by(L::WIDTH) {
+                    let work = self.work.add(at % CHUNK);
+                    let [x, y, z, s] = each!(4, part => L::load(work.add(part * CHUNK)));
+                    let before = self.turns::<L>(plane, at, pass == 0);
+                    let (next, in_range) = turn(before, [x, y, z], s);
+                    let [open, sound, last] = lanes[at % CHUNK];
+                    let sound = u32::from(open & sound) & L::bits(in_range);
+                    let mut q = choose(L::mask(sound), next, before);
+                    lanes[at % CHUNK][0] = sound as u8;
+                    let failed = u32::from(open) & !sound;
+                    let late = if is_last { sound & !u32::from(last) } else { 0 };
+                    if failed | late != 0 {
+                        let edges = self.edges::<L, DAMPED>(at, here, L::load(self.live.add(at)));
+                        let of = Moments { a: &edges, scale, tally: commit.then_some(self.tally) };
+                        q = solver.go_on(of, q, late, failed);
+                    }
+                    here = self.next(here, L::WIDTH);
+                    let _ = each!(4, part => q[part].store(work.add((TURN + part) * CHUNK)));
+                    if commit && is_last {
+                        let turns = self.turns.add(slot(plane * self.box_stride + at, 4));
+                        let _ = each!(4, part => q[part].store(turns.add(part * MOST)));
+                    }
+                }
+            }
+        }
+        (filled, place)
+    }
+
+    /// Prefetches the rotations of boxes, and the nodes of their squares. They are in a higher-level cache, and in
+    /// short loops the hardware does not prefetch them in time.
+    #[inline(always)]
+    fn expect<L: Lanes>(&self, plane: usize, at: usize) {
+        // Narrower vectors share a cache line.
+        if !at.is_multiple_of(MOST) {
+            return;
+        }
+        let turns = self.turns.wrapping_add(slot(plane * self.box_stride + at, 4));
+        let _ = each!(4, part => L::expect(turns.wrapping_add(part * MOST)));
+        let ahead = plane * self.stride + at + self.grid.row() + 2 * MOST;
+        let low = self.nodes.wrapping_add(slot(ahead, self.parts));
+        let high = self.nodes.wrapping_add(slot(ahead + self.stride, self.parts));
+        let _ = each!(8, part => if part <= INVERSE_MASS { L::expect(low.wrapping_add(part * MOST)) });
+        let _ = each!(8, part => if part < INVERSE_MASS { L::expect(high.wrapping_add(part * MOST)) });
+    }
+
+    /// The rotations of boxes: those of the last step, or those of the previous pass.
+    #[inline(always)]
+    unsafe fn turns<L: Lanes>(&self, plane: usize, at: usize, is_first: bool) -> [L; 4] {
+        // SAFETY: the rotations have all boxes of a plane in whole vectors, and `work` those of a chunk.
+        unsafe {
+            let (from, stride) = if is_first {
+                (self.turns.add(slot(plane * self.box_stride + at, 4)), MOST)
+            } else {
+                (self.work.add(TURN * CHUNK + at % CHUNK), CHUNK)
+            };
+            each!(4, part => L::load(from.add(part * stride)))
+        }
+    }
+
+    /// Writes, for squares of four nodes along x and z, their sum, their differences along x and along z, and the sum
+    /// of their velocities, in a range of nodes. Returns the place in the ring buffer after them.
+    #[inline(always)]
+    unsafe fn squares<L: Lanes, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        from: usize,
+        to: usize,
+        mut place: usize,
+    ) -> usize {
+        // SAFETY: a stride has all boxes in whole vectors, and a row and two vectors more; for the ring buffer see
+        // `put`.
+        unsafe {
+            macro_rules! upright {
+                ($at:expr) => {{
+                    let (low, high) = (self.nodes(plane, $at), self.nodes(plane + 1, $at));
+                    each!(3, axis => {
+                        let (low, high) = (low.add(axis * MOST), high.add(axis * MOST));
+                        let (a, b) = (L::load(low), L::load(high));
+                        let speed = if DAMPED {
+                            L::load(low.add(VELOCITY * MOST)) + L::load(high.add(VELOCITY * MOST))
+                        } else {
+                            L::splat(0.0)
+                        };
+                        (a + b, b - a, speed)
+                    })
+                }};
+            }
+            let mut left = upright!(from);
+            for at in (from..to).step_by(L::WIDTH) {
+                let next = upright!(at + L::WIDTH);
+                let right = each!(3, axis => left[axis].0.shift_out(next[axis].0));
+                let sum = each!(3, axis => left[axis].0 + right[axis]);
+                let x = each!(3, axis => right[axis] - left[axis].0);
+                let z = each!(3, axis => left[axis].1 + left[axis].1.shift_out(next[axis].1));
+                let ring = self.slabs.add(self.slab.squares);
+                if DAMPED {
+                    let speed = each!(3, axis => left[axis].2 + left[axis].2.shift_out(next[axis].2));
+                    self.put(ring, place, &[sum, x, z, speed]);
+                } else {
+                    self.put(ring, place, &[sum, x, z]);
+                }
+                place = self.next(place, L::WIDTH);
+                left = next;
+            }
+        }
+        place
+    }
+
+    /// The sums of the edges of boxes along each axis: the columns of `A` except for a factor. Writes `w̄`. `own` is
+    /// the place of the squares at the lower ends along y.
+    #[inline(always)]
+    unsafe fn edges<L: Lanes, const DAMPED: bool>(&self, at: usize, own: usize, live: L) -> [[L; 3]; 3] {
+        // SAFETY: the ring buffer has the squares in whole vectors, and a vector more.
+        unsafe {
+            let row = self.grid.row();
+            let parts = if DAMPED { 12 } else { 9 };
+            let squares = self.slabs.add(self.slab.squares);
+            let (near, part) = self.ring_place::<L>(own, parts);
+            let beyond = self.next(own, row);
+            let (far, _) = self.ring_place::<L>(beyond / MOST * MOST, parts);
+            let (near, far) = (squares.add(near), squares.add(far));
+            let (distance, line) = (L::distance(beyond % MOST), MOST * parts);
+            let work = self.work.add(at % CHUNK);
+            let mut edges = [[L::splat(0.0); 3]; 3];
+            let (of_p, of_v) = (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
+            thrice!(axis => {
+                let (sum0, sum1) = (L::load(near.add(axis * part)), L::load_beyond(far.add(axis * part), distance, line));
+                let x = (3 + axis) * part;
+                edges[0][axis] = L::load(near.add(x)) + L::load_beyond(far.add(x), distance, line);
+                edges[1][axis] = sum1 - sum0;
+                let z = (6 + axis) * part;
+                edges[2][axis] = L::load(near.add(z)) + L::load_beyond(far.add(z), distance, line);
+                let mut mean = of_p * (sum0 + sum1);
+                if DAMPED {
+                    let v = (9 + axis) * part;
+                    let sum = L::load(near.add(v)) + L::load_beyond(far.add(v), distance, line);
+                    mean = of_v.mul_add(sum, mean);
+                }
+                mean.store(work.add((MEAN + axis) * CHUNK));
+            });
+            if !self.is_cube {
+                edges = each!(3, column => each!(3, axis => edges[column][axis] * L::splat(self.ratio[column])));
+            }
+            edges
+        }
+    }
+
+    /// `u`, `v` and `t` of boxes.
+    #[inline(always)]
+    unsafe fn shape<L: Lanes>(&self, at: usize) -> [[L; 3]; 3] {
+        // SAFETY: `live` has all boxes of a plane in whole vectors, and `work` those of a chunk.
+        unsafe {
+            let work = self.work.add(at % CHUNK);
+            let q = each!(4, part => L::load(work.add((TURN + part) * CHUNK)));
+            let mut shape = matrix(q, L::splat(self.half) * L::load(self.live.add(at)));
+            if !self.is_cube {
+                shape = each!(3, column => each!(3, axis => shape[column][axis] * L::splat(self.ratio[column])));
+            }
+            shape
+        }
+    }
+
+    /// Adds up the forces of the boxes of two rows on the nodes between: for each axis the sums for the next node along
+    /// x and for the node itself, and the part whose sign changes along z.
+    #[inline(always)]
+    unsafe fn along_y<L: Lanes>(&self, at: usize, own: usize, is_box: bool) -> ([(L, L); 3], [L; 3]) {
+        // SAFETY: a chunk of `work` has boxes in whole vectors; see `put`. The ring buffer can be read from any place.
+        unsafe {
+            let work = self.work.add(at % CHUNK);
+            let zero = [L::splat(0.0); 3];
+            let ([u, v, t], mean) = if is_box {
+                (self.shape::<L>(at), each!(3, axis => L::load(work.add((MEAN + axis) * CHUNK))))
+            } else {
+                ([zero; 3], zero)
+            };
+            self.put(self.slabs.add(self.slab.rows), own, &[each!(3, axis => mean[axis] + v[axis]), u, t]);
+            // From the previous row, of which the first lanes may just have been written.
+            let before = self.next(own, self.ring - self.grid.row());
+            let (from, part) = self.ring_place::<L>(before / MOST * MOST, 9);
+            let from = self.slabs.add(self.slab.rows + from);
+            let (distance, line) = (L::distance(before % MOST), MOST * 9);
+            let mut pull = [(mean[0], mean[0]); 3];
+            let mut rise = t;
+            thrice!(axis => {
+                let sum = L::load_beyond(from.add(axis * part), distance, line) + (mean[axis] - v[axis]);
+                let along = L::load_beyond(from.add((3 + axis) * part), distance, line) + u[axis];
+                pull[axis] = (sum + along, sum - along);
+                rise[axis] = L::load_beyond(from.add((6 + axis) * part), distance, line) + t[axis];
+            });
+            (pull, rise)
+        }
+    }
+
+    /// Eqs. (2) and (3) and contact for a range of nodes of a plane, on which elements act with a force (N) in addition
+    /// to `−w`. Returns the first node that becomes too fast, if any.
+    #[inline(always)]
+    unsafe fn update<L: Lanes, const DAMPED: bool>(
+        &self,
+        plane: usize,
+        [first, end]: [usize; 2],
+        motion: &Motion<'_, L>,
+        force: impl Fn(usize) -> [L; 3],
+    ) -> Option<usize> {
+        let planes = if plane == 0 || plane == self.grid.cells[2] { 1.0 } else { 2.0 };
+        let (stiffness, damping) = (L::splat(planes * self.stiffness), L::splat(planes * self.damping));
+        let stage = motion.stage();
+        let zero = L::splat(0.0);
+        let mut near = 0;
+        // SAFETY: a stride has all nodes of a plane in whole vectors.
+        unsafe {
+            let load = |from: *const f64, part: usize| each!(3, axis => L::load(from.add((part + axis) * MOST)));
+            let inverse_mass = |from: *const f64| L::load(from.add(INVERSE_MASS * MOST));
+            for at in (first..end).step_by(L::WIDTH) {
+                let to = self.nodes(plane, at);
+                let valence = L::load(self.valence.add(at));
+                let (stiffness, damping) = (stiffness * valence, damping * valence);
+                let acceleration = if stage.loads_acceleration() { load(to, ACCELERATION) } else { [zero; 3] };
+                let mut nodes = Nodes { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
+                let mut total = force(at);
+                thrice!(axis => {
+                    total[axis] = nodes.position[axis].neg_mul_add(stiffness, total[axis]);
+                    if DAMPED {
+                        total[axis] = nodes.velocity[axis].neg_mul_add(damping, total[axis]);
+                    }
+                });
+                let lost = motion.go(&mut nodes, total, inverse_mass(to));
+                if lost != 0 {
+                    return Some(plane * self.grid.layer() + at + lost.trailing_zeros() as usize);
+                }
+                near |= motion.near(&nodes);
+                thrice!(axis => {
+                    nodes.position[axis].store(to.add(axis * MOST));
+                    nodes.velocity[axis].store(to.add((VELOCITY + axis) * MOST));
+                });
+                if stage.stores_acceleration() {
+                    thrice!(axis => nodes.acceleration[axis].store(to.add((ACCELERATION + axis) * MOST)));
+                }
+            }
+            if near == 0 {
+                return None;
+            }
+            for at in (first..end).step_by(L::WIDTH) {
+                let to = self.nodes(plane, at);
+                let acceleration = if stage.keeps_acceleration() { load(to, ACCELERATION) } else { [zero; 3] };
+                let mut nodes = Nodes { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
+                motion.meet(&mut nodes, inverse_mass(to));
+                thrice!(axis => {
+                    nodes.position[axis].store(to.add(axis * MOST));
+                    nodes.velocity[axis].store(to.add((VELOCITY + axis) * MOST));
+                });
+            }
+        }
+        None
+    }
+}

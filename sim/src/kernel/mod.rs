@@ -1,0 +1,80 @@
+//! Vectorised steps and energies. Their reference is the code of [`model`](super::model) and
+//! [`integrate`](super::integrate).
+//!
+//! A kernel keeps positions, velocities and rotations in its own arrays, takes any number of steps, and writes the
+//! state back when it is read. Its results have the same bits for every vector set and every number of threads.
+
+#![allow(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
+
+mod drive;
+pub mod floor;
+pub(crate) mod general;
+pub(crate) mod lattice;
+mod memory;
+pub(crate) mod motion;
+mod report;
+mod rotation;
+pub(crate) mod springs;
+pub(crate) mod stepper;
+mod tally;
+
+#[cfg(test)]
+mod tests;
+
+pub(crate) use drive::ByKernel;
+pub(crate) use report::strains;
+pub(crate) use stepper::Scheme;
+
+use crate::contact::{Bound, Floor};
+use glam::DVec3;
+use std::ops::Range;
+
+/// How the rotations of elements in space are computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rotation {
+    /// Eq. (15) as printed, solved in a number of passes, each solution a rotation by `atan |w|`.
+    Arctangent {
+        /// The number of passes.
+        passes: u32,
+    },
+    /// The optimum to round-off; see [`rotation::Optimum`].
+    Optimum,
+}
+
+/// Contact of a node at the end of a step of this number: changes its position (m) and velocity (m/s). The last
+/// argument is its constant acceleration in the step (m/s²), zero if it moved at constant velocity.
+pub(crate) type Resolve<'a> = dyn Fn(u64, &mut DVec3, &mut DVec3, DVec3) + Sync + 'a;
+
+/// Called with a node, its position (m) and its velocity (m/s).
+pub(crate) type Place<'a> = dyn FnMut(usize, DVec3, DVec3) + 'a;
+
+/// Calls its argument for each node that grips hold at the end of a step of this number, with its position after a share
+/// of the step.
+pub(crate) type Held<'a> = dyn Fn(u64, f64, &mut Place<'_>) + Sync + 'a;
+
+/// What acts on the nodes besides elements and gravity. Its functions take the number of a step.
+#[derive(Clone, Copy)]
+pub(crate) struct Around<'a> {
+    /// Bounds of the obstacles in all steps.
+    pub(crate) bounds: &'a [Bound],
+    /// The range of the bounds of a step.
+    pub(crate) row: &'a (dyn Fn(u64) -> Range<usize> + Sync),
+    /// Contact of a node within one of the bounds.
+    pub(crate) resolve: &'a Resolve<'a>,
+    /// The only obstacle, if it is a floor that does not move. For nodes that moved at constant velocity the kernel
+    /// then computes contact in lanes, with the same bits as `resolve`.
+    pub(crate) floor: Option<Floor>,
+    /// The nodes that grips hold, if any grip is active.
+    pub(crate) grips: Option<&'a Held<'a>>,
+    /// The greatest speed (m/s) in a step.
+    pub(crate) speed_limit: &'a (dyn Fn(u64) -> f64 + Sync),
+}
+
+/// A node that would have become too fast, or whose velocity is NaN.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Lost {
+    /// The number of the step.
+    pub(crate) step: u64,
+    /// The node.
+    pub(crate) node: usize,
+}

@@ -1,0 +1,428 @@
+//! Eq. (1) in lanes, for springs in families. A family is all pairs of nodes whose indices differ by the same number,
+//! as on every lattice.
+//!
+//! Lanes are consecutive nodes. A spring adds its force to the lane of its lower node and, at the offset of the family,
+//! to that of its upper node. As the other ends of a node's springs are either earlier or later nodes, all forces of a
+//! node are known when the pass reaches it: one pass evaluates the springs and moves the nodes in place.
+//!
+//! The sum of a node is: the forces from earlier nodes, the farthest first, plus those from later nodes, the farthest
+//! first. It is the same for every width.
+//!
+//! A large body is divided into slabs, which depend on the body only. The first nodes of a slab, which the previous
+//! slab still reads and adds forces to, are moved after all others: their sum has one more term.
+
+#![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by slabs")]
+
+use super::general::{Constants, NONE, first_of};
+use super::memory::Aligned;
+use super::motion::{Motion, Nodes, Stage};
+use super::stepper::{Pass, Passes, Stepper};
+use super::{Around, Lost};
+use crate::crew::Crew;
+use crate::lanes::{Lanes, Set, Work, each};
+use glam::DVec3;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// Nodes for which one family is evaluated before the next, so that their data stay in the first-level cache. The size
+/// does not change any bit.
+const CHUNK: usize = 128;
+/// Nodes that share a byte of presence.
+const BLOCK: usize = 8;
+/// Natural lengths that differ by no more than this fraction count as equal. Covers round-off of coordinates up to a
+/// thousand lengths from the origin.
+const ALIKE: f64 = 1e-13;
+
+/// Springs of one family.
+struct Family {
+    /// The difference of the indices of the two nodes.
+    offset: usize,
+    /// `k L` (N) if it is the same for all.
+    tension: f64,
+    /// Otherwise the start of the family's `k L`, by first node, in the list of all.
+    tensions: Option<usize>,
+}
+
+/// The springs of a body, in families.
+pub(crate) struct Stencil {
+    set: Set,
+    nodes: usize,
+    constants: Constants,
+    /// Sorted by offset, the largest first.
+    families: Vec<Family>,
+    /// One bit for each spring: chunk by chunk, family by family, block by block.
+    presence: Vec<[u8; CHUNK / BLOCK]>,
+    tensions: Aligned,
+    /// Positions, velocities, inverse masses and accelerations, with a separate array for each coordinate.
+    state: Aligned,
+    stride: usize,
+    kept: Aligned,
+    slabs: Vec<Slab>,
+    /// Chunks at the beginning of every slab but the first that are moved after all others.
+    deferred: usize,
+}
+
+/// A part of the body that one thread works on.
+struct Slab {
+    /// Its chunks.
+    first: usize,
+    last: usize,
+    /// The forces of springs from earlier nodes on its nodes and on those after it (N), with a separate array for each
+    /// coordinate.
+    pulls: Aligned,
+    stride: usize,
+}
+
+/// The start of each array, in strides.
+const VELOCITY: usize = 3;
+const INVERSE_MASS: usize = 6;
+const ACCELERATION: usize = 7;
+const ARRAYS: usize = 10;
+
+impl Stencil {
+    /// The springs of a body, or `None` if they form no families, so that most lanes would be empty.
+    pub(crate) fn new(
+        springs: &[[u32; 2]],
+        rest: &[DVec3],
+        mass: &[f64],
+        constants: Constants,
+        set: Set,
+    ) -> Option<Self> {
+        /// Lanes for each spring, at most: if less than half of them are used, the gathering kernel is faster.
+        const SPARSE: usize = 2;
+        let nodes = rest.len();
+        let chunks = nodes.div_ceil(CHUNK).max(1);
+        let mut sorted: Vec<(usize, usize, usize)> = Vec::with_capacity(springs.len());
+        for ends in springs {
+            let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end as usize);
+            sorted.push((high - low, low, high));
+        }
+        sorted.sort_unstable_by_key(|&(offset, low, _)| (std::cmp::Reverse(offset), low));
+        // Two springs between the same nodes are in two families with the same offset.
+        let mut families: Vec<Vec<(usize, usize, usize)>> = Vec::new();
+        for family in sorted.chunk_by(|a, b| a.0 == b.0) {
+            let mut doubles = 0;
+            let begin = families.len();
+            for (at, &spring) in family.iter().enumerate() {
+                doubles = if at > 0 && family[at - 1].1 == spring.1 { doubles + 1 } else { 0 };
+                if begin + doubles == families.len() {
+                    families.push(Vec::new());
+                }
+                families[begin + doubles].push(spring);
+            }
+        }
+        let blocks: usize =
+            families.iter().map(|family| family.chunk_by(|a, b| a.1 / BLOCK == b.1 / BLOCK).count()).sum();
+        if blocks * BLOCK > SPARSE * springs.len() + BLOCK * families.len() {
+            return None;
+        }
+        let reach = families.first().map_or(0, |family| family[0].0);
+        let padded = chunks * CHUNK;
+        let mut presence = vec![[0; CHUNK / BLOCK]; chunks * families.len()];
+        let mut listed = Vec::new();
+        let mut made = Vec::with_capacity(families.len());
+        for (at, family) in families.iter().enumerate() {
+            let tension =
+                |&(_, low, high): &(usize, usize, usize)| constants.stiffness * (rest[low] - rest[high]).length();
+            for &(_, low, _) in family {
+                presence[low / CHUNK * families.len() + at][low % CHUNK / BLOCK] |= 1 << (low % BLOCK);
+            }
+            // On a lattice lengths differ only by the rounding of coordinates.
+            let common = tension(&family[0]);
+            let differs = |spring| (tension(spring) - common).abs() > ALIKE * common;
+            let tensions = family.iter().any(differs).then(|| {
+                let begin = listed.len();
+                listed.resize(begin + padded, 0.0);
+                family.iter().for_each(|spring| listed[begin + spring.1] = tension(spring));
+                begin
+            });
+            made.push(Family { offset: family[0].0, tension: common, tensions });
+        }
+        let mut tensions = Aligned::zeros(listed.len());
+        tensions.as_mut_slice()[..listed.len()].copy_from_slice(&listed);
+        let behind = reach + BLOCK;
+        let deferred = behind.div_ceil(CHUNK);
+        // Slabs are long compared with the deferred chunks, and their number is a power of two.
+        let slabs = 1 << (chunks / (4 * deferred)).clamp(1, 16).ilog2();
+        let slabs: Vec<Slab> = (0..slabs)
+            .map(|at| {
+                let [first, last] = [at, at + 1].map(|at| at * chunks / slabs);
+                let stride = staggered((last - first + deferred) * CHUNK);
+                Slab { first, last, pulls: Aligned::zeros(3 * stride), stride }
+            })
+            .collect();
+        let stride = staggered(padded + behind);
+        let mut state = Aligned::zeros(ARRAYS * stride);
+        for (inverse, &mass) in state.as_mut_slice()[INVERSE_MASS * stride..].iter_mut().zip(mass) {
+            *inverse = 1.0 / mass;
+        }
+        Some(Self {
+            set,
+            nodes,
+            constants,
+            families: made,
+            presence,
+            tensions,
+            kept: Aligned::zeros(ARRAYS * stride),
+            state,
+            stride,
+            slabs,
+            deferred,
+        })
+    }
+
+    fn arrays(&self) -> Arrays {
+        Arrays { state: self.state.pointer(), stride: self.stride }
+    }
+
+    /// Evaluates the forces once, unless they are known, and moves all nodes. Returns the first node that becomes too
+    /// fast.
+    fn pass(&self, pass: Pass, around: Around<'_>, crew: &mut Crew) -> Option<Lost> {
+        let (springs, threads, lost) = (self, crew.threads(), AtomicU32::new(NONE));
+        let slabs = self.slabs.len();
+        let share = |me: usize| me * slabs / threads..(me + 1) * slabs / threads;
+        crew.run(&|me| {
+            for slab in share(me) {
+                lost.fetch_min(self.set.run(OneSlab { springs, slab, pass, around }), Ordering::Relaxed);
+            }
+        });
+        if slabs > 1 {
+            crew.run(&|me| {
+                for slab in share(me).filter(|&slab| slab > 0) {
+                    lost.fetch_min(self.set.run(Deferred { springs, slab, pass, around }), Ordering::Relaxed);
+                }
+            });
+        }
+        let lost = lost.into_inner();
+        (lost != NONE).then_some(Lost { step: pass.number, node: lost as usize })
+    }
+}
+
+impl Stepper for Stencil {
+    fn load(&mut self, position: &[DVec3], velocity: &[DVec3], _: &[f64]) {
+        for node in 0..self.nodes {
+            self.set_node(node, position[node], velocity[node]);
+        }
+    }
+
+    fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], _: &mut [f64]) {
+        for node in 0..self.nodes {
+            (position[node], velocity[node]) = self.node(node);
+        }
+    }
+
+    fn node(&mut self, node: usize) -> (DVec3, DVec3) {
+        let (all, stride) = (self.state.as_mut_slice(), self.stride);
+        let at = |first: usize| DVec3::from_array([0, 1, 2].map(|axis| all[(first + axis) * stride + node]));
+        (at(0), at(VELOCITY))
+    }
+
+    fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
+        let (all, stride) = (self.state.as_mut_slice(), self.stride);
+        for axis in 0..3 {
+            all[axis * stride + node] = position[axis];
+            all[(VELOCITY + axis) * stride + node] = velocity[axis];
+        }
+    }
+
+    fn is_damped(&self) -> bool {
+        self.constants.damping > 0.0
+    }
+
+    fn keep(&mut self) {
+        self.kept.copy_from(&mut self.state);
+    }
+
+    fn restore(&mut self) {
+        self.state.copy_from(&mut self.kept);
+    }
+
+    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {
+        some.into_iter().find_map(|pass| self.pass(passes.get(pass), *around, crew))
+    }
+}
+
+/// An array length for arrays that are used together, so that their cache lines are not in the same sets of the cache.
+fn staggered(count: usize) -> usize {
+    let lines = count.div_ceil(Aligned::LINE);
+    (lines + (5 + 64 - lines % 64) % 64) * Aligned::LINE
+}
+
+/// The state's arrays.
+#[derive(Clone, Copy)]
+struct Arrays {
+    state: *mut f64,
+    stride: usize,
+}
+
+impl Arrays {
+    /// Three coordinates of nodes from `at` on.
+    #[inline(always)]
+    unsafe fn load<L: Lanes>(&self, array: usize, at: usize) -> [L; 3] {
+        // SAFETY: the caller's; nodes and the padding after them are within a stride.
+        each!(3, axis => unsafe { L::load(self.state.add((array + axis) * self.stride + at)) })
+    }
+
+    #[inline(always)]
+    unsafe fn store<L: Lanes>(&self, array: usize, at: usize, values: [L; 3]) {
+        // SAFETY: as above.
+        each!(3, axis => unsafe { values[axis].store(self.state.add((array + axis) * self.stride + at)) });
+    }
+
+    /// Moves the nodes from `at` on.
+    #[inline(always)]
+    unsafe fn advance<L: Lanes>(&self, motion: &Motion<'_, L>, stage: Stage, at: usize, force: [L; 3]) -> u32 {
+        // SAFETY: the caller's.
+        unsafe {
+            let zero = [L::splat(0.0); 3];
+            let mut nodes = Nodes {
+                position: self.load(0, at),
+                velocity: self.load(VELOCITY, at),
+                acceleration: if stage.loads_acceleration() { self.load(ACCELERATION, at) } else { zero },
+            };
+            let inverse_mass = L::load(self.state.add(INVERSE_MASS * self.stride + at));
+            let lost = motion.advance(&mut nodes, force, inverse_mass);
+            self.store(0, at, nodes.position);
+            self.store(VELOCITY, at, nodes.velocity);
+            if stage.stores_acceleration() {
+                self.store(ACCELERATION, at, nodes.acceleration);
+            }
+            lost
+        }
+    }
+}
+
+/// The springs that begin in a slab, and the motion of its nodes.
+struct OneSlab<'a> {
+    springs: &'a Stencil,
+    slab: usize,
+    pass: Pass,
+    around: Around<'a>,
+}
+
+#[repr(C, align(64))]
+struct Own([[f64; CHUNK]; 3]);
+
+impl Work for OneSlab<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u32 {
+        if self.springs.constants.damping > 0.0 { self.evaluate::<L, true>() } else { self.evaluate::<L, false>() }
+    }
+}
+
+impl OneSlab<'_> {
+    #[inline(always)]
+    fn evaluate<L: Lanes, const DAMPED: bool>(self) -> u32 {
+        let Self { springs, slab: at, pass: Pass { stage, number, .. }, around } = self;
+        let slab = &springs.slabs[at];
+        let (arrays, pulls, width, start) = (springs.arrays(), slab.pulls.pointer(), slab.stride, slab.first * CHUNK);
+        let motion = Motion::<L>::new(stage, springs.constants.step, springs.constants.gravity, number, around);
+        let (k, d, one, zero) =
+            (L::splat(springs.constants.stiffness), L::splat(springs.constants.damping), L::splat(1.0), L::splat(0.0));
+        let all_tensions = springs.tensions.pointer().cast_const();
+        let mut own = Own([[0.0; CHUNK]; 3]);
+        let mut lost = NONE;
+        for chunk in slab.first..slab.last {
+            let base = chunk * CHUNK;
+            let count = (springs.nodes.next_multiple_of(BLOCK) - base).min(CHUNK);
+            own.0 = [[0.0; CHUNK]; 3];
+            let families = if stage.has_forces() { &springs.families } else { &[][..] };
+            for (row, family) in families.iter().enumerate() {
+                let &Family { offset, tension, tensions } = family;
+                let listed = tensions.map(|begin| all_tensions.wrapping_add(begin));
+                let tension = L::splat(tension);
+                let present = &springs.presence[chunk * springs.families.len() + row];
+                for (block, &present) in present.iter().enumerate() {
+                    if present == 0 {
+                        continue;
+                    }
+                    for part in (0..BLOCK).step_by(L::WIDTH) {
+                        let i = base + block * BLOCK + part;
+                        let j = i + offset;
+                        // SAFETY: i is a node of this slab or up to seven places behind the last, j at most `reach`
+                        // farther; all arrays are that long. No other thread writes to the nodes i, nor to the nodes j,
+                        // which are of this slab or deferred, nor to this slab's pulls.
+                        unsafe {
+                            let [near, far] = [arrays.load::<L>(0, i), arrays.load::<L>(0, j)];
+                            let p = each!(3, axis => far[axis] - near[axis]);
+                            let squared = p[2].mul_add(p[2], p[1].mul_add(p[1], p[0] * p[0]));
+                            let inverse = one.div(squared.sqrt());
+                            let tension = listed.map_or(tension, |listed| L::load(listed.add(i)));
+                            let along = if DAMPED {
+                                let [near, far] = [arrays.load::<L>(VELOCITY, i), arrays.load::<L>(VELOCITY, j)];
+                                let v = each!(3, axis => far[axis] - near[axis]);
+                                let product = v[2].mul_add(p[2], v[1].mul_add(p[1], v[0] * p[0]));
+                                (product * d).mul_sub(inverse, tension)
+                            } else {
+                                -tension
+                            };
+                            let is_spring = L::both(L::mask(u32::from(present) >> part), zero.lt(squared));
+                            let pull = along.mul_add(inverse, k).select(is_spring, zero);
+                            for axis in 0..3 {
+                                let near = own.0[axis].as_mut_ptr().add(i - base);
+                                pull.mul_add(p[axis], L::load(near)).store(near);
+                                let far = pulls.add(axis * width + j - start);
+                                pull.neg_mul_add(p[axis], L::load(far)).store(far);
+                            }
+                        }
+                    }
+                }
+            }
+            let is_deferred = at > 0 && chunk - slab.first < springs.deferred;
+            for i in (base..base + count).step_by(L::WIDTH) {
+                // SAFETY: as above.
+                unsafe {
+                    let place = |axis: usize| pulls.add(axis * width + i - start);
+                    let force: [L; 3] =
+                        std::array::from_fn(|axis| L::load(place(axis)) + L::load(own.0[axis].as_ptr().add(i - base)));
+                    if is_deferred {
+                        each!(3, axis => force[axis].store(place(axis)));
+                    } else {
+                        each!(3, axis => zero.store(place(axis)));
+                        lost = first_of(lost, arrays.advance(&motion, stage, i, force), |lane| (i + lane) as u32);
+                    }
+                }
+            }
+        }
+        lost
+    }
+}
+
+/// The motion of the first nodes of a slab.
+struct Deferred<'a> {
+    springs: &'a Stencil,
+    slab: usize,
+    pass: Pass,
+    around: Around<'a>,
+}
+
+impl Work for Deferred<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u32 {
+        let Self { springs, slab: at, pass: Pass { stage, number, .. }, around } = self;
+        let (before, slab) = (&springs.slabs[at - 1], &springs.slabs[at]);
+        let motion = Motion::<L>::new(stage, springs.constants.step, springs.constants.gravity, number, around);
+        let (arrays, zero) = (springs.arrays(), L::splat(0.0));
+        let mut lost = NONE;
+        let start = slab.first * CHUNK;
+        for i in (start..start + springs.deferred * CHUNK).step_by(L::WIDTH) {
+            // SAFETY: slabs are longer than what is deferred. All slabs are done, and each thread has its own deferred
+            // nodes.
+            unsafe {
+                let halo = |axis: usize| before.pulls.pointer().add(axis * before.stride + i - before.first * CHUNK);
+                let place = |axis: usize| slab.pulls.pointer().add(axis * slab.stride + i - start);
+                let force = each!(3, axis => L::load(halo(axis)) + L::load(place(axis)));
+                for axis in 0..3 {
+                    zero.store(halo(axis));
+                    zero.store(place(axis));
+                }
+                lost = first_of(lost, arrays.advance(&motion, stage, i, force), |lane| (i + lane) as u32);
+            }
+        }
+        lost
+    }
+}

@@ -1,0 +1,239 @@
+//! Kernels for any elements and springs, compared with the reference and with each other.
+
+mod elements;
+mod springs;
+mod surroundings;
+
+use super::general::{Constants, General};
+use super::springs::Stencil;
+use super::stepper::{Scheme, Stepper, Way};
+use super::{Around, Rotation};
+use crate::body::{Body, Dimension, IndexLists, Solids};
+use crate::contact::{Bound, Obstacle, Shape};
+use crate::crew::Crew;
+use crate::dynamics::Runaway;
+use crate::grip::Grip;
+use crate::integrate::{Integrator, composition};
+use crate::lanes::Set;
+use crate::model::ElasticModel;
+use crate::model::mass_spring::MassSpring;
+use crate::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use crate::motion::{Ease, Key, Motion, Offset};
+use crate::rotation::{best, davenport1968, moment, planar};
+use crate::state::State;
+use crate::topology::Springs;
+use crate::world::{Kernel, Stepping, Surroundings, World};
+use glam::{DMat3, DQuat, DVec2, DVec3};
+use std::sync::Arc;
+
+const STIFFNESS: f64 = 1e4;
+const STEP: f64 = 2e-4;
+const GRAVITY: DVec3 = DVec3::new(0.3, -9.8, 0.0);
+/// Steps in which a run differs from the reference by round-off only.
+const STEPS: u64 = 1000;
+
+/// Pseudo-random numbers from −1 to 1.
+pub(super) struct Random(pub(super) u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        ((0.5 * self.next() + 0.5) * count as f64) as usize
+    }
+
+    pub(super) fn vector(&mut self, dimension: Dimension) -> DVec3 {
+        let [x, y, z] = [self.next(), self.next(), self.next()];
+        DVec3::new(x, y, if dimension == Dimension::Plane { 0.0 } else { z })
+    }
+}
+
+/// The nodes of a block of cells with a side of 0.1 m, each moved by up to a fraction of that, and the corners of each
+/// cell: x fastest, or in the plane counter-clockwise.
+fn block(cells: [u32; 3], irregular: f64, random: &mut Random) -> (Dimension, Vec<DVec3>, Vec<Vec<u32>>) {
+    let [nx, ny, nz] = cells;
+    let dimension = if nz == 0 { Dimension::Plane } else { Dimension::Space };
+    let at = |x: u32, y: u32, z: u32| x + (nx + 1) * (y + (ny + 1) * z);
+    let places = (0..=nz).flat_map(|z| (0..=ny).flat_map(move |y| (0..=nx).map(move |x| [x, y, z])));
+    let rest = places
+        .map(|place| (DVec3::from_array(place.map(f64::from)) + random.vector(dimension) * irregular) * 0.1)
+        .collect();
+    let places = (0..nz.max(1)).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
+    let corners = places.map(|[x, y, z]| match dimension {
+        Dimension::Plane => vec![at(x, y, 0), at(x + 1, y, 0), at(x + 1, y + 1, 0), at(x, y + 1, 0)],
+        Dimension::Space => (0..8).map(|bits| at(x + (bits & 1), y + (bits >> 1 & 1), z + (bits >> 2))).collect(),
+    });
+    (dimension, rest, corners.collect())
+}
+
+/// A body with unequal masses.
+fn body(dimension: Dimension, rest: Vec<DVec3>, elements: IndexLists, random: &mut Random) -> Arc<Body> {
+    let mass = rest.iter().map(|_| 1.0 + 0.5 * random.next()).collect();
+    Arc::new(Body::new(dimension, rest, mass, elements, Solids::Convex, None))
+}
+
+/// A block of whole cells.
+pub(super) fn whole(cells: [u32; 3], irregular: f64, seed: u64) -> Arc<Body> {
+    let random = &mut Random(seed);
+    let (dimension, rest, corners) = block(cells, irregular, random);
+    body(dimension, rest, corners.iter().map(|corners| &corners[..]).collect(), random)
+}
+
+/// As many elements as a block has cells, each with some of the corners of a cell; some nodes may belong to no element.
+pub(super) fn pieces(cells: [u32; 3], counts: &[usize], seed: u64) -> Arc<Body> {
+    let random = &mut Random(seed);
+    let (dimension, rest, corners) = block(cells, 0.2, random);
+    let mut elements = IndexLists::default();
+    for mut corners in corners {
+        let count = counts[random.below(counts.len())];
+        while corners.len() > count {
+            corners.remove(random.below(corners.len()));
+        }
+        elements.push(&corners);
+    }
+    body(dimension, rest, elements, random)
+}
+
+/// Rotated, stretched and moving.
+pub(super) fn start(body: &Body, seed: u64) -> State {
+    let random = &mut Random(seed);
+    let turn = match body.dimension {
+        Dimension::Plane => DMat3::from_cols_array(&[0.8, 0.6, 0.0, -0.6, 0.8, 0.0, 0.0, 0.0, 1.0]),
+        Dimension::Space => DMat3::from_quat(DQuat::from_xyzw(0.1, -0.3, 0.2, 0.9).normalize()),
+    };
+    let position = body.rest.iter().map(|&rest| {
+        turn * (rest * DVec3::new(1.1, 0.95, 1.05)) + random.vector(body.dimension) * 0.005 + DVec3::new(0.1, 0.5, 0.0)
+    });
+    let position = position.collect();
+    let velocity = body.rest.iter().map(|_| random.vector(body.dimension) * 0.1).collect();
+    State::new(position, velocity)
+}
+
+/// The rotations of the elements at a state, and in space the number of those that took the global solver: the memory with which the
+/// reference starts as well.
+pub(super) fn rotations(body: &Body, state: &State) -> Vec<f64> {
+    let mut memory = Vec::new();
+    for nodes in body.elements.iter() {
+        let relative = |places: &[DVec3]| -> Vec<DVec3> {
+            let mean = nodes.iter().map(|&node| places[node as usize]).sum::<DVec3>() / nodes.len() as f64;
+            nodes.iter().map(|&node| places[node as usize] - mean).collect()
+        };
+        let a = moment(&relative(&body.rest), relative(&state.position));
+        match body.dimension {
+            Dimension::Plane => memory.extend(planar::solve(a, DVec2::X).to_array()),
+            Dimension::Space => memory.extend(davenport1968::optimum(a, DQuat::IDENTITY).to_array()),
+        }
+    }
+    memory.extend((body.dimension == Dimension::Space).then_some(0.0));
+    memory
+}
+
+/// No obstacles and no speed limit.
+pub(super) const FREE: Around<'_> = Around {
+    bounds: &[],
+    row: &|_| 0..0,
+    resolve: &|_, _, _, _| {},
+    floor: None,
+    grips: None,
+    speed_limit: &|_| f64::MAX,
+};
+
+fn constants(damping: f64) -> Constants {
+    Constants { stiffness: STIFFNESS, damping, gravity: GRAVITY, step: STEP }
+}
+
+/// A state with the rotations.
+type Whole = (State, Vec<f64>);
+
+/// A kernel advancing from a state, with its threads.
+struct Moving(Way, Crew);
+
+impl Moving {
+    fn new(kernel: impl Stepper + 'static, start: &Whole, scheme: Scheme, threads: usize) -> Self {
+        let mut way = Way::new(Box::new(kernel), scheme);
+        way.load(0, &start.0.position, &start.0.velocity, &start.1);
+        Self(way, Crew::new(threads))
+    }
+
+    fn advance(&mut self, steps: u64, around: Around<'_>) -> Result<(), Runaway> {
+        self.0.advance(self.0.steps() + steps, &around, &mut self.1)
+    }
+
+    fn stored(&mut self, like: &Whole) -> Whole {
+        let (mut state, mut memory) = like.clone();
+        self.0.stepper.store(&mut state.position, &mut state.velocity, &mut memory);
+        (state, memory)
+    }
+}
+
+fn general(body: &Body, start: &Whole, rotation: Rotation, damping: f64, scheme: Scheme, set: Set) -> Moving {
+    Moving::new(General::new(body, rotation, constants(damping), set), start, scheme, 1)
+}
+
+pub(super) fn shape_based(rotation: Rotation, damping: f64) -> ShapeBased {
+    let (rotation, passes) = match rotation {
+        Rotation::Arctangent { passes } => (RotationReading::Arctangent, passes),
+        // An independent method.
+        Rotation::Optimum => (RotationReading::Davenport, 1),
+    };
+    ShapeBased { stiffness: STIFFNESS, damping, passes, rotation, damping_of: DampingReading::RelativeMotion }
+}
+
+/// A simulation by the reference code.
+pub(super) fn stepped_by_reference(
+    body: &Arc<Body>,
+    start: &State,
+    model: &dyn ElasticModel,
+    scheme: Scheme,
+    around: Surroundings,
+    step: f64,
+) -> World {
+    let integrator = match scheme {
+        Scheme::SemiImplicitEuler => Integrator::SemiImplicitEuler,
+        Scheme::ExplicitEuler => Integrator::ExplicitEuler,
+        Scheme::VelocityVerlet => Integrator::VelocityVerlet,
+        Scheme::Composition(_) if scheme == PEFRL => Integrator::Pefrl,
+        Scheme::Composition(_) if scheme == FOREST_RUTH => Integrator::ForestRuth,
+        Scheme::Composition(_) => Integrator::BlanesMoan,
+    };
+    World::new(
+        body,
+        start.clone(),
+        model,
+        around,
+        Stepping { kernel: Kernel::Reference, ..Stepping::new(integrator, step) },
+    )
+}
+
+fn reference(
+    body: &Arc<Body>,
+    start: &State,
+    model: &dyn ElasticModel,
+    scheme: Scheme,
+    obstacles: Vec<Obstacle>,
+) -> World {
+    let around = Surroundings { gravity: GRAVITY, obstacles, grips: Vec::new() };
+    stepped_by_reference(body, start, model, scheme, around, STEP)
+}
+
+/// The largest distance between two states, relative to their extent and to the speed of an oscillation over that
+/// extent.
+fn distance(a: &State, b: &State) -> f64 {
+    let extent = b.position.iter().fold(0.0, |far: f64, p| far.max(p.length()));
+    let frequency = STIFFNESS.sqrt();
+    let largest = |a: &[DVec3], b: &[DVec3]| {
+        a.iter().zip(b).fold(0.0, |far: f64, (a, b)| if a == b { far } else { far.max(a.distance(*b)) })
+    };
+    let distance = largest(&a.position, &b.position).max(largest(&a.velocity, &b.velocity) / frequency);
+    assert!(distance.is_finite());
+    distance / extent
+}
+
+pub(super) const TWICE: Rotation = Rotation::Arctangent { passes: 2 };
+const SEMI: Scheme = Scheme::SemiImplicitEuler;
+pub(super) const PEFRL: Scheme = Scheme::Composition(&composition::PEFRL);
+const FOREST_RUTH: Scheme = Scheme::Composition(&composition::FOREST_RUTH);
+const BLANES_MOAN: Scheme = Scheme::Composition(&composition::BLANES_MOAN);

@@ -1,0 +1,140 @@
+//! Sharing the work of a model among threads, with results that do not depend on the number of threads.
+//!
+//! Each element or spring is evaluated by one thread, which stores its forces. Then each node adds up its own forces in
+//! a fixed order. So the result has the same bits for 1, 2 or 8 threads.
+
+use crate::body::IndexLists;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Elements in one task. An element takes about 150 ns and starting a task some microseconds, so smaller blocks would
+/// cost more than they save; with larger ones small bodies would use one thread only.
+const BLOCK: usize = 512;
+
+/// Calls `work(element, memory of the element, corners of the element)` for every element, in blocks. The memory has
+/// `width` numbers for each element.
+pub(super) fn for_each<T: Send>(
+    elements: &IndexLists,
+    width: usize,
+    memory: &mut [f64],
+    corners: &mut [T],
+    work: &(impl Fn(usize, &mut [f64], &mut [T]) + Sync),
+) {
+    split(elements, 0..elements.len(), width, memory, corners, work);
+}
+
+fn split<T: Send>(
+    elements: &IndexLists,
+    range: Range<usize>,
+    width: usize,
+    memory: &mut [f64],
+    corners: &mut [T],
+    work: &(impl Fn(usize, &mut [f64], &mut [T]) + Sync),
+) {
+    if range.len() > BLOCK {
+        let middle = range.start + range.len() / 2;
+        let first_corner = |element: usize| elements.range(element).start;
+        let (memory_low, memory_high) = memory.split_at_mut((middle - range.start) * width);
+        let (corners_low, corners_high) = corners.split_at_mut(first_corner(middle) - first_corner(range.start));
+        rayon::join(
+            || split(elements, range.start..middle, width, memory_low, corners_low, work),
+            || split(elements, middle..range.end, width, memory_high, corners_high, work),
+        );
+        return;
+    }
+    let mut rest = corners;
+    for (element, memory) in range.zip(memory.chunks_exact_mut(width)) {
+        let (own, others) = rest.split_at_mut(elements.range(element).len());
+        work(element, memory, own);
+        rest = others;
+    }
+}
+
+/// Calls `work(index, value)` for every value, in blocks.
+pub(super) fn for_each_one<T: Send>(values: &mut [T], work: &(impl Fn(usize, &mut T) + Sync)) {
+    let block = |start: usize, values: &mut [T]| {
+        values.iter_mut().enumerate().for_each(|(at, value)| work(start + at, value));
+    };
+    if values.len() <= BLOCK {
+        block(0, values);
+    } else {
+        values.par_chunks_mut(BLOCK).enumerate().for_each(|(at, values)| block(at * BLOCK, values));
+    }
+}
+
+/// For each node, the entries of a list of forces that act on it.
+pub(super) struct Gather {
+    entries: EntriesOfNode,
+}
+
+impl Gather {
+    /// `node_of_entry` names the node on which each entry acts.
+    pub(super) fn new(nodes: usize, node_of_entry: impl Iterator<Item = u32> + Clone) -> Self {
+        Self { entries: EntriesOfNode::new(nodes, (0..).zip(node_of_entry)) }
+    }
+
+    /// Adds the entries of each node to its force, in rising order.
+    pub(super) fn add(&self, entries: &[DVec3], forces: &mut [DVec3]) {
+        for_each_one(forces, &|node, force| {
+            for &entry in self.entries.of(node) {
+                *force += entries[entry];
+            }
+        });
+    }
+}
+
+/// For each node, the springs attached to it, and their signs.
+pub(super) struct SignedGather {
+    /// Twice the index of the spring, plus one at the second node of the spring.
+    entries: EntriesOfNode,
+}
+
+impl SignedGather {
+    pub(super) fn new(nodes: usize, springs: &[[u32; 2]]) -> Self {
+        let ends = (0..).zip(springs).flat_map(|(at, &[i, j])| [(2 * at, i), (2 * at + 1, j)]);
+        Self { entries: EntriesOfNode::new(nodes, ends) }
+    }
+
+    /// Adds the forces of its springs to each node, in rising order; with the opposite sign at the second node of a
+    /// spring.
+    pub(super) fn add(&self, entries: &[DVec3], forces: &mut [DVec3]) {
+        for_each_one(forces, &|node, force| {
+            for &entry in self.entries.of(node) {
+                let spring = entries[entry / 2];
+                *force += if entry % 2 == 0 { spring } else { -spring };
+            }
+        });
+    }
+}
+
+/// The entries of all nodes, sorted by node, and rising for each node.
+struct EntriesOfNode {
+    /// Where the entries of each node begin; the last number is where all end.
+    starts: Vec<usize>,
+    entries: Vec<usize>,
+}
+
+impl EntriesOfNode {
+    /// Sorts entries, given in rising order, by their nodes. Node numbers are below `nodes`.
+    fn new(nodes: usize, entries: impl Iterator<Item = (usize, u32)> + Clone) -> Self {
+        let mut starts = vec![0; nodes + 1];
+        for (_, node) in entries.clone() {
+            starts[node as usize + 1] += 1;
+        }
+        for node in 0..nodes {
+            starts[node + 1] += starts[node];
+        }
+        let mut next = starts.clone();
+        let mut sorted = vec![0; starts[nodes]];
+        for (entry, node) in entries {
+            sorted[next[node as usize]] = entry;
+            next[node as usize] += 1;
+        }
+        Self { starts, entries: sorted }
+    }
+
+    fn of(&self, node: usize) -> &[usize] {
+        &self.entries[self.starts[node]..self.starts[node + 1]]
+    }
+}

@@ -1,0 +1,242 @@
+//! Springs between pairs of nodes, the model that the paper compares with (section 2, Eq. (1)).
+//!
+//! Force on node `i` from the spring to `j`: `−{k (1 − L/|p|) + D (v·p)/(p·p)} p`, with `p` and `v` the position and
+//! velocity of `i` relative to `j` and `L` the natural length.
+//!
+//! Energy: `E = k/2 Σ (|p| − L)²`. A mirror image has the same energy, so an element that has turned over stays so.
+
+use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
+use crate::body::Body;
+use crate::mode::Mode;
+use crate::state::Nodes;
+use crate::topology::Springs;
+use crate::words;
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The parameters of the model in a scene file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
+pub struct Parameters {
+    /// Elastic constant of each spring, `k_ij` of Eq. (1) (N/m).
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub stiffness: f64,
+    /// Damping constant of each spring, `D_ij` of Eq. (1) (N s/m). Default: 0. Not together with `damping_ratio`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub damping: Option<f64>,
+    /// Damping as a ratio `ζ = D / 2√(km)`, with `m` the mass of the lightest node, as in `step = "T/50"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub damping_ratio: Option<f64>,
+    /// Where the springs are. Default: those that the body lists, else `edges+face-diagonals`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub springs: Option<Springs>,
+}
+
+/// The model with its parameters in SI units, checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MassSpring {
+    /// Elastic constant `k_ij` of each spring (N/m).
+    pub stiffness: f64,
+    /// Damping constant `D_ij` of each spring (N s/m).
+    pub damping: f64,
+    /// The two nodes of each spring; the natural length is their distance at rest.
+    pub springs: Arc<[[u32; 2]]>,
+}
+
+impl Parameters {
+    /// A model with this elastic constant (N/m); the other parameters have their defaults.
+    pub fn new(stiffness: f64) -> Self {
+        Self { stiffness, damping: None, damping_ratio: None, springs: None }
+    }
+}
+
+impl TypedModel for Parameters {
+    fn resolve(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
+        let springs = match (self.springs, listed) {
+            (None, Some(listed)) => listed.to_vec(),
+            (named, _) => body.topology().springs(named.unwrap_or(DEFAULT)),
+        };
+        if springs.is_empty() {
+            let topology = words::typed(&self.springs.unwrap_or(DEFAULT));
+            let message = format!(
+                "the topology `{topology}` puts no spring on the body's elements; take `all`, or list the springs in [body]"
+            );
+            return Err(Misfit { key: "springs", message });
+        }
+        let damping = super::damping(self.damping, self.damping_ratio, self.stiffness, body)?;
+        Ok(Arc::new(MassSpring { stiffness: self.stiffness, damping, springs: springs.into() }))
+    }
+
+    fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {
+        if let (None, Some(listed)) = (self.springs, listed) {
+            return listed;
+        }
+        let on_one = |nodes: u128| {
+            let pairs = nodes.saturating_mul(nodes.saturating_sub(1)) / 2;
+            match self.springs.unwrap_or(DEFAULT) {
+                // A convex solid has 3n − 6 edges at most.
+                Springs::Edges => pairs.min(nodes.saturating_mul(3)),
+                _ => pairs,
+            }
+        };
+        let each = elements.iter().map(|(&nodes, &count)| on_one(nodes as u128).saturating_mul(count));
+        each.fold(0, u128::saturating_add)
+    }
+}
+
+/// The springs of bodies that list none and of models that name none.
+const DEFAULT: Springs = Springs::EdgesFaceDiagonals;
+
+impl ElasticModel for MassSpring {
+    fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
+        let (stiffness, damping) = (self.stiffness * stiffness, self.damping * damping);
+        Some(Arc::new(MassSpring { stiffness, damping, ..self.clone() }))
+    }
+
+    fn describe(&self, body: &Body) -> String {
+        let count = self.springs.len();
+        let springs = format!("{count} spring{}", if count == 1 { "" } else { "s" });
+        super::describe(&springs, self.stiffness, self.damping, body)
+    }
+
+    fn springs(&self) -> &[[u32; 2]] {
+        &self.springs
+    }
+
+    /// With displacements `u` the energy of a spring is at most `k/2 |uᵢ − uⱼ|²`, in which `|uᵢ − uⱼ|² ≤ (1/mᵢ + 1/mⱼ) (mᵢ |uᵢ|² +
+    /// mⱼ |uⱼ|²)`.
+    fn bound(&self, body: &Body) -> Option<Mode> {
+        let mut sums = vec![0.0; body.len()];
+        for ends in &*self.springs {
+            let [i, j] = ends.map(|node| node as usize);
+            let sum = 1.0 / body.mass[i] + 1.0 / body.mass[j];
+            (sums[i], sums[j]) = (sums[i] + sum, sums[j] + sum);
+        }
+        let most = sums.into_iter().fold(0.0, f64::max);
+        Some(Mode { stiffness: self.stiffness * most, damping: self.damping * most })
+    }
+
+    fn known(&self) -> Option<Known<'_>> {
+        Some(Known::MassSpring(self))
+    }
+
+    fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
+        let length = |&[i, j]: &[u32; 2]| (body.rest[i as usize] - body.rest[j as usize]).length();
+        Box::new(Lattice {
+            natural_length: self.springs.iter().map(length).collect(),
+            gather: blocks::SignedGather::new(body.len(), &self.springs),
+            model: self.clone(),
+        })
+    }
+}
+
+/// The springs of a body, prepared for evaluation.
+struct Lattice {
+    model: MassSpring,
+    /// `L_ij` of each spring (m).
+    natural_length: Vec<f64>,
+    /// Adds up the spring forces of each node; a spring acts on its second node with the opposite force.
+    gather: blocks::SignedGather,
+}
+
+impl ForceModel for Lattice {
+    fn add_forces(
+        &self,
+        at: Nodes<'_>,
+        _memory: &[f64],
+        _next: &mut [f64],
+        scratch: &mut Scratch,
+        forces: &mut [DVec3],
+    ) {
+        let Self { model, natural_length, gather } = self;
+        let spring_forces = scratch.vectors(natural_length.len());
+        blocks::for_each_one(spring_forces, &|spring, out| {
+            let [i, j] = model.springs[spring].map(|node| node as usize);
+            *out = spring_force(
+                at.position[i] - at.position[j],
+                at.velocity[i] - at.velocity[j],
+                natural_length[spring],
+                model.stiffness,
+                model.damping,
+            );
+        });
+        gather.add(spring_forces, forces);
+    }
+
+    fn is_damped(&self) -> bool {
+        self.model.damping > 0.0
+    }
+
+    fn report(&self, at: Nodes<'_>, _memory: &[f64], share: &mut Share<'_>) -> Report {
+        let mut whole = 0.0;
+        for (spring, (ends, &natural)) in self.model.springs.iter().zip(&self.natural_length).enumerate() {
+            let [i, j] = ends.map(|node| at.position[node as usize]);
+            let stretch = (i - j).length() - natural;
+            let energy = 0.5 * self.model.stiffness * stretch * stretch;
+            share(spring, ends, &[0.5 * energy; 2]);
+            whole += energy;
+        }
+        Report { energy: Some(whole), residuals: Vec::new() }
+    }
+}
+
+/// Eq. (1) for one spring: the force on node `i` (N) from its position `p` (m) and velocity `v` (m/s) relative to `j`,
+/// the natural length `l` (m), `k` (N/m) and `d` (N s/m).
+///
+/// The formula is singular if both nodes are at one point, where a spring has no direction: the force is then zero.
+#[doc(alias = "Eq. 1")]
+fn spring_force(p: DVec3, v: DVec3, l: f64, k: f64, d: f64) -> DVec3 {
+    let squared = p.dot(p);
+    if squared == 0.0 {
+        return DVec3::ZERO;
+    }
+    p * -(k * (1.0 - l / squared.sqrt()) + d * v.dot(p) / squared)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Dimension, IndexLists, Solids};
+
+    #[test]
+    fn no_element_has_more_springs_than_are_said_before() {
+        let named = [
+            Springs::Edges,
+            Springs::EdgesOneDiagonal,
+            Springs::EdgesFaceDiagonals,
+            Springs::EdgesBodyDiagonals,
+            Springs::All,
+        ];
+        let cases = [
+            (Dimension::Plane, Solids::Ordered),
+            (Dimension::Space, Solids::Ordered),
+            (Dimension::Space, Solids::Convex),
+        ];
+        for (nodes, (dimension, solids)) in (2..12).flat_map(|nodes| cases.map(|case| (nodes, case))) {
+            let own: Vec<u32> = (0..nodes as u32).collect();
+            let elements: IndexLists = [own.as_slice()].into_iter().collect();
+            // On this curve every face of the hull is a triangle, so the hull has the greatest possible number of
+            // edges.
+            let rest: Vec<_> = (0..nodes).map(|at| at as f64).map(|t| DVec3::new(t, t * t, t * t * t)).collect();
+            let body = Body::new(dimension, rest, vec![1.0; nodes], elements, solids, None);
+            for springs in named {
+                let typed = Parameters { stiffness: 1.0, damping: None, damping_ratio: None, springs: Some(springs) };
+                let made = body.topology().springs(springs).len() as u128;
+                assert!(
+                    made <= typed.most_springs(&BTreeMap::from([(nodes, 1)]), None),
+                    "{dimension:?}, {nodes} nodes, {springs:?}: {made}"
+                );
+            }
+        }
+    }
+}

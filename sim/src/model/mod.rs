@@ -1,0 +1,293 @@
+//! The elastic models, one file each. The rest of the crate refers to them only through the list below.
+//!
+//! To add a model, write a file with three types: `Parameters`, the parameters in a scene file, which implements
+//! `TypedModel`; the model with its parameters resolved, which implements [`ElasticModel`]; and its forces, which
+//! implement [`ForceModel`]. Then add it to the list.
+
+mod blocks;
+pub mod mass_spring;
+pub mod shape_based;
+
+use super::body::Body;
+#[doc(hidden)]
+pub use super::mode::Mode;
+use super::state::{Nodes, State};
+use super::words;
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// Defines [`ModelParameters`] from a list of models.
+macro_rules! models {
+    ($($(#[$doc:meta])* $name:ident => $module:ident,)*) => {
+        /// A model as written in a scene file: `model = { kind = "…", … }`.
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(tag = "kind", rename_all = "kebab-case")]
+        pub enum ModelParameters {
+            $($(#[$doc])* $name($module::Parameters),)*
+        }
+
+        $(
+            impl From<$module::Parameters> for ModelParameters {
+                fn from(parameters: $module::Parameters) -> Self {
+                    Self::$name(parameters)
+                }
+            }
+        )*
+
+        impl ModelParameters {
+            fn typed(&self) -> &dyn TypedModel {
+                match self {
+                    $(Self::$name(parameters) => parameters,)*
+                }
+            }
+        }
+    };
+}
+
+// The list of elastic models.
+models! {
+    /// Elasticity of volume elements that keep their shape (paper, section 3).
+    ShapeBased => shape_based,
+    /// Springs between pairs of nodes (paper, section 2).
+    MassSpring => mass_spring,
+}
+
+impl ModelParameters {
+    /// The model for a body. `springs` are the springs that the scene lists for the body, if it lists any.
+    ///
+    /// # Errors
+    /// Parameters that contradict each other or do not fit the body.
+    pub fn resolve(&self, body: &Body, springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
+        self.typed().resolve(body, springs)
+    }
+
+    /// An upper bound for the number of springs that the model makes. `elements` has the number of elements for each
+    /// number of nodes; `listed` is the number of springs that the body lists, if it lists any.
+    pub fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {
+        self.typed().most_springs(elements, listed)
+    }
+}
+
+/// The parameters of one model in a scene file.
+trait TypedModel {
+    /// See [`ModelParameters::resolve`].
+    fn resolve(&self, body: &Body, springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit>;
+
+    /// See [`ModelParameters::most_springs`].
+    fn most_springs(&self, _elements: &BTreeMap<usize, u128>, _listed: Option<u128>) -> u128 {
+        0
+    }
+}
+
+/// A parameter of the model that does not fit.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct Misfit {
+    /// The key in the scene file.
+    pub key: &'static str,
+    /// What was found, what was expected and what to do.
+    pub message: String,
+}
+
+/// An elastic model with all its parameters in SI units. It is immutable; [`Self::prepare`] makes the object that
+/// evaluates the forces.
+pub trait ElasticModel: Debug + Send + Sync {
+    /// Elastic constant `k` (N/m). Figures divide forces by it to draw them as lengths.
+    fn stiffness(&self) -> f64;
+
+    /// The shortest period (s) with which a node of the body oscillates: `T = 2π√(m/k)` of its lightest node. A scene
+    /// can give time steps as a fraction of it.
+    fn shortest_period(&self, body: &Body) -> f64 {
+        std::f64::consts::TAU * (body.lightest() / self.stiffness()).sqrt()
+    }
+
+    /// An upper bound of the stiffness and the damping of any mode in any state, divided by the masses; `None` if none is known.
+    /// Where it suffices to show that a step is stable, no eigenvalue is computed.
+    #[doc(hidden)]
+    fn bound(&self, body: &Body) -> Option<Mode> {
+        let _ = body;
+        None
+    }
+
+    /// The same model with its stiffness and its damping multiplied; `None` for a model that cannot be scaled.
+    #[doc(hidden)]
+    fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
+        let _ = (stiffness, damping);
+        None
+    }
+
+    /// A short description for the second line of a picture, such as `27 cubes, k = 10 kN/m, ζ = 0.1`.
+    fn describe(&self, body: &Body) -> String;
+
+    /// The same with all choices that change the result, such as the rotation solver.
+    fn describe_fully(&self, body: &Body) -> String {
+        self.describe(body)
+    }
+
+    /// The two nodes of each spring; empty for models without springs.
+    fn springs(&self) -> &[[u32; 2]] {
+        &[]
+    }
+
+    /// The model as vectorised steps support it; `None` for a model that has the reference code only.
+    #[doc(hidden)]
+    fn known(&self) -> Option<Known<'_>> {
+        None
+    }
+
+    /// The model of section 3 of the paper, if it is that one, with all its choices.
+    #[doc(hidden)]
+    fn shape_based(&self) -> Option<&shape_based::ShapeBased> {
+        None
+    }
+
+    /// The memory at the start, with the nodes of `body` at `position` (m). Its length never changes.
+    fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
+        let _ = (body, position);
+        Vec::new()
+    }
+
+    /// Precomputes what the evaluation of the forces on `body` needs.
+    fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel>;
+}
+
+impl dyn ElasticModel + '_ {
+    /// The internal forces (N) on each node of a body, with the initial memory of the model for this state.
+    pub fn forces_at_start(&self, body: &Arc<Body>, state: &State) -> Vec<DVec3> {
+        let (model, memory) = (self.prepare(body), self.start(body, &state.position));
+        let mut forces = vec![DVec3::ZERO; body.len()];
+        model.add_forces(state.nodes(), &memory, &mut memory.clone(), &mut Scratch::default(), &mut forces);
+        forces
+    }
+}
+
+/// Models that have vectorised steps.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub enum Known<'a> {
+    /// The model of section 3 of the paper.
+    ShapeBased(&'a shape_based::ShapeBased),
+    /// The model of section 2 of the paper.
+    MassSpring(&'a mass_spring::MassSpring),
+}
+
+/// The internal forces of a body, as a pure function: the same nodes and the same memory give the same forces and the
+/// same next memory. So trial evaluations and rejected steps have no side effects.
+///
+/// # Example
+/// A complete model: a rod with the energy `k/(8 L²) (|p|² − L²)²` between any two nodes of an element.
+/// ```
+#[doc = include_str!("../../../tests/physics/example_model.rs")]
+/// use localshape_sim::body::{Dimension, Solids};
+/// use localshape_sim::integrate::Integrator;
+/// use localshape_sim::world::{Stepping, Surroundings};
+/// use localshape_sim::{IndexLists, State, World};
+///
+/// let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let elements: IndexLists = [&[0, 1, 2, 3][..]].into_iter().collect();
+/// let start = State::at_rest(rest.iter().map(|&node| node * 1.1).collect());
+/// let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 4], elements, Solids::Ordered, None));
+/// let stepping = Stepping::new(Integrator::SemiImplicitEuler, 1e-3);
+/// let mut world = World::new(&body, start, &Rods { stiffness: 100.0 }, Surroundings::default(), stepping);
+/// let energy = world.diagnostics().elastic;
+/// world.advance(1000);
+/// assert!(world.diagnostics().energy < energy * 1.01);
+/// ```
+pub trait ForceModel: Send + Sync {
+    /// Adds elastic and damping forces (N) to `forces`, one per node, and writes every entry of the `next` memory.
+    fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]);
+
+    /// Whether the forces depend on velocities.
+    fn is_damped(&self) -> bool;
+
+    /// Whether forces depend, beyond round-off, on the memory, that is, on the evaluation before. Methods that evaluate
+    /// forces several times a step are of their order only if they do not.
+    fn depends_on_history(&self) -> bool {
+        false
+    }
+
+    /// Energy and residuals, from the same computation as the forces with these nodes and this memory. Calls `share`
+    /// for each element or spring, in order.
+    fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report;
+
+    /// α of Eq. (18) of each element (rad/s²) at the evaluation of the forces with the nodes at `position` (m) that
+    /// returned this memory; empty for a model without rotations.
+    fn residuals(&self, position: &[DVec3], memory: &[f64]) -> Vec<f64> {
+        let _ = (position, memory);
+        Vec::new()
+    }
+}
+
+/// Called with the number of an element or spring, its nodes, and the part of its energy (J) that belongs to each node.
+pub type Share<'a> = dyn FnMut(usize, &[u32], &[f64]) + 'a;
+
+/// A buffer for intermediate results, kept to avoid allocations. Its contents do not survive from one evaluation to the
+/// next.
+#[derive(Debug, Default)]
+pub struct Scratch(Vec<DVec3>);
+
+impl Scratch {
+    /// A slice of this many vectors, with unspecified values.
+    pub fn vectors(&mut self, count: usize) -> &mut [DVec3] {
+        if self.0.len() < count {
+            self.0.resize(count, DVec3::ZERO);
+        }
+        &mut self.0[..count]
+    }
+}
+
+/// Energy and residuals of a model in a state.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// Elastic energy (J), of which the elastic forces are the negative gradient; `None` for a model without one.
+    pub energy: Option<f64>,
+    /// The residuals of conditions that the model satisfies only approximately, by name.
+    pub residuals: Vec<(&'static str, f64)>,
+}
+
+impl Report {
+    /// The name of the residual that is the largest α of Eq. (18) over all elements (rad/s²).
+    pub const ROTATION: &'static str = "rotation";
+
+    /// The residual with this name; `None` for a model without it.
+    pub fn residual(&self, name: &str) -> Option<f64> {
+        self.residuals.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
+    }
+}
+
+/// The damping constant (N s/m), from either parameter: the constant, or the ratio `ζ = D / 2√(km)`; 0 if neither is
+/// given. `m` is the mass of the lightest node, as in the period of which a step is a fraction. So whether a ratio and
+/// a fraction are stable together does not depend on the other masses.
+fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Body) -> Result<f64, Misfit> {
+    match (constant, ratio) {
+        (Some(_), Some(_)) => {
+            let message = "both `damping` and `damping_ratio` are given; keep one of them";
+            Err(Misfit { key: "damping_ratio", message: message.into() })
+        }
+        (Some(constant), None) => Ok(constant),
+        (None, Some(ratio)) => Ok(2.0 * ratio * (stiffness * body.lightest()).sqrt()),
+        (None, None) => Ok(0.0),
+    }
+}
+
+/// The second line of a picture: the parts of the model, its stiffness and, if it has any, its damping.
+fn describe(parts: &str, stiffness: f64, damping: f64, body: &Body) -> String {
+    let mut text = format!("{parts}, k = {}", words::quantity(stiffness, "N/m"));
+    if damping > 0.0 {
+        let ratio = damping / (2.0 * (stiffness * body.lightest()).sqrt());
+        text.push_str(&format!(", ζ = {}", words::rounded(ratio, 3)));
+    }
+    text
+}
+
+/// The elements of a body in words, such as `27 cubes`.
+fn elements_in_words(body: &Body) -> String {
+    match words::elements(body).as_slice() {
+        [(count, name)] => format!("{count} {name}"),
+        _ => format!("{} elements", body.elements.len()),
+    }
+}

@@ -1,0 +1,485 @@
+//! The paper's model: every element keeps its own shape (section 3, Eq. (4)).
+//!
+//! Force on node `i`: `−Σ_e (k d_ie + D v_ie)`, with `d_ie = r_i − R_i` its displacement from the equilibrium shape of
+//! element `e`, and `v_ie` its velocity relative to the mean velocity of the element's nodes.
+//!
+//! Energy: `E = k/2 Σ_e Σ_i |r_i − R_i|²`. With the exact rotation its negative gradient is the elastic force, because
+//! `E` is stationary with respect to the rotation.
+//!
+//! The centre of an element is the unweighted mean of its nodes: with a centre of mass, unequal masses would give a net
+//! internal force.
+
+use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
+use crate::body::{Body, Dimension};
+use crate::mode::Mode;
+pub use crate::rotation::RotationReading;
+use crate::rotation::{self, davenport1968, linear_update, planar};
+use crate::state::Nodes;
+use crate::words;
+use glam::{DMat3, DQuat, DVec2, DVec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The parameters of the model in a scene file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
+pub struct Parameters {
+    /// Elastic constant of each element, `k_e` of Eq. (4) (N/m).
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub stiffness: f64,
+    /// Damping constant of each element, `D_e` of Eq. (4) (N s/m). Default: 0. Not together with `damping_ratio`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub damping: Option<f64>,
+    /// Damping as a ratio `ζ = D / 2√(km)`, with `m` the mass of the lightest node, as in `step = "T/50"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub damping_ratio: Option<f64>,
+    /// Number of passes, each of which solves Eq. (15) or takes one step of another iteration, at each evaluation of the
+    /// forces. The first pass starts from the last rotation (paper, section 4). Default: 2, as the paper advises. If `rotation` is not given, it becomes
+    /// `arctangent`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 100))]
+    pub passes: Option<u32>,
+    /// How the rotation of an element is computed. Default: `robust`; the paper's method is `arctangent`. In the plane
+    /// all use Eq. (9), which is exact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<RotationReading>,
+    /// Which velocity the damping of Eq. (4) acts on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping_of: Option<DampingReading>,
+}
+
+/// Which velocity the damping of Eq. (4) acts on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DampingReading {
+    /// As printed: the velocity of a node relative to the element's mean. It also damps rigid rotation. The default.
+    #[default]
+    RelativeMotion,
+    /// That velocity minus the best-fitting rigid rotation.
+    Deformation,
+}
+
+/// The model with its parameters in SI units, checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeBased {
+    /// Elastic constant `k_e` of each element (N/m).
+    pub stiffness: f64,
+    /// Damping constant `D_e` of each element (N s/m).
+    pub damping: f64,
+    /// Number of passes, each of which solves Eq. (15), at each evaluation.
+    pub passes: u32,
+    /// How the rotation of an element is computed.
+    pub rotation: RotationReading,
+    /// Which velocity is damped.
+    pub damping_of: DampingReading,
+}
+
+impl Parameters {
+    /// A model with this elastic constant (N/m); the other parameters have their defaults.
+    pub fn new(stiffness: f64) -> Self {
+        Self { stiffness, damping: None, damping_ratio: None, passes: None, rotation: None, damping_of: None }
+    }
+}
+
+impl TypedModel for Parameters {
+    fn resolve(&self, body: &Body, _springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
+        if body.dimension == Dimension::Plane {
+            let given = [("rotation", self.rotation.is_some()), ("passes", self.passes.is_some())];
+            if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
+                let message = format!(
+                    "`{key}` is about Eq. (15), but the body is in the plane, where Eq. (9) is exact; take it out"
+                );
+                return Err(Misfit { key, message });
+            }
+        }
+        if let Some(rotation) = self.rotation.filter(|rotation| self.passes.is_some() && !rotation.has_passes()) {
+            let rotation = words::typed(&rotation);
+            let message = format!(
+                "`passes` is the number of steps of an iteration, which `rotation = \"{rotation}\"` does without; take it out"
+            );
+            return Err(Misfit { key: "passes", message });
+        }
+        Ok(Arc::new(ShapeBased {
+            stiffness: self.stiffness,
+            damping: super::damping(self.damping, self.damping_ratio, self.stiffness, body)?,
+            passes: self.passes.unwrap_or(2),
+            rotation: self.rotation.unwrap_or(match self.passes {
+                Some(_) => RotationReading::Arctangent,
+                None => RotationReading::default(),
+            }),
+            damping_of: self.damping_of.unwrap_or_default(),
+        }))
+    }
+}
+
+impl ElasticModel for ShapeBased {
+    fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
+        let (stiffness, damping) = (self.stiffness * stiffness, self.damping * damping);
+        Some(Arc::new(ShapeBased { stiffness, damping, ..self.clone() }))
+    }
+
+    fn describe(&self, body: &Body) -> String {
+        let mut text = super::describe(&super::elements_in_words(body), self.stiffness, self.damping, body);
+        if self.damping > 0.0 && self.damping_of == DampingReading::Deformation {
+            text.push_str(" of deformation");
+        }
+        text.push_str(match self.rotation {
+            // In the plane there is only one method.
+            _ if body.dimension == Dimension::Plane => "",
+            RotationReading::Arctangent => "",
+            RotationReading::VectorLength => ", θ = |w|",
+            RotationReading::LinearUpdate => ", Eq. (16)",
+            RotationReading::Symmetric => ", symmetric Eq. (15)",
+            RotationReading::Cayley => ", Cayley",
+            RotationReading::Quintic => ", quintic",
+            RotationReading::Mueller => ", Müller 2016",
+            RotationReading::Kugelstadt => ", Kugelstadt 2018",
+            RotationReading::ClosedForm | RotationReading::Davenport | RotationReading::Robust => ", exact rotations",
+        });
+        text
+    }
+
+    fn describe_fully(&self, body: &Body) -> String {
+        let mut text = super::describe(&super::elements_in_words(body), self.stiffness, self.damping, body);
+        match (body.dimension, self.rotation) {
+            (Dimension::Plane, _) => text += ", rotations by Eq. (9)",
+            (Dimension::Space, rotation) => {
+                text += &format!(", rotation {}", words::typed(&rotation));
+                if rotation.has_passes() {
+                    let plural = if self.passes == 1 { "" } else { "es" };
+                    text += &format!(" with {} pass{plural}", self.passes);
+                } else {
+                    text += " (exact)";
+                }
+            }
+        }
+        if self.damping > 0.0 {
+            text += &format!(", damping of {}", words::typed(&self.damping_of));
+        }
+        text
+    }
+
+    /// An element adds no more to a node than `k` and `D`: its forces are those of a projection.
+    fn bound(&self, body: &Body) -> Option<Mode> {
+        let mut elements = vec![0.0; body.len()];
+        body.elements.indices().iter().for_each(|&node| elements[node as usize] += 1.0);
+        let most = elements.iter().zip(&body.mass).map(|(elements, mass)| elements / mass).fold(0.0, f64::max);
+        Some(Mode { stiffness: self.stiffness * most, damping: self.damping * most })
+    }
+
+    /// The readings for comparison and the damping of deformation have the reference code only.
+    fn known(&self) -> Option<Known<'_>> {
+        let is_known = matches!(self.rotation, RotationReading::Arctangent | RotationReading::Robust)
+            && (self.damping == 0.0 || self.damping_of == DampingReading::RelativeMotion);
+        is_known.then_some(Known::ShapeBased(self))
+    }
+
+    fn shape_based(&self) -> Option<&ShapeBased> {
+        Some(self)
+    }
+
+    /// The rotations that are optimal for the initial positions, which need not be the identity. In space they are followed by the
+    /// number of rotations that the global solver has computed since then.
+    fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
+        let solver = self.solver(body.dimension);
+        let mut memory = vec![0.0; solver.width() * body.elements.len() + usize::from(solver.counts())];
+        let mut rest = Vec::new();
+        for (nodes, memory) in body.elements.iter().zip(memory.chunks_exact_mut(solver.width())) {
+            rest.clear();
+            rest.extend(at_rest(nodes, body));
+            let at_rest = moment_at_rest(&rest, nodes, mean(nodes, position), position);
+            let optimum = || davenport1968::optimum(at_rest, DQuat::IDENTITY);
+            match solver {
+                Solver::Plane => planar::solve(at_rest, DVec2::X).write_to_slice(memory),
+                Solver::Space => optimum().write_to_slice(memory),
+                Solver::Linear => DMat3::from_quat(optimum()).write_cols_to_slice(memory),
+            }
+        }
+        memory
+    }
+
+    fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
+        Box::new(Elements::new(self.clone(), body))
+    }
+}
+
+/// How the rotation of an element is computed and stored.
+#[derive(Clone, Copy, Debug)]
+enum Solver {
+    /// Eq. (9); stored as `(cos θ, sin θ)`.
+    Plane,
+    /// Eq. (15) and the alternatives to it; stored as a unit quaternion.
+    Space,
+    /// Eq. (16); stored as a matrix, which drifts away from a rotation.
+    Linear,
+}
+
+impl Solver {
+    /// How many numbers are stored for each element.
+    fn width(self) -> usize {
+        match self {
+            Self::Plane => 2,
+            Self::Space => 4,
+            Self::Linear => 9,
+        }
+    }
+
+    /// Whether the rotations that the global solver has computed are counted.
+    fn counts(self) -> bool {
+        matches!(self, Self::Space)
+    }
+
+    /// The stored rotation as a matrix.
+    fn matrix(self, memory: &[f64]) -> DMat3 {
+        match self {
+            Self::Plane => planar::matrix(DVec2::from_slice(memory)),
+            Self::Space => DMat3::from_quat(DQuat::from_slice(memory)),
+            Self::Linear => DMat3::from_cols_slice(memory),
+        }
+    }
+}
+
+impl ShapeBased {
+    /// Whether the last number of the memory is that of the rotations that the global solver has computed.
+    pub fn counts_global(&self, body: &Body) -> bool {
+        self.solver(body.dimension).counts()
+    }
+
+    fn solver(&self, dimension: Dimension) -> Solver {
+        match (dimension, self.rotation) {
+            (Dimension::Plane, _) => Solver::Plane,
+            (Dimension::Space, RotationReading::LinearUpdate) => Solver::Linear,
+            (Dimension::Space, _) => Solver::Space,
+        }
+    }
+
+    /// The rotation of an element from its last one, by the method chosen, and whether the global solver computed it.
+    /// `at_rest` is `Σ R0 rᵀ` (m²).
+    fn rotation(&self, solver: Solver, at_rest: DMat3, last: &[f64], next: &mut [f64]) -> (DMat3, bool) {
+        let mut is_global = false;
+        match solver {
+            Solver::Plane => planar::solve(at_rest, DVec2::from_slice(last)).write_to_slice(next),
+            Solver::Space => {
+                let found = self.rotation.follow(at_rest, DQuat::from_slice(last), self.passes);
+                found.rotation.write_to_slice(next);
+                is_global = found.is_global;
+            }
+            Solver::Linear => {
+                linear_update::update(at_rest, DMat3::from_cols_slice(last), self.passes).write_cols_to_slice(next);
+            }
+        }
+        (solver.matrix(next), is_global)
+    }
+}
+
+/// The elements of a body, prepared for evaluation.
+struct Elements {
+    model: ShapeBased,
+    solver: Solver,
+    body: Arc<Body>,
+    /// `R0` of each corner (m), element after element.
+    rest: Vec<DVec3>,
+    /// `Σ m |R0|²` of each element (kg m²), Eq. (17).
+    inertia: Vec<f64>,
+    /// Adds up the forces on the corners of all elements for each node.
+    gather: blocks::Gather,
+}
+
+/// The position and rotation of the equilibrium shape of an element.
+struct Fit {
+    /// The unweighted mean of its nodes (m).
+    centre: DVec3,
+    /// `Σ R0 rᵀ` (m²).
+    at_rest: DMat3,
+    /// The rotation.
+    rotation: DMat3,
+    /// Whether the global solver computed it.
+    is_global: bool,
+}
+
+impl Elements {
+    fn new(model: ShapeBased, body: &Arc<Body>) -> Self {
+        let elements = &body.elements;
+        let mut rest = Vec::with_capacity(elements.indices().len());
+        elements.iter().for_each(|nodes| rest.extend(at_rest(nodes, body)));
+        let inertia = (0..elements.len())
+            .map(|element| inertia(&elements[element], &rest[elements.range(element)], &body.mass))
+            .collect();
+        let gather = blocks::Gather::new(body.len(), elements.indices().iter().copied());
+        Self { solver: model.solver(body.dimension), model, body: Arc::clone(body), rest, inertia, gather }
+    }
+
+    /// The nodes of an element and its shape at rest (m).
+    fn element(&self, element: usize) -> (&[u32], &[DVec3]) {
+        (&self.body.elements[element], &self.rest[self.body.elements.range(element)])
+    }
+
+    /// The memory of an element.
+    fn of<'a>(&self, element: usize, memory: &'a [f64]) -> &'a [f64] {
+        let width = self.solver.width();
+        &memory[element * width..][..width]
+    }
+
+    /// Computes the rotation of an element from the last one.
+    fn fit(&self, element: usize, position: &[DVec3], last: &[f64], next: &mut [f64]) -> Fit {
+        let (nodes, rest) = self.element(element);
+        let centre = mean(nodes, position);
+        let at_rest = moment_at_rest(rest, nodes, centre, position);
+        let (rotation, is_global) = self.model.rotation(self.solver, at_rest, last, next);
+        Fit { centre, at_rest, rotation, is_global }
+    }
+
+    /// α of Eq. (18) of an element with a rotation (rad/s²), from its `Σ R0 rᵀ` (m²).
+    fn residual(&self, element: usize, at_rest: DMat3, rotation: DMat3) -> f64 {
+        angular_acceleration(rotation * at_rest, self.model.stiffness, self.inertia[element])
+    }
+
+    /// Eq. (4) for one element: writes the force on each of its corners (N). Returns whether the global solver computed its
+    /// rotation.
+    #[doc(alias = "Eq. 4")]
+    fn forces(&self, element: usize, at: Nodes<'_>, last: &[f64], next: &mut [f64], forces: &mut [DVec3]) -> bool {
+        let ShapeBased { stiffness: k, damping: d, damping_of, .. } = self.model;
+        let (nodes, rest) = self.element(element);
+        let Fit { centre, rotation, is_global, .. } = self.fit(element, at.position, last, next);
+        let drift = mean(nodes, at.velocity);
+        let spin = match damping_of {
+            DampingReading::RelativeMotion => None,
+            DampingReading::Deformation => {
+                let corners =
+                    nodes.iter().map(|&node| (at.position[node as usize] - centre, at.velocity[node as usize] - drift));
+                Some(best_spin(corners))
+            }
+        };
+        for ((force, &node), &rest) in forces.iter_mut().zip(nodes).zip(rest) {
+            let r = at.position[node as usize] - centre;
+            let displacement = r - rotation * rest;
+            let mut relative_velocity = at.velocity[node as usize] - drift;
+            if let Some(spin) = spin {
+                relative_velocity -= spin.cross(r);
+            }
+            *force = -(displacement * k + relative_velocity * d);
+        }
+        is_global
+    }
+}
+
+impl ForceModel for Elements {
+    fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]) {
+        let (corners, globals) = (scratch.vectors(self.rest.len()), AtomicU64::new(0));
+        blocks::for_each(&self.body.elements, self.solver.width(), next, corners, &|element, next, corners| {
+            if self.forces(element, at, self.of(element, memory), next, corners) {
+                globals.fetch_add(1, Ordering::Relaxed);
+            }
+        });
+        if self.solver.counts()
+            && let (Some(before), Some(after)) = (memory.last(), next.last_mut())
+        {
+            *after = before + globals.into_inner() as f64;
+        }
+        self.gather.add(corners, forces);
+    }
+
+    fn is_damped(&self) -> bool {
+        self.model.damping > 0.0
+    }
+
+    /// A fixed number of passes leaves an error that depends on the rotation from which they start.
+    fn depends_on_history(&self) -> bool {
+        matches!(self.solver, Solver::Space | Solver::Linear) && self.model.rotation.has_passes()
+    }
+
+    fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report {
+        let mut shares = vec![0.0; self.rest.len()];
+        let mut alphas = vec![0.0; self.body.elements.len()];
+        blocks::for_each(&self.body.elements, 1, &mut alphas, &mut shares, &|element, alpha, shares| {
+            let (nodes, rest) = self.element(element);
+            let (last, mut next) = (self.of(element, memory), [0.0; 9]);
+            let Fit { centre, at_rest, rotation, .. } = self.fit(element, at.position, last, &mut next[..last.len()]);
+            for ((share, &node), &rest) in shares.iter_mut().zip(nodes).zip(rest) {
+                let squared = (at.position[node as usize] - centre - rotation * rest).length_squared();
+                *share = 0.5 * self.model.stiffness * squared;
+            }
+            alpha[0] = self.residual(element, at_rest, rotation);
+        });
+        for (element, nodes) in self.body.elements.iter().enumerate() {
+            share(element, nodes, &shares[self.body.elements.range(element)]);
+        }
+        // In the order of the corners, for any number of threads.
+        let energy = shares.iter().sum();
+        let residual = alphas.into_iter().fold(0.0, f64::max);
+        Report { energy: Some(energy), residuals: vec![(Report::ROTATION, residual)] }
+    }
+
+    fn residuals(&self, position: &[DVec3], memory: &[f64]) -> Vec<f64> {
+        let residual = |element: usize| {
+            let (nodes, rest) = self.element(element);
+            let at_rest = moment_at_rest(rest, nodes, mean(nodes, position), position);
+            self.residual(element, at_rest, self.solver.matrix(self.of(element, memory)))
+        };
+        (0..self.body.elements.len()).map(residual).collect()
+    }
+}
+
+/// `R0` of each corner of an element (m).
+fn at_rest(nodes: &[u32], body: &Body) -> impl Iterator<Item = DVec3> {
+    let centre = mean(nodes, &body.rest);
+    nodes.iter().map(move |&node| body.rest[node as usize] - centre)
+}
+
+/// `Σ R0 rᵀ` of an element (m²).
+fn moment_at_rest(rest: &[DVec3], nodes: &[u32], centre: DVec3, position: &[DVec3]) -> DMat3 {
+    rotation::moment(rest, nodes.iter().map(|&node| position[node as usize] - centre))
+}
+
+/// The unweighted mean of `values` over the nodes of an element.
+fn mean(nodes: &[u32], values: &[DVec3]) -> DVec3 {
+    let sum = nodes.iter().fold(DVec3::ZERO, |sum, &node| sum + values[node as usize]);
+    sum / nodes.len() as f64
+}
+
+/// The angular velocity `ω` (rad/s) of the rigid rotation that fits velocities best: `Σ (r² I − r rᵀ) ω = Σ r × v`.
+/// Corners are given by position (m) and velocity (m/s) relative to their means. Forces proportional to the remaining
+/// velocities exert no torque.
+fn best_spin(corners: impl Iterator<Item = (DVec3, DVec3)>) -> DVec3 {
+    /// Corners are taken to lie on a line if the determinant of their matrix, relative to that of a ball, is below
+    /// this.
+    const LINE: f64 = 1e-12;
+    let (mut matrix, mut momentum, mut squares) = (DMat3::ZERO, DVec3::ZERO, 0.0);
+    for (r, v) in corners {
+        let squared = r.length_squared();
+        squares += squared;
+        matrix += DMat3::from_diagonal(DVec3::splat(squared)) - DMat3::from_cols(r * r.x, r * r.y, r * r.z);
+        momentum += r.cross(v);
+    }
+    if squares == 0.0 {
+        return DVec3::ZERO;
+    }
+    if matrix.determinant() <= LINE * squares * squares * squares {
+        // Rotation about the line itself has no effect; across it the moment is the same about all axes.
+        return momentum / squares;
+    }
+    matrix.inverse() * momentum
+}
+
+/// Eq. (17): the approximate moment of inertia `I = Σ m |R0|²` of an element (kg m²); for a cube it is 1.5 times the
+/// true one.
+#[doc(alias = "Eq. 17")]
+fn inertia(nodes: &[u32], rest: &[DVec3], mass: &[f64]) -> f64 {
+    nodes.iter().zip(rest).map(|(&node, rest)| mass[node as usize] * rest.length_squared()).sum()
+}
+
+/// Eq. (18): `|α| = k |Σ r × R| / I` (rad/s²), the angular acceleration that the error of an element's rotation causes.
+/// `a` is `Σ R rᵀ`.
+#[doc(alias = "Eq. 18")]
+fn angular_acceleration(a: DMat3, stiffness: f64, inertia: f64) -> f64 {
+    stiffness * rotation::torque(a).length() / inertia
+}

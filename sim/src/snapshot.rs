@@ -1,0 +1,118 @@
+//! A [`Snapshot`] of a run: what drawing, diagnostics and files read of a simulation.
+
+pub use super::diagnostics::Diagnostic;
+pub use super::diagnostics::Diagnostics;
+use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// Where and when a run diverged. This is a result, not an error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Divergence {
+    /// Time of the end of the first step that was rejected (s).
+    pub time: f64,
+    /// Number of that step, counted from 1.
+    pub step: u64,
+    /// The part of the node that exceeded the speed limit, counted from 0.
+    pub part: usize,
+    /// The first element of that part that contains the node; `None` if it belongs to no element.
+    pub element: Option<usize>,
+}
+
+/// Whether a run has diverged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Status {
+    /// It has not.
+    #[default]
+    Ok,
+    /// It has; the snapshot has its last finite state.
+    Diverged(Divergence),
+}
+
+/// The state of one run at one moment, with its diagnostics.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Snapshot {
+    /// Number of steps taken (0: the start).
+    pub step: u64,
+    /// Time of that step (s). The clock of a diverged run keeps counting: its last state is shown at later times.
+    pub time: f64,
+    /// Position of each node (m).
+    pub position: Vec<DVec3>,
+    /// Velocity of each node (m/s).
+    pub velocity: Vec<DVec3>,
+    /// Whether each element has turned over: its signed volume is below −0.1 % of that at rest; see
+    /// [`Diagnostics::turned_over`].
+    pub turned_over: Vec<bool>,
+    /// Whether each element is flat: its volume is below a hundredth of that at rest, and it has not turned over.
+    pub flat: Vec<bool>,
+    /// The best rigid placement of the rest shape.
+    pub placement: Placement,
+    /// The values of the requested field, one for each node or each element; empty if no field was requested.
+    pub field: Vec<f64>,
+    /// Energies, momenta and measures of shape: those that were requested; the others are zero.
+    pub diagnostics: Diagnostics,
+    /// Whether the run has diverged.
+    pub status: Status,
+}
+
+/// The rigid placement of a body's rest shape that is nearest to its nodes (least squares).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// Mean of the nodes at rest (m).
+    pub rest_centre: DVec3,
+    /// Mean of the nodes (m).
+    pub centre: DVec3,
+    /// The rotation.
+    pub turn: DMat3,
+}
+
+impl Placement {
+    /// The position of a point of the rest shape (m) in this placement.
+    pub fn place(&self, rest: DVec3) -> DVec3 {
+        self.centre + self.turn * (rest - self.rest_centre)
+    }
+}
+
+/// One frame of a scene: the requested runs at the same moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Number of the frame (0: the start).
+    pub index: u64,
+    /// Time of the step that the frame shows (s), by the clock of the first run. Frames do not change the steps, so
+    /// this is the time of the step nearest to the frame's nominal time.
+    pub time: f64,
+    /// The runs shown, in the scene's order.
+    pub runs: Vec<RunFrame>,
+}
+
+/// One run in a [`Frame`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunFrame {
+    /// Index of the run in the scene.
+    pub run: usize,
+    /// Its state.
+    pub snapshot: Snapshot,
+    /// What pictures show of a run that diverges, from the last state that fits on; `None` before that, and where nothing is
+    /// drawn.
+    pub last_fit: Option<Box<LastFit>>,
+}
+
+impl RunFrame {
+    /// A run with a state that is shown as it is.
+    pub fn new(run: usize, snapshot: Snapshot) -> Self {
+        Self { run, snapshot, last_fit: None }
+    }
+
+    /// The state that pictures show.
+    pub fn shown(&self) -> &Snapshot {
+        self.last_fit.as_ref().map_or(&self.snapshot, |last_fit| &last_fit.snapshot)
+    }
+}
+
+/// The last state of a run that diverges in which the body is not much wider than at rest or at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LastFit {
+    /// That state, with its own time and the status at the end.
+    pub snapshot: Snapshot,
+    /// How many times wider the body is when the run stops.
+    pub times_wider: f64,
+}

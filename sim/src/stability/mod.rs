@@ -1,0 +1,240 @@
+//! The largest stable step of a run, predicted before it starts: from the largest eigenvalue of its stiffness, linearised at rest
+//! and divided by the masses, and from its damping.
+//!
+//! No matrix is stored: its products with vectors are differences of the run's own forces, so any model will do. What holds at
+//! rest holds for a shape-based body that moves, too, up to changes of its stiffness with deformation. A spring that is stretched
+//! also resists across its direction, with a stiffness that approaches its own; a second limit allows for that.
+
+mod lanczos;
+mod limits;
+
+use super::body::{Body, Dimension};
+use super::grip::Grip;
+use super::integrate::Integrator;
+use super::mode::Mode;
+use super::model::mass_spring::MassSpring;
+use super::model::{ElasticModel, ForceModel, Known, Scratch};
+use super::state::Nodes;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// The largest stable step of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stability {
+    /// At rest (s): 0 if no step is stable, infinite if all are.
+    pub largest: f64,
+    /// The same however far springs are stretched, and whatever their directions; `None` for other models.
+    pub stretched: Option<f64>,
+}
+
+impl Stability {
+    /// The share of [`Self::largest`] that `step = "auto"` takes, at most.
+    ///
+    /// In falls, elements are deformed far from where the limit was computed. And what springs add when stretched is less than
+    /// this: averaged over three directions at right angles, the stiffness at rest is a third of the bound, so that the limit at
+    /// rest is at most √3 times the one of stretched springs.
+    pub const SHARE: f64 = 0.5;
+
+    /// Predicts it for a model on a body. Nodes that a grip holds from the start to the end at a time (s) do not vibrate; others
+    /// count as free, which they may become: holding nodes only lowers frequencies.
+    pub fn of(
+        body: &Arc<Body>,
+        model: &dyn ElasticModel,
+        integrator: Integrator,
+        grips: &[Grip],
+        duration: f64,
+    ) -> Self {
+        if matches!(integrator, Integrator::BackwardEuler | Integrator::DormandPrince) {
+            return Self { largest: f64::INFINITY, stretched: None };
+        }
+        let corners = body.elements.indices().len().max(2 * model.springs().len());
+        let certain = Self::certain(body, model, integrator);
+        if let Some(step) = certain.filter(|&step| corners > MOST_CORNERS && step > 0.0) {
+            return Self { largest: step, stretched: None };
+        }
+        let mut is_free = vec![true; body.len()];
+        let holding = grips.iter().filter(|grip| grip.from <= 0.0 && grip.until >= duration);
+        holding.flat_map(|grip| &grip.nodes).for_each(|&node| is_free[node as usize] = false);
+        let stretched = match model.known() {
+            Some(Known::MassSpring(model)) => Some(stretched(body, model, &is_free).largest_step(integrator)),
+            _ => None,
+        };
+        Self { largest: Linear::new(body, model, is_free).largest_step(integrator), stretched }
+    }
+
+    /// A step (s) that is stable for certain, without computing eigenvalues: 0 if none is known, `None` for models that do not
+    /// say how stiff they are.
+    pub fn certain(body: &Body, model: &dyn ElasticModel, integrator: Integrator) -> Option<f64> {
+        Some(model.bound(body)?.certain_step(integrator))
+    }
+}
+
+/// Elements and springs of bodies up to this size are looked at, by their corners and ends: a prediction takes some seconds on one
+/// processor. For larger ones it is the bound of their models, which for lattices is 3 % lower.
+const MOST_CORNERS: usize = 1_000_000;
+
+/// The most products of the matrix with a vector in one search of an eigenvalue: fewer for bodies of many corners.
+fn most_products(corners: usize) -> usize {
+    const LEAST: usize = 24;
+    const MOST: usize = 80;
+    (20_000_000 / corners.max(1)).clamp(LEAST, MOST)
+}
+
+/// A vector from which to search: no symmetry of a body makes it normal to an eigenvector.
+fn start(body: &Body, is_free: &[bool]) -> Vec<DVec3> {
+    let mut seed = 1_u64;
+    let mut noise = || {
+        // D. Knuth's multiplier.
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let across = if body.dimension == Dimension::Plane { 0.0 } else { 1.0 };
+    let mut vector = |&is_free: &bool| {
+        let vector = DVec3::new(noise(), noise(), across * noise());
+        if is_free { vector } else { DVec3::ZERO }
+    };
+    is_free.iter().map(&mut vector).collect()
+}
+
+/// Stretched without limit, each spring resists motion in all directions as it does along itself: the stiffness and the damping of
+/// no state exceed these.
+fn stretched(body: &Body, model: &MassSpring, is_free: &[bool]) -> Mode {
+    let scale: Vec<f64> = body.mass.iter().map(|mass| 1.0 / mass.sqrt()).collect();
+    let product = |from: &[DVec3], to: &mut [DVec3]| {
+        to.fill(DVec3::ZERO);
+        for &[i, j] in &*model.springs {
+            let [i, j] = [i as usize, j as usize];
+            let stretch = from[i] * scale[i] - from[j] * scale[j];
+            to[i] += stretch * scale[i];
+            to[j] -= stretch * scale[j];
+        }
+        let fixed = to.iter_mut().zip(is_free).filter(|(_, is_free)| !**is_free);
+        fixed.for_each(|(to, _)| *to = DVec3::ZERO);
+    };
+    let most = most_products(2 * model.springs.len());
+    let (value, _) = lanczos::largest(&start(body, is_free), most, false, product);
+    Mode { stiffness: model.stiffness * value, damping: model.damping * value }
+}
+
+/// The forces of a model around rest.
+struct Linear {
+    body: Arc<Body>,
+    forces: Box<dyn ForceModel>,
+    memory: Vec<f64>,
+    /// `1/√m` of each node (1/√kg).
+    scale: Vec<f64>,
+    is_free: Vec<bool>,
+    /// The greatest displacement (m) in a difference of forces.
+    small: f64,
+    /// At rest (N).
+    at_rest: Vec<DVec3>,
+    /// The corners of all elements, or the ends of all springs.
+    corners: usize,
+}
+
+impl Linear {
+    fn new(body: &Arc<Body>, model: &dyn ElasticModel, is_free: Vec<bool>) -> Self {
+        /// As a share of the smallest element: forces are linear to about this share, and round-off is far smaller.
+        const SMALL: f64 = 1e-6;
+        let size = |nodes: &[u32]| {
+            let first = body.rest[nodes[0] as usize];
+            nodes.iter().map(|&node| body.rest[node as usize].distance(first)).fold(0.0, f64::max)
+        };
+        let smallest = body.elements.iter().map(size).filter(|&size| size > 0.0).fold(body.extent(), f64::min);
+        let memory = model.start(body, &body.rest);
+        let mut own = Self {
+            forces: model.prepare(body),
+            memory,
+            scale: body.mass.iter().map(|mass| 1.0 / mass.sqrt()).collect(),
+            is_free,
+            small: SMALL * smallest,
+            at_rest: Vec::new(),
+            corners: body.elements.indices().len().max(2 * model.springs().len()),
+            body: Arc::clone(body),
+        };
+        own.at_rest = own.evaluate(&body.rest, &vec![DVec3::ZERO; body.len()], &mut Scratch::default());
+        own
+    }
+
+    fn evaluate(&self, position: &[DVec3], velocity: &[DVec3], scratch: &mut Scratch) -> Vec<DVec3> {
+        let mut forces = vec![DVec3::ZERO; position.len()];
+        let at = Nodes { position, velocity };
+        self.forces.add_forces(at, &self.memory, &mut self.memory.clone(), scratch, &mut forces);
+        forces
+    }
+
+    /// Adds stiffness and damping, with weights, times a vector, all divided by the square roots of the masses.
+    fn product(&self, weights: [f64; 2], from: &[DVec3], to: &mut [DVec3], scratch: &mut Scratch) {
+        let own: Vec<_> = from.iter().zip(&self.scale).map(|(&from, &scale)| from * scale).collect();
+        let largest = own.iter().map(|own| own.length_squared()).fold(0.0, f64::max).sqrt();
+        to.fill(DVec3::ZERO);
+        let mut add = |forces: &[DVec3], factor: f64| {
+            for (node, to) in to.iter_mut().enumerate().filter(|(node, _)| self.is_free[*node]) {
+                *to -= (forces[node] - self.at_rest[node]) * (factor * self.scale[node]);
+            }
+        };
+        if largest == 0.0 {
+            return;
+        }
+        if weights[0] != 0.0 {
+            let share = self.small / largest;
+            let moved: Vec<_> = self.body.rest.iter().zip(&own).map(|(&rest, &own)| rest + own * share).collect();
+            let still = vec![DVec3::ZERO; moved.len()];
+            add(&self.evaluate(&moved, &still, scratch), weights[0] / share);
+        }
+        if weights[1] != 0.0 {
+            add(&self.evaluate(&self.body.rest, &own, scratch), weights[1]);
+        }
+        if self.body.dimension == Dimension::Plane {
+            to.iter_mut().for_each(|to| to.z = 0.0);
+        }
+    }
+
+    /// The mode in which stiffness and damping, with these weights, have the largest sum.
+    fn top(&self, weights: [f64; 2]) -> Mode {
+        let corners = self.corners;
+        let mut scratch = Scratch::default();
+        let is_damped = self.forces.is_damped();
+        let start = start(&self.body, &self.is_free);
+        let (value, vector) = lanczos::largest(&start, most_products(corners), is_damped, |from, to| {
+            self.product(weights, from, to, &mut scratch);
+        });
+        let Some(vector) = vector else { return Mode { stiffness: value / weights[0], damping: 0.0 } };
+        let mut image = vec![DVec3::ZERO; vector.len()];
+        let mut quotient = |weights: [f64; 2]| {
+            self.product(weights, &vector, &mut image, &mut scratch);
+            lanczos::dot(&vector, &image).max(0.0)
+        };
+        Mode { stiffness: quotient([1.0, 0.0]), damping: quotient([0.0, 1.0]) }
+    }
+
+    /// The largest step that is stable for the modes that limit it, beginning with those of the largest stiffness and the largest
+    /// damping.
+    ///
+    /// For semi-implicit Euler, a step is stable exactly if `K ΔT² + 2 C ΔT` has no eigenvalue above 4, and the search below is
+    /// Newton's method for that, from above. For the others it is exact where stiffness and damping have the same modes, and a
+    /// lower bound, up to a tenth less, where they do not.
+    fn largest_step(&self, integrator: Integrator) -> f64 {
+        const MOST_SEARCHES: usize = 5;
+        if !self.forces.is_damped() {
+            return match integrator {
+                Integrator::ExplicitEuler => 0.0,
+                _ => self.top([1.0, 0.0]).largest_step(integrator),
+            };
+        }
+        let with_step = |mode: Mode| (mode.largest_step(integrator), mode);
+        let [first, second] = [[1.0, 0.0], [0.0, 1.0]].map(|weights| with_step(self.top(weights)));
+        let (mut step, mut mode) = if second.0 < first.0 { second } else { first };
+        for _ in 0..MOST_SEARCHES {
+            if !step.is_finite() {
+                break;
+            }
+            let (next, other) = with_step(self.top(mode.outwards(integrator, step)));
+            if next >= step * (1.0 - 1e-4) {
+                break;
+            }
+            (step, mode) = (next, other);
+        }
+        step
+    }
+}

@@ -1,0 +1,148 @@
+//! What is advanced together: bodies with their models, obstacles and kinematic constraints.
+
+use super::contact::{ContactStage, Obstacle};
+use super::grip::Grip;
+use super::model::Scratch;
+use super::motion::Interval;
+use super::part::Part;
+use super::state::{Memory, Nodes, State};
+use glam::DVec3;
+
+/// What acts on bodies from outside.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surroundings {
+    /// Acceleration of gravity (m/s²).
+    pub gravity: DVec3,
+    /// Obstacles, in the order in which they act.
+    pub obstacles: Vec<Obstacle>,
+    /// Kinematic constraints, applied after all obstacles.
+    pub grips: Vec<Grip>,
+}
+
+/// All parts, and what acts on them.
+pub(super) struct System {
+    pub(super) parts: Vec<Part>,
+    /// Mass of each node (kg).
+    pub(super) mass: Vec<f64>,
+    /// Acceleration of gravity (m/s²).
+    pub(super) gravity: DVec3,
+    /// Contact with obstacles.
+    pub(super) contact: Box<dyn ContactStage>,
+    /// Kinematic constraints, applied after contact.
+    pub(super) grips: Vec<Grip>,
+    /// Time step ΔT (s).
+    pub(super) step: f64,
+}
+
+impl System {
+    /// The time interval of the step after `steps` steps.
+    pub(super) fn interval(&self, steps: u64) -> Interval {
+        Interval { begin: steps as f64 * self.step, end: (steps + 1) as f64 * self.step, step: self.step }
+    }
+
+    /// The part that a node belongs to, and the first element of that part that contains it.
+    pub(super) fn place_of(&self, node: usize) -> (usize, Option<usize>) {
+        let part = self.parts.partition_point(|part| part.nodes.end <= node);
+        let Part { body, nodes, .. } = &self.parts[part];
+        let own = (node - nodes.start) as u32;
+        (part, body.elements.iter().position(|nodes| nodes.contains(&own)))
+    }
+
+    /// Whether forces depend on velocities.
+    pub(super) fn is_damped(&self) -> bool {
+        self.parts.iter().any(|part| part.forces.is_damped())
+    }
+
+    /// Gravity, then the elastic models' Eq. (1) or Eq. (4): writes the force on each node (N), and the models' `next`
+    /// memory.
+    pub(super) fn forces(
+        &self,
+        at: Nodes<'_>,
+        memory: &[f64],
+        next: &mut [f64],
+        scratch: &mut Scratch,
+        forces: &mut [DVec3],
+    ) {
+        for (force, &mass) in forces.iter_mut().zip(&self.mass) {
+            *force = self.gravity * mass;
+        }
+        for part in &self.parts {
+            let (memory, next) = (&memory[part.memory.clone()], &mut next[part.memory.clone()]);
+            part.forces.add_forces(part.nodes_of(at), memory, next, scratch, &mut forces[part.nodes.clone()]);
+        }
+    }
+
+    /// Whether a grip becomes active at the beginning of the step after `steps` steps.
+    pub(super) fn takes(&self, steps: u64, memory: &[f64]) -> bool {
+        let end = self.interval(steps).end;
+        self.grips(memory).any(|(grip, memory)| grip.takes(end, memory))
+    }
+
+    /// Whether a grip holds nodes at the end of the step after `steps` steps.
+    pub(super) fn holds(&self, steps: u64) -> bool {
+        let end = self.interval(steps).end;
+        self.grips.iter().any(|grip| grip.moves(end))
+    }
+
+    /// Each grip with its part of the memory.
+    pub(super) fn grips<'a>(&'a self, memory: &'a [f64]) -> impl Iterator<Item = (&'a Grip, &'a [f64])> {
+        let mut rest = memory;
+        self.grips.iter().map(move |grip| {
+            let (own, others) = rest.split_at(grip.width());
+            rest = others;
+            (grip, own)
+        })
+    }
+
+    /// Calls `change` with each grip and its part of the memory.
+    pub(super) fn change_grips(&self, memory: &mut [f64], mut change: impl FnMut(&Grip, &mut [f64])) {
+        let mut rest = memory;
+        for grip in &self.grips {
+            let (own, others) = rest.split_at_mut(grip.width());
+            change(grip, own);
+            rest = others;
+        }
+    }
+
+    /// Applies contact and grips at the end of a step from `before` to `after`. `acceleration` (m/s²) is the constant
+    /// one of each node in the step; `None` if nodes moved at constant velocity.
+    pub(super) fn constrain(
+        &self,
+        interval: Interval,
+        before: &State,
+        after: &mut State,
+        acceleration: Option<&[DVec3]>,
+    ) {
+        let State { position, velocity, memory: Memory { constraints, .. }, .. } = after;
+        self.contact.resolve(&self.parts, interval, before.nodes(), position, velocity, acceleration);
+        for (grip, memory) in self.grips(constraints) {
+            grip.drag(interval, memory, position, velocity);
+        }
+    }
+
+    /// Places the nodes that grips hold at the end of a step where they are after a `share` of it, with their velocity in
+    /// the step.
+    pub(super) fn place_held(&self, interval: Interval, share: f64, next: &mut State) {
+        let State { position, velocity, memory: Memory { constraints, .. }, .. } = next;
+        for (grip, memory) in self.grips(constraints) {
+            for (node, to, speed) in grip.moved_by(interval, share, memory) {
+                (position[node], velocity[node]) = (to, speed);
+            }
+        }
+    }
+
+    /// Calls `each` with the nodes that grips hold at the end of a step.
+    pub(super) fn for_each_held(&self, interval: Interval, next: &State, mut each: impl FnMut(usize)) {
+        for (grip, memory) in self.grips(&next.memory.constraints) {
+            grip.moved(interval, memory).for_each(|(node, _, _)| each(node));
+        }
+    }
+
+    /// Writes the velocities of the nodes that grips hold at the end of a step, after the integrator has changed them.
+    pub(super) fn hold(&self, interval: Interval, after: &mut State) {
+        let State { velocity, memory: Memory { constraints, .. }, .. } = after;
+        for (grip, memory) in self.grips(constraints) {
+            grip.hold(interval, memory, velocity);
+        }
+    }
+}

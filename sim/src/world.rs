@@ -1,0 +1,428 @@
+//! The simulation of one run. Its step is section 2 of the paper: forces, motion, collisions.
+
+use super::body::Body;
+use super::crew::Crew;
+use super::diagnose::Diagnose;
+use super::diagnostics::{Diagnostic, Facts};
+use super::dynamics::{Dynamics, SpeedLimit};
+use super::field::Field;
+use super::integrate::{ByForces, Integrator, Scales};
+use super::kernel::{ByKernel, Scheme};
+use super::model::{ElasticModel, Known, Report};
+use super::part::{Forces, Part};
+use super::sleep::{Next, Sleep};
+use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
+use super::state::{Memory, State};
+pub use super::system::Surroundings;
+use super::system::System;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// How a run is advanced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stepping {
+    /// The integration method.
+    pub integrator: Integrator,
+    /// Time step ΔT (s).
+    pub step: f64,
+    /// The error that an adaptive method allows in each of its substeps, as a share of the size of the body. Others ignore it.
+    pub tolerance: f64,
+    /// Which code computes a step. The reference code is used for a model without vectorised steps
+    /// ([`ElasticModel::known`]) and for several bodies together.
+    pub kernel: Kernel,
+}
+
+impl Stepping {
+    /// With the fastest code.
+    pub fn new(integrator: Integrator, step: f64) -> Self {
+        Self { integrator, step, tolerance: Integrator::TOLERANCE, kernel: Kernel::default() }
+    }
+}
+
+/// Which code computes a step. The choice changes states by round-off in each step, which chaotic motion amplifies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kernel {
+    /// Vectorised, with the same bits on every machine and for any number of threads. For mass-spring models, and for
+    /// shape-based models with `rotation = "robust"` or `"arctangent"` that are undamped or have `damping_of =
+    /// "relative-motion"`.
+    #[default]
+    Fast,
+    /// The reference code, written like the equations of the paper. All models have it.
+    Reference,
+}
+
+impl Kernel {
+    /// The fastest one that a model has with an integrator.
+    pub fn of(model: &dyn ElasticModel, integrator: Integrator) -> Self {
+        if model.known().is_some() && Scheme::of(integrator).is_some() { Self::Fast } else { Self::Reference }
+    }
+}
+
+/// A moment of simulated time: a count at a rate, such as a frame number and frames per second. A run with fixed steps
+/// has at a moment the state of its nearest step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Counts since the start.
+    pub count: f64,
+    /// Counts per second (1/s).
+    pub rate: f64,
+}
+
+impl Moment {
+    /// A time (s).
+    pub fn at(time: f64) -> Self {
+        Self { count: time, rate: 1.0 }
+    }
+
+    /// `round(n / (rate · ΔT))`: the nearest step of a run with a time step ΔT (s).
+    pub fn step(self, step: f64) -> u64 {
+        // As written: dividing twice would round ties to other steps.
+        (self.count / (self.rate * step)).round() as u64
+    }
+}
+
+/// Bodies with their elastic models, as they move in time. Stepping cannot fail: a world that diverges stops at its
+/// last finite state, and [`Self::status`] reports it.
+pub struct World {
+    system: System,
+    dynamics: Box<dyn Dynamics>,
+    crew: Crew,
+    limit: SpeedLimit,
+    /// When the bodies fall asleep; `None` if they do not.
+    sleep: Option<Sleep>,
+    /// The field in snapshots.
+    field: Option<Field>,
+    /// The diagnostics in snapshots.
+    wanted: Vec<Diagnostic>,
+    state: State,
+}
+
+impl World {
+    /// A world of one body, with the initial positions and velocities `initial`.
+    ///
+    /// # Panics
+    /// If `initial` has not one position and one velocity per node.
+    pub fn new(
+        body: &Arc<Body>,
+        initial: State,
+        model: &dyn ElasticModel,
+        surroundings: Surroundings,
+        stepping: Stepping,
+    ) -> Self {
+        Self::of_parts(&[(Arc::clone(body), model)], initial, surroundings, stepping)
+    }
+
+    /// A world of several bodies, each with its model, which are advanced together. `initial` has the nodes of the
+    /// first body, then those of the second, and so on; grips number nodes in the same order.
+    ///
+    /// # Panics
+    /// If `initial` has not one position and one velocity per node.
+    pub fn of_parts(
+        bodies: &[(Arc<Body>, &dyn ElasticModel)],
+        initial: State,
+        surroundings: Surroundings,
+        stepping: Stepping,
+    ) -> Self {
+        let nodes = bodies.iter().map(|(body, _)| body.len()).sum();
+        assert!(initial.position.len() == nodes && initial.velocity.len() == nodes, "one entry per node");
+        let mut state = State::new(initial.position, initial.velocity);
+        for grip in &surroundings.grips {
+            let memory = grip.start(&mut state);
+            state.memory.constraints.extend(memory);
+        }
+        let Stepping { integrator, step, tolerance, kernel } = stepping;
+        let fast = match bodies {
+            [(_, model)] if kernel == Kernel::Fast => model.known().zip(Scheme::of(integrator)),
+            _ => None,
+        };
+        let (mut parts, mut limit) = (Vec::new(), None::<SpeedLimit>);
+        let (mut first_node, mut mass) = (0, Vec::with_capacity(nodes));
+        let mut scales = Scales { length: 0.0, time: f64::INFINITY };
+        for (body, model) in bodies {
+            let forces = match fast {
+                Some((Known::ShapeBased(model), _)) => prepared_late(model.clone(), body),
+                Some((Known::MassSpring(model), _)) => prepared_late(model.clone(), body),
+                None => {
+                    let forces = model.prepare(body);
+                    Forces::new(Box::new(|| forces))
+                }
+            };
+            let nodes = first_node..first_node + body.len();
+            let start = model.start(body, &state.position[nodes.clone()]);
+            let first = state.memory.model.len();
+            state.memory.model.extend(start);
+            let memory = first..state.memory.model.len();
+            let counts_global = model.shape_based().is_some_and(|model| model.counts_global(body));
+            let diagnose = Diagnose::new(body);
+            let part = Part { body: Arc::clone(body), forces, nodes, memory, counts_global, diagnose };
+            let period = model.shortest_period(body);
+            let own = SpeedLimit::new(body, part.nodes_of(state.nodes()), period, &surroundings, step);
+            scales.length = scales.length.max(body.extent());
+            scales.time = scales.time.min(period / std::f64::consts::TAU);
+            limit = Some(limit.map_or(own, |limit| limit.max(own)));
+            mass.extend_from_slice(&body.mass);
+            first_node = part.nodes.end;
+            parts.push(part);
+        }
+        let Surroundings { gravity, obstacles, grips } = surroundings;
+        let system = System { parts, mass, gravity, contact: Box::new(obstacles), grips, step };
+        let dynamics: Box<dyn Dynamics> = match (fast, bodies) {
+            (Some((model, scheme)), [(body, _)]) => Box::new(ByKernel::new(body, model, scheme, gravity, step)),
+            _ => Box::new(ByForces::new(integrator, tolerance, scales, &state)),
+        };
+        let (limit, wanted) = (limit.unwrap_or_default(), Diagnostic::ALL.to_vec());
+        Self { system, dynamics, crew: Crew::new(1), limit, sleep: None, field: None, wanted, state }
+    }
+
+    /// Sets the threads for vectorised steps and for diagnostics, which use as many as the body is large enough for. They
+    /// do not change any bit. By default one thread is used; [`Kernel::Reference`] uses the thread pool of the caller
+    /// (rayon) for forces and energies instead.
+    pub fn set_crew(&mut self, crew: Crew) {
+        self.crew = crew;
+    }
+
+    /// The threads for vectorised steps.
+    pub fn crew(&mut self) -> &mut Crew {
+        &mut self.crew
+    }
+
+    /// Sets when the bodies fall asleep, before the first step; by default they never do.
+    pub fn may_sleep(&mut self, sleep: Option<Sleep>) {
+        self.sleep = sleep;
+    }
+
+    /// Sets the field that snapshots contain from now on; `None` for no field.
+    pub fn show(&mut self, field: Option<Field>) {
+        self.field = field;
+    }
+
+    /// Sets the diagnostics that snapshots contain from now on, at first all. The others are zero, and what only they
+    /// need is not computed.
+    pub fn want(&mut self, diagnostics: &[Diagnostic]) {
+        self.wanted = diagnostics.to_vec();
+    }
+
+    /// Advances by a number of steps. After a divergence only the clock advances.
+    pub fn advance(&mut self, steps: u64) {
+        self.advance_steps(steps);
+        self.dynamics.settle(&mut self.state);
+    }
+
+    /// Advances towards a moment by at most `most_steps` steps, and returns whether it has been reached. The states
+    /// have the same bits however the steps are divided into calls.
+    ///
+    /// # Panics
+    /// If the moment has passed.
+    pub fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
+        let left = self.steps_at(moment).checked_sub(self.steps()).expect("moments are taken in rising order");
+        // After a divergence only the clock advances, which takes no time.
+        let most_steps = if self.state.status == Status::Ok { most_steps } else { u64::MAX };
+        self.advance_steps(left.min(most_steps));
+        let is_there = left <= most_steps;
+        if is_there {
+            self.dynamics.settle(&mut self.state);
+        }
+        is_there
+    }
+
+    /// The number of steps taken at a moment.
+    pub fn steps_at(&self, moment: Moment) -> u64 {
+        moment.step(self.system.step)
+    }
+
+    /// Makes [`Self::state`] the present state, also between moments. It changes no bit of later states.
+    pub fn settle(&mut self) {
+        self.dynamics.settle(&mut self.state);
+    }
+
+    fn advance_steps(&mut self, steps: u64) {
+        let Some(sleep) = self.sleep else { return self.take_steps(steps) };
+        let end = self.steps().saturating_add(steps);
+        while self.state.status == Status::Ok {
+            let (now, Self { system, dynamics, state, .. }) = (self.steps(), &mut *self);
+            match sleep.next(system, state, now, end, |state| dynamics.settle(state)) {
+                Next::Steps(steps) => self.take_steps(steps),
+                Next::Look => {
+                    self.take_steps(1);
+                    let Self { system, dynamics, state, .. } = self;
+                    dynamics.settle(state);
+                    if state.status != Status::Ok {
+                        state.sleep.clear();
+                    } else if sleep.look(system, state) {
+                        dynamics.restart();
+                    }
+                }
+                Next::Skipped => {}
+                Next::Done => return,
+            }
+        }
+        self.take_steps(end - self.steps());
+    }
+
+    fn take_steps(&mut self, steps: u64) {
+        let Self { system, dynamics, crew, limit, state, .. } = self;
+        if state.status == Status::Ok {
+            let last = dynamics.steps(state).saturating_add(steps);
+            let Err(runaway) = dynamics.advance(system, limit, state, steps, crew) else { return };
+            dynamics.settle(state);
+            dynamics.restart();
+            let (time, step) = (system.interval(state.steps).end, state.steps + 1);
+            let (part, element) = system.place_of(runaway.node);
+            state.status = Status::Diverged(Divergence { time, step, part, element });
+            state.steps = last;
+        } else {
+            state.steps = state.steps.saturating_add(steps);
+        }
+    }
+
+    /// The first node whose speed was too high in the step in which this world diverged, and the limit (m/s); `None` if it
+    /// has not.
+    pub fn runaway(&mut self) -> Option<(usize, f64)> {
+        let Status::Diverged(Divergence { step, .. }) = self.state.status else { return None };
+        let Self { system, dynamics, crew, limit, state, .. } = self;
+        let mut before = State { steps: step - 1, status: Status::Ok, ..state.clone() };
+        dynamics.restart();
+        let again = dynamics.advance(system, limit, &mut before, 1, crew);
+        dynamics.restart();
+        Some((again.err()?.node, limit.at(system.interval(step - 1).end)))
+    }
+
+    /// Number of steps taken, also between moments.
+    pub fn steps(&self) -> u64 {
+        match self.state.status {
+            Status::Ok => self.dynamics.steps(&self.state),
+            Status::Diverged(_) => self.state.steps,
+        }
+    }
+
+    /// The state when [`Self::advance`] returned, or when the last moment was reached.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Whether a state has the numbers of nodes and of memory of these bodies, and diverged and woke, if it did, where and when they
+    /// can have.
+    pub fn takes(&self, state: &State) -> bool {
+        let lengths = |state: &State| {
+            let Memory { model, constraints, .. } = &state.memory;
+            [state.position.len(), state.velocity.len(), model.len(), constraints.len()]
+        };
+        let sleep = [0, 1, 3 * state.position.len()].contains(&state.sleep.len());
+        let place = match state.status {
+            Status::Ok => true,
+            Status::Diverged(Divergence { step, part, element, .. }) => {
+                let elements = self.system.parts.get(part).map(|part| part.body.elements.len());
+                step > 0 && elements.is_some_and(|elements| element.is_none_or(|element| element < elements))
+            }
+        };
+        let sleep = match self.sleep {
+            Some(_) => sleep && state.woken <= state.steps,
+            None => state.sleep.is_empty() && state.woken == 0,
+        };
+        lengths(state) == lengths(&self.state) && place && sleep
+    }
+
+    /// Continues from another state of the same bodies under the same conditions. The time step has to be the same, as
+    /// the time of a state is its number of steps times the time step.
+    ///
+    /// # Panics
+    /// If the state does not have the numbers of nodes and of memory of these bodies.
+    pub fn set_state(&mut self, state: State) {
+        assert!(self.takes(&state), "a state of the same bodies");
+        self.state = state;
+        self.dynamics.restart();
+    }
+
+    /// Whether the run has diverged.
+    pub fn status(&self) -> Status {
+        self.state.status
+    }
+
+    /// Energy of the present state, and the residual α of Eq. (18) with the rotations that the forces have in this
+    /// state. Every integrator evaluates its forces at the state before a step. So if this is called before each step,
+    /// it gives α at every evaluation, for velocity Verlet as for both Euler methods. It costs about one evaluation and
+    /// changes nothing.
+    ///
+    /// # Panics
+    /// If there is no such part.
+    pub fn report(&self, part: usize) -> Report {
+        self.dynamics.report(&self.system.parts[part], &self.state, None, &self.crew)
+    }
+
+    /// α of Eq. (18) of each element of the first part (rad/s²) in the last step, which must be one of an Euler method
+    /// that began with the nodes at `before` (m); empty for a model without rotations. It uses the rotations of the
+    /// step itself, and so costs much less than [`Self::report`].
+    pub fn residuals(&self, before: &[glam::DVec3]) -> Vec<f64> {
+        let part = &self.system.parts[0];
+        part.forces.residuals(&before[part.nodes.clone()], &self.state.memory.model[part.memory.clone()])
+    }
+
+    /// The diagnostics of the first part in the present state, without copying positions and velocities.
+    pub fn diagnostics(&self) -> Diagnostics {
+        self.some_diagnostics(Diagnostic::ALL)
+    }
+
+    /// The diagnostics in `wanted`; the others are zero, and what only they need is not computed.
+    pub fn some_diagnostics(&self, wanted: &[Diagnostic]) -> Diagnostics {
+        Diagnostics::of(&self.facts(&self.system.parts[0], || self.report(0)), wanted)
+    }
+
+    fn facts<'a>(&'a self, part: &'a Part, report: impl FnOnce() -> Report + 'a) -> Facts<'a> {
+        let global_rotations = part.global_rotations(&self.state.memory.model);
+        part.diagnose.facts(
+            part.nodes_of(self.state.nodes()),
+            self.system.gravity,
+            global_rotations,
+            report,
+            &self.crew,
+        )
+    }
+
+    /// The present state of the first part with its diagnostics.
+    pub fn snapshot(&self) -> Snapshot {
+        self.snapshot_of(0)
+    }
+
+    /// The present state of a part with its diagnostics.
+    ///
+    /// # Panics
+    /// If there is no such part.
+    pub fn snapshot_of(&self, part: usize) -> Snapshot {
+        let Self { system, dynamics, state, crew, field, wanted, .. } = self;
+        let part = &system.parts[part];
+        let nodes = part.nodes_of(state.nodes());
+        let mut energies = Vec::new();
+        let known = (*field == Some(Field::ElasticEnergy)).then(|| {
+            energies.resize(part.body.len(), 0.0);
+            let mut share = |_: usize, nodes: &[u32], shares: &[f64]| {
+                nodes.iter().zip(shares).for_each(|(&node, share)| energies[node as usize] += share);
+            };
+            dynamics.report(part, state, Some(&mut share), crew)
+        });
+        let facts = self.facts(part, move || known.unwrap_or_else(|| dynamics.report(part, state, None, crew)));
+        let diagnostics = Diagnostics::of(&facts, wanted);
+        let (turned_over, flat, placement) = (facts.turned_over().collect(), facts.flat().collect(), *facts.placement);
+        let values = |field: Field| field.values(&part.body, nodes, &placement, energies, crew);
+        let field = field.map_or_else(Vec::new, values);
+        Snapshot {
+            step: self.state.steps,
+            time: self.state.steps as f64 * self.system.step,
+            position: nodes.position.to_vec(),
+            velocity: nodes.velocity.to_vec(),
+            turned_over,
+            flat,
+            placement,
+            field,
+            diagnostics,
+            status: self.state.status,
+        }
+    }
+}
+
+/// The forces of a model that vectorised steps take the place of.
+fn prepared_late(model: impl ElasticModel + 'static, body: &Arc<Body>) -> Forces {
+    let body = Arc::clone(body);
+    Forces::new(Box::new(move || model.prepare(&body)))
+}
