@@ -6,26 +6,27 @@ use std::f64::consts::{PI, TAU};
 /// Normal colour vision and two kinds of colour blindness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Vision {
-    /// Those with three kinds of cones.
+    /// Three kinds of cones.
     Normal,
-    /// Those without green cones, some 1 % of all men.
+    /// No green cones: some 1 % of all men.
     Deuteranopia,
-    /// Those without red cones, some 1 % of all men.
+    /// No red cones: some 1 % of all men.
     Protanopia,
 }
 
 /// A matrix that simulates colour blindness on linear light.
 type Loss = [[f64; 3]; 3];
 
-/// Without green and without red cones, by G. M. Machado, M. M. Oliveira, L. A. F. Fernandes: *A Physiologically-based
-/// Model for Simulation of Color Vision Deficiency*, IEEE TVCG 15(6), 2009, at severity 1.
+/// Matrices without green and without red cones, by G. M. Machado, M. M. Oliveira, L. A. F. Fernandes: *A
+/// Physiologically-based Model for Simulation of Color Vision Deficiency*, IEEE TVCG 15(6), 2009, at severity 1.
 const MACHADO_2009: [Loss; 2] = [
     [[0.367_322, 0.860_646, -0.227_968], [0.280_085, 0.672_501, 0.047_413], [-0.011_820, 0.042_940, 0.968_881]],
     [[0.152_286, 1.052_583, -0.204_868], [0.114_503, 0.786_281, 0.099_216], [-0.003_882, -0.048_116, 1.051_998]],
 ];
 
-/// The same by F. Viénot, H. Brettel, J. D. Mollon: *Digital Video Colourmaps for Checking the Legibility of Displays
-/// by Dichromats*, Color Research & Application 24(4), 1999, for the primaries of sRGB.
+/// Matrices without green and without red cones, by F. Viénot, H. Brettel, J. D. Mollon: *Digital Video Colourmaps for
+/// Checking the Legibility of Displays by Dichromats*, Color Research & Application 24(4), 1999, for the primaries of
+/// sRGB.
 const VIENOT_1999: [Loss; 2] = [
     [[0.292_75, 0.707_25, 0.0], [0.292_75, 0.707_25, 0.0], [-0.022_34, 0.022_34, 1.0]],
     [[0.112_38, 0.887_62, 0.0], [0.112_38, 0.887_62, 0.0], [0.004_01, -0.004_01, 1.0]],
@@ -44,7 +45,7 @@ impl Vision {
     }
 }
 
-/// Linear light as perceived with a colour vision, by two models of colour blindness: Machado 2009 and Viénot 1999.
+/// Linear light as perceived with a colour vision, by both models of colour blindness: Machado 2009 and Viénot 1999.
 pub(crate) fn seen_by(vision: Vision, light: [f64; 3]) -> [[f64; 3]; 2] {
     let through = |loss: &Loss| loss.map(|row| (0..3).map(|at| row[at] * light[at]).sum::<f64>().clamp(0.0, 1.0));
     match vision {
@@ -54,8 +55,8 @@ pub(crate) fn seen_by(vision: Vision, light: [f64; 3]) -> [[f64; 3]; 2] {
     }
 }
 
-/// The difference of two colours for a colour vision: the smaller CIEDE2000 of both models. A difference of about 1 is
-/// just noticeable between adjacent colours; colours that differ by 20 are not confused.
+/// The difference of two colours for a colour vision: the smaller CIEDE2000 of both models. A difference of 1 is just
+/// noticeable between adjacent colours. Colours that differ by 20 are not confused.
 pub(crate) fn difference(one: Colour, other: Colour, vision: Vision) -> f64 {
     let [one, other] = [one, other].map(|colour| seen_by(vision, linear(colour)).map(lab));
     (0..2).map(|model| ciede2000(one[model], other[model])).fold(f64::INFINITY, f64::min)
@@ -66,7 +67,7 @@ pub(crate) fn least_difference(one: Colour, other: Colour) -> f64 {
     Vision::ALL.into_iter().map(|vision| difference(one, other, vision)).fold(f64::INFINITY, f64::min)
 }
 
-/// A colour in CIELAB: lightness from 0 to 100, how red rather than green, how yellow rather than blue.
+/// A colour in CIELAB: lightness from 0 to 100, red minus green, yellow minus blue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lab(pub [f64; 3]);
 
@@ -88,8 +89,8 @@ pub(crate) fn cie76(Lab(one): Lab, Lab(other): Lab) -> f64 {
     (0..3).map(|axis| (one[axis] - other[axis]) * (one[axis] - other[axis])).sum::<f64>().sqrt()
 }
 
-/// How different two colours look (CIEDE2000), as G. Sharma, W. Wu and E. N. Dalal write it: *The CIEDE2000
-/// Color-Difference Formula*, Color Research & Application 30(1), 2005. Its names are kept.
+/// The perceived difference of two colours (CIEDE2000). Names are those of G. Sharma, W. Wu and E. N. Dalal: *The
+/// CIEDE2000 Color-Difference Formula*, Color Research & Application 30(1), 2005.
 pub fn ciede2000(Lab([l1, a1, b1]): Lab, Lab([l2, a2, b2]): Lab) -> f64 {
     let root_of_7th = |c: f64| {
         let c7 = c * c * c * c * c * c * c;
@@ -161,7 +162,7 @@ mod tests {
                 assert!(seen.iter().all(|light| (light - 0.5).abs() < 0.01), "{vision:?} {seen:?}");
             }
         }
-        // A red and a green of the same lightness to those who lack a kind of cones.
+        // A red and a green that are equally light with colour blindness.
         let [red, green] = [[0xb8, 0x60, 0x40], [0x80, 0x7c, 0x40]];
         assert!(difference(red, green, Vision::Normal) > 25.0);
         assert!(difference(red, green, Vision::Deuteranopia) < 12.0);

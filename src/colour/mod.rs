@@ -44,18 +44,18 @@ pub(crate) fn luminance(colour: Colour) -> f64 {
     0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
 
-/// The least contrast of words with their ground that all can read (WCAG 2.2, AA).
+/// The least contrast of words with their ground (WCAG 2.2, AA).
 pub(crate) const LEAST_CONTRAST: f64 = 4.5;
-/// The least contrast of lines with what they lie on: they need less than words (WCAG 2.2, 1.4.11).
+/// The least contrast of lines with their ground (WCAG 2.2, 1.4.11).
 pub(crate) const LINE_CONTRAST: f64 = 3.0;
 
-/// The contrast of two colours, from 1 to 21 (WCAG 2.2). Words of the usual size need 4.5.
+/// The contrast of two colours, from 1 to 21 (WCAG 2.2).
 pub(crate) fn contrast(one: Colour, other: Colour) -> f64 {
     let [a, b] = [luminance(one), luminance(other)];
     (a.max(b) + 0.05) / (a.min(b) + 0.05)
 }
 
-/// A mix of two colours, linear in their sRGB bytes: the first at a share of 0, the other at 1.
+/// A mix of two colours, linear in their sRGB bytes: the first colour at a share of 0, the other at 1.
 pub(crate) fn mixed(one: Colour, other: Colour, share: f64) -> Colour {
     std::array::from_fn(|at| {
         let [from, to] = [one[at], other[at]].map(f64::from);
@@ -63,8 +63,8 @@ pub(crate) fn mixed(one: Colour, other: Colour, share: f64) -> Colour {
     })
 }
 
-/// The colour itself if it has a contrast with the ground, else the nearest that has one: with the same hue, lighter
-/// or darker, whichever changes it less. Black or white where none has it.
+/// The colour itself if its contrast with the ground is large enough. Otherwise the nearest colour of the same hue,
+/// lighter or darker. Black or white if no such colour exists.
 pub(crate) fn readable(colour: Colour, ground: Colour, least: f64) -> Colour {
     const STEPS: u32 = 200;
     let own = oklab(colour);
@@ -78,7 +78,7 @@ pub(crate) fn readable(colour: Colour, ground: Colour, least: f64) -> Colour {
     found.unwrap_or_else(|| best_of(&[[0; 3], [255; 3]], ground))
 }
 
-/// Of several colours, the one with most contrast with the ground; black if there is none.
+/// The colour with most contrast with the ground; black if there are none.
 pub(crate) fn best_of(colours: &[Colour], ground: Colour) -> Colour {
     let most = |a: &&Colour, b: &&Colour| contrast(**a, ground).total_cmp(&contrast(**b, ground));
     colours.iter().max_by(most).copied().unwrap_or_default()
@@ -113,7 +113,7 @@ mod tests {
                 assert!(contrast(readable, ground) >= 4.5, "{colour:x?} on {ground:x?}: {readable:x?}");
             }
         }
-        // More than there is: the best there is.
+        // No colour has so much contrast: the best one.
         assert_eq!(readable([0x80; 3], [0x80; 3], 20.0), [0; 3]);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Colour, encoded, linear};
 
-/// A colour in Oklab: lightness from 0 to 1, how red rather than green, how yellow rather than blue.
+/// A colour in Oklab: lightness from 0 to 1, red minus green, yellow minus blue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Oklab(pub [f64; 3]);
 
@@ -32,13 +32,13 @@ pub(crate) fn from_oklab(Oklab([lightness, a, b]): Oklab) -> Colour {
 }
 
 impl Oklab {
-    /// How different two colours look: 0 for the same, 1 for black and white.
+    /// The perceived difference: 0 for equal colours, 1 for black and white.
     #[cfg(test)]
     pub(crate) fn distance(self, other: Self) -> f64 {
         (0..3).map(|axis| (self.0[axis] - other.0[axis]) * (self.0[axis] - other.0[axis])).sum::<f64>().sqrt()
     }
 
-    /// How colourful it is: 0 for greys.
+    /// Chroma: 0 for greys.
     pub(crate) fn chroma(self) -> f64 {
         let Self([_, a, b]) = self;
         (a * a + b * b).sqrt()

@@ -6,13 +6,13 @@ use csscolorparser::NAMED_COLORS;
 /// Why a text is not a colour.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum UnknownColour {
-    /// It is neither a name nor digits.
+    /// Neither a name nor digits.
     Unknown,
-    /// It has the digits of a colour but not the `#` before them.
+    /// Digits of a colour without the `#` before them.
     WithoutHash,
-    /// It begins like digits or numbers of a colour, but has others than a colour can have.
+    /// `#` or a function with digits or numbers that no colour has.
     Digits,
-    /// It is a colour that is not opaque.
+    /// A colour that is not opaque.
     Transparent,
 }
 
@@ -20,11 +20,11 @@ pub(crate) enum UnknownColour {
 /// `hsl(210, 40%, 50%)`.
 ///
 /// # Errors
-/// A text that is none of these, or one whose colour is not opaque.
+/// The text is none of these, or its colour is not opaque.
 pub(crate) fn parse(text: &str) -> Result<Colour, UnknownColour> {
     let text = text.trim();
     let named = names().any(|name| name.eq_ignore_ascii_case(text));
-    // Digits without a `#` are taken for a colour by some, but `add` is more likely a slip than a green.
+    // Some programs take digits without a `#` for a colour, but `add` is more likely a slip than a green.
     if !named && [3, 4, 6, 8].contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_hexdigit()) {
         return Err(UnknownColour::WithoutHash);
     }
@@ -39,7 +39,7 @@ pub(crate) fn written([red, green, blue]: Colour) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// The names of colours that CSS has.
+/// The names of colours in CSS.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     NAMED_COLORS.keys().map(|name| name.as_str())
 }

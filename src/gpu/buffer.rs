@@ -3,8 +3,8 @@
 use super::{Gpu, Work};
 use std::ops::Range;
 
-/// A device buffer of elements of one type, which grows as needed. Of what is written for each frame, only what differs from
-/// the last frame is uploaded.
+/// A device buffer of elements of one type, which grows as needed. Only blocks that differ from the last frame are
+/// uploaded.
 #[derive(Debug)]
 pub(crate) struct GrowingBuffer<T> {
     label: &'static str,
@@ -13,7 +13,7 @@ pub(crate) struct GrowingBuffer<T> {
     contents: Vec<T>,
 }
 
-/// Contents are compared in blocks of this length (bytes), a multiple of what the device copies.
+/// The length of compared blocks (bytes), a multiple of what the device copies.
 const BLOCK: usize = 4096;
 
 impl<T: bytemuck::NoUninit> GrowingBuffer<T> {
@@ -24,8 +24,8 @@ impl<T: bytemuck::NoUninit> GrowingBuffer<T> {
         Self { label, usage, buffer, contents: Vec::new() }
     }
 
-    /// Replaces the contents. Returns whether the device buffer was too small and was replaced by a larger one, so that
-    /// bindings to it must be made anew.
+    /// Replaces the contents. Returns true if the device buffer was replaced by a larger one, whose bindings must be
+    /// made anew.
     pub(crate) fn write(&mut self, gpu: &Gpu, elements: Vec<T>) -> bool {
         let is_replaced = self.buffer.size() < bytes::<T>(elements.len());
         if is_replaced {
@@ -50,17 +50,17 @@ impl<T: bytemuck::NoUninit> GrowingBuffer<T> {
         is_replaced
     }
 
-    /// The device buffer behind it.
+    /// The device buffer.
     pub(crate) fn buffer(&self) -> &wgpu::Buffer {
         &self.buffer
     }
 
-    /// What was written last.
+    /// The last contents.
     pub(crate) fn contents(&self) -> &[T] {
         &self.contents
     }
 
-    /// How many elements were written last.
+    /// The number of elements in the last contents.
     pub(crate) fn len(&self) -> usize {
         self.contents.len()
     }

@@ -1,4 +1,4 @@
-//! The graphics device: one handle, typed buffers and reading back pixels. Independent of what is drawn.
+//! The graphics device: one handle, typed buffers, reading back pixels.
 
 mod buffer;
 mod noise;
@@ -13,10 +13,10 @@ pub(crate) use work::Work;
 use std::fmt;
 use std::sync::{Arc, Mutex};
 
-/// Which graphics adapter is wanted.
+/// The wanted graphics adapter.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum AdapterChoice {
-    /// The fastest there is: a GPU if one can be used, else software.
+    /// The fastest adapter: a GPU if one can be used, else software.
     #[default]
     Auto,
     /// Software that draws on the processor.
@@ -56,7 +56,7 @@ impl fmt::Display for AdapterChoice {
 pub struct AdapterDescription {
     /// Name, such as `llvmpipe (LLVM 15.0.6, 256 bits)`.
     pub name: String,
-    /// The interface it is reached through: `vulkan`, `metal` or `dx12`.
+    /// The interface: `vulkan`, `metal` or `dx12`.
     pub backend: String,
     /// Name of the driver; empty if unknown.
     pub driver: String,
@@ -64,7 +64,7 @@ pub struct AdapterDescription {
     pub driver_info: String,
     /// `cpu`, `integrated gpu`, `discrete gpu`, `virtual gpu` or `other`.
     pub device_type: String,
-    /// For `cpu` the processor, on which the last bit of a pixel depends; empty if unknown.
+    /// The processor of a `cpu` adapter, on which the last bit of a pixel depends; empty if unknown.
     pub processor: String,
 }
 
@@ -98,7 +98,7 @@ impl fmt::Display for AdapterDescription {
     }
 }
 
-/// Why no graphics device can be used.
+/// A reason why no graphics device can be used.
 #[derive(Debug, thiserror::Error)]
 pub enum InitError {
     /// The machine offers no adapter at all.
@@ -118,7 +118,7 @@ pub enum InitError {
     /// The adapter provides no device.
     #[error("the graphics adapter {adapter} cannot be used")]
     Device {
-        /// Which adapter.
+        /// The adapter.
         adapter: Box<AdapterDescription>,
         /// The error of its driver.
         #[source]
@@ -135,21 +135,21 @@ fn listed(adapters: &[AdapterDescription]) -> String {
     }
 }
 
-/// Why the device stopped working or refused.
+/// A failure of an open device.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GpuError {
     /// The device has too little memory.
     #[error("the graphics device is out of memory; a smaller picture needs less")]
     OutOfMemory,
-    /// The device is gone, for instance after a reset of the driver.
+    /// The device is lost, for instance after a reset of the driver.
     #[error("the graphics device was lost ({0}), as when its driver is reset; run the command again")]
     Lost(String),
-    /// The device refused a command, which is a mistake in this program.
+    /// The device refused a command: a mistake in this program.
     #[error("the graphics device refused a command: {0}")]
     Refused(String),
 }
 
-/// A graphics device with its queue, cheap to clone. It is passed to everything that draws; there is no global one.
+/// A graphics device with its queue, cheap to clone. There is no global device.
 #[derive(Clone, Debug)]
 pub struct Gpu {
     device: wgpu::Device,
@@ -166,7 +166,7 @@ impl Gpu {
     /// device is open, without the complaints of drivers about the lack of a window. [`adapters`] does the same.
     ///
     /// # Errors
-    /// No adapter at all, none that fits, or one that cannot be used.
+    /// No adapter exists, none fits, or the fitting one cannot be used.
     pub fn new(choice: &AdapterChoice) -> Result<Self, InitError> {
         noise::hushed(|| Self::open(choice))
     }
@@ -196,7 +196,7 @@ impl Gpu {
         Ok(Self { device, queue, description, trouble, work: Arc::default() })
     }
 
-    /// The device, for those who draw with it.
+    /// The device.
     pub(crate) fn device(&self) -> &wgpu::Device {
         &self.device
     }
@@ -206,7 +206,7 @@ impl Gpu {
         &self.queue
     }
 
-    /// Which adapter this is.
+    /// The adapter.
     pub fn description(&self) -> &AdapterDescription {
         &self.description
     }
@@ -216,11 +216,11 @@ impl Gpu {
         self.device.limits().max_texture_dimension_2d
     }
 
-    /// The first error of the device since the last call, if any. Commands fail asynchronously, so check before using
-    /// their results.
+    /// The first error of the device since the last call. Commands fail asynchronously, so check before using their
+    /// results.
     ///
     /// # Errors
-    /// The first thing that went wrong.
+    /// The first failed command, or a lost device.
     pub(crate) fn check(&self) -> Result<(), GpuError> {
         let mut trouble = self.trouble.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         match &*trouble {
@@ -231,7 +231,7 @@ impl Gpu {
     }
 }
 
-/// A loss, in one line.
+/// A lost device, in one line.
 fn lost(message: &str) -> GpuError {
     let words: Vec<_> = message.split_whitespace().collect();
     let words = words.join(" ");
@@ -260,7 +260,7 @@ pub fn adapters() -> (Vec<AdapterDescription>, Option<usize>) {
 }
 
 fn enumerate() -> Vec<wgpu::Adapter> {
-    // Without validation layers, which are slow and write to standard error; the tests check the shaders.
+    // No validation layers: they are slow and write to standard error. Tests check the shaders.
     let descriptor = wgpu::InstanceDescriptor {
         backends: wgpu::Backends::PRIMARY,
         flags: wgpu::InstanceFlags::empty(),
@@ -269,7 +269,7 @@ fn enumerate() -> Vec<wgpu::Adapter> {
     pollster::block_on(wgpu::Instance::new(descriptor).enumerate_adapters(wgpu::Backends::PRIMARY))
 }
 
-/// Which of the described adapters fits a choice.
+/// The described adapter that fits a choice.
 fn choose(choice: &AdapterChoice, found: &[AdapterDescription]) -> Result<usize, InitError> {
     let speed = |adapter: &AdapterDescription| match adapter.device_type.as_str() {
         "discrete gpu" => 0,

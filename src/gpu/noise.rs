@@ -1,15 +1,15 @@
-//! Filters messages of graphics drivers on standard error that mean nothing to the user.
+//! Filters messages of graphics drivers on standard error.
 
-/// Lines that are dropped, as they mean nothing to a program without a window: those of libwayland, which Vulkan drivers
-/// of Mesa load.
+/// Lines to drop, because they mean nothing to a program without a window: those of libwayland, which Vulkan drivers of
+/// Mesa load.
 #[cfg(unix)]
 const NOISE: [&str; 2] = [
     "error: XDG_RUNTIME_DIR is invalid or not set in the environment.",
     "error: XDG_RUNTIME_DIR not set in the environment.",
 ];
 
-/// Runs something while standard error is buffered, then writes what arrived without the noise of drivers. That includes
-/// what other threads wrote.
+/// Calls a function while standard error is buffered, then writes what arrived, also from other threads, without the
+/// lines to drop.
 ///
 /// Standard error belongs to the whole process, so only one thread does this at a time, and briefly.
 #[cfg(unix)]
@@ -32,7 +32,7 @@ pub(super) fn hushed<T>(open: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Runs something; there is no noise on this system.
+/// Calls a function: this system has no lines to drop.
 #[cfg(not(unix))]
 pub(super) fn hushed<T>(open: impl FnOnce() -> T) -> T {
     open()
@@ -79,7 +79,7 @@ mod tests {
         });
     }
 
-    /// Standard error is that of the whole process, so this has one of its own.
+    /// Standard error belongs to the whole process, so this test has a process of its own.
     #[test]
     #[ignore = "started by the test below"]
     fn in_a_process_of_its_own() {

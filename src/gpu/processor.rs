@@ -1,16 +1,16 @@
-//! The processor that a software driver draws with. Shaders are compiled for it, and approximate square roots and
-//! quotients differ between processors: some pixels differ by 1 of 255.
+//! The processor that a software driver draws with. Shaders are compiled for it. Approximate square roots and quotients
+//! differ between processors: some pixels differ by 1 of 255.
 
 /// The processor in a few words, such as `GenuineIntel 6 167 avx512f`; empty if unknown.
 pub(super) fn processor() -> String {
     std::fs::read_to_string("/proc/cpuinfo").map(|text| described(&text)).unwrap_or_default()
 }
 
-/// The same from the text of `/proc/cpuinfo`, whose first paragraph is about the first processor.
+/// The processor named in the first paragraph of `/proc/cpuinfo`.
 fn described(text: &str) -> String {
     /// Maker and type on x86, and on Arm.
     const KEYS: [&str; 6] = ["vendor_id", "cpu family", "model", "CPU implementer", "CPU architecture", "CPU part"];
-    /// The widest of these is named: a virtual machine may hide some.
+    /// The widest of these extensions is named: a virtual machine may hide some.
     const VECTORS: [&str; 4] = ["avx512f", "avx2", "avx", "sve"];
     let first = text.split("\n\n").next().unwrap_or_default();
     let value = |wanted: &str| {

@@ -1,4 +1,4 @@
-//! Reading back pixels from a texture on the device to memory.
+//! Reading back pixels of a texture.
 
 use super::{Gpu, GpuError, Work, lost};
 use std::sync::mpsc;
@@ -6,13 +6,13 @@ use std::sync::mpsc;
 /// Bytes per pixel of the textures that are read back.
 const PIXEL: u32 = 4;
 
-/// The length of a row of `width` pixels in the buffer that a texture is copied to (bytes): rows begin at multiples of
+/// The length of a row of `width` pixels in the buffer that a texture is copied to (bytes). Rows begin at multiples of
 /// 256 bytes.
 pub(crate) fn padded_row(width: u32) -> u32 {
     (width * PIXEL).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
 
-/// Takes the colours out of padded rows of four-byte pixels and leaves alpha and padding behind.
+/// Takes the colours out of padded rows of four-byte pixels, without alpha and padding.
 fn without_padding(rows: &[u8], width: u32, height: u32) -> Vec<u8> {
     let mut colours = vec![0; width as usize * height as usize * 3];
     let rows = rows.chunks_exact(padded_row(width) as usize);
@@ -79,7 +79,7 @@ impl ReadBack {
     /// Waits for the copy and returns its colours: three bytes a pixel, row after row from the top.
     ///
     /// # Errors
-    /// The device was lost or refused something on the way.
+    /// The device was lost or refused a command.
     pub(crate) fn collect(&self, gpu: &Gpu, pending: Pending) -> Result<Vec<u8>, GpuError> {
         let wait = wgpu::PollType::Wait { submission_index: Some(pending.submission), timeout: None };
         let waited = gpu.device().poll(wait);

@@ -1,13 +1,13 @@
-//! What a device is told to do, noted for tests that prove what is skipped.
+//! The commands given to a device, noted for tests that prove which ones are skipped.
 
 use super::Gpu;
 
-/// One thing that a device was told to do, by its label.
+/// A command, by its label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Work {
     /// A pipeline was made.
     Pipeline(&'static str),
-    /// So many bytes were uploaded.
+    /// A number of bytes was uploaded.
     Upload(&'static str, usize),
     /// A pipeline was run.
     Draw(&'static str),
@@ -16,14 +16,14 @@ pub(crate) enum Work {
 }
 
 impl Gpu {
-    /// Notes work, in tests.
+    /// Notes a command, in tests.
     pub(crate) fn note(&self, work: Work) {
         if cfg!(test) {
             self.work.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(work);
         }
     }
 
-    /// The work since this was asked last.
+    /// The commands since the last call.
     #[cfg(test)]
     pub(crate) fn take_work(&self) -> Vec<Work> {
         std::mem::take(&mut self.work.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))

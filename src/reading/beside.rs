@@ -1,15 +1,15 @@
-//! Files in the folder of a scene that belong to it.
+//! Files in the folder of a scene, such as bodies and fonts.
 
 use super::words::{nearest, size};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// What is wrong with a file, and what to do.
+/// A message about a file, and the remedy.
 pub(crate) type Wrong = (String, Option<String>);
 
-/// The bytes of a file, at most `longest`. Names with one of the `endings` are suggested for a missing file; `what` and
-/// `expected` are words of messages.
+/// The bytes of a file, at most `longest`. A file with one of the `endings` is suggested for a missing one. Messages
+/// call the file `what` and end with `expected`.
 pub(crate) fn bytes(path: &Path, endings: &[&str], longest: u64, what: &str, expected: &str) -> Result<Vec<u8>, Wrong> {
     if !path.exists() {
         return Err((missing(path), similar(path, endings).map(|near| format!("did you mean {near:?}?"))));
@@ -34,7 +34,7 @@ pub(crate) fn missing(path: &Path) -> String {
     format!("is not there (looked for {})", full.display())
 }
 
-/// The file in the same folder, with one of several endings, whose name without it is most like that of a missing one.
+/// The file in the folder of a missing one with the most similar name and one of the `endings`.
 pub(crate) fn similar(path: &Path, endings: &[&str]) -> Option<String> {
     let stem = |name: &Path| name.file_stem().map(|stem| stem.to_string_lossy().into_owned());
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -52,8 +52,8 @@ pub(crate) fn similar(path: &Path, endings: &[&str]) -> Option<String> {
     Some(similar[stems.iter().position(|&stem| stem == near)?].1.clone())
 }
 
-/// The files with the name of a missing one, with an ending if it has none, in the folders beside it, in order; if its
-/// folder is missing, too, in those beside that.
+/// The files with the name of a missing one, in the folders beside it, in order. If its folder is missing too, in the
+/// folders beside that. A name without an ending gets `ending`.
 pub(crate) fn in_folders(path: &Path, ending: &str) -> Vec<PathBuf> {
     let Some(name) = path.file_name() else { return Vec::new() };
     let name = if path.extension().is_none() { Path::new(name).with_extension(ending) } else { name.into() };

@@ -29,7 +29,7 @@ impl From<DVec3> for Coordinates {
     }
 }
 
-/// Typed coordinates as a vector, with z = 0 in the plane; a mistake if there are too many or too few.
+/// Typed coordinates as a vector, with z = 0 in the plane. A wrong number of coordinates is a mistake.
 pub(crate) fn vector(
     typed: &Coordinates,
     dimension: Dimension,
@@ -51,7 +51,7 @@ pub(crate) fn vector(
     }
 }
 
-/// A vector at unit length; a mistake if it has no direction.
+/// A vector scaled to unit length. A zero vector is a mistake.
 pub(crate) fn direction(vector: DVec3, path: &[Way<'_>], report: &mut Report<'_>) -> Option<DVec3> {
     // By its largest coordinate first: squares of very small or large numbers leave the range of double precision.
     let largest = vector.abs().max_element();

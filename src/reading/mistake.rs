@@ -16,20 +16,20 @@ pub struct Mistake {
     pub place: String,
     /// What was found and what was expected.
     pub message: String,
-    /// What to do, if there is more to say than the message does.
+    /// What to do, unless the message says it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub help: Option<String>,
-    /// The source line, or the part of it around the place; empty in a scene made in code.
+    /// The source line, or a part of it; empty in a scene made in code.
     pub excerpt: String,
-    /// Which characters of the excerpt are meant.
+    /// The characters of the excerpt to mark.
     #[serde(skip)]
     pub marked: Range<usize>,
 }
 
-/// All mistakes of one file in the order in which they stand there.
+/// All mistakes of one file, in the order of its text.
 ///
-/// They print with the source line and a mark under the place (own code, as `annotate-snippets` would replace the printing
-/// alone, and not the lines, columns and excerpts that programs are given):
+/// They print with the source line and a mark under the place. The code is our own: `annotate-snippets` would replace the
+/// printing alone, and not the lines, columns and excerpts that programs are given.
 ///
 /// ```text
 /// drop.toml:12:33: unknown key `stifness` in `run[0].model`
@@ -37,7 +37,7 @@ pub struct Mistake {
 ///       |                                 ^^^^^^^^ did you mean `stiffness`?
 /// ```
 ///
-/// Those of a scene made in code print with the name of the scene and of the setting, each in one line:
+/// Mistakes of a scene made in code print in one line each, with the name of the scene and of the setting:
 ///
 /// ```text
 /// drop: `run[0].model.stiffness` is -1.0; expected a number greater than 0
@@ -46,20 +46,20 @@ pub struct Mistake {
 pub struct Mistakes {
     /// The file, as named by the caller; the name of a scene made in code.
     pub file: String,
-    /// The mistakes, up to a thousand.
+    /// The first thousand mistakes.
     pub found: Vec<Mistake>,
-    /// How many there are in all.
+    /// The number of mistakes.
     pub total: usize,
 }
 
 impl Mistake {
-    /// The same without a position and an excerpt, for values that come from code.
+    /// This mistake without position and excerpt, for a scene made in code.
     pub(crate) fn without_text(self) -> Self {
         Self { line: 0, column: 0, excerpt: String::new(), marked: 0..0, ..self }
     }
 }
 
-/// How many mistakes are printed: what fits on a screen or two. More usually have the same cause.
+/// The number of printed mistakes: a screen or two. More usually have the same cause.
 const SHOWN: usize = 20;
 
 impl fmt::Display for Mistakes {

@@ -1,4 +1,4 @@
-//! Reading files of any kind: mistakes with line and column, words for messages, files in the same folder.
+//! Reading files: mistakes with line and column, words for messages, files beside a scene.
 
 pub(crate) mod beside;
 pub(crate) mod coordinates;

@@ -1,4 +1,4 @@
-//! Collects mistakes with their positions in the file.
+//! Collecting mistakes with their positions in the file.
 
 use super::source::Source;
 use super::{Mistake, Mistakes};
@@ -26,14 +26,14 @@ impl From<usize> for Way<'_> {
     }
 }
 
-/// A path of keys and indices: `way!["run", 1, "model"]`; with `way![path; "model"]` one that goes on from another.
+/// A path of keys and indices: `way!["run", 1, "model"]`, or `way![path; "model"]` to extend `path`.
 macro_rules! way {
     ($($part:expr),+) => { [$($crate::reading::report::Way::from($part)),+] };
     ($before:expr; $($part:expr),+) => { [&$before[..], &$crate::reading::report::way![$($part),+][..]].concat() };
 }
 pub(crate) use way;
 
-/// What to do about a mistake, if there is more to say than its message does.
+/// The remedy of a mistake, as text or none.
 pub(crate) trait Help {
     fn text(self) -> Option<String>;
 }
@@ -69,10 +69,10 @@ pub(crate) fn written(path: &[Way<'_>]) -> String {
     text
 }
 
-/// How many mistakes are kept with their text.
+/// The number of mistakes that are kept with their text.
 const KEPT: usize = 1000;
 
-/// Mistakes as they are found.
+/// The mistakes and warnings found so far.
 #[derive(Debug)]
 pub(crate) struct Report<'t> {
     source: &'t Source<'t>,
@@ -87,19 +87,19 @@ impl<'t> Report<'t> {
         Self { source, root, found: Vec::new(), total: 0, warned: Vec::new() }
     }
 
-    /// How many mistakes were found so far.
+    /// The number of mistakes found so far.
     pub(crate) fn total(&self) -> usize {
         self.total
     }
 
-    /// If the limit of kept mistakes is reached, counts one more and returns true; otherwise its message is needed.
+    /// Counts a mistake and returns true if no more messages are kept. Otherwise the caller writes the message.
     pub(crate) fn only_counted(&mut self) -> bool {
         let is_full = self.found.len() >= KEPT;
         self.total += usize::from(is_full);
         is_full
     }
 
-    /// Whether the key at the end of `path` is in the file, and not a default.
+    /// Whether the file has the key at the end of `path`.
     pub(crate) fn is_typed(&self, path: &[Way<'_>]) -> bool {
         match path {
             [before @ .., Way::Key(key)] => table_at(self.root, before).is_some_and(|table| table.contains_key(*key)),
@@ -107,7 +107,7 @@ impl<'t> Report<'t> {
         }
     }
 
-    /// Line and column of the value at `path`, or of the nearest one that exists.
+    /// Line and column of the value at `path`, or of its nearest ancestor in the file.
     pub(crate) fn position(&self, path: &[Way<'_>]) -> (usize, usize) {
         self.source.position(span_of(self.root, path).start)
     }
@@ -120,12 +120,12 @@ impl<'t> Report<'t> {
         }
     }
 
-    /// A mistake in the value at `path`, or in the nearest table or array that exists.
+    /// A mistake in the value at `path`, or in its nearest ancestor in the file.
     pub(crate) fn at(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Help) {
         self.at_span(span_of(self.root, path), path, message.into(), help.text());
     }
 
-    /// A mistake about the key at the end of `path`, or about where it is missing.
+    /// A mistake about the key at the end of `path`, or about the table that lacks it.
     pub(crate) fn at_key(&mut self, path: &[Way<'_>], message: impl Into<String>, help: impl Help) {
         let (table, key) = match path {
             [before @ .., Way::Key(key)] => (table_at(self.root, before), *key),
@@ -135,7 +135,7 @@ impl<'t> Report<'t> {
         self.at_span(span.unwrap_or_else(|| span_of(self.root, path)), path, message.into(), help.text());
     }
 
-    /// A warning about the value at `path`, or about the nearest one that exists: it is allowed and probably not meant.
+    /// A warning about the value at `path`: allowed, but probably a mistake.
     pub(crate) fn warn(&mut self, path: &[Way<'_>], message: String, help: impl Help) {
         self.warned.push(mistake(self.source, span_of(self.root, path), path, message, help.text()));
     }

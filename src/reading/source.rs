@@ -1,4 +1,4 @@
-//! The text of a scene file, with lines and columns.
+//! The text of a file, with lines and columns.
 
 use std::ops::Range;
 
@@ -6,11 +6,11 @@ use std::ops::Range;
 #[derive(Debug)]
 pub(crate) struct Source<'t> {
     text: &'t str,
-    /// Where each line begins (bytes).
+    /// The first byte of each line.
     lines: Vec<usize>,
 }
 
-/// The widest piece of a line that is shown under a message (characters).
+/// The longest excerpt under a message (characters).
 const WIDEST_EXCERPT: usize = 110;
 
 impl<'t> Source<'t> {
@@ -29,15 +29,15 @@ impl<'t> Source<'t> {
         (0..=byte).rev().find(|&at| self.text.is_char_boundary(at)).unwrap_or(0)
     }
 
-    /// Line and column of a byte offset, both counted from 1, the column in characters.
+    /// Line and column of a byte offset, counted from 1, the column in characters.
     pub(crate) fn position(&self, byte: usize) -> (usize, usize) {
         let byte = self.boundary(byte);
         let line = self.lines.partition_point(|&start| start <= byte).max(1);
         (line, self.text[self.lines[line - 1]..byte].chars().count() + 1)
     }
 
-    /// The line in which a span begins, cut to a readable width, and the columns of the span within it (characters). Tabs
-    /// and other control characters become spaces, so that the mark is aligned.
+    /// The line in which a span begins, cut to a readable width, and the span's columns in it (characters). Control
+    /// characters such as tabs become spaces, so that the mark is aligned.
     pub(crate) fn excerpt(&self, span: &Range<usize>) -> (String, Range<usize>) {
         let (line, column) = self.position(span.start);
         let start = self.lines[line - 1];
@@ -48,7 +48,7 @@ impl<'t> Source<'t> {
             .count()
             .max(1);
         let shown = self.text[start..end].trim_end();
-        // Long lines, such as lists of nodes, are cut so that the position is near the left end.
+        // Long lines, such as lists of nodes, are cut so that the place is near the left end.
         let long = shown.chars().nth(WIDEST_EXCERPT).is_some();
         let first = if long && column > WIDEST_EXCERPT / 2 { column - 1 - WIDEST_EXCERPT / 4 } else { 0 };
         let clean = |c: char| if c.is_control() { ' ' } else { c };

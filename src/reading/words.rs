@@ -9,7 +9,7 @@ pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}\"", shortened(text))
 }
 
-/// A text without control characters, and with its middle left out if it is long.
+/// A text without control characters, shortened in its middle.
 pub(crate) fn shortened(text: &str) -> String {
     let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
     let count = text.chars().count();
@@ -31,8 +31,8 @@ pub(crate) fn list<S: AsRef<str>>(names: &[S], joint: &str, write: impl Fn(&str)
     }
 }
 
-/// The known name most similar to the one typed, if they differ by at most one letter in three; else one that contains
-/// it, or of whose words it has the first letters, as `fps` has of `frames_per_second`.
+/// The known name that is most similar to the typed one. They differ by at most one letter in three, or the known name
+/// contains the typed one, or its words begin with its letters, as those of `frames_per_second` do with `fps`.
 pub(crate) fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
     // A quadratic comparison, so nothing long is compared.
     if typed.len() > 100 {
@@ -52,7 +52,7 @@ pub(crate) fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
     known.iter().filter(near).min_by_key(|name| distance(name)).or_else(others).copied()
 }
 
-/// What a value is: `the string "3"`, `an array of 2`.
+/// A value in words: `the string "3"`, `an array of 2`.
 pub(crate) fn found(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) => format!("the string {}", quoted(text)),
@@ -65,7 +65,7 @@ pub(crate) fn found(value: &DeValue<'_>) -> String {
     }
 }
 
-/// A whole number as a number, of any size.
+/// A whole number of any size as a floating-point number.
 pub(crate) fn to_f64(integer: &DeInteger<'_>) -> f64 {
     match i128::from_str_radix(integer.as_str(), integer.radix()) {
         Ok(exact) => exact as f64,
@@ -97,12 +97,12 @@ pub(crate) fn short(number: f64) -> String {
     significant(number, 4)
 }
 
-/// The ends of a range to four significant digits of its length, or their own if these are finer, rounded so that the range
-/// keeps all that is in it.
+/// The ends of a range, rounded outwards to four significant digits of its length. An end with fewer digits stays as it
+/// is.
 pub(crate) fn ends([low, high]: [f64; 2]) -> [String; 2] {
     let magnitude = |number: f64| libm::floor(libm::log10(number.abs()));
     let out = |number: f64, is_beyond: fn(f64, f64) -> bool| {
-        // A number that has no more digits, but for its round-off, is not rounded.
+        // Numbers with few digits, to round-off, are not rounded.
         let exact = rounded(number, 12);
         if exact == 0.0 {
             return exact;
@@ -118,7 +118,7 @@ pub(crate) fn ends([low, high]: [f64; 2]) -> [String; 2] {
     [out(low, |one, other| one <= other), out(high, |one, other| one >= other)].map(fine)
 }
 
-/// A number with up to twelve significant digits: precise enough to be the bound of a region.
+/// A number with up to twelve significant digits, for the bounds of regions.
 pub(crate) fn fine(number: f64) -> String {
     significant(number, 12)
 }
@@ -139,7 +139,7 @@ pub(crate) fn size(bytes: u128) -> String {
     }
 }
 
-/// A text for XML or HTML, between tags or in double quotation marks, without what XML does not allow.
+/// A text for XML or HTML, between tags or in double quotation marks. Characters that XML forbids are left out.
 pub(crate) fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for character in text.chars() {

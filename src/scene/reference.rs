@@ -165,21 +165,41 @@ fn kind(schema: &Value) -> String {
         (Some("string"), Some("colour-or-transparent")) => "colour or `\"transparent\"`".into(),
         (Some("string"), Some("fraction-of-T")) => "fraction of T or `\"auto\"`".into(),
         (Some("string"), _) => "string".into(),
+        (Some("array"), _) if is_vector(schema) => "vector".into(),
         (Some("array"), _) => {
-            let entries = match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
-                (Some(least), Some(most)) if least == most => format!("array of {least}"),
-                (Some(least), Some(most)) => format!("array of {least} to {most}"),
-                (Some(least), None) => format!("array of at least {least}"),
-                (None, Some(most)) => format!("array of at most {most}"),
-                (None, None) => "array".into(),
-            };
-            format!("{entries}: {}", kind(&schema["items"]))
+            let entries = plural(&kind(&schema["items"]));
+            match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
+                (Some(least), Some(most)) if least == most => format!("array of {least} {entries}"),
+                (Some(least), Some(most)) => format!("array of {least} to {most} {entries}"),
+                (Some(1), None) => format!("array of one or more {entries}"),
+                (Some(least), None) => format!("array of at least {least} {entries}"),
+                (None, Some(most)) => format!("array of at most {most} {entries}"),
+                (None, None) => format!("array of {entries}"),
+            }
         }
         _ => "table".into(),
     }
 }
 
-/// The strings that a value or its entries may be, of which each has a description.
+/// Whether an array holds the coordinates of a vector, two or three numbers of any size.
+fn is_vector(schema: &Value) -> bool {
+    let any = schema["items"].as_object().is_some_and(|items| {
+        items.get("type").is_some_and(|kind| kind == "number") && !items.contains_key("exclusiveMinimum")
+    });
+    any && schema["minItems"] == 2 && schema["maxItems"] == 3
+}
+
+/// The plural of each alternative of a type in words.
+fn plural(kind: &str) -> String {
+    let nouns = ["array", "number", "string", "colour", "vector", "table"];
+    let plural = |alternative: &str| match nouns.iter().find(|noun| alternative.contains(*noun)) {
+        Some(noun) => alternative.replacen(noun, &format!("{noun}s"), 1),
+        None => alternative.to_owned(),
+    };
+    kind.split(" or ").map(plural).collect::<Vec<_>>().join(" or ")
+}
+
+/// The strings with descriptions that a value or its entries may be.
 fn described_choices(schema: &Value) -> Option<&Value> {
     let inner = if schema["type"] == "array" { &schema["items"] } else { schema };
     let lists = [&inner["oneOf"], &inner["anyOf"][1]["oneOf"]];

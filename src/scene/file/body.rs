@@ -5,11 +5,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::mem::swap;
 
-/// The body: exactly one of `lattice`, `polygon`, `fan`, `disc` or `bars`, or explicit `nodes` and `elements`, here or in
-/// a `file`.
+/// The body: exactly one of `lattice`, `polygon`, `fan`, `disc`, `bars` and `file`, or explicit `nodes` and `elements`.
 ///
-/// At the start `rotation`, `offset`, `lowest`, `velocity` and `spin` are applied in this order. They do not change the rest
-/// shape.
+/// At the start `rotation`, `offset`, `lowest`, `velocity` and `spin` are applied in this order. The rest shape stays
+/// as it is.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend(
@@ -27,29 +26,27 @@ use std::mem::swap;
     }
 ))]
 pub(in crate::scene) struct BodyFile {
-    /// A block of equal cells: `{ cells = [3, 3, 3], side = 0.1 }` for cubes, `cells = [3, 3]` for squares in the plane. It
-    /// stands on y = 0, with its middle at x = 0 and z = 0: six cells of 0.1 m along x reach from -0.3 m to 0.3 m. Nodes are
-    /// numbered with x fastest, then y, then z.
+    /// A block of equal cells: `{ cells = [3, 3, 3], side = 0.1 }` for cubes, `cells = [3, 3]` for squares in the
+    /// plane. It stands on y = 0, centred on x = 0 and z = 0. Nodes are numbered with x fastest, then y, then z.
     pub(in crate::scene) lattice: Option<Lattice>,
-    /// One regular polygon in the plane as a single element: `{ sides = 6, radius = 1.0 }`. It stands with a side on y = 0, its
-    /// centre above the origin. Corners are numbered counter-clockwise from the left end of that side.
+    /// A regular polygon in the plane as one element: `{ sides = 6, radius = 1.0 }`. It stands with a side on y = 0,
+    /// its centre above the origin. Corners are numbered counter-clockwise from the left end of that side.
     pub(in crate::scene) polygon: Option<PolygonFile>,
-    /// A regular polygon in the plane, cut into triangles around a node in its centre: `{ sides = 6, radius = 1.0 }`. It stands
-    /// like a `polygon`; the central node comes first.
+    /// A regular polygon in the plane, cut into triangles around a node in its centre: `{ sides = 6, radius = 1.0 }`.
+    /// It stands like a `polygon`. The central node comes first.
     pub(in crate::scene) fan: Option<PolygonFile>,
-    /// A disc in the plane: `{ radius = 1.0, rings = 3, sectors = 12 }`. It has triangles around its centre, and rings of
-    /// quadrilaterals around them. It stands like a `polygon` with as many sides as sectors; nodes are numbered from the centre
-    /// outwards, in each ring like those of a polygon.
+    /// A disc in the plane: `{ radius = 1.0, rings = 3, sectors = 12 }`. It stands like a `polygon` with as many sides
+    /// as sectors. Nodes are numbered from the centre outwards, in each ring like those of a polygon.
     pub(in crate::scene) disc: Option<DiscFile>,
     /// A chain of two-node elements that begins at the origin: `{ count = 8, length = 0.1, direction = [1, 0] }`.
     pub(in crate::scene) bars: Option<BarsFile>,
     /// Rest position of each node (m). Two coordinates make a body in the plane, three a body in space.
     #[schemars(length(min = 1))]
     pub(in crate::scene) nodes: Option<Vec<Coordinates>>,
-    /// The nodes of each element, two or more, counted from 0. In the plane: polygons, counter-clockwise. In space:
-    /// tetrahedra and pyramids (the base counter-clockwise seen from the last node), wedges (both triangles
-    /// counter-clockwise seen from the second), hexahedra (corners with x fastest, then y, then z) or, with any other number
-    /// of nodes in any order, their convex hull, which has the faces and edges of the element; see also `convex`.
+    /// The nodes of each element, two or more, counted from 0. In the plane an element is a polygon, counter-clockwise.
+    /// In space it is a tetrahedron or pyramid (the base counter-clockwise seen from the last node), a wedge (both
+    /// triangles counter-clockwise seen from the second), a hexahedron (corners with x fastest, then y, then z), or the
+    /// convex hull of any other number of nodes in any order. See also `convex`.
     #[schemars(length(min = 1), inner(length(min = 2)))]
     pub(in crate::scene) elements: Option<Vec<Vec<u32>>>,
     /// Pairs of nodes, for mass-spring models without a named topology.
@@ -58,39 +55,39 @@ pub(in crate::scene) struct BodyFile {
     /// The nodes of each face to draw, counter-clockwise from outside. Default: the faces of the elements.
     #[schemars(inner(length(min = 3)))]
     pub(in crate::scene) faces: Option<Vec<Vec<u32>>>,
-    /// Initial position of each node (m), before `rotation`, `offset` and `lowest`; like all lists with an entry for each node
-    /// or element, for bodies that are given by `nodes`. Default: the rest positions.
+    /// Initial position of each node (m), before `rotation`, `offset` and `lowest`, for bodies with `nodes`. Default:
+    /// the rest positions.
     pub(in crate::scene) positions: Option<Vec<Coordinates>>,
-    /// A degenerate, inverted or random shape in which the body starts, such as `{ shape = "cloud", seed = 1 }`. Default: its
-    /// rest shape.
+    /// A degenerate, inverted or random initial shape, such as `{ shape = "cloud", seed = 1 }`. Default: the rest
+    /// shape.
     pub(in crate::scene) start: Option<Start>,
-    /// Initial velocity of each node (m/s), instead of one `velocity` for all. It is not rotated by `rotation`.
+    /// Initial velocity of each node (m/s), instead of one `velocity`. `rotation` does not rotate it.
     pub(in crate::scene) velocities: Option<Vec<Coordinates>>,
-    /// Mass of each node (kg), instead of one `mass` for all.
+    /// Mass of each node (kg), instead of one `mass`.
     pub(in crate::scene) masses: Option<Vec<Positive>>,
-    /// A NumPy archive (.npz) beside the scene, as `numpy.savez` and `numpy.savez_compressed` write it. Its arrays `nodes` and
-    /// `elements`, and optionally `springs`, `faces`, `positions`, `velocities` and `masses`, mean the same as these keys.
-    /// Coordinates and masses are float64 or float32; indices are integers, with -1 at the end of rows that are shorter than
-    /// the longest.
+    /// A NumPy archive (.npz) beside the scene, written by `numpy.savez` or `numpy.savez_compressed`. Its arrays
+    /// `nodes` and `elements`, and optionally `springs`, `faces`, `positions`, `velocities` and `masses`, mean the same
+    /// as these keys. Coordinates and masses are float64 or float32. Indices are integers, with -1 at the end of
+    /// shorter rows.
     #[schemars(length(min = 1))]
     pub(in crate::scene) file: Option<String>,
-    /// Whether all elements in space are the convex hulls of their nodes, listed in any order: octahedra, bipyramids, flat
-    /// quadrilaterals of a cloth. Otherwise elements of four, five, six and eight nodes are tetrahedra, pyramids, wedges
-    /// and hexahedra.
+    /// Whether all elements in space are the convex hulls of their nodes, in any order: octahedra, bipyramids, flat
+    /// quadrilaterals of a cloth. Otherwise elements of four, five, six and eight nodes are tetrahedra, pyramids,
+    /// wedges and hexahedra.
     #[serde(default)]
     pub(in crate::scene) convex: bool,
     /// Mass of every node (kg). Default: 1.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) mass: Option<f64>,
-    /// A rotation about the mean of the nodes at the start. Default: none.
+    /// A rotation about the mean of the nodes. Default: none.
     pub(in crate::scene) rotation: Option<Rotation>,
     /// A translation after the rotation (m). Default: none.
     pub(in crate::scene) offset: Option<Coordinates>,
-    /// Height (m) at which the lowest node starts, along y, after rotation and translation. Default: unchanged.
+    /// Height of the lowest node (m), along y, after rotation and translation. Default: unchanged.
     pub(in crate::scene) lowest: Option<f64>,
     /// Initial velocity of all nodes (m/s). Default: at rest.
     pub(in crate::scene) velocity: Option<Coordinates>,
-    /// A rigid spin at the start about the mean of the nodes, added to all other velocities. Default: none.
+    /// A rigid spin about the mean of the nodes, added to all other velocities. Default: none.
     pub(in crate::scene) spin: Option<SpinFile>,
 }
 
@@ -131,18 +128,17 @@ impl BodyFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Start {
-    /// What the body becomes at its start.
+    /// The initial shape.
     pub(in crate::scene) shape: StartShape,
-    /// Direction of the line, or normal of the plane or mirror, of any length but zero. Points and clouds have none.
-    /// Default: along x.
+    /// Direction of the line, or normal of the plane or mirror, of any length but zero. Default: along x.
     pub(in crate::scene) direction: Option<Coordinates>,
-    /// Seed of a random cloud, which is the same on every machine. Other shapes have none.
+    /// Seed of a cloud, which is the same on every machine.
     #[serde(default = "first", skip_serializing_if = "is_first")]
     #[schemars(range(min = 0, max = 4_294_967_295_u32), extend("default" = 1))]
     pub(in crate::scene) seed: u32,
 }
 
-/// What a body becomes at its start.
+/// The initial shape of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum StartShape {
@@ -174,7 +170,7 @@ impl StartShape {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct SpinFile {
-    /// The axis, of any length but zero; the spin is counter-clockwise when the axis points at the viewer. Not in the plane.
+    /// The axis, of any length but zero, in space. The spin is counter-clockwise when the axis points at the viewer.
     pub(in crate::scene) axis: Option<Coordinates>,
     /// The angular velocity (rad/s).
     pub(in crate::scene) rate: f64,
@@ -189,12 +185,11 @@ pub struct Lattice {
     pub(in crate::scene) cells: Vec<u32>,
     /// Length of a cell's edges (m): one number, or one for each axis, such as `[0.1, 0.2, 0.1]` for bricks.
     pub(in crate::scene) side: SideFile,
-    /// Into which elements the cells are divided.
+    /// The elements of each cell.
     #[serde(default)]
     pub(in crate::scene) elements: Cells,
-    /// Random displacement of nodes, in parts of a cell's shortest side. Nodes on the surface move only along it and corners
-    /// not at all, so that the block keeps its outer shape. Displacements are reduced where an element would be flattened or
-    /// turned inside out.
+    /// Random displacement of nodes, in parts of a cell's shortest side. Nodes on the surface move only along it, and
+    /// corners stay. Displacements are reduced where an element would be flattened or turned inside out.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 0.4))]
     pub(in crate::scene) irregular: f64,
@@ -222,19 +217,19 @@ pub(in crate::scene) enum SideFile {
     PerAxis(#[schemars(length(min = 2, max = 3))] Vec<Positive>),
 }
 
-/// Into which elements the cells of a block are divided.
+/// The elements of each cell of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Cells {
     /// Each cell is one element.
     #[default]
     Cells,
-    /// In the plane: each cell is cut in two, with alternating diagonals.
+    /// Each cell is cut in two, with alternating diagonals, in the plane.
     Triangles,
-    /// In space: each cell is cut in five, and the faces of neighbours match.
+    /// Each cell is cut in five, in space. The faces of neighbours match.
     Tetrahedra,
-    /// Elements of many kinds in a random order: triangles, quadrilaterals, pentagons and hexagons in the plane;
-    /// hexahedra, wedges, pyramids and tetrahedra in space.
+    /// Elements of many kinds in random order: triangles to hexagons in the plane; hexahedra, wedges, pyramids and
+    /// tetrahedra in space.
     Mixed,
 }
 
@@ -255,7 +250,7 @@ pub(in crate::scene) struct PolygonFile {
 pub(in crate::scene) struct DiscFile {
     /// Distance of the outermost nodes from the centre (m).
     pub(in crate::scene) radius: Positive,
-    /// Number of rings of elements of equal width: the inner one has triangles, the others quadrilaterals.
+    /// Number of rings of equal width. The inner one has triangles, the others have quadrilaterals.
     #[schemars(range(min = 1, max = 4_000_000_000_u32))]
     pub(in crate::scene) rings: u32,
     /// Number of elements in each ring.
@@ -272,7 +267,7 @@ pub(in crate::scene) struct BarsFile {
     pub(in crate::scene) count: u32,
     /// Length of one bar (m).
     pub(in crate::scene) length: Positive,
-    /// Direction of the chain, of any length but zero. Two coordinates make a chain in the plane, three one in space.
+    /// Direction of the chain, of any length but zero, with two coordinates in the plane and three in space.
     pub(in crate::scene) direction: Coordinates,
 }
 
@@ -280,8 +275,8 @@ pub(in crate::scene) struct BarsFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rotation {
-    /// The axis, of any length but zero; the rotation is counter-clockwise when the axis points at the viewer. Not in the
-    /// plane.
+    /// The axis, of any length but zero, in space. The rotation is counter-clockwise when the axis points at the
+    /// viewer.
     pub(in crate::scene) axis: Option<Coordinates>,
     /// The angle (rad).
     pub(in crate::scene) angle: f64,

@@ -1,8 +1,8 @@
-//! What a scene file says, as typed. The field documentation below is what `localshape schema` prints, and the
-//! schema made from these types is what files are checked against: there is no second list of keys.
+//! The structs that scene files are read into. `localshape schema` prints the documentation of their fields, and the
+//! schema made from them is what files are checked against: there is no second list of keys.
 //!
-//! A length is in metres, a time in seconds, a mass in kilograms, an angle in radians. Vectors have three
-//! coordinates in space and two in the plane.
+//! A length is in metres, a time in seconds, a mass in kilograms, an angle in radians. Vectors have three coordinates
+//! in space and two in the plane.
 
 mod body;
 mod motion;
@@ -25,11 +25,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A scene: one body, one world and several runs, each of which is one elastic model on that body.
+/// A scene: one body, one world, and several runs with one elastic model each.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct SceneFile {
-    /// What the scene shows, in a few words. Default: the file's name.
+    /// What the scene shows. Default: the file's name.
     #[schemars(length(max = 200))]
     pub(in crate::scene) title: Option<String>,
     /// Acceleration of gravity (m/s²), such as `[0, -9.8, 0]`. Default: none.
@@ -38,10 +38,10 @@ pub(in crate::scene) struct SceneFile {
     pub(in crate::scene) time: TimeFile,
     /// The body, the same in all runs.
     pub(in crate::scene) body: BodyFile,
-    /// The runs, at least one; each has one panel of the picture.
+    /// The runs, with one panel of the picture each.
     #[schemars(length(min = 1, max = 256))]
     pub(in crate::scene) run: Vec<RunFile>,
-    /// The obstacles that nodes of the body collide with, in the order in which they act. Default: none.
+    /// Obstacles that nodes collide with, in the order in which they act. Default: none.
     #[serde(default)]
     pub(in crate::scene) obstacle: Vec<ObstacleFile>,
     /// Nodes that are held in place. Default: none.
@@ -67,15 +67,15 @@ pub(in crate::scene) struct TimeFile {
     /// Simulated time (s); 0 shows only the start.
     #[schemars(range(min = 0.0))]
     pub(in crate::scene) duration: f64,
-    /// Time step ΔT: seconds, a fraction of the cycle T such as `"T/50"` or `"0.02 T"`, or `"auto"`. T = 2π√(m/k), with the mass of
-    /// the lightest node and the largest stiffness of all runs, so that one step suits every run. `"auto"` is at most half of the
-    /// largest step that is predicted to be stable for every run without a step of its own, and divides the time between two frames
-    /// into equal steps. `localshape check` prints that prediction.
+    /// Time step ΔT: seconds, a fraction of the cycle T such as `"T/50"` or `"0.02 T"`, or `"auto"`. T = 2π√(m/k), with
+    /// the mass of the lightest node and the largest stiffness of all runs. `"auto"` takes equal steps between two
+    /// frames, at most half of the largest step that is predicted to be stable for every run without a step of its own.
+    /// `localshape check` prints that prediction.
     #[schemars(extend("default" = "T/50"))]
     pub(in crate::scene) step: Option<StepFile>,
-    /// In place of `step`, for `integrator = "dormand-prince"`: the error allowed in each of its steps, as a share of the size of
-    /// the body. Default: 1e-6. Below 1e-11 round-off is larger. On a body that rests on something each tenth of it takes three
-    /// times as long.
+    /// The error allowed in each step of `integrator = "dormand-prince"`, as a share of the size of the body, in place
+    /// of `step`. Below 1e-11 round-off is larger. On a body that rests on something each tenth of it takes three times
+    /// as long. Default: 1e-6.
     #[schemars(range(min = 1e-11, max = 0.1))]
     pub(in crate::scene) tolerance: Option<f64>,
     /// Frames per second of simulated time (1/s).
@@ -85,10 +85,11 @@ pub(in crate::scene) struct TimeFile {
     /// The integrator, which advances positions and velocities by one step.
     #[serde(default)]
     pub(in crate::scene) integrator: Integrator,
-    /// Lets the body of each run sleep when it has come to rest, such as `{ distance = 1e-4, after = 0.5 }`: its nodes stay where they
-    /// are, which costs nothing, until an obstacle that moves touches it, or nodes are grabbed, dragged or released. They are never
-    /// farther than twice `distance` from where they would be awake, if `after` is at least the period of the slowest vibration of the
-    /// body. One that drifts or creeps, by less than `distance` in `after`, no longer does. Default: it never sleeps.
+    /// Lets the body of each run sleep when it has come to rest, such as `{ distance = 1e-4, after = 0.5 }`: its nodes
+    /// stay where they are, which costs nothing, until an obstacle that moves touches it, or nodes are grabbed, dragged
+    /// or released. They are never farther than twice `distance` from where they would be awake, if `after` is at least
+    /// the period of the slowest vibration of the body. One that drifts or creeps, by less than `distance` in `after`,
+    /// no longer does. Default: it never sleeps.
     pub(in crate::scene) sleep: Option<SleepFile>,
 }
 
@@ -96,8 +97,8 @@ pub(in crate::scene) struct TimeFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct SleepFile {
-    /// How far no node moves in the time (m). More than what is left of the motion at rest: on an obstacle with e > 0 nodes rebound
-    /// for ever, by about `g ΔT²`.
+    /// How far no node moves in the time (m). More than what is left of the motion at rest: on an obstacle with e > 0
+    /// nodes rebound for ever, by about `g ΔT²`.
     pub(in crate::scene) distance: Positive,
     /// For how long no node has moved farther than that before the body sleeps (s).
     pub(in crate::scene) after: Positive,
@@ -126,27 +127,28 @@ impl StepFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct RunFile {
-    /// Unique name, shown above its panel and used by `--only` and in result files.
+    /// Unique name, shown above the panel and used by `--only` and in result files.
     #[schemars(length(min = 1, max = 80))]
     pub(in crate::scene) name: String,
     /// The elastic model and its parameters.
     pub(in crate::scene) model: ModelParameters,
-    /// Time step of this run, with the same T as in `[time]`; `"auto"` is from its own prediction. Default: that of `[time]`.
+    /// Time step of this run, with the T of `[time]`. `"auto"` uses the prediction of this run alone. Default: that of
+    /// `[time]`.
     pub(in crate::scene) step: Option<StepFile>,
     /// Tolerance of this run, in place of `step`. Default: that of `[time]`.
     #[schemars(range(min = 1e-11, max = 0.1))]
     pub(in crate::scene) tolerance: Option<f64>,
     /// Integrator of this run. Default: that of `[time]`.
     pub(in crate::scene) integrator: Option<Integrator>,
-    /// How a step is computed. Default: `fast` where the model has it, else `reference`. The choice moves states by round-off
-    /// in each step, which chaotic motion enlarges.
+    /// The code that computes a step. The choice moves states by round-off, which chaotic motion enlarges. Default:
+    /// `fast` where the model has it, else `reference`.
     pub(in crate::scene) kernel: Option<Kernel>,
-    /// The colour of its curves and arrows, and of the line beside its name: hexadecimal such as `"#0072b2"`, or a CSS name
-    /// such as `"teal"`. Its contrast with the background must be at least 3, and its difference from turned-over elements
-    /// at least 20 (CIEDE2000), also with colour blindness. Default: a different colour for each of the first eight runs,
-    /// which also differs from colours chosen for other runs. Dashes always differ, so several runs may share a colour.
+    /// The colour of the run's curves, arrows and line beside its name: hexadecimal such as `"#0072b2"`, or a CSS name
+    /// such as `"teal"`. Its contrast with the background must be at least 3, and its difference from turned-over
+    /// elements at least 20 (CIEDE2000), also with colour blindness. Several runs may share a colour, because dashes
+    /// always differ. Default: a colour for each of the first eight runs that differs from all others.
     pub(in crate::scene) colour: Option<TypedColour>,
-    /// A model of the caller's own, which takes the place of `model` in scenes made in code.
+    /// A model of the caller's own, instead of `model`, in scenes made in code.
     #[serde(skip)]
     #[schemars(skip)]
     pub(in crate::scene) own: Option<Arc<dyn ElasticModel>>,

@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionPath {
-    /// Keyframes with rising times, such as `[{ time = 0.2 }, { time = 0.5, shift = [0, -0.2, 0] }]`. Before the first key the
-    /// pose is that of the first, after the last that of the last.
+    /// Keyframes with rising times, such as `[{ time = 0.2 }, { time = 0.5, shift = [0, -0.2, 0] }]`. The first pose
+    /// holds before the first key, the last pose after the last.
     #[schemars(length(min = 1))]
     pub(in crate::scene) keys: Vec<KeyFile>,
     /// Interpolation between two keys.
     #[serde(default)]
     pub(in crate::scene) ease: Ease,
-    /// Whether the path begins again at its last key, which must then have the pose of the first one.
+    /// Whether the path begins again at its last key, whose pose must be that of the first.
     #[serde(default)]
     pub(in crate::scene) repeat: bool,
 }
@@ -28,10 +28,10 @@ pub(in crate::scene) struct KeyFile {
     /// Time (s).
     #[schemars(range(min = 0.0))]
     pub(in crate::scene) time: f64,
-    /// Translation (m). Default: none, whatever the previous key has.
+    /// Translation (m). It does not carry over from the previous key. Default: none.
     pub(in crate::scene) shift: Option<Coordinates>,
-    /// Rotation, about the centre unless `about` is given. Angles beyond 2π are several turns. Default: none, whatever the
-    /// previous key has.
+    /// Rotation, about the centre unless `about` is given. Angles beyond 2π are several turns. It does not carry over
+    /// from the previous key. Default: none.
     pub(in crate::scene) rotation: Option<Rotation>,
 }
 
@@ -55,8 +55,8 @@ pub struct Swing {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct HoldFile {
-    /// The nodes: a list, or all nodes that start in a region, a ball or an axis-aligned box. Nodes on the border of the
-    /// region, to round-off (1e-9 of the body's longest side), belong to it. `localshape check` prints where the body starts.
+    /// The nodes: a list, or all nodes that start in a ball or an axis-aligned box. Nodes on its border belong to it,
+    /// to 1e-9 of the body's longest side. `localshape check` prints where the body starts.
     pub(in crate::scene) nodes: NodesFile,
     /// Start (s).
     #[serde(default)]
@@ -71,11 +71,11 @@ pub(in crate::scene) struct HoldFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct GrabFile {
-    /// The nodes: a list, or all nodes that start in a region, a ball or an axis-aligned box. Nodes on the border of the
-    /// region, to round-off (1e-9 of the body's longest side), belong to it. `localshape check` prints where the body starts.
+    /// The nodes: a list, or all nodes that start in a ball or an axis-aligned box. Nodes on its border belong to it,
+    /// to 1e-9 of the body's longest side. `localshape check` prints where the body starts.
     pub(in crate::scene) nodes: NodesFile,
-    /// The path along which they are dragged. At the time of the first key the nodes are grabbed wherever they are. They
-    /// then follow the path's motion since that key, rotating about their centre, and are released at the last key.
+    /// The path along which the nodes are dragged. They are grabbed at the time of the first key, wherever they are.
+    /// They follow the path's motion since that key, rotate about their centre, and are released at the last key.
     pub(in crate::scene) path: MotionPath,
 }
 

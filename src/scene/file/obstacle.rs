@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub(in crate::scene) struct ObstacleFile {
     #[serde(flatten)]
     pub(in crate::scene) shape: ShapeFile,
-    /// Coefficient of restitution e: the part of the normal velocity that is kept in a rebound.
+    /// Coefficient of restitution e: the part of the normal velocity that a rebound keeps.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub(in crate::scene) restitution: f64,
@@ -19,13 +19,12 @@ pub(in crate::scene) struct ObstacleFile {
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub(in crate::scene) friction: f64,
-    /// What friction acts on.
+    /// The motion that friction acts on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in crate::scene) friction_of: Option<FrictionOf>,
-    /// The point about which `path` and `swing` rotate (m): a sphere swings like a pendulum about a point above it. Default:
-    /// as said for this kind.
+    /// The point about which `path` and `swing` rotate (m). Default: the one named for this kind.
     pub(in crate::scene) about: Option<Coordinates>,
-    /// A path of keyframes along which it moves. Not together with `swing`.
+    /// Keyframes along which the obstacle moves. Not together with `swing`.
     pub(in crate::scene) path: Option<MotionPath>,
     /// An oscillation, such as `{ period = 1.2, shift = [0.1, 0, 0] }`. Not together with `path`.
     pub(in crate::scene) swing: Option<Swing>,
@@ -43,7 +42,7 @@ pub(in crate::scene) enum ShapeFile {
         #[serde(default)]
         height: f64,
     },
-    /// A half-space, drawn as a plate around its `point`, about which it rotates.
+    /// A half-space, drawn as a plate. It rotates about its `point`.
     Plate {
         /// A point of the surface (m).
         point: Coordinates,
@@ -62,7 +61,7 @@ pub(in crate::scene) enum ShapeFile {
     Capsule {
         /// Centre of one round end (m).
         from: Coordinates,
-        /// Centre of the other (m).
+        /// Centre of the other round end (m).
         to: Coordinates,
         /// Radius of rod and ends (m).
         #[schemars(extend("exclusiveMinimum" = 0))]
