@@ -27,10 +27,7 @@ pub(crate) fn resolve(typed: &ViewFile, font: FontFiles, text_scale: f64, report
     check_text(&typed.colours, floor.map(|floor| floor.0), &palette, report);
     check_alarm(&typed.colours, &palette, report);
     check_field(typed, theme, &palette, report);
-    (report.total() == known).then(|| {
-        let (line_scale, margin) = (typed.line_scale, typed.margin);
-        Style { theme, palette, transparent, font, text_scale, line_scale, margin }
-    })
+    (report.total() == known).then_some(Style { theme, palette, transparent, font, text_scale })
 }
 
 fn way(role: &str) -> [Way<'_>; 3] {

@@ -32,14 +32,6 @@ pub(crate) struct ViewFile {
     /// `localshape check` says what else finds no room and is shortened or left out. No text is smaller than a fiftieth of the
     /// height of a wide picture, times this scale if that is below 1; pictures for print with type below 5 pt are refused.
     pub(crate) text_scale: TextScaleFile,
-    /// Scale of the width of all lines and of the size of nodes, of signs on elements in the plane and of marks on moved and
-    /// held nodes. Arrows of displacements become thicker, not longer; text keeps its size.
-    #[schemars(range(min = 0.25, max = 4.0))]
-    pub(crate) line_scale: f64,
-    /// Scale of the margins of the picture and of each panel, which are 40 pixels wide in a picture 720 high. They are never
-    /// narrower than a quarter of that times `text_scale`, so that texts do not touch.
-    #[schemars(range(min = 0.0, max = 2.0))]
-    pub(crate) margin: f64,
     /// The words below the time, which say since when it counts. Default: `after release`; in scenes with `hold` or `grab`
     /// `after the start`.
     #[schemars(length(max = 80))]
@@ -131,8 +123,6 @@ impl Default for ViewFile {
             colours: ColoursFile::default(),
             font: None,
             text_scale: TextScaleFile::Times(1.0),
-            line_scale: 1.0,
-            margin: 1.0,
             clock: None,
             columns: None,
             panels: None,

@@ -18,7 +18,7 @@ pub struct View {
     pub size: [u32; 2],
     /// The size in print, if it was given.
     pub print: Option<Print>,
-    /// Colours, type, lines and margins.
+    /// Colours and type.
     pub look: Style,
     /// From where; the same for all panels.
     pub camera: Camera,
@@ -230,7 +230,7 @@ pub enum ColourMap {
     PurpleGreen,
 }
 
-/// The appearance of a picture apart from its content: colours, type, lines and margins.
+/// The appearance of a picture apart from its content: colours and type.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
     /// The theme of the colours: the requested one, unless its text would be illegible on the background.
@@ -243,24 +243,12 @@ pub struct Style {
     pub font: FontFiles,
     /// How many times larger than usual type is.
     pub text_scale: f64,
-    /// How many times thicker than usual lines are.
-    pub line_scale: f64,
-    /// How many times as wide as usual margins are.
-    pub margin: f64,
 }
 
 impl Style {
     /// What pictures of a theme look like where a scene says nothing else.
     pub fn of(theme: Theme) -> Self {
-        Self {
-            theme,
-            palette: Palette::of(theme),
-            transparent: false,
-            font: FontFiles::default(),
-            text_scale: 1.0,
-            line_scale: 1.0,
-            margin: 1.0,
-        }
+        Self { theme, palette: Palette::of(theme), transparent: false, font: FontFiles::default(), text_scale: 1.0 }
     }
 }
 

@@ -81,11 +81,6 @@ pub(super) fn size(element: f64, unit: f64) -> f64 {
     (unit * (element / (ROOMY_ELEMENT * unit)).clamp(SMALLEST, 1.0)).max(FAINTEST)
 }
 
-/// How large arrows of a height (px) with their halos are beside those of the reference picture.
-pub(super) fn size_of_height(height: f64) -> f64 {
-    height / (HEAD * HEIGHT)
-}
-
 /// An arrow from one pixel to another; the tip stands exactly at the second one.
 pub(super) fn arrow([from, to]: [DVec2; 2], size: f64, colour: Colour, halo: Colour) -> Mark {
     let length = (to - from).length();
@@ -109,9 +104,6 @@ pub(super) struct Arrows<'a> {
     pub(super) room: Rectangle,
     /// See [`size`].
     pub(super) size: f64,
-    /// How many times thicker than that they are. A thicker arrow is no longer, and the head of a short one is no larger:
-    /// the same displacements are shown at any thickness.
-    pub(super) thickness: f64,
     /// The radius of the nodes, if they are drawn (px): no arrow is as short as one of them is wide.
     pub(super) node: f64,
     /// How many times longer than the displacements they are.
@@ -141,11 +133,10 @@ impl Arrows<'_> {
             Some((depth, (ends, opacity * part)))
         });
         let (depths, arrows): (Vec<_>, Vec<_>) = arrows.unzip();
-        let size = self.size * self.thickness;
         let opacities = thinned(&arrows, HEAD * self.size);
         let drawn = arrows.iter().zip(opacities).map(|(&(ends, _), opacity)| (ends, opacity));
         let drawn = farthest_first(depths.into_iter().zip(drawn).collect());
-        marks.extend(drawn.filter_map(|(ends, opacity)| arrow(ends, size, self.colour, self.halo).faded(opacity)));
+        marks.extend(drawn.filter_map(|(ends, opacity)| arrow(ends, self.size, self.colour, self.halo).faded(opacity)));
     }
 
     /// The part of an arrow inside the room, and its opacity: the shortest fade. Long arrows are cut, not left out, or the

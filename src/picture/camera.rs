@@ -65,10 +65,7 @@ impl Lens {
         let camera = &view.camera;
         let [above, below] = layout::rooms(view, panel[3], unit);
         let room = (panel[3] - (above + below) * unit).max(0.1 * panel[3]);
-        // Narrower margins have the effect of a larger panel with usual ones.
-        let gained = layout::gained(view);
-        let [across, along] = [0, 1].map(|axis| (panel[2 + axis] + gained[axis] * unit).max(0.1 * panel[2 + axis]));
-        let height = along.min(across / FULL_ASPECT).min(room / REFERENCE_ROOM);
+        let height = panel[3].min(panel[2] / FULL_ASPECT).min(room / REFERENCE_ROOM);
         let slope = height / 2.0 / libm::tan(camera.field_of_view / 2.0);
         let middle = (panel[3] + (above - below) * unit) / 2.0 + LOWERED * room;
         let centre = [panel[0] + panel[2] / 2.0, panel[1] + middle];

@@ -154,7 +154,6 @@ impl Writer<'_> {
     pub(super) fn sample(&mut self, [left, middle]: [f64; 2], LineStyle { colour, dash }: LineStyle) {
         let unit = self.scale.unit;
         let [length, thickness] = SAMPLE.map(|length| length * unit);
-        let thickness = thickness * self.scale.line_factor;
         let mut piece = |from: f64, to: f64| {
             let thickness = thickness.round().max(1.0);
             let rectangle = [left + from, (middle - 0.5 * thickness).round(), to - from, thickness];
@@ -252,7 +251,7 @@ impl Writer<'_> {
         };
         // Where none has turned over, those that are flat count.
         let (count, state) = if over == 0 && flattened > 0 { (flattened, "flat") } else { (over, "turned over") };
-        let bottom = room.bottom - self.scale.lower_margin();
+        let bottom = room.bottom - self.scale.margin();
         let taken = tally.draw(
             [turned_over, flat],
             self.palette,
@@ -321,9 +320,7 @@ impl Writer<'_> {
         let middle = between[0].midpoint(between[1]);
         let [length, thickness] = [pixels, 2.0 * self.scale.line()].map(|length| length.round().max(1.0));
         let (left, top) = ((middle - 0.5 * length).round(), (room.top + lines.count - BAR_HEIGHT * unit).round());
-        // Beside thick lines ticks are longer, or they would be none.
-        let usual_thickness = (2.0 * self.scale.line() / self.scale.line_factor).round().max(1.0);
-        let tick = ((BAR_TICK * unit).round() + 2.0 * (thickness - usual_thickness)).max(thickness);
+        let tick = (BAR_TICK * unit).round().max(thickness);
         let [first, last] = [left, left + length - thickness];
         for [x, y, width, height] in [
             [left, top, length, thickness],
@@ -343,7 +340,7 @@ impl Writer<'_> {
     pub(super) fn hairlines(&mut self, layout: &Layout) {
         let inset = self.scale.margin();
         // A hairline of one pixel that lies between two pixels fills half of both.
-        let thickness = (2.0 * self.scale.unit * self.scale.line_factor).round().max(1.0);
+        let thickness = (2.0 * self.scale.unit).round().max(1.0);
         let (line, ground) = (self.palette.hairline, self.palette.background);
         let halved = if thickness < 2.0 { line } else { std::array::from_fn(|at| line[at].midpoint(ground[at])) };
         let first = f64::from(layout.ground[1]);

@@ -38,8 +38,6 @@ pub(super) struct Chart {
     pub(super) unit: f64,
     /// Thickness of lines, in parts of that in the reference picture.
     pub(super) line: f64,
-    /// That of hairlines, which go with the type.
-    pub(super) thin: f64,
 }
 
 impl Chart {
@@ -53,19 +51,14 @@ impl Chart {
         self.bottom - values.share(value) * (self.bottom - self.top)
     }
 
-    /// How thick lines are, in parts of those in the reference picture.
-    pub(super) fn thickness(self) -> f64 {
-        self.line
-    }
-
-    /// Thickness of hairlines, in whole pixels.
+    /// Thickness of hairlines, which go with the type, in whole pixels.
     fn hairline(self) -> f64 {
-        self.thin.round().max(1.0)
+        self.unit.round().max(1.0)
     }
 
     /// The colour of a hairline: one that would be thinner than a pixel is fainter instead.
     fn thinned(self, colour: Colour, ground: Colour) -> Colour {
-        mixed(ground, colour, (1.25 * self.thin / self.hairline()).min(1.0))
+        mixed(ground, colour, (1.25 * self.unit / self.hairline()).min(1.0))
     }
 
     pub(super) fn outside(self) -> f64 {
@@ -157,7 +150,7 @@ impl Chart {
         let ends = [[x, self.top - self.outside()], [x, self.bottom + TICK * self.unit]];
         Curve {
             points: ends.iter().map(|end| end.map(narrow)).collect(),
-            width: narrow(MOMENT * self.thickness()),
+            width: narrow(MOMENT * self.line),
             dash: Vec::new(),
             colour,
             alpha: narrow(MOMENT_ALPHA),

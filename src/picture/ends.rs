@@ -105,7 +105,7 @@ impl Ends {
                 let points = if is_early { vec![from, [chart.right, y], to] } else { vec![from, to] };
                 writer.curves.push(Curve {
                     points: points.into_iter().map(|point| point.map(narrow)).collect(),
-                    width: narrow(LEADER * chart.thin),
+                    width: narrow(LEADER * chart.unit),
                     dash: if is_early { DOTS.map(|length| narrow(length * unit)).to_vec() } else { Vec::new() },
                     colour: one.style.colour,
                     alpha: narrow(LEADER_ALPHA),
@@ -113,10 +113,10 @@ impl Ends {
             }
             if self.sample > 0.0 {
                 let length = SAMPLE[0] * unit;
-                let dash = one.style.dash.iter().map(|length| narrow(length * chart.thickness()));
+                let dash = one.style.dash.iter().map(|length| narrow(length * chart.line));
                 writer.curves.push(Curve {
                     points: vec![[left, place].map(narrow), [left + length, place].map(narrow)],
-                    width: narrow(OWN * chart.thickness()),
+                    width: narrow(OWN * chart.line),
                     dash: dash.collect(),
                     colour: one.style.colour,
                     alpha: 1.0,

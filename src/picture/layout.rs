@@ -23,15 +23,8 @@ const LEAST_TYPE: f64 = 14.0;
 /// Type smaller than this cannot be read in any picture and is left out (px).
 const SMALLEST_TYPE: f64 = 5.0;
 
-/// Free around and inside each panel unless the scene says otherwise (px in the reference picture).
+/// Free around and inside each panel (px in the reference picture).
 const MARGIN: f64 = 40.0;
-/// The narrowest margin, at type of the usual size: words keep off the picture's sides, and off those of the next panel
-/// (px in the reference picture).
-const LEAST_MARGIN: f64 = 10.0;
-/// Above a chart the margin is so many times as wide: there is text of the same size on both sides.
-const ABOVE_CHART: f64 = 2.0;
-/// This part of what narrow margins lack is added between rows, or the lowest text of panels would touch what is below.
-const MADE_UP: f64 = 0.25;
 /// Height of the ground of the title, and of the chart with the room around it (px in the reference picture).
 const TITLE: f64 = 48.0;
 /// The baseline of the title, and the distance of its lines; height of a row for the clock alone, and its baseline, which reaches into the margin of the
@@ -41,10 +34,9 @@ const TITLE_LINE: f64 = 38.0;
 const CLOCK_ROW: f64 = 40.0;
 const CLOCK_BASELINE: f64 = 50.0;
 const CHART: f64 = 140.0;
-/// Free below the chart with usual margins (px in the reference picture).
+/// Free below the chart (px in the reference picture).
 const BELOW_CHART: f64 = 18.0;
-/// Distance of the caption's lines, free above the first baseline and, with usual margins, below the last (px in the
-/// reference picture).
+/// Distance of the caption's lines, free above the first baseline and below the last (px in the reference picture).
 pub(super) const CAPTION_LINE: f64 = 22.0;
 const ABOVE_CAPTION: f64 = 8.0;
 const BELOW_CAPTION: f64 = 30.0;
@@ -125,10 +117,7 @@ impl Layout {
         };
         let caption_height = |lines: usize| match lines {
             0 => 0,
-            lines => rows(
-                around.of_type((lines - 1) as f64 * CAPTION_LINE + around.above_caption())
-                    + around.like_margin(BELOW_CAPTION),
-            ),
+            lines => rows(around.of_type((lines - 1) as f64 * CAPTION_LINE + ABOVE_CAPTION) + BELOW_CAPTION),
         };
         // Panels keep at least half of the picture: of the rest, first the title gets room, then the clock, then the keys, then
         // the caption.
@@ -155,11 +144,11 @@ impl Layout {
             // The names at the ends of curves have room above each other.
             let names = count.min(MOST_NAMES) as f64 * CURVE_NAME;
             let units = CHART + (names - CURVE_NAMES).max(0.0) - BELOW_CHART;
-            let usual = units * around.type_unit() + around.like_margin(BELOW_CHART) * around.unit;
+            let usual = units * around.type_unit() + BELOW_CHART * around.unit;
             usual.min(CHART_SHARE * f64::from(height)).round()
         });
         // A chart too low to be read leaves its room to the bodies.
-        let below = (around.like_margin(BELOW_CHART) * around.unit).min(chart);
+        let below = (BELOW_CHART * around.unit).min(chart);
         let has_room = chart - below > LEAST_CHART_ROOM * around.type_unit() + LEAST_CHART;
         let has_chart = has_room && Scale::legible(LEAST_TYPE * around.type_unit());
         let chart = if has_chart { chart as u32 } else { 0 };
@@ -183,7 +172,7 @@ impl Layout {
             has_legend: legend > 0,
             caption_lines,
             legend: title + height,
-            caption: f64::from(title + height + legend) + around.above_caption() * around.type_unit(),
+            caption: f64::from(title + height + legend) + ABOVE_CAPTION * around.type_unit(),
         }
     }
 
@@ -238,7 +227,7 @@ pub(super) fn written(view: &View, height: f64, unit: f64) -> Written {
     let names = Labels { letter, name, clock, ..Labels::default() };
     let none = Written { labels: Labels::default(), second: false, scale_bar: false, events: false };
     let choices = [all, plain, Written { labels, second: false, ..plain }, Written { labels: names, ..none }];
-    let margins = (scale.margin + scale.lower_margin) * unit;
+    let margins = 2.0 * MARGIN * unit;
     let fits = |written: &Written| {
         let taken: f64 = rooms_of(*written, scale).iter().sum();
         let words = if written.second { MOST_WORDS[0] } else { MOST_WORDS[1] };
@@ -258,32 +247,16 @@ fn rooms_of(Written { labels, second, scale_bar, events }: Written, scale: Scale
     let Labels { letter, name, clock, count, number, .. } = labels;
     let unit = scale.type_unit();
     let rows = Baselines::new(scale, [0; 4]);
-    let nothing = |margin: f64| (NO_WORDS + margin - MARGIN).max(0.0) * scale.unit;
+    let nothing = NO_WORDS * scale.unit;
     let above = match (letter || name || clock, second) {
         _ if events => rows.events + CLEAR[1] * unit,
         (_, true) => rows.second + CLEAR[1] * unit,
         (true, false) => rows.title + CLEAR[0] * unit,
-        (false, false) => nothing(scale.margin),
+        (false, false) => nothing,
     };
     let has_below = count || number || scale_bar;
-    let below = if has_below { CLEAR[2] * unit - rows.count } else { nothing(scale.lower_margin) };
+    let below = if has_below { CLEAR[2] * unit - rows.count } else { nothing };
     [above, below]
-}
-
-/// Free around and inside each panel, and below its lowest words (px in the reference picture).
-fn margins(view: &View) -> [f64; 2] {
-    let least = LEAST_MARGIN * view.look.text_scale;
-    let margin = (MARGIN * view.look.margin).max(least);
-    // To a chart the words keep a distance of their own.
-    let lower = if view.strip.is_some() { margin.clamp((ABOVE_CHART * least).min(MARGIN), MARGIN) } else { margin };
-    [margin, lower]
-}
-
-/// How much wider and higher panels seem to a camera whose margins are narrower than usual (px in the reference
-/// picture).
-pub(super) fn gained(view: &View) -> [f64; 2] {
-    let [margin, lower] = margins(view);
-    [2.0 * (MARGIN - margin), (MARGIN - margin) + (MARGIN - lower)]
 }
 
 /// Divides a picture into panels, row by row; together they cover it without gaps. No panel is without a pixel as
@@ -311,17 +284,11 @@ pub(super) struct Scale {
     type_factor: f64,
     /// The smallest type (px).
     least: f64,
-    /// How many times thicker than usual lines are.
-    pub(super) line_factor: f64,
-    /// Free around and inside each panel, and below its lowest words (px in the reference picture).
-    margin: f64,
-    lower_margin: f64,
 }
 
 impl Scale {
     /// That of the reference picture.
-    pub(super) const REFERENCE: Self =
-        Self { unit: 1.0, type_factor: 1.0, least: 0.0, line_factor: 1.0, margin: MARGIN, lower_margin: MARGIN };
+    pub(super) const REFERENCE: Self = Self { unit: 1.0, type_factor: 1.0, least: 0.0 };
 
     pub(super) fn new(size: [u32; 2], panel: Rectangle) -> Self {
         Self { unit: print::unit(size, [panel[2], panel[3]]), ..Self::REFERENCE }
@@ -337,10 +304,9 @@ impl Scale {
         Self { unit, ..self }
     }
 
-    /// The same with type, lines and margins as a scene asks for.
+    /// The same with type as a scene asks for.
     pub(super) fn with(self, view: &View) -> Self {
-        let ([margin, lower_margin], look) = (margins(view), &view.look);
-        Self { type_factor: look.text_scale, line_factor: look.line_scale, margin, lower_margin, ..self }
+        Self { type_factor: view.look.text_scale, ..self }
     }
 
     /// The same for a part of the picture of a scene, which has no smaller type than that.
@@ -361,7 +327,7 @@ impl Scale {
     /// A height of type within margins, given in the reference picture with its margins (px): inside the margin, rows are
     /// as high as their type.
     pub(super) fn row(self, height: f64) -> f64 {
-        (self.margin + (height - MARGIN) * self.type_factor) * self.unit
+        (MARGIN + (height - MARGIN) * self.type_factor) * self.unit
     }
 
     /// Names, clock and count (px).
@@ -381,33 +347,7 @@ impl Scale {
 
     /// Free space around and inside each panel (px).
     pub(super) fn margin(self) -> f64 {
-        self.margin * self.unit
-    }
-
-    /// Free below the lowest words of each panel (px).
-    pub(super) fn lower_margin(self) -> f64 {
-        self.lower_margin * self.unit
-    }
-
-    /// A free length as much longer as margins are wider.
-    fn like_margin(self, length: f64) -> f64 {
-        length * (self.margin / MARGIN)
-    }
-
-    /// What is added between rows where margins are narrower than usual (px in the reference picture).
-    pub(super) fn made_up(self) -> f64 {
-        MADE_UP * (MARGIN - self.margin).max(0.0)
-    }
-
-    /// How much more than usual is free below the key of colours and arrows (px in the reference picture), which has less
-    /// room there than a margin.
-    pub(super) fn below_legend(self) -> f64 {
-        0.5 * (self.margin - MARGIN)
-    }
-
-    /// Free above the caption's first baseline (px in the reference picture).
-    fn above_caption(self) -> f64 {
-        ABOVE_CAPTION + self.made_up()
+        MARGIN * self.unit
     }
 
     /// Between things beside each other (px).
@@ -423,7 +363,7 @@ impl Scale {
     /// How thick lines are, in parts of their thickness in the reference picture. Thinner ones than at a third of
     /// that size would only be fainter.
     pub(super) fn line(self) -> f64 {
-        self.unit.max(0.35) * self.line_factor
+        self.unit.max(0.35)
     }
 }
 
@@ -443,7 +383,7 @@ impl Baselines {
     pub(super) fn new(scale: Scale, panel: Rectangle) -> Self {
         let apart = |length: f64| scale.of_type(length * scale.unit).max(LINE * scale.caption());
         let title = scale.margin() + scale.of_type(ROWS[0] * scale.unit).max(ASCENT * scale.title());
-        let below = (scale.lower_margin - BELOW_BASELINE) * scale.unit;
+        let below = (MARGIN - BELOW_BASELINE) * scale.unit;
         let caption = f64::from(panel[3]) - below.max(0.5 * scale.caption());
         let count = caption - scale.of_type(COUNT_ABOVE * scale.unit).max(LINE * scale.caption());
         Self { title, second: title + apart(ROWS[1]), events: title + apart(ROWS[1]) + apart(ROWS[2]), count, caption }
@@ -533,12 +473,12 @@ mod tests {
     }
 
     #[test]
-    fn type_and_lines_grow_by_themselves() {
-        let look = Style { text_scale: 2.0, line_scale: 3.0, ..Style::of(Theme::Light) };
+    fn type_grows_alone() {
+        let look = Style { text_scale: 2.0, ..Style::of(Theme::Light) };
         let view = View { look, ..View::default() };
         let (usual, large) = (Scale::REFERENCE, Scale::REFERENCE.with(&view));
         assert_eq!((large.title(), large.caption()), (2.0 * usual.title(), 2.0 * usual.caption()));
-        assert_eq!((large.line(), large.margin()), (3.0 * usual.line(), usual.margin()));
+        assert_eq!((large.line(), large.margin()), (usual.line(), usual.margin()));
         // Each row has room for its type.
         let panel = [0, 0, 640, 720];
         let rows = Baselines::new(large, panel);

@@ -39,9 +39,6 @@ const APART: f64 = 44.0;
 const SAMPLE: [f64; 2] = [48.0, 2.0];
 /// About how long the key's arrow is where nothing moves (px in the reference picture).
 const ARROW: f64 = 64.0;
-/// The least distance of a thick one from the text above, which ends half a margin above the key or higher (px in the
-/// reference picture).
-const CLEAR: f64 = 2.0;
 
 /// A scale of colours.
 pub(super) struct Bar<'a> {
@@ -108,8 +105,7 @@ impl Legend {
         let needed = apart + arrow + SAMPLE_ROOM * samples as f64 + BAR_ROOM * bars as f64;
         let roomy = LEAST_UNIT.min(MOST_HEIGHT * height / HEIGHT);
         let unit = scale.of_type(scale.unit.max(roomy)).min((width - 2.0 * scale.margin()) / needed);
-        let made_up = scale.made_up() * scale.type_unit();
-        let height = ((HEIGHT + scale.below_legend()) * unit + made_up).round() as u32;
+        let height = (HEIGHT * unit).round() as u32;
         Scale::legible(NUMBERS * unit).then_some(Self { unit, height })
     }
 
@@ -126,15 +122,11 @@ impl Legend {
     ) {
         let unit = self.unit;
         let margin = writer.scale.margin();
-        let made_up = writer.scale.made_up() * writer.scale.type_unit();
-        let top = (ground + made_up - ABOVE * writer.scale.unit).round();
+        let top = (ground - ABOVE * writer.scale.unit).round();
         let middle = top + 0.5 * (BAR * unit).round();
         let mut left = margin;
         if let Some((metres, [length, size])) = arrow {
             // However thick lines are, the arrow stays inside the key and clear of the text above.
-            let free = middle - ground + 0.5 * margin - CLEAR * writer.scale.unit;
-            let most = arrows::size_of_height((2.0 * free).min(f64::from(self.height)));
-            let size = size.min(most.max(size / writer.scale.line_factor));
             left = self.arrow(writer, [left, middle], &metres, [length, size]) + APART * unit;
         }
         let taken_by_bars = bars.len() as f64 * (BAR_ROOM + APART) * unit;
@@ -176,15 +168,13 @@ impl Legend {
     fn sample(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], room: f64, sample: &Sample<'_>) -> f64 {
         let (unit, palette) = (self.unit, writer.palette);
         let [length, width] = SAMPLE.map(|length| length * unit);
-        let line = unit * writer.scale.line_factor;
-        let width = narrow(width * writer.scale.line_factor);
         let curve = |[from, to]: [f64; 2], dash: Vec<f32>, colour| {
             let points = [from, to].map(|x| [x, middle].map(narrow)).to_vec();
-            Curve { points, width, dash, colour, alpha: 1.0 }
+            Curve { points, width: narrow(width), dash, colour, alpha: 1.0 }
         };
         match sample.kind {
             SampleKind::Ghost(colour) => {
-                let dash = ghost::DASH.map(|length| narrow(length * line)).to_vec();
+                let dash = ghost::DASH.map(|length| narrow(length * unit)).to_vec();
                 writer.curves.push(curve([left, left + length], dash, colour));
             }
             SampleKind::Path(ref colours) => {
@@ -243,7 +233,7 @@ impl Legend {
         let below = top + height + (TICK + 14.5) * unit;
         self.write(writer, definition, Weight::Regular, NUMBERS, palette.second_text, left, below);
         let bar_left = (left + named + gap).round();
-        let rim = (unit * writer.scale.line_factor).round().max(1.0);
+        let rim = unit.round().max(1.0);
         // Where values lie beyond the scale, the bar ends in a point.
         let cap = 0.8 * height;
         for (end, x) in [bar_left, bar_left + length].into_iter().enumerate().filter(|&(end, _)| beyond[end]) {

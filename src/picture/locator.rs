@@ -125,7 +125,7 @@ impl Locator {
         located: &Located<'_>,
     ) {
         let Writer { palette, scale, .. } = *writer;
-        let line = scale.unit.max(0.6) * scale.line_factor;
+        let line = scale.unit.max(0.6);
         let [left, top, width, height] = place;
         let inside = INSIDE * scale.unit;
         let shape = self.high - self.low;

@@ -71,7 +71,7 @@ impl Series {
         for part in members.iter().flat_map(|points| within(points, [chart.top, chart.bottom])) {
             writer.curves.push(Curve {
                 points: simplified(&part, EXACT).into_iter().map(|point| point.map(narrow)).collect(),
-                width: narrow(SINGLE * chart.thickness()),
+                width: narrow(SINGLE * chart.line),
                 dash: Vec::new(),
                 colour: self.style.colour,
                 alpha: narrow(SINGLE_ALPHA),

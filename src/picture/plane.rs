@@ -128,7 +128,7 @@ impl Flat<'_> {
         if high > low && has_shadow {
             mark([low, high], [0.0, (SHADOW_DEPTH * unit).min(depth)], self.palette.shadow, MarkShape::Shadow);
         }
-        let thickness = (FLOOR_LINE * unit * self.scale.line_factor).round().max(1.0);
+        let thickness = (FLOOR_LINE * unit).round().max(1.0);
         if !has_floor {
             return;
         }
@@ -179,7 +179,7 @@ impl Flat<'_> {
         if !has_floor {
             return;
         }
-        let thickness = (FLOOR_LINE * unit * self.scale.line_factor).round().max(1.0);
+        let thickness = (FLOOR_LINE * unit).round().max(1.0);
         let line = [left + margin - 0.5, y - 0.5, length + 1.0, thickness + 1.0];
         marks.push(Mark::upright(line, MarkShape::Smooth, self.palette.axis));
     }

@@ -101,8 +101,7 @@ impl Series {
 
     /// Whether a band stands for a part of the curve in a chart.
     pub(super) fn has_band(&self, chart: Chart, axes: [&Axis; 2]) -> bool {
-        self.is_count
-            && !dense(&self.pixels(chart, axes), [DENSE, TURN].map(|length| length * chart.thickness())).is_empty()
+        self.is_count && !dense(&self.pixels(chart, axes), [DENSE, TURN].map(|length| length * chart.line)).is_empty()
     }
 
     /// Draws the curve, with a cross where the run diverged. Counts are solid steps; where they go up and down too densely for
@@ -111,7 +110,7 @@ impl Series {
         self.draw_range(writer, chart, [times, values]);
         let points = self.pixels(chart, [times, values]);
         let borders = [chart.top - chart.outside(), chart.bottom + chart.outside()];
-        let thickness = chart.thickness();
+        let thickness = chart.line;
         let curve = |points: &[[f64; 2]], width: f64, dash: Vec<f32>| Curve {
             points: points.iter().map(|point| point.map(narrow)).collect(),
             width: narrow(width * thickness),

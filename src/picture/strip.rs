@@ -209,9 +209,8 @@ impl Parts {
         [from, to]: [f64; 2],
         split: Option<f64>,
     ) -> Self {
-        let line = scale.line_factor * scale.unit;
-        let [unit, thin] = [1.0, scale.line_factor].map(|factor| factor * scale.type_unit());
-        let chart = |[left, right]: [f64; 2]| Chart { left, right, top, bottom, unit, line, thin };
+        let (unit, line) = (scale.type_unit(), scale.unit);
+        let chart = |[left, right]: [f64; 2]| Chart { left, right, top, bottom, unit, line };
         let Some(split) = split else { return Self(vec![(chart([left, right]), [from, to])]) };
         let gap = (SPLIT_GAP * scale.unit).round();
         let middle = (left + BEFORE * (right - left - gap)).round();

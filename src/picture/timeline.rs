@@ -87,7 +87,7 @@ impl Timeline {
             let Some((one, values)) = one.zip(self.strip.values_in(chart)) else { continue };
             let y = chart.y(&values, self.strip.diagnostic.of(&run.snapshot.diagnostics));
             if (chart.top - 1.0..=chart.bottom + 1.0).contains(&y) {
-                writer.curves.push(circle([x, y], chart.thickness(), one.style.colour));
+                writer.curves.push(circle([x, y], chart.line, one.style.colour));
             }
         }
     }

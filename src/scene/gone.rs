@@ -16,8 +16,14 @@ const fn key(key: &'static str, instead: &'static str) -> Gone {
     Gone { key, value: None, instead }
 }
 
-const GONE: &[Gone] =
-    &[key("view.explode", "remove it"), key("view.inset", "remove it"), key("view.points", "remove it")];
+#[rustfmt::skip]
+const GONE: &[Gone] = &[
+    key("view.explode", "remove it"),
+    key("view.inset", "remove it"),
+    key("view.line_scale", "remove it"),
+    key("view.margin", "remove it"),
+    key("view.points", "remove it"),
+];
 
 /// What to write instead of a key that is gone, or of one of its values.
 pub(super) fn instead(path: &[Way<'_>], value: Option<&str>) -> Option<&'static str> {

@@ -1,13 +1,12 @@
 //! Pictures without a background, and with their own fonts, colours and sizes.
 
-use super::{all, fig4b, frame, gpu, parse, renderer};
+use super::{fig4b, frame, gpu, parse, renderer};
 use glam::DVec3;
 use image::{Rgb, RgbImage, RgbaImage};
 use localshape::gpu::Gpu;
 use localshape::look::{FontFiles, Style, Theme};
-use localshape::picture::{Composer, Line, LineKind, Mark, MarkShape, Mesh, Obstacles, Picture, Weight, compose};
+use localshape::picture::{Composer, Line, LineKind, Mesh, Obstacles, Picture, Weight, compose};
 use localshape::runner::Runner;
-use localshape::runner::history::History;
 use localshape::scene::Scene;
 use localshape::sim::snapshot::Frame;
 
@@ -134,96 +133,6 @@ fn fonts_that_a_scene_brings_are_the_ones_it_is_written_with() {
     assert_eq!(usual, draw(FontFiles::default()), "one renderer draws with any fonts");
 }
 
-/// A scene that ships, and one of its frames, as pictures are made of them with lines of two thicknesses.
-fn thin_and_thick(text: &str, index: u64, thickness: f64) -> [Picture; 2] {
-    let mut scene = parse(text);
-    scene.view.size = [1280, 720];
-    let frame = frame(&scene, index);
-    let history = History::new(&scene, &all(&scene));
-    [1.0, thickness].map(|line_scale| {
-        scene.view.look.line_scale = line_scale;
-        let mut composer = Composer::new(&scene);
-        composer.set_history(&history);
-        composer.compose(&frame)
-    })
-}
-
-/// The marks of a picture that fulfil a condition.
-fn some(picture: &Picture, is_meant: impl Fn(&Mark) -> bool) -> Vec<Mark> {
-    picture.under.iter().chain(&picture.marks).filter(|mark| is_meant(mark)).copied().collect()
-}
-
-#[test]
-fn every_line_becomes_thicker_and_no_word_larger() {
-    let text = super::plain()
-        .replace("[view]", "[view]\nshow = ['surfaces', 'displacements']\ncolour.by = 'strain'\nstrip = 'shape_error'");
-    let [usual, twice] = thin_and_thick(&text, 12, 2.0);
-    assert_eq!(usual.words, twice.words);
-    // Arrows: as many, from and to the same places, twice as wide.
-    let arrows = |picture: &Picture| some(picture, |mark| mark.shape == MarkShape::Arrow);
-    let (thin, thick) = (arrows(&usual), arrows(&twice));
-    assert!(thin.len() == thick.len() && thin.len() > 10, "{} {}", thin.len(), thick.len());
-    for (thin, thick) in thin.iter().zip(&thick) {
-        assert!((thick.rectangle[3] - 2.0 * thin.rectangle[3]).abs() < 1e-3, "{thin:?} {thick:?}");
-        assert_eq!((thin.shape, thin.along), (thick.shape, thick.along));
-        let ends = |mark: &Mark| {
-            let ([left, top, width, height], [x, y]) = (mark.rectangle, mark.along);
-            let (halo, middle) = (3.0 / 23.0 * height, 0.5 * height);
-            [halo, width - halo].map(|at| [left + at * x - middle * y, top + at * y + middle * x])
-        };
-        let apart = ends(thin)
-            .as_flattened()
-            .iter()
-            .zip(ends(thick).as_flattened())
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f32::max);
-        assert!(apart < 0.01, "{thin:?} {thick:?}");
-    }
-    // The hairline between the panels; frame and ticks of the key; rows and ticks of the strips; curves.
-    let palette = usual.palette;
-    let ink = [palette.axis, palette.second_text, palette.hairline];
-    let upright = |picture: &Picture, thickness: f32| {
-        let is_line = |mark: &Mark| ink.contains(&mark.colour) && mark.rectangle[2] == thickness;
-        some(picture, |mark| is_line(mark) && mark.rectangle[3] < 14.0).len()
-    };
-    assert!(upright(&usual, 1.0) > 5 && upright(&usual, 2.0) > 0);
-    assert_eq!(upright(&twice, 4.0), upright(&usual, 2.0));
-    assert_eq!(upright(&twice, 2.0), upright(&usual, 1.0));
-    let divider = |picture: &Picture| some(picture, |mark| mark.rectangle[3] > 400.0)[0].rectangle[2];
-    assert_eq!([&usual, &twice].map(divider), [2.0, 4.0]);
-    let rows = |picture: &Picture, thickness: f32| {
-        some(picture, |mark| mark.rectangle[3] == thickness && mark.rectangle[2] > 300.0).len()
-    };
-    assert!(
-        rows(&usual, 1.0) >= 3 && rows(&twice, 2.0) == rows(&usual, 1.0),
-        "{} {}",
-        rows(&usual, 1.0),
-        rows(&twice, 2.0)
-    );
-    let frame = |picture: &Picture| {
-        let bar: Vec<_> = some(picture, |mark| mark.shape == MarkShape::Blend);
-        let framed =
-            some(picture, |mark| mark.colour == palette.axis && mark.rectangle[2] > 100.0 && mark.rectangle[3] > 5.0);
-        bar[0].rectangle[1] - framed[0].rectangle[1]
-    };
-    assert_eq!([&usual, &twice].map(frame), [1.0, 2.0]);
-    assert!(!usual.curves.is_empty());
-    // Rings around numbers go with the type.
-    for (thin, thick) in usual.curves.iter().zip(&twice.curves).filter(|(thin, _)| thin.points.len() > 1) {
-        assert!((thick.width - 2.0 * thin.width).abs() < 1e-4);
-    }
-}
-
-#[test]
-fn the_line_of_the_floor_in_the_plane_becomes_thicker() {
-    for (line_scale, expected) in [(1.0, 2.0), (2.0, 3.0), (4.0, 6.0)] {
-        let [_, picture] = thin_and_thick(include_str!("../../scenes/fig4a.toml"), 87, line_scale);
-        let floors = some(&picture, |mark| mark.shape == MarkShape::Smooth && mark.along == Mark::UPRIGHT);
-        // With a border of half a pixel on both sides.
-        assert!(!floors.is_empty() && floors.iter().all(|mark| mark.rectangle[3] == expected + 1.0), "{floors:?}");
-    }
-}
-
 #[test]
 fn without_outlines_there_are_none_but_those_of_turned_over_elements() {
     let (mut scene, mut frame) = fig4b(12);
@@ -348,14 +257,13 @@ fn without_a_hatch_turned_over_elements_in_space_are_lit_whatever_colours_the_ot
 }
 
 #[test]
-fn type_and_lines_become_larger_and_stay_in_the_picture() {
+fn type_becomes_larger_and_stays_in_the_picture() {
     let (mut scene, frame) = fig4b(4);
-    for (text_scale, line_scale) in [(0.5, 0.25), (1.0, 1.0), (2.0, 3.0), (3.0, 4.0)] {
-        (scene.view.look.text_scale, scene.view.look.line_scale) = (text_scale, line_scale);
+    for text_scale in [0.5, 1.0, 2.0, 3.0] {
+        scene.view.look.text_scale = text_scale;
         let picture = compose(&scene, &frame);
         let name = picture.words.iter().find(|run| run.weight == Weight::SemiBold).expect("a name");
         assert!((f64::from(name.size) - 26.0 * text_scale).abs() < 1e-3);
-        assert!((f64::from(picture.panels[0].sight.line_scale) - line_scale).abs() < 1e-6);
         for run in &picture.words {
             let [left, right] = run.span;
             let (top, bottom) = (run.baseline - 0.78 * run.size, run.baseline + 0.3 * run.size);

@@ -162,11 +162,9 @@ fn a_background_takes_the_theme_whose_text_can_be_read_on_it() {
 
 #[test]
 fn scales_have_named_colours_and_factors() {
-    let scene =
-        good(&with("colour = { by = 'speed', map = 'viridis' }\ntext_scale = 1.5\nline_scale = 0.5\nmargin = 0"));
+    let scene = good(&with("colour = { by = 'speed', map = 'viridis' }\ntext_scale = 1.5"));
     assert_eq!(scene.view.colour.map(|colour| colour.map), Some(ColourMap::Viridis));
-    let Style { text_scale, line_scale, margin, .. } = scene.view.look;
-    assert_eq!((text_scale, line_scale, margin), (1.5, 0.5, 0.0));
+    assert_eq!(scene.view.look.text_scale, 1.5);
     let usual = good(&with("colour = { by = 'speed' }"));
     assert_eq!(usual.view.colour.map(|colour| colour.map), Some(ColourMap::MintIndigo));
 }
@@ -186,7 +184,7 @@ fn outlines_and_the_hatch_are_there_unless_they_are_not_wanted() {
 fn the_digest_follows_what_colours_mean() {
     let digest = |view: &str| good(&with(view)).digest;
     let plain = digest("");
-    for same in ["colours = {}", "text_scale = 1", "line_scale = 1.0", "margin = 1", "outline = true\nhatch = true"] {
+    for same in ["colours = {}", "text_scale = 1", "outline = true\nhatch = true"] {
         assert_eq!(digest(same), plain, "{same}");
     }
     assert_eq!(digest("colours.body = 'steelblue'"), digest("colours = { body = '#4682B4' }"));
@@ -199,8 +197,6 @@ fn the_digest_follows_what_colours_mean() {
         "colours.body = 'white'",
         "colours.node = 'white'",
         "text_scale = 1.1",
-        "line_scale = 1.1",
-        "margin = 1.1",
         "outline = false",
         "hatch = false",
         "colour.by = 'speed'",
@@ -210,7 +206,7 @@ fn the_digest_follows_what_colours_mean() {
     .to_vec();
     all.sort();
     all.dedup();
-    assert_eq!(all.len(), 12);
+    assert_eq!(all.len(), 10);
 }
 
 #[track_caller]
@@ -330,12 +326,6 @@ fn mistakes_of_maps_and_factors() {
         "size = { mm = [40, 20] }\ntext_scale = { pt = 20 }",
         "21:14 type of 20 pt does not fit a picture of this size; expected ",
     );
-    view("line_scale = 0", "20:14 `view.line_scale` is 0; expected a number from 0.25 to 4");
-    view("line_scale = 5", "20:14 expected a number from 0.25 to 4");
-    view("margin = -0.1", "20:10 `view.margin` is -0.1; expected a number from 0 to 2");
-    view("margin = 40", "20:10 `view.margin` is 40; expected a number from 0 to 2 Scale of the margins");
-    view("margin = '1'", "20:10 is the string \"1\"; expected a number");
-    view("margins = 1", "20:1 unknown key `margins` in `view` did you mean `margin`?");
     view("hatch = 0", "20:9 `view.hatch` is the whole number 0; expected true or false");
     view("outline = 'no'", "20:11 `view.outline` is the string \"no\"; expected true or false");
 }

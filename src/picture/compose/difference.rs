@@ -206,8 +206,7 @@ impl LargestDistance {
             return;
         }
         let line = writer.scale.line();
-        let thin = writer.scale.line_factor * unit;
-        let chart = Chart { left: left + indent, right: left + width, top, bottom, unit, line, thin };
+        let chart = Chart { left: left + indent, right: left + width, top, bottom, unit, line };
         let times = chart.times(writer.fonts, [0.0, self.end]);
         let (name, size) = ("largest distance", NAME * unit);
         writer.left(name, Weight::SemiBold, size, palette.text, left, name_baseline);
@@ -221,14 +220,14 @@ impl LargestDistance {
         let points = simplified(&points.collect::<Vec<_>>(), EXACT);
         writer.curves.push(Curve {
             points: points.into_iter().map(|point| point.map(narrow)).collect(),
-            width: narrow(OWN * chart.thickness()),
+            width: narrow(OWN * chart.line),
             dash: Vec::new(),
             colour: palette.text,
             alpha: 1.0,
         });
         if let Some(distance) = distance {
             for (radius, colour) in [(DOT + HALO, palette.background), (DOT, palette.text)] {
-                writer.curves.push(dot([now, chart.y(&values, distance)], radius * chart.thickness(), colour));
+                writer.curves.push(dot([now, chart.y(&values, distance)], radius * chart.line, colour));
             }
         }
     }

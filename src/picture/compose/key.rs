@@ -70,7 +70,7 @@ impl Composer<'_> {
         let pixels = self.pixels_a_metre(viewport, seen, scale);
         let times = self.scene.view.arrow_scale;
         let metres = legend.arrow_metres(pixels * times);
-        let size = arrows::size(pixels * self.scene.view.side, scale.unit) * scale.line_factor;
+        let size = arrows::size(pixels * self.scene.view.side, scale.unit);
         (number::round_length(metres, self.extent), [metres * pixels * times, size])
     }
 }

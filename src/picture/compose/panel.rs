@@ -196,7 +196,7 @@ impl<'a> Draft<'a> {
         let pixels = nodes.filter_map(|&at| self.lens.project(at)).map(|(pixel, _)| DVec2::from(pixel));
         let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
         let [low, high] = pixels.fold(none, |[low, high], at| [low.min(at), high.max(at)]);
-        let widest = (high - low).max_element() / (self.scale.line() / self.scale.line_factor);
+        let widest = (high - low).max_element() / self.scale.line();
         let share = ((widest - SMALL_BODY[0]) / (SMALL_BODY[1] - SMALL_BODY[0])).clamp(0.0, 1.0);
         1.0 - (1.0 - LEAST_CONTOUR) * (1.0 - share * share * (3.0 - 2.0 * share))
     }
@@ -302,7 +302,6 @@ impl<'a> Draft<'a> {
             lens: &self.lens,
             room: self.clear,
             size: arrows::size(self.element, self.scale.unit),
-            thickness: self.scale.line_factor,
             node: if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 },
             times: view.arrow_scale,
             colour: match self.scene.runs.get(self.run.run) {

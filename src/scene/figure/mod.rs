@@ -179,8 +179,8 @@ static SCHEMA: LazyLock<Value> = LazyLock::new(|| schema_of::<file::FigureFile>(
 fn look(first: &Scene, theme: Option<Theme>, text_scale: Option<f64>) -> Style {
     let look = match theme {
         Some(theme) if theme != first.view.look.theme => {
-            let Style { font, text_scale, line_scale, margin, .. } = first.view.look.clone();
-            Style { font, text_scale, line_scale, margin, ..Style::of(theme) }
+            let Style { font, text_scale, .. } = first.view.look.clone();
+            Style { font, text_scale, ..Style::of(theme) }
         }
         _ => first.view.look.clone(),
     };
