@@ -166,7 +166,7 @@ pub(super) fn one_frame(
     let mut frames = pool.install(|| {
         let runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
         let runner = match wanted {
-            Some(wanted) => runner.with_time_series(wanted).with_difference(),
+            Some(wanted) => runner.with_time_series(wanted),
             None => runner,
         };
         Frames::new(runner, &[frame], waiting)
@@ -368,7 +368,7 @@ impl<'a> Recording<'a> {
                 runner = runner.without_pictures();
             }
             if let Some(wanted) = &wanted {
-                runner = runner.with_time_series(wanted).with_difference();
+                runner = runner.with_time_series(wanted);
             }
             let length = progress.as_ref().map_or(0, Progress::waiting_length);
             let open = || open_growing(&waiting_states(folder), length);

@@ -119,7 +119,7 @@ impl Render {
         }
         let states = self.from_states.as_deref();
         let mut jobs = self.options.jobs(scenes, !self.no_frames, self.shard, states, words)?;
-        jobs.iter().try_for_each(|job| check_compared(&job.scene, &job.runs))?;
+        jobs.iter().try_for_each(|job| check_ghost(&job.scene, &job.runs))?;
         if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {
             file.metadata().map_err(|error| missing(file, "npz", error))?;
             job.stored = Some(StoredStates::open(file, &job.scene, &job.runs, &job.frames)?);
@@ -171,7 +171,7 @@ impl Render {
             let mut scene = scene.clone();
             self.resize(&mut scene);
             self.check(&scene)?;
-            check_compared(&scene, &self.options.runs(&scene)?)?;
+            check_ghost(&scene, &self.options.runs(&scene)?)?;
             self.options.frames(&scene)?;
             sizes.lock().unwrap_or_else(PoisonError::into_inner).push(scene.view.size);
             Ok(())
@@ -196,7 +196,7 @@ impl Render {
             bail!("{name} gets one frame and nothing else; with {others} name a folder");
         }
         let (runs, frames) = (self.options.runs(scene)?, self.options.frames(scene)?);
-        check_compared(scene, &runs)?;
+        check_ghost(scene, &runs)?;
         let &[frame] = &frames[..] else {
             let count = frames.len();
             bail!("{name} is a file for one frame, but {count} are asked for; choose one, such as --frames 30");
@@ -272,20 +272,15 @@ struct Device {
     made: Mutex<Vec<String>>,
 }
 
-/// Whether all runs are there that pictures compare others with.
-fn check_compared(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
-    let ghost = match scene.view.ghost {
-        Some(Ghost::Run(run)) => Some(("ghost", run)),
-        _ => None,
-    };
-    let difference = scene.view.difference.iter().flat_map(|difference| difference.runs.map(|run| ("difference", run)));
-    match ghost.into_iter().chain(difference).find(|(_, run)| !runs.contains(run)) {
-        None => Ok(()),
-        Some((key, run)) => {
+/// Whether the run is there that pictures outline over others.
+fn check_ghost(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
+    match scene.view.ghost {
+        Some(Ghost::Run(run)) if !runs.contains(&run) => {
             let (title, name) = (&scene.title, &scene.runs[run].name);
-            let message = format!("--only leaves out the run “{name}”, which `view.{key}` of “{title}” needs");
+            let message = format!("--only leaves out the run “{name}”, which `view.ghost` of “{title}” needs");
             bail!("{message}; add --only {}", shell::word(name))
         }
+        _ => Ok(()),
     }
 }
 

@@ -171,7 +171,7 @@ fn draw_scene(
     let wanted = scene.time_series().filter(|_| artist.is_some());
     let runner = Runner::new(&scene, &runs);
     let runner = match wanted {
-        Some(wanted) => runner.with_time_series(wanted).with_difference(),
+        Some(wanted) => runner.with_time_series(wanted),
         None => runner,
     };
     let frames: Vec<_> = plan.frames().into_iter().collect();

@@ -1,8 +1,8 @@
-//! Resolves what stands over and beside bodies: ghosts, differences and paths.
+//! Resolves what stands over and beside bodies: ghosts and paths.
 
-use super::file::{DifferenceOfFile, PathFile, PathPointFile, ViewFile};
+use super::file::{PathFile, PathPointFile, ViewFile};
 use super::subject::Subject;
-use super::view::{Difference, Ghost, Traced};
+use super::view::{Ghost, Traced};
 use crate::reading::report::{Report, Way};
 use crate::reading::words::{list, nearest, quoted, short};
 
@@ -30,34 +30,6 @@ pub(super) fn ghost(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'
             Some(Ghost::Run(run))
         }
     }
-}
-
-/// The runs whose difference is shown; `None` also after a mistake.
-pub(super) fn difference(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<Difference> {
-    let key = |key| [Way::Key("view"), Way::Key(key)];
-    let Some(names) = &typed.difference else {
-        if typed.difference_of.is_some() {
-            let message = "`view.difference_of` is given, but no `view.difference`".to_owned();
-            report.at_key(&key("difference_of"), message, "name two runs there, or remove it".to_owned());
-        }
-        return None;
-    };
-    let mut find = |at: usize| {
-        let path = [Way::Key("view"), Way::Key("difference"), Way::Index(at)];
-        let run = scene.runs.iter().position(|(known, _)| *known == names[at]);
-        run.or_else(|| unknown(&names[at], &[], &path, scene, report))
-    };
-    let (one, other) = (find(0), find(1));
-    let runs = [one?, other?];
-    if runs[0] == runs[1] {
-        let message = format!("{} is compared with itself", quoted(&names[0]));
-        report.at(&key("difference"), message, "name two different runs".to_owned());
-        return None;
-    }
-    if scene.runs[runs[0]].1 != scene.runs[runs[1]].1 {
-        other_steps(runs, &key("difference"), scene, report);
-    }
-    Some(Difference { runs, after_fit: typed.difference_of == Some(DifferenceOfFile::Shapes) })
 }
 
 /// What leaves a path; empty also after a mistake.

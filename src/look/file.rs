@@ -84,13 +84,6 @@ pub(crate) struct ViewFile {
     /// same moment, in the colour of that run. All runs then have the time step of that one. Default: none.
     #[schemars(length(min = 1, max = 80))]
     pub(crate) ghost: Option<String>,
-    /// Two runs, such as `["Local shape", "Mass-spring"]`, whose difference has a panel of its own: the body of the first,
-    /// coloured by the distance of each node from the same node of the second, whose outline is dashed. Below it, the largest of
-    /// these distances is plotted over the whole time of the scene, which is simulated before the first frame is drawn; the
-    /// colour bar ends at its maximum. Both runs have the same time step. Default: none.
-    pub(crate) difference: Option<[String; 2]>,
-    /// How these distances are measured. Default: `"positions"`.
-    pub(crate) difference_of: Option<DifferenceOfFile>,
     /// Points of the body whose paths are drawn up to the present moment, in the colours of runs: `"centre"` for the centre of mass,
     /// and nodes, counted from 0, such as `["centre", 26]`. The whole scene is simulated before the first frame is drawn. Default: none.
     #[schemars(length(min = 1, max = 64))]
@@ -139,8 +132,6 @@ impl Default for ViewFile {
             opacity: 1.0,
             spring_colour: None,
             ghost: None,
-            difference: None,
-            difference_of: None,
             paths: None,
             light: Light::default(),
             shadow: true,
@@ -187,16 +178,6 @@ impl Default for SpringColourFile {
     fn default() -> Self {
         Self { range: None, map: ColourMap::VioletGreen }
     }
-}
-
-/// How the difference of two bodies is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum DifferenceOfFile {
-    /// Between the nodes where they are.
-    Positions,
-    /// After the second body has been moved and turned as a rigid body to where it is nearest to the first (least squares).
-    Shapes,
 }
 
 /// A point of the body that leaves a path.

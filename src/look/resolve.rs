@@ -24,7 +24,7 @@ pub(crate) fn resolve(
     report: &mut Report<'_>,
 ) -> Option<View> {
     let body = scene.body;
-    let panels = scene.models.len() + usize::from(typed.difference.is_some());
+    let panels = scene.models.len();
     let dimension = body.dimension;
     let camera = |key| [Way::Key("view"), Way::Key("camera"), Way::Key(key)];
     let given = [("azimuth", typed.camera.azimuth), ("elevation", typed.camera.elevation)];
@@ -73,8 +73,7 @@ pub(crate) fn resolve(
     let way = [Way::Key("view"), Way::Key("text_scale")];
     let text_scale = typed.text_scale.resolve(print.as_ref(), unit(size, panel), &way, report)?;
     let look = contrast::resolve(typed, font.unwrap_or_default(), text_scale, report)?;
-    let (ghost, difference) = (compared::ghost(typed, scene, report), compared::difference(typed, scene, report));
-    let paths = compared::paths(typed, scene, report);
+    let (ghost, paths) = (compared::ghost(typed, scene, report), compared::paths(typed, scene, report));
     let at = |key| [Way::Key("view"), Way::Key(key)];
     let spring_strain = match &typed.spring_colour {
         Some(_) if !visible.springs => {
@@ -118,7 +117,6 @@ pub(crate) fn resolve(
         opacity: typed.opacity,
         spring_strain,
         ghost,
-        difference,
         paths,
         light: typed.light,
         shadow: typed.shadow,

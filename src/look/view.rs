@@ -54,8 +54,6 @@ pub struct View {
     pub spring_strain: Option<StrainScale>,
     /// What is outlined over each body, if anything.
     pub ghost: Option<Ghost>,
-    /// The runs whose difference has a panel of its own, if it is shown.
-    pub difference: Option<Difference>,
     /// What leaves a path behind it.
     pub paths: Vec<Traced>,
     /// From where the light falls.
@@ -75,7 +73,7 @@ pub struct View {
 impl View {
     /// Whether frames show something of the whole course of the scene besides the chart.
     pub(crate) fn looks_ahead(&self) -> bool {
-        self.difference.is_some() || !self.paths.is_empty()
+        !self.paths.is_empty()
     }
 }
 
@@ -112,7 +110,6 @@ impl Default for View {
             opacity: 1.0,
             spring_strain: None,
             ghost: None,
-            difference: None,
             paths: Vec::new(),
             light: Light::default(),
             shadow: true,
@@ -287,15 +284,6 @@ pub enum Ghost {
     Rest,
     /// The body of a run of the scene, by its index, at the same moment.
     Run(usize),
-}
-
-/// Two runs of a scene, by their indices, and how the distances of their nodes are measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Difference {
-    /// The run whose body is drawn, and the one that it is compared with.
-    pub runs: [usize; 2],
-    /// Whether the second body is first moved and turned to where it is nearest to the first.
-    pub after_fit: bool,
 }
 
 /// A point of a body whose path is drawn.

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 const CHECKPOINT_FILE: &str = ".localshape-checkpoint.partial";
 
 /// The first bytes of the file; a digest of the rest follows.
-const MARK: &[u8] = b"localshape checkpoint 2\n";
+const MARK: &[u8] = b"localshape checkpoint 3\n";
 
 /// Where a command has come to.
 #[derive(Debug, Serialize, Deserialize)]

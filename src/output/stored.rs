@@ -50,7 +50,7 @@ impl StoredStates {
         };
         let mut stored = open().map_err(|what| OutputError::States { path: path.to_owned(), what: what.into() })?;
         if let Some(history) = &mut stored.course.history {
-            only(history, scene, runs);
+            only(history, runs);
         }
         Ok(stored)
     }
@@ -124,12 +124,9 @@ fn has_frames(course: &Course, frames: &[u64]) -> Result<(), String> {
     ))
 }
 
-/// Leaves of the time series those of some runs of a scene.
-fn only(history: &mut History, scene: &Scene, runs: &[usize]) {
+/// Leaves of the time series those of some runs.
+fn only(history: &mut History, runs: &[usize]) {
     history.series.retain(|series| runs.contains(&series.run));
-    if scene.view.difference.is_some_and(|difference| difference.runs.iter().any(|run| !runs.contains(run))) {
-        history.difference.clear();
-    }
 }
 
 impl Stored for StoredStates {

@@ -402,13 +402,6 @@ pub(super) fn wider(run: &RunFrame) -> Option<String> {
     (times >= 1.5).then(|| format!("{} times wider than shown", number::times(times)))
 }
 
-/// The largest distance of two bodies, of all distances up to another one (m), where bodies have a size (m).
-pub(super) fn distance(metres: f64, most: f64, extent: f64) -> Number {
-    let value = number::length(metres, extent);
-    let wordings = ["largest distance", "distance"].map(|words| [value.clone(), words.to_owned()]);
-    Number { widest: number::length(most, extent), wordings: wordings.into(), is_loud: false }
-}
-
 /// The number at the lower right of a run that has not diverged, of a body of an extent (m).
 pub(super) fn number(extent: f64, snapshot: &Snapshot, area_ratio: Option<f64>) -> Number {
     let words = |value: String, names: [&str; 2]| names.map(|name| [value.clone(), name.to_owned()]).to_vec();

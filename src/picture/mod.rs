@@ -6,7 +6,7 @@
 //! ```
 //!
 //! A [`Composer`] computes once what all frames of a scene share. Any frame can be composed alone: the result depends on
-//! the scene and that frame only. A chart ([`crate::look::View::strip`]), paths and the panel of a difference shows time series of
+//! the scene and that frame only. A chart ([`crate::look::View::strip`]) and paths show time series of
 //! the whole scene, which the composer gets beforehand; these depend on the scene only, too.
 
 mod arrows;
@@ -389,16 +389,6 @@ pub(crate) struct Curve {
     pub colour: Colour,
     /// Its opacity, from 0 to 1.
     pub alpha: f32,
-}
-
-impl Curve {
-    /// Whether a piece of it may cross a box: left, top, right and bottom (px).
-    fn crosses(&self, [left, top, right, bottom]: [f32; 4]) -> bool {
-        self.points.windows(2).any(|two| {
-            let [x, y] = [0, 1].map(|axis| [two[0][axis].min(two[1][axis]), two[0][axis].max(two[1][axis])]);
-            x[0] <= right && x[1] >= left && y[0] <= bottom && y[1] >= top
-        })
-    }
 }
 
 /// A flat mark on the picture.

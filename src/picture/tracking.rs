@@ -142,14 +142,8 @@ impl Tracking {
     }
 
     /// How a panel is seen, in a picture with type of a scale. The part of it that is `taken` at its upper right is kept
-    /// free, if that is possible (px: left, top, width and height). A metre has `most` pixels at the most.
-    pub(super) fn shot(
-        &self,
-        scene: &Scene,
-        (viewport, scale): (Rectangle, Scale),
-        taken: Option<[f64; 4]>,
-        most: f64,
-    ) -> Shot {
+    /// free, if that is possible (px: left, top, width and height).
+    pub(super) fn shot(&self, scene: &Scene, (viewport, scale): (Rectangle, Scale), taken: Option<[f64; 4]>) -> Shot {
         let (view, dimension) = (&scene.view, scene.body.dimension);
         let lens = near(scene, viewport, scale);
         let [left, top, wide, high] =
@@ -164,7 +158,7 @@ impl Tracking {
         };
         let part = |part: f64| part * f64::from(viewport[2].max(1)) / self.widest;
         let (filled, least) = (part(FILLED), part(LEAST_FILLED));
-        let following = filled.min(fit(self.half + self.slack())).min(most);
+        let following = filled.min(fit(self.half + self.slack()));
         let least = least.min(following);
         let standing = |[low, high]: [DVec3; 2]| (fit(0.5 * (high - low)).min(following), low.midpoint(high));
         let [body, with_near] = self.all;
@@ -338,7 +332,7 @@ mod tests {
         let scene = Scene::parse(text, "fig4b.toml", &crate::scene::Limits::default()).unwrap();
         let tracking = Tracking::new(&scene, &History::new(&scene, &[0, 1])).unwrap();
         let (viewport, scale) = ([0, 0, 640, 600], Scale::at(1.0));
-        let shot = tracking.shot(&scene, (viewport, scale), None, f64::INFINITY);
+        let shot = tracking.shot(&scene, (viewport, scale), None);
         assert!(!shot.is_still && tracking.window > 0.0, "{shot:?} {}", tracking.window);
         let (mut runner, mut last) = (crate::runner::Runner::new(&scene, &[0, 1]), None);
         for index in 0..=scene.last_frame() {

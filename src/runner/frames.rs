@@ -3,7 +3,7 @@
 
 use super::last_fit::Fitting;
 use super::{History, Runner, Running};
-use crate::sim::snapshot::{Frame, Status};
+use crate::sim::snapshot::Frame;
 use crate::sim::state::State;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -127,8 +127,7 @@ impl<'a> Frames<'a> {
         });
         let states = states.collect();
         let series = runner.runs.iter().map(|running| running.series.clone()).collect();
-        let difference = runner.apart.as_ref().map_or_else(Vec::new, |apart| apart.course.clone());
-        let history = History { end: 0.0, series, difference };
+        let history = History { end: 0.0, series };
         let (taken, runs) = (*taken, 0..runner.runs.len());
         let last_fit = |place| Some(self.last_fit(place)?.map(|(state, wider)| (state.to_bytes(), wider)));
         let last_fits = runs.map(last_fit).collect();
@@ -178,15 +177,6 @@ impl<'a> Frames<'a> {
             let note = running.notes.get(running.series.times.len()).filter(|_| running.series.divergence.is_none());
             let first = note.map_or(u64::MAX, |&note| running.world.steps_at(note)).min(running.world.steps_at(next));
             if running.world.steps() > first {
-                return Err(io::ErrorKind::InvalidData.into());
-            }
-        }
-        if let Some(apart) = &mut runner.apart {
-            apart.course = history.difference;
-            let note = apart.notes.get(apart.course.len());
-            let is_late =
-                |running: &Running| note.is_some_and(|&note| running.world.steps() > running.world.steps_at(note));
-            if apart.runs.iter().any(|&at| runner.runs[at].world.status() == Status::Ok && is_late(&runner.runs[at])) {
                 return Err(io::ErrorKind::InvalidData.into());
             }
         }
@@ -374,7 +364,7 @@ mod tests {
     #[test]
     fn progress_that_cannot_be_is_refused() {
         use crate::scene::{Limits, Scene};
-        use crate::sim::snapshot::Divergence;
+        use crate::sim::snapshot::{Divergence, Status};
         let scene = Scene::parse(crate::internals::untrusted::SCENE, "scene.toml", &Limits::default()).unwrap();
         let begun = || Frames::new(Runner::new(&scene, &[0, 1]), &[2, 4], None);
         let resumed = |step, part, element| {

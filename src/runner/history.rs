@@ -25,9 +25,6 @@ pub struct History {
     pub end: f64,
     /// The requested runs, in that order.
     pub series: Vec<TimeSeries>,
-    /// The largest distance of the nodes of the two runs that the scene compares ([`crate::look::View::difference`]): times (s)
-    /// and distances (m), up to the first divergence of one of them; empty unless both runs were requested.
-    pub difference: Vec<[f64; 2]>,
 }
 
 /// The time series of one run.

@@ -9,7 +9,6 @@ pub(crate) mod moments;
 
 use crate::look::Traced;
 use crate::scene::Scene;
-use crate::sim::apart;
 use crate::sim::body::Body;
 use crate::sim::crew::Crew;
 use crate::sim::diagnostics::Diagnostic;
@@ -28,18 +27,6 @@ use std::sync::{Arc, OnceLock};
 pub struct Runner<'a> {
     scene: &'a Scene,
     runs: Vec<Running>,
-    apart: Option<Apart>,
-}
-
-/// The time series of the difference of two runs.
-struct Apart {
-    /// The places of the runs among those that are simulated.
-    runs: [usize; 2],
-    after_fit: bool,
-    /// Its moments, rising.
-    notes: Vec<Moment>,
-    /// Times (s) and distances (m).
-    course: Vec<[f64; 2]>,
 }
 
 /// One run with its world and time series.
@@ -98,7 +85,7 @@ impl<'a> Runner<'a> {
                 search: None,
             }
         };
-        Self { scene, runs: runs.iter().map(running).collect(), apart: None }
+        Self { scene, runs: runs.iter().map(running).collect() }
     }
 
     /// The same without computing what only pictures need: the field by which the scene is coloured, and the last states
@@ -139,62 +126,15 @@ impl<'a> Runner<'a> {
         self
     }
 
-    /// The same, recording the difference of the two runs that the scene compares, if both are simulated.
-    pub(crate) fn with_difference(mut self) -> Self {
-        let place = |run: usize| self.runs.iter().position(|running| running.run == run);
-        let places = self.scene.view.difference.map(|difference| (difference, difference.runs.map(place)));
-        if let Some((difference, [Some(one), Some(other)])) = places {
-            let notes = history::moments(self.scene, &self.runs[one].world, None, &[]);
-            let after_fit = difference.after_fit;
-            self.apart = Some(Apart { runs: [one, other], after_fit, notes, course: Vec::new() });
-        }
-        self
-    }
-
     /// Advances each run towards a moment by at most `most_steps`, and returns whether all have reached it. The states
     /// have the same bits however the steps are divided into calls.
     ///
     /// # Panics
     /// If the moment has passed.
     pub fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
-        let mut left = most_steps;
-        while let Some(note) = self.next_difference(moment) {
-            let before: Vec<_> = self.runs.iter().map(|running| running.world.steps()).collect();
-            if !self.advance_runs(note, left) {
-                return false;
-            }
-            let taken = self.runs.iter().zip(before).map(|(running, before)| running.world.steps() - before);
-            left -= taken.max().unwrap_or(0).min(left);
-            self.note_difference();
-        }
-        self.advance_runs(moment, left)
-    }
-
-    fn advance_runs(&mut self, moment: Moment, most_steps: u64) -> bool {
         let scene = self.scene;
         let arrived = self.runs.par_iter_mut().map(|running| running.advance_towards(scene, moment, most_steps));
         arrived.reduce(|| true, |one, other| one && other)
-    }
-
-    /// The next moment of the time series of the difference, if it is not after another one.
-    fn next_difference(&self, moment: Moment) -> Option<Moment> {
-        let apart = self.apart.as_ref()?;
-        let note = apart.notes.get(apart.course.len()).copied()?;
-        let are_sound = apart.runs.iter().all(|&at| self.runs[at].world.status() == Status::Ok);
-        (are_sound && note.count * moment.rate <= moment.count * note.rate).then_some(note)
-    }
-
-    /// Records the difference of the present states, unless a run has just diverged.
-    fn note_difference(&mut self) {
-        let Some(apart) = &mut self.apart else { return };
-        let worlds = apart.runs.map(|at| &self.runs[at].world);
-        if worlds.iter().any(|world| world.status() != Status::Ok) {
-            return;
-        }
-        let positions = worlds.map(|world| &world.state().position[..]);
-        let distance = apart::largest(self.scene.body.dimension, positions, apart.after_fit);
-        let first = &self.runs[apart.runs[0]];
-        apart.course.push([first.world.steps() as f64 * first.step, distance]);
     }
 
     /// Steps taken so far, summed over all runs.
@@ -247,8 +187,7 @@ impl<'a> Runner<'a> {
             std::mem::replace(&mut running.series, TimeSeries::new(run))
         };
         let series = self.runs.iter_mut().map(take).collect();
-        let difference = self.apart.take().map_or_else(Vec::new, |apart| apart.course);
-        History { end: self.scene.frame_time(self.scene.last_frame()), series, difference }
+        History { end: self.scene.frame_time(self.scene.last_frame()), series }
     }
 }
 
@@ -345,8 +284,7 @@ impl History {
     /// # Panics
     /// If the scene has no such run.
     pub fn new(scene: &Scene, runs: &[usize]) -> Self {
-        let mut runner =
-            Runner::new(scene, runs).without_pictures().with_time_series(Diagnostic::ALL).with_difference();
+        let mut runner = Runner::new(scene, runs).without_pictures().with_time_series(Diagnostic::ALL);
         runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
         runner.take_history()
     }

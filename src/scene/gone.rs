@@ -18,6 +18,8 @@ const fn key(key: &'static str, instead: &'static str) -> Gone {
 
 #[rustfmt::skip]
 const GONE: &[Gone] = &[
+    key("view.difference", "remove it; `ghost = \"RUN\"` outlines another run over each body"),
+    key("view.difference_of", "remove it"),
     key("view.explode", "remove it"),
     key("view.inset", "remove it"),
     key("view.line_scale", "remove it"),

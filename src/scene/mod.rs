@@ -117,7 +117,7 @@ pub struct Run {
 
 impl Scene {
     /// The diagnostics whose time series over the whole scene pictures of it need, if they need its course: for charts,
-    /// paths and differences, for cameras that follow, and for the drawn size of plates and walls.
+    /// paths, for cameras that follow, and for the drawn size of plates and walls.
     pub(crate) fn time_series(&self) -> Option<&[Diagnostic]> {
         let view = &self.view;
         let is_flat = self.body.dimension == Dimension::Plane;

@@ -152,8 +152,7 @@ impl Scene {
     fn picture(&self) -> String {
         let view = &self.view;
         let [width, height] = view.size;
-        // A difference has a panel of its own.
-        let panels = match (self.runs.len() + usize::from(view.difference.is_some()), view.columns) {
+        let panels = match (self.runs.len(), view.columns) {
             (1, _) => "one panel".to_owned(),
             (runs, None) => format!("{runs} panels"),
             (runs, Some(columns)) if columns >= runs => format!("{runs} panels in a row"),

@@ -111,13 +111,13 @@ fn an_animation_of_resumed_frames_is_the_same() {
     place.run("render small.toml --resume --frames 1 -o one.png").bad(2, &["one.png gets one frame", "--resume"]);
 }
 
-/// The small scene with all that pictures show beyond its states: a course, paths, a difference, forces that act for a while,
+/// The small scene with all that pictures show beyond its states: a course, paths, forces that act for a while,
 /// a field that comes from the model, and a run that diverges.
 fn rich() -> String {
     let wild = "[[run]]\nname = \"Wild\"\nmodel = { kind = \"mass-spring\", stiffness = 1e4, springs = \"edges\" }\nstep = \"T/2\"\n";
     let grab = "[[grab]]\nnodes = [0]\npath = { keys = [{ time = 0.02 }, { time = 0.3, shift = [0, 0.2, 0] }] }\n";
     let view = "[view]\nstrip = \"energy\"\ncolour = { by = \"elastic-energy\", range = [0, 1] }\n\
-                paths = [\"centre\"]\ndifference = [\"Local shape\", \"Mass-spring\"]\n";
+                paths = [\"centre\"]\n";
     let rotation = "stiffness = 1e4, damping_ratio = 0.1, rotation = \"arctangent\" }";
     SMALL
         .replacen("stiffness = 1e4, damping_ratio = 0.1 }", rotation, 1)

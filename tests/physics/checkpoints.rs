@@ -6,7 +6,7 @@ use localshape::scene::{Limits, Scene};
 use localshape::sim::diagnostics::Diagnostic;
 use std::fs::File;
 
-/// Runs with different steps, the third of which diverges, with a path, a difference and forces that act for a while.
+/// Runs with different steps, the third of which diverges, with a path and forces that act for a while.
 const SCENE: &str = "
     gravity = [0, -9.8, 0]
     time = { duration = 0.3, frames_per_second = 20 }
@@ -14,7 +14,7 @@ const SCENE: &str = "
     body.velocity = [0, -2, 0]
     obstacle = [{ kind = 'floor', restitution = 0.5 }]
     grab = [{ nodes = [0], path = { keys = [{ time = 0.02 }, { time = 0.2, shift = [0, 0.2, 0] }] } }]
-    view = { strip = 'energy', paths = ['centre'], difference = ['shape', 'springs'] }
+    view = { strip = 'energy', paths = ['centre'] }
     [[run]]
     name = 'shape'
     model = { kind = 'shape-based', stiffness = 1e4 }
@@ -38,7 +38,7 @@ struct Taken {
 }
 
 fn frames<'a>(scene: &'a Scene, numbers: &[u64], waiting: Option<File>) -> Frames<'a> {
-    let runner = Runner::new(scene, &[0, 1, 2]).with_time_series(Diagnostic::ALL).with_difference();
+    let runner = Runner::new(scene, &[0, 1, 2]).with_time_series(Diagnostic::ALL);
     Frames::new(runner, numbers, waiting)
 }
 

@@ -1,27 +1,14 @@
-//! Ghosts over bodies, and the panel of the difference of two runs.
+//! Ghosts and paths of bodies.
 
-use super::{fig4b, gpu};
-use localshape::look::{Difference, Ghost, Style, Theme, Traced};
+use super::fig4b;
+use localshape::look::{Ghost, Style, Theme, Traced};
 use localshape::picture::{Composer, Curve, Panel, Picture};
-use localshape::render::Renderer;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::runner::moments::Moments;
 use localshape::scene::figure::Figure;
 use localshape::scene::{Limits, Scene};
 use localshape::sim::snapshot::Frame;
-
-/// The scene of Fig. 4(b), which shows the difference of its runs, and two frames.
-fn with_difference(after_fit: bool) -> (Scene, [Frame; 2], History) {
-    let (mut scene, _) = fig4b(0);
-    scene.duration = 0.2;
-    scene.view.columns = Some(3);
-    scene.view.difference = Some(Difference { runs: [1, 0], after_fit });
-    let mut runner = Runner::new(&scene, &[0, 1]);
-    let frames = [4, 9].map(|index| runner.frame(index));
-    let history = History::new(&scene, &[0, 1]);
-    (scene, frames, history)
-}
 
 /// The dashed curves of a colour.
 fn outlines(picture: &Picture, colour: [u8; 3]) -> Vec<&Curve> {
@@ -77,71 +64,6 @@ fn a_frame_without_the_run_of_the_ghost_has_none() {
     let alone = Frame { runs: vec![frame.runs[1].clone()], ..frame };
     let picture = Composer::new(&scene).compose(&alone);
     assert!(picture.curves.iter().all(|curve| curve.points.len() == 2), "the sample of the key alone");
-}
-
-#[test]
-fn a_difference_has_a_panel_whose_colours_and_number_are_those_of_the_distances() {
-    for after_fit in [false, true] {
-        let (scene, frames, history) = with_difference(after_fit);
-        let most = history.difference.iter().fold(0.0, |most: f64, [_, distance]| distance.max(most));
-        assert!(most > 0.01, "{most}");
-        let mut composer = Composer::new(&scene);
-        composer.set_history(&history);
-        for frame in &frames {
-            let picture = composer.compose(frame);
-            let [first, second, difference] = &picture.panels[..] else { panic!("three panels") };
-            assert!(first.sound.shades.is_empty() && second.sound.shades.is_empty());
-            // As large as beside it, where the chart takes some of the room.
-            assert_eq!(difference.sight.focal, second.sight.focal);
-            let at = history.difference.iter().find(|[time, _]| *time == frame.runs[0].snapshot.time);
-            let [_, largest] = at.expect("every frame is a moment of the series");
-            let shades = difference.sound.shades.iter().chain(&difference.turned_over.shades);
-            let highest = shades.fold(0.0, |most: f32, &shade| shade.max(most));
-            assert!(f64::from(highest) <= largest / most + 1e-6 && f64::from(highest) > 0.5 * largest / most);
-            let told = format!("{:.0} mm", 1e3 * largest);
-            assert!(picture.words.iter().any(|run| run.text == told), "{told}");
-            let colour = scene.runs[0].line(&picture.palette).colour;
-            assert!(!outlines(&picture, colour).is_empty(), "the other run is outlined");
-            // A frame composed alone is the same.
-            let mut alone = Composer::new(&scene);
-            alone.set_history(&history);
-            assert_eq!(alone.compose(frame), picture);
-        }
-    }
-}
-
-#[test]
-fn what_is_left_after_the_fit_is_less() {
-    let [as_they_are, fitted] = [false, true].map(|after_fit| with_difference(after_fit).2.difference);
-    assert_eq!(as_they_are.len(), fitted.len());
-    assert!(as_they_are.len() > 100 && as_they_are[0] == [0.0, 0.0]);
-    // The fit minimises the sum of squares, not the largest distance.
-    let sum = |course: &[[f64; 2]]| course.iter().map(|[_, distance]| distance).sum::<f64>();
-    assert!(sum(&fitted) < sum(&as_they_are), "{} {}", sum(&fitted), sum(&as_they_are));
-}
-
-/// Other panels look as they would without it.
-#[test]
-fn a_panel_without_a_field_is_drawn_like_one_in_a_picture_without_any() {
-    let Some(gpu) = gpu("a_panel_without_a_field_is_drawn_like_one_in_a_picture_without_any") else { return };
-    let (mut scene, [frame, _], _) = with_difference(false);
-    scene.view.labels = Default::default();
-    (scene.view.legend, scene.view.scale_bar) = (false, false);
-    scene.view.size = [960, 400];
-    let draw = |picture: &Picture| {
-        let mut renderer = Renderer::new(gpu, picture.size).expect("a size that can be drawn");
-        renderer.draw(picture).expect("the device works")
-    };
-    let with = Composer::new(&scene).compose(&frame);
-    let mut without = with.clone();
-    without.panels.truncate(2);
-    without.ramp.clear();
-    let [with, without] = [draw(&with), draw(&without)];
-    for x in 0..630 {
-        for y in 0..400 {
-            assert_eq!(with.get_pixel(x, y), without.get_pixel(x, y), "{x} {y}");
-        }
-    }
 }
 
 /// A sheet outlines a run that none of its rows shows.
@@ -258,11 +180,9 @@ fn bodies_of_bars_have_ghosts() {
     assert!((5..=10).contains(&count), "{count}");
 }
 
-/// The panel of a difference shows no run of its own.
 #[test]
-fn what_finds_no_room_is_known_beside_a_difference() {
+fn what_finds_no_room_is_known() {
     let (mut scene, _) = fig4b(0);
-    scene.view.difference = Some(Difference { runs: [0, 1], after_fit: false });
     assert_eq!(localshape::picture::left_out(&scene), Vec::<String>::new());
     // A title has at most four lines.
     scene.view.title = "A title that goes on and on ".repeat(20);

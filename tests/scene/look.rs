@@ -3,7 +3,7 @@
 use super::mistakes::{PLANE, case};
 use super::{WORLD, bad, expect, good};
 use localshape::colour::{Vision, contrast, difference};
-use localshape::look::{ColourMap, Difference, Ghost, Palette, Style, Theme, Traced};
+use localshape::look::{ColourMap, Ghost, Palette, Style, Theme, Traced};
 use localshape::scene::{Limits, Scene, SceneError};
 
 const FONT: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf");
@@ -441,34 +441,24 @@ fn fonts_may_lie_in_a_folder_of_their_own() {
 
 /// What bodies are compared with.
 #[test]
-fn ghosts_and_differences_name_runs() {
+fn ghosts_name_runs() {
     let named = |view: &str| good(&PLANE.replace("[view]\n", &format!("[view]\n{view}\n"))).view;
     assert_eq!(named("ghost = 'rest'").ghost, Some(Ghost::Rest));
     assert_eq!(named("ghost = 'Mass-spring'").ghost, Some(Ghost::Run(1)));
-    let view = named("difference = ['Mass-spring', 'Local shape']");
-    assert_eq!(view.difference, Some(Difference { runs: [1, 0], after_fit: false }));
-    let view = named("difference = ['Local shape', 'Mass-spring']\ndifference_of = 'shapes'");
-    assert_eq!(view.difference, Some(Difference { runs: [0, 1], after_fit: true }));
 }
 
 #[test]
-fn mistakes_of_ghosts_and_differences() {
+fn mistakes_of_ghosts() {
     let view = |view: &str, expected: &str| {
         case(PLANE, "size = [640, 360]", view, expected);
     };
     view("ghost = 'Mass spring'", "20:9 there is no run \"Mass spring\" did you mean \"Mass-spring\"?");
     let all = "expected \"Local shape\", \"Mass-spring\" or \"rest\"";
     view("ghost = 'nobody'", &format!("20:9 {all}"));
-    let pair = |name: &str| format!("difference = ['Local shape', '{name}']");
-    view(&pair("Mass"), "20:30 there is no run \"Mass\" did you mean \"Mass-spring\"?");
-    view(&pair("rest"), "20:30 there is no run \"rest\"");
-    view(&pair("Local shape"), "20:14 \"Local shape\" is compared with itself name two different runs");
-    view("difference = ['Local shape']", "20:14 `view.difference` has 1 entry; expected 2");
-    view("difference_of = 'shapes'", "20:1 `view.difference_of` is given, but no `view.difference`");
     // Frames of runs with different steps are not at the same moments.
     let other_step = PLANE.replace("name = 'Mass-spring'\n", "name = 'Mass-spring'\nstep = 0.001\n");
     let ghost = |name: &str| format!("ghost = '{name}'");
-    for (view, column) in [(ghost("Local shape"), 9), (ghost("Mass-spring"), 9), (pair("Mass-spring"), 14)] {
+    for (view, column) in [(ghost("Local shape"), 9), (ghost("Mass-spring"), 9)] {
         let text = bad(&other_step.replace("size = [640, 360]", &view));
         let [found] = text.mistakes() else { panic!("{text}") };
         assert_eq!((found.line, found.column), (21, column), "{text}");

@@ -23,11 +23,11 @@ impl Composer<'_> {
         let pixels = |columns: usize| {
             let layout = words.around(runs, columns).layout;
             let panel = *layout.panels.first()?;
-            let shot = self.shot(panel, layout.scale, f64::INFINITY).map(|shot| shot.pixels);
+            let shot = self.shot(panel, layout.scale).map(|shot| shot.pixels);
             let still = || self.pixels_a_metre(panel, &Framing::still(&view.camera), layout.scale);
             Some(shot.unwrap_or_else(still))
         };
-        let panels = words.panels(runs);
+        let panels = runs.len();
         let most = panels.clamp(1, MOST_COLUMNS);
         let chosen = || {
             let mut best = (most, pixels(most).unwrap_or(0.0));
@@ -41,10 +41,10 @@ impl Composer<'_> {
         view.columns.map_or_else(chosen, |columns| columns.clamp(1, panels.max(1)))
     }
 
-    /// How a camera that follows sees bodies in a panel, with `most` pixels for a metre.
-    pub(super) fn shot(&self, viewport: Rectangle, scale: Scale, most: f64) -> Option<Shot> {
+    /// How a camera that follows sees bodies in a panel.
+    pub(super) fn shot(&self, viewport: Rectangle, scale: Scale) -> Option<Shot> {
         let taken = self.locator.as_ref().and_then(|locator| locator.place(&self.scene.view, viewport, scale));
-        Some(self.tracking.as_ref()?.shot(self.scene, (viewport, scale), taken, most))
+        Some(self.tracking.as_ref()?.shot(self.scene, (viewport, scale), taken))
     }
 
     /// What the camera of a run looks at in a panel.

@@ -1,7 +1,6 @@
 //! What the key of a picture says: colours, lines, marks and arrows.
 
 use super::Composer;
-use super::difference::Compared;
 use crate::look::StrainScale;
 use crate::picture::layout::{Rectangle, Scale};
 use crate::picture::legend::{Bar, Legend, Sample, SampleKind};
@@ -23,7 +22,7 @@ impl Composer<'_> {
     }
 
     /// The scales of colours in a frame.
-    pub(super) fn bars(&self, frame: &Frame, compared: Option<&Compared<'_>>) -> Vec<Bar<'_>> {
+    pub(super) fn bars(&self, frame: &Frame) -> Vec<Bar<'_>> {
         let view = &self.scene.view;
         let of_field = view.colour.as_ref().map(|colour| {
             let values = frame.runs.iter().flat_map(|run| &run.shown().field).copied();
@@ -46,17 +45,7 @@ impl Composer<'_> {
                 strains,
             )
         });
-        let of_difference = view.difference.map(|_| {
-            let values = self.distances(compared).iter().copied();
-            Bar::new(
-                ["distance", "m", "of the same node of the two runs"],
-                self.distance_scale().range,
-                self.unit_of_distances(),
-                &self.ramp,
-                values,
-            )
-        });
-        of_field.into_iter().chain(of_springs).chain(of_difference).collect()
+        of_field.into_iter().chain(of_springs).collect()
     }
 
     /// What the arrow of the key stands for, in words, its length (px), and how large it is beside those of the reference picture.

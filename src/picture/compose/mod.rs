@@ -3,7 +3,6 @@
 mod body;
 mod cameras;
 mod cut;
-mod difference;
 mod figure;
 mod ghost;
 mod ground;
@@ -32,8 +31,8 @@ use super::tracking::{Shot, Tracking};
 use super::wire::Edges;
 use super::{Framing, Picture};
 use crate::colour::Colour;
+use crate::look::Palette;
 use crate::look::ramp::ramp;
-use crate::look::{ColourMap, Palette};
 use crate::runner::history::{History, Reach, TimeSeries};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
@@ -87,8 +86,7 @@ pub struct Composer<'a> {
     soft: f64,
     /// The chart below the panels, once the time series are set.
     timeline: Option<Timeline>,
-    /// The difference of two runs over time, and the paths of all runs, likewise.
-    largest_distance: Option<difference::LargestDistance>,
+    /// The paths of all runs, likewise.
     traced: Vec<TimeSeries>,
     /// How the camera follows, if it does.
     tracking: Option<Tracking>,
@@ -106,9 +104,8 @@ struct Arranged {
     runs: Vec<usize>,
     columns: usize,
     around: Around,
-    /// How a camera that follows sees the bodies, and the one of a difference.
+    /// How a camera that follows sees the bodies.
     shot: Option<Shot>,
-    shot_of_difference: Option<Shot>,
 }
 
 /// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
@@ -123,7 +120,7 @@ impl<'a> Composer<'a> {
     /// Prepares to compose frames of a scene. A scene without a background gets that of its theme; see
     /// [`Self::on_ground`].
     ///
-    /// A scene with a chart ([`crate::look::View::strip`]), paths, a difference or a camera that follows
+    /// A scene with a chart ([`crate::look::View::strip`]), paths or a camera that follows
     /// ([`crate::look::Camera::follow`]) needs [`Composer::set_history`], too; without it their places stay empty, and the
     /// camera's scale is that of the start.
     pub fn new(scene: &'a Scene) -> Self {
@@ -151,8 +148,6 @@ impl<'a> Composer<'a> {
         let bare = bare_elements(body);
         let visible = scene.view.visible;
         let map = scene.view.colour.map(|scale| scale.map);
-        // Fields and differences share one scale of colours.
-        let map = map.or(scene.view.difference.map(|_| ColourMap::default()));
         Self {
             scene,
             ramp: map.map_or_else(Vec::new, |map| ramp(map, scene.view.look.theme)),
@@ -174,7 +169,6 @@ impl<'a> Composer<'a> {
             start_box: bounds(&scene.initial.position).into(),
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
             timeline: None,
-            largest_distance: None,
             traced: Vec::new(),
             tracking: scene.view.camera.follow.then(|| Tracking::new(scene, &History::default())).flatten(),
             locator: None,
@@ -188,7 +182,7 @@ impl<'a> Composer<'a> {
         Self { field_name: Some([name, definition]), ..self }
     }
 
-    /// Sets the time series: those of all runs to be shown, over the whole scene. The chart, paths and a difference show them,
+    /// Sets the time series: those of all runs to be shown, over the whole scene. The chart and paths show them,
     /// a camera that follows takes its path and its scale from them, and plates and walls their size.
     pub fn set_history(&mut self, history: &History) {
         let scene = self.scene;
@@ -197,7 +191,6 @@ impl<'a> Composer<'a> {
         self.locator = self.tracking.as_ref().and_then(|tracking| Locator::new(scene, tracking));
         self.reach = Reach::default();
         history.series.iter().for_each(|series| self.reach.merge(&series.reach));
-        self.largest_distance = scene.view.difference.map(|_| difference::LargestDistance::new(history));
         self.traced = if scene.view.paths.is_empty() { Vec::new() } else { history.series.clone() };
         let Some(diagnostic) = scene.view.strip else { return };
         let runs: Vec<_> = history.series.iter().map(|series| series.run).collect();
@@ -227,7 +220,6 @@ impl<'a> Composer<'a> {
     pub fn compose(&self, frame: &Frame) -> Picture {
         let view = &self.scene.view;
         let size = view.size.map(|length| length.max(1));
-        let compared = self.compared(frame);
         let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
         let others;
         let arranged = match self.arranged.get_or_init(|| self.arrange(&runs)) {
@@ -237,7 +229,7 @@ impl<'a> Composer<'a> {
                 &others
             }
         };
-        let Arranged { columns, around, shot, shot_of_difference, .. } = arranged;
+        let Arranged { columns, around, shot, .. } = arranged;
         let (columns, Around { layout, title, caption, legend, clock }) = (*columns, around);
         let scale = layout.scale;
         let places = layout.panels.iter().zip(&frame.runs);
@@ -248,13 +240,6 @@ impl<'a> Composer<'a> {
         let hairlines = std::mem::take(&mut writer.marks);
         let with_clock = *clock == Clock::InPanel;
         self.write(frame, layout, columns, framings.first(), with_clock, &mut writer);
-        let place = layout.panels.get(runs.len()).copied();
-        let compared = compared.as_ref().zip(place);
-        if let Some((compared, place)) = compared {
-            let has_clock =
-                view.labels.clock && with_clock && words::clock_panel(layout.panels.len(), columns) == runs.len();
-            self.write_difference(compared, place, runs.len(), has_clock.then_some(frame.time), &mut writer);
-        }
         self.timeline.iter().for_each(|timeline| timeline.draw(&mut writer, frame));
         writer.title(layout.around, title);
         if let &Clock::Above(Some(baseline)) = clock {
@@ -263,37 +248,28 @@ impl<'a> Composer<'a> {
         writer.caption(layout.around, caption, layout.caption);
         if let Some(((legend, &panel), framing)) = (*legend).zip(layout.panels.first()).zip(framings.first()) {
             let arrow = view.visible.displacements.then(|| self.key_arrow(legend, panel, framing, scale));
-            let bars = self.bars(frame, compared.map(|(compared, _)| compared));
+            let bars = self.bars(frame);
             legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &self.samples(), &bars);
         }
         let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::with_capacity(runs.len()));
-        let mut ghosts = Vec::new();
+        let mut curves = Vec::new();
         for ((&panel, run), framing) in layout.panels.iter().zip(&frame.runs).zip(&framings) {
             let mut draft = Draft::new(self, panel, run, framing, scale);
             draft.overview = shot.as_ref().and_then(|shot| self.overview(panel, shot, scale));
-            draft.ghost(&frame.runs, draft.between_words(), &mut ghosts);
-            draft.paths(&self.traced, draft.between_words(), &mut ghosts);
+            draft.ghost(&frame.runs, draft.between_words(), &mut curves);
+            draft.paths(&self.traced, draft.between_words(), &mut curves);
             panels.push(draft.panel(&mut under, &mut marks));
             if let Some((shot, tracking)) = shot.as_ref().zip(self.tracking.as_ref()) {
                 self.locate(&draft, shot, tracking, &mut writer);
             }
         }
         marks.extend(hairlines);
-        if let Some((compared, place)) = compared {
-            let room = self.rooms(place, scale).0;
-            let framing = self.framing(shot_of_difference.as_ref(), compared.one, (room, scale));
-            let marks = [&mut under, &mut marks];
-            panels.push(self.draw_difference(compared, place, &framing, scale, marks, &mut ghosts));
-        }
         let Writer { marks: above, curves: in_front, mut words, .. } = writer;
-        let (outlines, mut curves) = (ghosts.len(), ghosts);
         curves.extend(in_front);
         // Text and tallies lie above bodies; text over a body gets a halo.
         marks.extend(above);
         for word in &mut words {
-            let is_crossed =
-                || compared.is_some() && curves[..outlines].iter().any(|curve| curve.crosses(word.bounds()));
-            word.has_halo = panels.iter().any(|panel| word.touches(panel.region)) || is_crossed();
+            word.has_halo = panels.iter().any(|panel| word.touches(panel.region));
         }
         let (fonts, ramp) = (self.fonts.clone(), self.ramp.clone());
         Picture { size, palette: self.palette, fonts, ramp, panels, under, marks, curves, words }
@@ -304,13 +280,8 @@ impl<'a> Composer<'a> {
         let columns = self.columns(runs);
         let around = self.words().around(runs, columns);
         let (layout, scale) = (&around.layout, around.layout.scale);
-        // The chart of a difference takes room from its body, which is as large as the others.
-        let difference = layout.panels.get(runs.len()).map(|&panel| self.rooms(panel, scale).0);
-        let largest = |room: Option<Rectangle>, most: f64| room.and_then(|room| self.shot(room, scale, most));
-        let most = largest(difference, f64::INFINITY).map_or(f64::INFINITY, |shot| shot.pixels);
-        let shot = largest(layout.panels.first().copied(), most);
-        let shot_of_difference = largest(difference, shot.map_or(f64::INFINITY, |shot| shot.pixels));
-        Arranged { runs: runs.to_vec(), columns, around, shot, shot_of_difference }
+        let shot = layout.panels.first().and_then(|&panel| self.shot(panel, scale));
+        Arranged { runs: runs.to_vec(), columns, around, shot }
     }
 
     /// Writes the words of all panels.

@@ -1,7 +1,7 @@
 //! Composes one panel from its parts.
 
 use super::Composer;
-use crate::look::{ColourScale, FloorStyle, Palette};
+use crate::look::{FloorStyle, Palette};
 use crate::picture::arrows::{self, Arrows};
 use crate::picture::camera::Lens;
 use crate::picture::field::{self, NOWHERE, Shades};
@@ -123,13 +123,6 @@ impl<'a> Draft<'a> {
             palette: if greyed { composer.palette.greyed() } else { composer.palette },
             lens,
         }
-    }
-
-    /// Colours the body by a number at each node instead of the field of its scene.
-    pub(super) fn colour_by(&mut self, scale: &ColourScale, values: &[f64]) {
-        let shades = Shades::new(self.body, scale, values);
-        self.of_nodes = shades.of_nodes(self.body);
-        self.shades = Some(shades);
     }
 
     /// Draws the panel, with flat marks below and above the bodies.

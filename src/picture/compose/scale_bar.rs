@@ -50,7 +50,7 @@ impl Composer<'_> {
             from = writer.count(panel, &self.tally, &start.snapshot);
         }
         to = to.min(writer.left_of_numbers(panel, &caption::number(self.extent, &start.snapshot, area)));
-        let shot = self.shot(panel, layout.scale, f64::INFINITY);
+        let shot = self.shot(panel, layout.scale);
         let framing = self.framing(shot.as_ref(), &start, (panel, layout.scale));
         !scale_bar || self.draw_bar(panel, &framing, [from, to], &mut writer).is_none()
     }

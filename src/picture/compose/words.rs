@@ -1,7 +1,7 @@
 //! The words of a scene's pictures: what stands where, whatever the frame, and what finds no room.
 
 use super::{Composer, cut};
-use crate::look::{Difference, Ghost, Labels, LineStyle, Palette, View};
+use crate::look::{Ghost, Labels, LineStyle, Palette, View};
 use crate::picture::caption::{self, Heading, Writer};
 use crate::picture::layout::{self, Layout, Scale, Wanted, Written};
 use crate::picture::legend::Legend;
@@ -54,15 +54,9 @@ impl<'a> Words<'a> {
         &self.scene.view
     }
 
-    /// The number of panels of some runs: a difference has one of its own.
-    pub(super) fn panels(&self, runs: &[usize]) -> usize {
-        let compares = |difference: &Difference| difference.runs.iter().all(|run| runs.contains(run));
-        runs.len() + usize::from(self.view().difference.as_ref().is_some_and(compares))
-    }
-
     /// What stands around the panels of some runs, in columns.
     pub(super) fn around(&self, runs: &[usize], columns: usize) -> Around {
-        let (view, scale, panels) = (self.view(), Layout::around(self.view()), self.panels(runs));
+        let (view, scale, panels) = (self.view(), Layout::around(self.view()), runs.len());
         let [title, caption] = self.lines(scale);
         let legend = self.legend(scale);
         let wanted = Wanted {
@@ -106,7 +100,7 @@ impl<'a> Words<'a> {
     fn legend(&self, around: Scale) -> Option<Legend> {
         let view = self.view();
         let count = |shown: &[bool]| shown.iter().filter(|&&is_shown| is_shown).count();
-        let bars = count(&[view.colour.is_some(), view.spring_strain.is_some(), view.difference.is_some()]);
+        let bars = count(&[view.colour.is_some(), view.spring_strain.is_some()]);
         let samples = count(&[view.ghost.is_some(), !view.paths.is_empty()]);
         let arrow = view.visible.displacements;
         if !view.legend || !arrow && samples + bars == 0 {
@@ -157,8 +151,7 @@ impl<'a> Words<'a> {
     fn sample(&self, run: usize, has_chart: bool) -> Option<LineStyle> {
         let view = self.view();
         let has_arrows = view.visible.displacements && view.colour.is_none();
-        let has_ghost =
-            matches!(view.ghost, Some(Ghost::Run(_))) || view.difference.is_some() || !view.paths.is_empty();
+        let has_ghost = matches!(view.ghost, Some(Ghost::Run(_))) || !view.paths.is_empty();
         (view.legend && (has_chart || has_arrows || has_ghost)).then(|| self.scene.runs.get(run)).flatten().map(|run| {
             let line = run.line(self.palette);
             // As its curve in the chart. Without one, only colours count.
@@ -250,7 +243,7 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
     let mut told = left_out(columns);
     if scene.view.columns.is_none() {
         // How panels stand follows from the course of the scene, too: between what the start suggests and side by side.
-        for columns in columns + 1..=words.panels(&runs) {
+        for columns in columns + 1..=runs.len() {
             let there = left_out(columns);
             told.retain(|one| there.contains(one));
         }

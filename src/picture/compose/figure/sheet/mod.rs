@@ -104,14 +104,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         let of_first = sheet.columns.iter().enumerate().filter(|(_, column)| column.scene == 0);
         let runs = of_first.flat_map(|(at, _)| moments.cells.iter().map(move |row| row[at].clone())).collect();
         let bars = Frame { index: 0, time: 0.0, runs };
-        legend.draw(
-            &mut writer,
-            f64::from(size[0]),
-            f64::from(bottom),
-            arrow,
-            &first.samples(),
-            &first.bars(&bars, None),
-        );
+        legend.draw(&mut writer, f64::from(size[0]), f64::from(bottom), arrow, &first.samples(), &first.bars(&bars));
     }
 
     let Writer { marks: above, mut curves, mut words, .. } = writer;
@@ -152,7 +145,7 @@ fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
         view.look = figure.look.clone();
         view.labels = Labels::default();
         view.scale_bar = false;
-        (view.strip, view.difference) = (None, None);
+        view.strip = None;
         // One scale of colours for all, or none.
         view.colour = view.colour.filter(|_| is_shared);
         view.spring_strain = view.spring_strain.filter(|_| is_shared);
