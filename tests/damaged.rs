@@ -83,9 +83,6 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
         "body" => files("tests/cli", "npz"),
         "states" => vec![states()],
         "checkpoint" => vec![checkpoint_of_scene()],
-        "sweep" => {
-            vec![b"run[0].model.stiffness,run[1].step,body.lattice.cells\n2e4,T/60,\n1e4,,\"[1, 1, 1]\"\n".to_vec()]
-        }
         "cells" => vec![b"0 4652007308841189376 0 12 3;\n1 4652007308841189376 0 12 diverged;\n".to_vec()],
         "state" => vec![localshape::sim::State::at_rest(vec![glam::DVec3::ONE; 3]).to_bytes()],
         "picture" => {

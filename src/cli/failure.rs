@@ -8,7 +8,7 @@ use crate::reading::beside::similar;
 use crate::render::RenderError;
 #[cfg(feature = "render")]
 use crate::scene::figure::Figure;
-use crate::scene::{Mistake, Mistakes, Scene};
+use crate::scene::{Mistakes, Scene};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
@@ -74,17 +74,6 @@ impl Failure {
         self
     }
 
-    /// The message, if it is one of wrong usage.
-    ///
-    /// # Errors
-    /// Itself, if it is not.
-    pub(super) fn mistake(self) -> Result<String, Self> {
-        match self {
-            Self { status: Status::Usage, message: Some(message) } => Ok(message),
-            other => Err(other),
-        }
-    }
-
     /// Prints the message and returns the exit status.
     pub(super) fn report(self) -> Status {
         if let Some(message) = &self.message {
@@ -144,11 +133,7 @@ pub(super) fn with_causes(error: &dyn Error) -> String {
 
 /// Prints the warnings of a scene.
 pub(super) fn warn(file: &Path, scene: &Scene) {
-    warn_of(file, scene.warnings.clone());
-}
-
-/// Prints warnings at places of a file, if there are any.
-pub(super) fn warn_of(file: &Path, found: Vec<Mistake>) {
+    let found = scene.warnings.clone();
     if !found.is_empty() {
         let total = found.len();
         let _ = writeln!(io::stderr(), "warning: {}", Mistakes { file: file.display().to_string(), found, total });

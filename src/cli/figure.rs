@@ -10,10 +10,11 @@ use crate::gpu::Gpu;
 use crate::look::Theme;
 use crate::output::{AtomicFile, FolderLock, OutputError, Tags, folder_of, is_folder, read_tags};
 use crate::picture::compose_figure;
+use crate::reading::setting::Setting;
 use crate::reading::words::nearest;
 use crate::runner::moments::{Forces, Moments, Taking};
 use crate::scene::figure::{Content, Figure, NAMES};
-use crate::scene::{Limits, Scene};
+use crate::scene::{Limits, Scene, SceneError};
 use crate::sim::diagnostics::{Chosen, Reach};
 use crate::sim::snapshot::{self, RunFrame, Snapshot};
 use clap::{Args, ValueEnum, ValueHint};
@@ -60,6 +61,11 @@ pub(super) struct FigureCommand {
     /// Width and height (px) [default: that of each figure]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
+
+    /// Give a key of the figures' scenes another value for this command, such as view.size or run[0].model.stiffness=1e4: the key
+    /// as messages write it, the value as in a scene file, where a word needs no quotation marks. Can be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<Setting>,
 
     /// Scale of the figures, from 0.1 to 4: 0.5 for web pages
     #[arg(long, value_name = "TIMES", value_parser = number_in(0.1, 4.0), conflicts_with = "size")]
@@ -204,10 +210,11 @@ impl FigureCommand {
             let meant: Vec<_> = NAMES.into_iter().filter(|name| is_meant(name)).collect();
             let is_path = asked.contains(['/', '\\']) || asked.ends_with(".toml") || Path::new(asked).exists();
             let found: Vec<(Figure, PathBuf)> = if !meant.is_empty() {
+                let built_in = meant.into_iter().filter_map(|name| Figure::built_in_with(name, &self.set));
                 // A built-in figure is not at any path.
-                meant.into_iter().filter_map(|name| Some((Figure::built_in(name)?, PathBuf::new()))).collect()
+                built_in.map(|figure| Ok((figure?, PathBuf::new()))).collect::<Result<_, SceneError>>()?
             } else if is_path {
-                vec![(Figure::load(Path::new(asked), &Limits::default())?, PathBuf::from(asked))]
+                vec![(Figure::load_with(Path::new(asked), &self.set, &Limits::default())?, PathBuf::from(asked))]
             } else {
                 return Err(Failure::usage(unknown(asked)));
             };

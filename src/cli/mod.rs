@@ -25,8 +25,6 @@ mod film;
 mod frames;
 mod info;
 mod interrupt;
-#[cfg(feature = "render")]
-mod merge;
 mod options;
 mod record;
 #[cfg(feature = "render")]
@@ -39,7 +37,6 @@ mod simulate;
 #[cfg(feature = "render")]
 mod still;
 mod study;
-mod sweep;
 mod table;
 #[cfg(feature = "render")]
 mod table_figure;
@@ -79,7 +76,6 @@ Examples:
   localshape simulate scenes/fig4b.toml        the same without pictures
   localshape check scenes/*.toml               what scenes contain, or every mistake in them
   localshape animate output/fig4b -o fig4b.gif frames as an animation
-  localshape merge shards/* -o whole           shards of a sequence, drawn on many machines, in one folder
   localshape figure all                        the paper's figures in output/figures/
   localshape table                             the paper's numbers beside ours
   localshape study rotation                    solvers of rotations: error against time";
@@ -101,8 +97,6 @@ enum Command {
     Figure(figure::FigureCommand),
     #[cfg(feature = "render")]
     Animate(animate::Animate),
-    #[cfg(feature = "render")]
-    Merge(merge::Merge),
     Check(check::Check),
     Compare(compare::Compare),
     Table(table::Table),
@@ -138,8 +132,6 @@ impl Command {
             Self::Figure(figure) => figure.run(),
             #[cfg(feature = "render")]
             Self::Animate(animate) => animate.run(words),
-            #[cfg(feature = "render")]
-            Self::Merge(merge) => merge.run(words),
             Self::Check(check) => check.run(),
             Self::Compare(compare) => compare.run(),
             Self::Table(table) => table.run(),

@@ -5,6 +5,7 @@ use super::failure::Failure;
 use super::frames::FrameRanges;
 #[cfg(feature = "render")]
 use crate::gpu::{AdapterChoice, Gpu};
+use crate::reading::setting::Setting;
 use clap::{Args, ValueHint};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
@@ -15,6 +16,11 @@ pub(super) struct SceneOptions {
     /// Scene files (TOML); all are read and checked before the first is run
     #[arg(value_name = "SCENE", required = true, value_hint = ValueHint::FilePath)]
     pub(super) scenes: Vec<PathBuf>,
+
+    /// Give a key of the scene another value for this command, such as time.duration=2 or run[0].model.stiffness=1e4: the key as
+    /// messages write it, the value as in a scene file, where a word needs no quotation marks. Can be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(super) set: Vec<Setting>,
 
     /// Accept scenes beyond the limits that guard against typing errors, as far as memory permits and up to 4294967295 nodes
     /// or elements
@@ -53,12 +59,6 @@ pub(super) struct RunOptions {
     /// again
     #[arg(long)]
     pub(super) resume: bool,
-
-    /// Run variants of the scene: a table of comma-separated values, with keys of the scene in its first line, such as
-    /// run[0].model.stiffness, and their values for one variant in each line below. An empty cell leaves the value of the
-    /// scene. Each variant has a folder of its own in DIR [default: output/NAME-sweep], and variants.csv lists them
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub(super) sweep: Option<PathBuf>,
 
     #[command(flatten)]
     pub(super) threads: ThreadOptions,

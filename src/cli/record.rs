@@ -7,9 +7,9 @@ use super::scenes::{Job, with_option};
 use super::{console, interrupt, report};
 use crate::output::{
     Checkpoint, Claimed, Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, OutputError, STATES_FILE,
-    SUMMARY_FILE, Spent, StatesWriter, StoredStates, Summary, Timings, frame_file_name, open_growing, read_file,
-    thread_time, waiting_states,
+    Spent, StatesWriter, StoredStates, Summary, Timings, open_growing, thread_time, waiting_states,
 };
+use crate::reading::setting::Setting;
 use crate::runner::cause::Cause;
 use crate::runner::history::History;
 use crate::runner::{Frames, Next, Progress, Runner};
@@ -28,14 +28,13 @@ use std::time::Duration;
 /// What makes pictures of scenes.
 pub(super) trait Studio {
     fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure>;
-    /// The graphics adapter that draws, as in summaries.
-    fn adapter(&self) -> String;
 }
 
 /// Runs all scenes, one after the other, and reports on each.
 pub(super) fn run_all(
-    jobs: impl IntoIterator<Item = Result<Job, Failure>>,
+    jobs: Vec<Job>,
     options: &RunOptions,
+    settings: &[Setting],
     words: &[OsString],
     timings: bool,
     studio: Option<&dyn Studio>,
@@ -51,32 +50,14 @@ pub(super) fn run_all(
             interrupted = true;
             break;
         }
-        let job = match job {
-            Ok(job) => job,
-            Err(failure) => {
-                result = Err(failure);
-                break;
-            }
-        };
         let path = job.folder.path().to_owned();
-        if job.once
-            && let Some(before) = done_before(&job, studio)?
-        {
-            if options.printing.json {
-                let mut document = json!({ "folder": path.to_string_lossy() });
-                merge(&mut document, before);
-                documents.push(document);
-            } else if !options.printing.quiet {
-                console::print(&format!("{} is complete\n", path.display()))?;
-            }
-            continue;
-        }
         let mut blank = if number > 0 { "\n" } else { "" };
         if let Some(replaced) = job.folder.replaced().filter(|_| options.printing.prints_text()) {
             console::print(&format!("{blank}{}: replacing {replaced}\n", path.display()))?;
             blank = "";
         }
         let mut summary = Summary::new(&job.scene, &job.runs, job.frames.len(), &command);
+        summary.set = settings.iter().map(|setting| setting.text().to_owned()).collect();
         summary.frames.shard = job.shard.map(|shard| [shard.number, shard.of]);
         result = record(job, &mut summary, &pool, options, studio);
         if options.printing.json {
@@ -99,28 +80,6 @@ pub(super) fn run_all(
     let printed = if options.printing.json { console::print_json(&json!({ "scenes": documents })) } else { Ok(()) };
     result.and(printed)?;
     Ok(if interrupted { Status::Interrupted } else { Status::Done })
-}
-
-/// The summary in the folder of a job, if all its results are there.
-fn done_before(job: &Job, studio: Option<&dyn Studio>) -> Result<Option<Value>, Failure> {
-    let folder = job.folder.path();
-    let Some(bytes) = read_file(&folder.join(SUMMARY_FILE))? else { return Ok(None) };
-    let Ok(found) = serde_json::from_slice::<Value>(&bytes) else { return Ok(None) };
-    let names: Vec<_> = job.runs.iter().map(|&run| &job.scene.runs[run].name).collect();
-    let found_names: Vec<_> = found["runs"].as_array().into_iter().flatten().map(|run| &run["name"]).collect();
-    let is_same = found["outcome"] == "done"
-        && found["localshape"] == env!("CARGO_PKG_VERSION")
-        && found["scene"]["digest"] == job.scene.digest.as_str()
-        && found["frames"]["asked"] == job.frames.len()
-        && found["adapter"] == json!(studio.map(Studio::adapter))
-        && found_names == names;
-    let is_there = |name: &str| folder.join(name).is_file();
-    let (plan, _) = job.folder.contents();
-    let are_there = plan.is_all_of(&folder.join(DIAGNOSTICS_FILE))
-        && (!plan.states || is_there(STATES_FILE))
-        && (plan.size.is_none() || found["frames"]["size"] == json!(plan.size))
-        && (plan.size.is_none() || job.frames.iter().all(|&frame| is_there(&frame_file_name(frame))));
-    Ok((is_same && are_there).then_some(found))
 }
 
 /// Runs one scene. However it ends, the summary says so.

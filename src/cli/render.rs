@@ -11,7 +11,6 @@ use super::results::Pictures;
 use super::still::{
     Format as FileFormat, NO_ADAPTER, Still, check_type, replaceable as replaceable_still, source_of, too_small,
 };
-use super::sweep::Sweep;
 use crate::animation::{Format, Sheet, Spool};
 use crate::artist::{Artist, Begun, compose_frame};
 use crate::gpu::{Gpu, GpuError};
@@ -39,7 +38,7 @@ Examples:
   localshape render scenes/fig4b.toml --animate fig4b.gif --no-frames
   localshape render scenes/fig4b.toml --only Mass-spring --frames 30 -o one
   localshape render scenes/fig4b.toml --resume             after an interruption: goes on from there
-  localshape render scenes/fig4b.toml --sweep stiffness.csv    variants: one folder for each line of the table
+  localshape render scenes/fig4b.toml --set run[0].model.stiffness=1e5 -o stiff    with another value in the scene
   localshape render scenes/fig4b.toml --frames 30 -o frame.pdf   one frame for print, with text that can be searched
 
 With --shard, many processes draw a scene: docs/clusters.md has scripts for them.
@@ -75,7 +74,7 @@ pub(super) struct Render {
 
     /// Also make an animation or a contact sheet of the frames. The extension of FILE chooses the format, as with
     /// `localshape animate`, which has more options. Can be repeated
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "sweep")]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     animate: Vec<PathBuf>,
 
     /// Do not keep the frames of the animation
@@ -83,7 +82,7 @@ pub(super) struct Render {
     no_frames: bool,
 
     /// Draw states.npz, which `simulate --states` has written for the same scene, and simulate nothing
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["states", "sweep"])]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "states")]
     from_states: Option<PathBuf>,
 
     /// Make only a share of the frames: 2/4 the second one and every fourth one after it. `localshape merge` joins all shards
@@ -99,13 +98,8 @@ pub(super) struct Render {
 impl Render {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
         self.options.out.as_deref().map_or(Ok(()), FileFormat::check_name)?;
-        if let Some(file) = &self.options.sweep {
-            return self.sweep(file, words);
-        }
         if self.shard.is_some() && self.options.states {
-            let message =
-                "--shard and --states exclude each other, but for shards of a sweep; simulate the states once";
-            return Err(Failure::usage(message));
+            return Err(Failure::usage("--shard and --states exclude each other; simulate the states once"));
         }
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
         scenes.iter_mut().for_each(|scene| self.resize(scene));
@@ -135,7 +129,7 @@ impl Render {
             stills: if self.options.frames.is_some() { usize::MAX } else { Sheet::FRAMES },
         });
         let device = self.studio(gpu, shared);
-        let result = record::run_all(jobs.into_iter().map(Ok), &self.options, words, self.timings, Some(&device));
+        let result = record::run_all(jobs, &self.options, &self.scenes.set, words, self.timings, Some(&device));
         if self.options.printing.prints_text() {
             let made = device.made.into_inner().unwrap_or_else(PoisonError::into_inner);
             made.iter().try_for_each(|line| console::print(line))?;
@@ -159,29 +153,6 @@ impl Render {
     /// Whether a scene can be drawn as it is wanted.
     fn check(&self, scene: &Scene) -> Result<(), Failure> {
         too_small(scene, &self.options.runs(scene)?).map_or(Ok(()), |message| Err(Failure::usage(message)))
-    }
-
-    /// Draws variants of a scene.
-    fn sweep(&self, file: &Path, words: &[OsString]) -> Result<Status, Failure> {
-        if let Some(name) = self.options.out.as_deref().filter(|out| FileFormat::of(out).is_some()) {
-            bail!("{} is a file for one frame; with --sweep name a folder", name.display());
-        }
-        let sizes = Mutex::new(Vec::new());
-        let check = |scene: &Scene| {
-            let mut scene = scene.clone();
-            self.resize(&mut scene);
-            self.check(&scene)?;
-            check_ghost(&scene, &self.options.runs(&scene)?)?;
-            self.options.frames(&scene)?;
-            sizes.lock().unwrap_or_else(PoisonError::into_inner).push(scene.view.size);
-            Ok(())
-        };
-        let sweep = Sweep::read(file, &self.scenes, &self.options, self.shard, check)?;
-        let gpu = self.device.open(sizes.into_inner().unwrap_or_else(PoisonError::into_inner))?;
-        let device = self.studio(gpu, None);
-        let jobs = self.options.variants(&sweep, true, |scene| self.resize(scene), words)?;
-        let status = record::run_all(jobs, &self.options, words, self.timings, Some(&device))?;
-        sweep.end(status, self.options.printing)
     }
 
     /// Draws one frame into a file of its own.
@@ -285,10 +256,6 @@ fn check_ghost(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
 }
 
 impl Studio for Device {
-    fn adapter(&self) -> String {
-        self.gpu.description().to_string()
-    }
-
     fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure> {
         let films = match &self.shared {
             Some(shared) => {

@@ -3,7 +3,6 @@
 use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::{FrameRanges, Shard};
 use super::options::{RunOptions, SceneOptions};
-use super::sweep::Sweep;
 use crate::output::shell;
 use crate::output::{Folder, OutputError, Plan, Replace, STATES_FILE, StoredStates, Whose};
 use crate::scene::{Limits, Scene, SceneError};
@@ -19,7 +18,7 @@ impl SceneOptions {
 
     /// Reads one scene.
     pub(super) fn load(&self, path: &Path) -> Result<Scene, SceneError> {
-        Scene::load(path, &self.limits())
+        Scene::load_with(path, &self.set, &self.limits())
     }
 
     /// Reads all scenes. The mistakes in all of them are reported before this fails; warnings unless `quiet`.
@@ -76,8 +75,6 @@ pub(super) struct Job {
     pub(super) shard: Option<Shard>,
     /// The states of the frames, if they were simulated before.
     pub(super) stored: Option<StoredStates>,
-    /// Whether it is left out if its results are complete.
-    pub(super) once: bool,
 }
 
 impl RunOptions {
@@ -138,28 +135,7 @@ impl RunOptions {
         let resume = self.resume && states_read.is_none();
         let folder = Folder::inspect(path, Whose::of(&scene), plan, self.replace(), resume);
         let folder = folder.map_err(|error| occupied(error, words))?;
-        Ok(Job { runs, frames, folder, scene, shard, stored: None, once: false })
-    }
-
-    /// What is to be done for the variants of a scene, each read when its turn comes and then changed by `adjust`.
-    pub(super) fn variants(
-        &self,
-        sweep: &Sweep,
-        pictures: bool,
-        adjust: impl Fn(&mut Scene),
-        words: &[OsString],
-    ) -> Result<impl Iterator<Item = Result<Job, Failure>>, Failure> {
-        let job = move |variant: Result<(Scene, PathBuf), Failure>| {
-            let (mut scene, path) = variant?;
-            adjust(&mut scene);
-            let job = self.job(scene, &path, pictures, None, None, words)?;
-            Ok(Job { once: self.resume, ..job })
-        };
-        // Nothing is made before all folders are known to be free.
-        sweep.check_folder(self.overwrite).map_err(|error| occupied(error, words))?;
-        sweep.variants().try_for_each(|variant| job(variant).map(drop))?;
-        sweep.write_table()?;
-        Ok(sweep.variants().map(job))
+        Ok(Job { runs, frames, folder, scene, shard, stored: None })
     }
 
     /// A folder named after the scene follows its file. A folder named by the user keeps its contents, which may be

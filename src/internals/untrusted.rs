@@ -5,7 +5,6 @@
 
 use crate::golden::Pixels;
 use crate::output::StoredStates;
-use crate::reading::variants::{self, Variants};
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene};
@@ -23,14 +22,13 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 9] = [
+pub const READERS: [Reader; 8] = [
     Reader { name: "scene", read: scene },
     Reader { name: "figure", read: figure },
     Reader { name: "body", read: body },
     Reader { name: "states", read: states },
     Reader { name: "checkpoint", read: checkpoint },
     Reader { name: "state", read: |bytes| drop(State::from_bytes(bytes)) },
-    Reader { name: "sweep", read: sweep },
     Reader { name: "cells", read: cells },
     Reader { name: "picture", read: |bytes| drop(Pixels::from_bytes(bytes)) },
 ];
@@ -89,7 +87,9 @@ fn figure(bytes: &[u8]) {
 fn body(bytes: &[u8]) {
     in_folder("body.npz", bytes, |path| {
         let text = SCENE.replace("body.lattice = { cells = [1, 1, 1], side = 0.1 }", "body.file = 'body.npz'");
-        begin(Scene::load_text(&text, &path.with_file_name("scene.toml"), &LIMITS));
+        let scene = path.with_file_name("scene.toml");
+        fs::write(&scene, text).expect("a file");
+        begin(Scene::load(&scene, &LIMITS));
     });
 }
 
@@ -115,21 +115,6 @@ fn checkpoint(bytes: &[u8]) {
                 return;
             }
         }
-    }
-}
-
-/// A table of variants of [`SCENE`], each of which is read.
-fn sweep(bytes: &[u8]) {
-    /// Variants that are read.
-    const MOST: usize = 4;
-    let Some(Ok(table)) = std::str::from_utf8(bytes).ok().map(Variants::parse) else { return };
-    for (row, start) in table.rows.iter().take(MOST) {
-        let mut root: toml::Table = SCENE.parse().expect("sound");
-        for (column, key) in table.keys.iter().enumerate() {
-            variants::cell(std::str::from_utf8(bytes).unwrap_or_default(), *start, column);
-            drop(variants::set(&mut root, key, variants::value(&row[column])));
-        }
-        begin(Scene::parse(&root.to_string(), "scene.toml", &LIMITS));
     }
 }
 

@@ -70,7 +70,7 @@ pub struct Print {
     pub mm: [f64; 2],
     /// Pixels of an inch.
     pub dpi: f64,
-    /// The file that says it, for messages, with line and column; empty for that of the scene.
+    /// The file that says it, for messages, with line and column, both 0 if an option says it; empty for that of the scene.
     pub(crate) file: String,
     pub(crate) at: (usize, usize),
 }
@@ -83,10 +83,14 @@ impl Print {
 
     /// Why type of a size (px) is not printed; `None` if it is large enough. `file` has the size.
     pub(crate) fn too_small(&self, pixels: f64, file: &str) -> Option<String> {
-        let (points, [width, height], (line, column)) = (self.points(pixels), self.mm, self.at);
+        let (points, [width, height]) = (self.points(pixels), self.mm);
+        let place = match self.at {
+            (0, _) => file.to_owned(),
+            (line, column) => format!("{file}:{line}:{column}"),
+        };
         (points < LEAST_POINTS - 1e-6).then(|| {
             format!(
-                "{file}:{line}:{column}: at {width} × {height} mm the smallest type would be {} pt; expected at least \
+                "{place}: at {width} × {height} mm the smallest type would be {} pt; expected at least \
                  {LEAST_POINTS} pt: make `size` larger, or type with `text_scale`",
                 rounded(points, 2)
             )

@@ -40,8 +40,6 @@ pub(crate) use png::{Texts, encode_like, encode_print, is_drawn};
 pub(crate) use sheets::SheetFiles;
 pub(crate) use states::{STATES_FILE, StatesWriter};
 pub(crate) use stored::StoredStates;
-#[cfg(feature = "render")]
-pub(crate) use summary::relative;
 pub(crate) use summary::{Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary, document};
 pub(crate) use timing::{Clock, thread_time};
 pub use timing::{Spent, Timings};

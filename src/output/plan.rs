@@ -36,13 +36,6 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// Whether the diagnostics at a path have the rows of all its runs and frames, and no others.
-    pub(crate) fn is_all_of(&self, diagnostics: &Path) -> bool {
-        let found: BTreeSet<_> = rows_of(diagnostics).collect();
-        found.len() == self.runs.len() * self.frames.len()
-            && found.iter().all(|(run, frame)| self.runs.contains(run) && self.frames.binary_search(frame).is_ok())
-    }
-
     /// What the diagnostics and states of the same scene at these paths have that the plan does not make again, in words.
     pub(super) fn lacks(&self, diagnostics: &Path, states: Option<&PathBuf>) -> Option<String> {
         // A table that cannot be read has nothing to lose.

@@ -19,6 +19,9 @@ pub(crate) struct Summary {
     pub scene: SceneSummary,
     /// The command line, one entry for each argument.
     pub command: Vec<String>,
+    /// Values that the command has set in place of those in the scene file, as typed; absent if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub set: Vec<String>,
     pub outcome: Outcome,
     /// The requested and the written frames.
     pub frames: FrameSummary,
@@ -173,6 +176,7 @@ impl Summary {
                 cycle: scene.cycle(),
             },
             command: command.to_vec(),
+            set: Vec::new(),
             outcome: Outcome::Unfinished,
             frames: FrameSummary { asked, recorded: 0, written: None, kept: 0, repeated: 0, size: None, shard: None },
             files: Vec::new(),

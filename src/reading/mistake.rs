@@ -7,9 +7,9 @@ use std::ops::Range;
 /// One mistake and its place; [`Mistakes`] print it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Mistake {
-    /// Line, counted from 1; 0 in a scene made in code.
+    /// Line, counted from 1; 0 in a scene made in code, and in a setting of the command line.
     pub line: usize,
-    /// Column in characters, counted from 1; 0 in a scene made in code.
+    /// Column in characters, counted from 1; 0 where there is no line.
     pub column: usize,
     /// The key or entry, such as `run[0].model.stiffness`; empty where there is none.
     #[serde(skip)]
@@ -19,7 +19,7 @@ pub struct Mistake {
     /// What to do, unless the message says it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub help: Option<String>,
-    /// The source line, or a part of it; empty in a scene made in code.
+    /// The source line, or a part of it; the option for a setting of the command line; empty in a scene made in code.
     pub excerpt: String,
     /// The characters of the excerpt to mark.
     #[serde(skip)]
@@ -41,6 +41,12 @@ pub struct Mistake {
 ///
 /// ```text
 /// drop: `run[0].model.stiffness` is -1.0; expected a number greater than 0
+/// ```
+///
+/// Those in settings of the command line print with the option in place of line and column:
+///
+/// ```text
+/// drop.toml: --set time.duraton=1: unknown key `duraton` in `time`; did you mean `duration`?
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Mistakes {
@@ -71,7 +77,9 @@ impl fmt::Display for Mistakes {
             let Mistake { line, column, place, message, help, excerpt, marked } = mistake;
             if *line == 0 {
                 write!(f, "{}: ", self.file)?;
-                if !message.contains(&format!("`{place}")) {
+                if !excerpt.is_empty() {
+                    write!(f, "{excerpt}: ")?;
+                } else if !message.contains(&format!("`{place}")) {
                     write!(f, "`{place}`: ")?;
                 }
                 f.write_str(message)?;

@@ -4,8 +4,8 @@ pub(crate) mod beside;
 pub(crate) mod coordinates;
 mod mistake;
 pub(crate) mod report;
+pub(crate) mod setting;
 pub(crate) mod source;
-pub(crate) mod variants;
 pub(crate) mod words;
 
 pub use mistake::{Mistake, Mistakes};

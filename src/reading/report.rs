@@ -107,9 +107,16 @@ impl<'t> Report<'t> {
         }
     }
 
-    /// Line and column of the value at `path`, or of its nearest ancestor in the file.
+    /// Line and column of the value at `path`, or of its nearest ancestor in the file. Both are 0 if the command line sets it.
     pub(crate) fn position(&self, path: &[Way<'_>]) -> (usize, usize) {
-        self.source.position(span_of(self.root, path).start)
+        let (line, column) = self.source.position(span_of(self.root, path).start);
+        if self.source.is_setting(line) { (0, 0) } else { (line, column) }
+    }
+
+    /// Whether a mistake was found in the line of a byte.
+    pub(crate) fn has_mistake_in_line_of(&self, byte: usize) -> bool {
+        let (line, _) = self.source.position(byte);
+        self.found.iter().any(|mistake| mistake.line == line)
     }
 
     /// A mistake at a span of the text, in the value at `path`.
@@ -142,15 +149,22 @@ impl<'t> Report<'t> {
 
     /// All warnings, in the order of the text.
     pub(crate) fn warnings(&mut self) -> Vec<Mistake> {
-        let mut found = std::mem::take(&mut self.warned);
-        found.sort_by_key(|mistake| (mistake.line, mistake.column));
-        found
+        let found = std::mem::take(&mut self.warned);
+        self.in_order(found)
     }
 
     /// All mistakes, in the order of the text.
     pub(crate) fn finish(mut self, file: &str) -> Mistakes {
-        self.found.sort_by_key(|mistake| (mistake.line, mistake.column));
-        Mistakes { file: file.into(), found: self.found, total: self.total }
+        let found = std::mem::take(&mut self.found);
+        Mistakes { file: file.into(), found: self.in_order(found), total: self.total }
+    }
+
+    /// Mistakes in the order of the text. Those in settings of the command line come last and get no position.
+    fn in_order(&self, mut found: Vec<Mistake>) -> Vec<Mistake> {
+        found.sort_by_key(|mistake| (mistake.line, mistake.column));
+        let of_settings = found.iter_mut().filter(|mistake| self.source.is_setting(mistake.line));
+        of_settings.for_each(|mistake| (mistake.line, mistake.column) = (0, 0));
+        found
     }
 }
 

@@ -8,6 +8,8 @@ pub(crate) struct Source<'t> {
     text: &'t str,
     /// The first byte of each line.
     lines: Vec<usize>,
+    /// How many lines are those of the file. Those after them are settings of the command line.
+    of_file: usize,
 }
 
 /// The longest excerpt under a message (characters).
@@ -16,7 +18,19 @@ const WIDEST_EXCERPT: usize = 110;
 impl<'t> Source<'t> {
     pub(crate) fn new(text: &'t str) -> Self {
         let starts = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n').map(|(at, _)| at + 1);
-        Self { text, lines: std::iter::once(0).chain(starts).collect() }
+        let lines: Vec<_> = std::iter::once(0).chain(starts).collect();
+        Self { text, of_file: lines.len(), lines }
+    }
+
+    /// A text in which settings of the command line follow the file that ends at a byte.
+    pub(crate) fn with_settings(text: &'t str, end: usize) -> Self {
+        let whole = Self::new(text);
+        Self { of_file: whole.lines.partition_point(|&start| start <= end), ..whole }
+    }
+
+    /// Whether a line, counted from 1, is a setting of the command line.
+    pub(crate) fn is_setting(&self, line: usize) -> bool {
+        line > self.of_file
     }
 
     pub(crate) fn text(&self) -> &'t str {

@@ -9,13 +9,16 @@ use super::{Scene, structure};
 use crate::reading::Mistakes;
 use crate::reading::beside::{in_folders, similar};
 use crate::reading::report::{Report, mistake, way};
+use crate::reading::setting::{Setting, Wrong};
 use crate::reading::source::Source;
 use crate::reading::words::quoted;
 use serde_json::Value;
+use std::borrow::Cow;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
-use toml::de::DeTable;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 impl Scene {
     /// Reads a scene from a file.
@@ -23,24 +26,18 @@ impl Scene {
     /// # Errors
     /// Whatever keeps the file from being a scene, with all mistakes in it; see [`SceneError`].
     pub fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
-        Self::load_text(&text_of(path, limits, FIGURE)?, path, limits)
+        Self::load_with(path, &[], limits)
     }
 
-    /// The text of a scene file.
+    /// Reads a scene from a file, with other values of some keys.
     ///
     /// # Errors
-    /// If it cannot be read, is too long or is no text.
-    pub(crate) fn text(path: &Path, limits: &Limits) -> Result<String, SceneError> {
-        text_of(path, limits, FIGURE)
-    }
-
-    /// Reads a scene from a text in the place of its file.
-    ///
-    /// # Errors
-    /// As [`Self::load`].
-    pub(crate) fn load_text(text: &str, path: &Path, limits: &Limits) -> Result<Self, SceneError> {
+    /// As [`Self::load`]. A mistake in a setting is told like one in the file.
+    pub(crate) fn load_with(path: &Path, settings: &[Setting], limits: &Limits) -> Result<Self, SceneError> {
+        let text = text_of(path, limits, FIGURE)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        let scene = Self::read(text, &path.display().to_string(), folder, limits, Unwritten::default())?;
+        let name = path.display().to_string();
+        let scene = Self::read(Document { text: &text, name: &name, settings }, folder, limits, Unwritten::default())?;
         Ok(Self { file: path.canonicalize().ok(), ..scene })
     }
 
@@ -68,18 +65,18 @@ impl Scene {
     /// # Ok::<(), localshape::scene::SceneError>(())
     /// ```
     pub fn parse(text: &str, name: &str, limits: &Limits) -> Result<Self, SceneError> {
-        Self::read(text, name, Path::new(""), limits, Unwritten::default())
+        Self::read(Document { text, name, settings: &[] }, Path::new(""), limits, Unwritten::default())
     }
 
     /// Reads a scene from a text; a body's own file and fonts are searched in `folder`.
     pub(super) fn read(
-        text: &str,
-        name: &str,
+        document: Document<'_>,
         folder: &Path,
         limits: &Limits,
         unwritten: Unwritten,
     ) -> Result<Self, SceneError> {
-        checked(text, name, &SCHEMA, FIGURE, |checked, report| {
+        let name = document.name;
+        checked(document, &SCHEMA, FIGURE, |checked, report| {
             let mut parts = Parts::new(&checked, folder, limits, report);
             parts.put_back(unwritten, report);
             let has_digest = report.total() == 0 && !parts.has_own_models();
@@ -89,6 +86,17 @@ impl Scene {
             Ok(scene.map(|scene| Self { warnings: report.warnings(), ..scene }))
         })
     }
+}
+
+/// A file as it is read.
+#[derive(Clone, Copy)]
+pub(super) struct Document<'a> {
+    /// Its text.
+    pub(super) text: &'a str,
+    /// Its name, for messages.
+    pub(super) name: &'a str,
+    /// Values that the command line sets in place of its own.
+    pub(super) settings: &'a [Setting],
 }
 
 /// A file of another kind, recognised by any of these keys.
@@ -121,32 +129,60 @@ fn is_file_of(path: &Path, limits: &Limits, kind: Other) -> bool {
 
 /// Parses TOML, checks it against a schema and resolves it; all mistakes are reported together.
 pub(super) fn checked<T>(
-    text: &str,
-    name: &str,
+    document: Document<'_>,
     schema: &Value,
     other: Other,
     resolve: impl FnOnce(Checked, &mut Report<'_>) -> Result<Option<T>, SceneError>,
 ) -> Result<T, SceneError> {
+    let Document { text, name, settings } = document;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let file = || name.to_owned();
     if text.lines().all(|line| line.trim_start().is_empty() || line.trim_start().starts_with('#')) {
         return Err(SceneError::Empty { file: file() });
     }
-    let source = Source::new(text);
     let (root, errors) = DeTable::parse_recoverable(text);
     if !errors.is_empty() {
-        return Err(SceneError::Syntax(syntax(&source, &errors, name)));
+        return Err(SceneError::Syntax(syntax(&Source::new(text), &errors, name)));
     }
+    // Settings follow the file, a line each, so that every value has a place in one text.
+    let mut whole = Cow::Borrowed(text);
+    settings.iter().for_each(|setting| whole.to_mut().extend(["\n", OPTION, setting.text()]));
+    let source = Source::with_settings(&whole, text.len());
+    let (root, wrong) = set(root, settings, &whole, text.len());
     let mut report = Report::new(&source, root.get_ref());
     if let Some(key) = other.keys.iter().find(|key| root.get_ref().contains_key(**key)) {
         report.at_key(&way![*key], other.message, None);
         return Err(SceneError::Mistakes(report.finish(name)));
     }
     let checked = structure::check(schema, root.get_ref(), &mut report);
+    wrong.into_iter().for_each(|wrong| wrong.report(&mut report));
     match resolve(checked, &mut report)? {
         Some(meaning) if report.total() == 0 => Ok(meaning),
         _ => Err(SceneError::Mistakes(report.finish(name))),
     }
+}
+
+/// The option before a setting.
+const OPTION: &str = "--set ";
+
+/// A file with the values of settings in place of its own, and what is wrong with these. Their text follows that of the file at a
+/// byte of the whole.
+fn set<'t>(
+    root: Spanned<DeTable<'t>>,
+    settings: &[Setting],
+    whole: &'t str,
+    mut at: usize,
+) -> (Spanned<DeTable<'t>>, Vec<Wrong>) {
+    let span = root.span();
+    let mut root = Spanned::new(span.clone(), DeValue::Table(root.into_inner()));
+    let mut wrong = Vec::new();
+    for setting in settings {
+        let start = at + 1 + OPTION.len();
+        at = start + setting.text().len();
+        wrong.extend(setting.apply(&mut root, &whole[start..at], start).err());
+    }
+    let DeValue::Table(table) = root.into_inner() else { unreachable!("a key begins every setting") };
+    (Spanned::new(span, table), wrong)
 }
 
 /// The text of a file that should not be of another kind. For a missing one, the message names a file that may be

@@ -17,9 +17,9 @@ mod parts;
 #[cfg(feature = "render")]
 mod render;
 mod resume;
+mod set;
 mod simulate;
 mod study;
 mod support;
-mod sweep;
 mod table;
 mod usage;

@@ -23,6 +23,7 @@ use super::file::{
     Coordinates, GrabFile, HoldFile, MotionPath, NodesFile, Positive, RegionFile, RunFile, SceneFile, SleepFile,
     StepFile, TimeFile,
 };
+use super::load::Document;
 use super::resolve::Unwritten;
 use super::step::NamedStep;
 use super::{Limits, Scene};
@@ -196,7 +197,12 @@ impl SceneBuilder {
         let lists = file.body.nodes.is_some().then(|| file.body.take_lists());
         let models = file.run.iter().map(|run| run.own.clone()).collect();
         let text = toml::to_string(&file).expect("numbers, texts and lists of them can be written");
-        let scene = Scene::read(&text, &name, Path::new(""), limits, Unwritten { lists, models });
+        let scene = Scene::read(
+            Document { text: &text, name: &name, settings: &[] },
+            Path::new(""),
+            limits,
+            Unwritten { lists, models },
+        );
         match scene {
             Ok(scene) => {
                 let warnings = scene.warnings.into_iter().map(|warning| warning.without_text()).collect();

@@ -10,9 +10,11 @@ pub(crate) use built_in::NAMES;
 use super::Scene;
 use super::error::SceneError;
 use super::limits::Limits;
-use super::load::{self, stem};
+use super::load::{self, Document, stem};
+use super::resolve::Unwritten;
 use super::schema::schema_of;
 use crate::look::{Print, Style, Theme};
+use crate::reading::setting::Setting;
 use crate::sim::snapshot::Diagnostic;
 use serde_json::Value;
 use std::path::Path;
@@ -117,14 +119,22 @@ impl Figure {
     /// One of the figures of the paper that come with the program; `None` if there is none of that name. [`NAMES`] lists
     /// them.
     pub fn built_in(name: &str) -> Option<Self> {
+        Some(Self::built_in_with(name, &[])?.unwrap_or_else(|error| panic!("{error}")))
+    }
+
+    /// The same with settings of the command line, which hold for each of its scenes.
+    ///
+    /// # Errors
+    /// Mistakes in the settings.
+    pub(crate) fn built_in_with(name: &str, settings: &[Setting]) -> Option<Result<Self, SceneError>> {
         let path = built_in::path(name)?;
         let text = built_in::text(&path).expect("listed");
         let scene = |path: &Path| {
             let text = built_in::text(path).expect("figures name scenes that come with the program");
-            Scene::parse(text, &path.display().to_string(), &Limits::default())
+            let document = Document { text, name: &path.display().to_string(), settings };
+            Scene::read(document, Path::new(""), &Limits::default(), Unwritten::default())
         };
-        let figure = Self::read(text, &path.display().to_string(), Path::new("figures"), &scene);
-        Some(figure.unwrap_or_else(|error| panic!("{error}")))
+        Some(Self::read(text, &path.display().to_string(), Path::new("figures"), &scene))
     }
 
     /// Reads a figure from a file.
@@ -132,9 +142,17 @@ impl Figure {
     /// # Errors
     /// Whatever keeps the file, or a scene that it names, from being one, with all mistakes in it.
     pub fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
+        Self::load_with(path, &[], limits)
+    }
+
+    /// The same with settings of the command line, which hold for each of its scenes.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub(crate) fn load_with(path: &Path, settings: &[Setting], limits: &Limits) -> Result<Self, SceneError> {
         let text = load::text_of(path, limits, load::SCENE)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::read(&text, &path.display().to_string(), folder, &|path| Scene::load(path, limits))
+        Self::read(&text, &path.display().to_string(), folder, &|path| Scene::load_with(path, settings, limits))
     }
 
     /// The scenes that it shows.
@@ -157,7 +175,7 @@ impl Figure {
         scene: &dyn Fn(&Path) -> Result<Scene, SceneError>,
     ) -> Result<Self, SceneError> {
         let stem = stem(Path::new(name)).unwrap_or_else(|| "figure".into());
-        load::checked(text, name, &SCHEMA, load::SCENE, |checked, report| {
+        load::checked(Document { text, name, settings: &[] }, &SCHEMA, load::SCENE, |checked, report| {
             let mut figure = resolve::resolve(checked, &stem, folder, scene, report)?;
             if let Some(print) = figure.as_mut().and_then(|figure| figure.print.as_mut()) {
                 print.file = name.to_owned();
