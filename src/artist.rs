@@ -14,8 +14,7 @@ use std::sync::Arc;
 
 /// Draws frames of one scene.
 pub(crate) struct Artist<'a> {
-    /// One for the scene's background, or two for white and black if it has none.
-    composers: Vec<Composer<'a>>,
+    composer: Composer<'a>,
     renderer: Renderer,
     /// The last frame and its pixels. One that is the same is not drawn again.
     last: Option<(Composed, Arc<Vec<u8>>)>,
@@ -41,28 +40,22 @@ enum State {
 
 /// A frame that is composed and can be drawn.
 #[derive(Clone, Debug)]
-pub(crate) struct Composed {
-    /// One picture, or two on white and on black.
-    pictures: Arc<Vec<Picture>>,
-}
+pub(crate) struct Composed(Arc<Picture>);
 
 impl PartialEq for Composed {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.pictures, &other.pictures) || self.pictures == other.pictures
+        Arc::ptr_eq(&self.0, &other.0) || self.0 == other.0
     }
 }
 
 impl Composed {
     /// For each panel, whether its body leaves it.
     pub(crate) fn cut(&self) -> impl Iterator<Item = bool> + '_ {
-        self.pictures.first().into_iter().flat_map(|picture| &picture.panels).map(|panel| panel.is_cut)
+        self.0.panels.iter().map(|panel| panel.is_cut)
     }
-}
 
-impl Composed {
-    /// The picture, or that on white.
-    pub(crate) fn first(&self) -> &Picture {
-        &self.pictures[0]
+    pub(crate) fn picture(&self) -> &Picture {
+        &self.0
     }
 }
 
@@ -73,7 +66,7 @@ impl<'a> Artist<'a> {
     /// If the device fails.
     pub(crate) fn new(gpu: &Gpu, scene: &'a Scene) -> Result<Self, RenderError> {
         Ok(Self {
-            composers: composers(scene),
+            composer: Composer::new(scene),
             renderer: Renderer::new(gpu, scene.view.size)?,
             last: None,
             repeated: 0,
@@ -84,7 +77,7 @@ impl<'a> Artist<'a> {
 
     /// Sets the time series of the scene, which the chart shows; see [`Composer::set_history`].
     pub(crate) fn set_history(&mut self, history: &History) {
-        self.composers.iter_mut().for_each(|composer| composer.set_history(history));
+        self.composer.set_history(history);
     }
 
     /// Composes a frame.
@@ -94,8 +87,7 @@ impl<'a> Artist<'a> {
         {
             return composed.clone();
         }
-        let pictures = self.composers.iter().map(|composer| composer.compose(frame)).collect();
-        let composed = Composed { pictures: Arc::new(pictures) };
+        let composed = Composed(Arc::new(self.composer.compose(frame)));
         self.still = self.is_still.then(|| (frame.clone(), composed.clone()));
         composed
     }
@@ -112,18 +104,17 @@ impl<'a> Artist<'a> {
     /// If the device fails.
     pub(crate) fn begin(&mut self, composed: Composed) -> Result<Begun, RenderError> {
         let same = self.last.as_ref().filter(|(last, _)| *last == composed);
-        let state = match (same, &composed.pictures[..]) {
-            (Some((_, pixels)), _) => {
+        let state = match same {
+            Some((_, pixels)) => {
                 self.repeated += 1;
                 State::Drawn(Arc::clone(pixels))
             }
-            (None, [picture]) => State::Submitted(self.renderer.submit(picture)?),
-            (None, pictures) => State::Drawn(Arc::new(draw_with(&mut self.renderer, pictures)?)),
+            None => State::Submitted(self.renderer.submit(&composed.0)?),
         };
         Ok(Begun { composed, state })
     }
 
-    /// The frame that was begun: pixels in rows from the top left, red, green and blue, and alpha if the scene has no background.
+    /// The frame that was begun: red, green and blue of each pixel, in rows from the top left.
     ///
     /// # Errors
     /// If the device fails.
@@ -155,14 +146,6 @@ fn have_same_states(one: &Frame, other: &Frame) -> bool {
     one.runs.len() == other.runs.len() && one.runs.iter().zip(&other.runs).all(same)
 }
 
-/// One for the scene's background, or two for white and black if it has none.
-fn composers(scene: &Scene) -> Vec<Composer<'_>> {
-    match scene.view.look.transparent {
-        false => vec![Composer::new(scene)],
-        true => [[255; 3], [0; 3]].map(|ground| Composer::on_ground(scene, ground)).into(),
-    }
-}
-
 /// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum FigureError {
@@ -174,44 +157,32 @@ pub(crate) enum FigureError {
     Render(#[from] RenderError),
 }
 
-/// The pictures of a frame: one, or two on white and on black if the scene has no background.
-pub(crate) fn compose_frame(scene: &Scene, frame: &Frame, history: Option<&History>) -> Vec<Picture> {
-    let one = |mut composer: Composer<'_>| {
-        history.into_iter().for_each(|history| composer.set_history(history));
-        composer.compose(frame)
-    };
-    composers(scene).into_iter().map(one).collect()
+/// The picture of a frame.
+pub(crate) fn compose_frame(scene: &Scene, frame: &Frame, history: Option<&History>) -> Picture {
+    let mut composer = Composer::new(scene);
+    history.into_iter().for_each(|history| composer.set_history(history));
+    composer.compose(frame)
 }
 
-/// What a page of vectors needs of the renderer: the pixels of the lit bodies in one picture, or in two on white and on
-/// black; `None` if there are none. Only then a device is needed.
+/// What a page of vectors needs of the renderer: the pixels of the lit bodies in a picture; `None` if there are none. Only
+/// then a device is needed.
 ///
 /// # Errors
 /// If the device fails.
 ///
 /// # Panics
 /// If there are lit bodies and no device.
-pub(crate) fn draw_bodies(gpu: Option<&Gpu>, pictures: &[Picture]) -> Result<Option<Vec<u8>>, RenderError> {
-    let lit: Vec<_> = pictures.iter().filter_map(vector::bodies).collect();
-    let device = |_: &Picture| gpu.expect("a device for lit bodies");
-    lit.first().map(device).map(|gpu| draw_pictures(gpu, &lit)).transpose()
+pub(crate) fn draw_bodies(gpu: Option<&Gpu>, picture: &Picture) -> Result<Option<Vec<u8>>, RenderError> {
+    let draw = |lit: Picture| draw_picture(gpu.expect("a device for lit bodies"), &lit);
+    vector::bodies(picture).map(draw).transpose()
 }
 
-/// The pixels of one picture, in rows from the top left: red, green and blue, and alpha if there are two, on white and on
-/// black.
+/// The pixels of a picture, red, green and blue of each, in rows from the top left.
 ///
 /// # Errors
 /// If the device fails.
-pub(crate) fn draw_pictures(gpu: &Gpu, pictures: &[Picture]) -> Result<Vec<u8>, RenderError> {
-    let mut renderer = Renderer::new(gpu, pictures[0].size)?;
-    draw_with(&mut renderer, pictures)
-}
-
-fn draw_with(renderer: &mut Renderer, pictures: &[Picture]) -> Result<Vec<u8>, RenderError> {
-    match pictures {
-        [on_white, on_black] => Ok(renderer.draw_transparent(on_white, on_black)?.into_raw()),
-        pictures => Ok(renderer.draw(&pictures[0])?.into_raw()),
-    }
+pub(crate) fn draw_picture(gpu: &Gpu, picture: &Picture) -> Result<Vec<u8>, RenderError> {
+    Ok(Renderer::new(gpu, picture.size)?.draw(picture)?.into_raw())
 }
 
 /// Draws a figure from its simulated states.

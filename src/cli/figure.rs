@@ -188,7 +188,7 @@ impl FigureCommand {
         let title = &figure.title;
         let print = figure.print.as_ref();
         let source = print.map_or("", |print| &print.file);
-        let still = Still { pictures: &[picture], print, source, title, tags: &tags };
+        let still = Still { picture: &picture, print, source, title, tags: &tags };
         let drawn = still.draw(self.format(), gpu)?;
         Ok(Some((Made { drawn, file }, numbers(figure, &moments))))
     }

@@ -185,12 +185,12 @@ impl Render {
         let Some((frame, history)) = record::one_frame(scene, &runs, frame, &pool, &self.options, folder)? else {
             return Ok(Status::Interrupted);
         };
-        let pictures = compose_frame(scene, &frame, history.as_ref());
+        let picture = compose_frame(scene, &frame, history.as_ref());
         let adapter = gpu.as_ref().map_or(NO_ADAPTER.to_owned(), |gpu| gpu.description().to_string());
         let tags = Tags::of_frame(scene, &frame, &adapter).texts();
         let source = source_of(scene);
         let (print, title) = (scene.view.print.as_ref(), &scene.title);
-        let still = Still { pictures: &pictures, print, source: &source, title, tags: &tags };
+        let still = Still { picture: &picture, print, source: &source, title, tags: &tags };
         file.append(&still.draw(format, gpu.as_ref())?.file())?;
         file.commit()?;
         if self.options.printing.prints_text() {
@@ -383,7 +383,7 @@ impl Pictures for Drawing<'_> {
         self.compose += clock.spent();
         let cut = frame.runs.iter().zip(composed.cut()).filter(|(_, is_cut)| *is_cut);
         self.cut.extend(cut.map(|(run, _)| (run.run, frame.index)));
-        check_type(self.scene.view.print.as_ref(), composed.first(), &source_of(self.scene))?;
+        check_type(self.scene.view.print.as_ref(), composed.picture(), &source_of(self.scene))?;
         self.hand_on()?;
         let clock = Clock::thread();
         let begun = self.artist.begin(composed).map_err(|error| stopped(self.keep, error))?;

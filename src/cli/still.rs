@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::film;
-use crate::artist::{compose_frame, draw_bodies, draw_pictures};
+use crate::artist::{compose_frame, draw_bodies, draw_picture};
 use crate::gpu::Gpu;
 use crate::look::Print;
 use crate::output::{Compression, encode_print, read_tags};
@@ -80,7 +80,7 @@ pub(super) fn too_small(scene: &Scene, runs: &[usize]) -> Option<String> {
     let print = scene.view.print.as_ref()?;
     let mut runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
     let first = compose_frame(scene, &runner.frame(0), None);
-    let smallest = type_left_out(scene).unwrap_or(f64::INFINITY).min(smallest_type(&first[0]).into());
+    let smallest = type_left_out(scene).unwrap_or(f64::INFINITY).min(smallest_type(&first).into());
     print.too_small(smallest, &source_of(scene))
 }
 
@@ -91,8 +91,7 @@ pub(super) fn source_of(scene: &Scene) -> String {
 
 /// One picture, ready to be written.
 pub(super) struct Still<'a> {
-    /// The picture, or two on white and on black if nothing is behind it.
-    pub(super) pictures: &'a [Picture],
+    pub(super) picture: &'a Picture,
     /// Its size in print.
     pub(super) print: Option<&'a Print>,
     /// The path of the file that says what it shows.
@@ -106,21 +105,20 @@ pub(super) struct Still<'a> {
 impl Still<'_> {
     /// Draws it, with a device if one is needed.
     pub(super) fn draw(&self, format: Format, gpu: Option<&Gpu>) -> Result<Drawn, Failure> {
-        let picture = &self.pictures[0];
+        let picture = self.picture;
         check_type(self.print, picture, self.source)?;
         match format {
             Format::Png => {
-                let pixels = draw_pictures(gpu.expect("a device for pixels"), self.pictures)?;
+                let pixels = draw_picture(gpu.expect("a device for pixels"), picture)?;
                 let dpi = self.print.map(|print| print.dpi);
                 Ok(Drawn::Pixels { size: picture.size, pixels, tags: self.tags.to_vec(), dpi })
             }
             Format::Vector(format) => {
-                let bodies = draw_bodies(gpu, self.pictures)?;
+                let bodies = draw_bodies(gpu, picture)?;
                 let page = Page {
                     picture,
                     bodies: bodies.as_deref(),
                     size_mm: self.print.map(|print| print.mm),
-                    is_transparent: self.pictures.len() > 1,
                     title: self.title,
                     maker: &format!("{}{}", film::MARK, env!("CARGO_PKG_VERSION")),
                     tags: self.tags,

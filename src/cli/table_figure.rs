@@ -14,7 +14,6 @@ pub(super) fn files(table: &Table1) -> Vec<Vec<u8>> {
         picture: &figure.compose(),
         bodies: None,
         size_mm: Some(RANGES_SIZE_MM),
-        is_transparent: false,
         title: &figure.title,
         maker: &maker,
         tags: &[("table", table.protocol.mark())],

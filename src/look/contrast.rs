@@ -3,7 +3,7 @@
 use super::file::{ShowFile, ViewFile};
 use super::palette::{Palette, Theme};
 use super::ramp::ramp;
-use super::typed::{BackgroundFile, ColoursFile};
+use super::typed::ColoursFile;
 use super::view::{FloorStyle, FontFiles, Style};
 use crate::colour::{Colour, LEAST_CONTRAST, LINE_CONTRAST, Vision, contrast, difference, readable, written};
 use crate::reading::report::{Report, Way};
@@ -14,20 +14,16 @@ const LEAST_DIFFERENCE: f64 = 20.0;
 
 /// The look with type of a scale, or `None` if there is a mistake in it.
 pub(crate) fn resolve(typed: &ViewFile, font: FontFiles, text_scale: f64, report: &mut Report<'_>) -> Option<Style> {
-    let background = match typed.background {
-        Some(BackgroundFile::Colour(colour)) => Some(colour.0),
-        Some(BackgroundFile::Transparent) | None => None,
-    };
+    let background = typed.background.map(|colour| colour.0);
     let theme = Palette::theme_on(background, typed.theme);
     let palette = Palette::with(theme, background, &typed.colours);
     let known = report.total();
-    let transparent = typed.background == Some(BackgroundFile::Transparent);
     // Where no floor is drawn there are no words on it.
-    let floor = typed.colours.floor.filter(|_| !transparent && typed.floor != FloorStyle::None);
+    let floor = typed.colours.floor.filter(|_| typed.floor != FloorStyle::None);
     check_text(&typed.colours, floor.map(|floor| floor.0), &palette, report);
     check_alarm(&typed.colours, &palette, report);
     check_field(typed, theme, &palette, report);
-    (report.total() == known).then_some(Style { theme, palette, transparent, font, text_scale })
+    (report.total() == known).then_some(Style { theme, palette, font, text_scale })
 }
 
 fn way(role: &str) -> [Way<'_>; 3] {

@@ -2,7 +2,7 @@
 
 use super::palette::Theme;
 use super::print::{SizeFile, TextScaleFile};
-use super::typed::{BackgroundFile, ColoursFile, FontFile};
+use super::typed::{ColoursFile, FontFile, TypedColour};
 use super::view::{ColourMap, FloorStyle, Light};
 use crate::reading::coordinates::Coordinates;
 use crate::sim::field::Field;
@@ -19,10 +19,8 @@ pub(crate) struct ViewFile {
     pub(crate) size: SizeFile,
     /// The colours.
     pub(crate) theme: Theme,
-    /// The background: a colour, or `"transparent"`. If the theme's text cannot be read on the colour, the other theme is
-    /// used. Transparent pictures are PNG files with an alpha channel; they take twice the time to draw, and of the floor they
-    /// show only grid and shadows. Default: the theme's.
-    pub(crate) background: Option<BackgroundFile>,
+    /// The background. If the theme's text cannot be read on it, the other theme is used. Default: the theme's.
+    pub(crate) background: Option<TypedColour>,
     /// Colours that replace those of the theme, and shades derived from them, such as `{ body = "steelblue" }`. Default: the
     /// theme's.
     pub(crate) colours: ColoursFile,

@@ -20,8 +20,6 @@ pub enum Theme {
 pub(crate) struct Palette {
     /// Behind everything.
     pub background: Colour,
-    /// Around arrows and marks, so that they stand out from whatever they lie on.
-    pub halo: Colour,
     /// The floor.
     pub floor: Colour,
     /// The lines on the floor.
@@ -120,25 +118,19 @@ impl Palette {
         Self { sound, sound_flat, node, alarm, alarm_line, edge, outline, spring, spring_on_body, ..*self }
     }
 
-    /// Whether it is made for light ground, such as paper. That does not change with [`Self::on_ground`].
+    /// Whether it is made for light ground, such as paper.
     pub(crate) fn is_made_for_light(&self) -> bool {
-        contrast(self.halo, [0; 3]) >= contrast(self.halo, [255; 3])
+        contrast(self.background, [0; 3]) >= contrast(self.background, [255; 3])
     }
 
     /// A colour in which words can be read on the background: the nearest to a given one.
     pub(crate) fn text_like(&self, colour: Colour) -> Colour {
-        readable(colour, self.halo, LEAST_CONTRAST)
-    }
-
-    /// The same on another ground, into which the floor goes over without a border and what is far fades.
-    pub(crate) fn on_ground(&self, ground: Colour) -> Self {
-        Self { background: ground, floor: ground, ..*self }
+        readable(colour, self.background, LEAST_CONTRAST)
     }
 }
 
 const LIGHT: Palette = Palette {
     background: [0xfb, 0xfb, 0xfa],
-    halo: [0xfb, 0xfb, 0xfa],
     floor: [0xf3, 0xf4, 0xf5],
     grid: [0xc9, 0xce, 0xd6],
     shadow: [0x2d, 0x36, 0x45],
@@ -182,7 +174,6 @@ const LIGHT: Palette = Palette {
 
 const DARK: Palette = Palette {
     background: [0x12, 0x16, 0x1c],
-    halo: [0x12, 0x16, 0x1c],
     floor: [0x1a, 0x20, 0x28],
     grid: [0x3b, 0x45, 0x52],
     shadow: [0x00, 0x00, 0x00],

@@ -35,8 +35,7 @@ impl Palette {
         let (colours, dashes) = (self.runs.len(), DASHES.len());
         let colour = chosen.unwrap_or(self.runs[place % colours]);
         LineStyle {
-            // The halo's colour is that of the background, whatever ground a picture is laid on.
-            colour: readable(colour, self.halo, LINE_CONTRAST),
+            colour: readable(colour, self.background, LINE_CONTRAST),
             dash: DASHES[(place + place / colours) % dashes],
         }
     }
@@ -45,7 +44,7 @@ impl Palette {
     /// colours that look like a chosen one, as far as there are any left.
     pub(crate) fn places(&self, chosen: &[Option<Colour>]) -> Vec<usize> {
         let (colours, dashes) = (self.runs.len(), DASHES.len());
-        let seen = |colour| readable(colour, self.halo, LINE_CONTRAST);
+        let seen = |colour| readable(colour, self.background, LINE_CONTRAST);
         let is_like = |own: Colour, other: &Colour| least_difference(seen(own), seen(*other)) < RUNS_APART;
         let is_free = self.runs.map(|own| !chosen.iter().flatten().any(|other| is_like(own, other)));
         let keeps = |at: usize| chosen[at].is_some() || is_free[at % colours];

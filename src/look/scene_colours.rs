@@ -26,7 +26,7 @@ impl Palette {
         let theme = Self::of(theme);
         let mut own = theme;
         if let Some(ground) = background {
-            (own.background, own.halo) = (ground, ground);
+            own.background = ground;
             own.floor = like(ground, theme.background, theme.floor);
             own.grid = like(ground, theme.background, theme.grid);
             if contrast(own.text, ground) < LEAST_CONTRAST {

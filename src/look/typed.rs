@@ -28,8 +28,7 @@ impl TypedColour {
             UnknownColour::WithoutHash => (EXPECTED.to_owned(), Some(digits(text))),
             UnknownColour::Digits => ("; expected three or six digits, such as \"#93a5ba\"".to_owned(), None),
             UnknownColour::Transparent => {
-                let message = ", which something shows through; expected an opaque colour".to_owned();
-                (message, Some("only `view.background` can be \"transparent\", and then all of it".to_owned()))
+                (", which something shows through; expected an opaque colour".to_owned(), None)
             }
         })
     }
@@ -53,53 +52,6 @@ impl TryFrom<String> for TypedColour {
 impl From<TypedColour> for String {
     fn from(colour: TypedColour) -> Self {
         written(colour.0)
-    }
-}
-
-/// What is behind everything.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(try_from = "String", into = "String")]
-#[schemars(extend("format" = "colour-or-transparent"))]
-pub(crate) enum BackgroundFile {
-    /// Nothing: whatever the picture is laid on.
-    Transparent,
-    /// A colour.
-    Colour(TypedColour),
-}
-
-/// The word for no background.
-const TRANSPARENT: &str = "transparent";
-
-impl BackgroundFile {
-    /// As for a colour.
-    pub(crate) fn mistake(text: &str) -> Option<(String, Option<String>)> {
-        if text == TRANSPARENT {
-            return None;
-        }
-        if let Err(UnknownColour::Transparent) = parse(text) {
-            let message =
-                ", which is neither opaque nor nothing; expected \"transparent\" or an opaque colour".to_owned();
-            return Some((message, None));
-        }
-        let (message, help) = TypedColour::mistake(text)?;
-        let near = nearest(text, &[TRANSPARENT]).map(|word| format!("did you mean {}?", quoted(word)));
-        Some((format!("{message}, or \"{TRANSPARENT}\""), near.or(help)))
-    }
-}
-
-impl TryFrom<String> for BackgroundFile {
-    type Error = String;
-    fn try_from(text: String) -> Result<Self, String> {
-        if text == TRANSPARENT { Ok(Self::Transparent) } else { text.parse().map(Self::Colour) }
-    }
-}
-
-impl From<BackgroundFile> for String {
-    fn from(background: BackgroundFile) -> Self {
-        match background {
-            BackgroundFile::Transparent => TRANSPARENT.to_owned(),
-            BackgroundFile::Colour(colour) => colour.into(),
-        }
     }
 }
 
@@ -134,7 +86,7 @@ pub(crate) struct ColoursFile {
     /// Names and numbers. Smaller text, ticks, the line of the floor in the plane and lines between panels follow, with
     /// shades between it and the background. Its contrast with the background must be at least 4.5.
     pub(crate) text: Option<TypedColour>,
-    /// The floor in space. Its contrast with text must be at least 4.5. It is not drawn on a transparent background.
+    /// The floor in space. Its contrast with text must be at least 4.5.
     pub(crate) floor: Option<TypedColour>,
     /// The lines on floors and walls in space.
     pub(crate) grid: Option<TypedColour>,
@@ -170,9 +122,6 @@ mod tests {
         assert!(told("93a5ba").unwrap().contains("write \\\"#93a5ba\\\""));
         assert!(told("#93a5b").unwrap().contains("three or six digits"));
         assert!(told("transparent").unwrap().contains("an opaque colour"));
-        assert_eq!(BackgroundFile::mistake("transparent"), None);
-        assert!(BackgroundFile::mistake("transparant").unwrap().1.unwrap().contains("\"transparent\"?"));
-        assert!(BackgroundFile::mistake("#ffffff80").unwrap().0.contains("neither opaque nor nothing"));
     }
 
     #[test]

@@ -234,8 +234,6 @@ pub struct Style {
     pub theme: Theme,
     /// All colours.
     pub(crate) palette: Palette,
-    /// Whether the background is left out, so that whatever a picture is laid on shows.
-    pub transparent: bool,
     /// The font.
     pub font: FontFiles,
     /// How many times larger than usual type is.
@@ -245,7 +243,7 @@ pub struct Style {
 impl Style {
     /// What pictures of a theme look like where a scene says nothing else.
     pub fn of(theme: Theme) -> Self {
-        Self { theme, palette: Palette::of(theme), transparent: false, font: FontFiles::default(), text_scale: 1.0 }
+        Self { theme, palette: Palette::of(theme), font: FontFiles::default(), text_scale: 1.0 }
     }
 }
 

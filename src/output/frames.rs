@@ -13,7 +13,7 @@ pub(crate) struct PixelFrame {
     pub size: [u32; 2],
     /// Pixels of an inch, if it is for print.
     pub dpi: Option<f64>,
-    /// Red, green and blue of each pixel, or these and opacity, in rows from the top left, sRGB; see [`encode`].
+    /// Red, green and blue of each pixel, in rows from the top left, sRGB; see [`encode`].
     pub pixels: Arc<Vec<u8>>,
     /// The number of the frame.
     pub frame: u64,

@@ -126,10 +126,9 @@ impl Tags {
 /// picture.
 const MOST_STATES: usize = 4096;
 
-/// Encodes a picture of 8-bit red, green and blue, with or without alpha, as a PNG file in sRGB, with texts such as
-/// those of [`Tags::texts`].
+/// Encodes a picture of 8-bit red, green and blue as a PNG file in sRGB, with texts such as those of [`Tags::texts`].
 ///
-/// `pixels` has three bytes for each pixel, or four, in rows from the top left. Alpha is not premultiplied.
+/// `pixels` has three bytes for each pixel, in rows from the top left.
 ///
 /// # Panics
 /// If the length of `pixels` does not match `size`, the width and height (px), or the size is zero.
@@ -170,15 +169,11 @@ fn file(
     write: impl FnOnce(&mut png::Writer<&mut Vec<u8>>) -> Result<(), png::EncodingError>,
 ) -> Vec<u8> {
     let [width, height] = size;
-    let all = u64::from(width) * u64::from(height);
-    let colour = match length as u64 {
-        length if length == 3 * all => png::ColorType::Rgb,
-        length if length == 4 * all => png::ColorType::Rgba,
-        length => panic!("{length} bytes for {all} pixels; expected three for each, or four"),
-    };
+    let expected = 3 * u64::from(width) * u64::from(height);
+    assert_eq!(length as u64, expected, "three bytes for each pixel");
     let mut bytes = Vec::with_capacity(length / 8);
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(colour);
+    encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(compression);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
@@ -321,10 +316,8 @@ mod tests {
         let path = folder.path().join("frame.png");
         let scenes = vec!["01".to_owned(), "23".to_owned()];
         let figure = Tags { shows: Shown::Figure("fig1".to_owned()), scenes, ..tags() };
-        for (channels, kind, tags) in
-            [(3, png::ColorType::Rgb, tags()), (4, png::ColorType::Rgba, tags()), (3, png::ColorType::Rgb, figure)]
-        {
-            let pixels: Vec<u8> = (0..5 * 3 * channels).map(|byte| byte * 4).collect();
+        for tags in [tags(), figure] {
+            let pixels: Vec<u8> = (0..5 * 3 * 3).map(|byte| byte * 4).collect();
             let bytes = made([5, 3], &pixels, &tags);
             assert_eq!(bytes, made([5, 3], &pixels, &tags), "equal input, equal bytes");
             std::fs::write(&path, &bytes).unwrap();
@@ -332,7 +325,7 @@ mod tests {
 
             let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
             let found = (reader.info().color_type, reader.info().srgb);
-            assert_eq!(found, (kind, Some(png::SrgbRenderingIntent::Perceptual)));
+            assert_eq!(found, (png::ColorType::Rgb, Some(png::SrgbRenderingIntent::Perceptual)));
             let mut back = vec![0; reader.output_buffer_size().unwrap()];
             reader.next_frame(&mut back).unwrap();
             assert_eq!(back, pixels);

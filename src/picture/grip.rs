@@ -84,6 +84,6 @@ impl Hands<'_> {
         }
         let shape = if ringed { MarkShape::Hand } else { MarkShape::Pin };
         let whole = Mark::around(pixel.into(), radius, shape, self.palette.pointer);
-        marks.extend(Mark { second: self.palette.halo, ..whole }.faded(opacity));
+        marks.extend(Mark { second: self.palette.background, ..whole }.faded(opacity));
     }
 }

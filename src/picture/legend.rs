@@ -150,7 +150,7 @@ impl Legend {
     fn arrow(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], metres: &str, [length, size]: [f64; 2]) -> f64 {
         let (unit, palette) = (self.unit, writer.palette);
         let ends = [left, left + length].map(|x| DVec2::new(x, middle));
-        writer.marks.push(arrows::arrow(ends, size, palette.text, palette.halo));
+        writer.marks.push(arrows::arrow(ends, size, palette.text, palette.background));
         // The text does not move with the camera.
         let left = left + length.max(ARROW * unit) + 12.0 * unit;
         self.write(

@@ -277,7 +277,7 @@ impl Flat<'_> {
                 let colour = self.palette.alarm_text;
                 let leader = Mark::line([middle, end], LEADER * unit, colour);
                 let dot = Mark {
-                    second: self.palette.halo,
+                    second: self.palette.background,
                     ..Mark::around(middle, LEADER_DOT * unit, MarkShape::Node, colour)
                 };
                 marks.extend([leader, dot].into_iter().filter_map(|mark| mark.faded(grown)));

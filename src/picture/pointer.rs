@@ -65,7 +65,9 @@ impl Pointers<'_> {
         let ends = if arriving { [ends[1], ends[0]] } else { ends };
         let grown = (length / (SHORTEST * unit) - 1.0) / FADING;
         let beside = self.beside_overview(ends);
-        marks.extend(arrow(ends, unit, self.palette.pointer, self.palette.halo).faded(grown.min(inside).min(beside)));
+        marks.extend(
+            arrow(ends, unit, self.palette.pointer, self.palette.background).faded(grown.min(inside).min(beside)),
+        );
     }
 
     /// How opaque an arrow between two pixels may be beside the overview.

@@ -11,13 +11,11 @@
 //!
 //! Every pixel has one sample: all borders are found from the geometry, which costs nothing where there are none.
 //!
-//! A picture without a background is drawn twice, and `alpha` finds its opacities.
 //!
 //! With a scalar field, `tint` takes the place of `surface`.
 //!
 //! Each has one file here and one of the same name in `shaders/`.
 
-mod alpha;
 mod border;
 mod composite;
 mod curve;
@@ -40,7 +38,7 @@ mod visibility;
 
 use crate::gpu::{Gpu, GpuError, Pending, ReadBack};
 use crate::picture::Picture;
-use image::{RgbImage, RgbaImage};
+use image::RgbImage;
 use obstacle::{Slabs, Solids};
 use panel::Panels;
 use pass::Pass;
@@ -160,25 +158,6 @@ impl Renderer {
         let [width, height] = self.size;
         // The read-back gives exactly three bytes for each pixel.
         Ok(RgbImage::from_raw(width, height, pixels).expect("three bytes a pixel"))
-    }
-
-    /// Draws a picture without a background: each pixel gets its opacity, 0 where nothing is and 255 where nothing of the
-    /// ground is seen. Takes the picture composed on white and on black ground, see
-    /// [`Composer::on_ground`](crate::picture::Composer::on_ground), and draws it twice.
-    ///
-    /// Laid on white, a picture of the light theme looks as it does on white ground, and one of the dark theme laid on
-    /// black as on black, to within rounding. The other way round, so do words, marks and all that is grey; borders of
-    /// coloured things, which blend light where pages blend bytes, are a little off.
-    ///
-    /// # Errors
-    /// As [`Self::draw`].
-    pub fn draw_transparent(&mut self, on_white: &Picture, on_black: &Picture) -> Result<RgbaImage, RenderError> {
-        let white = self.draw(on_white)?;
-        let black = self.draw(on_black)?;
-        let made_for_light = on_white.palette.is_made_for_light();
-        let with_solids = on_white.panels.iter().filter(|panel| !panel.obstacles.solids.is_empty());
-        let solid: Vec<_> = with_solids.map(|panel| panel.region).collect();
-        Ok(alpha::recover(&white, &black, made_for_light, &solid))
     }
 
     /// Waits for a picture that was submitted, and returns its pixels: three bytes each, in rows from the top left.

@@ -97,8 +97,9 @@ impl Overlay {
         for run in &picture.words {
             if run.has_halo {
                 let offsets = HALO.iter().flat_map(|&(radius, count)| ring(radius * run.size, count));
-                offsets
-                    .for_each(|offset| self.write_run(&picture.fonts, run, picture.palette.halo, offset, &mut marks));
+                offsets.for_each(|offset| {
+                    self.write_run(&picture.fonts, run, picture.palette.background, offset, &mut marks)
+                });
             }
             self.write_run(&picture.fonts, run, run.colour, [0.0; 2], &mut marks);
         }

@@ -16,8 +16,13 @@ const fn key(key: &'static str, instead: &'static str) -> Gone {
     Gone { key, value: None, instead }
 }
 
+const fn value(key: &'static str, value: &'static str, instead: &'static str) -> Gone {
+    Gone { key, value: Some(value), instead }
+}
+
 #[rustfmt::skip]
 const GONE: &[Gone] = &[
+    value("view.background", "transparent", "write a colour"),
     key("view.difference", "remove it; `ghost = \"RUN\"` outlines another run over each body"),
     key("view.difference_of", "remove it"),
     key("view.explode", "remove it"),

@@ -162,7 +162,6 @@ fn kind(schema: &Value) -> String {
         (Some("integer"), _) => numbers("whole number"),
         (Some("boolean"), _) => "`true` or `false`".into(),
         (Some("string"), Some("colour")) => "colour".into(),
-        (Some("string"), Some("colour-or-transparent")) => "colour or `\"transparent\"`".into(),
         (Some("string"), Some("fraction-of-T")) => "fraction of T or `\"auto\"`".into(),
         (Some("string"), _) => "string".into(),
         (Some("array"), _) if is_vector(schema) => "vector".into(),

@@ -42,13 +42,11 @@ impl Format {
 pub(crate) struct Page<'a> {
     /// What it shows.
     pub(crate) picture: &'a Picture,
-    /// The pixels of the picture's lit panels, as [`bodies`] asks for them: red, green and blue of each, or these and opacity, in
-    /// rows from the top left; `None` if it has none.
+    /// The pixels of the picture's lit panels, as [`bodies`] asks for them: red, green and blue of each, in rows
+    /// from the top left; `None` if it has none.
     pub(crate) bodies: Option<&'a [u8]>,
     /// Width and height (mm); if not given, pixels are those of the web, 96 to an inch.
     pub(crate) size_mm: Option<[f64; 2]>,
-    /// Whether nothing is behind it.
-    pub(crate) is_transparent: bool,
     /// Its title; empty for none.
     pub(crate) title: &'a str,
     /// The program that makes it, with its version.
@@ -94,10 +92,8 @@ pub(crate) fn write(page: &Page<'_>, format: Format) -> Result<Vec<u8>, VectorEr
 fn items<'a>(page: &Page<'a>) -> Vec<Item<'a>> {
     let picture = page.picture;
     let mut items = Vec::new();
-    if !page.is_transparent {
-        let path = Path::rectangle(Vec2::ZERO, picture.size.map(|length| length as f32).into());
-        items.push(Item::Fill { path, paint: picture.palette.background.into() });
-    }
+    let whole = Path::rectangle(Vec2::ZERO, picture.size.map(|length| length as f32).into());
+    items.push(Item::Fill { path: whole, paint: picture.palette.background.into() });
     let add = |marks: &[crate::picture::Mark], items: &mut Vec<_>| {
         marks.iter().enumerate().for_each(|(at, mark)| marks::mark(mark, marks.get(at + 1), items));
     };
@@ -114,7 +110,7 @@ fn items<'a>(page: &Page<'a>) -> Vec<Item<'a>> {
     for run in &picture.words {
         if run.has_halo {
             let pen = Pen::solid(2.0 * HALO * run.size);
-            items.push(Item::Stroke { path: outlines(picture, run), pen, paint: picture.palette.halo.into() });
+            items.push(Item::Stroke { path: outlines(picture, run), pen, paint: picture.palette.background.into() });
         }
         items.push(Item::Text(run));
     }
@@ -123,24 +119,20 @@ fn items<'a>(page: &Page<'a>) -> Vec<Item<'a>> {
 
 /// The part of a lit panel in which there is anything.
 fn image(picture: &Picture, panel: &Panel, pixels: &[u8]) -> Option<Image> {
-    let [width, height] = picture.size.map(|length| length as usize);
-    let channels = pixels.len() / (width * height);
+    let width = picture.size[0] as usize;
     let [left, top, wide, high] = panel.viewport.map(|length| length as usize);
-    let row = |y: usize| &pixels[channels * (y * width + left)..][..channels * wide];
-    let is_empty = |pixel: &[u8]| match channels {
-        4 => pixel[3] == 0,
-        _ => pixel == picture.palette.background,
-    };
+    let row = |y: usize| &pixels[3 * (y * width + left)..][..3 * wide];
+    let is_empty = |pixel: &[u8]| pixel == picture.palette.background;
     let (mut low, mut far) = ([wide, high], [0, 0]);
     for y in 0..high {
-        for (x, _) in row(top + y).chunks_exact(channels).enumerate().filter(|(_, pixel)| !is_empty(pixel)) {
+        for (x, _) in row(top + y).chunks_exact(3).enumerate().filter(|(_, pixel)| !is_empty(pixel)) {
             (low, far) = ([low[0].min(x), low[1].min(y)], [far[0].max(x + 1), far[1].max(y + 1)]);
         }
     }
     if low[0] >= far[0] {
         return None;
     }
-    let rows = (low[1]..far[1]).flat_map(|y| &row(top + y)[channels * low[0]..channels * far[0]]);
+    let rows = (low[1]..far[1]).flat_map(|y| &row(top + y)[3 * low[0]..3 * far[0]]);
     let pixels = rows.copied().collect();
     let size = [far[0] - low[0], far[1] - low[1]];
     let corner = Vec2::new((left + low[0]) as f32, (top + low[1]) as f32);

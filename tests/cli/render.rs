@@ -38,26 +38,6 @@ fn pixels(path: &Path) -> ([u32; 2], Vec<u8>) {
     ([info.width, info.height], bytes)
 }
 
-/// Frames without a background have alpha; everything else is as usual.
-#[test]
-fn a_scene_without_a_background_makes_frames_with_opacities() {
-    let Some(place) = place_to_draw() else { return };
-    place.write("clear.toml", &format!("{SMALL}background = \"transparent\"\n"));
-    place.run("render clear.toml --frames 0-2").good();
-    let path = place.path("output/clear/frame_00002.png");
-    let file = std::io::BufReader::new(std::fs::File::open(&path).expect("a frame"));
-    let mut reader = png::Decoder::new(file).read_info().expect("a picture");
-    let mut bytes = vec![0; reader.output_buffer_size().expect("a small picture")];
-    let info = reader.next_frame(&mut bytes).expect("a whole picture");
-    assert_eq!((info.color_type, info.width, info.height), (png::ColorType::Rgba, 96, 64));
-    assert_eq!(bytes[..4], [0; 4], "nothing in the corner");
-    assert!(bytes.chunks_exact(4).any(|pixel| pixel[3] == 255), "and bodies");
-    assert_eq!(tags(&path).frame(), Some(2));
-    let first = std::fs::read(&path).expect("a frame");
-    place.run("render clear.toml --frames 2").good();
-    assert_eq!(std::fs::read(&path).expect("a frame"), first, "the same bytes again");
-}
-
 #[test]
 fn one_frame_can_be_a_file_of_vectors() {
     if !can_draw() {

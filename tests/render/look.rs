@@ -1,108 +1,13 @@
-//! Pictures without a background, and with their own fonts, colours and sizes.
+//! Pictures with their own fonts, colours and sizes.
 
-use super::{fig4b, frame, gpu, parse, renderer};
+use super::{fig4b, gpu, parse, renderer};
 use glam::DVec3;
-use image::{Rgb, RgbImage, RgbaImage};
-use localshape::gpu::Gpu;
-use localshape::look::{FontFiles, Style, Theme};
-use localshape::picture::{Composer, Line, LineKind, Mesh, Obstacles, Picture, Weight, compose};
+use image::RgbImage;
+use localshape::look::FontFiles;
+use localshape::picture::{Line, LineKind, Mesh, Obstacles, Picture, Weight, compose};
 use localshape::runner::Runner;
-use localshape::scene::Scene;
-use localshape::sim::snapshot::Frame;
 
 const SIZE: [u32; 2] = [640, 360];
-
-/// A difference that is clearly visible.
-const PLAIN: u8 = 12;
-
-/// A picture on white, on black and without a background.
-fn three(gpu: &Gpu, scene: &Scene, frame: &Frame) -> (RgbImage, RgbImage, RgbaImage) {
-    let mut renderer = renderer(gpu, scene.view.size);
-    let [white, black] = [[255; 3], [0; 3]].map(|ground| Composer::on_ground(scene, ground).compose(frame));
-    let transparent = renderer.draw_transparent(&white, &black).expect("the device works");
-    let mut draw = |picture: &Picture| renderer.draw(picture).expect("the device works");
-    (draw(&white), draw(&black), transparent)
-}
-
-/// A picture blended over a page.
-fn laid(picture: &RgbaImage, ground: u8) -> RgbImage {
-    RgbImage::from_fn(picture.width(), picture.height(), |x, y| {
-        let [r, g, b, alpha] = picture.get_pixel(x, y).0;
-        let share = f64::from(alpha) / 255.0;
-        Rgb([r, g, b].map(|byte| (f64::from(byte) * share + f64::from(ground) * (1.0 - share)).round() as u8))
-    })
-}
-
-/// The largest difference of two pictures, and the part of their pixels that differ by more than [`PLAIN`].
-fn apart(one: &RgbImage, other: &RgbImage) -> (u8, f64) {
-    let difference = |(a, b): (&Rgb<u8>, &Rgb<u8>)| (0..3).map(|at| a[at].abs_diff(b[at])).max().unwrap_or_default();
-    let all: Vec<u8> = one.pixels().zip(other.pixels()).map(difference).collect();
-    let more = all.iter().filter(|&&difference| difference > PLAIN).count();
-    (all.iter().copied().max().unwrap_or_default(), more as f64 / all.len() as f64)
-}
-
-/// Scenes with everything transparent: floors with shadows, glass, springs that fade, texts and marks.
-fn scenes() -> Vec<(String, Scene, Frame)> {
-    let texts = [
-        ("fig4b", include_str!("../../scenes/fig4b.toml"), 4),
-        ("fig4a", include_str!("../../scenes/fig4a.toml"), 40),
-        ("obstacles", include_str!("../../scenes/obstacles.toml"), 12),
-        ("stretch", include_str!("../../scenes/stretch.toml"), 20),
-    ];
-    let mut scenes = Vec::new();
-    for (name, text, index) in texts {
-        let mut scene = parse(text);
-        let frame = frame(&scene, index);
-        scene.view.size = SIZE;
-        scenes.push((name.to_owned(), scene, frame));
-    }
-    let (mut lines, frame) = fig4b(4);
-    (lines.view.size, lines.view.visible.surfaces) = (SIZE, false);
-    (lines.view.visible.springs, lines.view.visible.nodes) = (true, true);
-    scenes.push(("lines".to_owned(), lines, frame));
-    scenes
-}
-
-#[test]
-fn laid_on_a_page_a_picture_looks_as_drawn_on_it() {
-    let Some(gpu) = gpu("laid_on_a_page_a_picture_looks_as_drawn_on_it") else { return };
-    for (name, mut scene, frame) in scenes() {
-        for theme in [Theme::Light, Theme::Dark] {
-            scene.view.look = Style { transparent: true, ..Style::of(theme) };
-            let (white, black, transparent) = three(gpu, &scene, &frame);
-            let on_white = apart(&white, &laid(&transparent, 255));
-            let on_black = apart(&black, &laid(&transparent, 0));
-            let (own, other) = if theme == Theme::Light { (on_white, on_black) } else { (on_black, on_white) };
-            println!("{name} {theme:?}: {own:?} on its own ground, {other:?} on the other");
-            assert!(own.0 <= 1, "{name} {theme:?}: {own:?}");
-            // Borders of coloured things: one opacity is used for three, see `draw_transparent`.
-            assert!(other.0 <= 40 && other.1 < 0.01, "{name} {theme:?}: {other:?}");
-        }
-    }
-}
-
-#[test]
-fn nothing_is_nothing_bodies_are_opaque_and_shadows_are_between() {
-    let Some(gpu) = gpu("nothing_is_nothing_bodies_are_opaque_and_shadows_are_between") else { return };
-    for (name, mut scene, frame) in scenes() {
-        for theme in [Theme::Light, Theme::Dark] {
-            scene.view.look = Style { transparent: true, ..Style::of(theme) };
-            let (white, black, transparent) = three(gpu, &scene, &frame);
-            let mut counts = [0_usize; 3];
-            for ((pixel, white), black) in transparent.pixels().zip(white.pixels()).zip(black.pixels()) {
-                let alpha = pixel[3];
-                counts[usize::from(alpha > 0) + usize::from(alpha == 255)] += 1;
-                assert!(white != black || alpha == 255, "{name}: {white:?} is opaque, not {pixel:?}");
-                let nothing = white.0 == [255; 3] && black.0 == [0; 3];
-                assert!(!nothing || pixel.0 == [0; 4], "{name}: nothing is nothing, not {pixel:?}");
-            }
-            assert!(counts.iter().all(|&count| count > 500), "{name} {theme:?}: {counts:?}");
-            for (x, y) in [(0, 0), (SIZE[0] - 1, 0), (0, SIZE[1] - 1), (SIZE[0] - 1, SIZE[1] - 1)] {
-                assert_eq!(transparent.get_pixel(x, y).0, [0; 4], "{name} {theme:?}");
-            }
-        }
-    }
-}
 
 /// The built-in fonts.
 fn built_in() -> [&'static [u8]; 2] {
@@ -239,7 +144,8 @@ fn without_a_hatch_turned_over_elements_in_space_are_lit_whatever_colours_the_ot
     let mut renderer = renderer(gpu, [1280, 720]);
     let mut draw = |picture: &Picture| renderer.draw(picture).expect("the device works");
     let [plain, coloured] = ["", field].map(|colour| draw(&turned_over_alone(&picture(colour))));
-    assert!(apart(&plain, &coloured).0 <= 1, "{:?}", apart(&plain, &coloured));
+    let apart = plain.as_raw().iter().zip(coloured.as_raw()).map(|(one, other)| one.abs_diff(*other)).max();
+    assert!(apart <= Some(1), "{apart:?}");
     for opacity in [1.0, 0.4] {
         let mut picture = surfaces_alone(picture(field));
         let panel = &mut picture.panels[0];

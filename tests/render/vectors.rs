@@ -19,7 +19,7 @@ fn figure(name: &str, theme: Theme) -> Picture {
 
 fn page<'a>(picture: &'a Picture, bodies: Option<&'a [u8]>) -> Page<'a> {
     let tags = &[];
-    Page { picture, bodies, size_mm: Some([180.0, 90.0]), is_transparent: false, title: "A & B", maker: "a test", tags }
+    Page { picture, bodies, size_mm: Some([180.0, 90.0]), title: "A & B", maker: "a test", tags }
 }
 
 fn svg(picture: &Picture) -> String {

@@ -32,7 +32,6 @@ fn colours_are_taken_as_typed() {
     let Palette { sound, alarm, text, runs, .. } = look.palette;
     assert_eq!((sound, alarm, text), ([143, 188, 143], [0x88, 0x22, 0xff], [0x10, 0x20, 0x30]));
     assert_eq!(runs, [[9, 8, 7]; 8]);
-    assert!(!look.transparent);
 }
 
 /// Scenes of several runs, each with its lines.
@@ -156,8 +155,6 @@ fn a_background_takes_the_theme_whose_text_can_be_read_on_it() {
             assert!(contrast(text, background) >= 4.5, "{view}: {text:x?}");
         }
     }
-    let transparent = look("background = 'transparent'");
-    assert_eq!(transparent, Style { transparent: true, ..Style::of(Theme::Light) });
 }
 
 #[test]
@@ -193,7 +190,6 @@ fn the_digest_follows_what_colours_mean() {
     let mut all: Vec<_> = [
         "",
         "background = 'white'",
-        "background = 'transparent'",
         "colours.body = 'white'",
         "colours.node = 'white'",
         "text_scale = 1.1",
@@ -206,7 +202,7 @@ fn the_digest_follows_what_colours_mean() {
     .to_vec();
     all.sort();
     all.dedup();
-    assert_eq!(all.len(), 10);
+    assert_eq!(all.len(), 9);
 }
 
 #[track_caller]
@@ -216,12 +212,8 @@ fn view(to: &str, expected: &str) {
 
 #[test]
 fn mistakes_of_colours() {
-    view(
-        "background = 'transparant'",
-        "20:14 `view.background` is \"transparant\"; expected digits such as \"#93a5ba\" or a name of CSS",
-    );
-    view("background = 'transparant'", "20:14 or \"transparent\" did you mean \"transparent\"?");
-    view("background = '#ffffff00'", "20:14 neither opaque nor nothing; expected \"transparent\" or an opaque");
+    view("background = 'transparent'", "20:14 `view.background = \"transparent\"` is gone write a colour");
+    view("background = '#ffffff00'", "20:14 , which something shows through; expected an opaque colour");
     view("background = 7", "20:14 is the whole number 7; expected a string The background");
     view(
         "colours = { body = 'stelblue' }",
@@ -231,7 +223,7 @@ fn mistakes_of_colours() {
     view("colours = { body = '93a5ba' }", "20:20 write \"#93a5ba\"");
     view("colours = { body = '#93a5b' }", "20:20 expected three or six digits, such as \"#93a5ba\"");
     view("colours = { body = '#93a5ba80' }", "20:20 , which something shows through; expected an opaque colour");
-    view("colours = { grid = 'transparent' }", "20:20 only `view.background` can be \"transparent\"");
+    view("colours = { grid = 'transparent' }", "20:20 , which something shows through; expected an opaque colour");
     view("colours = { grid = '' }", "20:20 `view.colours.grid` is \"\"; expected digits");
     view("colours = { bodi = 'red' }", "20:13 unknown key `bodi` in `view.colours` did you mean `body`?");
     view("colours = { turnedover = 'red' }", "20:13 did you mean `turned_over`?");

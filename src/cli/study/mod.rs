@@ -203,10 +203,10 @@ impl StudyOptions {
 #[cfg(feature = "render")]
 fn drawn(plots: &dyn Page, mark: &str, gpu: &crate::gpu::Gpu) -> Result<[Vec<u8>; 2], Failure> {
     use super::still::{Format, Still};
-    let (pictures, print) = ([plots.compose()], plots.print());
+    let (picture, print) = (plots.compose(), plots.print());
     let comment = format!("{}{}", super::film::MARK, env!("CARGO_PKG_VERSION"));
     let tags = [("comment", comment), ("study", mark.to_owned())];
-    let still = Still { pictures: &pictures, print: Some(&print), source: mark, title: plots.title(), tags: &tags };
+    let still = Still { picture: &picture, print: Some(&print), source: mark, title: plots.title(), tags: &tags };
     let svg = still.draw(Format::Vector(crate::vector::Format::Svg), None)?.file();
     Ok([svg, still.draw(Format::Png, Some(gpu))?.file()])
 }

@@ -57,6 +57,6 @@ impl Draft<'_> {
             room,
             overview: self.overview,
         };
-        ghost.draw(self.scale, colour, self.composer.palette.halo, curves);
+        ghost.draw(self.scale, colour, self.composer.palette.background, curves);
     }
 }

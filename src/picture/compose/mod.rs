@@ -117,23 +117,12 @@ pub fn compose(scene: &Scene, frame: &Frame) -> Picture {
 }
 
 impl<'a> Composer<'a> {
-    /// Prepares to compose frames of a scene. A scene without a background gets that of its theme; see
-    /// [`Self::on_ground`].
+    /// Prepares to compose frames of a scene.
     ///
     /// A scene with a chart ([`crate::look::View::strip`]), paths or a camera that follows
     /// ([`crate::look::Camera::follow`]) needs [`Composer::set_history`], too; without it their places stay empty, and the
     /// camera's scale is that of the start.
     pub fn new(scene: &'a Scene) -> Self {
-        Self::with(scene, scene.view.look.palette)
-    }
-
-    /// The same on a plain background, into which the floor and what is far fade; everything else keeps its colours.
-    /// [`Renderer::draw_transparent`](crate::render::Renderer::draw_transparent) needs pictures on white and on black.
-    pub fn on_ground(scene: &'a Scene, ground: Colour) -> Self {
-        Self::with(scene, scene.view.look.palette.on_ground(ground))
-    }
-
-    fn with(scene: &'a Scene, palette: Palette) -> Self {
         let body = &*scene.body;
         let areas = match body.dimension {
             Dimension::Plane => body.elements.iter().map(|nodes| area(nodes, &body.rest)).collect(),
@@ -155,7 +144,7 @@ impl<'a> Composer<'a> {
             spring_ramp: scene.view.spring_strain.map_or_else(Vec::new, |scale| ramp(scale.map, scene.view.look.theme)),
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
-            palette,
+            palette: scene.view.look.palette,
             fonts: Fonts::new(&scene.view.look.font),
             tally,
             descriptions,

@@ -302,7 +302,7 @@ impl<'a> Draft<'a> {
                 // Among the colours of a field, an arrow of a run's colour would not stand out.
                 _ => self.composer.palette.text,
             },
-            halo: self.composer.palette.halo,
+            halo: self.composer.palette.background,
         };
         arrows.draw(&self.facing_bearers(), &self.body.rest, &self.position, &self.run.snapshot.placement, above);
     }

@@ -54,7 +54,7 @@ impl Draft<'_> {
         let own = series.iter().find(|series| series.run == self.run.run);
         let Some(own) = own.filter(|_| snapshot.position.len() == self.body.len()) else { return };
         let (colour, halo) =
-            (self.scene.runs[self.run.run].line(&self.composer.palette).colour, self.composer.palette.halo);
+            (self.scene.runs[self.run.run].line(&self.composer.palette).colour, self.composer.palette.background);
         for (traced, path) in self.scene.view.paths.iter().zip(&own.paths) {
             let width = if *traced == Traced::Centre { CENTRE } else { NODE };
             let past = own.times.iter().take_while(|&&time| time < snapshot.time).count();

@@ -202,5 +202,5 @@ fn look(first: &Scene, theme: Option<Theme>, text_scale: Option<f64>) -> Style {
         }
         _ => first.view.look.clone(),
     };
-    Style { transparent: false, text_scale: text_scale.unwrap_or(look.text_scale), ..look }
+    Style { text_scale: text_scale.unwrap_or(look.text_scale), ..look }
 }

@@ -9,7 +9,7 @@ mod keys;
 use super::gone::instead;
 use super::schema::{choices, variants};
 use super::step::NamedStep;
-use crate::look::typed::{BackgroundFile, TypedColour};
+use crate::look::typed::TypedColour;
 use crate::reading::report::{Report, Way, written};
 use crate::reading::words::{self, list, nearest, quoted};
 use expect::{expected, first_sentence, range};
@@ -158,11 +158,11 @@ impl<'p> Walk<'_, '_, 'p> {
     }
 
     fn string(&mut self, schema: &Json, text: &str, span: Range<usize>) -> Json {
-        if let Some(choices) = choices(schema) {
-            if let Some(instead) = instead(&self.path, Some(text)) {
-                let message = format!("`{} = {}` is gone", self.here(), quoted(text));
-                self.mistake(span, message, Some(instead.to_owned()));
-            } else if !choices.contains(&text) {
+        if let Some(instead) = instead(&self.path, Some(text)) {
+            let message = format!("`{} = {}` is gone", self.here(), quoted(text));
+            self.mistake(span, message, Some(instead.to_owned()));
+        } else if let Some(choices) = choices(schema) {
+            if !choices.contains(&text) {
                 let message =
                     format!("`{}` is {}; expected {}", self.here(), quoted(text), list(&choices, "or", quoted));
                 self.mistake(
@@ -341,11 +341,7 @@ fn unquoted(text: &str, is_whole: bool) -> Option<String> {
 
 /// The rest of the message and the help for a text that should be a colour, but is not.
 fn colour_mistake(schema: &Json, text: &str) -> Option<(String, Option<String>)> {
-    match schema.get("format").and_then(Json::as_str)? {
-        "colour" => TypedColour::mistake(text),
-        "colour-or-transparent" => BackgroundFile::mistake(text),
-        _ => None,
-    }
+    (schema["format"] == "colour").then(|| TypedColour::mistake(text)).flatten()
 }
 
 /// Whether a value is of the type that a schema without alternatives asks for.

@@ -193,7 +193,7 @@ impl<'a> Drawn<'a> {
                 above.extend(bare(arrows[at], scale.line(), own));
                 continue;
             }
-            let whole = arrow(arrows[at], scale.line(), own, palette.halo);
+            let whole = arrow(arrows[at], scale.line(), own, palette.background);
             above.extend(whole.faded(HIDDEN + (1.0 - HIDDEN) * seen[at]));
         }
         for (&at, &seen) in position.iter().zip(&seen) {
@@ -282,7 +282,7 @@ impl<'a> Drawn<'a> {
         };
         writer.curves.push(curve(now, &[]));
         writer.curves.push(curve(equilibrium, &DASH));
-        for (radius, colour) in [(CENTRE + 1.6, palette.halo), (CENTRE, palette.text)] {
+        for (radius, colour) in [(CENTRE + 1.6, palette.background), (CENTRE, palette.text)] {
             writer.curves.push(dot(centre.to_array(), radius * unit, colour));
         }
         labels.lines.extend([[centre, now], [centre, equilibrium]]);

@@ -60,7 +60,7 @@ impl Key<'_> {
         let side = scene.view.side * pixels;
         let share = round_below(1.3 * KEY_ARROW * unit / side);
         let ends = [DVec2::new(left, middle), DVec2::new(left + share * side, middle)];
-        marks.push(arrow(ends, scale.line(), palette.text, palette.halo));
+        marks.push(arrow(ends, scale.line(), palette.text, palette.background));
         let text = if forces.vectors {
             "from r_i to R_i: the force on the node over k".to_owned()
         } else {
