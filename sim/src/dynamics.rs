@@ -45,9 +45,9 @@ pub(super) trait Dynamics: Send + Sync {
 
 /// A node whose new velocity is NaN or above the limit. The step is not taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Runaway {
+pub struct Runaway {
     /// The first such node.
-    pub(super) node: usize,
+    pub node: usize,
 }
 
 /// The greatest speed of a node that counts as a result. Above it the run has diverged; it stops while its last state

@@ -48,7 +48,7 @@ impl Offset {
 
 /// The time interval of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Interval {
+pub struct Interval {
     /// Its start (s).
     pub begin: f64,
     /// Its end (s).

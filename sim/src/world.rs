@@ -6,7 +6,7 @@ use super::diagnose::Diagnose;
 use super::diagnostics::{Diagnostic, Facts};
 use super::dynamics::{Dynamics, SpeedLimit};
 use super::field::Field;
-use super::integrate::{ByForces, Integrator, Scales};
+use super::integrate::{ByForces, Integrator, Method, Scales};
 use super::kernel::{ByKernel, Scheme};
 use super::model::{ElasticModel, Known, Report};
 use super::part::{Forces, Part};
@@ -170,10 +170,17 @@ impl World {
         let system = System { parts, mass, gravity, contact: Box::new(obstacles), grips, step };
         let dynamics: Box<dyn Dynamics> = match (fast, bodies) {
             (Some((model, scheme)), [(body, _)]) => Box::new(ByKernel::new(body, model, scheme, gravity, step)),
-            _ => Box::new(ByForces::new(integrator, tolerance, scales, &state)),
+            _ => Box::new(ByForces::new(integrator.method(tolerance, scales), &state)),
         };
         let (limit, wanted) = (limit.unwrap_or_default(), Diagnostic::ALL.to_vec());
         Self { system, dynamics, crew: Crew::new(1), limit, sleep: None, field: None, wanted, state }
+    }
+
+    /// Takes steps by a method of another crate from now on, with forces of the reference code.
+    pub fn set_method(&mut self, method: Box<dyn Method>) {
+        self.settle();
+        self.state.memory.integrator.clear();
+        self.dynamics = Box::new(ByForces::new(method, &self.state));
     }
 
     /// Sets the threads for vectorised steps and for diagnostics, which use as many as the body is large enough for. They

@@ -11,7 +11,7 @@
 //!
 //! Kinematic constraints hold nodes where they are at the end of the step. Contact acts at its end.
 
-use super::{Interval, Runaway, Scales, State, System, Trial, check, evaluate, split};
+use super::{Evaluation, Method, Nodes, Runaway, Scales, State, Step};
 use glam::DVec3;
 
 /// The most Newton steps. Most steps need three or four, those of many cycles T more.
@@ -39,54 +39,52 @@ pub(super) struct BackwardEuler {
     linear: [Vec<DVec3>; 4],
     /// Velocities from which a Newton step starts (m/s).
     from: Vec<DVec3>,
+    /// The forces at the end of the step, and those next to it.
+    evaluations: [Evaluation; 2],
+    /// Positions (m) and velocities (m/s) next to those at the end of the step.
+    moved: [Vec<DVec3>; 2],
 }
 
 impl BackwardEuler {
     pub(super) fn new(scales: Scales) -> Self {
-        let (is_held, residual, linear, from) = Default::default();
-        Self { scales, is_held, residual, linear, from }
+        let (is_held, residual, linear, from, evaluations, moved) = Default::default();
+        Self { scales, is_held, residual, linear, from, evaluations, moved }
     }
+}
 
-    /// Computes a step; `limit` (m/s) is the greatest speed.
-    pub(super) fn step(
-        &mut self,
-        system: &System,
-        interval: Interval,
-        limit: f64,
-        state: &State,
-        trial: &mut Trial,
-    ) -> Result<(), Runaway> {
+impl Method for BackwardEuler {
+    fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway> {
         self.is_held.clear();
         self.is_held.resize(state.position.len(), false);
-        system.for_each_held(interval, &trial.next, |node| self.is_held[node] = true);
+        step.for_each_held(next, |node| self.is_held[node] = true);
         // A body at rest is the better start for steps in which it would turn or deform far.
-        trial.next.velocity.fill(DVec3::ZERO);
-        let still = self.residual(system, interval, state, trial);
-        trial.next.velocity.copy_from_slice(&state.velocity);
-        let mut size = self.residual(system, interval, state, trial);
+        next.velocity.fill(DVec3::ZERO);
+        let still = self.residual(step, state, next);
+        next.velocity.copy_from_slice(&state.velocity);
+        let mut size = self.residual(step, state, next);
         if still < size || size.is_nan() {
-            trial.next.velocity.fill(DVec3::ZERO);
-            size = self.residual(system, interval, state, trial);
+            next.velocity.fill(DVec3::ZERO);
+            size = self.residual(step, state, next);
         }
         let (mut least, mut idle) = (size, 0);
         for _ in 0..MOST_NEWTON {
             let largest = self.residual.iter().map(|residual| residual.length_squared()).fold(0.0, f64::max);
-            let is_solved = largest.sqrt() * interval.step <= RESIDUAL * self.scales.length;
+            let is_solved = largest.sqrt() * step.interval.step <= RESIDUAL * self.scales.length;
             // What is not a number is found by the check of the speeds.
             if is_solved || idle == MOST_IDLE || !size.is_finite() {
                 break;
             }
-            self.solve(system, interval, state, trial);
-            self.from.clone_from(&trial.next.velocity);
-            let first = dot(system, &self.residual, &self.linear[1]);
+            self.solve(step, state, next);
+            self.from.clone_from(&next.velocity);
+            let first = dot(step, &self.residual, &self.linear[1]);
             let mut share = 1.0;
             for cut in 0..=MOST_CUTS {
                 let starts = self.from.iter().zip(&self.linear[1]);
-                for (velocity, (&from, &change)) in trial.next.velocity.iter_mut().zip(starts) {
+                for (velocity, (&from, &change)) in next.velocity.iter_mut().zip(starts) {
                     *velocity = from + change * share;
                 }
-                size = self.residual(system, interval, state, trial);
-                let slope = dot(system, &self.residual, &self.linear[1]);
+                size = self.residual(step, state, next);
+                let slope = dot(step, &self.residual, &self.linear[1]);
                 if slope >= -0.5 * first || cut == MOST_CUTS {
                     break;
                 }
@@ -96,59 +94,60 @@ impl BackwardEuler {
             idle = if size < 0.25 * least { 0 } else { idle + 1 };
             least = least.min(size);
         }
-        let Trial { next, evaluations: [evaluation, _], .. } = trial;
-        next.memory.model.copy_from_slice(split(evaluation, system).1);
+        next.memory.model.copy_from_slice(&self.evaluations[0].memory);
         next.memory.integrator.clear();
-        check(&next.velocity, limit)?;
-        system.constrain(interval, state, next, None);
+        step.check(next)?;
+        step.constrain(state, next, None);
         Ok(())
     }
+}
 
+impl BackwardEuler {
     /// Evaluates the forces at the end of a step with the velocities in `trial`, and the residual (m/s). Returns the sum of
     /// its squares, weighted with the masses.
-    fn residual(&mut self, system: &System, interval: Interval, state: &State, trial: &mut Trial) -> f64 {
-        let Trial { next, evaluations: [evaluation, _], scratch, .. } = trial;
+    fn residual(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> f64 {
         for ((position, &from), &velocity) in next.position.iter_mut().zip(&state.position).zip(&next.velocity) {
-            *position = from + velocity * interval.step;
+            *position = from + velocity * step.interval.step;
         }
-        system.place_held(interval, 1.0, next);
-        evaluate(system, next.nodes(), &state.memory.model, evaluation, scratch);
-        let (acceleration, _) = split(evaluation, system);
+        step.place_held(1.0, next);
+        step.evaluate(next.nodes(), &state.memory.model, &mut self.evaluations[0]);
+        let acceleration = &self.evaluations[0].acceleration;
         self.residual.clear();
         self.residual.extend((0..acceleration.len()).map(|node| {
-            let residual = state.velocity[node] + acceleration[node] * interval.step - next.velocity[node];
+            let residual = state.velocity[node] + acceleration[node] * step.interval.step - next.velocity[node];
             if self.is_held[node] { DVec3::ZERO } else { residual }
         }));
-        dot(system, &self.residual, &self.residual)
+        dot(step, &self.residual, &self.residual)
     }
 
     /// Solves `(1 − ∂A/∂V' ΔT) x = residual` by conjugate gradients with the masses as weights, in which the matrix is
     /// symmetric. The solution is in `self.linear[1]`.
-    fn solve(&mut self, system: &System, interval: Interval, state: &State, trial: &mut Trial) {
+    fn solve(&mut self, step: &Step<'_>, state: &State, next: &State) {
         let Self { scales, is_held, residual, linear: [rest, solution, direction, product], .. } = self;
-        let Trial { next, evaluations: [here, there], before_contact: moved, scratch } = trial;
+        let ([here, there], [position, velocity]) = (&mut self.evaluations, &mut self.moved);
+        let time = step.interval.step;
         let nodes = residual.len();
         rest.clone_from(residual);
         direction.clone_from(residual);
         solution.clear();
         solution.resize(nodes, DVec3::ZERO);
-        let first = dot(system, rest, rest);
+        let first = dot(step, rest, rest);
         let mut size = first;
         for iteration in 0..MOST_LINEAR {
             let largest = direction.iter().map(|vector| vector.length_squared()).fold(0.0, f64::max).sqrt();
-            let small = DIFFERENCE * scales.length / (largest * interval.step);
-            moved.clear();
-            moved.extend((0..nodes).map(|node| next.position[node] + direction[node] * (small * interval.step)));
-            moved.extend((0..nodes).map(|node| next.velocity[node] + direction[node] * small));
-            let (position, velocity) = moved.split_at(nodes);
-            evaluate(system, super::Nodes { position, velocity }, &state.memory.model, there, scratch);
-            let (here, there) = (split(here, system).0, split(there, system).0);
+            let small = DIFFERENCE * scales.length / (largest * time);
+            position.clear();
+            position.extend((0..nodes).map(|node| next.position[node] + direction[node] * (small * time)));
+            velocity.clear();
+            velocity.extend((0..nodes).map(|node| next.velocity[node] + direction[node] * small));
+            step.evaluate(Nodes { position, velocity }, &state.memory.model, there);
+            let (here, there) = (&here.acceleration, &there.acceleration);
             product.clear();
             product.extend((0..nodes).map(|node| {
-                let change = (there[node] - here[node]) * (interval.step / small);
+                let change = (there[node] - here[node]) * (time / small);
                 if is_held[node] { DVec3::ZERO } else { direction[node] - change }
             }));
-            let curvature = dot(system, direction, product);
+            let curvature = dot(step, direction, product);
             let is_convex = curvature > 0.0;
             if !is_convex {
                 if iteration == 0 {
@@ -161,7 +160,7 @@ impl BackwardEuler {
                 solution[node] += direction[node] * length;
                 rest[node] -= product[node] * length;
             }
-            let last = std::mem::replace(&mut size, dot(system, rest, rest));
+            let last = std::mem::replace(&mut size, dot(step, rest, rest));
             if size <= LINEAR * LINEAR * first {
                 return;
             }
@@ -173,6 +172,6 @@ impl BackwardEuler {
 }
 
 /// The sum of `m a·b` over all nodes, in their order.
-fn dot(system: &System, one: &[DVec3], other: &[DVec3]) -> f64 {
-    system.mass.iter().zip(one).zip(other).map(|((mass, one), &other)| mass * one.dot(other)).sum()
+fn dot(step: &Step<'_>, one: &[DVec3], other: &[DVec3]) -> f64 {
+    step.masses().iter().zip(one).zip(other).map(|((mass, one), &other)| mass * one.dot(other)).sum()
 }

@@ -4,33 +4,32 @@
 //! Kinematic constraints place their nodes after every drift. Contact acts at the end of the step: in a step in which a
 //! node rebounds, every method is of first order.
 
-use super::{Interval, Runaway, State, System, Trial, evaluate, finish, split};
+use super::{Evaluation, Method, Runaway, State, Step};
 
-/// The first half of a palindrome: drift, kick, drift, …
-#[derive(Debug, PartialEq)]
-pub(crate) struct Composition {
-    /// The shares `a` of the step. The middle one, for an even number of kicks, comes last.
-    drifts: &'static [f64],
-    /// The shares `b` of the step. The middle one, for an odd number of kicks, comes last.
-    kicks: &'static [f64],
-    /// The number of kicks: of evaluations of the forces in each step.
-    evaluations: usize,
+/// The shares of the step of drifts and of kicks: two palindromes, of which the first halves are given. The shares of all drifts add
+/// up to 1, and so do those of all kicks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Composition {
+    /// With an even number of kicks the middle drift is the last.
+    pub drifts: &'static [f64],
+    /// With an odd number of kicks the middle kick is the last.
+    pub kicks: &'static [f64],
 }
 
 /// E. Forest, R. Ruth, Physica D 43, 105 (1990), with `θ = 1/(2 − ∛2)`.
-pub(crate) static FOREST_RUTH: Composition =
-    Composition { drifts: &[0.5 * THETA, 0.5 - 0.5 * THETA], kicks: &[THETA, 1.0 - 2.0 * THETA], evaluations: 3 };
+pub(crate) const FOREST_RUTH: Composition =
+    Composition { drifts: &[0.5 * THETA, 0.5 - 0.5 * THETA], kicks: &[THETA, 1.0 - 2.0 * THETA] };
 const THETA: f64 = 1.351_207_191_959_657_8;
 
 /// I. Omelyan, I. Mryglod, R. Folk, Computer Physics Communications 146, 188 (2002), Eq. (20): ξ, λ and χ.
-pub(crate) static PEFRL: Composition =
-    Composition { drifts: &[XI, CHI, 1.0 - 2.0 * (CHI + XI)], kicks: &[0.5 - LAMBDA, LAMBDA], evaluations: 4 };
+pub(crate) const PEFRL: Composition =
+    Composition { drifts: &[XI, CHI, 1.0 - 2.0 * (CHI + XI)], kicks: &[0.5 - LAMBDA, LAMBDA] };
 const XI: f64 = 0.178_617_895_844_809_1;
 const LAMBDA: f64 = -0.212_341_831_062_605_4;
 const CHI: f64 = -0.066_264_582_669_818_5;
 
 /// S. Blanes, P. Moan, Journal of Computational and Applied Mathematics 142, 313 (2002), table 3: SRKN14a, of order 6.
-pub(crate) static BLANES_MOAN: Composition = Composition {
+pub(crate) const BLANES_MOAN: Composition = Composition {
     drifts: &[
         0.037_859_319_840_611_6,
         0.102_635_633_102_435,
@@ -51,12 +50,11 @@ pub(crate) static BLANES_MOAN: Composition = Composition {
         0.328_567_693_746_804,
         -0.196_411_466_486_454_23,
     ],
-    evaluations: 14,
 };
 
 /// W. Kahan, R.-C. Li, Mathematics of Computation 66, 1089 (1997), table 1: s17odr8a, of order 8, as a composition of steps
 /// of drift, kick and drift. It starts the method of [`quinlan_tremaine`](super::quinlan_tremaine).
-pub(super) static KAHAN_LI: Composition = Composition {
+pub(crate) const KAHAN_LI: Composition = Composition {
     drifts: &[
         0.5 * GAMMA[0],
         0.5 * (GAMMA[0] + GAMMA[1]),
@@ -69,7 +67,6 @@ pub(super) static KAHAN_LI: Composition = Composition {
         0.5 * (GAMMA[7] + GAMMA[8]),
     ],
     kicks: &GAMMA,
-    evaluations: 17,
 };
 const GAMMA: [f64; 9] = [
     0.130_202_483_088_890_08,
@@ -84,63 +81,70 @@ const GAMMA: [f64; 9] = [
 ];
 
 impl Composition {
-    /// The number of kicks in each step.
-    pub(crate) fn evaluations(&self) -> usize {
-        self.evaluations
+    /// The number of kicks in each step, which is that of evaluations of the forces.
+    pub fn evaluations(&self) -> usize {
+        self.drifts.len() + self.kicks.len() - 1
     }
 
     /// The share of the step of a drift; there is one more than kicks.
     pub(crate) fn drift(&self, at: usize) -> f64 {
-        self.drifts[at.min(self.evaluations - at)]
+        self.drifts[at.min(self.evaluations() - at)]
     }
 
     /// The share of the step of a kick.
     pub(crate) fn kick(&self, at: usize) -> f64 {
-        self.kicks[at.min(self.evaluations - 1 - at)]
+        self.kicks[at.min(self.evaluations() - 1 - at)]
     }
 
     /// The share of the step that has passed after a drift.
     pub(crate) fn share(&self, at: usize) -> f64 {
-        if at == self.evaluations { 1.0 } else { (0..=at).map(|at| self.drift(at)).sum() }
+        if at == self.evaluations() { 1.0 } else { (0..=at).map(|at| self.drift(at)).sum() }
     }
+}
 
-    /// Computes a step; `limit` (m/s) is the greatest speed.
-    pub(super) fn step(
-        &self,
-        system: &System,
-        interval: Interval,
-        limit: f64,
-        state: &State,
-        trial: &mut Trial,
-    ) -> Result<(), Runaway> {
-        self.fly(system, interval, state, trial);
-        let Trial { next, evaluations: [_, mean], .. } = trial;
-        finish(system, interval, limit, state, next, mean)
+/// A composition as a [`Method`].
+#[derive(Debug)]
+pub struct ByComposition {
+    composition: Composition,
+    evaluation: Evaluation,
+}
+
+impl ByComposition {
+    /// The method.
+    pub fn new(composition: Composition) -> Self {
+        Self { composition, evaluation: Evaluation::default() }
     }
 
     /// Computes a step without its end: without limit, contact and kinematic constraints.
-    pub(super) fn fly(&self, system: &System, interval: Interval, state: &State, trial: &mut Trial) {
-        let Trial { next, evaluations: [evaluation, _], scratch, .. } = trial;
+    pub fn fly(&mut self, step: &Step<'_>, state: &State, next: &mut State) {
+        let Self { composition, evaluation } = self;
+        let time = step.interval.step;
         next.position.copy_from_slice(&state.position);
         next.velocity.copy_from_slice(&state.velocity);
         next.memory.model.copy_from_slice(&state.memory.model);
-        for at in 0..=self.evaluations {
-            let drift = self.drift(at) * interval.step;
+        for at in 0..=composition.evaluations() {
+            let drift = composition.drift(at) * time;
             for (position, &velocity) in next.position.iter_mut().zip(&next.velocity) {
                 *position += velocity * drift;
             }
-            if at == self.evaluations {
+            if at == composition.evaluations() {
                 break;
             }
-            system.place_held(interval, self.share(at), next);
-            evaluate(system, next.nodes(), &next.memory.model, evaluation, scratch);
-            let (acceleration, model) = split(evaluation, system);
-            next.memory.model.copy_from_slice(model);
-            let kick = self.kick(at) * interval.step;
-            for (velocity, &acceleration) in next.velocity.iter_mut().zip(acceleration) {
+            step.place_held(composition.share(at), next);
+            step.evaluate(next.nodes(), &next.memory.model, evaluation);
+            next.memory.model.copy_from_slice(&evaluation.memory);
+            let kick = composition.kick(at) * time;
+            for (velocity, &acceleration) in next.velocity.iter_mut().zip(&evaluation.acceleration) {
                 *velocity += acceleration * kick;
             }
         }
+    }
+}
+
+impl Method for ByComposition {
+    fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway> {
+        self.fly(step, state, next);
+        step.finish(state, next)
     }
 }
 
@@ -151,8 +155,8 @@ mod tests {
     /// Drifts and kicks add up to one step each.
     #[test]
     fn shares_add_up_to_the_step() {
-        for method in [&FOREST_RUTH, &PEFRL, &BLANES_MOAN, &KAHAN_LI] {
-            let count = method.evaluations;
+        for method in [FOREST_RUTH, PEFRL, BLANES_MOAN, KAHAN_LI] {
+            let count = method.evaluations();
             let drift: f64 = (0..=count).map(|at| method.drift(at)).sum();
             let kick: f64 = (0..count).map(|at| method.kick(at)).sum();
             assert!((drift - 1.0).abs() < 1e-14 && (kick - 1.0).abs() < 1e-14, "{drift} {kick}");

@@ -9,7 +9,7 @@
 //!
 //! Its memory is the length of the next substep (s) and, unless a node has just met an obstacle, the present accelerations.
 
-use super::{Interval, Runaway, Scales, State, System, Trial, evaluate, finish_and_tell, split};
+use super::{Evaluation, Interval, Method, Runaway, Scales, State, Step, swap};
 use glam::DVec3;
 
 /// The weights of the stages before each stage. Those of the last stage give the solution.
@@ -38,61 +38,51 @@ pub(super) struct DormandPrince {
     scales: Scales,
     /// The error allowed in a substep, as a share of the size of the body.
     tolerance: f64,
-    /// The state before the step, which an error leaves as it was.
-    before: State,
+    /// The state at the beginning of a substep.
+    now: State,
+    evaluation: Evaluation,
     /// Velocities, then accelerations, of each stage.
     slopes: Vec<DVec3>,
+    /// Positions, then velocities, before contact.
+    before_contact: Vec<DVec3>,
+}
+
+impl Method for DormandPrince {
+    fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway> {
+        let mut now = std::mem::take(&mut self.now);
+        now.clone_from(state);
+        let mut time = step.interval.begin;
+        let result = loop {
+            match self.substep(step, time, &now, next) {
+                Ok(end) if end == step.interval.end => break Ok(()),
+                Ok(end) => time = end,
+                Err(runaway) => break Err(runaway),
+            }
+            swap(&mut now, next);
+        };
+        self.now = now;
+        result
+    }
 }
 
 impl DormandPrince {
     pub(super) fn new(scales: Scales, tolerance: f64) -> Self {
-        let (before, slopes) = Default::default();
-        Self { scales, tolerance, before, slopes }
-    }
-
-    /// Computes a step: `state` is within the step then, and its end is in `trial`. `limit` (m/s) is the greatest speed.
-    pub(super) fn step(
-        &mut self,
-        system: &System,
-        interval: Interval,
-        limit: f64,
-        state: &mut State,
-        trial: &mut Trial,
-    ) -> Result<(), Runaway> {
-        self.before.clone_from(state);
-        let mut time = interval.begin;
-        loop {
-            match self.substep(system, time, interval, limit, state, trial) {
-                Ok(end) if end == interval.end => return Ok(()),
-                Ok(end) => time = end,
-                Err(runaway) => {
-                    std::mem::swap(state, &mut self.before);
-                    return Err(runaway);
-                }
-            }
-            trial.swap(state);
-        }
+        let (now, evaluation, slopes, before_contact) = Default::default();
+        Self { scales, tolerance, now, evaluation, slopes, before_contact }
     }
 
     /// Computes a substep from a time (s), and returns its end (s).
-    fn substep(
-        &mut self,
-        system: &System,
-        time: f64,
-        interval: Interval,
-        limit: f64,
-        state: &State,
-        trial: &mut Trial,
-    ) -> Result<f64, Runaway> {
+    fn substep(&mut self, whole: &Step<'_>, time: f64, state: &State, next: &mut State) -> Result<f64, Runaway> {
+        let interval = whole.interval;
         let left = interval.end - time;
-        let (wish, known) = self.remembered(system, state);
+        let (wish, known) = self.remembered(whole, state);
         let mut step = if wish < 0.5 * left { wish } else { left.min(if wish < left { 0.5 * left } else { left }) };
         let (mut growth, mut searches) = (GROWTH, 0);
         loop {
             let end = if step == left { interval.end } else { time + step };
-            let part = Interval { begin: time, end, step };
-            trial.begin(system, part, state);
-            let (error, node) = self.evaluate(system, part, state, known, trial);
+            let part = Step { interval: Interval { begin: time, end, step }, ..*whole };
+            part.begin(state, next);
+            let (error, node) = self.evaluate(&part, state, known, next);
             // The error is of fifth order in the substep. A margin keeps most substeps from being repeated.
             let factor = 0.9 * libm::pow(error, -0.2);
             if error > 1.0 {
@@ -103,10 +93,10 @@ impl DormandPrince {
                 }
                 continue;
             }
-            let has_met = finish_and_tell(system, part, limit, state, trial)?;
+            let has_met = part.finish_and_tell(state, next, &mut self.before_contact)?;
             if has_met
                 && searches < MOST_SEARCHES
-                && let Some(shorter) = self.until_contact(step, trial)
+                && let Some(shorter) = self.until_contact(step, next)
             {
                 step = shorter;
                 searches += 1;
@@ -117,7 +107,7 @@ impl DormandPrince {
             if step < wish && growth == GROWTH && searches == 0 {
                 next_wish = next_wish.max(wish);
             }
-            let memory = &mut trial.next.memory.integrator;
+            let memory = &mut next.memory.integrator;
             memory.push(next_wish);
             if !has_met {
                 memory.extend(self.slopes[13 * state.position.len()..].iter().flat_map(|vector| vector.to_array()));
@@ -127,13 +117,13 @@ impl DormandPrince {
     }
 
     /// The length of the next substep (s), and the present accelerations, if they are known.
-    fn remembered<'a>(&self, system: &System, state: &'a State) -> (f64, Option<&'a [DVec3]>) {
+    fn remembered<'a>(&self, step: &Step<'_>, state: &'a State) -> (f64, Option<&'a [DVec3]>) {
         let accelerations = 3 * state.position.len();
         match state.memory.integrator.split_first() {
             Some((&wish, [])) => (wish, None),
             // Those of held nodes are not kept.
             Some((&wish, known)) if known.len() == accelerations => {
-                (wish, system.grips.is_empty().then(|| bytemuck::cast_slice(known)))
+                (wish, step.system.grips.is_empty().then(|| bytemuck::cast_slice(known)))
             }
             // Anything else is the memory of another method.
             _ => (0.1 * self.scales.time, None),
@@ -142,16 +132,8 @@ impl DormandPrince {
 
     /// Writes the positions and velocities at the end of a substep, without contact. Returns the estimated error, 1 for the
     /// greatest allowed, and the node that has it.
-    fn evaluate(
-        &mut self,
-        system: &System,
-        part: Interval,
-        state: &State,
-        known: Option<&[DVec3]>,
-        trial: &mut Trial,
-    ) -> (f64, usize) {
-        let (nodes, step) = (state.position.len(), part.step);
-        let Trial { next, evaluations: [evaluation, _], scratch, .. } = trial;
+    fn evaluate(&mut self, part: &Step<'_>, state: &State, known: Option<&[DVec3]>, next: &mut State) -> (f64, usize) {
+        let (nodes, step) = (state.position.len(), part.interval.step);
         next.memory.model.copy_from_slice(&state.memory.model);
         self.slopes.resize(14 * nodes, DVec3::ZERO);
         for stage in 0..7 {
@@ -164,19 +146,18 @@ impl DormandPrince {
                 next.position[node] = state.position[node] + sum(node) * step;
                 next.velocity[node] = state.velocity[node] + sum(nodes + node) * step;
             }
-            system.place_held(part, SHARES[stage], next);
+            part.place_held(SHARES[stage], next);
             let (velocities, accelerations) = slopes[..2 * nodes].split_at_mut(nodes);
             velocities.copy_from_slice(&next.velocity);
             match known.filter(|_| stage == 0) {
                 Some(known) => accelerations.copy_from_slice(known),
                 None => {
-                    evaluate(system, next.nodes(), &next.memory.model, evaluation, scratch);
-                    let (acceleration, model) = split(evaluation, system);
-                    accelerations.copy_from_slice(acceleration);
-                    next.memory.model.copy_from_slice(model);
+                    part.evaluate(next.nodes(), &next.memory.model, &mut self.evaluation);
+                    accelerations.copy_from_slice(&self.evaluation.acceleration);
+                    next.memory.model.copy_from_slice(&self.evaluation.memory);
                 }
             }
-            system.for_each_held(part, next, |node| accelerations[node] = DVec3::ZERO);
+            part.for_each_held(next, |node| accelerations[node] = DVec3::ZERO);
         }
         let unit = self.tolerance * self.scales.length;
         let mut worst = (0.0, 0);
@@ -200,9 +181,8 @@ impl DormandPrince {
 
     /// A shorter substep (s), at the end of which the node that was first to meet an obstacle is about half the tolerance
     /// inside; `None` if no node is deeper than the tolerance.
-    fn until_contact(&self, step: f64, trial: &Trial) -> Option<f64> {
-        let Trial { next, before_contact, .. } = trial;
-        let (positions, velocities) = before_contact.split_at(next.position.len());
+    fn until_contact(&self, step: f64, next: &State) -> Option<f64> {
+        let (positions, velocities) = self.before_contact.split_at(next.position.len());
         let unit = self.tolerance * self.scales.length;
         let mut longest: f64 = 0.0;
         for node in 0..next.position.len() {

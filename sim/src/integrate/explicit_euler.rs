@@ -3,20 +3,19 @@
 //! The eigenvalues of an undamped oscillation are `1 ± iωΔT`, outside the unit circle for every step, so its energy
 //! grows without bound. The results in the paper can only come from the new velocity.
 
-use super::{Interval, Runaway, State, System, Trial};
+use super::{Method, Runaway, Scratch, State, Step};
 
-/// Computes a step; `limit` (m/s) is the greatest speed.
-pub(super) fn step(
-    system: &System,
-    interval: Interval,
-    limit: f64,
-    state: &State,
-    trial: &mut Trial,
-) -> Result<(), Runaway> {
-    trial.velocities(system, interval, limit, state)?;
-    for ((position, &from), &velocity) in trial.next.position.iter_mut().zip(&state.position).zip(&state.velocity) {
-        *position = from + velocity * interval.step;
+/// The method with its buffer.
+#[derive(Default)]
+pub(super) struct ExplicitEuler(Scratch);
+
+impl Method for ExplicitEuler {
+    fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway> {
+        step.velocities(state, next, &mut self.0)?;
+        for ((position, &from), &velocity) in next.position.iter_mut().zip(&state.position).zip(&state.velocity) {
+            *position = from + velocity * step.interval.step;
+        }
+        step.constrain(state, next, None);
+        Ok(())
     }
-    system.constrain(interval, state, &mut trial.next, None);
-    Ok(())
 }

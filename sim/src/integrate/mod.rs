@@ -1,4 +1,6 @@
 //! Time integration: Eqs. (2) and (3) and alternatives.
+//!
+//! Every method is a [`Method`], which sees a world through a [`Step`]. Methods of other crates implement it, too.
 
 mod backward_euler;
 pub(crate) mod composition;
@@ -9,13 +11,20 @@ mod runge_kutta;
 mod semi_implicit_euler;
 mod velocity_verlet;
 
+pub use self::composition::{ByComposition, Composition};
+
 use self::backward_euler::BackwardEuler;
-use self::composition::Composition;
 use self::dormand_prince::DormandPrince;
+use self::explicit_euler::ExplicitEuler;
+use self::quinlan_tremaine::QuinlanTremaine;
+use self::runge_kutta::RungeKutta;
+use self::semi_implicit_euler::SemiImplicitEuler;
+use self::velocity_verlet::VelocityVerlet;
 use super::crew::Crew;
-use super::dynamics::{Dynamics, Runaway, SpeedLimit};
+pub use super::dynamics::Runaway;
+use super::dynamics::{Dynamics, SpeedLimit};
 use super::model::{ForceModel, Scratch};
-use super::motion::Interval;
+pub use super::motion::Interval;
 use super::state::{Nodes, State};
 use super::system::System;
 use glam::DVec3;
@@ -94,19 +103,192 @@ impl Integrator {
     }
 }
 
-/// The reference code: evaluates forces, then integrates. Every faster way is tested against it.
-pub(super) struct ByForces {
-    method: Method,
-    trial: Trial,
+/// A method of integration, which computes one step of a [`World`](super::World). [`World::set_method`](super::World::set_method)
+/// takes one from another crate.
+///
+/// # Contract
+/// A step is a function of the state: what a method remembers from one step to the next is in
+/// [`Memory::integrator`](super::Memory::integrator), and what it keeps in itself are buffers. So a run that is continued from a copy
+/// of its state has the same bits. Memory that has another length than a method's own is that of another method.
+///
+/// # Example
+/// The midpoint rule, of second order:
+/// ```
+/// use localshape_sim::State;
+/// use localshape_sim::integrate::{Evaluation, Method, Runaway, Step};
+///
+/// #[derive(Default)]
+/// struct Midpoint(Evaluation);
+///
+/// impl Method for Midpoint {
+///     fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway> {
+///         let time = step.interval().step;
+///         next.memory.model.clone_from(&state.memory.model);
+///         (next.position.clone_from(&state.position), next.velocity.clone_from(&state.velocity));
+///         for share in [0.5, 1.0] {
+///             step.evaluate(next.nodes(), &next.memory.model, &mut self.0);
+///             next.memory.model.copy_from_slice(&self.0.memory);
+///             for (node, &acceleration) in self.0.acceleration.iter().enumerate() {
+///                 next.position[node] = state.position[node] + next.velocity[node] * (share * time);
+///                 next.velocity[node] = state.velocity[node] + acceleration * (share * time);
+///             }
+///             step.place_held(share, next);
+///         }
+///         step.finish(state, next)
+///     }
+/// }
+/// ```
+pub trait Method: Send + Sync {
+    /// Writes the positions, the velocities and the memory of the models and of the integrator at the end of the step to `next`, which
+    /// has the lengths of `state` and the memory of kinematic constraints already. [`Step::finish`] is the end of most methods.
+    ///
+    /// # Errors
+    /// When a node would become too fast; see [`Step::check`].
+    fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway>;
 }
 
-/// The methods, some with buffers of their own.
-enum Method {
-    /// What needs no more than a [`Trial`].
-    Simple(fn(&System, Interval, f64, &State, &mut Trial) -> Result<(), Runaway>),
-    Composition(&'static Composition),
-    DormandPrince(DormandPrince),
-    BackwardEuler(BackwardEuler),
+/// Accelerations and the next memory of the models, computed together. Methods keep it from step to step to save allocations.
+#[derive(Debug, Default)]
+pub struct Evaluation {
+    /// The acceleration of each node (m/s²).
+    pub acceleration: Vec<DVec3>,
+    /// The next memory of the models.
+    pub memory: Vec<f64>,
+    scratch: Scratch,
+}
+
+/// A step of a world, as a [`Method`] sees it.
+#[derive(Clone, Copy)]
+pub struct Step<'a> {
+    system: &'a System,
+    interval: Interval,
+    limit: f64,
+}
+
+impl Step<'_> {
+    /// When it begins and ends.
+    pub fn interval(&self) -> Interval {
+        self.interval
+    }
+
+    /// The mass of each node (kg).
+    pub fn masses(&self) -> &[f64] {
+        &self.system.mass
+    }
+
+    /// Whether forces depend on velocities.
+    pub fn is_damped(&self) -> bool {
+        self.system.is_damped()
+    }
+
+    /// Whether a kinematic constraint begins or ends to hold nodes in this step, so that the motion before does not continue.
+    pub fn changes_holds(&self) -> bool {
+        let Interval { begin, end, .. } = self.interval;
+        self.system.grips.iter().any(|grip| grip.moves(begin) != grip.moves(end))
+    }
+
+    /// Evaluates the forces of models and gravity on nodes, with the memory that models had after the last evaluation.
+    pub fn evaluate(&self, at: Nodes<'_>, memory: &[f64], out: &mut Evaluation) {
+        let Evaluation { acceleration, memory: next, scratch } = out;
+        acceleration.resize(at.position.len(), DVec3::ZERO);
+        next.resize(memory.len(), 0.0);
+        self.system.forces(at, memory, next, scratch, acceleration);
+        acceleration.iter_mut().zip(&self.system.mass).for_each(|(force, &mass)| *force /= mass);
+    }
+
+    /// Places the nodes that kinematic constraints hold at the end of the step where they are after a `share` of it, with their
+    /// velocity in the step.
+    pub fn place_held(&self, share: f64, next: &mut State) {
+        self.system.place_held(self.interval, share, next);
+    }
+
+    /// Writes the velocities of the nodes that kinematic constraints hold at the end of the step, after a method has changed them.
+    pub fn hold(&self, next: &mut State) {
+        self.system.hold(self.interval, next);
+    }
+
+    /// Calls `each` with the nodes that kinematic constraints hold at the end of the step.
+    pub fn for_each_held(&self, next: &State, each: impl FnMut(usize)) {
+        self.system.for_each_held(self.interval, next, each);
+    }
+
+    /// Whether no node is faster than what counts as a result.
+    ///
+    /// # Errors
+    /// With the first node that is, or whose velocity is not a number: the world has diverged, and keeps its last state.
+    pub fn check(&self, next: &State) -> Result<(), Runaway> {
+        let limit = self.limit * self.limit;
+        // NaN is never within the limit.
+        let within_bounds = |velocity: &DVec3| velocity.length_squared() <= limit;
+        match next.velocity.iter().position(|velocity| !within_bounds(velocity)) {
+            Some(node) => Err(Runaway { node }),
+            None => Ok(()),
+        }
+    }
+
+    /// Applies contact and kinematic constraints at the end of the step. `acceleration` (m/s²) is the constant one of each node in
+    /// the step; `None` if nodes moved at constant velocity.
+    pub fn constrain(&self, state: &State, next: &mut State, acceleration: Option<&[DVec3]>) {
+        self.system.constrain(self.interval, state, next, acceleration);
+    }
+
+    /// The end of a step that a method of several evaluations has computed without contact: checks the speeds, applies contact and
+    /// kinematic constraints, and clears the memory of the integrator. A node rebounds as if its mean acceleration in the step had
+    /// been constant.
+    ///
+    /// # Errors
+    /// As [`Self::check`].
+    pub fn finish(&self, state: &State, next: &mut State) -> Result<(), Runaway> {
+        self.check(next)?;
+        next.memory.integrator.clear();
+        let change = next.velocity.iter().zip(&state.velocity);
+        let mean: Vec<DVec3> = change.map(|(&after, &before)| (after - before) / self.interval.step).collect();
+        self.constrain(state, next, Some(&mean));
+        Ok(())
+    }
+
+    /// Like [`Self::finish`]; returns whether a node has met an obstacle: what is known of the steps before then does not continue
+    /// its motion. `before` becomes positions, then velocities, before contact.
+    fn finish_and_tell(&self, state: &State, next: &mut State, before: &mut Vec<DVec3>) -> Result<bool, Runaway> {
+        // Placed before, a held node counts only if an obstacle moves it, too.
+        self.place_held(1.0, next);
+        before.clear();
+        before.extend(next.position.iter().chain(&next.velocity));
+        self.finish(state, next)?;
+        Ok(!next.position.iter().chain(&next.velocity).eq(&*before))
+    }
+
+    /// The memory of kinematic constraints at the end of the step.
+    fn begin(&self, state: &State, next: &mut State) {
+        let constraints = &mut next.memory.constraints;
+        constraints.clone_from(&state.memory.constraints);
+        self.system.change_grips(constraints, |grip, memory| {
+            grip.reach(self.interval.end, memory, |node| state.position[node as usize])
+        });
+    }
+
+    /// Eq. (2): evaluates the forces and writes the velocities (m/s) at the end of the step, `V + F/m ΔT`.
+    ///
+    /// # Errors
+    /// As [`Self::check`].
+    #[doc(alias = "Eq. 2")]
+    fn velocities(&self, state: &State, next: &mut State, scratch: &mut Scratch) -> Result<(), Runaway> {
+        let (memory, forces) = (&state.memory.model, &mut next.velocity);
+        self.system.forces(state.nodes(), memory, &mut next.memory.model, scratch, forces);
+        for ((force, &mass), &velocity) in forces.iter_mut().zip(&self.system.mass).zip(&state.velocity) {
+            *force = velocity + *force / mass * self.interval.step;
+        }
+        // The Euler methods have no memory.
+        next.memory.integrator.clear();
+        self.check(next)
+    }
+}
+
+/// The reference code: evaluates forces, then integrates. Every faster way is tested against it.
+pub(super) struct ByForces {
+    method: Box<dyn Method>,
+    /// The state at the end of the step that is being computed.
+    next: State,
 }
 
 /// What is large for a body.
@@ -118,34 +300,27 @@ pub(super) struct Scales {
     pub(super) time: f64,
 }
 
-/// A step that is being computed. The state is changed only when it is accepted.
-struct Trial {
-    /// The state at the end of the step.
-    next: State,
-    /// Stored evaluations of the forces, for integrators that need several.
-    evaluations: [Vec<f64>; 2],
-    /// Positions, then velocities, before contact.
-    before_contact: Vec<DVec3>,
-    scratch: Scratch,
+impl ByForces {
+    pub(super) fn new(method: Box<dyn Method>, state: &State) -> Self {
+        Self { method, next: state.clone() }
+    }
 }
 
-impl ByForces {
-    /// `tolerance` is for methods with steps of their own.
-    pub(super) fn new(integrator: Integrator, tolerance: f64, scales: Scales, state: &State) -> Self {
-        let method = match integrator {
-            Integrator::SemiImplicitEuler => Method::Simple(semi_implicit_euler::step),
-            Integrator::ExplicitEuler => Method::Simple(explicit_euler::step),
-            Integrator::VelocityVerlet => Method::Simple(velocity_verlet::step),
-            Integrator::Pefrl => Method::Composition(&composition::PEFRL),
-            Integrator::ForestRuth => Method::Composition(&composition::FOREST_RUTH),
-            Integrator::BlanesMoan => Method::Composition(&composition::BLANES_MOAN),
-            Integrator::RungeKutta => Method::Simple(runge_kutta::step),
-            Integrator::QuinlanTremaine => Method::Simple(quinlan_tremaine::step),
-            Integrator::DormandPrince => Method::DormandPrince(DormandPrince::new(scales, tolerance)),
-            Integrator::BackwardEuler => Method::BackwardEuler(BackwardEuler::new(scales)),
-        };
-        let (evaluations, before_contact, scratch) = Default::default();
-        Self { method, trial: Trial { next: state.clone(), evaluations, before_contact, scratch } }
+impl Integrator {
+    /// The method. `tolerance` is for one with steps of its own.
+    pub(super) fn method(self, tolerance: f64, scales: Scales) -> Box<dyn Method> {
+        match self {
+            Self::SemiImplicitEuler => Box::<SemiImplicitEuler>::default(),
+            Self::ExplicitEuler => Box::<ExplicitEuler>::default(),
+            Self::VelocityVerlet => Box::<VelocityVerlet>::default(),
+            Self::Pefrl => Box::new(ByComposition::new(composition::PEFRL)),
+            Self::ForestRuth => Box::new(ByComposition::new(composition::FOREST_RUTH)),
+            Self::BlanesMoan => Box::new(ByComposition::new(composition::BLANES_MOAN)),
+            Self::RungeKutta => Box::<RungeKutta>::default(),
+            Self::QuinlanTremaine => Box::new(QuinlanTremaine::new()),
+            Self::DormandPrince => Box::new(DormandPrince::new(scales, tolerance)),
+            Self::BackwardEuler => Box::new(BackwardEuler::new(scales)),
+        }
     }
 }
 
@@ -160,115 +335,19 @@ impl Dynamics for ByForces {
     ) -> Result<(), Runaway> {
         for _ in 0..count {
             let interval = system.interval(state.steps);
-            let limit = limit.at(interval.end);
-            let Self { method, trial } = self;
-            trial.begin(system, interval, state);
-            match method {
-                Method::Simple(step) => step(system, interval, limit, state, trial),
-                Method::Composition(method) => method.step(system, interval, limit, state, trial),
-                Method::DormandPrince(method) => method.step(system, interval, limit, state, trial),
-                Method::BackwardEuler(method) => method.step(system, interval, limit, state, trial),
-            }?;
-            trial.swap(state);
+            let step = Step { system, interval, limit: limit.at(interval.end) };
+            step.begin(state, &mut self.next);
+            self.method.step(&step, state, &mut self.next)?;
+            swap(state, &mut self.next);
             state.steps += 1;
         }
         Ok(())
     }
 }
 
-impl Trial {
-    fn begin(&mut self, system: &System, interval: Interval, state: &State) {
-        let constraints = &mut self.next.memory.constraints;
-        constraints.clone_from(&state.memory.constraints);
-        system.change_grips(constraints, |grip, memory| {
-            grip.reach(interval.end, memory, |node| state.position[node as usize])
-        });
-    }
-
-    /// Accepts what was computed, but for the number of steps.
-    fn swap(&mut self, state: &mut State) {
-        std::mem::swap(&mut state.position, &mut self.next.position);
-        std::mem::swap(&mut state.velocity, &mut self.next.velocity);
-        std::mem::swap(&mut state.memory, &mut self.next.memory);
-    }
-
-    /// Eq. (2): evaluates the forces and writes the velocities (m/s) at the end of the step, `V + F/m ΔT`.
-    ///
-    /// # Errors
-    /// When a node would become faster than the limit (m/s).
-    #[doc(alias = "Eq. 2")]
-    fn velocities(&mut self, system: &System, interval: Interval, limit: f64, state: &State) -> Result<(), Runaway> {
-        let Self { next, scratch, .. } = self;
-        let (memory, forces) = (&state.memory.model, &mut next.velocity);
-        system.forces(state.nodes(), memory, &mut next.memory.model, scratch, forces);
-        for ((force, &mass), &velocity) in forces.iter_mut().zip(&system.mass).zip(&state.velocity) {
-            *force = velocity + *force / mass * interval.step;
-        }
-        // The Euler methods have no memory.
-        next.memory.integrator.clear();
-        check(forces, limit)
-    }
-}
-
-/// Computes accelerations (m/s²) and the next memory of the models, and stores them one after the other.
-fn evaluate(system: &System, at: Nodes<'_>, memory: &[f64], out: &mut Vec<f64>, scratch: &mut Scratch) {
-    out.resize(3 * at.position.len() + memory.len(), 0.0);
-    let (acceleration, next) = out.split_at_mut(3 * at.position.len());
-    let acceleration: &mut [DVec3] = bytemuck::cast_slice_mut(acceleration);
-    system.forces(at, memory, next, scratch, acceleration);
-    acceleration.iter_mut().zip(&system.mass).for_each(|(force, &mass)| *force /= mass);
-}
-
-/// Splits a stored evaluation into accelerations and memory of the models.
-fn split<'a>(evaluation: &'a [f64], system: &System) -> (&'a [DVec3], &'a [f64]) {
-    let (acceleration, model) = evaluation.split_at(3 * system.mass.len());
-    (bytemuck::cast_slice(acceleration), model)
-}
-
-/// Contact and kinematic constraints at the end of a step that was computed without them, by a method of several
-/// evaluations. A node rebounds as if its mean acceleration in the step had been constant.
-fn finish(
-    system: &System,
-    interval: Interval,
-    limit: f64,
-    state: &State,
-    next: &mut State,
-    mean: &mut Vec<f64>,
-) -> Result<(), Runaway> {
-    check(&next.velocity, limit)?;
-    mean.clear();
-    let change = next.velocity.iter().zip(&state.velocity).map(|(&after, &before)| (after - before) / interval.step);
-    mean.extend(change.flat_map(|acceleration| acceleration.to_array()));
-    next.memory.integrator.clear();
-    system.constrain(interval, state, next, Some(bytemuck::cast_slice(mean)));
-    Ok(())
-}
-
-/// Like [`finish`]; returns whether a node has met an obstacle: what is known of the steps before then does not continue its
-/// motion.
-fn finish_and_tell(
-    system: &System,
-    interval: Interval,
-    limit: f64,
-    state: &State,
-    trial: &mut Trial,
-) -> Result<bool, Runaway> {
-    let Trial { next, evaluations: [_, mean], before_contact, .. } = trial;
-    // Placed before, a held node counts only if an obstacle moves it, too.
-    system.place_held(interval, 1.0, next);
-    before_contact.clear();
-    before_contact.extend(next.position.iter().chain(&next.velocity));
-    finish(system, interval, limit, state, next, mean)?;
-    Ok(!next.position.iter().chain(&next.velocity).eq(&*before_contact))
-}
-
-/// Whether all velocities (m/s) are within the limit.
-fn check(velocities: &[DVec3], limit: f64) -> Result<(), Runaway> {
-    let limit = limit * limit;
-    // NaN is never within the limit.
-    let within_bounds = |velocity: &DVec3| velocity.length_squared() <= limit;
-    match velocities.iter().position(|velocity| !within_bounds(velocity)) {
-        Some(node) => Err(Runaway { node }),
-        None => Ok(()),
-    }
+/// Exchanges what a step computes.
+fn swap(state: &mut State, next: &mut State) {
+    std::mem::swap(&mut state.position, &mut next.position);
+    std::mem::swap(&mut state.velocity, &mut next.velocity);
+    std::mem::swap(&mut state.memory, &mut next.memory);
 }

@@ -14,7 +14,7 @@
 //! of the next step, and so on up to the present `A`: the last seven of each, once there are so many.
 
 use super::composition::KAHAN_LI;
-use super::{Interval, Runaway, State, System, Trial, check, evaluate, finish_and_tell, split};
+use super::{ByComposition, Evaluation, Method, Runaway, State, Step};
 use glam::DVec3;
 
 /// The weights α divided by `1 − (shift by a step)`: of `W` of the last seven steps, oldest first.
@@ -45,62 +45,71 @@ const CORRECTION: f64 = 416_173.0 / 1_814_400.0;
 /// The weights of a seventh difference, oldest first, without that of the last value, which is 1.
 const DIFFERENCE: [f64; 7] = [-1.0, 7.0, -21.0, 35.0, -35.0, 21.0, -7.0];
 
-/// Computes a step; `limit` (m/s) is the greatest speed.
-pub(super) fn step(
-    system: &System,
-    interval: Interval,
-    limit: f64,
-    state: &State,
-    trial: &mut Trial,
-) -> Result<(), Runaway> {
-    let (nodes, step) = (state.position.len(), interval.step);
-    let known: &[DVec3] =
-        if goes_on(system, interval, state) { bytemuck::cast_slice(&state.memory.integrator) } else { &[] };
-    let is_full = known.len() == FULL * nodes;
-    let mut first = Vec::new();
-    if is_full {
-        predict(known, step, state, &mut trial.next);
-    } else {
-        if known.is_empty() {
-            evaluate(system, state.nodes(), &state.memory.model, &mut trial.evaluations[0], &mut trial.scratch);
-            first.extend_from_slice(split(&trial.evaluations[0], system).0);
+/// The method with its buffers.
+pub(super) struct QuinlanTremaine {
+    /// Takes the first steps.
+    first: ByComposition,
+    evaluation: Evaluation,
+    before_contact: Vec<DVec3>,
+}
+
+impl QuinlanTremaine {
+    pub(super) fn new() -> Self {
+        Self { first: ByComposition::new(KAHAN_LI), evaluation: Evaluation::default(), before_contact: Vec::new() }
+    }
+}
+
+impl Method for QuinlanTremaine {
+    fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway> {
+        let Self { first: composition, evaluation, before_contact } = self;
+        let (nodes, time) = (state.position.len(), step.interval.step);
+        let known: &[DVec3] = if goes_on(step, state) { bytemuck::cast_slice(&state.memory.integrator) } else { &[] };
+        let is_full = known.len() == FULL * nodes;
+        let mut first = Vec::new();
+        if is_full {
+            predict(known, time, state, next);
+        } else {
+            if known.is_empty() {
+                step.evaluate(state.nodes(), &state.memory.model, evaluation);
+                first.extend_from_slice(&evaluation.acceleration);
+            }
+            composition.fly(step, state, next);
         }
-        KAHAN_LI.fly(system, interval, state, trial);
-    }
-    let has_met = finish_and_tell(system, interval, limit, state, trial)?;
-    let Trial { next, evaluations: [evaluation, _], scratch, .. } = trial;
-    if has_met {
-        return Ok(());
-    }
-    evaluate(system, next.nodes(), &next.memory.model, evaluation, scratch);
-    let (acceleration, model) = split(evaluation, system);
-    next.memory.model.copy_from_slice(model);
-    if is_full {
-        for (node, velocity) in next.velocity.iter_mut().enumerate() {
-            let before = (0..7).fold(DVec3::ZERO, |sum, at| sum + known[(2 * at + 1) * nodes + node] * DIFFERENCE[at]);
-            *velocity += (before + acceleration[node]) * (CORRECTION * step);
+        let has_met = step.finish_and_tell(state, next, before_contact)?;
+        if has_met {
+            return Ok(());
         }
-        system.hold(interval, next);
-        check(&next.velocity, limit)?;
+        step.evaluate(next.nodes(), &next.memory.model, evaluation);
+        let Evaluation { acceleration, memory, .. } = evaluation;
+        next.memory.model.copy_from_slice(memory);
+        if is_full {
+            for (node, velocity) in next.velocity.iter_mut().enumerate() {
+                let before =
+                    (0..7).fold(DVec3::ZERO, |sum, at| sum + known[(2 * at + 1) * nodes + node] * DIFFERENCE[at]);
+                *velocity += (before + acceleration[node]) * (CORRECTION * time);
+            }
+            step.hold(next);
+            step.check(next)?;
+        }
+        let memory = &mut next.memory.integrator;
+        let mut push = |vector: DVec3| memory.extend_from_slice(&vector.to_array());
+        let dropped = if known.len() < (FULL - 1) * nodes { 0 } else { known.len() - (FULL - 2) * nodes };
+        known[dropped..].iter().chain(&first).copied().for_each(&mut push);
+        next.position.iter().zip(&state.position).for_each(|(&to, &from)| push((to - from) / time));
+        acceleration.iter().copied().for_each(&mut push);
+        Ok(())
     }
-    let memory = &mut next.memory.integrator;
-    let mut push = |vector: DVec3| memory.extend_from_slice(&vector.to_array());
-    let dropped = if known.len() < (FULL - 1) * nodes { 0 } else { known.len() - (FULL - 2) * nodes };
-    known[dropped..].iter().chain(&first).copied().for_each(&mut push);
-    next.position.iter().zip(&state.position).for_each(|(&to, &from)| push((to - from) / step));
-    acceleration.iter().copied().for_each(&mut push);
-    Ok(())
 }
 
 /// How many vectors the full memory has for each node.
 const FULL: usize = 14;
 
 /// Whether the memory is one of this method, and this step continues the motion of those before.
-fn goes_on(system: &System, interval: Interval, state: &State) -> bool {
+fn goes_on(step: &Step<'_>, state: &State) -> bool {
     let (length, width) = (state.memory.integrator.len(), 3 * state.position.len());
     let count = length / width.max(1);
     let is_own = count * width == length && (count == FULL || count < FULL && count % 2 == 1);
-    is_own && system.grips.iter().all(|grip| grip.moves(interval.begin) == grip.moves(interval.end))
+    is_own && !step.changes_holds()
 }
 
 /// Positions at the end of a step, and velocities without the acceleration there.

@@ -4,42 +4,46 @@
 //!
 //! Kinematic constraints place their nodes at the time of each stage, contact acts at the end of the step.
 
-use super::{Interval, Runaway, State, System, Trial, evaluate, finish, split};
+use super::{Evaluation, Method, Runaway, State, Step};
 use glam::DVec3;
 
-/// Computes a step; `limit` (m/s) is the greatest speed.
-pub(super) fn step(
-    system: &System,
-    interval: Interval,
-    limit: f64,
-    state: &State,
-    trial: &mut Trial,
-) -> Result<(), Runaway> {
-    let Trial { next, evaluations: [evaluation, sums], scratch, .. } = trial;
-    let (nodes, step) = (state.position.len(), interval.step);
-    sums.clear();
-    sums.resize(6 * nodes, 0.0);
-    let (velocities, accelerations) = bytemuck::cast_slice_mut::<f64, DVec3>(sums).split_at_mut(nodes);
-    next.position.copy_from_slice(&state.position);
-    next.velocity.copy_from_slice(&state.velocity);
-    next.memory.model.copy_from_slice(&state.memory.model);
-    // The share of the step at which the stage after this one is evaluated, and the weight of this one.
-    for (share, weight) in [(0.5, 1.0), (0.5, 2.0), (1.0, 2.0), (1.0, 1.0)] {
-        evaluate(system, next.nodes(), &next.memory.model, evaluation, scratch);
-        let (acceleration, model) = split(evaluation, system);
-        next.memory.model.copy_from_slice(model);
-        for node in 0..nodes {
-            let (velocity, acceleration) = (next.velocity[node], acceleration[node]);
-            velocities[node] += velocity * weight;
-            accelerations[node] += acceleration * weight;
-            next.position[node] = state.position[node] + velocity * (share * step);
-            next.velocity[node] = state.velocity[node] + acceleration * (share * step);
+/// The method with its buffers.
+#[derive(Default)]
+pub(super) struct RungeKutta {
+    evaluation: Evaluation,
+    /// Weighted sums over the stages of velocities, then of accelerations.
+    sums: [Vec<DVec3>; 2],
+}
+
+impl Method for RungeKutta {
+    fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway> {
+        let Self { evaluation, sums } = self;
+        let (nodes, time) = (state.position.len(), step.interval.step);
+        for sums in &mut *sums {
+            sums.clear();
+            sums.resize(nodes, DVec3::ZERO);
         }
-        system.place_held(interval, share, next);
+        let [velocities, accelerations] = sums;
+        next.position.copy_from_slice(&state.position);
+        next.velocity.copy_from_slice(&state.velocity);
+        next.memory.model.copy_from_slice(&state.memory.model);
+        // The share of the step at which the stage after this one is evaluated, and the weight of this one.
+        for (share, weight) in [(0.5, 1.0), (0.5, 2.0), (1.0, 2.0), (1.0, 1.0)] {
+            step.evaluate(next.nodes(), &next.memory.model, evaluation);
+            next.memory.model.copy_from_slice(&evaluation.memory);
+            for node in 0..nodes {
+                let (velocity, acceleration) = (next.velocity[node], evaluation.acceleration[node]);
+                velocities[node] += velocity * weight;
+                accelerations[node] += acceleration * weight;
+                next.position[node] = state.position[node] + velocity * (share * time);
+                next.velocity[node] = state.velocity[node] + acceleration * (share * time);
+            }
+            step.place_held(share, next);
+        }
+        for node in 0..nodes {
+            next.position[node] = state.position[node] + velocities[node] * (time / 6.0);
+            next.velocity[node] = state.velocity[node] + accelerations[node] * (time / 6.0);
+        }
+        step.finish(state, next)
     }
-    for node in 0..nodes {
-        next.position[node] = state.position[node] + velocities[node] * (step / 6.0);
-        next.velocity[node] = state.velocity[node] + accelerations[node] * (step / 6.0);
-    }
-    finish(system, interval, limit, state, next, sums)
 }

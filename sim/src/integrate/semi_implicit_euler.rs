@@ -1,21 +1,19 @@
 //! Eqs. (2) and (3), the second with the new velocity of the first: `V += F/m ΔT`, then `P += V ΔT`.
 
-use super::{Interval, Runaway, State, System, Trial};
+use super::{Method, Runaway, Scratch, State, Step};
 
-/// Computes a step; `limit` (m/s) is the greatest speed.
-#[doc(alias = "Eq. 3")]
-pub(super) fn step(
-    system: &System,
-    interval: Interval,
-    limit: f64,
-    state: &State,
-    trial: &mut Trial,
-) -> Result<(), Runaway> {
-    trial.velocities(system, interval, limit, state)?;
-    let State { position, velocity, .. } = &mut trial.next;
-    for ((position, &from), &velocity) in position.iter_mut().zip(&state.position).zip(&*velocity) {
-        *position = from + velocity * interval.step;
+/// The method with its buffer.
+#[derive(Default)]
+pub(super) struct SemiImplicitEuler(Scratch);
+
+impl Method for SemiImplicitEuler {
+    #[doc(alias = "Eq. 3")]
+    fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway> {
+        step.velocities(state, next, &mut self.0)?;
+        for ((position, &from), &velocity) in next.position.iter_mut().zip(&state.position).zip(&next.velocity) {
+            *position = from + velocity * step.interval.step;
+        }
+        step.constrain(state, next, None);
+        Ok(())
     }
-    system.constrain(interval, state, &mut trial.next, None);
-    Ok(())
 }

@@ -13,46 +13,50 @@
 //! Its memory, without damping, is the evaluation at the present state: the accelerations, then the memory of the
 //! models that belongs to them.
 
-use super::{Interval, Runaway, State, System, Trial, check, evaluate, split};
+use super::{Evaluation, Method, Runaway, State, Step};
+use glam::DVec3;
 
-/// Computes a step; `limit` (m/s) is the greatest speed.
-pub(super) fn step(
-    system: &System,
-    interval: Interval,
-    limit: f64,
-    state: &State,
-    trial: &mut Trial,
-) -> Result<(), Runaway> {
-    let Trial { next, evaluations: [at_start, at_end], scratch, .. } = trial;
-    let step = interval.step;
-    let known = &state.memory.integrator;
-    // Anything else is the memory of another method.
-    let is_known = known.len() == 3 * state.position.len() + state.memory.model.len();
-    if !is_known {
-        evaluate(system, state.nodes(), &state.memory.model, at_start, scratch);
-    }
-    let (acceleration, model) = split(if is_known { known } else { at_start }, system);
-    next.memory.model.copy_from_slice(model);
-    // The new positions, and the velocities predicted with constant acceleration.
-    for (node, &acceleration) in acceleration.iter().enumerate() {
-        let (from, old) = (state.position[node], state.velocity[node]);
-        let predicted = old + acceleration * step;
-        next.velocity[node] = predicted;
-        next.position[node] = from + (old + predicted) * (0.5 * step);
-    }
-    check(&next.velocity, limit)?;
-    system.constrain(interval, state, next, Some(acceleration));
-    evaluate(system, next.nodes(), &next.memory.model, at_end, scratch);
-    let (next_acceleration, _) = split(at_end, system);
-    for ((velocity, &before), &after) in next.velocity.iter_mut().zip(acceleration).zip(next_acceleration) {
-        *velocity += (after - before) * (0.5 * step);
-    }
-    system.hold(interval, next);
-    check(&next.velocity, limit)?;
-    if system.is_damped() {
+/// The method with its buffers.
+#[derive(Default)]
+pub(super) struct VelocityVerlet {
+    at_start: Evaluation,
+    at_end: Evaluation,
+}
+
+impl Method for VelocityVerlet {
+    fn step(&mut self, step: &Step<'_>, state: &State, next: &mut State) -> Result<(), Runaway> {
+        let Self { at_start, at_end } = self;
+        let (nodes, time, known) = (state.position.len(), step.interval.step, &state.memory.integrator);
+        // Anything else is the memory of another method.
+        let is_known = known.len() == 3 * nodes + state.memory.model.len();
+        let (acceleration, model): (&[DVec3], _) = if is_known {
+            let (acceleration, model) = known.split_at(3 * nodes);
+            (bytemuck::cast_slice(acceleration), model)
+        } else {
+            step.evaluate(state.nodes(), &state.memory.model, at_start);
+            (&at_start.acceleration, &at_start.memory[..])
+        };
+        next.memory.model.copy_from_slice(model);
+        // The new positions, and the velocities predicted with constant acceleration.
+        for (node, &acceleration) in acceleration.iter().enumerate() {
+            let (from, old) = (state.position[node], state.velocity[node]);
+            let predicted = old + acceleration * time;
+            next.velocity[node] = predicted;
+            next.position[node] = from + (old + predicted) * (0.5 * time);
+        }
+        step.check(next)?;
+        step.constrain(state, next, Some(acceleration));
+        step.evaluate(next.nodes(), &next.memory.model, at_end);
+        for ((velocity, &before), &after) in next.velocity.iter_mut().zip(acceleration).zip(&at_end.acceleration) {
+            *velocity += (after - before) * (0.5 * time);
+        }
+        step.hold(next);
+        step.check(next)?;
         next.memory.integrator.clear();
-    } else {
-        std::mem::swap(&mut next.memory.integrator, at_end);
+        if !step.is_damped() {
+            next.memory.integrator.extend_from_slice(bytemuck::cast_slice(&at_end.acceleration));
+            next.memory.integrator.extend_from_slice(&at_end.memory);
+        }
+        Ok(())
     }
-    Ok(())
 }

@@ -19,7 +19,7 @@ pub(crate) enum Scheme {
     /// Velocity Verlet.
     VelocityVerlet,
     /// Drifts and kicks.
-    Composition(&'static Composition),
+    Composition(Composition),
 }
 
 impl Scheme {
@@ -34,9 +34,9 @@ impl Scheme {
             Integrator::SemiImplicitEuler => Some(Self::SemiImplicitEuler),
             Integrator::ExplicitEuler => Some(Self::ExplicitEuler),
             Integrator::VelocityVerlet => Some(Self::VelocityVerlet),
-            Integrator::Pefrl => Some(Self::Composition(&composition::PEFRL)),
-            Integrator::ForestRuth => Some(Self::Composition(&composition::FOREST_RUTH)),
-            Integrator::BlanesMoan => Some(Self::Composition(&composition::BLANES_MOAN)),
+            Integrator::Pefrl => Some(Self::Composition(composition::PEFRL)),
+            Integrator::ForestRuth => Some(Self::Composition(composition::FOREST_RUTH)),
+            Integrator::BlanesMoan => Some(Self::Composition(composition::BLANES_MOAN)),
             Integrator::RungeKutta
             | Integrator::QuinlanTremaine
             | Integrator::DormandPrince

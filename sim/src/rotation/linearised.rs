@@ -66,7 +66,7 @@ pub fn rotation_by_arctangent(w: DVec3) -> DQuat {
 
 /// The rotation with axis `u = w/|w|` and angle `θ = |w|`, the other reading of the paper. It overshoots and can make a
 /// free body spin faster and faster. For comparison only.
-pub(crate) fn rotation_by_length(w: DVec3) -> DQuat {
+pub fn rotation_by_length(w: DVec3) -> DQuat {
     let angle = w.length();
     if angle == 0.0 {
         return DQuat::IDENTITY;
@@ -94,7 +94,7 @@ const WELL_POSED: f64 = 1e-9;
 /// element's energy is positive definite (its leading minors are positive).
 ///
 /// Then the matrix of Eq. (15), whose symmetric part is `H`, is regular as well.
-pub(crate) fn is_well_posed(a: DMat3) -> bool {
+pub fn is_well_posed(a: DMat3) -> bool {
     let (xx, yy, zz) = (a.x_axis.x, a.y_axis.y, a.z_axis.z);
     let xy = -0.5 * (a.y_axis.x + a.x_axis.y);
     let xz = -0.5 * (a.z_axis.x + a.x_axis.z);

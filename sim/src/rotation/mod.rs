@@ -25,7 +25,11 @@ pub(crate) mod planar;
 mod reading;
 pub mod robust;
 
+pub use davenport1968::optimum;
+pub use linear_update::update as linear_update;
+pub use linearised::{is_well_posed, iterate, rotation_by_arctangent, rotation_by_length, solve};
 pub use reading::RotationReading;
+pub use robust::follow as robust;
 
 use super::body::Dimension;
 use glam::{DMat3, DQuat, DVec2, DVec3};
@@ -42,7 +46,7 @@ pub struct Followed {
 impl Followed {
     /// The optimum nearest to the `last` rotation, by the global solver. `at_rest` is `Σ R0 rᵀ` (m²).
     fn global(at_rest: DMat3, last: DQuat) -> Self {
-        Self { rotation: davenport1968::optimum(at_rest, last), is_global: true }
+        Self { rotation: optimum(at_rest, last), is_global: true }
     }
 }
 
@@ -70,7 +74,7 @@ pub fn moment(shape: &[DVec3], now: impl IntoIterator<Item = DVec3>) -> DMat3 {
 pub(crate) fn best(dimension: Dimension, at_rest: DMat3) -> DMat3 {
     match dimension {
         Dimension::Plane => planar::matrix(planar::solve(at_rest, DVec2::X)),
-        Dimension::Space => DMat3::from_quat(davenport1968::optimum(at_rest, DQuat::IDENTITY)),
+        Dimension::Space => DMat3::from_quat(optimum(at_rest, DQuat::IDENTITY)),
     }
 }
 

@@ -234,6 +234,6 @@ fn distance(a: &State, b: &State) -> f64 {
 
 pub(super) const TWICE: Rotation = Rotation::Arctangent { passes: 2 };
 const SEMI: Scheme = Scheme::SemiImplicitEuler;
-pub(super) const PEFRL: Scheme = Scheme::Composition(&composition::PEFRL);
-const FOREST_RUTH: Scheme = Scheme::Composition(&composition::FOREST_RUTH);
-const BLANES_MOAN: Scheme = Scheme::Composition(&composition::BLANES_MOAN);
+pub(super) const PEFRL: Scheme = Scheme::Composition(composition::PEFRL);
+const FOREST_RUTH: Scheme = Scheme::Composition(composition::FOREST_RUTH);
+const BLANES_MOAN: Scheme = Scheme::Composition(composition::BLANES_MOAN);
