@@ -18,13 +18,13 @@ pub(super) struct FileDigests {
     pub(super) semi_bold: Option<String>,
 }
 
-/// SHA-256 of the typed scene as canonical JSON, 64 hexadecimal digits. `typed` is the scene without the lists of its body,
-/// which are in `lists`: they may have millions of entries, and are written without a copy.
+/// SHA-256 of the typed scene as canonical JSON, 64 hexadecimal digits. `typed` is the scene without the lists of its
+/// body. `lists` has them: they may have millions of entries, and are written without a copy.
 ///
-/// Canonical means: keys sorted, every number in the shortest form that reads back to the same double, no key
-/// whose value is its default. So comments, layout, order of keys, the notation of numbers (`1e4` or `10000.0`) and
-/// explicit defaults do not change the digest, nor do keys that are added to the format later. Defaults that the schema
-/// describes only in words, such as `passes = 2`, do count when they are typed.
+/// Canonical JSON has sorted keys, every number in the shortest form that reads back to the same double, and no key
+/// with its default. So comments, layout, order of keys, the notation of numbers (`1e4` or `10000.0`) and explicit
+/// defaults do not change the digest, nor do keys that are added to the format later. A default that the schema
+/// describes only in words, such as `passes = 2`, changes the digest when typed.
 ///
 /// The name of a file is replaced by the digest of its content.
 pub(super) fn digest(typed: &impl Serialize, lists: &BodyFile, files: FileDigests) -> String {
@@ -79,7 +79,7 @@ fn listed(body: &BodyFile) -> impl Iterator<Item = (&str, Part<'_>)> {
     lists.into_iter().filter_map(|(key, list)| Some((key, list?)))
 }
 
-/// Hashes what is written to it.
+/// Hashes the bytes that are written to it.
 struct Hash(Sha256);
 
 impl Write for Hash {
@@ -93,7 +93,7 @@ impl Write for Hash {
     }
 }
 
-/// Removes every entry whose value is the default that the schema names.
+/// Removes every entry with the default of the schema as its value.
 fn without_defaults(value: &mut Value, schema: &Value) {
     let schema = match variants(schema) {
         Some((tag, kinds)) => match kinds.iter().find(|(name, _)| value[tag] == **name) {

@@ -1,54 +1,54 @@
-//! What can be wrong with a scene file, and how it is said.
+//! The errors of reading a scene file.
 
 use crate::reading::{Mistake, Mistakes};
 use std::io;
 use std::path::PathBuf;
 
-/// Why a scene could not be had from a file.
+/// A reason why a file gives no scene.
 ///
-/// Each variant names the file and what to do. Mistakes inside a file are collected and shown together; the other
-/// variants end the reading.
+/// Each variant names the file and a remedy. Mistakes inside a file are collected and shown together; every other
+/// variant ends the reading.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// There is no such file.
+    /// The file does not exist.
     #[error("{}: there is no such file{}", path.display(), similar(nearest.as_deref()))]
     Missing {
-        /// The path asked for.
+        /// The path.
         path: PathBuf,
-        /// A file of this name in a folder beside, or the one of the most similar name in the same folder.
+        /// A file of this name in a folder beside, or the most similar name in the same folder.
         nearest: Option<PathBuf>,
     },
-    /// Its name has nothing before the ending that a folder of results could be called.
+    /// The file's name is an ending alone, so that no folder of results can have it.
     #[error("{}: the name of the file without its extension is empty; rename the file", path.display())]
     Nameless {
-        /// The path asked for.
+        /// The path.
         path: PathBuf,
     },
     /// The path is a folder.
     #[error("{}: this is a folder, not a scene file{}", path.display(), inside(scenes))]
     Folder {
-        /// The path asked for.
+        /// The path.
         path: PathBuf,
-        /// Files in it that may be scenes.
+        /// Files in the folder that may be scenes.
         scenes: Vec<PathBuf>,
     },
-    /// The system did not let it be read.
+    /// The system refused to read the file.
     #[error("{}: the file cannot be read", path.display())]
     Unreadable {
-        /// The path asked for.
+        /// The path.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
-    /// It holds more text than a scene may.
+    /// The file is longer than a scene may be.
     #[error("{}: the file has more than {limit} bytes, the most that a scene file may have", path.display())]
     TooLong {
-        /// The path asked for.
+        /// The path.
         path: PathBuf,
-        /// The most that is read (bytes).
+        /// The longest length (bytes).
         limit: u64,
     },
-    /// It holds nothing, or only spaces and comments.
+    /// The file is empty, or has only spaces and comments.
     #[error(
         "{file}: the file is empty; a scene needs at least [time], [body] and one [[run]], a figure [sheet] or [forces]"
     )]
@@ -56,31 +56,31 @@ pub enum SceneError {
         /// The file, as named by the caller.
         file: String,
     },
-    /// It is not text.
+    /// The file is not UTF-8 text.
     #[error("{file}: {what} (byte {offset}); a scene is a TOML file in UTF-8")]
     NotText {
         /// The file, as named by the caller.
         file: String,
-        /// The first byte that no text has, counted from 0.
+        /// The first byte that is no text, counted from 0.
         offset: usize,
-        /// What was found there, or what the file seems to be.
+        /// The byte's value, or the probable kind of the file.
         what: String,
     },
-    /// It is not TOML.
+    /// The text is not TOML.
     #[error("{0}")]
     Syntax(Mistakes),
-    /// It is TOML, but no scene.
+    /// The text is TOML, but not a scene.
     #[error("{0}")]
     Mistakes(Mistakes),
 }
 
 impl SceneError {
-    /// Whether the system refused to read the file, so that nothing is known of what is in it.
+    /// Whether the system refused to read the file, so that its content is unknown.
     pub(crate) fn is_unreadable(&self) -> bool {
         matches!(self, Self::Unreadable { .. })
     }
 
-    /// The mistakes found inside the file; none when it was not read so far.
+    /// The mistakes inside the file; empty for other errors.
     pub fn mistakes(&self) -> &[Mistake] {
         match self {
             Self::Syntax(mistakes) | Self::Mistakes(mistakes) => &mistakes.found,

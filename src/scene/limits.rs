@@ -4,14 +4,14 @@ use super::file::RunFile;
 use crate::reading::words::{count, size};
 use std::collections::BTreeMap;
 
-/// What a scene may ask for. A scene that asks for more is refused before anything is allocated for it.
+/// The largest scene that is accepted. Larger scenes are refused before memory is allocated for them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Nodes of the body.
     pub nodes: u64,
-    /// Nodes of all elements together, counted once for each run.
+    /// Nodes of all elements, counted once for each run.
     pub corners: u64,
-    /// Springs of all runs together, those of neighbouring elements counted as if they shared none.
+    /// Springs of all runs, with no springs shared between neighbours.
     pub springs: u64,
     /// Length of the scene file (bytes).
     pub file: u64,
@@ -19,43 +19,43 @@ pub struct Limits {
 
 impl Default for Limits {
     /// Eight million nodes, a block of 200 × 200 × 200 with three runs: it needs about 20 GB, which a workstation has,
-    /// and its steps take seconds, which is still usable. One more digit in each of three counts exceeds it. A scene
-    /// file may have 256 MiB, about four million listed nodes.
+    /// and seconds a step. One more digit in each of three counts exceeds it. A scene file may have 256 MiB, about four
+    /// million listed nodes.
     fn default() -> Self {
         Self { nodes: 8_200_000, corners: 200_000_000, springs: 700_000_000, file: 256 << 20 }
     }
 }
 
 impl Limits {
-    /// No limit but that of 32-bit indices and of the machine.
+    /// No limits except 32-bit indices and the machine's memory.
     pub const NONE: Self = Self { nodes: u64::MAX, corners: u64::MAX, springs: u64::MAX, file: u64::MAX };
 }
 
-/// How large a body will be.
+/// The size of a body before it is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct BodySize {
     pub(super) nodes: u128,
-    /// Whether it may come out smaller.
+    /// Whether the body may come out smaller.
     pub(super) is_bound: bool,
-    /// How many elements there are of each number of nodes.
+    /// The number of elements for each number of nodes.
     pub(super) elements: BTreeMap<usize, u128>,
     /// Springs listed by hand.
     pub(super) springs: Option<u128>,
 }
 
-/// More than is allowed.
+/// An excess over a limit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Excess {
     /// The request and the limit.
     pub(super) message: String,
     /// What to do.
     pub(super) help: String,
-    /// The run that has the most springs, if these are too many.
+    /// The run with the most springs, if there are too many.
     pub(super) run: Option<usize>,
 }
 
 impl BodySize {
-    /// A body of some nodes with so many elements of each number of nodes, which lists no springs.
+    /// A body without listed springs: its number of nodes, and its number of elements for each number of nodes.
     pub(super) fn new(nodes: u128, elements: impl IntoIterator<Item = (usize, u128)>) -> Self {
         let elements = elements.into_iter().filter(|&(_, count)| count > 0).collect();
         Self { nodes, is_bound: false, elements, springs: None }
@@ -66,14 +66,14 @@ impl BodySize {
         self.elements.values().copied().fold(0, u128::saturating_add)
     }
 
-    /// Nodes of all elements together.
+    /// Nodes of all elements, summed.
     pub(super) fn corners(&self) -> u128 {
         let each = self.elements.iter().map(|(&nodes, &count)| count.saturating_mul(nodes as u128));
         each.fold(0, u128::saturating_add)
     }
 
-    /// Why the body with its runs is too much, if it is, and what to do: `less` makes the body smaller. A run with a mistake
-    /// has no springs.
+    /// The limit that the body with its runs exceeds, and the remedy: `less` makes the body smaller. A run with a
+    /// mistake has no springs.
     pub(super) fn beyond(&self, runs: &[Option<RunFile>], limits: &Limits, less: &str) -> Option<Excess> {
         let of_run = |run: &RunFile| run.model.most_springs(&self.elements, self.springs);
         let springs_of_run: Vec<u128> = runs.iter().map(|run| run.as_ref().map_or(0, of_run)).collect();
@@ -112,14 +112,14 @@ impl BodySize {
         }
     }
 
-    /// What the body with one run takes at least (bytes), roughly: a block of a million cubes takes some tenths more.
+    /// The least memory of the body with one run (bytes), roughly: a block of a million cubes takes some tenths more.
     fn least_memory(&self) -> u128 {
         self.nodes.saturating_add(self.corners()).saturating_mul(100)
     }
 }
 
-/// Whether the machine has so much memory (bytes): it is reserved, and released without being written to. An allocation
-/// that failed later would abort the program without a message.
+/// Whether the machine has this much memory (bytes): it is reserved, and released without being written. An allocation
+/// that fails later would abort the program without a message.
 fn is_given(memory: u128) -> bool {
     let bytes = usize::try_from(memory).unwrap_or(usize::MAX);
     Vec::<u8>::new().try_reserve_exact(bytes).is_ok()
@@ -161,7 +161,7 @@ mod tests {
         let Excess { message, help, run } = excess("'mass-spring', springs = 'all'").unwrap();
         assert!(message.contains("up to 1 799 970 000 springs"), "{message}");
         assert!(help.contains("springs = \"edges\"") && run == Some(1), "{help}");
-        // The default has the diagonals of the polygon, which is its own face.
+        // The default topology has the diagonals of the polygon, which is its own face.
         assert!(excess("'mass-spring'").is_some());
         assert_eq!(excess("'mass-spring', springs = 'edges'"), None);
         assert_eq!(excess("'shape-based'"), None);

@@ -1,4 +1,4 @@
-//! From a file to a scene.
+//! Reading a scene from a file.
 
 use super::error::SceneError;
 use super::limits::Limits;
@@ -24,7 +24,7 @@ impl Scene {
     /// Reads a scene from a file.
     ///
     /// # Errors
-    /// Whatever keeps the file from being a scene, with all mistakes in it; see [`SceneError`].
+    /// The file gives no scene; see [`SceneError`]. All mistakes in it are reported.
     pub fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
         Self::load_with(path, &[], limits)
     }
@@ -41,11 +41,11 @@ impl Scene {
         Ok(Self { file: path.canonicalize().ok(), ..scene })
     }
 
-    /// Reads a scene from a text. `name` is that of the file, for messages; its stem is the name of the scene. A body's
-    /// own file and fonts are searched in the current directory.
+    /// Reads a scene from a text. `name` is the name of the file in messages; its stem is the name of the scene. A
+    /// body's own file and fonts are searched in the current directory.
     ///
     /// # Errors
-    /// A text that is empty, no TOML, or no scene, with all mistakes in it.
+    /// The text is empty, not TOML, or not a scene. All mistakes in it are reported.
     ///
     /// ```
     /// use localshape::scene::{Limits, Scene};
@@ -106,7 +106,7 @@ pub(super) struct Other {
     pub(super) message: &'static str,
 }
 
-/// Figure files passed as scenes, and the other way round.
+/// Figure files passed as scenes, and scenes passed as figures.
 const FIGURE: Other =
     Other { keys: &["sheet", "forces"], message: "this is a figure, not a scene; `localshape figure` draws it" };
 pub(super) const SCENE: Other =
@@ -118,7 +118,7 @@ pub(crate) fn is_figure_file(path: &Path, limits: &Limits) -> bool {
     is_file_of(path, limits, FIGURE)
 }
 
-/// Whether a file is there and of a kind.
+/// Whether a file exists and is of a kind.
 fn is_file_of(path: &Path, limits: &Limits, kind: Other) -> bool {
     let is_of = |text: &str| {
         let (root, _) = DeTable::parse_recoverable(text.strip_prefix('\u{feff}').unwrap_or(text));
@@ -202,16 +202,17 @@ pub(super) fn text_of(path: &Path, limits: &Limits, other: Other) -> Result<Stri
     Ok(as_text(&bytes, &path.display().to_string())?.to_owned())
 }
 
-/// The name of a scene from that of its file; none if a folder could not have it.
+/// The name of a scene from its file's name; none if no folder could have it.
 pub(super) fn stem(file: &Path) -> Option<String> {
     let stem = file.file_stem()?.to_string_lossy().into_owned();
     (!["", ".", ".."].contains(&stem.trim())).then_some(stem)
 }
 
-/// Help where the comma or end of an array was expected.
+/// The help at a missing comma or end of an array.
 const UNCLOSED: &str = "is an array before this not closed with `]`?";
 
-/// The TOML parser's errors: the first of each line, up to the first array that does not end; the rest follows from it.
+/// The errors of the TOML parser: the first of each line, up to the first array without an end, which causes the
+/// others.
 fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistakes {
     let mut found: Vec<_> = errors
         .iter()
@@ -250,7 +251,7 @@ fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistak
     Mistakes { file: name.into(), found, total }
 }
 
-/// The key before an equals sign that nothing follows up to the end of its line or table, before a byte of a text.
+/// The key before an equals sign without a value on its line or in its table, before a byte of a text.
 fn key_without_value(text: &str, at: usize) -> Option<&str> {
     let (before, after) = text.split_at_checked(at)?;
     let rest = after.lines().next().unwrap_or_default().trim_start();
@@ -259,14 +260,14 @@ fn key_without_value(text: &str, at: usize) -> Option<&str> {
     key.rsplit([' ', ',', '{']).next().filter(|key| is_end && !key.is_empty())
 }
 
-/// Where the comma is of a value that would be a number with a point there, and the digits before and after it, if a byte of a text
-/// lies in or after that value in its line.
+/// The decimal comma of a value that a byte of a text lies in or after, in its line, and the digits before and after
+/// the comma.
 fn decimal_comma(text: &str, at: usize) -> Option<(usize, [&str; 2])> {
     let (before, after) = text.split_at_checked(at)?;
     let from = before.rfind('\n').map_or(0, |end| end + 1);
     let line = text[from..at + after.find('\n').unwrap_or(after.len())].trim_end();
     let equals = before[from..].rfind('=')?;
-    // An equals sign in a text or a comment is none.
+    // Equals signs in strings and comments do not count.
     let is_outside = |quote: char| line[..equals].matches(quote).count().is_multiple_of(2);
     if line[..equals].contains('#') || !['"', '\''].into_iter().all(is_outside) {
         return None;
@@ -301,7 +302,7 @@ fn read(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
     }
 }
 
-/// The bytes as text, or what they are instead.
+/// The bytes as text, or the kind of file that they seem to be.
 fn as_text<'b>(bytes: &'b [u8], file: &str) -> Result<&'b str, SceneError> {
     let known = [
         (&b"\x89PNG"[..], "this is a PNG picture"),
@@ -327,7 +328,7 @@ fn as_text<'b>(bytes: &'b [u8], file: &str) -> Result<&'b str, SceneError> {
 
 /// The scene files in a folder, in order.
 fn scenes_in(folder: &Path) -> Vec<PathBuf> {
-    // Folders of results can have very many files; those of scenes have few.
+    // Folders of results can have very many files; folders of scenes have few.
     let entries = fs::read_dir(folder).into_iter().flatten().flatten().take(10_000).map(|entry| entry.path());
     let mut scenes: Vec<_> = entries.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
     scenes.sort();

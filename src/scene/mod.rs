@@ -1,13 +1,12 @@
-//! Scenes: what was typed becomes what it means. After that no field says "use the default", every number is in
-//! SI units and every index is in range.
+//! Scenes, from typed files to resolved values: every number is in SI units, every index is in range, and no field says
+//! "use the default".
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 //!
-//! The way of a scene file: `load` reads it, `structure` checks it against the `schema` made from the types in
-//! `file`, `resolve` gives it its meaning, and each of them reports mistakes to one `report`. Bodies
-//! come from `generate`, from the scene's own lists, or from a file beside it, which `npz` reads; fonts, which `font`
-//! reads, lie beside it, too.
+//! `load` reads a scene file, `structure` checks it against the `schema` made from the types in `file`, and `resolve`
+//! resolves it. All of them report mistakes to one `report`. Bodies come from `generate`, from the scene's own lists,
+//! or from a file beside it, which `npz` reads. `font` reads fonts beside it.
 
 mod builder;
 mod digest;
@@ -57,14 +56,14 @@ use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A scene with everything in it resolved: one body, one world, several runs.
+/// A resolved scene: one body, one world, several runs.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The scene's title; its file's stem when it has none.
+    /// The title; the file's stem by default.
     pub title: String,
-    /// Stem of the scene file, which names the default output folder.
+    /// Stem of the scene file, and name of the default output folder.
     pub name: String,
-    /// The scene file, as a full path; none if the scene was read from a text.
+    /// Full path of the scene file; none for a scene from a text.
     pub file: Option<PathBuf>,
     /// Digest of the scene's meaning: 64 hexadecimal digits. Comments, layout and order of keys do not count. Empty if
     /// a run has a model of its own ([`RunBuilder::own`]).
@@ -77,19 +76,19 @@ pub struct Scene {
     pub frames_per_second: f64,
     /// The body, shared by all runs.
     pub body: Arc<Body>,
-    /// How the body starts, the same in all runs.
+    /// The initial state of the body, the same in all runs.
     pub initial: State,
-    /// One for each panel.
+    /// The runs, one for each panel.
     pub runs: Vec<Run>,
-    /// In the order in which they act.
+    /// The obstacles, in the order in which they act.
     pub obstacles: Vec<Obstacle>,
-    /// What holds and drags nodes.
+    /// Kinematic constraints: nodes that are held or dragged.
     pub grips: Vec<Grip>,
     /// When bodies that have come to rest fall asleep; `None` if they never do.
     pub sleep: Option<Sleep>,
-    /// How it is drawn.
+    /// The view.
     pub view: View,
-    /// What is allowed in its file and probably not meant.
+    /// Warnings: allowed, but probably mistakes.
     pub warnings: Vec<Mistake>,
 }
 
@@ -100,24 +99,25 @@ pub struct Run {
     pub name: String,
     /// The elastic model.
     pub model: Arc<dyn ElasticModel>,
-    /// How time is stepped.
+    /// The integrator.
     pub integrator: Integrator,
-    /// Time step ΔT (s): the time between frames for an integrator that finds its own steps.
+    /// Time step ΔT (s); the time between frames for an integrator that chooses its steps.
     pub step: f64,
-    /// The error that such an integrator allows in each of its steps, as a share of the size of the body; `None` for others.
+    /// The error allowed in each step of an integrator that chooses its steps, as a share of the body's size; `None`
+    /// for others.
     pub tolerance: Option<f64>,
-    /// How a step is computed.
+    /// The code that computes a step.
     pub kernel: Kernel,
-    /// Its place in the palette, which says what its lines look like ([`Self::line`]). In a figure of several scenes,
-    /// runs of one name have one place.
+    /// The run's place in the palette, which gives its line ([`Self::line`]). In a figure of several scenes, runs of
+    /// one name have one place.
     pub(crate) place: usize,
-    /// A colour of its own for its lines. Those of other runs keep away from it.
+    /// A chosen colour of the run's lines. Other runs keep away from it.
     pub colour: Option<Colour>,
 }
 
 impl Scene {
-    /// The diagnostics whose time series over the whole scene pictures of it need, if they need its course: for charts,
-    /// paths, for cameras that follow, and for the drawn size of plates and walls.
+    /// The diagnostics whose time series pictures need, if pictures show the course of the whole scene: in charts and
+    /// paths, with cameras that follow, and with drawn sizes of plates and walls.
     pub(crate) fn time_series(&self) -> Option<&[Diagnostic]> {
         let view = &self.view;
         let is_flat = self.body.dimension == Dimension::Plane;
@@ -134,8 +134,8 @@ impl Scene {
         needed.then_some(view.strip.as_slice())
     }
 
-    /// Whether pictures of it show anything of the time besides the states of its runs: a clock, the course of the scene, or
-    /// what moves by itself.
+    /// Whether pictures show more of the time than states: a clock, the course of the scene, or something that moves by
+    /// itself.
     #[cfg(feature = "render")]
     pub(crate) fn shows_time(&self) -> bool {
         let view = &self.view;
@@ -146,7 +146,8 @@ impl Scene {
             || self.grips.iter().any(is_moved)
     }
 
-    /// Why no run has a diagnostic, and what else a chart can show; `None` if a run has it, as far as models say that.
+    /// The message for a diagnostic that no run has, and the diagnostics that charts can show; `None` if a run may have
+    /// it.
     pub(crate) fn lacks(&self, diagnostic: Diagnostic) -> Option<&'static str> {
         let has = |has: &dyn Fn(&dyn ElasticModel) -> bool| self.runs.iter().any(|run| has(&*run.model));
         let (exists, why) = match diagnostic {
@@ -163,14 +164,14 @@ impl Scene {
         (!exists).then_some(why)
     }
 
-    /// The diagnostics of a frame that its picture shows: the number of each run, and the present value in a chart.
+    /// The diagnostics of a frame in its picture: the number of each run, and the present value in a chart.
     pub(crate) fn frame_diagnostics(&self) -> Vec<Diagnostic> {
         self.view.strip.iter().copied().chain([Diagnostic::ShapeError]).collect()
     }
 }
 
 impl Run {
-    /// Its line in pictures of a palette.
+    /// The run's line in pictures of a palette.
     pub(crate) fn line(&self, palette: &Palette) -> LineStyle {
         palette.line(self.place, self.colour)
     }
@@ -184,7 +185,7 @@ impl Scene {
         self.runs.iter_mut().zip(places).for_each(|(run, place)| run.place = place);
     }
 
-    /// The message and help for a name that no run has.
+    /// The message and help for an unknown run.
     pub(crate) fn no_run(&self, name: &str) -> (String, Option<String>) {
         let names: Vec<_> = self.runs.iter().map(|run| run.name.as_str()).collect();
         let all = list(&names, "and", |name| format!("“{name}”"));
@@ -207,7 +208,7 @@ impl Scene {
         Moment { count: frame as f64, rate: self.frames_per_second }
     }
 
-    /// The step of a run after which a frame shows it: `round(n / (frames_per_second · ΔT))`.
+    /// The step of a run that a frame shows: `round(n / (frames_per_second · ΔT))`.
     pub fn frame_step(&self, run: usize, frame: u64) -> u64 {
         self.moment(frame).step(self.runs[run].step)
     }

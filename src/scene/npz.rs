@@ -1,10 +1,10 @@
 //! Reads NumPy archives (.npz): ZIP archives of plain arrays, as `numpy.savez` and `numpy.savez_compressed` write them.
 //!
-//! Archives are untrusted: sizes are compared with the file before anything is allocated, and memory grows only with what
-//! is really there.
+//! Archives are untrusted. Sizes are compared with the file before memory is allocated, and memory grows only with the
+//! data.
 //!
-//! No library reads the arrays: `npyz` allocates as much as a header says that it is long, up to 4 GiB, before it reads it,
-//! brings twelve crates to parse it, and would leave the checks and messages, which are most of this file.
+//! No library reads the arrays: `npyz` allocates the length that a header claims, up to 4 GiB, before it reads it,
+//! brings twelve crates, and would leave the checks and messages, which are most of this file.
 
 use crate::reading::words::{count, quoted};
 use std::borrow::Cow;
@@ -13,13 +13,13 @@ use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 use zip::{CompressionMethod, ZipArchive};
 
-/// The longest header of an array that is read (bytes); one of numbers has some hundred.
+/// The longest accepted header of an array (bytes); usual ones have some hundred.
 const LONGEST_HEAD: usize = 4096;
 
 /// The largest allocation for an array before it is read (bytes), larger than most arrays and available on every machine.
 const MOST_RESERVED: u64 = 1 << 26;
 
-/// An archive that is open for reading.
+/// An open archive.
 #[derive(Debug)]
 pub(crate) struct Npz {
     zip: ZipArchive<BufReader<File>>,
@@ -30,18 +30,18 @@ pub(crate) struct Npz {
 /// The header of an array in an archive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Array {
-    /// Its index in the archive.
+    /// Index in the archive.
     index: usize,
     dtype: Dtype,
     /// Whether columns, not rows, are contiguous (Fortran order).
     by_columns: bool,
-    /// Its length along each axis.
+    /// Length along each axis.
     pub(crate) shape: Vec<u64>,
     /// Length of the header (bytes).
     head: u64,
 }
 
-/// How a number is stored, little-endian.
+/// The type of a number, little-endian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Dtype {
     Float64,
@@ -59,7 +59,7 @@ impl Dtype {
         }
     }
 
-    /// From NumPy's name of a type; else what is wrong with it.
+    /// The type of a NumPy name, or a message about it.
     fn of(name: &str) -> Result<Self, String> {
         const EXPECTED: &str = "expected float64, float32 or whole numbers";
         let (order, rest) = name.split_at_checked(1).unwrap_or_default();
@@ -149,7 +149,7 @@ impl Npz {
     /// Opens an archive.
     ///
     /// # Errors
-    /// In words, what keeps it from being one.
+    /// The file is no archive; the message says why.
     pub(crate) fn open(path: &Path) -> Result<Self, String> {
         if path.is_dir() {
             return Err("is a folder; expected a NumPy archive (.npz)".to_owned());
@@ -177,7 +177,7 @@ impl Npz {
         Ok(Self { zip: ZipArchive::new(BufReader::new(file)).map_err(broken)?, length })
     }
 
-    /// Whether an array can be in the file as it is: no longer than that, and so not packed.
+    /// Whether an array may be stored unpacked: no longer than the file.
     pub(crate) fn has_room_for(&self, array: &Array) -> bool {
         array.bytes().is_some_and(|bytes| bytes <= self.length)
     }
@@ -270,7 +270,7 @@ impl Npz {
 }
 
 impl Npz {
-    /// Reads a part of the numbers of an array, from an offset on (bytes), without what is before it.
+    /// Reads a part of the numbers of an array, from an offset (bytes).
     pub(crate) fn part(&mut self, array: &Array, offset: u64, into: &mut [u8]) -> Result<(), String> {
         use std::io::SeekFrom;
         let broken = |error: &dyn std::fmt::Display| format!("cannot be read, the file is damaged or packed ({error})");
@@ -281,17 +281,17 @@ impl Npz {
 }
 
 impl Array {
-    /// Whether it holds double precision numbers, row by row.
+    /// Whether the array has double precision numbers, row by row.
     pub(crate) fn is_plain(&self) -> bool {
         self.dtype == Dtype::Float64 && !self.by_columns
     }
 
-    /// Whether it holds whole numbers.
+    /// Whether the array has whole numbers.
     pub(crate) fn is_whole(&self) -> bool {
         matches!(self.dtype, Dtype::Signed(_) | Dtype::Unsigned(_))
     }
 
-    /// NumPy's name of the type of its numbers.
+    /// NumPy's name of the type.
     pub(crate) fn type_in_words(&self) -> String {
         let kind = match self.dtype {
             Dtype::Float64 | Dtype::Float32 => "float",
@@ -313,7 +313,7 @@ impl Array {
     }
 }
 
-/// What follows a key in the head of an array, which is a dictionary in Python's spelling.
+/// The text after a key in the header of an array, a dictionary in Python's syntax.
 fn value<'t>(text: &'t str, key: &str) -> Option<&'t str> {
     let after = ["'", "\""].iter().find_map(|quote| text.split_once(&format!("{quote}{key}{quote}")))?.1;
     Some(after.trim_start().strip_prefix(':')?.trim_start())

@@ -8,8 +8,8 @@ use std::sync::LazyLock;
 
 /// The JSON Schema (draft 2020-12) of scene files: every key with its meaning, unit, range and default.
 ///
-/// It is one tree without references, so that it can be read from top to bottom. Scene files are checked against
-/// this same tree; see [`Scene::parse`](super::Scene::parse).
+/// It is one tree without references, to be read from top to bottom. Scene files are checked against this tree; see
+/// [`Scene::parse`](super::Scene::parse).
 ///
 /// ```
 /// let schema = localshape::scene::schema();
@@ -31,8 +31,8 @@ pub(super) fn schema_of<T: JsonSchema>(title: &str) -> Value {
     schema
 }
 
-/// Adapts the generated schema to TOML: no null, descriptions on one line, no alternatives of one, and every `kind` with a
-/// description.
+/// Adapts the generated schema to TOML: no null, descriptions on one line, no single alternatives, and a description of
+/// every `kind`.
 fn tidy(schema: &mut Value) {
     match schema {
         Value::Array(items) => items.iter_mut().for_each(tidy),
@@ -55,7 +55,7 @@ fn tidy(schema: &mut Value) {
     }
 }
 
-/// Removes the null that stands for an absent optional key, and flattens what that leaves as an alternative of one.
+/// Removes the null of an absent optional key, and the alternative of one that this leaves.
 fn drop_null(table: &mut Map<String, Value>) {
     if let Some(Value::Array(types)) = table.get_mut("type") {
         types.retain(|name| name != "null");
@@ -75,12 +75,12 @@ fn drop_null(table: &mut Map<String, Value>) {
         for (key, value) in only {
             table.entry(key).or_insert(value);
         }
-        // The alternative may itself have been one with null.
+        // The alternative may itself have had a null.
         drop_null(table);
     }
 }
 
-/// Gives each variant of a tagged table the keys and rules of the table in which the variants are flattened.
+/// Gives each variant of a tagged table the keys and rules of the table that contains the variants.
 fn share_keys(table: &mut Map<String, Value>) {
     let is_variant = |branch: &Value| branch["properties"].is_object();
     if !table.contains_key("properties") || !table.get("oneOf").is_some_and(|branches| is_variant(&branches[0])) {
@@ -119,7 +119,7 @@ pub(super) fn without_nulls(value: &mut Value) {
     }
 }
 
-/// The variants of a `oneOf` of tables by name, and the key that tells them apart; `None` for other schemas.
+/// The variants of a `oneOf` of tables by name, and the key that names them; `None` for other schemas.
 pub(super) fn variants(schema: &Value) -> Option<(&str, Vec<(&str, &Value)>)> {
     let branches = schema.get("oneOf")?.as_array()?;
     let properties = branches.first()?.get("properties")?.as_object()?;
@@ -128,7 +128,7 @@ pub(super) fn variants(schema: &Value) -> Option<(&str, Vec<(&str, &Value)>)> {
     Some((tag, named.collect::<Option<_>>()?))
 }
 
-/// The strings that a schema allows, if it allows only certain ones.
+/// The strings that a schema allows, if it has a list.
 pub(super) fn choices(schema: &Value) -> Option<Vec<&str>> {
     if let Some(only) = schema.get("const") {
         return Some(vec![only.as_str()?]);

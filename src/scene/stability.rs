@@ -1,4 +1,4 @@
-//! What is predicted of the stability of a scene's runs before they start.
+//! Predictions of the stability of a scene's runs.
 
 use super::{RunSummary, Scene};
 use crate::reading::words::{quoted, short};
@@ -12,9 +12,9 @@ impl Scene {
         Stability::of(&self.body, run.model.as_ref(), run.integrator, &self.grips, self.duration)
     }
 
-    /// The share of the largest stable step that the step of a run is, if that is more than 0.9, what to say of it, and what to do. No
-    /// eigenvalue is computed for runs that are far below, as nearly all are. Nothing is said of explicit Euler without damping, see
-    /// [`Self::never_stable`], and of models of the caller's own.
+    /// The message and help for a run whose step is more than 0.9 of the largest stable one, with that share. Runs far
+    /// below, nearly all, need no eigenvalue. Explicit Euler without damping has a message of its own
+    /// ([`Self::never_stable`]), and models of the caller have none.
     pub(super) fn near_limit(&self, number: usize) -> Option<(f64, [String; 2])> {
         const NEAR: f64 = 0.9;
         let run = &self.runs[number];
@@ -37,7 +37,7 @@ impl Scene {
         Some((share, [message, format!("use {half} s or less, or `step = \"auto\"`")]))
     }
 
-    /// What to say of a run that no step makes stable, and what to do: explicit Euler without damping.
+    /// The message and help for a run that no step makes stable: explicit Euler without damping.
     pub(super) fn never_stable(&self, number: usize) -> Option<[String; 2]> {
         let run = &self.runs[number];
         let is_undamped = run.model.bound(&self.body).is_some_and(|bound| bound.damping == 0.0);
@@ -50,9 +50,9 @@ impl Scene {
         })
     }
 
-    /// How much each rebound adds to the energy of an undamped run whose obstacles take none, about, as a share: elastic forces change
-    /// within the step in which a node rebounds. Measured for blocks of eight cubes that fall 1 m, with steps of T/25 to T/400:
-    /// 0.14 to 0.23 times the square of the step over the limit, for shape-based models and springs.
+    /// The share of energy that each rebound adds, about, to an undamped run with `e = 1`: elastic forces change within
+    /// the step of the rebound. Measured for blocks of eight cubes that fall 1 m, with steps of T/25 to T/400: 0.14 to
+    /// 0.23 times the square of the step over the limit, for both models.
     pub(super) fn rebound_gain(&self, number: usize, largest: f64) -> Option<f64> {
         const GAIN: f64 = 0.2;
         let run = &self.runs[number];
@@ -63,14 +63,14 @@ impl Scene {
         (is_undamped && is_elastic && has_limit && share < 1.0).then_some(GAIN * share * share)
     }
 
-    /// What to say of each run whose step is larger than the largest stable one, where there is one.
+    /// The message for each run whose step is larger than the largest stable one.
     pub(crate) fn too_large_steps(&self) -> Vec<String> {
         let near = (0..self.runs.len()).filter_map(|run| self.near_limit(run));
         near.filter(|(share, _)| *share > 1.0).map(|(_, words)| words.join(": ")).collect()
     }
 }
 
-/// What rebounds add to the energy of a run in words, unless it is little.
+/// The energy that rebounds add to a run, in words, unless it is little.
 pub(super) fn rebounds_in_words(run: &RunSummary) -> Option<String> {
     const LITTLE: f64 = 1e-4;
     let gain = run.rebound_gain.filter(|&gain| gain > LITTLE)?;
@@ -84,7 +84,7 @@ pub(super) fn rebounds_in_words(run: &RunSummary) -> Option<String> {
     ))
 }
 
-/// The largest stable step of a run in words, and the share of it that its step takes.
+/// The largest stable step of a run in words, and the share of it that the run takes.
 pub(super) fn in_words(run: &RunSummary) -> String {
     let part =
         |limit: f64| format!("{} s ({} % used)", short(limit), short((1000.0 * run.step / limit).round() / 10.0));

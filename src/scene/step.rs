@@ -1,16 +1,15 @@
-//! Time steps that are typed as a text: a fraction of the cycle T, or `auto`.
+//! Time steps typed as text: a fraction of the cycle T, or `auto`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// A step as a text: `"auto"`, or a fraction of the cycle T, `"T/50"` or `"0.02 T"`, which are kept apart because they may differ in
-/// the last bit.
+/// A step as text: `"auto"`, or a fraction of the cycle T. `"T/50"` and `"0.02 T"` may differ in the last bit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "String", into = "String")]
 pub(super) enum NamedStep {
-    /// From the predicted largest stable one.
+    /// A share of the predicted largest stable step.
     Auto,
     /// T over this number.
     Divided(f64),
@@ -19,7 +18,7 @@ pub(super) enum NamedStep {
 }
 
 impl NamedStep {
-    /// The time step (s) for a cycle T (s); `None` if it does not depend on that.
+    /// The time step (s) for a cycle T (s); `None` for `auto`.
     pub(super) fn of(self, cycle: f64) -> Option<f64> {
         match self {
             Self::Auto => None,

@@ -1,4 +1,4 @@
-//! What a scene contains, in words and numbers, as `check` prints it.
+//! The contents of a scene in words and numbers, as `check` prints them.
 
 use super::{Scene, stability};
 use crate::reading::words::{count, ends, list, short};
@@ -13,20 +13,20 @@ use glam::DVec3;
 use serde::Serialize;
 use std::fmt;
 
-/// What a scene holds. It prints as a short table.
+/// The contents of a scene. It prints as a short table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SceneSummary {
     /// The scene's title.
     pub title: String,
     /// The scene's name.
     pub name: String,
-    /// The digest of its meaning.
+    /// The digest of the scene's meaning.
     pub digest: String,
     /// Number of nodes.
     pub nodes: usize,
     /// Number of elements.
     pub element_count: usize,
-    /// Number of elements of each kind that there is, such as `27 cubes`.
+    /// Number of elements of each kind, such as `27 cubes`.
     pub elements: Vec<String>,
     /// Sides of the box around the body at rest (m): three in space, two in the plane.
     pub extent: Vec<f64>,
@@ -62,34 +62,35 @@ pub struct SceneSummary {
 /// One run of a [`SceneSummary`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunSummary {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// Its model with all that changes its result.
+    /// The model with all parameters that change its result.
     pub model: String,
-    /// How time is stepped, as typed in a scene.
+    /// The integrator, as typed in a scene.
     pub integrator: String,
-    /// How a step is computed.
+    /// The code that computes a step.
     pub kernel: Kernel,
     /// Time step (s).
     pub step: f64,
-    /// The error allowed in each step of an integrator that finds its own, as a share of the size of the body.
+    /// The error allowed in each step of an integrator that chooses its own, as a share of the body's size.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     /// Number of steps up to the last frame.
     pub steps: u64,
-    /// The largest stable step (s), at rest; 0 if none is stable. Absent if nothing limits the steps.
+    /// The largest stable step (s), at rest; 0 if none is stable. Absent if steps have no limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_step: Option<f64>,
     /// The largest step (s) that is stable however far springs are stretched. Absent for models without springs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_stretched_step: Option<f64>,
-    /// How much each rebound adds to the energy, about, as a share. Absent unless the run is undamped and an obstacle has `e = 1`.
+    /// The share of energy that each rebound adds, about. Absent unless the run is undamped and an obstacle has `e =
+    /// 1`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rebound_gain: Option<f64>,
 }
 
 impl Scene {
-    /// What the scene holds.
+    /// The contents of the scene.
     pub fn summary(&self) -> SceneSummary {
         let body = &self.body;
         let coordinates = |vector: DVec3| match body.dimension {
@@ -138,13 +139,13 @@ impl Scene {
         }
     }
 
-    /// The nodes that are held, or dragged, and when.
+    /// The nodes that are held or dragged, and when.
     fn constraints(&self, held: bool) -> Vec<String> {
         let wanted = self.grips.iter().filter(|grip| (grip.motion == Motion::Still) == held);
         wanted.map(|grip| constraint(grip, self.duration)).collect()
     }
 
-    /// The cycle T = 2π√(m/k) of the lightest node and the stiffest run (s), of which a scene's steps are fractions.
+    /// The cycle T = 2π√(m/k) of the lightest node and the stiffest run (s). Steps may be fractions of it.
     pub fn cycle(&self) -> f64 {
         self.runs.iter().map(|run| run.model.shortest_period(&self.body)).fold(f64::INFINITY, f64::min)
     }
@@ -176,7 +177,7 @@ impl Scene {
     }
 }
 
-/// Lowest and highest corner of the box around points (m), without what round-off leaves beside zero.
+/// Lowest and highest corner of the box around points (m), without round-off beside zero.
 pub(super) fn corners(points: &[DVec3], dimension: Dimension) -> [Vec<f64>; 2] {
     let (low, high) = bounds(points);
     let round_off = 1e-12 * low.abs().max(high.abs()).max_element();
@@ -207,7 +208,7 @@ fn describe(obstacle: &Obstacle, coordinates: &impl Fn(DVec3) -> Vec<f64>) -> St
     format!("{shape}, e = {e}, μ = {friction}{of}{}", path(&obstacle.motion))
 }
 
-/// What follows the words for something that moves.
+/// The words for the motion of an obstacle.
 fn path(motion: &Motion) -> String {
     match motion {
         Motion::Still => String::new(),
@@ -249,7 +250,7 @@ impl fmt::Display for SceneSummary {
         };
         line("body", &format!("{nodes} nodes, {elements}, {extent} m, {} kg", short(self.mass)))?;
         let [low, high] = &self.start;
-        // Regions of nodes are copied from it, and hold all nodes.
+        // Users copy regions of nodes from it, so it holds all nodes.
         let ranges: Vec<_> = low.iter().zip(high).map(|(&low, &high)| ends([low, high])).collect();
         let corner = |at: usize| ranges.iter().map(|range| &*range[at]).collect::<Vec<_>>().join(", ");
         line("start", &format!("between ({}) and ({}) m", corner(0), corner(1)))?;

@@ -1,11 +1,11 @@
-//! The figures that come with the program, and the scenes they name: so they are there wherever it is called.
+//! The built-in figures and their scenes, so that they exist wherever the program runs.
 
 use std::path::{Component, Path, PathBuf};
 
-/// The names of the figures that come with the program, in the paper's order.
+/// The names of the built-in figures, in the paper's order.
 pub(crate) const NAMES: [&str; 7] = ["fig1", "fig2", "fig3", "fig4a", "fig4b", "fig4c", "restore"];
 
-/// Makes the list of texts by their paths.
+/// The texts by their paths.
 macro_rules! texts {
     ($($path:literal,)*) => {
         const TEXTS: &[(&str, &str)] = &[$(($path, include_str!(concat!("../../../", $path))),)*];

@@ -1,5 +1,5 @@
-//! What a figure file says, as typed. As with scenes, the documentation of the fields is what messages and the schema
-//! say, and the schema made from these types is what files are checked against.
+//! The structs that figure files are read into. The documentation of their fields is part of messages and of the
+//! schema, against which files are checked.
 
 use crate::look::Theme;
 use crate::look::file::ColourFile;
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FigureFile {
-    /// The title above everything. Default: none.
+    /// The title above all panels. Default: none.
     #[schemars(length(max = 200))]
     pub(super) title: Option<String>,
     /// A line below the title. Default: none.
@@ -23,14 +23,13 @@ pub(super) struct FigureFile {
     pub(super) size: SizeFile,
     /// The colours. Default: those of the first scene.
     pub(super) theme: Option<Theme>,
-    /// Scale of all text, or in figures for print the size of most text, such as `{ pt = 7 }`. Text for which there is no room,
-    /// or that would be too small to read, is left out; figures for print with type below 5 pt are refused. Default: that of
-    /// the first scene.
+    /// Scale of all text, or for print the size of most text, such as `{ pt = 7 }`. Text without room, or too small to
+    /// read, is left out; type below 5 pt is refused in figures for print. Default: that of the first scene.
     pub(super) text_scale: Option<TextScaleFile>,
     /// A contact sheet: runs of scenes as rows, moments as columns. Either this or `forces`.
     pub(super) sheet: Option<SheetFile>,
-    /// A diagram of the forces that each run's model exerts on the nodes at the start of scenes. Scenes with several runs are
-    /// rows, with one column for each run; scenes with one run stand side by side. Either this or `sheet`.
+    /// A diagram of the forces of each run's model on the nodes at the start. Scenes with several runs are rows, with
+    /// one column for each run. Scenes with one run stand side by side. Either this or `sheet`.
     pub(super) forces: Option<ForcesFile>,
 }
 
@@ -42,7 +41,7 @@ fn size() -> SizeFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SheetFile {
-    /// The scene file of all columns that name none, relative to the figure file.
+    /// The scene file of columns without one, relative to the figure file.
     pub(super) scene: Option<String>,
     /// The moments shown (s), one column for each, such as `[0.0, 0.5]`, instead of `column`.
     #[schemars(length(min = 1, max = 40), inner(range(min = 0.0)))]
@@ -55,22 +54,21 @@ pub(super) struct SheetFile {
     #[serde(default)]
     #[schemars(length(max = 20))]
     pub(super) row: Vec<RowFile>,
-    /// Diagnostics plotted over time below the pictures, with marks at the moments shown, such as `["turned_over"]`. If columns
-    /// show several scenes, such as one body with several seeds, each curve is the mean of a run over these, in a band from the
-    /// least to the greatest value with a thin line for
-    /// each scene; the scenes then have the same duration. Default: none.
+    /// Diagnostics plotted over time below the pictures, with marks at the moments shown, such as `["turned_over"]`.
+    /// Several scenes of equal duration, such as one body with several seeds, have a curve for each run: the mean over
+    /// the scenes, in a band from the least to the greatest value. Default: none.
     #[serde(default)]
     #[schemars(length(max = 6))]
     pub(super) strips: Vec<Diagnostic>,
     /// A diagnostic written below each picture, such as `"volume_ratio"`. Default: none.
     pub(super) number: Option<Diagnostic>,
-    /// A scalar field that colours all bodies, such as `{ by = "strain" }`, with one colour bar. Its default range goes from zero to
-    /// the largest estimate of all scenes. Default: the field of the scenes, if all have the same.
+    /// A scalar field that colours all bodies, such as `{ by = "strain" }`, with one colour bar. By default the bar
+    /// goes from zero to the largest estimate of all scenes. Default: the field that all scenes share, if any.
     pub(super) colour: Option<ColourFile>,
     /// Start of the time axis (s), not after any moment shown. Default: 0.
     #[schemars(range(min = 0.0))]
     pub(super) from: Option<f64>,
-    /// Time at which the time axis changes its scale (s): what comes before takes most of the width. Default: nowhere.
+    /// Time at which the time axis changes its scale (s): the time before takes most of the width. Default: nowhere.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(super) split: Option<f64>,
 }
@@ -84,7 +82,7 @@ pub(super) struct ColumnFile {
     /// The moment shown (s). Default: that of the row.
     #[schemars(range(min = 0.0))]
     pub(super) time: Option<f64>,
-    /// The label above it. Default: the moment, behind the name of its scene if columns show several.
+    /// The label above it. Default: the moment, after the name of its scene if columns show several.
     #[schemars(length(max = 80))]
     pub(super) label: Option<String>,
 }

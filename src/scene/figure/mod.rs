@@ -1,5 +1,5 @@
-//! Figures: scenes put together on one sheet. A figure file names scenes and says which runs and moments of them stand
-//! where; what they look like is said by the scenes themselves.
+//! Figures: scenes put together on one sheet. A figure file names scenes, and places their runs and moments. The scenes
+//! say how they look.
 
 mod built_in;
 mod file;
@@ -20,7 +20,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// A figure, resolved: every scene is read, every run is there, every moment is within its scene.
+/// A resolved figure: every scene is read, every run exists, every moment is within its scene.
 #[derive(Clone, Debug)]
 pub struct Figure {
     /// Name of its file without the ending, for output.
@@ -31,15 +31,15 @@ pub struct Figure {
     pub caption: String,
     /// Width and height (px).
     pub size: [u32; 2],
-    /// The size in print, if it was given.
+    /// The size in print, if it has one.
     pub print: Option<Print>,
-    /// Colours, type and lines of the whole figure.
+    /// Colours, type and lines of the figure.
     pub look: Style,
-    /// What it shows.
+    /// The content.
     pub content: Content,
 }
 
-/// What a figure shows.
+/// The content of a figure.
 #[derive(Clone, Debug)]
 pub enum Content {
     /// Runs at chosen moments.
@@ -51,48 +51,48 @@ pub enum Content {
 /// A contact sheet: rows of runs, columns of moments.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// The scenes that columns show.
+    /// The scenes of the columns.
     pub scenes: Vec<Scene>,
-    /// From left to right.
+    /// The columns, from left to right.
     pub columns: Vec<Column>,
-    /// From top to bottom.
+    /// The rows, from top to bottom.
     pub rows: Vec<Row>,
-    /// Diagnostics over time below the pictures. If there are any, all columns show the first scene.
+    /// Diagnostics over time below the pictures. With them, all columns show the first scene.
     pub strips: Vec<Diagnostic>,
     /// The diagnostic written below each picture.
     pub number: Option<Diagnostic>,
-    /// Where the axis of time begins (s).
+    /// The start of the time axis (s).
     pub from: f64,
-    /// Where the axis of time changes its scale (s).
+    /// The time at which the time axis changes its scale (s).
     pub split: Option<f64>,
 }
 
 /// A column of a contact sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Its place among the scenes.
+    /// Index of the scene.
     pub scene: usize,
-    /// The moment shown (s); `None` if the rows say it.
+    /// The moment shown (s); `None` if the rows have it.
     pub time: Option<f64>,
-    /// What stands above it, if not the moment.
+    /// The label above it; the moment if `None`.
     pub label: Option<String>,
 }
 
 /// A row of a contact sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// The name of the run shown, which all scenes have.
+    /// The name of the run shown, which every scene has.
     pub run: String,
-    /// The moment shown (s), before that of the column.
+    /// The moment shown (s), instead of that of the column.
     pub time: Option<f64>,
-    /// What stands beside it.
+    /// The label beside it.
     pub label: String,
     /// A second line beside it; empty for none.
     pub note: String,
 }
 
 impl Sheet {
-    /// Which run of which scene a cell shows, and when (s).
+    /// The scene, the run and the moment (s) of a cell.
     pub fn cell(&self, row: usize, column: usize) -> (usize, usize, f64) {
         let (row, column) = (&self.rows[row], &self.columns[column]);
         let run = self.scenes[column.scene].runs.iter().position(|run| run.name == row.run);
@@ -109,15 +109,14 @@ pub struct Forces {
     pub notes: Vec<String>,
     /// The run whose forces are outlined beside those of all others.
     pub compare: Option<usize>,
-    /// Whether the vectors from the centre are shown, too.
+    /// Whether the vectors from the centre are drawn.
     pub vectors: bool,
-    /// Whether the size of each force is written beside it.
+    /// Whether the magnitude of each force is written beside it.
     pub numbers: bool,
 }
 
 impl Figure {
-    /// One of the figures of the paper that come with the program; `None` if there is none of that name. [`NAMES`] lists
-    /// them.
+    /// A built-in figure of the paper; `None` if [`NAMES`] does not list the name.
     pub fn built_in(name: &str) -> Option<Self> {
         Some(Self::built_in_with(name, &[])?.unwrap_or_else(|error| panic!("{error}")))
     }
@@ -140,7 +139,7 @@ impl Figure {
     /// Reads a figure from a file.
     ///
     /// # Errors
-    /// Whatever keeps the file, or a scene that it names, from being one, with all mistakes in it.
+    /// The file, or a scene that it names, cannot be read. All mistakes in it are reported.
     pub fn load(path: &Path, limits: &Limits) -> Result<Self, SceneError> {
         Self::load_with(path, &[], limits)
     }
@@ -155,19 +154,19 @@ impl Figure {
         Self::read(&text, &path.display().to_string(), folder, &|path| Scene::load_with(path, settings, limits))
     }
 
-    /// The scenes that it shows.
+    /// The scenes of the figure.
     pub fn scenes(&self) -> &[Scene] {
         match &self.content {
             Content::Sheet(Sheet { scenes, .. }) | Content::Forces(Forces { scenes, .. }) => scenes,
         }
     }
 
-    /// Gives it the colours of a theme, unless it has these.
+    /// Gives the figure the colours of a theme.
     pub fn set_theme(&mut self, theme: Theme) {
         self.look = look(&self.scenes()[0], Some(theme), Some(self.look.text_scale));
     }
 
-    /// Reads a figure from a text; scenes are looked for from `folder` on.
+    /// Reads a figure from a text, with scenes relative to `folder`.
     fn read(
         text: &str,
         name: &str,
@@ -192,8 +191,7 @@ pub(crate) fn schema() -> Value {
 
 static SCHEMA: LazyLock<Value> = LazyLock::new(|| schema_of::<file::FigureFile>("Figure file of localshape"));
 
-/// The look of a figure: that of its first scene, in another theme and with larger type if it says so, and never without a
-/// background.
+/// The style of a figure: that of its first scene, in another theme and with larger type if the figure says so.
 fn look(first: &Scene, theme: Option<Theme>, text_scale: Option<f64>) -> Style {
     let look = match theme {
         Some(theme) if theme != first.view.look.theme => {

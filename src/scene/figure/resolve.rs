@@ -92,7 +92,7 @@ struct Scenes<'a, 'r, 't> {
 }
 
 impl Scenes<'_, '_, '_> {
-    /// The index of the scene named at `path` in the file; `None` after reporting that there is none.
+    /// The index of the scene named at `path` in the file; `None` after reporting a mistake.
     fn scene(&mut self, named: &str, path: &[Way<'_>]) -> Result<Option<usize>, SceneError> {
         let file = self.folder.join(named);
         if let Some(&place) = self.places.get(&file) {
@@ -343,7 +343,7 @@ impl Scenes<'_, '_, '_> {
     }
 }
 
-/// What views of a scene depend on.
+/// The parts of a scene that views depend on.
 fn subject(scene: &Scene) -> Subject<'_> {
     Subject {
         body: &scene.body,
@@ -359,7 +359,7 @@ fn subject(scene: &Scene) -> Subject<'_> {
     }
 }
 
-/// Runs of one name have the same line in all scenes, that of the first scene which has them, and others have others.
+/// Runs of one name have the line of the first scene that has them; runs of different names have different lines.
 fn share_lines(scenes: &mut [Scene]) {
     let Some(first) = scenes.first() else { return };
     let palette = first.view.look.palette;

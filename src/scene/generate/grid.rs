@@ -1,4 +1,4 @@
-//! The cells of a block and their nodes, whatever is made of them.
+//! The cells of a block and their nodes.
 
 use crate::scene::file::{Lattice, SideFile};
 use glam::DVec3;
@@ -6,7 +6,7 @@ use glam::DVec3;
 /// The cells of a block and the nodes at their corners.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grid {
-    /// Cells along x, y and z; none along z in the plane.
+    /// Cells along x, y and z; 0 along z in the plane.
     pub(super) cells: [u32; 3],
     /// Sides of a cell (m).
     pub(super) sides: DVec3,
@@ -57,7 +57,7 @@ impl Grid {
         (0..nz.max(1)).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])))
     }
 
-    /// Positions of all nodes: standing on y = 0, the middle over the origin.
+    /// Positions of all nodes (m): the block stands on y = 0, its middle over the origin.
     pub(super) fn nodes(&self) -> Vec<DVec3> {
         let [nx, ny, nz] = self.cells;
         let mut nodes = Vec::with_capacity(self.len() as usize);

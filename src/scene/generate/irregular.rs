@@ -22,8 +22,8 @@ fn middle(nodes: &[DVec3], cell: &[u32; 8]) -> DVec3 {
 /// Moves the nodes of a lattice at random, each by up to `part` of a cell's shortest side. Nodes on the surface move only
 /// along it, and the centres of cells stay in place.
 ///
-/// If an element becomes flat or inverted, the displacements of its nodes are halved, until there is none. This ends, since
-/// the regular lattice has none.
+/// Displacements of an element that becomes flat or inverted are halved until no such element is left. The regular
+/// lattice has none, so this ends.
 pub(super) fn disturb(
     grid: &Grid,
     nodes: &mut [DVec3],
@@ -60,7 +60,7 @@ pub(super) fn disturb(
     }
 }
 
-/// How far each node at a corner moves (m).
+/// The displacement of each node at a corner (m).
 fn shifts(grid: &Grid, part: f64, seed: u32) -> Vec<DVec3> {
     let axes = if grid.is_flat() { 2 } else { 3 };
     let shortest = grid.sides.to_array()[..axes].iter().copied().fold(f64::INFINITY, f64::min);
@@ -80,7 +80,7 @@ fn shifts(grid: &Grid, part: f64, seed: u32) -> Vec<DVec3> {
     shifts
 }
 
-/// Whether any corner of an element lost most of the volume (area) that its edges span when regular.
+/// Whether a corner of an element has lost most of its regular volume (area).
 fn is_spoilt(element: &[u32], regular: &[DVec3], now: &[DVec3], is_flat: bool) -> bool {
     let is_lost = |corner: [usize; 4]| {
         let spanned = |nodes: &[DVec3]| {

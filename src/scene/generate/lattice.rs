@@ -6,7 +6,7 @@ use crate::scene::file::{Cells, Lattice};
 use crate::scene::limits::BodySize;
 use crate::sim::body::IndexLists;
 
-/// How large a block will be. One of mixed elements may come out smaller, with a middle in fewer of its cells.
+/// The largest size of a block. A block of mixed elements may come out smaller, with middle nodes in fewer cells.
 pub(super) fn size(typed: &Lattice) -> BodySize {
     let product = |extra: u128| typed.cells.iter().fold(1, |all: u128, &n| all.saturating_mul(u128::from(n) + extra));
     let (cells, is_flat) = (product(0), typed.cells.len() == 2);
@@ -28,7 +28,7 @@ pub(super) fn size(typed: &Lattice) -> BodySize {
 pub(super) fn make(typed: &Lattice) -> Made {
     let grid = Grid::new(typed);
     let mut elements = IndexLists::default();
-    // The corners of cells that have a node in their middle; these nodes follow those at the corners.
+    // The corners of cells with a node in their middle. These nodes follow the nodes at corners.
     let mut middles = Vec::new();
     match typed.elements {
         Cells::Cells if grid.is_flat() => grid.each_cell().for_each(|cell| elements.push(&grid.square(cell))),
@@ -53,7 +53,7 @@ fn triangles(grid: &Grid, cell: [u32; 3], elements: &mut IndexLists) {
     halves.iter().for_each(|half| elements.push(half));
 }
 
-/// Cuts a cube in five: one tetrahedron on four corners, of which no two are neighbours, and one on each of the others.
+/// Cuts a cube in five: one tetrahedron on four corners that are no neighbours, and one on each other corner.
 /// Neighbouring cubes take the other four corners, so that their faces have the same diagonals.
 fn tetrahedra(grid: &Grid, cell: [u32; 3], elements: &mut IndexLists) {
     const EVEN: [[usize; 4]; 5] = [[0, 3, 6, 5], [1, 3, 0, 5], [2, 0, 3, 6], [4, 5, 0, 6], [7, 3, 5, 6]];
@@ -163,7 +163,7 @@ mod tests {
             let (low, high) = (low * scale, high * scale);
             let count = nodes.len();
             if typed.cells.len() == 2 {
-                // Every side that only one element has lies on the outline.
+                // Every side of a single element lies on the outline.
                 let mut sides: Vec<[u32; 2]> = elements.iter().flat_map(crate::sim::element::around).collect();
                 sides.sort_unstable();
                 assert!(sides.windows(2).all(|two| two[0] != two[1]), "{typed:?}");

@@ -4,11 +4,11 @@ use super::grid::Grid;
 use super::random;
 use crate::sim::body::IndexLists;
 
-/// Uses of random numbers, beside the axes 0 to 2 along which nodes move.
+/// Uses of random numbers, besides the axes 0 to 2 along which nodes move.
 const WISH: u64 = 3;
 const TURN: u64 = 4;
 
-/// In the plane two squares side by side stay two, become a hexagon, or a pentagon and a triangle; a square that stays
+/// Two neighbouring squares in the plane stay two, become a hexagon, or a pentagon and a triangle. A square that stays
 /// may be cut in two triangles. Pairs are staggered from row to row like bricks.
 pub(super) fn cut_squares(grid: &Grid, seed: u32, elements: &mut IndexLists) {
     let [nx, ny, _] = grid.cells;
@@ -49,14 +49,14 @@ fn join(grid: &Grid, seed: u32, [x, y, z]: [u32; 3], whole: bool, elements: &mut
     }
 }
 
-/// What a cube would be, if its neighbours let it.
+/// The element that a cube becomes, if its neighbours allow it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Wish {
     /// A hexahedron.
     Whole,
-    /// Two wedges along an axis, with this one of the two diagonals across it.
+    /// Two wedges along an axis, and the diagonal that separates them.
     Wedges(usize, bool),
-    /// Pyramids and tetrahedra about its middle.
+    /// Pyramids and tetrahedra about the middle of the cube.
     Middle,
 }
 
@@ -70,8 +70,8 @@ fn wish(grid: &Grid, seed: u32, cell: [u32; 3]) -> Wish {
     }
 }
 
-/// The diagonal of the face at the low end of a cell along an axis, if one of the two cells that share it has wished
-/// for wedges along that axis; the lower one comes first.
+/// The diagonal of the face at the low end of a cell along an axis, if one of its two cells wishes for wedges along
+/// that axis. The lower cell comes first.
 fn diagonal(grid: &Grid, seed: u32, axis: usize, cell: [u32; 3]) -> Option<bool> {
     let mut below = cell;
     below[axis] = below[axis].wrapping_sub(1);
@@ -82,13 +82,13 @@ fn diagonal(grid: &Grid, seed: u32, axis: usize, cell: [u32; 3]) -> Option<bool>
     })
 }
 
-/// The faces of a cube as places of its corners, counter-clockwise from outside: low and high along each axis. The
-/// first and the third corner are those of the diagonal `true`.
+/// The faces of a cube as indices of corners, counter-clockwise from outside: low and high along each axis. The
+/// diagonal `true` joins the first and the third corner.
 const FACES: [[[usize; 4]; 2]; 3] =
     [[[0, 4, 6, 2], [1, 3, 7, 5]], [[0, 1, 5, 4], [2, 6, 7, 3]], [[0, 2, 3, 1], [4, 5, 7, 6]]];
 
-/// In space a cube stays whole, becomes two wedges, or pyramids and tetrahedra about a node in its middle. The corners of
-/// the cubes with such a node; these nodes follow those of the grid in this order.
+/// A cube in space stays whole, becomes two wedges, or pyramids and tetrahedra about a node in its middle. Returns the
+/// corners of cubes with such a node. These nodes follow the nodes of the grid in this order.
 pub(super) fn cut_cubes(grid: &Grid, seed: u32, elements: &mut IndexLists) -> Vec<[u32; 8]> {
     let mut middles = Vec::new();
     for cell in grid.each_cell() {
@@ -114,7 +114,7 @@ fn cut_cube(grid: &Grid, seed: u32, cell: [u32; 3], middles: &mut Vec<[u32; 8]>,
             && (0..3).all(|other| other == axis || is_square(other))
         {
             for triangle in halves(FACES[axis][0], low) {
-                // As seen from inside, and the same on the other side of the cube.
+                // The order seen from inside, as on the other side of the cube.
                 let [a, b, c] = [triangle[0], triangle[2], triangle[1]];
                 elements.push(&[a, b, c, a | 1 << axis, b | 1 << axis, c | 1 << axis].map(|at| corners[at]));
             }

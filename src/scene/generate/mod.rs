@@ -1,6 +1,6 @@
 //! Generated bodies: lattices, polygons, discs and chains of bars.
 //!
-//! Sizes are computed first, to be validated before the body is made. The input has been checked before.
+//! Sizes are computed first, to be validated before the body is made. The input has been checked.
 
 mod grid;
 mod irregular;
@@ -18,7 +18,7 @@ use super::limits::BodySize;
 use crate::sim::body::{Dimension, IndexLists};
 use glam::DVec3;
 
-/// A body that is generated.
+/// A generated body.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Generator<'a> {
     /// A block of cells.
@@ -41,7 +41,7 @@ pub(super) struct Made {
 }
 
 impl<'a> Generator<'a> {
-    /// The generator in a scene; the first, if there are several.
+    /// The first generator in a scene.
     pub(super) fn of(file: &'a BodyFile) -> Option<Self> {
         let lattice = file.lattice.as_ref().map(Self::Lattice);
         let polygon = || file.polygon.as_ref().map(Self::Polygon);
@@ -61,7 +61,7 @@ impl<'a> Generator<'a> {
         if coordinates == 2 { Dimension::Plane } else { Dimension::Space }
     }
 
-    /// How large the body will be, at most.
+    /// The largest size of the body.
     pub(super) fn size(self) -> BodySize {
         match self {
             Self::Lattice(typed) => lattice::size(typed),
@@ -72,7 +72,7 @@ impl<'a> Generator<'a> {
         }
     }
 
-    /// The body. `direction` is that of bars at unit length.
+    /// The body. `direction` is the unit direction of bars.
     pub(super) fn make(self, direction: DVec3) -> Made {
         match self {
             Self::Lattice(typed) => lattice::make(typed),
@@ -83,7 +83,7 @@ impl<'a> Generator<'a> {
         }
     }
 
-    /// The length of all edges (m), if it was typed.
+    /// The length of all edges (m), if the scene has it.
     pub(super) fn side(self) -> Option<f64> {
         match self {
             Self::Lattice(Lattice { side: SideFile::Equal(side), elements: Cells::Cells, .. }) => Some(*side),

@@ -1,8 +1,8 @@
 //! Pseudo-random numbers that are the same on every machine.
 //!
-//! Each is a hash of its use, independent of numbers drawn before, so the order of drawing does not matter.
+//! Each number is a hash of its use, independent of the order of drawing.
 
-/// A number for an index and a use of it: the finaliser of SplitMix64 (Steele, Lea, Flood 2014) over one after the other.
+/// A number for an index and a use: the finaliser of SplitMix64 (Steele, Lea, Flood 2014) over both.
 pub(super) fn hash(seed: u32, index: u64, usage: u64) -> u64 {
     [u64::from(seed), index, usage].into_iter().fold(0, |state, part| mix(state.wrapping_add(part)))
 }

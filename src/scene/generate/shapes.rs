@@ -22,7 +22,7 @@ pub(super) fn bars_size(typed: &BarsFile) -> BodySize {
 
 /// The corner of a regular polygon, counted counter-clockwise from the left end of its lowest side, about its middle.
 fn corner(at: u32, sides: u32, radius: f64) -> DVec3 {
-    // From the lowest point on, so that what is left is right on its mirror image.
+    // Angles start at the lowest point, so that left and right are mirror images.
     let angle = PI * (2.0 * f64::from(at) - 1.0) / f64::from(sides);
     let (sine, cosine) = libm::sincos(angle);
     DVec3::new(radius * sine, -radius * cosine, 0.0)
@@ -33,7 +33,7 @@ fn height(sides: u32, radius: f64) -> f64 {
     radius * libm::cos(PI / f64::from(sides))
 }
 
-/// A regular polygon as one element, standing on y = 0 with a side down.
+/// A regular polygon as one element, with a side on y = 0.
 pub(super) fn polygon(typed: &PolygonFile) -> Made {
     let (sides, radius) = (typed.sides, typed.radius.0);
     let middle = DVec3::Y * height(sides, radius);
@@ -42,7 +42,7 @@ pub(super) fn polygon(typed: &PolygonFile) -> Made {
     Made { nodes, elements: [all.as_slice()].into_iter().collect() }
 }
 
-/// Triangles around the middle, which is node 0, and rings of quadrilaterals around them, standing on y = 0.
+/// Triangles around the middle, node 0, and rings of quadrilaterals around the triangles, standing on y = 0.
 pub(super) fn disc(radius: f64, rings: u32, sectors: u32) -> Made {
     let middle = DVec3::Y * height(sectors, radius);
     let mut nodes = vec![middle];
@@ -62,7 +62,7 @@ pub(super) fn disc(radius: f64, rings: u32, sectors: u32) -> Made {
     Made { nodes, elements }
 }
 
-/// Bars end to end from the origin on.
+/// Bars end to end from the origin.
 pub(super) fn bars(typed: &BarsFile, direction: DVec3) -> Made {
     let nodes = (0..=typed.count).map(|at| direction * (f64::from(at) * typed.length.0)).collect();
     let mut elements = IndexLists::default();

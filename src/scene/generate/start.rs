@@ -8,8 +8,7 @@ use glam::DVec3;
 /// The use of random numbers in clouds, to which the axis is added.
 const CLOUD: u64 = 16;
 
-/// Moves nodes (m) from their rest positions to a start of a shape, with a unit direction if it has one and a seed if it is
-/// random.
+/// Moves nodes (m) from rest to a start shape, with a unit direction if it has one and a seed if it is random.
 pub(in crate::scene) fn brought_to_start(
     nodes: &mut [DVec3],
     shape: StartShape,

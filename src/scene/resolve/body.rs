@@ -14,17 +14,17 @@ use crate::sim::words::typed;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// A body, its initial state, and what else the scene says about it.
+/// A body, its initial state, and the other settings of `[body]`.
 #[derive(Debug)]
 pub(super) struct ResolvedBody {
     pub(super) body: Body,
-    /// Its start.
+    /// The initial state.
     pub(super) initial: State,
     /// Springs listed by hand.
     pub(super) springs: Option<Vec<[u32; 2]>>,
     /// Mean length of the elements' edges (m).
     pub(super) side: f64,
-    /// Whether that is the side of a lattice's cells.
+    /// Whether this length is the side of a lattice's cells.
     pub(super) has_cells: bool,
 }
 
@@ -37,8 +37,8 @@ pub(super) fn dimension(file: &BodyFile, beside: Option<&Lists>) -> Option<Dimen
     beside.map(|lists| lists.dimension).or_else(listed)
 }
 
-/// The body, or `None` after reporting every mistake in it. `flawed`: keys with mistakes have been left out. `beside` is
-/// the content of its file.
+/// The body, or `None` after reporting every mistake in it. `flawed` lists keys that were left out because of mistakes.
+/// `beside` is the content of the body's file.
 pub(super) fn resolve(
     file: &BodyFile,
     beside: Option<Lists>,
@@ -96,7 +96,8 @@ fn generated(
     Some(ResolvedBody { body, initial, springs: None, side, has_cells: of_cells.is_some() })
 }
 
-/// Checks of a generator that the schema cannot express; returns the direction of bars, any direction for others.
+/// Checks of a generator that the schema cannot express. Returns the direction of bars; that of other generators has no
+/// meaning.
 fn check_generator(generator: Generator<'_>, report: &mut Report<'_>) -> Option<DVec3> {
     let at = |key, inner| way!["body", key, inner];
     match generator {
@@ -185,7 +186,7 @@ fn listed(
     Some(ResolvedBody { body, initial, springs, side, has_cells: false })
 }
 
-/// How elements of four, five, six and eight nodes are interpreted.
+/// The interpretation of elements with four, five, six and eight nodes.
 fn solids(file: &BodyFile) -> Solids {
     if file.convex { Solids::Convex } else { Solids::Ordered }
 }
@@ -195,7 +196,7 @@ fn springs_of(run: usize) -> [Way<'static>; 4] {
     way!["run", run, "model", "springs"]
 }
 
-/// Where and how fast the body starts, from its positions (m) and, if they are listed, velocities (m/s).
+/// The initial positions and velocities of the body, from its listed positions (m) and velocities (m/s), if any.
 fn start(
     file: &BodyFile,
     mut position: Vec<DVec3>,
@@ -225,8 +226,8 @@ fn start(
     State::new(position, velocity)
 }
 
-/// A start of another shape (with a unit direction and a seed), a rotation (unit axis, angle), a spin (rad/s), a translation
-/// and a velocity; those with mistakes are reported and left out.
+/// The start shape (with a unit direction and a seed), the rotation (unit axis, angle), the spin (rad/s), the
+/// translation and the velocity. Settings with mistakes are reported and left out.
 #[expect(clippy::type_complexity, reason = "a list of all that a start may have")]
 fn check_start(
     file: &BodyFile,
@@ -259,7 +260,7 @@ fn check_start(
     (shape, turn, spin, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
 }
 
-/// Reports keys of a start that its shape does not have.
+/// Reports keys of a start that do not belong to its shape.
 fn check_use(shape: StartShape, report: &mut Report<'_>) {
     let about = [
         ("direction", shape.has_direction(), "lines, planes and mirror images"),

@@ -9,12 +9,12 @@ use crate::sim::diagnose::volume_by_faces;
 use crate::sim::element::kind;
 use glam::DVec3;
 
-/// An area or volume below this part of that of the element's bounding cube counts as zero: rounding of coordinates leaves
-/// some 1e-16, and a needle a millionth as thick as long still has 1e-6.
+/// An area or volume below this part of the element's bounding cube counts as zero. Rounding of coordinates leaves some
+/// 1e-16; a needle a millionth as thick as long still has 1e-6.
 const FLAT: f64 = 1e-12;
 
 /// Reports every wrong index, repeated node, repeated element or spring, degenerate or inverted element, and every node
-/// without element or spring. `flawed`: there were mistakes before, whose possible consequences are not reported.
+/// without element or spring. `flawed`: there were mistakes before, whose consequences are not reported.
 pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Report<'_>) {
     let Lists { source, nodes, elements, springs, faces, .. } = lists;
     let node_count = nodes.len();
@@ -32,7 +32,7 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
             distinct.push(at);
         }
     }
-    // If some indices are wrong, others may be, too.
+    // With some wrong indices, others may be wrong too.
     if are_valid {
         let mut disorder = Disorder::default();
         distinct.iter().for_each(|&at| lists.check_extent(at, &elements[at], solids, &mut disorder, report));
@@ -51,7 +51,7 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
     for (at, face) in faces.iter().flat_map(|faces| faces.iter()).enumerate() {
         check_indices(source, "faces", at, face, node_count, report);
     }
-    // A wrong index leaves the right node without an element; that is not reported a second time.
+    // A wrong index leaves the right node without an element. That is one mistake.
     for (node, _) in held.iter().enumerate().filter(|&(_, &held)| are_valid && !held) {
         let message = format!("node {node} belongs to no element and no spring, so nothing would hold it");
         source.report(report, "nodes", &[node], message, "remove it, or list it in an element");
@@ -59,7 +59,7 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
 }
 
 impl Lists {
-    /// Reports an element without extent, inside out or clockwise.
+    /// Reports an element that has no extent, is inside out or clockwise.
     fn check_extent(
         &self,
         at: usize,
@@ -79,7 +79,8 @@ impl Lists {
         }
         let kind = kind(self.dimension, solids, element.len());
         let whole = match kind {
-            // Elements of two nodes have a length if their box has one; other elements that are not solids may be flat or rods.
+            // Elements of two nodes have a length if their box has one. Other elements that are no solids may be flat
+            // or rods.
             ElementKind::Segment => return,
             ElementKind::Triangle | ElementKind::Other => {
                 if element.len() > MOST_IN_HULL {
@@ -120,7 +121,7 @@ impl Lists {
 /// own inverse.
 const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
-/// What is wrong with the nodes of an element.
+/// A mistake in the nodes of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wrong {
     Flat,
@@ -128,17 +129,18 @@ enum Wrong {
     Turned,
 }
 
-/// Elements whose nodes are probably not in the order that is expected of them.
+/// Elements whose nodes are probably in another order than expected.
 #[derive(Debug, Default)]
 struct Disorder {
-    /// How many elements there are of which an order is expected.
+    /// The number of elements whose order is checked.
     ordered: usize,
-    /// Index, mistake and kind of each.
+    /// Index, mistake and kind of each element.
     found: Vec<(usize, Wrong, ElementKind)>,
 }
 
 impl Disorder {
-    /// Reports each, or all in one message if all elements have the same mistake, which is then one of the program that wrote them.
+    /// Reports each element, or all in one message if all elements have the same mistake, which the program that wrote
+    /// them probably made.
     fn report(self, lists: &Lists, report: &mut Report<'_>) {
         let source = &lists.source;
         match self.common(lists) {
@@ -155,7 +157,7 @@ impl Disorder {
         }
     }
 
-    /// Message and help for all elements, if there are several and all have the same mistake.
+    /// The message and help for all elements, if there are several with the same mistake.
     fn common(&self, lists: &Lists) -> Option<(String, String)> {
         let &(_, wrong, _) = self.found.first()?;
         if self.ordered < 2 || self.found.len() < self.ordered || self.found.iter().any(|one| one.1 != wrong) {
@@ -198,7 +200,7 @@ impl Disorder {
     }
 }
 
-/// What is wrong with one element, and what helps.
+/// The mistake of one element, and the help.
 fn in_words(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (String, Option<String>) {
     let (name, element) = (lists.source.name("elements", &[at]), &lists.elements[at]);
     match (wrong, kind) {
@@ -229,12 +231,12 @@ fn in_words(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (Strin
 /// The help for any order.
 const CONVEX: &str = "write convex = true in [body] for nodes in any order";
 
-/// The most nodes of an element whose faces are those of its convex hull: finding them takes seconds from there on.
+/// The most nodes of an element whose faces are found from its convex hull: it takes seconds from there on.
 const MOST_IN_HULL: usize = 10_000;
-/// The most nodes of a polygon whose sides are compared with each other.
+/// The most nodes of a polygon whose sides are compared pairwise.
 const MOST_COMPARED: usize = 2000;
 
-/// Whether points lie on a line, for a box around them of a size.
+/// Whether points lie on a line, to round-off in a box of a size around them.
 fn is_on_a_line(points: &[DVec3], size: f64) -> bool {
     let from = |point: &DVec3| *point - points[0];
     let along =
@@ -242,7 +244,7 @@ fn is_on_a_line(points: &[DVec3], size: f64) -> bool {
     points.iter().all(|point| along.cross(from(point)).length() <= FLAT.sqrt() * size * size)
 }
 
-/// Two sides of a polygon that cross each other, by their first corners.
+/// The first corners of two sides of a polygon that cross each other.
 fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2]> {
     let count = corners.len();
     if kind != ElementKind::Polygon || !(4..=MOST_COMPARED).contains(&count) {
@@ -257,7 +259,7 @@ fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2]> {
         .find(|&[one, other]| apart(side(one), side(other)) && apart(side(other), side(one)))
 }
 
-/// Reports indices that do not exist and nodes that occur twice in one list. Returns whether there are none.
+/// Reports indices that do not exist and repeated nodes. Returns true if there are none.
 fn check_indices(
     source: &ListSource,
     key: &str,
@@ -292,7 +294,7 @@ fn check_indices(
     are_valid
 }
 
-/// Reports a list with the same nodes as an earlier one, in any order. Returns whether it is one.
+/// Reports a list with the same nodes as an earlier one, in any order. Returns true if it is one.
 fn repeated<'l>(
     source: &ListSource,
     key: &str,
@@ -313,7 +315,7 @@ fn repeated<'l>(
     first != at
 }
 
-/// What is wrong with an element of negative size, and its nodes in the right order.
+/// The mistake of an element of negative size, and its nodes in the right order.
 fn mended(kind: ElementKind, nodes: &[u32]) -> (&'static str, Vec<u32>) {
     let pick = |order: &[usize]| order.iter().map(|&place| nodes[place]).collect();
     match kind {

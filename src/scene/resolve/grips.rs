@@ -76,18 +76,18 @@ pub(super) fn check_steps(holds: &[Option<HoldFile>], grabs: &[Option<GrabFile>]
     }
 }
 
-/// Reports nodes that two grips have at the same time.
+/// Reports nodes in two constraints at the same time.
 fn check_overlaps(named: &[(String, Vec<Way<'_>>, Grip)], report: &mut Report<'_>) {
     let mut holders: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (at, (_, _, grip)) in named.iter().enumerate() {
         grip.nodes.iter().for_each(|&node| holders.entry(node).or_default().push(at));
     }
-    // One node says it all: others of the same two grips follow from the same mistake.
+    // One node is enough: others of the same two constraints have the same cause.
     let mut clashes: BTreeMap<[usize; 2], u32> = BTreeMap::new();
     for (node, mut grips) in holders {
         let time = |grip: usize| (named[grip].2.from, named[grip].2.until);
         grips.sort_by(|&a, &b| time(a).0.total_cmp(&time(b).0));
-        // A grip that comes before another lets go, comes before the last of all lets go.
+        // A constraint that begins before another ends, begins before the last one ends.
         let mut last = grips[0];
         for &grip in &grips[1..] {
             if time(grip).0 < time(last).1 {
@@ -185,11 +185,11 @@ fn within(
 /// Coordinates that are closer than this part of the body's longest side are equal.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Nodes of equal coordinate along one axis at rest, as the layers of a lattice are.
+/// Nodes with equal coordinates along one axis at rest, such as the layers of a lattice.
 struct Layers {
     /// The layer of each node.
     of: Vec<u32>,
-    /// How many nodes each has.
+    /// The number of nodes in each layer.
     sizes: Vec<usize>,
 }
 
@@ -210,9 +210,9 @@ fn layers_of(body: &Body) -> Vec<Layers> {
     (0..if body.dimension == Dimension::Plane { 2 } else { 3 }).map(along).collect()
 }
 
-/// Warns of a box that includes the same part of each layer at one end of the body, probably typed for a body at another
-/// place. Such a box is thin along one axis, with less than half of the layers, and has at least half of them along the
-/// others. Boxes for rows and corners are thin along several axes.
+/// Warns of a box that includes the same part of each layer at one end of the body, probably typed for a body at
+/// another place. Such a box is thin along one axis, with less than half of the layers, and has at least half of them
+/// along the others. Boxes around rows and corners are thin along several axes.
 fn warn_of_rest(
     nodes: &[u32],
     layers: &[Layers],

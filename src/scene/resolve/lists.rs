@@ -13,12 +13,12 @@ use glam::DVec3;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
-/// Where the lists are.
+/// The place of the lists.
 #[derive(Clone, Debug)]
 pub(super) enum ListSource {
-    /// In the scene itself.
+    /// The scene.
     Scene,
-    /// In a file of this name.
+    /// A file of this name.
     File(String),
 }
 
@@ -60,7 +60,7 @@ impl ListSource {
     }
 }
 
-/// What a body lists.
+/// The lists of a body.
 #[derive(Clone, Debug)]
 pub(super) struct Lists {
     pub(super) source: ListSource,
@@ -79,7 +79,7 @@ pub(super) struct Lists {
 }
 
 impl Lists {
-    /// What a scene lists, if it lists nodes; points with another number of coordinates are reported.
+    /// The lists of a scene with nodes. Points with another number of coordinates are reported.
     pub(super) fn typed(file: &BodyFile, report: &mut Report<'_>) -> Option<Self> {
         let nodes = file.nodes.as_ref()?;
         let dimension = if nodes.first()?.0.len() == 2 { Dimension::Plane } else { Dimension::Space };
@@ -106,7 +106,7 @@ impl Lists {
         })
     }
 
-    /// What a file lists, or `None` after reporting what is wrong with it.
+    /// The lists of a file, or `None` after reporting its mistakes.
     pub(super) fn read(folder: &Path, name: &str, limits: &Limits, report: &mut Report<'_>) -> Option<Self> {
         let path = folder.join(name);
         let whole = |report: &mut Report<'_>, message: String, help: Option<String>| {
@@ -135,7 +135,7 @@ impl Lists {
         (report.total() == before).then_some(lists).flatten()
     }
 
-    /// A digest of all lists: it depends on the body, not on compression, the width of numbers or the location of the file.
+    /// A digest of all lists. It does not depend on compression, the width of numbers or the location of the file.
     pub(super) fn digest(&self) -> String {
         let mut hasher = Sha256::new();
         let coordinates = |points: &[DVec3], hasher: &mut Sha256| {
@@ -180,13 +180,13 @@ impl Lists {
     }
 }
 
-/// What is wrong with a number that is not finite or too large.
+/// The message for a number that is not finite or too large.
 fn beyond(number: f64) -> Option<String> {
     let expected = if number.is_finite() { format!("a magnitude up to {LARGEST:e}") } else { "a finite number".into() };
     (number.is_nan() || number.abs() > LARGEST).then(|| format!("is {number}; expected {expected}"))
 }
 
-/// Reports of lists that were made in code what the schema says of those in files: numbers out of range, lists too short.
+/// Reports numbers out of range and lists that are too short in lists made in code, as the schema does in files.
 pub(super) fn check_unwritten(file: &BodyFile, report: &mut Report<'_>) {
     let mut say = |key: &str, at: &[usize], message: String| {
         ListSource::Scene.report(report, key, at, format!("`{}` {message}", ListSource::Scene.name(key, at)), None);
@@ -217,7 +217,7 @@ const MESHES: [&str; 15] =
 const EXPECTED: &str = "write it with numpy.savez, at least `nodes` (a row of coordinates for each) and `elements` (a row of nodes for each, \
                         -1 at the end of short ones); docs/bodies.md has an example";
 
-/// The arrays that an archive may have, in the order in which they are read.
+/// The names of arrays in an archive, in the order in which they are read.
 const ARRAYS: [&str; 7] = ["nodes", "elements", "springs", "faces", "positions", "velocities", "masses"];
 
 /// Reads the arrays of one archive.
@@ -286,7 +286,7 @@ impl Reader<'_, '_> {
         self.optional_head(key).flatten()
     }
 
-    /// `None` if there is no such array; `Some(None)` if it has a mistake, which is reported.
+    /// The header of an array: `None` without such an array, `Some(None)` after reporting a mistake.
     fn optional_head(&mut self, key: &str) -> Option<Option<Array>> {
         match self.npz.array(key)? {
             Ok(array) if array.shape.first() == Some(&0) && !["faces"].contains(&key) => {
@@ -334,7 +334,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A number that is finite and not too large; zero after a mistake.
+    /// A number that is finite and not too large; zero after reporting another.
     fn number(&mut self, key: &str, values: &Values, at: &[usize]) -> f64 {
         let number = values.double(at[0], at.get(1).copied().unwrap_or(0));
         let Some(message) = beyond(number) else { return number };
@@ -445,7 +445,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Reports a list that has not one entry for each node.
+/// Reports a list without exactly one entry for each node.
 pub(super) fn check_count(source: &ListSource, key: &str, length: usize, nodes: usize, report: &mut Report<'_>) {
     if length != nodes {
         let (name, entries) = (source.name(key, &[]), if length == 1 { "entry" } else { "entries" });
@@ -454,7 +454,7 @@ pub(super) fn check_count(source: &ListSource, key: &str, length: usize, nodes: 
     }
 }
 
-/// Reports a key of the scene that says the same as an array of the file.
+/// Reports a key of the scene that an array of the file repeats.
 pub(super) fn check_exclusive(lists: &Lists, typed: bool, key: &str, array: &str, report: &mut Report<'_>) {
     if typed {
         let path = way!["body", key];

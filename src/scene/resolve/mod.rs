@@ -1,5 +1,5 @@
-//! Resolves a scene: fills in defaults, compares lengths, checks indices. Every mistake is reported; parts with mistakes are
-//! not used.
+//! Resolves a scene: fills in defaults, compares lengths, checks indices. Every mistake is reported. Parts with
+//! mistakes are not used.
 
 mod body;
 mod elements;
@@ -35,18 +35,17 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The parts of a scene file without those that have a mistake in their structure. Without mistakes, what is written of
-/// them is the whole file.
+/// The parts of a scene file without mistakes in their structure.
 #[derive(Debug, Serialize)]
 pub(super) struct Parts {
     title: Option<String>,
     gravity: Option<Coordinates>,
     time: Option<TimeFile>,
     body: Option<BodyFile>,
-    /// The lists in the body's own file, if it has one without mistakes.
+    /// The lists in the body's own file, if it has no mistakes.
     #[serde(skip)]
     beside: Option<Lists>,
-    /// Keys of the top level below which something is left out because of mistakes.
+    /// Top-level keys with mistakes in or below them.
     #[serde(skip)]
     flawed: BTreeSet<String>,
     #[serde(rename = "run")]
@@ -58,7 +57,7 @@ pub(super) struct Parts {
     #[serde(rename = "grab")]
     grabs: Vec<Option<GrabFile>>,
     view: Option<ViewFile>,
-    /// The fonts that the view names; `None` if there is a mistake in them.
+    /// The fonts of the view; `None` after a mistake in them.
     #[serde(skip)]
     font: Option<FontFiles>,
 }
@@ -68,7 +67,7 @@ impl Parts {
     pub(super) fn new(checked: &Checked, folder: &Path, limits: &Limits, report: &mut Report<'_>) -> Self {
         let file = &checked.valid;
         let body: Option<BodyFile> = part(file, "body", report).map(|mut body: BodyFile| {
-            // Together with a generator or a file, lists are mistakes, which have been reported.
+            // Lists beside a generator or a file are mistakes, which have been reported.
             if body.file.is_some() || Generator::of(&body).is_some() {
                 (body.nodes, body.elements, body.springs, body.faces) = (None, None, None, None);
                 (body.positions, body.velocities, body.masses) = (None, None, None);
@@ -98,7 +97,7 @@ impl Parts {
         }
     }
 
-    /// Puts back what the text of a scene made in code leaves out.
+    /// Puts back the parts of a scene made in code that its text leaves out.
     pub(super) fn put_back(&mut self, unwritten: Unwritten, report: &mut Report<'_>) {
         if let (Some(body), Some(mut lists)) = (&mut self.body, unwritten.lists) {
             body.swap_lists(&mut lists);
@@ -131,11 +130,11 @@ impl Parts {
     }
 }
 
-/// What of a scene made in code is not written as text: lists that may be long, and models that have no name.
+/// The parts of a scene made in code that its text leaves out: long lists, and models without names.
 #[derive(Debug, Default)]
 pub(super) struct Unwritten {
     pub(super) lists: Option<BodyFile>,
-    /// One for each run.
+    /// The models, one for each run.
     pub(super) models: Vec<Option<Arc<dyn ElasticModel>>>,
 }
 
@@ -154,8 +153,8 @@ fn read<T: DeserializeOwned>(json: &Json, path: &[Way<'_>], report: &mut Report<
     }
     let known = report.total();
     let read = T::deserialize(json);
-    // After mistakes a required key may be missing. Otherwise the schema has accepted the value, and an error of the types
-    // is unexpected, but reported.
+    // A required key may be missing after a mistake. Otherwise the schema has accepted the value, and an error of the
+    // types is unexpected.
     read.map_err(|error| {
         if known == 0 {
             report.at(path, error.to_string(), None)
@@ -167,7 +166,7 @@ fn read<T: DeserializeOwned>(json: &Json, path: &[Way<'_>], report: &mut Report<
 /// The most frames a scene may have: at 60 a second nearly two days of film.
 const MOST_FRAMES: f64 = 1e7;
 
-/// The physics. Each part is `None` if it, or one that it needs, has a mistake.
+/// The physics. A part is `None` if it has a mistake, or needs a part with one.
 struct Physics {
     gravity: Option<DVec3>,
     body: Option<ResolvedBody>,
@@ -176,7 +175,7 @@ struct Physics {
     runs: Option<Vec<Run>>,
 }
 
-/// The scene, or `None` if there is any mistake: first the physics, then the view.
+/// The scene, or `None` after any mistake: first the physics, then the view.
 pub(super) fn resolve(
     mut parts: Parts,
     name: &str,
@@ -268,7 +267,7 @@ fn view(parts: &Parts, physics: &Physics, report: &mut Report<'_>) -> Option<Vie
     Some(view)
 }
 
-/// Warns of a scene that shows only its start, and of one that takes very long.
+/// Warns of a scene with one frame, and of one that takes very long.
 fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
     /// Computation time for one corner of an element and one step (s), measured on one cube.
     const CORNER: f64 = 3e-8;
@@ -325,7 +324,7 @@ fn warn_of_sleep(scene: &Scene, report: &mut Report<'_>) {
     }
 }
 
-/// Warns of steps that are nearly as large as the largest stable one, or larger, and of integrators that are stable with none.
+/// Warns of steps near or above the largest stable one, and of integrators that are never stable.
 fn warn_of_steps(scene: &Scene, report: &mut Report<'_>) {
     for run in 0..scene.runs.len() {
         if let Some((_, [message, help])) = scene.near_limit(run) {

@@ -7,7 +7,7 @@ use crate::sim::body::Dimension;
 use crate::sim::motion::{Key, Motion, Offset};
 use glam::DVec3;
 
-/// The unit axis of a rotation; a mistake if it is missing in space or given in the plane.
+/// The unit axis of a rotation. Without one in space, or with one in the plane, it is a mistake.
 pub(super) fn axis(
     typed: Option<&Coordinates>,
     dimension: Dimension,
@@ -97,9 +97,9 @@ pub(super) fn keys(
     Some(Motion::Keys { keys, ease: typed.ease, repeat: typed.repeat })
 }
 
-/// Whether two offsets are the same up to rounding and whole turns.
+/// Whether two offsets are equal, to round-off and whole turns.
 fn same(one: Offset, other: Offset) -> bool {
-    /// A rounding of what was typed is no jump.
+    /// Round-off of typed numbers is no jump.
     const CLOSE: f64 = 1e-6;
     let [one_pose, other_pose] = [one, other].map(|offset| Motion::at(offset).pose(0.0));
     one.shift.distance(other.shift) <= CLOSE * (one.shift.length() + other.shift.length()).max(1e-3)

@@ -103,7 +103,7 @@ fn shape(typed: &ShapeFile, dimension: Dimension, path: &[Way<'_>], report: &mut
     }
 }
 
-/// How deep a node can be in an obstacle at the start, in body sizes, because of rounding.
+/// The depth that rounding may leave a node in an obstacle at the start, in body sizes.
 const TOUCHING: f64 = 1e-9;
 
 /// Reports obstacles with nodes inside at the start, and obstacles that start inside the body.
@@ -151,13 +151,13 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
     }
 }
 
-/// How many points of an obstacle, times faces of the body, are tested: some tenths of a second at most.
+/// The most points of an obstacle, times faces of the body, that are tested: some tenths of a second.
 const MOST_COMPARED: usize = 10_000_000;
 
-/// How many points of an obstacle are tested along each axis.
+/// The number of tested points of an obstacle along each axis.
 const SAMPLES: u32 = 8;
 
-/// Points inside an obstacle, its centre first; none for half-spaces, for which testing the nodes is enough.
+/// Points inside an obstacle, its centre first; none for half-spaces, where testing the nodes is enough.
 fn inner_points(shape: &Shape, dimension: Dimension) -> Vec<DVec3> {
     let steps = || (0..=SAMPLES).map(|at| f64::from(at) / f64::from(SAMPLES) * 2.0 - 1.0);
     let across =
@@ -181,7 +181,7 @@ fn inner_points(shape: &Shape, dimension: Dimension) -> Vec<DVec3> {
     }
 }
 
-/// Reports motions that are too fast for the time step: the obstacle would jump.
+/// Reports motions that are too fast for the time step, in which the obstacle would jump.
 pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mut Report<'_>) {
     for (at, obstacle) in typed.iter().enumerate() {
         let Some(obstacle) = obstacle else { continue };

@@ -13,10 +13,10 @@ use crate::sim::stability::Stability;
 use crate::sim::world::Kernel;
 use std::sync::Arc;
 
-/// The most steps of a run: beyond, double precision cannot distinguish the times of two steps.
+/// The most steps of a run. Beyond, double precision cannot distinguish the times of two steps.
 const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
 
-/// The runs, or `None` if a part they need has a mistake.
+/// The runs, or `None` if a part that they need has a mistake.
 pub(super) fn resolve(
     typed: &[Option<RunFile>],
     time: Option<&TimeFile>,
@@ -36,7 +36,7 @@ pub(super) fn resolve(
             model.map_err(|misfit| report.at(&path(misfit.key), misfit.message, None)).ok()
         })
         .collect();
-    // Without one of the models T would differ, and steps would be reported wrongly.
+    // T depends on all models: without one of them steps would be reported wrongly.
     let models: Vec<Arc<dyn ElasticModel>> = models.into_iter().collect::<Option<_>>()?;
     let cycle = models.iter().map(|model| model.shortest_period(&body.body)).reduce(f64::min)?;
     let limits = limits(typed, time?, body, &models, grips.unwrap_or_default());
@@ -117,7 +117,8 @@ pub(super) fn resolve(
     Some(runs)
 }
 
-/// A step for an integrator that finds its own, or a tolerance for one that does not: where, what and what to do.
+/// The place, message and help for a step with an integrator that chooses its own, or a tolerance with another
+/// integrator.
 fn misplaced(
     at: usize,
     run: &RunFile,
@@ -139,8 +140,8 @@ fn misplaced(
     is_typed.then(|| (path, message, "give `step`, or `integrator = \"dormand-prince\"`".into()))
 }
 
-/// The largest stable step (s) of each run with `step = "auto"`, and the run that it is of: its own, or the least of all that take
-/// the scene's.
+/// The largest stable step (s) for each run with `step = "auto"`, and the run that limits it: the run itself, or the
+/// one with the least step of all that share the scene's.
 fn limits(
     typed: &[Option<RunFile>],
     time: &TimeFile,
@@ -167,16 +168,16 @@ fn limits(
     limits
 }
 
-/// The longest step (s) of which a whole number fills the time between two frames, and which is at most the share of the largest
-/// stable one (s) that is documented; `None` if there is none.
+/// The longest step (s) that divides the time between two frames into a whole number of steps, and is at most the
+/// documented share of the largest stable one (s); `None` if there is none.
 fn automatic(limit: f64, time: &TimeFile) -> Option<f64> {
     let frame = 1.0 / time.frames_per_second;
-    // In a scene without a second frame steps fill its duration.
+    // In a scene with one frame steps divide its duration.
     let frame = if time.duration > 0.0 { frame.min(time.duration) } else { frame };
     (limit > 0.0 && limit.is_finite()).then(|| frame / (frame / (Stability::SHARE * limit)).ceil())
 }
 
-/// Why there is no `step = "auto"`, and what to do.
+/// The message and help if there is no `step = "auto"`.
 fn no_limit(run: &RunFile, integrator: Integrator, limit: f64) -> (String, String) {
     let (name, method) = (words::quoted(&run.name), words::quoted(&crate::sim::words::typed(&integrator)));
     match limit > 0.0 {

@@ -1,4 +1,4 @@
-//! What a schema expects, in words.
+//! The expectations of a schema in words.
 
 use crate::reading::words::{list, quoted};
 use crate::scene::schema::choices;
@@ -24,7 +24,7 @@ pub(super) fn expected(schema: &Json) -> String {
     .into()
 }
 
-/// The numbers that are allowed, in words.
+/// The allowed numbers, in words.
 pub(in crate::scene) fn range(
     noun: &str,
     least: Option<f64>,

@@ -1,4 +1,4 @@
-//! Which keys a table may have, which it needs, and which need or exclude each other.
+//! The keys of a table: known, required, and needing or excluding each other.
 
 use super::Walk;
 use super::expect::first_sentence;
@@ -11,7 +11,7 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 impl Walk<'_, '_, '_> {
-    /// Which keys a table needs, which need each other and which exclude each other.
+    /// The keys that a table requires, and the keys that need or exclude each other.
     pub(super) fn table_rules(&mut self, schema: &Json, table: &DeTable<'_>, span: Range<usize>) {
         let has = |name: &str| table.contains_key(name);
         for name in strings(schema.get("required")).filter(|name| !has(name)) {
@@ -28,7 +28,7 @@ impl Walk<'_, '_, '_> {
         let Some(dependent) = schema.get("dependentRequired").and_then(Json::as_object) else { return };
         for (name, needed) in dependent {
             let Some((key, _)) = table.get_key_value(name.as_str()) else { continue };
-            // Where the keys of an alternative need each other, that has been said already.
+            // Keys of an alternative that need each other have been reported.
             let partner = |other: &str| {
                 let begun = |set: &Json| {
                     strings(Some(set)).any(|key| key == name) && strings(Some(set)).any(|key| key == other)
@@ -44,7 +44,7 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// A missing key, unless there is an unknown one that is nearly it.
+    /// A missing key, unless an unknown key is nearly it.
     fn missing_key(&mut self, schema: &Json, table: &DeTable<'_>, name: &str, given: &str, span: Range<usize>) {
         if misspelt(schema, table, name) {
             return;
@@ -60,7 +60,7 @@ impl Walk<'_, '_, '_> {
         self.mistake(span, missing, help);
     }
 
-    /// Sets of keys of which a table has exactly one, and that whole.
+    /// Sets of keys: a table has exactly one complete set.
     fn alternatives(&mut self, schema: &Json, table: &DeTable<'_>, span: Range<usize>) {
         let branches = schema.get("oneOf").and_then(Json::as_array).into_iter().flatten();
         let sets: Vec<Vec<&str>> = branches.map(|branch| strings(branch.get("required")).collect()).collect();
@@ -84,7 +84,7 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// Keys that must not stand together; said of the later one.
+    /// Keys that exclude each other, reported at the later one.
     fn exclusive(&mut self, keys: &[(&Spanned<DeString<'_>>, &Spanned<DeValue<'_>>)]) {
         let last = keys.iter().map(|(key, _)| key.span()).max_by_key(|span| span.start);
         let names = list(&names(keys), "and", |key| format!("`{key}`"));
@@ -95,9 +95,9 @@ impl Walk<'_, '_, '_> {
         );
     }
 
-    /// A key that a table of a kind does not have. Other `kinds` of it may have it.
+    /// An unknown key of a table of one kind, which other `kinds` may have.
     pub(super) fn unknown_key(&mut self, schema: &Json, name: &str, span: Range<usize>, kinds: &[(&str, &Json)]) {
-        // There may be millions, and to find a similar name takes long.
+        // There may be millions of them, and finding a similar name takes long.
         if self.report.only_counted() {
             return;
         }
@@ -149,7 +149,8 @@ fn misspelt(schema: &Json, table: &DeTable<'_>, name: &str) -> bool {
     unknown.take(1000).any(|key| nearest(key, &known) == Some(name))
 }
 
-/// The tables in which a key is known, as written: `view.camera`. If there is one near the top, no deeper ones.
+/// The tables in which a key is known, as written: `view.camera`. Deeper ones are left out if there is one near the
+/// top.
 fn elsewhere(schema: &Json, name: &str) -> Vec<String> {
     let properties = || tables(schema).filter_map(|table| table["properties"].as_object()).flatten();
     let knows = |inner: &Json| tables(inner).any(|table| table["properties"].get(name).is_some());

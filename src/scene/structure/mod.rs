@@ -1,7 +1,7 @@
 //! Checks the structure of a scene file against the schema: keys, types, ranges, lengths and choices.
 //!
-//! `jsonschema` has about fifty dependencies and would replace little of this: it checks JSON, without lines and
-//! columns, reports of alternatives only that none fits, and suggests no similar key.
+//! `jsonschema` has about fifty dependencies and would replace little of this: it checks JSON without lines and
+//! columns, says of alternatives only that none fits, and suggests no similar key.
 
 pub(super) mod expect;
 mod keys;
@@ -19,16 +19,17 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The largest magnitude of any number (SI). Beyond it squares and volumes leave the range of double precision.
+/// The largest accepted magnitude of a number (SI). Squares and volumes of larger ones leave the range of double
+/// precision.
 pub(super) const LARGEST: f64 = 1e30;
 
-/// What is left of a file when whatever has a mistake in it is taken out.
+/// A file without the parts that have mistakes.
 #[derive(Debug)]
 pub(super) struct Checked {
-    /// The file as JSON. Tables of the top level lack the keys with mistakes; an entry of a top-level array, or
-    /// another value, that has one is null.
+    /// The file as JSON, without top-level keys that have mistakes. Array entries and other values with mistakes are
+    /// null.
     pub(super) valid: Map<String, Json>,
-    /// Keys of the top level that had mistakes in or below them.
+    /// Top-level keys with mistakes in or below them.
     pub(super) flawed: BTreeSet<String>,
 }
 
@@ -82,13 +83,13 @@ impl<'p> Walk<'_, '_, 'p> {
         written(&self.path)
     }
 
-    /// What a key means, in its first sentence; nothing for an entry of an array.
+    /// The meaning of a key, in its first sentence; nothing for an entry of an array.
     fn meaning(&self, schema: &Json) -> Option<String> {
         let keyed = matches!(self.path.last(), Some(Way::Key(_)));
         schema.get("description").and_then(Json::as_str).filter(|_| keyed).map(|text| first_sentence(text).into())
     }
 
-    /// A value as JSON, or null if there is any mistake in it.
+    /// A value as JSON, or null after a mistake in it.
     fn guarded(&mut self, schema: &Json, value: &'p Spanned<DeValue<'p>>) -> Json {
         let before = self.report.total();
         let json = self.value(schema, value);
@@ -188,7 +189,7 @@ impl<'p> Walk<'_, '_, 'p> {
                     format!("`{}` contains the control character {control:?}; it is {kind} of text", self.here());
                 self.mistake(span, message, None);
             }
-            // Texts that are drawn have a maximum length; names of files have none.
+            // Drawn texts have a maximum length; names of files have none.
             if let Some(character) =
                 text.chars().find(|&c| needs_shaping(c)).filter(|_| schema.get("maxLength").is_some())
             {
@@ -280,7 +281,7 @@ impl<'p> Walk<'_, '_, 'p> {
         }
     }
 
-    /// A table; `kinds` are the other kinds that it could be, by name.
+    /// A table. `kinds` are the names of its other kinds.
     fn table(&mut self, schema: &Json, table: &'p DeTable<'p>, span: Range<usize>, kinds: &[(&str, &Json)]) -> Json {
         self.table_rules(schema, table, span);
         let mut json = Map::new();
@@ -302,8 +303,8 @@ impl<'p> Walk<'_, '_, 'p> {
     }
 }
 
-/// Whether a character runs from right to left, is joined to or reordered with its neighbours, or combines with the one
-/// before it: text is drawn from left to right, one glyph for each character.
+/// Whether text with a character needs shaping: it runs from right to left, is joined or reordered with its neighbours,
+/// or combines with the one before. Text is drawn from left to right, one glyph for each character.
 fn needs_shaping(character: char) -> bool {
     matches!(
         u32::from(character),
@@ -327,7 +328,7 @@ fn needs_shaping(character: char) -> bool {
     )
 }
 
-/// What to write instead of a text that holds a number, perhaps with a decimal comma, or a whole number.
+/// The help for a text that holds a number, perhaps with a decimal comma.
 fn unquoted(text: &str, is_whole: bool) -> Option<String> {
     let number = text.trim().replacen(',', ".", 1);
     let is_one = number.chars().all(|c| c.is_ascii_digit() || "+-.eE_".contains(c));
@@ -339,12 +340,12 @@ fn unquoted(text: &str, is_whole: bool) -> Option<String> {
     Some(format!("write {number}: a number without quotation marks{comma}"))
 }
 
-/// The rest of the message and the help for a text that should be a colour, but is not.
+/// The rest of the message, and the help, for a text that is no colour.
 fn colour_mistake(schema: &Json, text: &str) -> Option<(String, Option<String>)> {
     (schema["format"] == "colour").then(|| TypedColour::mistake(text)).flatten()
 }
 
-/// Whether a value is of the type that a schema without alternatives asks for.
+/// Whether a value has the type of a schema without alternatives.
 fn fits(schema: &Json, value: &DeValue<'_>) -> bool {
     let name = schema.get("type").and_then(Json::as_str).or_else(|| choices(schema).map(|_| "string"));
     match name {
