@@ -1,11 +1,11 @@
-//! Resolves the look of a scene, and checks the contrast of text and the difference of colours.
+//! Resolves the look of a scene, and checks the contrast and the difference of colours.
 
 use super::file::{ShowFile, ViewFile};
 use super::palette::{Palette, Theme};
 use super::ramp::ramp;
 use super::typed::ColoursFile;
-use super::view::{FloorStyle, FontFiles, Style};
-use crate::colour::{Colour, LEAST_CONTRAST, LINE_CONTRAST, Vision, contrast, difference, readable, written};
+use super::view::{FontFiles, Style};
+use crate::colour::{Colour, LINE_CONTRAST, Vision, contrast, difference, readable, written};
 use crate::reading::report::{Report, Way};
 use std::fmt;
 
@@ -18,9 +18,6 @@ pub(crate) fn resolve(typed: &ViewFile, font: FontFiles, text_scale: f64, report
     let theme = Palette::theme_on(background, typed.theme);
     let palette = Palette::with(theme, background, &typed.colours);
     let known = report.total();
-    // Where no floor is drawn there are no words on it.
-    let floor = typed.colours.floor.filter(|_| typed.floor != FloorStyle::None);
-    check_text(&typed.colours, floor.map(|floor| floor.0), &palette, report);
     check_alarm(&typed.colours, &palette, report);
     check_field(typed, theme, &palette, report);
     (report.total() == known).then_some(Style { theme, palette, font, text_scale })
@@ -28,32 +25,6 @@ pub(crate) fn resolve(typed: &ViewFile, font: FontFiles, text_scale: f64, report
 
 fn way(role: &str) -> [Way<'_>; 3] {
     [Way::Key("view"), Way::Key("colours"), Way::Key(role)]
-}
-
-/// Checks the contrast of text with the background and the floor.
-fn check_text(typed: &ColoursFile, floor: Option<Colour>, palette: &Palette, report: &mut Report<'_>) {
-    if let Some(floor) = floor {
-        let texts = [palette.text, palette.second_text, palette.alarm_text];
-        let found = texts.map(|text| contrast(text, floor)).into_iter().fold(f64::INFINITY, f64::min);
-        if found < LEAST_CONTRAST {
-            let message = format!(
-                "text on `view.colours.floor` would have a contrast of {} to 1; expected at least {LEAST_CONTRAST} to 1",
-                rounded_down(found)
-            );
-            report.at(&way("floor"), message, "bring the floor nearer to the background".to_owned());
-        }
-    }
-    let Some(text) = typed.text.map(|text| text.0) else { return };
-    let found = contrast(text, palette.background);
-    if found < LEAST_CONTRAST {
-        let message = format!(
-            "`view.colours.text` has a contrast of {} to 1 with the background {}; expected at least {LEAST_CONTRAST} to 1",
-            rounded_down(found),
-            written(palette.background)
-        );
-        let towards = if palette.is_made_for_light() { "darker" } else { "lighter" };
-        report.at(&way("text"), message, format!("make it {towards}, or remove it: it follows the background"));
-    }
 }
 
 /// Checks the colours that a scene gives runs: their contrast with the background, and their difference from turned-over

@@ -32,59 +32,24 @@ impl Palette {
             if contrast(own.text, ground) < LEAST_CONTRAST {
                 own.text = best_of(&[own.text, [0; 3], [255; 3]], ground);
             }
+            if ground != theme.background {
+                own.set_secondary_colours(&theme);
+            }
         }
-        let typed = |role: &Option<TypedColour>| role.as_ref().map(|typed| typed.0);
-        own.text = typed(&given.text).unwrap_or(own.text);
-        if own.text != theme.text || own.background != theme.background {
-            own.set_secondary_colours(&theme);
-        }
-        if let Some(body) = typed(&given.body) {
+        if let Some(TypedColour(body)) = given.body {
             own.sound = body;
             own.sound_flat = like(body, theme.sound, theme.sound_flat);
             own.tally = like(body, theme.sound, theme.tally);
             own.edge = readable(own.edge, body, LINE_CONTRAST);
             own.spring_on_body = readable(own.spring_on_body, body, LINE_CONTRAST);
         }
-        if let Some(alarm) = typed(&given.turned_over) {
+        if let Some(TypedColour(alarm)) = given.turned_over {
             own.alarm = alarm;
             own.alarm_line = hatch(alarm, &theme);
             own.alarm_text = alarm;
             own.alarm_on_white = readable(alarm, [255; 3], GOOD_CONTRAST);
         }
         own.alarm_text = readable(own.alarm_text, own.background, GOOD_CONTRAST.min(most_contrast(own.background)));
-        if let Some(edge) = typed(&given.edge) {
-            (own.edge, own.casing) = (edge, edge);
-        }
-        if let Some(outline) = typed(&given.outline) {
-            (own.outline, own.outline_alpha) = (outline, 1.0);
-        }
-        if let Some(obstacle) = typed(&given.obstacle) {
-            own.obstacle = obstacle;
-            own.obstacle_flat = theme.obstacle_flat.map(|flat| like(obstacle, theme.obstacle, flat));
-        }
-        if let Some(plate) = typed(&given.plate) {
-            own.plate = plate;
-            own.plate_side = like(plate, theme.plate, theme.plate_side);
-            own.wall = like(plate, theme.plate, theme.wall);
-            own.pane_edge = like(plate, theme.plate, theme.pane_edge);
-        }
-        if let Some(spring) = typed(&given.spring) {
-            own.spring = spring;
-            own.spring_on_body = readable(spring, own.sound, LINE_CONTRAST);
-        }
-        let one_to_one = [
-            (&mut own.floor, &given.floor),
-            (&mut own.grid, &given.grid),
-            (&mut own.shadow, &given.shadow),
-            (&mut own.node, &given.node),
-            (&mut own.pointer, &given.pointer),
-        ];
-        for (own, given) in one_to_one {
-            *own = typed(given).unwrap_or(*own);
-        }
-        if let Some(arrow) = typed(&given.arrow) {
-            own.runs = [arrow; 8];
-        }
         own
     }
 
@@ -162,7 +127,7 @@ mod tests {
 
     #[test]
     fn what_is_not_given_follows() {
-        let given = ColoursFile { body: typed("#8fbc8f"), turned_over: typed("#7b2d8b"), ..ColoursFile::default() };
+        let given = ColoursFile { body: typed("#8fbc8f"), turned_over: typed("#7b2d8b") };
         for theme in [Theme::Light, Theme::Dark] {
             let (own, of_theme) = (Palette::with(theme, None, &given), Palette::of(theme));
             assert_eq!((own.sound, own.alarm), ([0x8f, 0xbc, 0x8f], [0x7b, 0x2d, 0x8b]));
@@ -188,7 +153,7 @@ mod tests {
 
     #[test]
     fn a_dark_body_gets_light_edges_and_a_dark_alarm_a_light_hatch() {
-        let given = ColoursFile { body: typed("#202830"), turned_over: typed("#603000"), ..ColoursFile::default() };
+        let given = ColoursFile { body: typed("#202830"), turned_over: typed("#603000") };
         let own = Palette::with(Theme::Light, None, &given);
         assert!(oklab(own.edge).0[0] > oklab(own.sound).0[0] && contrast(own.edge, own.sound) >= LINE_CONTRAST);
         assert!(oklab(own.alarm_line).0[0] > oklab(own.alarm).0[0] + 0.2);

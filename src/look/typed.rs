@@ -67,31 +67,6 @@ pub(crate) struct ColoursFile {
     /// Turned-over elements, before shading, and their edges where no surfaces are shown. Their hatching, signs and text
     /// follow.
     pub(crate) turned_over: Option<TypedColour>,
-    /// Edges of elements that are not turned over, rims of nodes, and the borders of lines that a field colours.
-    pub(crate) edge: Option<TypedColour>,
-    /// The outline of a body and of solid obstacles.
-    pub(crate) outline: Option<TypedColour>,
-    /// Nodes that no field colours.
-    pub(crate) node: Option<TypedColour>,
-    /// Springs, and edges where no surfaces are shown.
-    pub(crate) spring: Option<TypedColour>,
-    /// Arrows and curves of all runs without a `colour` of their own; their dashes differ.
-    pub(crate) arrow: Option<TypedColour>,
-    /// Arrows of moving obstacles and nodes, and marks on held nodes.
-    pub(crate) pointer: Option<TypedColour>,
-    /// Solid obstacles, before shading. Their fill and outline in the plane follow.
-    pub(crate) obstacle: Option<TypedColour>,
-    /// Transparent plates. Their sides and edges, walls and slopes follow.
-    pub(crate) plate: Option<TypedColour>,
-    /// Names and numbers. Smaller text, ticks, the line of the floor in the plane and lines between panels follow, with
-    /// shades between it and the background. Its contrast with the background must be at least 4.5.
-    pub(crate) text: Option<TypedColour>,
-    /// The floor in space. Its contrast with text must be at least 4.5.
-    pub(crate) floor: Option<TypedColour>,
-    /// The lines on floors and walls in space.
-    pub(crate) grid: Option<TypedColour>,
-    /// The floor in full shadow.
-    pub(crate) shadow: Option<TypedColour>,
 }
 
 /// Font files, TrueType or OpenType (.ttf, .otf, .ttc), beside the scene file.

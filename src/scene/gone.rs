@@ -23,6 +23,18 @@ const fn value(key: &'static str, value: &'static str, instead: &'static str) ->
 #[rustfmt::skip]
 const GONE: &[Gone] = &[
     value("view.background", "transparent", "write a colour"),
+    key("view.colours.arrow", "write `colour` in each `[[run]]`"),
+    key("view.colours.edge", "remove it"),
+    key("view.colours.floor", "remove it"),
+    key("view.colours.grid", "remove it"),
+    key("view.colours.node", "remove it"),
+    key("view.colours.obstacle", "remove it"),
+    key("view.colours.outline", "remove it"),
+    key("view.colours.plate", "remove it"),
+    key("view.colours.pointer", "remove it"),
+    key("view.colours.shadow", "remove it"),
+    key("view.colours.spring", "remove it"),
+    key("view.colours.text", "remove it"),
     key("view.difference", "remove it; `ghost = \"RUN\"` outlines another run over each body"),
     key("view.difference_of", "remove it"),
     key("view.explode", "remove it"),

@@ -672,7 +672,6 @@ fn mistakes_of_what_is_shown() {
     );
     view("labels = ['title']", "20:11 expected \"name\", \"model\", \"clock\", \"count\" or \"number\"");
     view("light = { elevation = 0 }", "20:23 expected a number from 0.2 to 1.57");
-    view("colours = { floor = '#333' }", "20:21 text on `view.colours.floor` would have a contrast of");
     view("floor = 'tiles'", "20:9 expected \"grid\", \"plain\" or \"none\"");
     view("edges = 'none'", "20:9 expected \"all\", \"visible\" or \"outline\"");
     view("show = []", "20:8 `view.show` is empty; expected at least 1");
