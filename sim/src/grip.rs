@@ -66,12 +66,6 @@ impl Grip {
         self.from < end && end <= self.until
     }
 
-    /// Whether it takes, drags or releases nodes in a step.
-    pub(super) fn changes_in(&self, interval: Interval) -> bool {
-        let Interval { begin, end, .. } = interval;
-        self.moves(begin) != self.moves(end) || self.moves(end) && self.way(begin) != self.way(end)
-    }
-
     fn take(&self, memory: &mut [f64], mut position: impl FnMut(u32) -> DVec3) {
         memory[0] = 1.0;
         for (&node, gripped) in self.nodes.iter().zip(memory[1..].as_chunks_mut::<3>().0) {

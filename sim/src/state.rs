@@ -19,11 +19,6 @@ pub struct State {
     pub status: Status,
     /// The memory of models, constraints and the integrator.
     pub memory: Memory,
-    /// Of bodies that may [`Sleep`](super::Sleep): nothing while they move, the positions of all nodes (m) when they were last
-    /// seen to rest, or, while they sleep, the number of steps after which they fell asleep.
-    pub sleep: Vec<f64>,
-    /// Number of steps after which bodies that slept last woke; 0 if they never did.
-    pub woken: u64,
 }
 
 /// What persists from one step to the next besides positions and velocities. The model, the constraint or the
@@ -60,14 +55,6 @@ impl State {
         Self::new(position, velocity)
     }
 
-    /// The number of steps after which the bodies fell asleep; `None` if they do not sleep.
-    pub fn asleep_since(&self) -> Option<u64> {
-        match self.sleep[..] {
-            [step] => Some(step as u64),
-            _ => None,
-        }
-    }
-
     /// All nodes.
     pub fn nodes(&self) -> Nodes<'_> {
         Nodes { position: &self.position, velocity: &self.velocity }
@@ -82,12 +69,10 @@ impl State {
                 (1, [time.to_bits(), step, part as u64, element.map_or(0, |element| element as u64 + 1)])
             }
         };
-        let lengths = [self.position.len(), model.len(), constraints.len(), integrator.len(), self.sleep.len()];
-        let header = [self.steps, diverged, time, step, part, element, self.woken]
-            .into_iter()
-            .chain(lengths.map(|len| len as u64));
+        let lengths = [self.position.len(), model.len(), constraints.len(), integrator.len()];
+        let header = [self.steps, diverged, time, step, part, element].into_iter().chain(lengths.map(|len| len as u64));
         let vectors = self.position.iter().chain(&self.velocity).flat_map(|vector| vector.to_array());
-        let memory = model.iter().chain(constraints).chain(integrator).chain(&self.sleep).copied();
+        let memory = model.iter().chain(constraints).chain(integrator).copied();
         let words = header.chain(vectors.chain(memory).map(f64::to_bits)).map(u64::to_le_bytes);
         MARK.iter().copied().chain(words.flatten()).collect()
     }
@@ -96,10 +81,10 @@ impl State {
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let (words, []) = bytes.strip_prefix(MARK)?.as_chunks::<8>() else { return None };
         let (header, words) = words.split_at_checked(HEADER)?;
-        let [steps, diverged, time, step, part, element, woken, lengths @ ..]: [u64; HEADER] =
+        let [steps, diverged, time, step, part, element, lengths @ ..]: [u64; HEADER] =
             std::array::from_fn(|at| u64::from_le_bytes(header[at]));
-        let [nodes, model, constraints, integrator, sleep] = lengths.map(|length| usize::try_from(length).ok());
-        let (nodes, memory, sleep) = (nodes?.checked_mul(3)?, [model?, constraints?, integrator?], sleep?);
+        let [nodes, model, constraints, integrator] = lengths.map(|length| usize::try_from(length).ok());
+        let (nodes, memory) = (nodes?.checked_mul(3)?, [model?, constraints?, integrator?]);
         // The counts are untrusted: they are checked against the length of the input before anything is allocated.
         let mut rest = words;
         let mut take = |count: usize| -> Option<Vec<f64>> {
@@ -110,7 +95,6 @@ impl State {
         let vectors = |numbers: Vec<f64>| numbers.as_chunks::<3>().0.iter().map(|&v| DVec3::from_array(v)).collect();
         let (position, velocity) = (vectors(take(nodes)?), vectors(take(nodes)?));
         let memory = Memory { model: take(memory[0])?, constraints: take(memory[1])?, integrator: take(memory[2])? };
-        let sleep = take(sleep)?;
         let status = match diverged {
             0 => Status::Ok,
             1 => {
@@ -119,14 +103,14 @@ impl State {
             }
             _ => return None,
         };
-        rest.is_empty().then_some(Self { position, velocity, steps, status, memory, sleep, woken })
+        rest.is_empty().then_some(Self { position, velocity, steps, status, memory })
     }
 }
 
 /// The first bytes of every state.
-const MARK: &[u8] = b"localshape state 4\n";
+const MARK: &[u8] = b"localshape state 5\n";
 /// Number of 64-bit words in the header.
-const HEADER: usize = 12;
+const HEADER: usize = 10;
 
 #[cfg(test)]
 mod tests {
@@ -136,7 +120,7 @@ mod tests {
         let memory = Memory { model: vec![1.0, f64::NAN], constraints: vec![], integrator: vec![-0.0] };
         let status = Status::Diverged(Divergence { time: 0.3, step: 7, part: 1, element: Some(0) });
         let (position, velocity) = (vec![DVec3::X, DVec3::splat(-0.0)], vec![DVec3::Y, DVec3::splat(1e-310)]);
-        State { position, velocity, steps: 9, status, memory, sleep: vec![8.0], woken: 5 }
+        State { position, velocity, steps: 9, status, memory }
     }
 
     #[test]
@@ -162,8 +146,10 @@ mod tests {
         };
         assert!(State::from_bytes(&[&bytes[..], &[0; 8]].concat()).is_none());
         assert!(State::from_bytes(&changed(0, b'L')).is_none());
+        // Of an earlier version.
+        assert!(State::from_bytes(&changed(MARK.len() - 2, b'4')).is_none());
         // Counts too large for any memory, and a status that does not exist.
-        assert!(State::from_bytes(&changed(MARK.len() + 7 * 8 + 7, 0xff)).is_none());
+        assert!(State::from_bytes(&changed(MARK.len() + 6 * 8 + 7, 0xff)).is_none());
         assert!(State::from_bytes(&changed(MARK.len() + 8, 2)).is_none());
     }
 }

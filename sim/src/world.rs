@@ -10,7 +10,6 @@ use super::integrate::{ByForces, Integrator, Method, Scales};
 use super::kernel::{ByKernel, Scheme};
 use super::model::{ElasticModel, Known, Report};
 use super::part::{Forces, Part};
-use super::sleep::{Next, Sleep};
 use super::snapshot::{Diagnostics, Divergence, Snapshot, Status};
 use super::state::{Memory, State};
 pub use super::system::Surroundings;
@@ -90,8 +89,6 @@ pub struct World {
     dynamics: Box<dyn Dynamics>,
     crew: Crew,
     limit: SpeedLimit,
-    /// When the bodies fall asleep; `None` if they do not.
-    sleep: Option<Sleep>,
     /// The field in snapshots.
     field: Option<Field>,
     /// The diagnostics in snapshots.
@@ -173,7 +170,7 @@ impl World {
             _ => Box::new(ByForces::new(integrator.method(tolerance, scales), &state)),
         };
         let (limit, wanted) = (limit.unwrap_or_default(), Diagnostic::ALL.to_vec());
-        Self { system, dynamics, crew: Crew::new(1), limit, sleep: None, field: None, wanted, state }
+        Self { system, dynamics, crew: Crew::new(1), limit, field: None, wanted, state }
     }
 
     /// Takes steps by a method of another crate from now on, with forces of the reference code.
@@ -193,11 +190,6 @@ impl World {
     /// The threads for vectorised steps.
     pub fn crew(&mut self) -> &mut Crew {
         &mut self.crew
-    }
-
-    /// Sets when the bodies fall asleep, before the first step; by default they never do.
-    pub fn may_sleep(&mut self, sleep: Option<Sleep>) {
-        self.sleep = sleep;
     }
 
     /// Sets the field that snapshots contain from now on; `None` for no field.
@@ -245,30 +237,6 @@ impl World {
     }
 
     fn advance_steps(&mut self, steps: u64) {
-        let Some(sleep) = self.sleep else { return self.take_steps(steps) };
-        let end = self.steps().saturating_add(steps);
-        while self.state.status == Status::Ok {
-            let (now, Self { system, dynamics, state, .. }) = (self.steps(), &mut *self);
-            match sleep.next(system, state, now, end, |state| dynamics.settle(state)) {
-                Next::Steps(steps) => self.take_steps(steps),
-                Next::Look => {
-                    self.take_steps(1);
-                    let Self { system, dynamics, state, .. } = self;
-                    dynamics.settle(state);
-                    if state.status != Status::Ok {
-                        state.sleep.clear();
-                    } else if sleep.look(system, state) {
-                        dynamics.restart();
-                    }
-                }
-                Next::Skipped => {}
-                Next::Done => return,
-            }
-        }
-        self.take_steps(end - self.steps());
-    }
-
-    fn take_steps(&mut self, steps: u64) {
         let Self { system, dynamics, crew, limit, state, .. } = self;
         if state.status == Status::Ok {
             let last = dynamics.steps(state).saturating_add(steps);
@@ -309,14 +277,13 @@ impl World {
         &self.state
     }
 
-    /// Whether a state has the numbers of nodes and of memory of these bodies, and diverged and woke, if it did, where and when they
-    /// can have.
+    /// Whether a state has the numbers of nodes and of memory of these bodies, and diverged, if it did, where and when they can
+    /// have.
     pub fn takes(&self, state: &State) -> bool {
         let lengths = |state: &State| {
             let Memory { model, constraints, .. } = &state.memory;
             [state.position.len(), state.velocity.len(), model.len(), constraints.len()]
         };
-        let sleep = [0, 1, 3 * state.position.len()].contains(&state.sleep.len());
         let place = match state.status {
             Status::Ok => true,
             Status::Diverged(Divergence { step, part, element, .. }) => {
@@ -324,11 +291,7 @@ impl World {
                 step > 0 && elements.is_some_and(|elements| element.is_none_or(|element| element < elements))
             }
         };
-        let sleep = match self.sleep {
-            Some(_) => sleep && state.woken <= state.steps,
-            None => state.sleep.is_empty() && state.woken == 0,
-        };
-        lengths(state) == lengths(&self.state) && place && sleep
+        lengths(state) == lengths(&self.state) && place
     }
 
     /// Continues from another state of the same bodies under the same conditions. The time step has to be the same, as

@@ -221,10 +221,6 @@ impl<'a> Recording<'a> {
 
         let mut results = Results { diagnostics, states, pictures, warned: options.printing.quiet };
         let made = self.simulate(pool, options.printing, &mut simulation, &mut results);
-        if self.summary.frames.recorded > 0 && simulation.read_from.is_none() {
-            // On the way to the next frame, too, which may be far away.
-            self.note_sleep(simulation.frames.states());
-        }
         let Results { diagnostics, mut states, pictures, .. } = results;
         if let Some(states) = &mut states {
             (0..self.runs.len()).for_each(|place| states.set_last_fit(place, simulation.frames.last_fit(place)));
@@ -280,15 +276,6 @@ impl<'a> Recording<'a> {
                 }
                 snapshot::Status::Diverged(_) => {}
             }
-        }
-    }
-
-    /// Notes since when bodies sleep, and when they woke.
-    fn note_sleep<'s>(&mut self, states: impl Iterator<Item = &'s State>) {
-        for (summary, state) in self.summary.runs.iter_mut().zip(states) {
-            let time = |step: u64| step as f64 * summary.time_step;
-            summary.asleep_since = state.asleep_since().map(time);
-            summary.woke_at = (state.woken > 0).then(|| time(state.woken));
         }
     }
 

@@ -48,16 +48,7 @@ fn made(summary: &Summary, folder: &Path) -> String {
 
 fn row(run: &RunSummary) -> [String; 4] {
     let status = match run.status {
-        RunStatus::Ok => match run.asleep_since {
-            Some(time) => {
-                let again = if run.woke_at.is_some() { " again" } else { "" };
-                format!("ok, asleep{again} since {} s", short(time))
-            }
-            None => match run.woke_at {
-                Some(time) => format!("ok, slept, woke at {} s", short(time)),
-                None => "ok".to_owned(),
-            },
-        },
+        RunStatus::Ok => "ok".to_owned(),
         RunStatus::Diverged { time, step, element } => {
             let element = element.map(|element| format!(", element {element}")).unwrap_or_default();
             format!("diverged at {} s (step {step}{element})", short(time))

@@ -18,7 +18,9 @@ use std::path::{Path, PathBuf};
 const CHECKPOINT_FILE: &str = ".localshape-checkpoint.partial";
 
 /// The first bytes of the file; a digest of the rest follows.
-const MARK: &[u8] = b"localshape checkpoint 3\n";
+const MARK: &[u8] = b"localshape checkpoint 4\n";
+/// What earlier marks begin with, too.
+const ANY_MARK: &[u8] = b"localshape checkpoint ";
 
 /// Where a command has come to.
 #[derive(Debug, Serialize, Deserialize)]
@@ -69,6 +71,9 @@ impl Checkpoint {
 
     fn parse(bytes: &[u8], whose: &Whose, plan: &Plan) -> Result<Self, String> {
         let damaged = || "is damaged or cut short".to_owned();
+        if bytes.starts_with(ANY_MARK) && bytes.len() > MARK.len() && !bytes.starts_with(MARK) {
+            return Err("was written by another version of localshape".to_owned());
+        }
         let (digest_found, rest) =
             bytes.strip_prefix(MARK).and_then(|rest| rest.split_at_checked(32)).ok_or_else(damaged)?;
         if Sha256::digest(rest)[..] != *digest_found {
@@ -139,7 +144,9 @@ mod tests {
         for at in 0..bytes.len() {
             let mut changed = bytes.clone();
             changed[at] ^= 1;
-            assert!(Checkpoint::parse(&changed, &whose(), &plan()).unwrap_err().contains("damaged"), "{at}");
+            let is_version = (ANY_MARK.len()..MARK.len()).contains(&at);
+            let words = if is_version { "another version of localshape" } else { "damaged" };
+            assert!(Checkpoint::parse(&changed, &whose(), &plan()).unwrap_err().contains(words), "{at}");
         }
         let other = Plan { frames: vec![0, 1], ..plan() };
         let what = Checkpoint::parse(&bytes, &whose(), &other).unwrap_err();

@@ -159,8 +159,6 @@ impl Stored for StoredStates {
             steps,
             status: reached.map_or(Status::Ok, Status::Diverged),
             memory: Memory { model, constraints, integrator: Vec::new() },
-            sleep: Vec::new(),
-            woken: 0,
         })
     }
 

@@ -103,13 +103,6 @@ pub(crate) struct RunSummary {
     /// Why it diverged; absent if it did not, or its states are read.
     #[serde(flatten)]
     pub cause: Option<Cause>,
-    /// Since when its body sleeps (s), in the last frame that this command recorded or, before that, where it went on; absent if it
-    /// does not, or its states are read.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub asleep_since: Option<f64>,
-    /// When its body last woke, up to the same moment (s); absent if it never slept and woke, or its states are read.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub woke_at: Option<f64>,
     /// The frames drawn by this command in which its body leaves its panel; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cut: Vec<u64>,
@@ -160,8 +153,6 @@ impl Summary {
                 steps: 0,
                 status: RunStatus::Ok,
                 cause: None,
-                asleep_since: None,
-                woke_at: None,
                 cut: Vec::new(),
                 last: None,
             }

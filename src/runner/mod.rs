@@ -270,7 +270,6 @@ impl Scene {
         let tolerance = run.tolerance.unwrap_or(Integrator::TOLERANCE);
         let stepping = Stepping { integrator: run.integrator, step: run.step, tolerance, kernel: run.kernel };
         let mut world = World::new(&self.body, self.initial.clone(), run.model.as_ref(), surroundings, stepping);
-        world.may_sleep(self.sleep);
         world.show(self.view.colour.map(|scale| scale.field));
         world
     }

@@ -22,6 +22,7 @@ const fn value(key: &'static str, value: &'static str, instead: &'static str) ->
 
 #[rustfmt::skip]
 const GONE: &[Gone] = &[
+    key("time.sleep", "remove it"),
     value("view.background", "transparent", "write a colour"),
     key("view.colours.arrow", "write `colour` in each `[[run]]`"),
     key("view.colours.edge", "remove it"),

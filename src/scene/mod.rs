@@ -48,7 +48,6 @@ use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 #[cfg(feature = "render")]
 use crate::sim::motion::Motion;
-use crate::sim::sleep::Sleep;
 use crate::sim::snapshot::Diagnostic;
 use crate::sim::state::State;
 use crate::sim::world::{Kernel, Moment};
@@ -84,8 +83,6 @@ pub struct Scene {
     pub obstacles: Vec<Obstacle>,
     /// Kinematic constraints: nodes that are held or dragged.
     pub grips: Vec<Grip>,
-    /// When bodies that have come to rest fall asleep; `None` if they never do.
-    pub sleep: Option<Sleep>,
     /// The view.
     pub view: View,
     /// Warnings: allowed, but probably mistakes.

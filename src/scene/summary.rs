@@ -5,7 +5,6 @@ use crate::reading::words::{count, ends, list, short};
 use crate::sim::body::{Dimension, bounds};
 use crate::sim::contact::{FrictionOf, Motion, Obstacle, Shape};
 use crate::sim::grip::Grip;
-use crate::sim::sleep::Sleep;
 use crate::sim::stability::Stability;
 use crate::sim::words::{self, typed};
 use crate::sim::world::Kernel;
@@ -52,9 +51,6 @@ pub struct SceneSummary {
     pub holds: Vec<String>,
     /// Each `[[grab]]` in a few words.
     pub grabs: Vec<String>,
-    /// When bodies that have come to rest fall asleep; absent if they never do.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub sleep: Option<Sleep>,
     /// The picture in a few words.
     pub picture: String,
 }
@@ -134,7 +130,6 @@ impl Scene {
             obstacles: self.obstacles.iter().map(|one| describe(one, &coordinates)).collect(),
             holds: self.constraints(true),
             grabs: self.constraints(false),
-            sleep: self.sleep,
             picture: self.picture(),
         }
     }
@@ -279,12 +274,6 @@ impl fmt::Display for SceneSummary {
         }
         for (name, constraints) in [("hold", &self.holds), ("grab", &self.grabs)] {
             constraints.iter().try_for_each(|constraint| line(name, constraint))?;
-        }
-        if let Some(Sleep { distance, after }) = self.sleep {
-            line(
-                "sleep",
-                &format!("after {} s in which no node moves farther than {} m", short(after), short(distance)),
-            )?;
         }
         line("picture", &self.picture)?;
         write!(f, "  {:<9} {}", "digest", self.digest)

@@ -229,29 +229,3 @@ fn what_cannot_be_meant_is_told() {
     place.write("twice.toml", &SMALL.replace("[[run]]", "[run]"));
     place.run("check twice.toml").bad(2, &["write `[[run]]` before each of several"]);
 }
-
-#[test]
-fn what_sleeps_is_told() {
-    let place = Place::new();
-    let sleep = "sleep = { distance = 1e-4, after = 0.07 }\n[body]";
-    place.write(
-        "sleep.toml",
-        &SMALL.replace("[body]", sleep).replace("velocity = [0, -2, 0]\n", "").replace("gravity = [0, -9.8, 0]\n", ""),
-    );
-    let ran = place.run("check sleep.toml").good();
-    assert!(ran.out.contains("\n  sleep     after 0.07 s in which no node moves farther than 0.0001 m\n"), "{ran:?}");
-    let ran = place.run("simulate sleep.toml -o out").good();
-    assert!(ran.out.contains("ok, asleep since 0.07"), "{ran:?}");
-    let since = place.json("out/run.json")["runs"][0]["asleep_since"].as_f64().expect("a time");
-    assert!((0.07..0.08).contains(&since), "{since}");
-    // It tells of bodies that woke, too.
-    let scene = place.read("sleep.toml").replace("duration = 0.1", "duration = 0.3");
-    let moves = "path.keys = [{ time = 0.13, shift = [0, 0, 0] }, { time = 0.2, shift = [0, 0.05, 0] }]";
-    place.write("wakes.toml", &scene.replace("[view]", &format!("[[grab]]\nnodes = [0]\n{moves}\n[view]")));
-    let ran = place.run("simulate wakes.toml -o woken").good();
-    assert!(ran.out.contains("ok, slept, woke at 0.129"), "{ran:?}");
-    let run = &place.json("woken/run.json")["runs"][0];
-    assert!(run["asleep_since"].is_null() && run["last"]["global_rotations"].is_u64(), "{run}");
-    place.write("never.toml", &SMALL.replace("[body]", "sleep = { distance = 0, after = 1 }\n[body]"));
-    place.run("check never.toml").bad(2, &["`time.sleep.distance` is 0", "greater than 0"]);
-}

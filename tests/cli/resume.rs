@@ -83,30 +83,6 @@ fn causes_of_divergences_are_kept() {
     assert!(run["cause"].is_string() && run["node"].is_u64(), "{run}");
 }
 
-/// Whether it slept before it was stopped the first time or after that, and even if the next frame is far away.
-#[test]
-fn what_sleeps_is_told_between_frames() {
-    let place = Place::new();
-    let scene = lasting("1e9").replace("frames_per_second = 60", "frames_per_second = 1e-6");
-    let scene =
-        scene.replace("velocity = [0, -2, 0]\n", "").replace("restitution = 0.5\nfriction = 0.3", "restitution = 1");
-    // The second run swings for ever.
-    let scene = scene.replace("0.1, springs", "0, springs").replace("damping_ratio = 0.1", "damping_ratio = 0.9");
-    place.write("scene.toml", &scene.replace("[body]", "sleep = { distance = 1e-4, after = 0.07 }\n[body]"));
-    let told = |ran: &Ran| {
-        assert_eq!(ran.status, Some(130), "{ran:?}");
-        let run = place.json("out/run.json");
-        assert_eq!(run["frames"]["recorded"], 1, "{run}");
-        assert!(run["runs"][1]["asleep_since"].is_null(), "{run}");
-        run["runs"][0]["asleep_since"].as_f64().expect("since when it sleeps")
-    };
-    let typed = "simulate scene.toml -q -o out";
-    let before = told(&stopped(&place, typed, &format!("out/{CHECKPOINT}"), "INT"));
-    let running = again(&place, &format!("{typed} --resume"));
-    signal(&running, &["TERM"]);
-    assert_eq!(told(&running.wait()), before);
-}
-
 #[test]
 fn after_a_kill_it_goes_on_from_the_last_checkpoint() {
     let place = Place::new();

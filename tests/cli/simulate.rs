@@ -301,8 +301,7 @@ fn everything_in_the_files_is_documented() {
     let times = Timings { compose: spent, draw: spent, encode: spent, ..Timings::default() };
     run["times"] = serde_json::to_value(times).unwrap();
     run["runs"][0]["cut"] = [3].into();
-    (run["frames"]["repeated"], run["runs"][0]["asleep_since"]) = (1.into(), 0.5.into());
-    run["runs"][0]["woke_at"] = 0.6.into();
+    run["frames"]["repeated"] = 1.into();
     (run["frames"]["kept"], run["frames"]["shard"]) = (1.into(), serde_json::json!([1, 2]));
     let [mut found, mut told] = [ways(&run, ""), documented("run.json")];
     found.sort();

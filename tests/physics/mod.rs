@@ -20,7 +20,6 @@ mod readings;
 mod rest;
 mod restore;
 mod runaway;
-mod sleep;
 mod stability;
 mod state;
 mod stress;

@@ -83,18 +83,6 @@ fn times_that_are_probably_not_meant_are_told() {
         warnings("duration = 1e12\nstep = 0.001\nframes_per_second = 1e-9"),
         told(6, 12, "1 000 000 000 000 000 steps of all runs × 1 element take about 8 years on one processor")
     );
-    assert_eq!(
-        warnings("duration = 2\nsleep = { distance = 1e-4, after = 0.001 }"),
-        told(7, 36, "bodies fall asleep in mid-swing, after 0.001 s without motion")
-    );
-    assert_eq!(
-        warnings("duration = 2\nsleep = { distance = 0.5, after = 3 }"),
-        [
-            told(7, 22, "bodies fall asleep while they move: 0.5 m is much of their size"),
-            told(7, 35, "no body sleeps: the scene ends after 2 s"),
-        ]
-        .concat()
-    );
     for time in ["duration = 0", "duration = 100", "duration = 1e4\nstep = 0.01", "duration = 1\nframes_per_second = 1"]
     {
         assert_eq!(warnings(time), [], "{time}");

@@ -273,12 +273,6 @@ fn keys_that_exclude_or_need_each_other() {
         &format!("{}\nstep = 'T/50'", method("dormand-prince")),
         "5:8 \"dormand-prince\" finds its own steps give `tolerance` in place of `step`",
     );
-    case(
-        SPACE,
-        "duration = 3",
-        &format!("{}\nsleep = {{ distance = 1e-4, after = 0.5 }}", method("dormand-prince")),
-        "5:1 \"Local shape\" cannot sleep: it has no steps after which nodes are looked at remove `sleep`",
-    );
     for (method, words) in [
         (
             "explicit-euler",

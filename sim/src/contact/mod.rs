@@ -102,11 +102,6 @@ impl Obstacle {
         self.motion == Motion::Still
     }
 
-    /// Whether it moves in a step.
-    pub(super) fn moves_in(&self, interval: Interval) -> bool {
-        !self.is_still() && self.pose(interval.begin) != self.pose(interval.end)
-    }
-
     /// Its displacement at a time (s).
     pub fn pose(&self, time: f64) -> Pose {
         self.motion.pose(time)
@@ -179,13 +174,6 @@ impl Placed<'_> {
         }
         let velocity = (point - moving.before.apply(moving.pivot, own)) / moving.step;
         Some((Contact { depth, normal: moving.now.rotation * normal }, velocity))
-    }
-
-    /// The depth of a point inside (m), negative outside. It changes by no more than a point moves, and no point is nearer to the
-    /// surface than that says; outside a box it may be farther.
-    pub(super) fn depth(&self, point: DVec3) -> f64 {
-        let own = self.moving.as_ref().map_or(point, |moving| moving.now.undo(moving.pivot, point));
-        self.obstacle.shape.surface(own).depth
     }
 
     /// A region that contains all points of contact, with a margin (m) for round-off.

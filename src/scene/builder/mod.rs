@@ -20,8 +20,7 @@ pub use obstacle::ObstacleBuilder;
 
 use super::error::SceneError;
 use super::file::{
-    Coordinates, GrabFile, HoldFile, MotionPath, NodesFile, Positive, RegionFile, RunFile, SceneFile, SleepFile,
-    StepFile, TimeFile,
+    Coordinates, GrabFile, HoldFile, MotionPath, NodesFile, RegionFile, RunFile, SceneFile, StepFile, TimeFile,
 };
 use super::load::Document;
 use super::resolve::Unwritten;
@@ -88,7 +87,6 @@ impl Scene {
                 tolerance: None,
                 frames_per_second: 60.0,
                 integrator: Integrator::default(),
-                sleep: None,
             },
             body: body.0,
             run: Vec::new(),
@@ -115,10 +113,6 @@ impl SceneBuilder {
         tolerance(share: f64) 0.time.tolerance = Some(share);
         /// How positions and velocities move from one step to the next, in all runs that do not say it themselves.
         integrator(integrator: Integrator) 0.time.integrator = integrator;
-        /// Lets the body of each run sleep after a time (s) in which no node has moved farther than a distance (m); see
-        /// [`Sleep`](crate::sim::Sleep).
-        sleep(distance: f64, after: f64)
-            0.time.sleep = Some(SleepFile { distance: Positive(distance), after: Positive(after) });
         /// Frames per second of simulated time (1/s).
         frames_per_second(rate: f64) 0.time.frames_per_second = rate;
     }

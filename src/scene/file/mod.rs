@@ -85,23 +85,6 @@ pub(in crate::scene) struct TimeFile {
     /// The integrator, which advances positions and velocities by one step.
     #[serde(default)]
     pub(in crate::scene) integrator: Integrator,
-    /// Lets the body of each run sleep when it has come to rest, such as `{ distance = 1e-4, after = 0.5 }`: its nodes
-    /// stay where they are, which costs nothing, until an obstacle that moves touches it, or nodes are grabbed, dragged
-    /// or released. They are never farther than twice `distance` from where they would be awake, if `after` is at least
-    /// the period of the slowest vibration of the body. One that drifts or creeps, by less than `distance` in `after`,
-    /// no longer does. Default: it never sleeps.
-    pub(in crate::scene) sleep: Option<SleepFile>,
-}
-
-/// When a body sleeps: after a time in which no node has moved farther than a distance.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(in crate::scene) struct SleepFile {
-    /// How far no node moves in the time (m). More than what is left of the motion at rest: on an obstacle with e > 0
-    /// nodes rebound for ever, by about `g ΔT²`.
-    pub(in crate::scene) distance: Positive,
-    /// For how long no node has moved farther than that before the body sleeps (s).
-    pub(in crate::scene) after: Positive,
 }
 
 fn sixty() -> f64 {

@@ -23,7 +23,6 @@ use crate::reading::words::{count, quoted, short};
 use crate::sim::contact::Obstacle;
 use crate::sim::grip::Grip;
 use crate::sim::model::ElasticModel;
-use crate::sim::sleep::Sleep;
 use crate::sim::words::typed;
 use body::ResolvedBody;
 use glam::DVec3;
@@ -209,21 +208,15 @@ pub(super) fn resolve(
         runs: physics.runs?,
         obstacles: physics.obstacles?,
         grips: physics.grips?,
-        sleep: time.sleep.as_ref().map(|typed| Sleep { distance: typed.distance.0, after: typed.after.0 }),
         view: view?,
         warnings: Vec::new(),
     };
     scene.place_runs();
-    if let (Some(_), Some(run)) = (scene.sleep, scene.runs.iter().find(|run| run.integrator.is_adaptive())) {
-        let message = format!("{} cannot sleep: it has no steps after which nodes are looked at", quoted(&run.name));
-        report.at_key(&way!["time", "sleep"], message, "remove `sleep`, or choose an integrator with a `step`");
-    }
     if let Some((strip, why)) = scene.view.strip.and_then(|strip| Some((strip, scene.lacks(strip)?))) {
         let message = format!("`view.strip` is {}, which no run has", quoted(&typed(&strip)));
         report.at(&way!["view", "strip"], message, why);
     }
     warn_of_time(&scene, report);
-    warn_of_sleep(&scene, report);
     warn_of_steps(&scene, report);
     Some(scene)
 }
@@ -300,27 +293,6 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
         );
         let help = "make `duration` shorter, `step` larger or the body smaller, unless you can wait".to_owned();
         report.warn(&way!["time", "duration"], message, help);
-    }
-}
-
-/// Warns of bodies that fall asleep while they move, or never.
-fn warn_of_sleep(scene: &Scene, report: &mut Report<'_>) {
-    /// The part of the body that rest stays within.
-    const PART: f64 = 0.1;
-    let Some(Sleep { distance, after }) = scene.sleep else { return };
-    let (cycle, extent) = (scene.cycle(), PART * scene.body.extent());
-    if after < cycle {
-        let message = format!("bodies fall asleep in mid-swing, after {} s without motion", short(after));
-        let help = format!("use more than the cycle T = {} s, and the period of the slowest vibration", short(cycle));
-        report.warn(&way!["time", "sleep", "after"], message, help);
-    }
-    if after > scene.duration {
-        let message = format!("no body sleeps: the scene ends after {} s", short(scene.duration));
-        report.warn(&way!["time", "sleep", "after"], message, "use less than `duration`");
-    }
-    if distance > extent {
-        let message = format!("bodies fall asleep while they move: {} m is much of their size", short(distance));
-        report.warn(&way!["time", "sleep", "distance"], message, format!("use less than {} m", short(extent)));
     }
 }
 
