@@ -13,7 +13,6 @@ use serde::{Deserialize, Serialize};
 /// How a scene is drawn.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-#[schemars(extend("not" = { "required": ["columns", "panels"] }))]
 pub(crate) struct ViewFile {
     /// Width and height of the picture (px), or for print, such as `{ mm = [180, 101] }`.
     pub(crate) size: SizeFile,
@@ -34,11 +33,8 @@ pub(crate) struct ViewFile {
     /// `after the start`.
     #[schemars(length(max = 80))]
     pub(crate) clock: Option<String>,
-    /// Number of panels in a row. Default: as many as make bodies largest. Not together with `panels`.
-    #[schemars(range(min = 1, max = 64))]
-    pub(crate) columns: Option<u32>,
-    /// Arrangement of the panels. Default: in as many rows as make bodies largest. Not together with `columns`.
-    pub(crate) panels: Option<ArrangementFile>,
+    /// Arrangement of the panels, or their number in a row. Default: as many in a row as make bodies largest.
+    pub(crate) panels: Option<PanelsFile>,
     /// What is drawn of the body. Without `surfaces`, lines are drawn instead: springs if they are shown and the model
     /// has any, else the edges of the elements; edges of turned-over elements stand out in either case. Default: surfaces,
     /// and in the plane nodes, too, unless there are more than 150.
@@ -115,7 +111,6 @@ impl Default for ViewFile {
             font: None,
             text_scale: TextScaleFile::Times(1.0),
             clock: None,
-            columns: None,
             panels: None,
             show: None,
             colour: None,
@@ -207,6 +202,16 @@ pub(crate) enum EdgesFile {
     Visible,
     /// Only the outline, unless `outline = false`. Edges of turned-over elements are always drawn.
     Outline,
+}
+
+/// How panels are arranged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum PanelsFile {
+    /// So many in a row.
+    Columns(#[schemars(range(min = 1, max = 64))] u32),
+    /// In one direction.
+    Along(ArrangementFile),
 }
 
 /// Arrangement of panels.

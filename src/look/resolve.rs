@@ -2,7 +2,7 @@
 
 use super::compared;
 use super::contrast;
-use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, ShowFile, ViewFile};
+use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, PanelsFile, ShowFile, ViewFile};
 use super::framing;
 use super::print::{TextScaleFile, unit};
 use super::subject::Subject;
@@ -44,12 +44,11 @@ pub(crate) fn resolve(
         report.at(&[Way::Key("view"), Way::Key("camera")], message, help);
     }
     let (size, print) = typed.size.resolve(LEAST_SIDE, &[Way::Key("view"), Way::Key("size")], report)?;
-    let columns = match (typed.columns, typed.panels) {
-        (Some(columns), _) => Some(columns as usize),
-        (None, Some(ArrangementFile::Row)) => Some(panels.max(1)),
-        (None, Some(ArrangementFile::Column)) => Some(1),
-        (None, None) => None,
-    };
+    let columns = typed.panels.map(|arranged| match arranged {
+        PanelsFile::Columns(columns) => columns as usize,
+        PanelsFile::Along(ArrangementFile::Row) => panels.max(1),
+        PanelsFile::Along(ArrangementFile::Column) => 1,
+    });
     let colour = match &typed.colour {
         Some(typed) => {
             let way = [Way::Key("view"), Way::Key("colour"), Way::Key("range")];

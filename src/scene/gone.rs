@@ -38,6 +38,7 @@ const GONE: &[Gone] = &[
     key("view.colours.text", "remove it"),
     key("view.difference", "remove it; `ghost = \"RUN\"` outlines another run over each body"),
     key("view.difference_of", "remove it"),
+    key("view.columns", "write the number in `view.panels`"),
     key("view.explode", "remove it"),
     key("view.inset", "remove it"),
     key("view.line_scale", "remove it"),

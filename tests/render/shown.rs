@@ -96,7 +96,7 @@ fn words_keep_inside_their_panels_and_apart() {
         for columns in [1, 2] {
             let (mut scene, frame) = scene(|text| {
                 text.replace("\"Mass-spring\"", &format!("{long:?}"))
-                    .replace("[view]", &format!("[view]\ncolumns = {columns}"))
+                    .replace("[view]", &format!("[view]\npanels = {columns}"))
             });
             scene.view.size = size;
             scene.view.clock = long.to_owned();

@@ -431,7 +431,7 @@ fn one_chart_names_the_curves_of_many_runs() {
     for size in [[1280, 720], [1600, 1000]] {
         for runs in 2..=12 {
             let columns = runs.min(3);
-            let view = format!("{size:?}\ncolumns = {columns}");
+            let view = format!("{size:?}\npanels = {columns}");
             let text = alike(runs, "light").replace("[1600, 900]", &view);
             let scene = parse(&text);
             let all: Vec<_> = (0..runs).collect();

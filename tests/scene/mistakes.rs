@@ -535,8 +535,8 @@ fn syntax_errors_have_their_place() {
         let found = format!("`time.duration` is the string {}; expected a number {help}", text.replace('\'', "\""));
         case(PLANE, "duration = 3", &format!("duration = {text}"), &format!("3:12 {found}"));
     }
-    let whole = "20:11 `view.columns` is the string \"2.5\"; expected a whole number Number of panels in a row.";
-    case(PLANE, "size = [640, 360]", "columns = '2.5'", whole);
+    let whole = "12:59 `run[0].model.passes` is the string \"2.5\"; expected a whole number Number of";
+    case(PLANE, "stiffness = 1e4", "stiffness = 1e4, passes = '2.5'", whole);
     // Not in a text that is not closed.
     let mistakes = bad(&PLANE.replacen("name = 'Local shape'", "name = \"e = 0,5", 1)).to_string();
     assert!(!mistakes.contains("decimal comma"), "{mistakes}");
@@ -672,7 +672,7 @@ fn mistakes_of_what_is_shown() {
     view("show = ['spring']", "20:9 did you mean \"springs\"?");
     view("arrow_scale = 0", "20:15 expected a number greater than 0");
     view("panels = 'rows'", "20:10 did you mean \"row\"?");
-    view("panels = 'row'\ncolumns = 2", "21:1 exclude each other");
+    view("panels = 0", "20:10 `view.panels` is 0; expected a whole number from 1 to 64");
 }
 
 #[test]
