@@ -227,18 +227,15 @@ impl Renderer {
         let solids = self.solids.as_ref().filter(|_| with_solids);
         let slabs = self.slabs.as_ref().filter(|_| with_slabs);
         let occluders = surface::occluders(picture);
-        let is_coloured = |panel| !panel::is_plain(picture, panel);
-        let plain = picture.panels.iter().any(|panel| panel::is_plain(picture, panel)).then(|| {
+        let colouring = if picture.ramp.is_empty() {
             self.surfaces.prepare(&gpu, &self.panels, picture);
-        });
-        let coloured = picture.panels.iter().any(is_coloured).then(|| {
-            let made = || tint::Tint::new(&gpu, &bodies);
-            let tint = self.tint.get_or_insert_with(made);
+            self.surfaces.plain(occluders)
+        } else {
+            let tint = self.tint.get_or_insert_with(|| tint::Tint::new(&gpu, &bodies));
             tint.prepare(&gpu, &self.panels, picture);
             tint.write(&gpu, picture);
             tint.colouring(occluders)
-        });
-        let colourings = [plain.map(|()| self.surfaces.plain(occluders)), coloured];
+        };
         if stroke::Strokes::are_in(picture) {
             let made = || stroke::Strokes::new(&gpu, &self.panels, &bodies);
             self.strokes.get_or_insert_with(made).write(&gpu, picture);
@@ -252,7 +249,7 @@ impl Renderer {
             let targets = [(&bodies.alarm_colour, CLEAR), (&bodies.colour, CLEAR)];
             let depth = Some((&bodies.alarm_depth, FAR));
             let mut pass = Pass::begin(&gpu, &mut commands, "turned over", &targets, depth);
-            self.surfaces.draw_turned_over(&mut pass, &self.panels, &places, colourings);
+            self.surfaces.draw_turned_over(&mut pass, &self.panels, &places, colouring);
             drop(pass);
             bodies.copy_depth(&mut commands);
             (load, deep) = (wgpu::LoadOp::Load, wgpu::LoadOp::Load);
@@ -266,7 +263,7 @@ impl Renderer {
         {
             let depth = Some((&bodies.depth, deep));
             let mut pass = Pass::begin(&gpu, &mut commands, "bodies", &[(&bodies.colour, load)], depth);
-            self.surfaces.draw_sound(&mut pass, &self.panels, &places, colourings);
+            self.surfaces.draw_sound(&mut pass, &self.panels, &places, colouring);
             if let Some(solids) = solids {
                 solids.draw(&mut pass, &self.panels, &places);
             }

@@ -117,12 +117,6 @@ pub(super) fn has_behind(panel: &Panel) -> bool {
     panel.dotted || !panel.turned_over.triangles.is_empty() || (panel.opacity < 1.0 && has_solids())
 }
 
-/// Whether no field colours the surfaces of a panel.
-pub(super) fn is_plain(picture: &Picture, panel: &Panel) -> bool {
-    let meshes = [&panel.sound, &panel.turned_over];
-    picture.ramp.is_empty() || meshes.iter().any(|mesh| mesh.shades.len() < mesh.vertices.len())
-}
-
 fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> PanelUniform {
     let sight = &panel.sight;
     let palette = &if panel.greyed { picture.palette.greyed() } else { picture.palette };
@@ -141,7 +135,7 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         alarm: linear(palette.alarm),
         line_scale: sight.line_scale,
         // On the dark end of a scale, vermilion is more visible.
-        alarm_line: linear(if is_plain(picture, panel) || !panel.hatch { palette.alarm_line } else { palette.alarm }),
+        alarm_line: linear(if picture.ramp.is_empty() || !panel.hatch { palette.alarm_line } else { palette.alarm }),
         outline_alpha: palette.outline_alpha,
         edge: linear(palette.edge),
         focal: sight.focal,

@@ -1,6 +1,6 @@
 //! Surfaces of bodies: first the turned-over set, for itself and as what is seen through the body, then the other set over it.
 
-use super::panel::{Panels, has_behind, is_plain};
+use super::panel::{Panels, has_behind};
 use super::pass::Pass;
 use super::pipeline::{Pipeline, Recipe, bind_textures, for_vertices, group_layout, shader, texture_entry};
 use super::target::Bodies;
@@ -86,8 +86,8 @@ pub(super) struct Surfaces {
     indices: GrowingBuffer<u32>,
     /// The indices of each panel's two sets.
     ranges: Vec<[Range<u32>; 2]>,
-    /// Whether a panel's surfaces are coloured by a field, and whether anything lies behind them or is dotted.
-    kinds: Vec<[bool; 2]>,
+    /// Whether anything lies behind a panel's surfaces or is dotted.
+    with_behind: Vec<bool>,
 }
 
 impl Surfaces {
@@ -100,7 +100,7 @@ impl Surfaces {
             vertices: GrowingBuffer::new(gpu, "vertices", wgpu::BufferUsages::VERTEX, 1024),
             indices: GrowingBuffer::new(gpu, "indices", wgpu::BufferUsages::INDEX, 4096),
             ranges: Vec::new(),
-            kinds: Vec::new(),
+            with_behind: Vec::new(),
         }
     }
 
@@ -135,7 +135,7 @@ impl Surfaces {
             start..indices.len() as u32
         };
         self.ranges = picture.panels.iter().map(|panel| [add(&panel.sound), add(&panel.turned_over)]).collect();
-        self.kinds = picture.panels.iter().map(|panel| [!is_plain(picture, panel), has_behind(panel)]).collect();
+        self.with_behind = picture.panels.iter().map(has_behind).collect();
         self.vertices.write(gpu, vertices);
         self.indices.write(gpu, indices);
     }
@@ -158,9 +158,9 @@ impl Surfaces {
         pass: &mut Pass<'_>,
         panels: &Panels,
         places: &[Rectangle],
-        colourings: [Option<Colouring<'_>>; 2],
+        colouring: Colouring<'_>,
     ) {
-        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.alarm, (TURNED_OVER, true));
+        self.draw(pass, panels, places, colouring, |pipelines| &pipelines.alarm, (TURNED_OVER, true));
     }
 
     /// Draws the other sets, over the turned-over ones.
@@ -169,10 +169,10 @@ impl Surfaces {
         pass: &mut Pass<'_>,
         panels: &Panels,
         places: &[Rectangle],
-        colourings: [Option<Colouring<'_>>; 2],
+        colouring: Colouring<'_>,
     ) {
-        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.sound, (SOUND, false));
-        self.draw(pass, panels, places, colourings, |pipelines| &pipelines.before, (SOUND, true));
+        self.draw(pass, panels, places, colouring, |pipelines| &pipelines.sound, (SOUND, false));
+        self.draw(pass, panels, places, colouring, |pipelines| &pipelines.before, (SOUND, true));
     }
 
     fn draw(
@@ -180,29 +180,28 @@ impl Surfaces {
         pass: &mut Pass<'_>,
         panels: &Panels,
         places: &[Rectangle],
-        colourings: [Option<Colouring<'_>>; 2],
+        colouring: Colouring<'_>,
         pipeline: fn(&Pipelines) -> &Pipeline,
         (set, with_behind): (usize, bool),
     ) {
+        if !self.with_behind.contains(&with_behind) {
+            return;
+        }
         pass.set_vertex_buffer(0, self.vertices.buffer().slice(..));
         pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
-        for (colouring, coloured) in colourings.into_iter().zip([false, true]) {
-            let kind = [coloured, with_behind];
-            let Some(colouring) = colouring.filter(|_| self.kinds.contains(&kind)) else { continue };
-            pass.set_pipeline(pipeline(colouring.pipelines));
-            if let Some(group) = colouring.groups[set] {
-                pass.set_bind_group(1, group, &[]);
-            }
-            if let Some(shades) = colouring.shades {
-                pass.set_vertex_buffer(1, shades.slice(..));
-            }
-            let own = |(panel, &place): (usize, &Rectangle)| match self.kinds[panel] == kind {
-                true => place,
-                false => [0; 4],
-            };
-            panels.draw_regions(pass, places.iter().enumerate().map(own), |pass, panel| {
-                pass.draw_indexed(self.ranges[panel][set].clone());
-            });
+        pass.set_pipeline(pipeline(colouring.pipelines));
+        if let Some(group) = colouring.groups[set] {
+            pass.set_bind_group(1, group, &[]);
         }
+        if let Some(shades) = colouring.shades {
+            pass.set_vertex_buffer(1, shades.slice(..));
+        }
+        let own = |(panel, &place): (usize, &Rectangle)| match self.with_behind[panel] == with_behind {
+            true => place,
+            false => [0; 4],
+        };
+        panels.draw_regions(pass, places.iter().enumerate().map(own), |pass, panel| {
+            pass.draw_indexed(self.ranges[panel][set].clone());
+        });
     }
 }

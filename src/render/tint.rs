@@ -91,12 +91,7 @@ impl Tint {
         let colours: Vec<_> = picture.ramp.iter().take(SHADES).map(|&colour| linear(colour).extend(1.0)).collect();
         self.ramp.write(gpu, colours);
         let meshes = picture.panels.iter().flat_map(|panel| [&panel.sound, &panel.turned_over]);
-        // Panels without a field have places, too, which nothing reads.
-        let shades = meshes.flat_map(|mesh| {
-            let missing = mesh.vertices.len() - mesh.shades.len();
-            mesh.shades.iter().copied().chain(std::iter::repeat_n(0.0, missing))
-        });
-        self.shades.write(gpu, shades.collect());
+        self.shades.write(gpu, meshes.flat_map(|mesh| mesh.shades.iter().copied()).collect());
     }
 }
 
