@@ -39,8 +39,7 @@ pub(super) fn draw_distances(
     let view = &mut scene.view;
     let range = [0.0, distances.iter().flatten().copied().fold(0.0, f64::max)];
     view.colour = Some(ColourScale { field: Field::Displacement, range, map: ColourMap::default() });
-    (view.size, view.legend) = (size, true);
-    (view.spring_strain, view.ghost) = (None, None);
+    (view.size, view.legend, view.ghost) = (size, true, None);
     for (run, distances) in frame.runs.iter_mut().zip(distances) {
         run.snapshot.field.clone_from(distances);
     }

@@ -41,7 +41,9 @@ pub(crate) struct ViewFile {
     #[schemars(length(min = 1))]
     pub(crate) show: Option<Vec<ShowFile>>,
     /// A scalar field that colours the body, such as `{ by = "strain" }`: its surfaces, or its lines and nodes if surfaces are
-    /// not shown. All panels share one colour bar, drawn below them. Default: none.
+    /// not shown. Springs without surfaces have a strain of their own, the change of length over the length at rest; it has a
+    /// sign if the range begins below zero, such as `{ by = "strain", range = [-0.3, 0.3], map = "violet-green" }`. All panels
+    /// share one colour bar, drawn below them. Default: none.
     pub(crate) colour: Option<ColourFile>,
     /// Scale of the arrows of displacements. Each begins where the best-fitting rigid placement has its node; at 1 it ends
     /// at the node.
@@ -71,9 +73,6 @@ pub(crate) struct ViewFile {
     /// Opacity of elements that are not turned over: below 1, what is behind and inside the body is seen through them.
     #[schemars(range(min = 0.1, max = 1.0))]
     pub(crate) opacity: f64,
-    /// Colours springs by their strain, the change of length over the length at rest: `{}` for shortened springs in violet and
-    /// lengthened ones in green. Needs `"springs"` in `show`. Default: one colour for all springs.
-    pub(crate) spring_colour: Option<SpringColourFile>,
     /// A dashed outline over each body: `"rest"` for the rest shape in its best rigid fit, or the name of a run for its body at the
     /// same moment, in the colour of that run. All runs then have the time step of that one. Default: none.
     #[schemars(length(min = 1, max = 80))]
@@ -123,7 +122,6 @@ impl Default for ViewFile {
             legend: true,
             strip: None,
             opacity: 1.0,
-            spring_colour: None,
             ghost: None,
             paths: None,
             light: Light::default(),
@@ -155,22 +153,6 @@ pub(crate) enum LabelFile {
 
 impl LabelFile {
     const ALL: [Self; 5] = [Self::Name, Self::Model, Self::Clock, Self::Count, Self::Number];
-}
-
-/// Colours of springs.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct SpringColourFile {
-    /// The strains at the ends of the colour bar. Default: −0.3 and 0.3.
-    pub(crate) range: Option<[f64; 2]>,
-    /// The colour map.
-    pub(crate) map: ColourMap,
-}
-
-impl Default for SpringColourFile {
-    fn default() -> Self {
-        Self { range: None, map: ColourMap::VioletGreen }
-    }
 }
 
 /// A point of the body that leaves a path.

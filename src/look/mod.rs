@@ -31,6 +31,5 @@ pub(crate) use subject::Subject;
 #[cfg(feature = "render")]
 pub(crate) use view::axes;
 pub use view::{
-    Camera, ColourMap, ColourScale, FloorStyle, FontFiles, Ghost, Labels, Light, StrainScale, Style, Traced, View,
-    Visible,
+    Camera, ColourMap, ColourScale, FloorStyle, FontFiles, Ghost, Labels, Light, Style, Traced, View, Visible,
 };

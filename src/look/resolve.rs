@@ -6,7 +6,7 @@ use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, PanelsFile,
 use super::framing;
 use super::print::{TextScaleFile, unit};
 use super::subject::Subject;
-use super::view::{ColourScale, FontFiles, Labels, StrainScale, View, Visible};
+use super::view::{ColourScale, FontFiles, Labels, View, Visible};
 use crate::reading::coordinates::vector;
 use crate::reading::report::{Report, Way};
 use crate::sim::body::Dimension;
@@ -73,25 +73,6 @@ pub(crate) fn resolve(
     let text_scale = typed.text_scale.resolve(print.as_ref(), unit(size, panel), &way, report)?;
     let look = contrast::resolve(typed, font.unwrap_or_default(), text_scale, report)?;
     let (ghost, paths) = (compared::ghost(typed, scene, report), compared::paths(typed, scene, report));
-    let at = |key| [Way::Key("view"), Way::Key(key)];
-    let spring_strain = match &typed.spring_colour {
-        Some(_) if !visible.springs => {
-            let message = "`view.spring_colour` is given, but springs are not shown".to_owned();
-            report.at_key(&at("spring_colour"), message, "add `\"springs\"` to `show`".to_owned());
-            None
-        }
-        Some(_) if scene.models.iter().all(|model| model.springs().is_empty()) => {
-            let message = "`view.spring_colour` is given, but no run has springs".to_owned();
-            report.at_key(&at("spring_colour"), message, "remove it, or add a run with springs".to_owned());
-            None
-        }
-        Some(springs) => {
-            let way = [Way::Key("view"), Way::Key("spring_colour"), Way::Key("range")];
-            let range = rising(springs.range.unwrap_or(SPRING_STRAIN), &way, report)?;
-            Some(StrainScale { range, map: springs.map })
-        }
-        None => None,
-    };
     Some(View {
         size,
         print,
@@ -114,7 +95,6 @@ pub(crate) fn resolve(
         legend: typed.legend,
         strip: typed.strip,
         opacity: typed.opacity,
-        spring_strain,
         ghost,
         paths,
         light: typed.light,
@@ -129,9 +109,6 @@ pub(crate) fn resolve(
         hatch: typed.hatch,
     })
 }
-
-/// The strains at the ends of the scale that colours springs.
-const SPRING_STRAIN: [f64; 2] = [-0.3, 0.3];
 
 /// The narrowest range of colours, in parts of its larger end: ticks still differ in a few digits.
 const NARROWEST: f64 = 1e-9;

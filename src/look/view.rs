@@ -50,8 +50,6 @@ pub struct View {
     pub strip: Option<Diagnostic>,
     /// Opacity of elements that are not turned over, from 0.1 to 1.
     pub opacity: f64,
-    /// The colours of the strain of springs, if it is shown.
-    pub spring_strain: Option<StrainScale>,
     /// What is outlined over each body, if anything.
     pub ghost: Option<Ghost>,
     /// What leaves a path behind it.
@@ -108,7 +106,6 @@ impl Default for View {
             legend: true,
             strip: None,
             opacity: 1.0,
-            spring_strain: None,
             ghost: None,
             paths: Vec::new(),
             light: Light::default(),
@@ -204,6 +201,13 @@ pub struct ColourScale {
     pub map: ColourMap,
 }
 
+impl ColourScale {
+    /// The value of a spring that has changed its length by a share of that at rest.
+    pub(crate) fn of_spring(&self, strain: f64) -> f64 {
+        if self.range[0] < 0.0 { strain } else { strain.abs() }
+    }
+}
+
 /// Named scales of colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -264,15 +268,6 @@ impl fmt::Debug for FontFiles {
         let [regular, semi_bold] = [bytes(&self.regular), bytes(&self.semi_bold)];
         f.debug_struct("FontFiles").field("regular", &regular).field("semi_bold", &semi_bold).finish()
     }
-}
-
-/// The colours of the strain of springs, the change of their length over their length at rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StrainScale {
-    /// The strains at the two ends of the scale.
-    pub range: [f64; 2],
-    /// Its colours.
-    pub map: ColourMap,
 }
 
 /// What is outlined over each body.

@@ -31,12 +31,12 @@ impl Shades {
         Self { support, places }
     }
 
-    /// The place of a node where it is a corner of an element.
     /// Whether neighbouring elements differ at the edge between them.
     pub(super) fn jump(&self) -> bool {
         self.support == Support::Elements
     }
 
+    /// The place of a node where it is a corner of an element.
     fn corner(&self, node: u32, element: Option<u32>) -> f32 {
         match self.support {
             Support::Nodes => self.places[node as usize],

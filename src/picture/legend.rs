@@ -95,14 +95,15 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// The key of a picture of a size (px) whose panels have a scale, with or without an arrow, and with numbers of samples and
-    /// bars; `None` where it could not be read.
-    pub(super) fn new(size: [u32; 2], scale: Scale, arrow: bool, samples: usize, bars: usize) -> Option<Self> {
+    /// The key of a picture of a size (px) whose panels have a scale, with or without an arrow and a bar, and with a number of
+    /// samples; `None` where it could not be read.
+    pub(super) fn new(size: [u32; 2], scale: Scale, [arrow, bar]: [bool; 2], samples: usize) -> Option<Self> {
         let [width, height] = size.map(f64::from);
-        let parts = usize::from(arrow) + samples + bars;
+        let parts = usize::from(arrow) + samples + usize::from(bar);
         let apart = APART * parts.saturating_sub(1) as f64;
-        let arrow = if arrow { ARROW_ROOM } else { 0.0 };
-        let needed = apart + arrow + SAMPLE_ROOM * samples as f64 + BAR_ROOM * bars as f64;
+        let [arrow, bar] =
+            [(arrow, ARROW_ROOM), (bar, BAR_ROOM)].map(|(is_shown, room)| if is_shown { room } else { 0.0 });
+        let needed = apart + arrow + SAMPLE_ROOM * samples as f64 + bar;
         let roomy = LEAST_UNIT.min(MOST_HEIGHT * height / HEIGHT);
         let unit = scale.of_type(scale.unit.max(roomy)).min((width - 2.0 * scale.margin()) / needed);
         let height = (HEIGHT * unit).round() as u32;
@@ -118,7 +119,7 @@ impl Legend {
         ground: f64,
         arrow: Option<(String, [f64; 2])>,
         samples: &[Sample<'_>],
-        bars: &[Bar<'_>],
+        bar: Option<Bar<'_>>,
     ) {
         let unit = self.unit;
         let margin = writer.scale.margin();
@@ -129,20 +130,14 @@ impl Legend {
             // However thick lines are, the arrow stays inside the key and clear of the text above.
             left = self.arrow(writer, [left, middle], &metres, [length, size]) + APART * unit;
         }
-        let taken_by_bars = bars.len() as f64 * (BAR_ROOM + APART) * unit;
+        let taken_by_bar = if bar.is_some() { (BAR_ROOM + APART) * unit } else { 0.0 };
         for (sample, after) in samples.iter().zip((0..samples.len()).rev()) {
             let taken_by_others = after as f64 * (SAMPLE_ROOM + APART) * unit;
-            let room = (picture_width - margin - left - taken_by_bars - taken_by_others).max(SAMPLE_ROOM * unit);
+            let room = (picture_width - margin - left - taken_by_bar - taken_by_others).max(SAMPLE_ROOM * unit);
             left = self.sample(writer, [left, middle], room, sample) + APART * unit;
         }
-        // Bars share what is left evenly.
-        let right = picture_width - margin;
-        let share = (right - left - APART * unit * bars.len().saturating_sub(1) as f64) / bars.len().max(1) as f64;
-        for (at, bar) in bars.iter().enumerate() {
-            let left = left + at as f64 * (share + APART * unit);
-            // One bar alone stands in the middle of the picture.
-            let middle = if bars.len() == 1 { picture_width / 2.0 } else { left + share / 2.0 };
-            self.bar(writer, [left, left + share, middle], top, bar);
+        if let Some(bar) = bar {
+            self.bar(writer, [left, picture_width - margin, picture_width / 2.0], top, &bar);
         }
     }
 

@@ -5,7 +5,7 @@ use super::narrow::{narrow, narrow_point};
 use super::order::farthest_first;
 use super::{Bead, Second, Stroke};
 use crate::colour::{Colour, mixed};
-use crate::look::Palette;
+use crate::look::{ColourScale, Palette};
 use crate::sim::body::Body;
 use glam::DVec3;
 
@@ -95,14 +95,17 @@ impl Wire<'_> {
         self.surfaces && self.element < SEEN_THROUGH * self.opacity
     }
 
-    /// Springs, the farthest first. With the colours of a scale and the strains at its ends, each has the colour of its
-    /// strain, and the more strained lie above the others.
-    pub(super) fn springs(&self, springs: &[[u32; 2]], strain: Option<(&[Colour], [f64; 2])>) -> Vec<Stroke> {
+    /// Springs, the farthest first. With a scale and its colours, each has the colour of its strain, and the more
+    /// strained lie above the others.
+    pub(super) fn springs(&self, springs: &[[u32; 2]], strain: Option<(&[Colour], ColourScale)>) -> Vec<Stroke> {
         let haze = self.haze();
-        if let Some((ramp, range)) = strain {
+        if let Some((ramp, scale)) = strain {
             let strokes = springs.iter().map(|&ends| {
-                let share = self.share(ends, range);
-                let (depth, stroke) = self.strained(ends, ramp, range, &|at| STRAINED_HAZE * haze(at) * (1.0 - share));
+                let strain = spring_strain(self.body, self.position, ends);
+                let share = strained_share(strain, scale.range);
+                let place = field::place(scale.of_spring(strain), scale.range);
+                let own = if place == NOWHERE { self.palette.spring } else { field::colour(ramp, place) };
+                let (depth, stroke) = self.strained(ends, own, &|at| STRAINED_HAZE * haze(at) * (1.0 - share));
                 (depth, ((share * STRAIN_STEPS).round(), stroke))
             });
             let mut strokes: Vec<_> = farthest_first(strokes.collect()).collect();
@@ -120,21 +123,11 @@ impl Wire<'_> {
         farthest_first(strokes).collect()
     }
 
-    /// How strained a spring is, from 0 to 1 at the nearer end of its colours.
-    fn share(&self, ends: [u32; 2], [low, high]: [f64; 2]) -> f64 {
-        let strain = spring_strain(self.body, self.position, ends);
-        let share = strain.abs() / low.abs().min(high.abs()).max(f64::MIN_POSITIVE);
-        if share.is_nan() { 0.0 } else { share.min(1.0) }
-    }
-
     /// A spring in the colour of its strain.
-    fn strained(&self, ends: [u32; 2], ramp: &[Colour], range: [f64; 2], haze: &dyn Fn(DVec3) -> f64) -> Placed {
-        let ends_now = ends.map(|node| self.position[node as usize]);
-        let place = field::place(spring_strain(self.body, self.position, ends), range);
-        let own = if place == NOWHERE { self.palette.spring } else { field::colour(ramp, place) };
-        let middle = ends_now[0].midpoint(ends_now[1]);
-        let faded = |colour| mixed(colour, self.palette.background, haze(middle));
-        let (depth, plain) = self.straight(ends_now, [faded(own); 2], CASED * SPRING);
+    fn strained(&self, ends: [u32; 2], own: Colour, haze: &dyn Fn(DVec3) -> f64) -> Placed {
+        let ends = ends.map(|node| self.position[node as usize]);
+        let faded = |colour| mixed(colour, self.palette.background, haze(ends[0].midpoint(ends[1])));
+        let (depth, plain) = self.straight(ends, [faded(own); 2], CASED * SPRING);
         // A casing keeps lines of all colours visible, over surfaces, the ground and other lines.
         (depth, Stroke { second: Second::Casing(faded(self.palette.casing)), ..plain })
     }
@@ -288,6 +281,13 @@ impl Wire<'_> {
         let forward = self.forward;
         move |point| most * ((point.dot(forward) - low) / (high - low).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
     }
+}
+
+/// How strained a spring is on a scale between two strains: 1 at its nearer end, or beyond.
+fn strained_share(strain: f64, [low, high]: [f64; 2]) -> f64 {
+    let ends = [-low, high].into_iter().filter(|&end| end > 0.0);
+    let share = strain.abs() / ends.fold(f64::INFINITY, f64::min);
+    if share.is_nan() { 0.0 } else { share.min(1.0) }
 }
 
 /// The change of the distance of two nodes over their distance at rest; NaN where that is zero.

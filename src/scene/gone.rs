@@ -44,6 +44,7 @@ const GONE: &[Gone] = &[
     key("view.line_scale", "remove it"),
     key("view.margin", "remove it"),
     key("view.points", "remove it"),
+    key("view.spring_colour", "write `colour = { by = \"strain\", range = [-0.3, 0.3], map = \"violet-green\" }`"),
 ];
 
 /// What to write instead of a key that is gone, or of one of its values.

@@ -2,11 +2,12 @@
 
 use super::{fig4b, frame, parse};
 use localshape::colour::contrast;
-use localshape::look::{ColourMap, Palette, Theme};
+use localshape::look::{ColourMap, ColourScale, Palette, Theme};
 use localshape::picture::{Composer, LineKind, Mark, MarkShape, Mesh, Picture, TextRun, Weight, compose};
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
+use localshape::sim::field::Field;
 use localshape::sim::snapshot::{Divergence, Frame, Status};
 use std::collections::HashMap;
 
@@ -550,8 +551,8 @@ fn flat_elements_are_a_state_of_their_own() {
 fn the_more_strained_springs_lie_above_and_have_the_colours_of_the_key() {
     let (mut scene, _) = fig4b(0);
     scene.view.visible = localshape::look::Visible { springs: true, ..Default::default() };
-    let scale = localshape::look::StrainScale { range: [-0.1, 0.1], map: ColourMap::VioletGreen };
-    scene.view.spring_strain = Some(scale);
+    let scale = ColourScale { field: Field::Strain, range: [-0.1, 0.1], map: ColourMap::VioletGreen };
+    scene.view.colour = Some(scale);
     let frame = Runner::new(&scene, &[1]).frame(4);
     let strokes = &compose(&scene, &frame).panels[0].strokes;
     let ends = localshape::look::ramp::ramp(scale.map, Theme::Light);
@@ -562,4 +563,30 @@ fn the_more_strained_springs_lie_above_and_have_the_colours_of_the_key() {
     // Of those that are in the same step of strain.
     let count = above.iter().filter(|stroke| full(stroke.colours[0])).count();
     assert!(above.len() < 2 * count && count > 20, "{count} of {}", above.len());
+}
+
+#[test]
+fn springs_show_their_own_strain_without_its_sign_unless_the_range_has_one() {
+    let (mut scene, _) = fig4b(0);
+    scene.view.visible = localshape::look::Visible { springs: true, ..Default::default() };
+    let (body, frame) = (scene.body.clone(), Runner::new(&scene, &[0, 1]).frame(4));
+    let springs = scene.runs[1].model.springs().to_vec();
+    let strain = |[a, b]: [u32; 2]| {
+        let length = |points: &[glam::DVec3]| points[a as usize].distance(points[b as usize]);
+        length(&frame.runs[1].snapshot.position) / length(&body.rest) - 1.0
+    };
+    let count = |is: &dyn Fn(f64) -> bool| springs.iter().filter(|&&ends| is(strain(ends))).count();
+    for (range, low, high) in [
+        ([0.0, 0.1], count(&|strain| strain.abs() < 1e-4), count(&|strain| strain.abs() > 0.1)),
+        ([-0.1, 0.1], count(&|strain| strain < -0.1), count(&|strain| strain > 0.1)),
+    ] {
+        scene.view.colour = Some(ColourScale { field: Field::Strain, range, map: ColourMap::VioletGreen });
+        let picture = compose(&scene, &frame);
+        let ramp = localshape::look::ramp::ramp(ColourMap::VioletGreen, Theme::Light);
+        let of = |end: [u8; 3]| picture.panels[1].strokes.iter().filter(|stroke| stroke.colours[0] == end).count();
+        assert!(of(ramp[0]) >= low && of(ramp[ramp.len() - 1]) >= high && high > 0, "{range:?}");
+        assert!(range[0] == 0.0 || low > 0);
+        // The other model has no springs, and its edges the strain of elements.
+        assert!(picture.words.iter().any(|word| word.text.starts_with("of springs: change of length")));
+    }
 }

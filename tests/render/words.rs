@@ -37,7 +37,6 @@ caption = 'A caption of several sentences. It is set in lines, and goes on until
 letters = true
 strip = 'shape_error'
 colour = { by = 'strain' }
-spring_colour = {}
 "#;
 
 /// Scenes with all kinds of texts, at many sizes and in several layouts.
@@ -50,9 +49,7 @@ fn scenes() -> Vec<Scene> {
         for (at, size) in sizes.into_iter().enumerate() {
             // Any two of them once at least.
             let more = arrangements[(number + at) % 3];
-            let colours = if show.contains("springs") { "spring_colour = {}" } else { "" };
-            let text = ALL.replace("spring_colour = {}", colours);
-            scenes.push(parse(&format!("{text}\nsize = {size:?}\nshow = [{show}]\n{more}\n")));
+            scenes.push(parse(&format!("{ALL}\nsize = {size:?}\nshow = [{show}]\n{more}\n")));
         }
     }
     scenes
@@ -137,8 +134,7 @@ fn panels_keep_half_of_the_picture_whatever_stands_around_them() {
         let text =
             ALL.replace("It is set in lines", &format!("{long}\\n{long} It is set in lines")).replace('\'', "\"");
         let text = format!("{text}\nsize = {size:?}\ntext_scale = {text_scale}\nshow = [\"springs\"]\n");
-        let mut scene = parse(&text.replace(&long, &long[..900]));
-        scene.view.spring_strain = None;
+        let scene = parse(&text.replace(&long, &long[..900]));
         let picture = compose(&scene, &Runner::new(&scene, &[0, 1, 2]).frame(3));
         let [top, bottom] = [0, 1].map(|end| {
             let ends = picture.panels.iter().map(|panel| panel.viewport[1] + end * panel.viewport[3]);
@@ -152,7 +148,7 @@ fn panels_keep_half_of_the_picture_whatever_stands_around_them() {
 
 #[test]
 fn the_scale_bar_stays_when_its_run_blows_up() {
-    let text = ALL.replace("spring_colour = {}", "").replace("name = 'Local shape'", "name = 'Local'");
+    let text = ALL.replace("name = 'Local shape'", "name = 'Local'");
     let text = text.replacen("stiffness = 1e4 }", "stiffness = 1e4 }\nintegrator = 'explicit-euler'", 1);
     let scene = parse(&text.replace("step = 0.005", "step = 0.02"));
     let (composer, mut runner) = (Composer::new(&scene), Runner::new(&scene, &[0]));
@@ -232,12 +228,9 @@ fn large_type_wraps_and_gives_the_clock_a_place_of_its_own() {
 
 #[test]
 fn words_stay_where_they_are() {
-    for text in [
-        ALL.replace("integrator = 'explicit-euler'", "")
-            .replace("step = 0.005, ", "")
-            .replace("spring_colour = {}", ""),
-        { super::plain().replace("camera.follow = false", "") },
-    ] {
+    for text in [ALL.replace("integrator = 'explicit-euler'", "").replace("step = 0.005, ", ""), {
+        super::plain().replace("camera.follow = false", "")
+    }] {
         let scene = parse(&text);
         let (composer, mut runner) = (Composer::new(&scene), Runner::new(&scene, &all(&scene)));
         let first = composer.compose(&runner.frame(0));

@@ -659,11 +659,6 @@ fn mistakes_of_what_is_shown() {
     view("caption = \"a\\tb\"", "20:11 contains the control character '\\t'; it is lines of text");
     view("strip = 'turned over'", "20:9 did you mean \"turned_over\"?");
     view("opacity = 0", "20:11 expected a number from 0.1 to 1");
-    view("spring_colour = {}", "20:1 `view.spring_colour` is given, but springs are not shown");
-    view(
-        "show = ['springs']\nspring_colour = { range = [1, 1] }",
-        "21:27 `view.spring_colour.range` runs from 1 to 1; expected a rising range",
-    );
     view("labels = ['title']", "20:11 expected \"name\", \"model\", \"clock\", \"count\" or \"number\"");
     view("light = { elevation = 0 }", "20:23 expected a number from 0.2 to 1.57");
     view("floor = 'tiles'", "20:9 expected \"grid\", \"plain\" or \"none\"");

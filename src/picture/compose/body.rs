@@ -1,12 +1,25 @@
 //! The body of a panel: its surfaces, lines and nodes.
 
+use super::Composer;
 use super::panel::Draft;
+use crate::look::ColourScale;
 use crate::picture::plane::node_radius;
 use crate::picture::surface::{Lines, SurfaceLines, Surroundings};
 use crate::picture::wire::Wire;
 use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
+use crate::sim::field::Field;
 use glam::DVec3;
 use std::collections::HashSet;
+
+impl Composer<'_> {
+    /// The scale of colours on which the springs of a run show their own strain, if they do.
+    pub(super) fn strain_of_springs(&self, run: usize) -> Option<ColourScale> {
+        let view = &self.scene.view;
+        let has_springs = self.scene.runs.get(run).is_some_and(|run| !run.model.springs().is_empty());
+        let are_shown = has_springs && view.visible.springs && !view.visible.surfaces;
+        view.colour.filter(|scale| are_shown && scale.field == Field::Strain)
+    }
+}
 
 impl Draft<'_> {
     /// The surfaces of the elements that are not turned over and of those that are, with their lines.
@@ -91,7 +104,7 @@ impl Draft<'_> {
         if !visible.surfaces && springs.is_empty() {
             strokes.extend(wire.edges(edges, over, false));
         }
-        let strain = self.scene.view.spring_strain.map(|scale| (&self.composer.spring_ramp[..], scale.range));
+        let strain = self.composer.strain_of_springs(self.run.run).map(|scale| (&self.composer.ramp[..], scale));
         let on_skin: Vec<_>;
         let springs = if wire.hides_inside() && !self.flat {
             let holds = |ends: &&[u32; 2]| ends.iter().all(|&node| self.composer.skin.holds(node));

@@ -1,12 +1,12 @@
 //! What the key of a picture says: colours, lines, marks and arrows.
 
 use super::Composer;
-use crate::look::StrainScale;
+use crate::look::ColourScale;
 use crate::picture::layout::{Rectangle, Scale};
 use crate::picture::legend::{Bar, Legend, Sample, SampleKind};
 use crate::picture::wire::spring_strain;
 use crate::picture::{Framing, arrows, number};
-use crate::sim::snapshot::Frame;
+use crate::sim::snapshot::{Frame, RunFrame};
 use std::borrow::Cow;
 
 impl Composer<'_> {
@@ -21,31 +21,32 @@ impl Composer<'_> {
         ghost.into_iter().chain(path).collect()
     }
 
-    /// The scales of colours in a frame.
-    pub(super) fn bars(&self, frame: &Frame) -> Vec<Bar<'_>> {
-        let view = &self.scene.view;
-        let of_field = view.colour.as_ref().map(|colour| {
-            let values = frame.runs.iter().flat_map(|run| &run.shown().field).copied();
-            let field = colour.field;
-            let [name, definition] = self.field_name.unwrap_or([field.name(), field.definition()]);
-            Bar::new([name, field.unit(), definition], colour.range, self.extent, &self.ramp, values)
+    /// The scale of colours of a frame, if there is one.
+    pub(super) fn bar(&self, frame: &Frame) -> Option<Bar<'_>> {
+        let colour = self.scene.view.colour.as_ref()?;
+        let of_springs: Vec<_> = frame.runs.iter().map(|run| self.strain_of_springs(run.run)).collect();
+        let values = frame.runs.iter().zip(&of_springs).flat_map(|(run, of_springs)| match of_springs {
+            Some(scale) => self.strains(run, scale),
+            None => run.shown().field.clone(),
         });
-        let body = &*self.scene.body;
-        let of_springs = view.spring_strain.map(|StrainScale { range, .. }| {
-            let whole = frame.runs.iter().filter(|run| run.shown().position.len() == body.len());
-            let strains = whole.flat_map(|run| {
-                let springs = self.scene.runs.get(run.run).map_or(&[][..], |run| run.model.springs());
-                springs.iter().map(|&ends| spring_strain(body, &run.shown().position, ends))
-            });
-            Bar::new(
-                ["spring strain", "", "change of length over length at rest"],
-                range,
-                self.extent,
-                &self.spring_ramp,
-                strains,
-            )
-        });
-        of_field.into_iter().chain(of_springs).collect()
+        let (field, all) = (colour.field, of_springs.len());
+        let definition = match of_springs.iter().flatten().count() {
+            0 => field.definition(),
+            count if count == all => "change of length over length at rest",
+            _ => "of springs: change of length over length at rest",
+        };
+        let [name, definition] = self.field_name.unwrap_or([field.name(), definition]);
+        Some(Bar::new([name, field.unit(), definition], colour.range, self.extent, &self.ramp, values))
+    }
+
+    /// The values of the springs of a run on a scale.
+    fn strains(&self, run: &RunFrame, scale: &ColourScale) -> Vec<f64> {
+        let (body, position) = (&*self.scene.body, &run.shown().position);
+        if position.len() != body.len() {
+            return Vec::new();
+        }
+        let springs = self.scene.runs[run.run].model.springs();
+        springs.iter().map(|&ends| scale.of_spring(spring_strain(body, position, ends))).collect()
     }
 
     /// What the arrow of the key stands for, in words, its length (px), and how large it is beside those of the reference picture.

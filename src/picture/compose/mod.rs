@@ -72,8 +72,6 @@ pub struct Composer<'a> {
     field_name: Option<[&'static str; 2]>,
     /// The colours of a field, if one is shown.
     ramp: Vec<Colour>,
-    /// The colours of the strain of springs, if it is shown.
-    spring_ramp: Vec<Colour>,
     /// The edges of the elements, if surfaces are not shown.
     edges: Edges,
     /// The nodes that get arrows.
@@ -141,7 +139,6 @@ impl<'a> Composer<'a> {
             scene,
             ramp: map.map_or_else(Vec::new, |map| ramp(map, scene.view.look.theme)),
             field_name: None,
-            spring_ramp: scene.view.spring_strain.map_or_else(Vec::new, |scale| ramp(scale.map, scene.view.look.theme)),
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
             palette: scene.view.look.palette,
@@ -237,8 +234,8 @@ impl<'a> Composer<'a> {
         writer.caption(layout.around, caption, layout.caption);
         if let Some(((legend, &panel), framing)) = (*legend).zip(layout.panels.first()).zip(framings.first()) {
             let arrow = view.visible.displacements.then(|| self.key_arrow(legend, panel, framing, scale));
-            let bars = self.bars(frame);
-            legend.draw(&mut writer, f64::from(size[0]), f64::from(layout.legend), arrow, &self.samples(), &bars);
+            let (width, ground) = (f64::from(size[0]), f64::from(layout.legend));
+            legend.draw(&mut writer, width, ground, arrow, &self.samples(), self.bar(frame));
         }
         let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::with_capacity(runs.len()));
         let mut curves = Vec::new();

@@ -94,7 +94,9 @@ impl<'a> Draft<'a> {
         let position = finite(position, FARTHEST * view.side);
         // Without values, a greyed body has its own colour.
         let field = if greyed { &[][..] } else { &run.snapshot.field[..] };
-        let shades = view.colour.as_ref().map(|scale| Shades::new(body, scale, field));
+        // Beside springs that show their own strain, nothing else is coloured.
+        let shown = view.colour.as_ref().filter(|_| composer.strain_of_springs(run.run).is_none());
+        let shades = shown.map(|scale| Shades::new(body, scale, field));
         let of_nodes = match &shades {
             Some(shades) if !view.visible.surfaces || !composer.bare.is_empty() => shades.of_nodes(body),
             _ => Vec::new(),

@@ -99,14 +99,12 @@ impl<'a> Words<'a> {
     /// The key of colours and arrows, if there are any.
     fn legend(&self, around: Scale) -> Option<Legend> {
         let view = self.view();
-        let count = |shown: &[bool]| shown.iter().filter(|&&is_shown| is_shown).count();
-        let bars = count(&[view.colour.is_some(), view.spring_strain.is_some()]);
-        let samples = count(&[view.ghost.is_some(), !view.paths.is_empty()]);
-        let arrow = view.visible.displacements;
-        if !view.legend || !arrow && samples + bars == 0 {
+        let parts = [view.visible.displacements, view.colour.is_some()];
+        let samples = usize::from(view.ghost.is_some()) + usize::from(!view.paths.is_empty());
+        if !view.legend || !parts.contains(&true) && samples == 0 {
             return None;
         }
-        Legend::new(view.size.map(|length| length.max(1)), around, arrow, samples, bars)
+        Legend::new(view.size.map(|length| length.max(1)), around, parts, samples)
     }
 
     /// The words below the clock.

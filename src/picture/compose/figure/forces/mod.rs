@@ -124,7 +124,7 @@ fn bare(scene: &Scene, figure: &Figure) -> Scene {
     let mut scene = scene.clone();
     let view = &mut scene.view;
     view.look = figure.look.clone();
-    (view.colour, view.strip, view.spring_strain) = (None, None, None);
+    (view.colour, view.strip) = (None, None);
     view.visible.displacements = false;
     view.labels = Labels::default();
     // Floors are not drawn, and so cut nothing.

@@ -103,8 +103,8 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         let arrow = arrow.then(|| first.key_arrow(legend, plan.tile(0, 0), &framings[0][0], plan.tile_scale));
         let of_first = sheet.columns.iter().enumerate().filter(|(_, column)| column.scene == 0);
         let runs = of_first.flat_map(|(at, _)| moments.cells.iter().map(move |row| row[at].clone())).collect();
-        let bars = Frame { index: 0, time: 0.0, runs };
-        legend.draw(&mut writer, f64::from(size[0]), f64::from(bottom), arrow, &first.samples(), &first.bars(&bars));
+        let frame = Frame { index: 0, time: 0.0, runs };
+        legend.draw(&mut writer, f64::from(size[0]), f64::from(bottom), arrow, &first.samples(), first.bar(&frame));
     }
 
     let Writer { marks: above, mut curves, mut words, .. } = writer;
@@ -134,9 +134,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
 /// The scenes as their tiles show them: without words of their own, in the look of the figure.
 fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
     let first = sheet.scenes.first().map(|scene| &scene.view);
-    let alike = |one: &Scene| {
-        first.is_some_and(|first| one.view.colour == first.colour && one.view.spring_strain == first.spring_strain)
-    };
+    let alike = |one: &Scene| first.is_some_and(|first| one.view.colour == first.colour);
     let is_shared = sheet.scenes.iter().all(alike);
     let one = |scene: &Scene| {
         let mut scene = scene.clone();
@@ -148,7 +146,6 @@ fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
         view.strip = None;
         // One scale of colours for all, or none.
         view.colour = view.colour.filter(|_| is_shared);
-        view.spring_strain = view.spring_strain.filter(|_| is_shared);
         scene
     };
     sheet.scenes.iter().map(one).collect()
@@ -176,9 +173,8 @@ fn collapsed(ends: [DVec2; 2], scale: Scale, colour: Colour) -> Curve {
 /// The key of colours and arrows, if there are any.
 fn legend(scenes: &[Scene], size: [u32; 2], scale: Scale) -> Option<Legend> {
     let view = &scenes.first()?.view;
-    let bars = usize::from(view.colour.is_some()) + usize::from(view.spring_strain.is_some());
-    let arrow = view.visible.displacements;
+    let parts = [view.visible.displacements, view.colour.is_some()];
     let samples = usize::from(view.ghost.is_some()) + usize::from(!view.paths.is_empty());
-    let any = view.legend && (arrow || samples + bars > 0);
-    any.then(|| Legend::new(size, scale, arrow, samples, bars)).flatten()
+    let any = view.legend && (parts.contains(&true) || samples > 0);
+    any.then(|| Legend::new(size, scale, parts, samples)).flatten()
 }
