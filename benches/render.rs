@@ -47,7 +47,7 @@ friction = 0.3
 [view]
 size = [1280, 720]
 title = "A block dropped from 5 m"
-letters = true
+labels = ["letters", "name", "model", "clock", "count", "number", "scale-bar", "legend"]
 "#;
 
 /// One run of the program.

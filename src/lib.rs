@@ -25,7 +25,7 @@
 //!         .run("Local shape", shape_based::Parameters { damping_ratio: Some(0.1), ..shape_based::Parameters::new(1e4) })
 //!         .run("Springs", mass_spring::Parameters { damping_ratio: Some(0.1), ..mass_spring::Parameters::new(1e4) })
 //!         .build(&Limits::default())?;
-//!     scene.view.labels.letter = true; // `View` has all that pictures show.
+//!     scene.view.labels.letters = true; // `View` has all that pictures show.
 //!     // Both runs half a second after the start, beside each other.
 //!     let frame = Runner::new(&scene, &[0, 1]).frame(30);
 //!     let gpu = Gpu::new(&AdapterChoice::Auto)?;

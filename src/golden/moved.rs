@@ -39,7 +39,7 @@ pub(super) fn draw_distances(
     let view = &mut scene.view;
     let range = [0.0, distances.iter().flatten().copied().fold(0.0, f64::max)];
     view.colour = Some(ColourScale { field: Field::Displacement, range, map: ColourMap::default() });
-    (view.size, view.legend, view.ghost) = (size, true, None);
+    (view.size, view.labels.legend, view.ghost) = (size, true, None);
     for (run, distances) in frame.runs.iter_mut().zip(distances) {
         run.snapshot.field.clone_from(distances);
     }

@@ -3,7 +3,7 @@
 use super::palette::Theme;
 use super::print::{SizeFile, TextScaleFile};
 use super::typed::{ColoursFile, FontFile, TypedColour};
-use super::view::{ColourMap, FloorStyle, Light};
+use super::view::{ColourMap, FloorStyle, Label, Labels, Light};
 use crate::reading::coordinates::Coordinates;
 use crate::sim::field::Field;
 use crate::sim::snapshot::Diagnostic;
@@ -56,14 +56,9 @@ pub(crate) struct ViewFile {
     /// the picture: a longer caption is cut off with an ellipsis. Default: none.
     #[schemars(length(max = 2000), extend("format" = "lines"))]
     pub(crate) caption: String,
-    /// Whether each panel has a letter before its name: a, b, c and so on.
-    pub(crate) letters: bool,
-    /// What is written in each panel.
-    pub(crate) labels: Vec<LabelFile>,
-    /// Whether there is a scale bar (m); in space it holds at the distance of the camera's target.
-    pub(crate) scale_bar: bool,
-    /// Whether a legend says what colours and arrows mean, if there are any and room for it.
-    pub(crate) legend: bool,
+    /// What is written in panels and below them.
+    #[schemars(with = "Vec<Label>")]
+    pub(crate) labels: Labels,
     /// A diagnostic plotted over the whole time of the scene in one chart below all panels, with the current time
     /// marked. The whole scene is simulated before the first frame is drawn. Names are written at the ends of curves as
     /// far as there is room, or the letters of their panels where there is none; numbered flags, also in the panels,
@@ -116,10 +111,7 @@ impl Default for ViewFile {
             arrow_scale: 1.0,
             title: String::new(),
             caption: String::new(),
-            letters: false,
-            labels: LabelFile::ALL.to_vec(),
-            scale_bar: true,
-            legend: true,
+            labels: Labels::default(),
             strip: None,
             opacity: 1.0,
             ghost: None,
@@ -133,26 +125,6 @@ impl Default for ViewFile {
             camera: CameraFile::default(),
         }
     }
-}
-
-/// A text in a panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum LabelFile {
-    /// The run's name.
-    Name,
-    /// The model and its parameters.
-    Model,
-    /// The time, in one panel only.
-    Clock,
-    /// The number of turned-over elements.
-    Count,
-    /// The shape error; in the plane, the smallest area ratio. Divergence is always shown.
-    Number,
-}
-
-impl LabelFile {
-    const ALL: [Self; 5] = [Self::Name, Self::Model, Self::Clock, Self::Count, Self::Number];
 }
 
 /// A point of the body that leaves a path.

@@ -2,11 +2,11 @@
 
 use super::compared;
 use super::contrast;
-use super::file::{ArrangementFile, ColourFile, EdgesFile, LabelFile, PanelsFile, ShowFile, ViewFile};
+use super::file::{ArrangementFile, ColourFile, EdgesFile, PanelsFile, ShowFile, ViewFile};
 use super::framing;
 use super::print::{TextScaleFile, unit};
 use super::subject::Subject;
-use super::view::{ColourScale, FontFiles, Labels, View, Visible};
+use super::view::{ColourScale, FontFiles, View, Visible};
 use crate::reading::coordinates::vector;
 use crate::reading::report::{Report, Way};
 use crate::sim::body::Dimension;
@@ -90,9 +90,7 @@ pub(crate) fn resolve(
         has_cells: scene.has_cells,
         title: typed.title.trim().to_owned(),
         caption: typed.caption.trim().to_owned(),
-        labels: labels(typed),
-        scale_bar: typed.scale_bar,
-        legend: typed.legend,
+        labels: typed.labels,
         strip: typed.strip,
         opacity: typed.opacity,
         ghost,
@@ -141,17 +139,4 @@ fn rising([low, high]: [f64; 2], way: &[Way<'_>; 3], report: &mut Report<'_>) ->
         return None;
     }
     Some([low, high])
-}
-
-/// What is written in panels.
-fn labels(typed: &ViewFile) -> Labels {
-    let has = |label| typed.labels.contains(&label);
-    Labels {
-        letter: typed.letters,
-        name: has(LabelFile::Name),
-        model: has(LabelFile::Model),
-        clock: has(LabelFile::Clock),
-        count: has(LabelFile::Count),
-        number: has(LabelFile::Number),
-    }
 }

@@ -40,12 +40,8 @@ pub struct View {
     pub title: String,
     /// A caption below all panels; empty for none.
     pub caption: String,
-    /// What is written in each panel.
+    /// What is written in panels and below them.
     pub labels: Labels,
-    /// Whether a bar says how long a round length is.
-    pub scale_bar: bool,
-    /// Whether keys say what colours and arrows mean.
-    pub legend: bool,
     /// The diagnostic of all runs that is drawn over time below the panels.
     pub strip: Option<Diagnostic>,
     /// Opacity of elements that are not turned over, from 0.1 to 1.
@@ -101,9 +97,7 @@ impl Default for View {
             has_cells: false,
             title: String::new(),
             caption: String::new(),
-            labels: Labels { letter: false, name: true, model: true, clock: true, count: true, number: true },
-            scale_bar: true,
-            legend: true,
+            labels: Labels::default(),
             strip: None,
             opacity: 1.0,
             ghost: None,
@@ -118,14 +112,15 @@ impl Default for View {
     }
 }
 
-/// What is written in each panel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// What is written in panels and below them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "Vec<Label>", into = "Vec<Label>")]
 pub struct Labels {
-    /// A letter before the name.
-    pub letter: bool,
-    /// The run's name.
+    /// A letter before each name.
+    pub letters: bool,
+    /// The name of each run.
     pub name: bool,
-    /// The model and its parameters.
+    /// The model of each run and its parameters.
     pub model: bool,
     /// The time, in one panel for all.
     pub clock: bool,
@@ -133,6 +128,96 @@ pub struct Labels {
     pub count: bool,
     /// One number that measures the deformation.
     pub number: bool,
+    /// A bar that says how long a round length is.
+    pub scale_bar: bool,
+    /// Keys of colours and arrows.
+    pub legend: bool,
+}
+
+impl Labels {
+    /// Nothing.
+    pub const NONE: Self = Self {
+        letters: false,
+        name: false,
+        model: false,
+        clock: false,
+        count: false,
+        number: false,
+        scale_bar: false,
+        legend: false,
+    };
+
+    /// Whether there are words in panels.
+    pub(crate) fn are_in_panels(&self) -> bool {
+        let Self { letters, name, model, clock, count, number, scale_bar: _, legend: _ } = *self;
+        [letters, name, model, clock, count, number].contains(&true)
+    }
+
+    /// Each of them with its word.
+    fn words(&mut self) -> [(Label, &mut bool); 8] {
+        [
+            (Label::Letters, &mut self.letters),
+            (Label::Name, &mut self.name),
+            (Label::Model, &mut self.model),
+            (Label::Clock, &mut self.clock),
+            (Label::Count, &mut self.count),
+            (Label::Number, &mut self.number),
+            (Label::ScaleBar, &mut self.scale_bar),
+            (Label::Legend, &mut self.legend),
+        ]
+    }
+}
+
+impl Default for Labels {
+    /// All but letters.
+    fn default() -> Self {
+        Self {
+            letters: false,
+            name: true,
+            model: true,
+            clock: true,
+            count: true,
+            number: true,
+            scale_bar: true,
+            legend: true,
+        }
+    }
+}
+
+impl From<Vec<Label>> for Labels {
+    fn from(wanted: Vec<Label>) -> Self {
+        let mut labels = Self::NONE;
+        labels.words().into_iter().for_each(|(label, is_there)| *is_there = wanted.contains(&label));
+        labels
+    }
+}
+
+impl From<Labels> for Vec<Label> {
+    fn from(mut labels: Labels) -> Self {
+        labels.words().into_iter().filter_map(|(label, is_there)| is_there.then_some(label)).collect()
+    }
+}
+
+/// A word for something that is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Label {
+    /// A letter before each name: a, b, c and so on.
+    Letters,
+    /// The run's name.
+    Name,
+    /// The model and its parameters.
+    Model,
+    /// The time, in one panel only.
+    Clock,
+    /// The number of turned-over elements.
+    Count,
+    /// The shape error; in the plane, the smallest area ratio. Divergence is always shown.
+    Number,
+    /// A scale bar (m), in the first panel; in space it holds at the distance of the camera's target.
+    ScaleBar,
+    /// What colours and arrows mean, if there are any and room for it, below all panels.
+    Legend,
 }
 
 /// Direction of the light, relative to the camera.

@@ -210,7 +210,6 @@ pub(super) struct Written {
     pub(super) labels: Labels,
     /// Whether there is a second line, with the model and what the clock counts from.
     pub(super) second: bool,
-    pub(super) scale_bar: bool,
     /// Whether there is a line for events.
     pub(super) events: bool,
 }
@@ -219,13 +218,13 @@ pub(super) struct Written {
 /// everything has room beside the body, first the events are left out, then second lines, then what stands below.
 pub(super) fn written(view: &View, height: f64, unit: f64) -> Written {
     let scale = Scale { unit, ..Scale::REFERENCE }.within(view);
-    let Labels { letter, name, model, clock, .. } = view.labels;
+    let Labels { letters, name, model, clock, .. } = view.labels;
     let events = view.strip.is_some();
-    let all = Written { labels: view.labels, second: model || clock, scale_bar: view.scale_bar, events };
+    let all = Written { labels: view.labels, second: model || clock, events };
     let plain = Written { events: false, ..all };
     let labels = Labels { model: false, ..view.labels };
-    let names = Labels { letter, name, clock, ..Labels::default() };
-    let none = Written { labels: Labels::default(), second: false, scale_bar: false, events: false };
+    let names = Labels { letters, name, clock, ..Labels::NONE };
+    let none = Written { labels: Labels::NONE, second: false, events: false };
     let choices = [all, plain, Written { labels, second: false, ..plain }, Written { labels: names, ..none }];
     let margins = 2.0 * MARGIN * unit;
     let fits = |written: &Written| {
@@ -243,12 +242,12 @@ pub(super) fn rooms(view: &View, height: f64, unit: f64) -> [f64; 2] {
 }
 
 /// The same for chosen words (px).
-fn rooms_of(Written { labels, second, scale_bar, events }: Written, scale: Scale) -> [f64; 2] {
-    let Labels { letter, name, clock, count, number, .. } = labels;
+fn rooms_of(Written { labels, second, events }: Written, scale: Scale) -> [f64; 2] {
+    let Labels { letters, name, clock, count, number, scale_bar, .. } = labels;
     let unit = scale.type_unit();
     let rows = Baselines::new(scale, [0; 4]);
     let nothing = NO_WORDS * scale.unit;
-    let above = match (letter || name || clock, second) {
+    let above = match (letters || name || clock, second) {
         _ if events => rows.events + CLEAR[1] * unit,
         (_, true) => rows.second + CLEAR[1] * unit,
         (true, false) => rows.title + CLEAR[0] * unit,

@@ -41,9 +41,12 @@ const GONE: &[Gone] = &[
     key("view.columns", "write the number in `view.panels`"),
     key("view.explode", "remove it"),
     key("view.inset", "remove it"),
+    key("view.legend", "leave `\"legend\"` in `view.labels`, or take it out"),
+    key("view.letters", "write `\"letters\"` in `view.labels`"),
     key("view.line_scale", "remove it"),
     key("view.margin", "remove it"),
     key("view.points", "remove it"),
+    key("view.scale_bar", "leave `\"scale-bar\"` in `view.labels`, or take it out"),
     key("view.spring_colour", "write `colour = { by = \"strain\", range = [-0.3, 0.3], map = \"violet-green\" }`"),
 ];
 

@@ -98,12 +98,13 @@ fn without_a_hatch_turned_over_elements_have_one_colour() {
     let plane = include_str!("../../scenes/fig4a.toml");
     let text = |more: &str| {
         plane
-            .replace("[view]", &format!("[view]\nshow = ['surfaces']\nlabels = []\n{more}"))
+            .replace("labels =", "# labels =")
+            .replace("[view]", &format!("[view]\nshow = ['surfaces']\n{more}"))
             .replace("strip =", "# strip =")
     };
     for theme in ["light", "dark"] {
-        for colour in ["", "colour.by = 'strain'\nlegend = false"] {
-            let text = text(&format!("theme = '{theme}'\n{colour}"));
+        for colour in ["", "colour.by = 'strain'"] {
+            let text = text(&format!("theme = '{theme}'\nlabels = []\n{colour}"));
             let mut scene = parse(&text);
             let frame = Runner::new(&scene, &[1]).frame(scene.last_frame());
             assert!(frame.runs[0].snapshot.turned_over.contains(&true));
@@ -140,7 +141,7 @@ fn without_a_hatch_turned_over_elements_in_space_are_lit_whatever_colours_the_ot
         frame.runs[0].snapshot.turned_over[13] = true;
         compose(&scene, &frame)
     };
-    let field = "colour.by = 'speed'\nlegend = false";
+    let field = "colour.by = 'speed'\nlabels = ['name', 'model', 'clock', 'count', 'number', 'scale-bar']";
     let mut renderer = renderer(gpu, [1280, 720]);
     let mut draw = |picture: &Picture| renderer.draw(picture).expect("the device works");
     let [plain, coloured] = ["", field].map(|colour| draw(&turned_over_alone(&picture(colour))));

@@ -426,7 +426,7 @@ fn a_rod_that_touches_darkens_the_body_below_it_and_one_that_does_not_leaves_it_
         let rod = format!(
             "[[obstacle]]\nkind = 'capsule'\nfrom = [-0.5, {height}, 0]\nto = [0.5, {height}, 0]\nradius = 0.03\n"
         );
-        let view = "[view]\nsize = [320, 240]\nlabels = []\nscale_bar = false\n\
+        let view = "[view]\nsize = [320, 240]\nlabels = []\n\
                     camera = { target = [0, 0.2, 0], distance = 2, azimuth = 0, elevation = 1.2 }\n";
         let mut picture = picture(&scene(&[WORLD, block, FLOOR, &rod, view]), 0);
         // Only the shadow of the rod is left.
@@ -475,7 +475,7 @@ fn obstacles_fade_where_they_leave_their_panel() {
 fn what_fades_lets_the_ground_through() {
     let Some(gpu) = gpu("what_fades_lets_the_ground_through") else { return };
     let rod = "[[obstacle]]\nkind = 'capsule'\nfrom = [-9, 0.1, -0.3]\nto = [9, 0.1, -0.3]\nradius = 0.1\n";
-    let view = "[view]\nsize = [320, 240]\nlabels = []\nscale_bar = false\n\
+    let view = "[view]\nsize = [320, 240]\nlabels = []\n\
                 camera = { target = [0, 0.2, 0], distance = 2, azimuth = 0 }\n";
     let fading = picture(&scene(&[WORLD, CUBE, FLOOR, rod, view]), 0);
     let [mut whole, mut bare] = [fading.clone(), fading.clone()];
@@ -504,7 +504,7 @@ fn rims_fade_with_their_obstacles() {
     let Some(gpu) = gpu("rims_fade_with_their_obstacles") else { return };
     let rod = "[[obstacle]]\nkind = 'capsule'\nfrom = [-9, 0.9]\nto = [9, 0.7]\nradius = 0.05\n";
     for opacity in ["0.5", "1.0"] {
-        let view = format!("[view]\nsize = [320, 240]\nlabels = []\nscale_bar = false\nopacity = {opacity}\n");
+        let view = format!("[view]\nsize = [320, 240]\nlabels = []\nopacity = {opacity}\n");
         let fading = picture(&scene(&[WORLD, TRIANGLE, rod, &view]), 0);
         let mut bare = fading.clone();
         bare.panels[0].obstacles.solids.clear();

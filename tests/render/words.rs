@@ -34,7 +34,7 @@ restitution = 0.5
 [view]
 title = 'A title above all panels that says what the picture is about, at some length, for the sake of this test'
 caption = 'A caption of several sentences. It is set in lines, and goes on until there are at least two of them at every size.'
-letters = true
+labels = ['letters', 'name', 'model', 'clock', 'count', 'number', 'scale-bar', 'legend']
 strip = 'shape_error'
 colour = { by = 'strain' }
 "#;
@@ -93,13 +93,14 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_size_of_type() {
         // In low panels, strips with type of three times the size have no room for two rows.
         for strip in ["", "strip = 'shape_error'"].into_iter().filter(|strip| strip.is_empty() || text_scale < 3.0) {
             for (at, view) in
-                ["", "caption = ''", "caption = ''\nlegend = false", "panels = 'column'"].into_iter().enumerate()
+                ["", "caption = ''", "caption = '' # no legend", "panels = 'column'"].into_iter().enumerate()
             {
                 let text = ALL.lines().filter(|line| !line.starts_with("strip"));
                 let text: Vec<_> =
                     text.filter(|line| !view.contains("caption") || !line.starts_with("caption")).collect();
                 let mut scene =
                     parse(&format!("{}\n{strip}\n{shown}text_scale = {text_scale}\n{view}\n", text.join("\n")));
+                scene.view.labels.legend = !view.contains("no legend");
                 // Any two of type, view and size once at least.
                 for size in [0, 1, 2, 3].map(|next| sizes[(number + at + next) % 5]) {
                     scene.view.size = size;

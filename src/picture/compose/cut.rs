@@ -1,7 +1,6 @@
 //! Obstacles that leave their panel fade there, instead of being cut off.
 
 use super::panel::Draft;
-use crate::look::Labels;
 use crate::picture::fade::FADING;
 use crate::picture::narrow::narrow;
 use crate::picture::plane::sides;
@@ -35,7 +34,7 @@ impl Draft<'_> {
     /// the side; those that hardly leave it less, so that nothing changes at once.
     pub(super) fn fade_obstacles(&self, obstacles: &mut Obstacles, marks: &mut Vec<Mark>) {
         let place = |at: [f32; 3]| self.origin + self.side * DVec3::from(at.map(f64::from));
-        let has_words = self.scene.view.labels != Labels::default();
+        let has_words = self.scene.view.labels.are_in_panels();
         let room = if has_words { self.between_words() } else { self.viewport };
         let [left, top, right, bottom] = sides(room.map(f64::from));
         let beside = 0.5 * self.scale.margin();

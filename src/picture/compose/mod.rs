@@ -184,7 +184,7 @@ impl<'a> Composer<'a> {
         let writer = self.writer(layout.around);
         let panel = layout.panels.first().copied();
         let written = panel.map(|panel| layout::written(&scene.view, panel[3].into(), layout.scale.unit));
-        let [has_events, have_letters] = written.map_or([false; 2], |written| [written.events, written.labels.letter]);
+        let [has_events, have_letters] = written.map_or([false; 2], |written| [written.events, written.labels.letters]);
         let (panel, in_panel) = (panel.filter(|_| has_events), self.writer(layout.scale));
         let explained = |events: &[&Event]| panel.map_or(0, |panel| in_panel.explained(panel, events));
         let timeline = Timeline::new(diagnostic, history, scene, writer, (layout.chart, have_letters), explained);
@@ -286,7 +286,7 @@ impl<'a> Composer<'a> {
         let names = words.names(&runs);
         for (at, (&viewport, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
             let written = layout::written(view, f64::from(viewport[3]), layout.scale.unit);
-            let layout::Written { labels, scale_bar, events, .. } = written;
+            let layout::Written { labels, events, .. } = written;
             let heading = words.heading(at, &runs, &names, labels, layout.chart.is_some());
             let has_clock = labels.clock && with_clock && at == words::clock_panel(layout.panels.len(), columns);
             let taken = if has_clock { writer.clock_room(viewport, words.clock_label(written)) } else { [0.0; 2] };
@@ -315,7 +315,7 @@ impl<'a> Composer<'a> {
             let usual = caption::number(self.extent, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
             let to = to.min(writer.left_of_numbers(viewport, &usual));
             // One scale for all panels, and so one bar.
-            if let Some(framing) = framing.filter(|_| scale_bar && at == 0) {
+            if let Some(framing) = framing.filter(|_| labels.scale_bar && at == 0) {
                 from = self.draw_bar(viewport, framing, [from, to], writer).unwrap_or(from);
             }
             match caption::divergence(run) {

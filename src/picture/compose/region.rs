@@ -1,7 +1,6 @@
 //! The part of a panel that the body and its lines may touch.
 
 use super::panel::Draft;
-use crate::look::Labels;
 use crate::picture::camera::Lens;
 use crate::picture::layout::Rectangle;
 use glam::{DVec2, DVec3};
@@ -19,7 +18,7 @@ impl Draft<'_> {
         let [body, around] =
             [&self.position[..], around_obstacles].map(|points| region(self.viewport, points.iter(), &self.lens, room));
         // Obstacles go under the rows of words, where there are any.
-        let has_words = self.scene.view.labels != Labels::default();
+        let has_words = self.scene.view.labels.are_in_panels();
         let region = union(body, if has_words { overlap(around, self.between_words()) } else { around });
         // Everything ends at the panel, with its words above it; but a diverged body may cover everything, and the words
         // report it.

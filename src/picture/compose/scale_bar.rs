@@ -34,8 +34,8 @@ impl Composer<'_> {
     pub(super) fn lacks_bar(&self, runs: &[usize], columns: usize) -> bool {
         let (view, body) = (&self.scene.view, &*self.scene.body);
         let layout = self.words().around(runs, columns).layout;
-        let Some(&panel) = layout.panels.first().filter(|_| view.scale_bar) else { return false };
-        let layout::Written { labels, scale_bar, .. } = layout::written(view, f64::from(panel[3]), layout.scale.unit);
+        let Some(&panel) = layout.panels.first().filter(|_| view.labels.scale_bar) else { return false };
+        let layout::Written { labels, .. } = layout::written(view, f64::from(panel[3]), layout.scale.unit);
         let snapshot = Snapshot {
             position: self.scene.initial.position.clone(),
             turned_over: vec![false; body.elements.len()],
@@ -52,7 +52,7 @@ impl Composer<'_> {
         to = to.min(writer.left_of_numbers(panel, &caption::number(self.extent, &start.snapshot, area)));
         let shot = self.shot(panel, layout.scale);
         let framing = self.framing(shot.as_ref(), &start, (panel, layout.scale));
-        !scale_bar || self.draw_bar(panel, &framing, [from, to], &mut writer).is_none()
+        !labels.scale_bar || self.draw_bar(panel, &framing, [from, to], &mut writer).is_none()
     }
 
     /// What a scale bar in a room (px) stands for (m), and how long it is (px).

@@ -101,7 +101,7 @@ impl<'a> Words<'a> {
         let view = self.view();
         let parts = [view.visible.displacements, view.colour.is_some()];
         let samples = usize::from(view.ghost.is_some()) + usize::from(!view.paths.is_empty());
-        if !view.legend || !parts.contains(&true) && samples == 0 {
+        if !view.labels.legend || !parts.contains(&true) && samples == 0 {
             return None;
         }
         Legend::new(view.size.map(|length| length.max(1)), around, parts, samples)
@@ -137,7 +137,7 @@ impl<'a> Words<'a> {
     ) -> Heading<'w> {
         let shown = |is_shown: bool, text| if is_shown { text } else { "" };
         Heading {
-            letter: if labels.letter { caption::letter(at) } else { String::new() },
+            letter: if labels.letters { caption::letter(at) } else { String::new() },
             name: shown(labels.name, names.get(at).copied().unwrap_or_default()),
             names,
             sample: self.sample(runs[at], has_chart),
@@ -150,14 +150,16 @@ impl<'a> Words<'a> {
         let view = self.view();
         let has_arrows = view.visible.displacements && view.colour.is_none();
         let has_ghost = matches!(view.ghost, Some(Ghost::Run(_))) || !view.paths.is_empty();
-        (view.legend && (has_chart || has_arrows || has_ghost)).then(|| self.scene.runs.get(run)).flatten().map(|run| {
-            let line = run.line(self.palette);
-            // As its curve in the chart. Without one, only colours count.
-            match view.strip.filter(|_| has_chart) {
-                Some(diagnostic) => series::style(diagnostic, line),
-                None => LineStyle { dash: &[], ..line },
-            }
-        })
+        (view.labels.legend && (has_chart || has_arrows || has_ghost)).then(|| self.scene.runs.get(run)).flatten().map(
+            |run| {
+                let line = run.line(self.palette);
+                // As its curve in the chart. Without one, only colours count.
+                match view.strip.filter(|_| has_chart) {
+                    Some(diagnostic) => series::style(diagnostic, line),
+                    None => LineStyle { dash: &[], ..line },
+                }
+            },
+        )
     }
 
     /// Whether the clock has no room beside the heading of its panel.

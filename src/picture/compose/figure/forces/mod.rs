@@ -126,7 +126,8 @@ fn bare(scene: &Scene, figure: &Figure) -> Scene {
     view.look = figure.look.clone();
     (view.colour, view.strip) = (None, None);
     view.visible.displacements = false;
-    view.labels = Labels::default();
+    // There is no scale bar, but the room for it.
+    view.labels = Labels { scale_bar: view.labels.scale_bar, ..Labels::NONE };
     // Floors are not drawn, and so cut nothing.
     scene.obstacles.retain(|obstacle| !matches!(obstacle.shape, Shape::Floor { .. }));
     scene

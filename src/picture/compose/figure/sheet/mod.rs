@@ -141,8 +141,7 @@ fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
         let view = &mut scene.view;
         view.size = figure.size;
         view.look = figure.look.clone();
-        view.labels = Labels::default();
-        view.scale_bar = false;
+        view.labels = Labels { legend: view.labels.legend, ..Labels::NONE };
         view.strip = None;
         // One scale of colours for all, or none.
         view.colour = view.colour.filter(|_| is_shared);
@@ -175,6 +174,6 @@ fn legend(scenes: &[Scene], size: [u32; 2], scale: Scale) -> Option<Legend> {
     let view = &scenes.first()?.view;
     let parts = [view.visible.displacements, view.colour.is_some()];
     let samples = usize::from(view.ghost.is_some()) + usize::from(!view.paths.is_empty());
-    let any = view.legend && (parts.contains(&true) || samples > 0);
+    let any = view.labels.legend && (parts.contains(&true) || samples > 0);
     any.then(|| Legend::new(size, scale, parts, samples)).flatten()
 }
