@@ -1,5 +1,6 @@
 //! `--frames`: which frames are wanted.
 
+use crate::output::Shard;
 use std::str::FromStr;
 
 /// Frames as typed: `5`, `0-119`, every third of them as `0-119x3`, or several of these as `5,9,40-60`.
@@ -49,21 +50,13 @@ impl FromStr for FrameRanges {
     }
 }
 
-/// One of several equal shares of the frames: `2/4` has the second frame and every fourth one after it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Shard {
-    pub(super) number: usize,
-    /// How many there are.
-    pub(super) of: usize,
-}
-
 impl Shard {
-    /// Its share of some frames, or of what else is numbered.
-    pub(super) fn select(self, frames: &[u64], what: &str) -> Result<Vec<u64>, String> {
+    /// Its share of some frames: `2/4` has the second frame and every fourth one after it.
+    pub(super) fn select(self, frames: &[u64]) -> Result<Vec<u64>, String> {
         let share: Vec<_> = frames.iter().copied().skip(self.number - 1).step_by(self.of).collect();
         if share.is_empty() {
             let (number, of, count) = (self.number, self.of, frames.len());
-            return Err(format!("shard {number}/{of} of {count} {what} is empty; expected at most {count} shards"));
+            return Err(format!("shard {number}/{of} of {count} frames is empty; expected at most {count} shards"));
         }
         Ok(share)
     }
@@ -130,15 +123,15 @@ mod tests {
     fn shards_share_out_all_frames() {
         let frames = frames("0-180x7");
         for of in 1..=frames.len() {
-            let share = |number: usize| Shard { number, of }.select(&frames, "frames").unwrap();
+            let share = |number: usize| Shard { number, of }.select(&frames).unwrap();
             let mut all: Vec<_> = (1..=of).flat_map(share).collect();
             let sizes: Vec<_> = (1..=of).map(|number| share(number).len()).collect();
             assert!(sizes.iter().max().unwrap() - sizes.iter().min().unwrap() <= 1, "{sizes:?}");
             all.sort_unstable();
             assert_eq!(all, frames);
         }
-        assert_eq!("2/4".parse::<Shard>().unwrap().select(&[3, 5, 8, 9, 10, 12], "frames"), Ok(vec![5, 12]));
-        let error = "3/3".parse::<Shard>().unwrap().select(&[3, 5], "frames").unwrap_err();
+        assert_eq!("2/4".parse::<Shard>().unwrap().select(&[3, 5, 8, 9, 10, 12]), Ok(vec![5, 12]));
+        let error = "3/3".parse::<Shard>().unwrap().select(&[3, 5]).unwrap_err();
         assert_eq!(error, "shard 3/3 of 2 frames is empty; expected at most 2 shards");
         for (typed, message) in [
             ("0/4", "there is no shard 0 of 4; expected 1/4 to 4/4"),

@@ -36,8 +36,8 @@ pub(super) struct RunOptions {
     #[arg(short, long, value_name = "DIR", value_hint = ValueHint::AnyPath)]
     pub(super) out: Option<PathBuf>,
 
-    /// Replace files in the output folder that belong to another scene, size or choice of runs, or, in a folder given with
-    /// -o, to an earlier version of the scene file
+    /// Replace what hinders in the output folder: results of another scene, frames of another size or choice of runs, and other files of
+    /// these names
     #[arg(long)]
     pub(super) overwrite: bool,
 

@@ -27,7 +27,10 @@ use std::time::Duration;
 
 /// What makes pictures of scenes.
 pub(super) trait Studio {
+    /// Begins the pictures of some frames of a scene, in a folder.
     fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure>;
+    /// The graphics adapter that draws, as in summaries.
+    fn adapter(&self) -> String;
 }
 
 /// Runs all scenes, one after the other, and reports on each.
@@ -58,7 +61,10 @@ pub(super) fn run_all(
         }
         let mut summary = Summary::new(&job.scene, &job.runs, job.frames.len(), &command);
         summary.set = settings.iter().map(|setting| setting.text().to_owned()).collect();
-        summary.frames.shard = job.shard.map(|shard| [shard.number, shard.of]);
+        summary.adapter = studio.map(Studio::adapter);
+        // Frames that are not kept count as simulated only.
+        summary.frames.size = job.folder.contents().0.size;
+        summary.frames.written = summary.frames.size.map(|_| 0);
         result = record(job, &mut summary, &pool, options, studio);
         if options.printing.json {
             let mut document = json!({ "folder": path.to_string_lossy() });
@@ -90,9 +96,13 @@ fn record(
     options: &RunOptions,
     studio: Option<&dyn Studio>,
 ) -> Result<(), Failure> {
-    let Job { scene, runs, frames, folder, stored, .. } = job;
+    let Job { scene, runs, frames, all, folder, stored } = job;
     let begin = || -> Result<_, Failure> {
-        let folder = folder.prepare()?;
+        let mut first = summary.clone();
+        if folder.shard().is_some() {
+            (first.outcome, first.frames.asked) = (Outcome::Shards, all);
+        }
+        let folder = folder.prepare(&first)?;
         let pictures = studio.map(|studio| studio.begin(&scene, folder.path(), &frames)).transpose()?;
         Ok((folder, pictures))
     };
@@ -188,17 +198,12 @@ impl<'a> Recording<'a> {
     ) -> Result<(), Failure> {
         let (total, simulating) = (Clock::process(), processor_time(pool));
         let (folder, scene) = (self.folder.path(), self.scene);
-        if let Some(pictures) = &pictures {
-            pictures.describe(self.summary);
-        }
         if let (Some(found), Some(pictures)) = (&checkpoint, &mut pictures)
             && let Some(wrong) = pictures.keep(self.frames.get(..found.progress.taken).unwrap_or_default())?
         {
             let what = format!("counts on {wrong}").into();
             return Err(OutputError::Checkpoint { path: folder.to_owned(), what }.into());
         }
-        // Written before the first frame, so that the folder is known as this scene's even if the program is killed.
-        self.summary.write(folder)?;
         let (progress, rows, course) = match checkpoint {
             Some(Checkpoint { progress, causes, rows, course, .. }) => {
                 self.summary.runs.iter_mut().zip(causes).for_each(|(run, cause)| run.cause = cause);
@@ -206,9 +211,11 @@ impl<'a> Recording<'a> {
             }
             None => (None, None, None),
         };
+        let is_shard = self.folder.shard().is_some();
         let diagnostics = match rows {
-            Some(rows) => DiagnosticsWriter::resume(folder, scene, rows).map_err(|error| self.unusable(&error))?,
-            None => DiagnosticsWriter::create(folder, scene)?,
+            _ if is_shard => None,
+            Some(rows) => Some(DiagnosticsWriter::resume(folder, scene, rows).map_err(|error| self.unusable(&error))?),
+            None => Some(DiagnosticsWriter::create(folder, scene)?),
         };
         self.summary.frames.recorded = progress.as_ref().map_or(0, |progress| progress.taken);
         let mut simulation = self.simulation(pool, options, pictures.as_deref(), stored, progress)?;
@@ -227,18 +234,18 @@ impl<'a> Recording<'a> {
         }
 
         let drawn = pictures.map_or(Ok(()), |pictures| pictures.finish(self.summary, &mut self.times));
-        let recorded = diagnostics.finish();
+        let recorded = diagnostics.map(DiagnosticsWriter::finish);
         let kept = states.map(StatesWriter::finish);
         self.summary.files = [
-            (DIAGNOSTICS_FILE, recorded.is_ok()),
+            (DIAGNOSTICS_FILE, matches!(recorded, Some(Ok(())))),
             (STATES_FILE, matches!(kept, Some(Ok(())))),
             (FRAME_FILES, self.summary.frames.written > Some(0) || self.summary.frames.kept > 0),
         ]
         .into_iter()
         .filter_map(|(name, written)| written.then_some(name))
         .collect();
-        let result =
-            made.and(drawn).and(recorded.map_err(Failure::from)).and(kept.unwrap_or(Ok(())).map_err(Failure::from));
+        let tables = recorded.unwrap_or(Ok(())).and(kept.unwrap_or(Ok(())));
+        let result = made.and(drawn).and(tables.map_err(Failure::from));
 
         let of_pool = processor_time(pool).zip(simulating).map(|(now, start)| (now - start).as_secs_f64());
         self.times.simulate.cpu = of_pool.map(|pool| pool + self.times.simulate.cpu.unwrap_or(0.0));
@@ -257,6 +264,9 @@ impl<'a> Recording<'a> {
             draw.cpu = drawing;
         }
         summary.times = Some(self.times);
+        if is_shard {
+            return result;
+        }
         let written = summary.write(folder).map_err(Failure::from);
         if summary.outcome == Outcome::Done && written.is_ok() {
             Checkpoint::remove(folder)?;
@@ -317,7 +327,11 @@ impl<'a> Recording<'a> {
                 runner = runner.with_time_series(wanted);
             }
             let length = progress.as_ref().map_or(0, Progress::waiting_length);
-            let open = || open_growing(&waiting_states(folder), length);
+            let open = || match self.folder.shard() {
+                // It does not go on from there.
+                Some(_) => tempfile::tempfile_in(folder),
+                None => open_growing(&waiting_states(folder), length),
+            };
             let waiting = ahead.then(open).transpose();
             let frames = waiting.and_then(|waiting| {
                 let mut frames = Frames::new(runner, &self.frames, waiting);
@@ -352,8 +366,9 @@ impl<'a> Recording<'a> {
             }
         }
         // Frames that are not kept cannot be continued, and states that are read need not be.
-        let can_resume =
-            simulation.read_from.is_none() && (results.pictures.is_none() || self.summary.frames.size.is_some());
+        let can_resume = simulation.read_from.is_none()
+            && self.folder.shard().is_none()
+            && (results.pictures.is_none() || self.summary.frames.size.is_some());
         let mut pace = Pace::new();
         while !interrupt::requested() {
             if can_resume && pace.is_due() {

@@ -3,11 +3,11 @@
 use super::console;
 use super::failure::{Failure, Status, missing};
 use super::film::{Films, Shared, replaceable};
-use super::frames::Shard;
 use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, size};
 use super::record::{self, Studio};
 use super::results::Pictures;
+use super::scenes::Wish;
 use super::still::{
     Format as FileFormat, NO_ADAPTER, Still, check_type, replaceable as replaceable_still, source_of, too_small,
 };
@@ -17,8 +17,8 @@ use crate::gpu::{Gpu, GpuError};
 use crate::look::Ghost;
 use crate::output::shell;
 use crate::output::{
-    AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Spent, StoredStates, Summary, Tags, Tap,
-    Texts, Timings, folder_of, frame_file_name, is_drawn, read_tags,
+    AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Shard, Spent, StoredStates, Summary, Tags,
+    Tap, Texts, Timings, folder_of, frame_file_name, is_drawn, read_tags,
 };
 use crate::render::RenderError;
 use crate::runner::history::History;
@@ -41,15 +41,13 @@ Examples:
   localshape render scenes/fig4b.toml --set run[0].model.stiffness=1e5 -o stiff    with another value in the scene
   localshape render scenes/fig4b.toml --frames 30 -o frame.pdf   one frame for print, with text that can be searched
 
-With --shard, many processes draw a scene: docs/clusters.md has scripts for them.
+With --shard, many processes draw a scene into one folder: docs/clusters.md has a script for them.
 
 The folder then has frame_00000.png and so on, diagnostics.csv (energies, momenta, turned-over elements and more, for \
-each run and frame) and run.json (command, outcome and files). A folder never mixes frames of different scenes, sizes \
-(--size) or choices of runs (--only); other frames of the same sequence stay.
+each run and frame) and run.json (command, outcome and files).
 
-Results in output/NAME of an earlier version of the scene file are replaced. With -o, results of \
-another scene, or of another version of it, are replaced only with --overwrite, as are tables of the same scene with frames, \
-runs or states that the command does not make, and checkpoints without --resume.
+A folder belongs to one scene: results of another one are replaced only with --overwrite. output/NAME follows its scene file, so that \
+results of another version of that file are replaced.
 
 Without a GPU, pictures are drawn by a software driver; `localshape info` names it.";
 
@@ -85,9 +83,9 @@ pub(super) struct Render {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "states")]
     from_states: Option<PathBuf>,
 
-    /// Make only a share of the frames: 2/4 the second one and every fourth one after it. `localshape merge` joins all shards
-    /// [default folder: output/NAME-2-of-4]. With --sweep a share of its variants, all of whose folders may be in one
-    #[arg(long, value_name = "I/N", conflicts_with = "animate")]
+    /// Draw only a share of the frames: 2/4 the second one and every fourth one after it. Processes with other shares may draw into the
+    /// same folder at the same time; `simulate` writes the tables
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["animate", "states"])]
     shard: Option<Shard>,
 
     /// Also print how long each stage took
@@ -98,9 +96,6 @@ pub(super) struct Render {
 impl Render {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
         self.options.out.as_deref().map_or(Ok(()), FileFormat::check_name)?;
-        if self.shard.is_some() && self.options.states {
-            return Err(Failure::usage("--shard and --states exclude each other; simulate the states once"));
-        }
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
         scenes.iter_mut().for_each(|scene| self.resize(scene));
         scenes.iter().try_for_each(|scene| self.check(scene))?;
@@ -111,8 +106,9 @@ impl Render {
         if let (Some(file), true) = (&self.from_states, scenes.len() > 1) {
             bail!("{} has the states of one scene; render the scenes one at a time", file.display());
         }
-        let states = self.from_states.as_deref();
-        let mut jobs = self.options.jobs(scenes, !self.no_frames, self.shard, states, words)?;
+        let from_states = self.from_states.is_some();
+        let wish = Wish { pictures: !self.no_frames, shard: self.shard, from_states };
+        let mut jobs = self.options.jobs(scenes, wish, words)?;
         jobs.iter().try_for_each(|job| check_ghost(&job.scene, &job.runs))?;
         if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {
             file.metadata().map_err(|error| missing(file, "npz", error))?;
@@ -140,7 +136,8 @@ impl Render {
     /// What draws all scenes.
     fn studio(&self, gpu: Gpu, shared: Option<Shared>) -> Device {
         let writers = self.options.threads.count().min(MOST_WRITERS);
-        Device { gpu, writers, keep: !self.no_frames, resume: self.options.resume, shared, made: Mutex::default() }
+        let (keep, resume, shard) = (!self.no_frames, self.options.resume, self.shard);
+        Device { gpu, writers, keep, resume, shard, shared, made: Mutex::default() }
     }
 
     /// Gives a scene the size that the user wants.
@@ -237,6 +234,8 @@ struct Device {
     keep: bool,
     /// Whether frames that are there already are kept.
     resume: bool,
+    /// The share of the frames, if it is not all.
+    shard: Option<Shard>,
     /// What animations are made of, if any are.
     shared: Option<Shared>,
     /// Lines to print about animations at the end.
@@ -256,6 +255,10 @@ fn check_ghost(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
 }
 
 impl Studio for Device {
+    fn adapter(&self) -> String {
+        self.gpu.description().to_string()
+    }
+
     fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure> {
         let films = match &self.shared {
             Some(shared) => {
@@ -275,7 +278,7 @@ impl Studio for Device {
             begun: None,
             drawn_before: self.resume.then(|| folder.to_owned()),
             kept: 0,
-            writer: FrameWriter::new(self.keep.then_some(folder), self.writers, tap.clone()),
+            writer: FrameWriter::new(self.keep.then_some(folder), self.shard, self.writers, tap.clone()),
             tap,
             films,
             keep: self.keep,
@@ -351,15 +354,6 @@ fn stopped(keep: bool, error: RenderError) -> Failure {
 }
 
 impl Pictures for Drawing<'_> {
-    fn describe(&self, summary: &mut Summary) {
-        summary.adapter = Some(self.adapter.clone());
-        // Frames that are not kept count as simulated only.
-        if self.keep {
-            summary.frames.size = Some(self.scene.view.size);
-            summary.frames.written = Some(0);
-        }
-    }
-
     fn time_series(&self) -> Option<&[Diagnostic]> {
         self.scene.time_series()
     }

@@ -10,8 +10,6 @@ use std::time::{Duration, Instant};
 
 /// What turns frames into pictures, for one scene.
 pub(super) trait Pictures {
-    /// Writes down in the summary how the pictures are made.
-    fn describe(&self, summary: &mut Summary);
     /// The diagnostics whose time series over the whole scene are needed before the first frame, if its course is.
     fn time_series(&self) -> Option<&[Diagnostic]>;
     /// Sets the time series of the scene.
@@ -28,7 +26,8 @@ pub(super) trait Pictures {
 
 /// The results of one scene, frame by frame.
 pub(super) struct Results<'a> {
-    pub(super) diagnostics: DiagnosticsWriter,
+    /// None in a shard.
+    pub(super) diagnostics: Option<DiagnosticsWriter>,
     pub(super) states: Option<StatesWriter>,
     pub(super) pictures: Option<Box<dyn Pictures + 'a>>,
     /// Whether the user was told that no checkpoint can be written, or wants no warnings.
@@ -46,7 +45,7 @@ impl Results<'_> {
                 Ok(())
             }
             Next::Frame(frame) => {
-                diagnostics.write(frame)?;
+                diagnostics.iter_mut().try_for_each(|diagnostics| diagnostics.write(frame))?;
                 if let Some(states) = states {
                     states.write(frame, frames.states())?;
                 }
@@ -80,7 +79,7 @@ impl Results<'_> {
             let mut checkpoint = Checkpoint::new(summary.command.clone(), plan, progress);
             checkpoint.causes = summary.runs.iter().map(|run| run.cause.clone()).collect();
             if !ahead {
-                checkpoint.rows = Some(diagnostics.sync().map_err(failed)?);
+                checkpoint.rows = diagnostics.as_mut().map(DiagnosticsWriter::sync).transpose().map_err(failed)?;
                 checkpoint.course = states.as_mut().map(StatesWriter::sync).transpose().map_err(failed)?;
             }
             checkpoint.write(path, whose)

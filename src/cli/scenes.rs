@@ -1,10 +1,10 @@
 //! From scene files as typed to scenes that can be run.
 
 use super::failure::{Failure, Status, complain, warn, with_causes};
-use super::frames::{FrameRanges, Shard};
+use super::frames::FrameRanges;
 use super::options::{RunOptions, SceneOptions};
 use crate::output::shell;
-use crate::output::{Folder, OutputError, Plan, Replace, STATES_FILE, StoredStates, Whose};
+use crate::output::{Access, Folder, OutputError, Plan, Shard, StoredStates, Whose};
 use crate::scene::{Limits, Scene, SceneError};
 use std::collections::HashMap;
 use std::ffi::OsString;
@@ -70,25 +70,27 @@ pub(super) struct Job {
     pub(super) runs: Vec<usize>,
     /// Numbers of frames, rising.
     pub(super) frames: Vec<u64>,
+    /// How many frames all shards have.
+    pub(super) all: usize,
     pub(super) folder: Folder,
-    /// Which share of the frames that is, if it is not all.
-    pub(super) shard: Option<Shard>,
     /// The states of the frames, if they were simulated before.
     pub(super) stored: Option<StoredStates>,
 }
 
+/// What the commands that run scenes do differently.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Wish {
+    /// Whether frames are drawn and kept.
+    pub(super) pictures: bool,
+    /// The share of the frames, if it is not all.
+    pub(super) shard: Option<Shard>,
+    /// Whether states are read, so that no checkpoint is needed.
+    pub(super) from_states: bool,
+}
+
 impl RunOptions {
-    /// What is to be done for each scene, with or without `pictures`, for all frames or a share of them, by the command of
-    /// these `words`, which may read the states in a file.
-    pub(super) fn jobs(
-        &self,
-        scenes: Vec<Scene>,
-        pictures: bool,
-        shard: Option<Shard>,
-        states_read: Option<&Path>,
-        words: &[OsString],
-    ) -> Result<Vec<Job>, Failure> {
-        let states_read = states_read.and_then(|file| file.canonicalize().ok());
+    /// What is to be done for each scene by the command of these `words`.
+    pub(super) fn jobs(&self, scenes: Vec<Scene>, wish: Wish, words: &[OsString]) -> Result<Vec<Job>, Failure> {
         let several = scenes.len() > 1;
         let mut folders: HashMap<PathBuf, String> = HashMap::new();
         let mut jobs = Vec::new();
@@ -96,56 +98,33 @@ impl RunOptions {
             let path = match &self.out {
                 Some(out) if several => out.join(&scene.name),
                 Some(out) => out.clone(),
-                // Shards that are drawn at the same time need folders of their own.
-                None => match shard {
-                    Some(Shard { number, of }) => Path::new("output").join(format!("{}-{number}-of-{of}", scene.name)),
-                    None => Path::new("output").join(&scene.name),
-                },
+                None => Path::new("output").join(&scene.name),
             };
             if let Some(first) = folders.insert(path.clone(), scene.title.clone()) {
                 let (second, path) = (&scene.title, path.display());
                 bail!("“{first}” and “{second}” would both be written to {path}; run them one at a time with -o");
             }
-            jobs.push(self.job(scene, &path, pictures, shard, states_read.as_deref(), words)?);
+            jobs.push(self.job(scene, &path, wish, words)?);
         }
         Ok(jobs)
     }
 
-    /// What is to be done for one scene in a folder; see [`Self::jobs`].
-    fn job(
-        &self,
-        scene: Scene,
-        path: &Path,
-        pictures: bool,
-        shard: Option<Shard>,
-        states_read: Option<&Path>,
-        words: &[OsString],
-    ) -> Result<Job, Failure> {
+    /// What is to be done for one scene in a folder.
+    fn job(&self, scene: Scene, path: &Path, wish: Wish, words: &[OsString]) -> Result<Job, Failure> {
+        let Wish { pictures, shard, from_states } = wish;
         let runs = self.runs(&scene)?;
         let mut frames = self.frames(&scene)?;
+        let all = frames.len();
         if let Some(shard) = shard {
-            frames =
-                shard.select(&frames, "frames").map_err(|message| Failure::usage(format!("--shard: {message}")))?;
+            frames = shard.select(&frames).map_err(|message| Failure::usage(format!("--shard: {message}")))?;
         }
         let names = runs.iter().map(|&run| scene.runs[run].name.clone()).collect();
         let size = pictures.then_some(scene.view.size);
-        // States that are read are not replaced by their own pictures.
-        let is_read = states_read.is_some() && path.join(STATES_FILE).canonicalize().ok().as_deref() == states_read;
-        let plan = Plan { runs: names, frames: frames.clone(), states: self.states || is_read, size };
-        let resume = self.resume && states_read.is_none();
-        let folder = Folder::inspect(path, Whose::of(&scene), plan, self.replace(), resume);
-        let folder = folder.map_err(|error| occupied(error, words))?;
-        Ok(Job { runs, frames, folder, scene, shard, stored: None })
-    }
-
-    /// A folder named after the scene follows its file. A folder named by the user keeps its contents, which may be
-    /// wanted for comparison.
-    fn replace(&self) -> Replace {
-        match (self.overwrite, &self.out) {
-            (true, _) => Replace::All,
-            (false, None) => Replace::Own,
-            (false, Some(_)) => Replace::Nothing,
-        }
+        let plan = Plan { runs: names, frames: frames.clone(), states: self.states, size };
+        let resume = self.resume && !from_states && shard.is_none();
+        let access = Access { overwrite: self.overwrite, follows: self.out.is_none(), resume, shard };
+        let folder = Folder::inspect(path, Whose::of(&scene), plan, access).map_err(|error| occupied(error, words))?;
+        Ok(Job { runs, frames, all, folder, scene, stored: None })
     }
 
     pub(super) fn runs(&self, scene: &Scene) -> Result<Vec<usize>, Failure> {

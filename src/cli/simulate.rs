@@ -3,6 +3,7 @@
 use super::failure::{Failure, Status};
 use super::options::{RunOptions, SceneOptions};
 use super::record;
+use super::scenes::Wish;
 use clap::Args;
 use std::ffi::OsString;
 
@@ -17,9 +18,8 @@ Examples:
 The folder then has diagnostics.csv (energies, momenta, turned-over elements and more, for each run and frame), run.json \
 (command, outcome and files) and, with --states, states.npz. A run that diverges is a result, not an error.
 
-Results in output/NAME of an earlier version of the scene file are replaced. With -o, results of \
-another scene, or of another version of it, are replaced only with --overwrite, as are tables of the same scene with frames, \
-runs or states that the command does not make, and checkpoints without --resume.";
+A folder belongs to one scene: results of another one are replaced only with --overwrite. output/NAME follows its scene file, so that \
+results of another version of that file are replaced.";
 
 /// Simulate scenes without drawing them; needs no graphics adapter
 #[derive(Args, Debug)]
@@ -34,7 +34,7 @@ pub(super) struct Simulate {
 impl Simulate {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
         let options = &self.options;
-        let jobs = options.jobs(self.scenes.load_all(options.printing.quiet)?, false, None, None, words)?;
+        let jobs = options.jobs(self.scenes.load_all(options.printing.quiet)?, Wish::default(), words)?;
         record::run_all(jobs, options, &self.scenes.set, words, false, None)
     }
 }

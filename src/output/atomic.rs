@@ -1,12 +1,13 @@
 //! Files that are written completely or not at all.
 
-use super::OutputError;
+use super::{OutputError, Shard};
 use std::fs::{self, File};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 const PREFIX: &str = ".localshape-";
+const SHARDS: &str = ".localshape-shard-";
 const SUFFIX: &str = ".partial";
 
 /// A file with a hidden name until [`Self::commit`] renames it. If it is dropped before that, it is removed.
@@ -20,10 +21,15 @@ impl AtomicFile {
     /// Creates the file for `path`, whose folder exists. If the folder is not locked ([`super::FolderLock`]), another
     /// process may remove it as a leftover.
     pub(crate) fn create(path: &Path) -> Result<Self, OutputError> {
+        Self::create_for(path, None)
+    }
+
+    /// The same for a process that makes a share of the files of a folder: only that one removes its leftovers.
+    pub(super) fn create_for(path: &Path, shard: Option<Shard>) -> Result<Self, OutputError> {
         let folder = folder_of(path);
         // `File::create` gives results the usual permissions; files made by tempfile can be read by their owner only.
         let open = |hidden: &Path| File::options().read(true).write(true).create_new(true).open(hidden);
-        let made = tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).make_in(folder, open);
+        let made = tempfile::Builder::new().prefix(&prefix(shard)).suffix(SUFFIX).make_in(folder, open);
         Ok(Self { path: path.to_owned(), temporary: made.map_err(OutputError::writing(path))? })
     }
 
@@ -72,9 +78,19 @@ impl AtomicFile {
 /// # Errors
 /// If it cannot be written; an earlier file of that name is then unchanged.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
-    let mut file = AtomicFile::create(path)?;
+    write_whole_for(path, bytes, None)
+}
+
+/// The same for a process that makes a share of the files of a folder.
+pub(super) fn write_whole_for(path: &Path, bytes: &[u8], shard: Option<Shard>) -> Result<(), OutputError> {
+    let mut file = AtomicFile::create_for(path, shard)?;
     file.append(bytes)?;
     file.commit()
+}
+
+/// Begins the hidden names of files of a share, or of a whole.
+fn prefix(shard: Option<Shard>) -> String {
+    shard.map_or(PREFIX.to_owned(), |Shard { number, of }| format!("{SHARDS}{number}-of-{of}-"))
 }
 
 /// Opens a file with a fixed hidden name in a folder, which grows and outlives its process, so that another one can go on
@@ -98,15 +114,16 @@ pub(super) fn sync_folder(folder: &Path) {
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
 
-/// Removes the files that killed processes left unfinished in a folder, and nothing else. No other process may be
-/// writing there.
+/// Removes the files that killed processes left unfinished in a folder, and nothing else: those of one share, or those of no share.
+/// No other process may be writing the same.
 ///
 /// # Errors
 /// If the folder cannot be read or a leftover cannot be removed.
-pub(super) fn remove_leftovers(folder: &Path) -> Result<(), OutputError> {
+pub(super) fn remove_leftovers(folder: &Path, shard: Option<Shard>) -> Result<(), OutputError> {
     for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
         let entry = entry.map_err(OutputError::reading(folder))?;
-        let hidden = |name: &str| name.starts_with(PREFIX) && name.ends_with(SUFFIX);
+        let is_meant = |name: &str| name.starts_with(&prefix(shard)) && (shard.is_some() || !name.starts_with(SHARDS));
+        let hidden = |name: &str| is_meant(name) && name.ends_with(SUFFIX);
         if entry.file_name().to_str().is_some_and(hidden) && entry.file_type().is_ok_and(|found| found.is_file()) {
             remove(&entry.path())?;
         }
@@ -155,8 +172,13 @@ mod tests {
         let other = folder.path().join(".localshape-notes");
         fs::write(&leftover, "").unwrap();
         fs::write(&other, "").unwrap();
-        remove_leftovers(folder.path()).unwrap();
-        assert!(!leftover.exists() && other.exists());
+        let shards = [1, 11].map(|number| Shard { number, of: 12 });
+        let of_shards = shards.map(|shard| folder.path().join(format!("{}x{SUFFIX}", prefix(Some(shard)))));
+        of_shards.iter().for_each(|path| fs::write(path, "").unwrap());
+        remove_leftovers(folder.path(), None).unwrap();
+        assert!(!leftover.exists() && other.exists() && of_shards.iter().all(|path| path.exists()));
+        remove_leftovers(folder.path(), Some(shards[0])).unwrap();
+        assert_eq!(of_shards.map(|path| path.exists()), [false, true]);
     }
 
     #[cfg(unix)]

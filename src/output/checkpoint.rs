@@ -5,9 +5,8 @@
 
 use super::atomic::{remove, sync_folder};
 use super::diagnostics::Rows;
-use super::plan::{Plan, Whose};
 use super::states::{Course, Origin};
-use super::{OutputError, read_file, write_whole};
+use super::{OutputError, Whose, read_file, write_whole};
 use crate::runner::Progress;
 use crate::runner::cause::Cause;
 use serde::{Deserialize, Serialize};
@@ -21,6 +20,19 @@ const CHECKPOINT_FILE: &str = ".localshape-checkpoint.partial";
 const MARK: &[u8] = b"localshape checkpoint 4\n";
 /// What earlier marks begin with, too.
 const ANY_MARK: &[u8] = b"localshape checkpoint ";
+
+/// What a command writes into the folder of a scene.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct Plan {
+    /// Names of the runs, in the scene's order.
+    pub runs: Vec<String>,
+    /// Numbers of the frames, rising.
+    pub frames: Vec<u64>,
+    /// Whether states are written.
+    pub states: bool,
+    /// Width and height of the pictures (px), if frames are drawn. All frames in a folder have the same size and runs.
+    pub size: Option<[u32; 2]>,
+}
 
 /// Where a command has come to.
 #[derive(Debug, Serialize, Deserialize)]

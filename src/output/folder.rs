@@ -1,10 +1,13 @@
-//! Ownership of output folders: frames of different scenes are never mixed, and files of other programs never removed.
+//! Ownership of output folders: a folder belongs to one scene, and files of other programs are never removed.
 
 use super::atomic::{remove, remove_leftovers};
-use super::checkpoint::Checkpoint;
+use super::checkpoint::{Checkpoint, Plan};
 use super::error::kind_of;
-use super::plan::{Plan, Whose};
-use super::{DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, is_folder, read_file, read_tags};
+use super::lock::in_use;
+use super::{
+    DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, Summary, is_folder, read_file, read_tags,
+};
+use crate::scene::Scene;
 use std::fs;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
@@ -36,15 +39,47 @@ pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputEr
     Ok(frames)
 }
 
-/// Which files in a folder may be replaced, in addition to those that are made again.
+/// The scene to which results belong.
+#[derive(Clone, Debug)]
+pub(crate) struct Whose {
+    /// Digest of its meaning.
+    pub digest: String,
+    pub title: String,
+    /// Its file, as a full path.
+    pub file: Option<PathBuf>,
+}
+
+impl Whose {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        Self { digest: scene.digest.clone(), title: scene.title.clone(), file: scene.file.clone() }
+    }
+
+    /// Whether results of a scene of this digest are its own. A scene with a model made in code has no digest and nothing of its own.
+    fn owns(&self, digest: &str) -> bool {
+        !digest.is_empty() && digest == self.digest
+    }
+}
+
+/// How a command uses its folder.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Access {
+    /// Replaces whatever has the name of an output file.
+    pub overwrite: bool,
+    /// Replaces the results of other versions of the scene's file.
+    pub follows: bool,
+    /// Goes on from a checkpoint there.
+    pub resume: bool,
+    /// Only adds a share of the frames, at the same time as other processes that do so.
+    pub shard: Option<Shard>,
+}
+
+/// One of several equal shares of the frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Replace {
-    /// None.
-    Nothing,
-    /// Tables of the same scene, and all results of earlier versions of its file.
-    Own,
-    /// All that have the names of output files.
-    All,
+pub(crate) struct Shard {
+    /// Counted from 1.
+    pub number: usize,
+    /// How many there are.
+    pub of: usize,
 }
 
 /// A folder for the output of one scene, inspected but not yet changed.
@@ -53,57 +88,38 @@ pub(crate) struct Folder {
     path: PathBuf,
     scene: Whose,
     plan: Plan,
-    replace: Replace,
-    /// Whether a checkpoint there is gone on from.
-    resume: bool,
-    /// What is replaced although the command does not make it again, in words.
+    access: Access,
+    /// What is replaced without `--overwrite`, in words.
     replaced: Option<String>,
 }
 
 impl Folder {
     /// Inspects a folder, which need not exist, before it is used for a scene.
     ///
-    /// A folder with results of another scene, or with other files that have the names of output files, is refused
-    /// unless `replace` permits their replacement. Something that has such a name but is not a file, such as a folder,
-    /// is always refused. Results of the same scene are replaced one by one, and its other frames are kept, so that a
-    /// scene can be drawn in parts. But the existing frames must have the size and runs of new ones, so that the folder
-    /// has one sequence; and unless `replace` permits it, the tables must not have rows or states that the `plan` lacks.
-    /// A checkpoint from which the command does not go on with `resume` counts as such a row. A folder to which another
-    /// process writes is always refused.
+    /// Refused are, unless `access` permits their replacement: a folder with results of another scene, with frames of this scene
+    /// in another size or with other runs, and with other files that have the names of output files. Something that has such
+    /// a name but is not a file, such as a folder, is always refused, and so is a folder to which another process writes.
     ///
     /// # Errors
     /// If the folder cannot be read, is refused or is not a folder.
-    pub(crate) fn inspect(
-        path: &Path,
-        scene: Whose,
-        plan: Plan,
-        replace: Replace,
-        resume: bool,
-    ) -> Result<Self, OutputError> {
-        let mut folder = Self { path: path.to_owned(), scene, plan, replace, resume, replaced: None };
+    pub(crate) fn inspect(path: &Path, scene: Whose, plan: Plan, access: Access) -> Result<Self, OutputError> {
+        let mut folder = Self { path: path.to_owned(), scene, plan, access, replaced: None };
         if is_folder(path)? {
             FolderLock::check(path)?;
-            if resume {
+            if access.resume {
                 Checkpoint::read(path, &folder.scene, &folder.plan)?;
             }
-            let found = folder.find()?;
-            folder.replaced = found.earlier().or(found.lost);
+            folder.replaced = folder.find()?.hindrance.filter(|_| !access.overwrite);
         }
         Ok(folder)
     }
 
     /// The results in the folder, if they do not prevent its use.
     fn find(&self) -> Result<Found, OutputError> {
-        let mut found = Found::in_folder(&self.path, &self.scene, &self.plan)?;
-        if Checkpoint::is_in(&self.path) && self.resume {
-            // One that fits the plan loses nothing, and another one is refused with the command that it is of.
-            found.lost = None;
-        } else if Checkpoint::is_in(&self.path) {
-            let rows = found.lost.take().map_or(String::new(), |rows| format!("{rows}, and "));
-            found.lost = Some(format!("{rows}the checkpoint of an interrupted command, from which --resume goes on"));
-        }
-        match found.describe(self.replace == Replace::Own) {
-            Some(what) if self.replace != Replace::All => Err(OutputError::Occupied { path: self.path.clone(), what }),
+        let found = Found::in_folder(&self.path, &self.scene, &self.plan)?;
+        let may_replace = self.access.overwrite || self.access.follows && found.is_other_version;
+        match &found.hindrance {
+            Some(what) if !may_replace => Err(OutputError::Occupied { path: self.path.clone(), what: what.clone() }),
             _ => Ok(found),
         }
     }
@@ -117,40 +133,70 @@ impl Folder {
         (&self.plan, &self.scene)
     }
 
-    /// What is replaced although the command does not make it again, in words: `31 frames made by an earlier version of
-    /// sag.toml`.
+    /// The share of the frames that is written there, if it is not all.
+    pub(crate) fn shard(&self) -> Option<Shard> {
+        self.access.shard
+    }
+
+    /// What is replaced although the user has not asked for that, in words: `the results of another version of sag.toml`.
     pub(crate) fn replaced(&self) -> Option<&str> {
         self.replaced.as_deref()
     }
 
-    /// Creates the folder if necessary, locks it, and removes leftovers of killed processes and the results of another
-    /// scene. Unless new states are written, earlier ones are removed, too, as they would not match the diagnostics. A
-    /// checkpoint to go on from stays, and what belongs to it.
+    /// Creates the folder if necessary, locks it, removes what is replaced, and writes a `summary` by which the folder is known as
+    /// this scene's, even if the program is killed. Leftovers of killed processes go, but for a checkpoint to go on from and what
+    /// belongs to it.
     ///
     /// # Errors
     /// If the folder cannot be created or written to, or has a checkpoint to resume that does not belong to the plan; and
     /// the errors of [`Self::inspect`], which is repeated because the folder may have changed before it was locked.
-    pub(crate) fn prepare(self) -> Result<Claimed, OutputError> {
+    pub(crate) fn prepare(self, summary: &Summary) -> Result<Claimed, OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
+        if let Some(shard) = self.access.shard {
+            return self.prepare_shared(shard, summary);
+        }
         let lock = FolderLock::alone_with_leftovers(&self.path)?;
         let read = || Checkpoint::read(&self.path, &self.scene, &self.plan);
-        let checkpoint = if self.resume { read()? } else { None };
+        let checkpoint = if self.access.resume { read()? } else { None };
         let found = self.find()?;
         if checkpoint.is_none() {
             // First, so that no checkpoint is left without what belongs to it.
             Checkpoint::remove(&self.path)?;
-            remove_leftovers(&self.path)?;
+            remove_leftovers(&self.path, None)?;
         }
-        // The summary is removed last: until then it identifies the owner of the other files.
-        let stale = [found.frames, found.earlier_frames, found.unlike, found.records, found.earlier_records].concat();
-        for path in stale.iter().chain(found.states.iter().filter(|_| !self.plan.states)) {
-            remove(path)?;
-        }
+        found.remove()?;
+        summary.write(&self.path)?;
         Ok(Claimed { folder: self, checkpoint, _lock: lock })
+    }
+
+    /// The same beside processes with other shards. Only a process that is alone replaces what is there, and the summary is that of
+    /// the first one.
+    fn prepare_shared(self, shard: Shard, summary: &Summary) -> Result<Claimed, OutputError> {
+        let path = &self.path;
+        let lock = FolderLock::shared(path)?;
+        let found = self.find()?;
+        if !found.stale.is_empty() || !found.has_summary {
+            let is_alone = lock.becomes_alone();
+            let found = self.find()?;
+            if !found.stale.is_empty() {
+                if !is_alone {
+                    return Err(in_use(path));
+                }
+                Checkpoint::remove(path)?;
+                found.remove()?;
+            }
+            if !found.has_summary {
+                summary.write(path)?;
+            }
+            lock.becomes_shared(path)?;
+        }
+        // Files of others may be on their way, also on machines that do not see the lock.
+        remove_leftovers(path, Some(shard))?;
+        Ok(Claimed { folder: self, checkpoint: None, _lock: lock })
     }
 }
 
-/// A locked folder: no other process writes to it until this is dropped.
+/// A locked folder: until this is dropped no other process writes to it, or only others that share it.
 #[derive(Debug)]
 pub(crate) struct Claimed {
     folder: Folder,
@@ -176,56 +222,32 @@ impl Claimed {
 /// Without a checkpoint, unfinished files are of no use.
 impl Drop for Claimed {
     fn drop(&mut self) {
-        if !Checkpoint::is_in(self.path()) {
+        if self.access.shard.is_none() && !Checkpoint::is_in(self.path()) {
             // The next command tries again.
-            let _ = remove_leftovers(self.path());
+            let _ = remove_leftovers(self.path(), None);
         }
     }
 }
 
 /// Existing results in a folder.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Found {
-    /// Frames of another scene.
-    frames: Vec<PathBuf>,
-    /// Frames of this scene that do not match new ones.
-    unlike: Vec<PathBuf>,
-    /// Size and runs of one of these, in words.
-    unlike_words: String,
-    /// Diagnostics, states and summary of another scene.
-    records: Vec<PathBuf>,
-    /// Frames that were made with an earlier version of this scene's file.
-    earlier_frames: Vec<PathBuf>,
-    /// Diagnostics, states and summary made with it.
-    earlier_records: Vec<PathBuf>,
-    /// The name of that file.
-    file: String,
-    /// States of this scene.
-    states: Option<PathBuf>,
-    /// What the tables of this scene have that would not be made again, in words.
-    lost: Option<String>,
-    /// That other scene, if its summary exists.
-    other: Option<Owner>,
-    /// Title of this scene.
-    title: String,
-    /// Names of output files that other programs' files have.
-    foreign: Vec<String>,
+    /// Results that are replaced, the summary last: until then it tells whose the others are.
+    stale: Vec<PathBuf>,
+    /// Why the folder is refused unless these may be replaced, in words.
+    hindrance: Option<String>,
+    /// Whether all of that was made by other versions of the scene's file.
+    is_other_version: bool,
+    /// Whether there is a summary of this scene.
+    has_summary: bool,
 }
 
 impl Found {
     fn in_folder(path: &Path, scene: &Whose, plan: &Plan) -> Result<Self, OutputError> {
-        // Scenes with models made in code have no digest, so their own results are not recognised.
-        let is_own = |digest: &str| !digest.is_empty() && digest == scene.digest;
-        let name = scene.file.as_ref().and_then(|file| Some(file.file_name()?.to_string_lossy().into_owned()));
-        let mut found = Self { title: scene.title.clone(), file: name.unwrap_or_default(), ..Self::default() };
         let owner = Owner::read(&path.join(SUMMARY_FILE))?;
-        // A scene file that was moved together with its output is still the same.
-        let is_same_file = |owner: &Owner| {
-            let moved = owner.relative_file.as_ref().and_then(|file| path.join(file).canonicalize().ok());
-            let files = [owner.file.as_ref().map(PathBuf::from), moved];
-            scene.file.is_some() && files.contains(&scene.file)
-        };
-        let earlier = owner.as_ref().filter(|owner| !is_own(&owner.digest) && is_same_file(owner));
+        let version = owner.as_ref().filter(|owner| !scene.owns(&owner.digest) && owner.is_of_file(scene, path));
+        let (mut others, mut versions, mut foreign) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut unlike, mut unlike_words) = (Vec::new(), String::new());
         for entry in fs::read_dir(path).map_err(OutputError::reading(path))? {
             let entry = entry.map_err(OutputError::reading(path))?;
             let name = entry.file_name();
@@ -240,97 +262,65 @@ impl Found {
                 Ok(_) => {}
                 // A dangling link can be replaced like a file.
                 Err(_) if path.is_symlink() => {
-                    found.foreign.push(name.to_owned());
+                    foreign.push(name.to_owned());
                     continue;
                 }
                 Err(error) => return Err(OutputError::reading(&path)(error)),
             }
-            if !is_record {
-                match read_tags(&entry.path())?.filter(|(_, tags)| tags.frame().is_some()) {
-                    Some((size, tags)) if tags.scenes.iter().any(|scene| is_own(scene)) => {
-                        let runs: Vec<String> = tags.states.into_iter().map(|(_, run)| run).collect();
-                        if plan.size.is_some_and(|own| own != size || plan.runs != runs) {
-                            found.unlike.push(entry.path());
-                            let [width, height] = size;
-                            let runs: Vec<_> = runs.iter().map(|run| format!("“{run}”")).collect();
-                            found.unlike_words = format!("{width}×{height} pixels with {}", runs.join(", "));
-                        }
+            let frame = if is_record { None } else { read_tags(&path)?.filter(|(_, tags)| tags.frame().is_some()) };
+            let digest = match &frame {
+                Some((_, tags)) => tags.scenes.first(),
+                None => owner.as_ref().filter(|_| is_record).map(|owner| &owner.digest),
+            };
+            match digest {
+                None => foreign.push(name.to_owned()),
+                Some(digest) if version.is_some_and(|version| version.digest == *digest) => versions.push(path),
+                Some(digest) if !scene.owns(digest) => others.push(path),
+                Some(_) => {
+                    let Some((size, tags)) = frame else { continue };
+                    let runs = tags.states.iter().map(|(_, run)| run);
+                    if plan.size.is_some_and(|own| own != size || !runs.clone().eq(&plan.runs)) {
+                        let runs: Vec<_> = runs.map(|run| format!("“{run}”")).collect();
+                        unlike_words = format!("{}×{} pixels with {}", size[0], size[1], runs.join(", "));
+                        unlike.push(path);
                     }
-                    Some((_, tags)) if earlier.is_some_and(|earlier| tags.scenes.contains(&earlier.digest)) => {
-                        found.earlier_frames.push(entry.path());
-                    }
-                    Some(_) => found.frames.push(entry.path()),
-                    None => found.foreign.push(name.to_owned()),
-                }
-            } else {
-                match &owner {
-                    Some(owner) if is_own(&owner.digest) => {
-                        if name == STATES_FILE {
-                            found.states = Some(entry.path());
-                        }
-                    }
-                    Some(_) if earlier.is_some() => found.earlier_records.push(entry.path()),
-                    Some(_) => found.records.push(entry.path()),
-                    None => found.foreign.push(name.to_owned()),
                 }
             }
         }
-        if owner.as_ref().is_some_and(|owner| is_own(&owner.digest)) {
-            found.lost = plan.lacks(&path.join(DIAGNOSTICS_FILE), found.states.as_ref());
-        }
-        found.foreign.sort_unstable();
-        // The summary last, see `prepare`.
-        found.records.sort_by_key(|path| path.ends_with(SUMMARY_FILE));
-        found.earlier_records.sort_by_key(|path| path.ends_with(SUMMARY_FILE));
-        found.other = owner.filter(|owner| !is_own(&owner.digest));
-        Ok(found)
+        foreign.sort_unstable();
+        let is_other_version = others.is_empty() && foreign.is_empty() && unlike.is_empty();
+        let hindrance = match (&others[..], &foreign[..], &unlike[..], &versions[..]) {
+            ([], [], [], []) => None,
+            ([_, ..], ..) => Some(match owner.as_ref().filter(|owner| !scene.owns(&owner.digest)) {
+                Some(Owner { title, file: Some(file), .. }) => {
+                    format!("the results of another scene (“{title}”, {file})")
+                }
+                Some(Owner { title, .. }) => format!("the results of another scene (“{title}”)"),
+                None => "frames of another scene".to_owned(),
+            }),
+            (_, [name], ..) => Some(format!("{name}, which was not written by localshape")),
+            (_, [name, more @ ..], ..) => {
+                Some(format!("{name} and {} more, which were not written by localshape", more.len()))
+            }
+            (_, _, [_, ..], _) => Some(format!("frames of this scene of {unlike_words}")),
+            _ => {
+                let file = scene.file.as_ref().and_then(|file| file.file_name()).unwrap_or_default();
+                Some(format!("the results of another version of {}", file.display()))
+            }
+        };
+        let mut stale = [others, versions, unlike].concat();
+        stale.sort_by_key(|path| path.ends_with(SUMMARY_FILE));
+        let has_summary = owner.is_some_and(|owner| scene.owns(&owner.digest));
+        Ok(Self { stale, hindrance, is_other_version, has_summary })
     }
 
-    /// The results of an earlier version of the scene's file, in words.
-    fn earlier(&self) -> Option<String> {
-        let what = match (self.earlier_frames.len(), self.earlier_records.is_empty()) {
-            (0, true) => return None,
-            (0, false) => "results".to_owned(),
-            (1, _) => "a frame".to_owned(),
-            (count, _) => format!("{count} frames"),
-        };
-        Some(format!("{what} made by an earlier version of {}", self.file))
-    }
-
-    /// What prevents the use of the folder, in words; `None` if nothing does, or only what the same scene or an earlier
-    /// version of it made and may be replaced.
-    fn describe(&self, may_replace_own: bool) -> Option<String> {
-        let another = match &self.other {
-            None => "another scene".to_owned(),
-            Some(Owner { title, file: Some(file), .. }) => format!("another scene (“{title}”, {file})"),
-            // Summaries of earlier versions of this program have no file name.
-            Some(Owner { title, .. }) if *title == self.title => {
-                format!("another scene, or an earlier version of this one (“{title}”)")
-            }
-            Some(Owner { title, .. }) => format!("another scene (“{title}”)"),
-        };
-        let unlike = match self.unlike.len() {
-            0 => None,
-            1 => Some(format!("a frame of this scene of {}", self.unlike_words)),
-            count => Some(format!("{count} frames of this scene of {}", self.unlike_words)),
-        };
-        match (self.frames.len(), self.records.is_empty(), self.foreign.as_slice()) {
-            (0, true, []) => {
-                let own = |what: Option<String>| what.filter(|_| !may_replace_own);
-                own(self.earlier()).or(unlike).or_else(|| own(self.lost.clone()))
-            }
-            (0, true, [name]) => Some(format!("{name}, which was not written by localshape")),
-            (0, true, [name, others @ ..]) => {
-                Some(format!("{name} and {} more, which were not written by localshape", others.len()))
-            }
-            (0, false, _) => Some(format!("the results of {another}")),
-            (1, ..) => Some(format!("a frame of {another}")),
-            (count, ..) => Some(format!("{count} frames of {another}")),
-        }
+    /// Removes what is replaced.
+    fn remove(&self) -> Result<(), OutputError> {
+        self.stale.iter().try_for_each(|path| remove(path))
     }
 }
 
-/// The scene that a summary belongs to.
+/// The scene of a summary.
 #[derive(Debug)]
 struct Owner {
     digest: String,
@@ -350,12 +340,17 @@ impl Owner {
         let (file, relative_file) = (text("file"), text("relative_file"));
         Ok(text("digest").filter(|_| ours).map(|digest| Self { digest, title, file, relative_file }))
     }
+
+    /// Whether its scene has the file of another. One that was moved together with the output `folder` is the same.
+    fn is_of_file(&self, scene: &Whose, folder: &Path) -> bool {
+        let moved = self.relative_file.as_ref().and_then(|file| folder.join(file).canonicalize().ok());
+        scene.file.is_some() && [self.file.as_ref().map(PathBuf::from), moved].contains(&scene.file)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::Summary;
     use crate::scene::{BodyBuilder, Limits, RunBuilder, Scene};
     use crate::sim::model::shape_based::ShapeBased;
     use std::sync::Arc;
@@ -373,14 +368,14 @@ mod tests {
         let (one, other) = (scene("one", 1.0), scene("other", 2.0));
         let place = tempfile::tempdir().unwrap();
         let plan = Plan { runs: Vec::new(), frames: Vec::new(), states: false, size: None };
-        let inspect = |scene, replace| Folder::inspect(place.path(), Whose::of(scene), plan.clone(), replace, false);
-        inspect(&one, Replace::Nothing).unwrap().prepare().unwrap();
-        Summary::new(&one, &[0], 0, &[]).write(place.path()).unwrap();
-        for replace in [Replace::Nothing, Replace::Own] {
-            let message = inspect(&other, replace).unwrap_err().to_string();
+        let inspect = |scene, access| Folder::inspect(place.path(), Whose::of(scene), plan.clone(), access);
+        let summary = Summary::new(&one, &[0], 0, &[]);
+        inspect(&one, Access::default()).unwrap().prepare(&summary).unwrap();
+        for follows in [false, true] {
+            let message = inspect(&other, Access { follows, ..Access::default() }).unwrap_err().to_string();
             assert!(message.contains("the results of another scene (“one”)"), "{message}");
         }
-        inspect(&other, Replace::All).unwrap();
+        inspect(&other, Access { overwrite: true, ..Access::default() }).unwrap();
     }
 
     #[test]

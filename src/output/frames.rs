@@ -1,6 +1,7 @@
 //! Compresses and writes frames on separate threads, in parallel to drawing.
 
-use super::{Clock, Compression, OutputError, Spent, Texts, encode_like, encode_print, frame_file_name, write_whole};
+use super::atomic::write_whole_for;
+use super::{Clock, Compression, OutputError, Shard, Spent, Texts, encode_like, encode_print, frame_file_name};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -34,6 +35,7 @@ pub(crate) struct FrameWriter {
     frames: Arc<Mutex<Option<Receiver<PixelFrame>>>>,
     last: Arc<Last>,
     folder: Option<PathBuf>,
+    shard: Option<Shard>,
     tap: Option<Tap>,
     /// Greatest number of threads.
     most: usize,
@@ -51,8 +53,8 @@ struct Written {
 
 impl FrameWriter {
     /// A writer with up to `most` threads (at least one) that write to `folder`, which exists, and pass each file with
-    /// the number of its frame to `tap`; without a folder they only pass it.
-    pub(crate) fn new(folder: Option<&Path>, most: usize, tap: Option<Tap>) -> Self {
+    /// the number of its frame to `tap`; without a folder they only pass it. The frames may be a `shard` of all.
+    pub(crate) fn new(folder: Option<&Path>, shard: Option<Shard>, most: usize, tap: Option<Tap>) -> Self {
         // The channel has no buffer: a frame is passed to a free thread, or `write` blocks until one is free.
         let (queue, frames) = sync_channel(0);
         let frames = Arc::new(Mutex::new(Some(frames)));
@@ -62,6 +64,7 @@ impl FrameWriter {
             frames,
             last: Arc::default(),
             folder,
+            shard,
             tap,
             most: most.max(1),
             threads: Vec::new(),
@@ -82,8 +85,8 @@ impl FrameWriter {
         // A thread costs buffers of its own, so another one starts only when none is free.
         if self.threads.len() < self.most {
             let (folder, frames, tap) = (self.folder.clone(), Arc::clone(&self.frames), self.tap.clone());
-            let last = Arc::clone(&self.last);
-            let work = move || write_frames(folder.as_deref(), &frames, tap.as_ref(), &last);
+            let (last, shard) = (Arc::clone(&self.last), self.shard);
+            let work = move || write_frames(folder.as_deref(), shard, &frames, tap.as_ref(), &last);
             self.threads.push(std::thread::spawn(work));
         }
         if queue.send(frame).is_ok() { Ok(()) } else { self.wait() }
@@ -138,6 +141,7 @@ fn compressed(frame: &PixelFrame, last: &Last) -> Arc<Vec<u8>> {
 /// Writes frames until there are no more or one fails. After a failure the channel is closed, so that no sender blocks.
 fn write_frames(
     folder: Option<&Path>,
+    shard: Option<Shard>,
     queue: &Mutex<Option<Receiver<PixelFrame>>>,
     tap: Option<&Tap>,
     last: &Last,
@@ -149,7 +153,8 @@ fn write_frames(
         let clock = Clock::thread();
         let bytes = compressed(&frame, last);
         let index = frame.frame;
-        let kept = folder.map_or(Ok(()), |folder| write_whole(&folder.join(frame_file_name(index)), &bytes));
+        let write = |folder: &Path| write_whole_for(&folder.join(frame_file_name(index)), &bytes, shard);
+        let kept = folder.map_or(Ok(()), write);
         let result = kept.and_then(|()| tap.map_or(Ok(()), |tap| tap(index, &bytes)));
         written.spent += clock.spent();
         match result {
@@ -174,7 +179,7 @@ mod tests {
     #[test]
     fn all_frames_are_written() {
         let folder = tempfile::tempdir().unwrap();
-        let mut writer = FrameWriter::new(Some(folder.path()), 3, None);
+        let mut writer = FrameWriter::new(Some(folder.path()), None, 3, None);
         (0..20).for_each(|index| writer.write(frame(index)).unwrap());
         let (count, spent, result) = writer.finish();
         result.unwrap();
@@ -186,7 +191,7 @@ mod tests {
     #[test]
     fn a_failure_is_told_and_nobody_waits() {
         let folder = tempfile::tempdir().unwrap();
-        let mut writer = FrameWriter::new(Some(&folder.path().join("absent")), 2, None);
+        let mut writer = FrameWriter::new(Some(&folder.path().join("absent")), None, 2, None);
         let failure = (0..100).find_map(|index| writer.write(frame(index)).err()).expect("it fails before the end");
         assert!(failure.to_string().contains("frame_"));
         let (count, _, result) = writer.finish();

@@ -27,7 +27,7 @@ impl FolderLock {
     /// If another process writes to it, or it cannot be written to.
     pub(crate) fn alone(path: &Path) -> Result<Self, OutputError> {
         let lock = Self::alone_with_leftovers(path)?;
-        remove_leftovers(path)?;
+        remove_leftovers(path, None)?;
         Ok(lock)
     }
 
@@ -35,6 +35,28 @@ impl FolderLock {
     pub(super) fn alone_with_leftovers(path: &Path) -> Result<Self, OutputError> {
         let lock = Self::open(path);
         if lock.take(true) { Ok(lock) } else { Err(in_use(path)) }
+    }
+
+    /// Locks an existing folder for adding files together with other processes.
+    ///
+    /// # Errors
+    /// If a process has locked it for exclusive use.
+    pub(super) fn shared(path: &Path) -> Result<Self, OutputError> {
+        let lock = Self::open(path);
+        lock.becomes_shared(path).map(|()| lock)
+    }
+
+    /// Tries to lock for exclusive use what it shared. It is shared no longer in any case.
+    pub(super) fn becomes_alone(&self) -> bool {
+        self.take(true)
+    }
+
+    /// Shares what may have been locked for exclusive use.
+    ///
+    /// # Errors
+    /// If another process has it in the meantime.
+    pub(super) fn becomes_shared(&self, path: &Path) -> Result<(), OutputError> {
+        if self.take(false) { Ok(()) } else { Err(in_use(path)) }
     }
 
     /// Locks an existing folder for writing single files beside those of other processes. Leftovers are kept, as they
@@ -72,7 +94,7 @@ impl FolderLock {
 }
 
 /// The error for a folder to which another process writes.
-fn in_use(path: &Path) -> OutputError {
+pub(super) fn in_use(path: &Path) -> OutputError {
     let process = holder(path).map_or("another process".to_owned(), |id| format!("process {id}"));
     OutputError::InUse { path: path.to_owned(), what: format!("{process} is writing there").into() }
 }

@@ -12,7 +12,6 @@ mod error;
 mod folder;
 mod frames;
 mod lock;
-mod plan;
 mod png;
 mod sheets;
 pub(crate) mod shell;
@@ -23,16 +22,15 @@ mod summary;
 mod timing;
 
 pub(crate) use atomic::{AtomicFile, folder_of, open_growing, write_whole};
-pub(crate) use checkpoint::{Checkpoint, waiting_states};
+pub(crate) use checkpoint::{Checkpoint, Plan, waiting_states};
 pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub(crate) use digest::state_digest;
 pub(crate) use error::{OutputError, is_folder, read_file};
-pub(crate) use folder::{Claimed, FRAME_FILES, Folder, Replace, frame_file_name, frame_files};
+pub(crate) use folder::{Access, Claimed, FRAME_FILES, Folder, Shard, Whose, frame_file_name, frame_files};
 #[cfg(feature = "render")]
 pub(crate) use frames::Tap;
 pub(crate) use frames::{FrameWriter, PixelFrame};
 pub(crate) use lock::FolderLock;
-pub(crate) use plan::{Plan, Whose};
 #[cfg(feature = "render")]
 pub(crate) use png::packed;
 pub use png::{Compression, Shown, Tags, encode, read_tags};

@@ -63,6 +63,8 @@ pub(crate) enum Outcome {
     Done,
     /// The user stopped it; all files made until then are complete.
     Interrupted,
+    /// The frames are drawn in shards, and no command has written tables.
+    Shards,
     /// Writing or drawing failed; all files made until then are complete.
     Failed,
 }
@@ -84,9 +86,6 @@ pub(crate) struct FrameSummary {
     pub repeated: usize,
     /// Width and height of the pictures (px); `null` without pictures.
     pub size: Option<[u32; 2]>,
-    /// Which share of the frames this is, and of how many; absent if it is all.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub shard: Option<[usize; 2]>,
 }
 
 /// The result of a run.
@@ -169,7 +168,7 @@ impl Summary {
             command: command.to_vec(),
             set: Vec::new(),
             outcome: Outcome::Unfinished,
-            frames: FrameSummary { asked, recorded: 0, written: None, kept: 0, repeated: 0, size: None, shard: None },
+            frames: FrameSummary { asked, recorded: 0, written: None, kept: 0, repeated: 0, size: None },
             files: Vec::new(),
             adapter: None,
             runs: runs.iter().map(run).collect(),

@@ -18,6 +18,8 @@ mod parts;
 mod render;
 mod resume;
 mod set;
+#[cfg(feature = "render")]
+mod shards;
 mod simulate;
 mod study;
 mod support;

@@ -1,4 +1,4 @@
-//! Sequences that are drawn in parts: again after an interruption, from stored states, and in shards.
+//! Sequences that are drawn in parts: again after an interruption and from stored states.
 
 use crate::render::{can_draw, place_to_draw};
 use crate::support::{Place, Ran, SMALL, lasting, run};
@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// All files in a folder but `run.json`, which has times.
-fn files(place: &Place, folder: &str) -> BTreeMap<String, Vec<u8>> {
+pub(crate) fn files(place: &Place, folder: &str) -> BTreeMap<String, Vec<u8>> {
     let names = place.names(folder).into_iter().filter(|name| name != "run.json");
     names.map(|name| (name.clone(), std::fs::read(place.path(folder).join(name)).unwrap())).collect()
 }
@@ -83,13 +83,10 @@ fn resuming_draws_again_what_is_not_the_same() {
     assert_eq!(resume(" --overwrite"), [3, 4]);
     assert!(files(&place, "output/small") == whole);
     // Another size, and an earlier version of the scene, are treated as without `--resume`.
-    place.run("render small.toml --resume --size 80x60").bad(2, &["7 frames of this scene of 96×64 pixels"]);
+    place.run("render small.toml --resume --size 80x60").bad(2, &["frames of this scene of 96×64 pixels"]);
     place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.6"));
     let ran = place.run("render small.toml --resume").good();
-    assert!(
-        ran.out.starts_with("output/small: replacing 7 frames made by an earlier version of small.toml"),
-        "{ran:?}"
-    );
+    assert!(ran.out.starts_with("output/small: replacing the results of another version of small.toml"), "{ran:?}");
     assert_eq!(drawn_and_kept(&place, "output/small"), [7, 0]);
 }
 
@@ -109,7 +106,7 @@ fn an_animation_of_resumed_frames_is_the_same() {
 
 /// The small scene with all that pictures show beyond its states: a course, paths, forces that act for a while,
 /// a field that comes from the model, and a run that diverges.
-fn rich() -> String {
+pub(crate) fn rich() -> String {
     let wild = "[[run]]\nname = \"Wild\"\nmodel = { kind = \"mass-spring\", stiffness = 1e4, springs = \"edges\" }\nstep = \"T/2\"\n";
     let grab = "[[grab]]\nnodes = [0]\npath = { keys = [{ time = 0.02 }, { time = 0.3, shift = [0, 0.2, 0] }] }\n";
     let view = "[view]\nstrip = \"energy\"\ncolour = { by = \"elastic-energy\", range = [0, 1] }\n\
@@ -198,7 +195,7 @@ fn states_stay_beside_their_pictures() {
     let states = std::fs::read(place.path("output/small/states.npz")).unwrap();
     for _ in 0..2 {
         let ran = place.run("render small.toml --resume --from-states output/small/states.npz").good();
-        assert!(ran.out.starts_with("Two cubes\n7 frames"), "nothing is replaced: {ran:?}");
+        assert!(ran.out.starts_with("Two cubes\n7 frames"), "{ran:?}");
         assert!(std::fs::read(place.path("output/small/states.npz")).unwrap() == states);
     }
     assert_eq!(drawn_and_kept(&place, "output/small"), [0, 7]);
@@ -258,20 +255,4 @@ fn states_that_numpy_has_written_are_refused() {
     ran.bad(2, &["packed.npz `localshape` is packed, or longer than the file; simulate the scene again with --states"]);
     let ran = place.run("render small.toml --from-states bare.npz -o out");
     ran.bad(2, &["bare.npz has no array `localshape`, which `localshape simulate --states` writes"]);
-}
-
-#[test]
-fn wrong_shards() {
-    let place = Place::with_small();
-    for (shard, words) in [
-        ("0/4", "there is no shard 0 of 4; expected 1/4 to 4/4"),
-        ("5/4", "there is no shard 5 of 4"),
-        ("4", "such as 2/4"),
-    ] {
-        place.run(&format!("render small.toml --shard {shard}")).bad(2, &["--shard", words]);
-    }
-    place.run("render small.toml --shard 8/9").bad(2, &["--shard: shard 8/9 of 7 frames is empty; expected at most 7"]);
-    place.run("render small.toml --shard 1/2 --states").bad(2, &["--shard", "--states"]);
-    place.run("render small.toml --frames 1 --shard 1/1 -o one.png").bad(2, &["one.png gets one frame", "--shard"]);
-    assert_eq!(place.names("."), ["small.toml"]);
 }

@@ -302,7 +302,7 @@ fn everything_in_the_files_is_documented() {
     run["times"] = serde_json::to_value(times).unwrap();
     run["runs"][0]["cut"] = [3].into();
     run["frames"]["repeated"] = 1.into();
-    (run["frames"]["kept"], run["frames"]["shard"]) = (1.into(), serde_json::json!([1, 2]));
+    (run["frames"]["kept"], run["set"]) = (1.into(), serde_json::json!(["time.duration=5"]));
     let [mut found, mut told] = [ways(&run, ""), documented("run.json")];
     found.sort();
     found.dedup();

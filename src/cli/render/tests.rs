@@ -24,6 +24,7 @@ fn a_lost_device_loses_no_frame_that_was_drawn() {
         writers: 2,
         keep: true,
         resume,
+        shard: None,
         shared: None,
         made: Mutex::default(),
     };
