@@ -1,4 +1,4 @@
-//! Smooth borders of surfaces: pixels that a line crosses at which colours change.
+//! Smooth borders of surfaces, in pixels that a line between two colours crosses.
 
 use super::RenderError;
 use super::panel::Panels;
@@ -19,12 +19,12 @@ pub(super) fn parts() -> [&'static str; 7] {
     [panel, segment, super::TAPS_SHADER, super::BODIES_SHADER, super::TURNED_OVER_SHADER, line, SHADER]
 }
 
-/// The pipelines, and the borders of one picture.
+/// The pipelines and the borders of one picture.
 #[derive(Debug)]
 pub(super) struct Borders {
     module: wgpu::ShaderModule,
-    /// For turned-over sets and for the others, made when they are first needed. A software driver would read the depths of
-    /// both for each of them.
+    /// Pipelines for turned-over sets and for others, made when they are first needed. With one for both, a software
+    /// driver would read both depths for each border.
     pipelines: [Option<Pipeline>; 2],
     layout: wgpu::BindGroupLayout,
     textures: Option<wgpu::BindGroup>,
@@ -71,7 +71,7 @@ impl Borders {
     /// Uploads the borders of a picture.
     ///
     /// # Errors
-    /// More borders than the device can bind.
+    /// There are more borders than the device can bind.
     pub(super) fn write(&mut self, gpu: &Gpu, panels: &Panels, picture: &Picture) -> Result<(), RenderError> {
         let mut segments = Vec::new();
         self.runs.clear();

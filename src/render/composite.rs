@@ -9,8 +9,8 @@ use crate::picture::{Panel, Picture};
 
 pub(super) const SHADER: &str = include_str!("../../shaders/composite.wgsl");
 
-/// The pipelines that blend them, made when they are first needed: where solid obstacles do not fade at the sides of their room,
-/// and where they do.
+/// The pipelines for solid obstacles that do not fade at the sides of their room, and for those that do, made when they
+/// are first needed.
 #[derive(Debug)]
 pub(super) struct Composite {
     module: wgpu::ShaderModule,
@@ -58,7 +58,7 @@ impl Composite {
     }
 }
 
-/// Which of the pipelines draws a panel.
+/// The pipeline of a panel.
 fn way(panel: &Panel) -> usize {
     usize::from(panel.obstacles.fade.is_some())
 }

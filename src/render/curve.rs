@@ -15,12 +15,12 @@ pub(super) const SHADER: &str = include_str!("../../shaders/curve.wgsl");
 #[repr(C)]
 struct Piece {
     ends: [Vec2; 2],
-    /// Normals of the lines that separate it from its neighbours, along the curve; zero at the ends of a curve.
+    /// Normals of the lines between this piece and its neighbours, along the curve; zero at the ends of a curve.
     joints: [Vec2; 2],
     colour: [u8; 4],
-    /// Width, where in the pattern it begins, and how long the pattern is: 0 for a solid curve.
+    /// Width, start in the pattern, and length of the pattern: 0 for a solid curve.
     pattern: [f32; 3],
-    /// The lengths of up to three dashes, each with that of the gap after it.
+    /// The lengths of up to three dashes and of the gaps after them.
     dashes: [f32; 6],
 }
 
@@ -28,7 +28,7 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
     0 => Float32x4, 1 => Float32x4, 2 => Unorm8x4, 3 => Float32x3, 4 => Float32x4, 5 => Float32x2
 ];
 
-/// The pipeline, and the curves of one picture. Made for the first picture that has any.
+/// The pipeline and the curves of one picture. Made for the first picture that has any.
 #[derive(Debug)]
 pub(super) struct Curves {
     pipeline: Pipeline,
@@ -37,7 +37,7 @@ pub(super) struct Curves {
 }
 
 impl Curves {
-    /// For pictures of a size (px).
+    /// The pipeline for pictures of a size (px).
     pub(super) fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
         let module = shader(gpu, "curve", &[SHADER]);
         let layout = group_layout(gpu, "curve", &[uniform_entry(0, size_of::<CanvasUniform>(), false)]);
@@ -61,7 +61,7 @@ impl Curves {
         self.pieces.write(gpu, picture.curves.iter().flat_map(pieces).collect());
     }
 
-    /// Draws the curves, one over the other.
+    /// Draws the curves in their order.
     pub(super) fn draw(&self, pass: &mut Pass<'_>) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.canvas, &[]);
@@ -70,7 +70,7 @@ impl Curves {
     }
 }
 
-/// The pieces of a curve, each with the lines that separate it from its neighbours.
+/// The pieces of a curve, each with the lines between it and its neighbours.
 fn pieces(curve: &Curve) -> Vec<Piece> {
     let mut points: Vec<Vec2> = curve.points.iter().copied().map(Vec2::from).collect();
     points.dedup();
@@ -78,7 +78,7 @@ fn pieces(curve: &Curve) -> Vec<Piece> {
         points.push(dot);
     }
     let way = |at: usize| (points[at + 1] - points[at]).normalize_or_zero();
-    // Halfway between the two directions; none where a curve turns back on itself.
+    // The line halves the angle between both pieces; there is none where a curve turns back on itself.
     let joint = |at: usize| match at {
         0 => Vec2::ZERO,
         at if at + 1 >= points.len() => Vec2::ZERO,
@@ -117,7 +117,7 @@ mod tests {
             assert_eq!((two[0].ends[1], two[0].joints[1]), (two[1].ends[0], two[1].joints[0]));
         }
         assert!((pieces[0].joints[1] - Vec2::splat(0.5_f32.sqrt())).length() < 1e-6);
-        // The pattern goes on where the last piece left it.
+        // The pattern continues from the last piece.
         assert_eq!(pieces.iter().map(|piece| piece.pattern[1]).collect::<Vec<_>>(), [0.0, 10.0, 9.0]);
         assert_eq!(pieces[0].colour, [1, 2, 3, 128]);
     }

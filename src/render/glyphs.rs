@@ -1,4 +1,4 @@
-//! The glyph atlas: each glyph in use is rasterised once and kept in one texture.
+//! The glyph atlas: one texture with each used glyph, rasterised once.
 
 use super::pipeline::written_texture;
 use crate::gpu::{Gpu, Work};
@@ -7,13 +7,13 @@ use std::collections::HashMap;
 
 /// Width of the texture (px).
 const WIDTH: u32 = 2048;
-/// Glyphs are rasterised at this many places between two pixels.
+/// The number of places between two pixels at which glyphs are rasterised.
 const PLACES: f32 = 4.0;
 
 /// The key of a rasterised glyph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Key {
-    /// Which font, of any scene.
+    /// The font, of any scene.
     font: u64,
     id: u16,
     /// Size of the type, as bits for hashing.
@@ -28,7 +28,7 @@ pub(super) struct Raster {
     pub(super) at: [u32; 2],
     /// Width and height (px).
     pub(super) size: [u32; 2],
-    /// Where it begins, from the whole pixel of its origin on the baseline (px).
+    /// Its start, from the whole pixel of its origin on the baseline (px).
     pub(super) offset: [f32; 2],
 }
 
@@ -38,10 +38,10 @@ pub(super) struct Glyphs {
     rasters: HashMap<Key, Option<Raster>>,
     coverage: Vec<u8>,
     height: u32,
-    /// Left end and top of the row that is being filled, and its height.
+    /// Left end, top and height of the row that is being filled.
     pen: [u32; 3],
     texture: wgpu::Texture,
-    /// The first row of the texture that is new.
+    /// The first new row of the texture.
     changed: Option<u32>,
 }
 
@@ -57,7 +57,7 @@ impl Glyphs {
         }
     }
 
-    /// The raster of a glyph of a text, and the whole pixel it belongs to; `None` for blanks.
+    /// The raster of a glyph of a text, and its whole pixel; `None` for blanks.
     pub(super) fn raster(&mut self, fonts: &Fonts, run: &TextRun, glyph: &Glyph) -> Option<(Raster, [f32; 2])> {
         let quarter = (glyph.x * PLACES).round();
         let pixel = (quarter / PLACES).floor();
@@ -72,7 +72,7 @@ impl Glyphs {
                 new
             }
         };
-        // Baselines on whole pixels keep all lines equally sharp.
+        // Baselines on whole pixels make all lines equally sharp.
         raster.map(|raster| (raster, [pixel, run.baseline.round()]))
     }
 
@@ -80,7 +80,7 @@ impl Glyphs {
         let outlined = face.outline(id, size, place)?;
         let bounds = outlined.px_bounds();
         let [width, height] = [bounds.width(), bounds.height()].map(|length| length as u32);
-        // A font may be wrong about the size of its glyphs.
+        // Fonts may give a wrong size of their glyphs.
         if width == 0 || height == 0 || width > WIDTH || height > WIDTH {
             return None;
         }
@@ -104,7 +104,7 @@ impl Glyphs {
         [left, top]
     }
 
-    /// Uploads new glyphs. Returns whether the texture was replaced.
+    /// Uploads new glyphs. Returns true if the texture was replaced.
     pub(super) fn upload(&mut self, gpu: &Gpu) -> bool {
         let Some(changed) = self.changed.take() else { return false };
         let replaced = self.texture.height() < self.height;

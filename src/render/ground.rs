@@ -29,20 +29,20 @@ pub(super) struct GroundUniform {
     pub(super) viewport: Vec4,
 }
 
-/// The distance between two panels' data in the buffer (bytes).
+/// The distance between the data of two panels in the buffer (bytes).
 const STRIDE: usize = 256;
-/// Shadows of more panels than this are left out: a device need not have more layers in a texture.
+/// The most panels with shadows: a device need not have more layers in a texture.
 const MOST_PANELS: usize = 128;
 
-/// The pipeline of the floor, and the floors of one picture.
+/// The pipeline of the floor and the floors of one picture.
 #[derive(Debug)]
 pub(super) struct Grounds {
-    /// Without shadows and with them.
+    /// The pipelines without shadows and with them.
     pipelines: [Pipeline; 2],
     layout: wgpu::BindGroupLayout,
     uniforms: GrowingBuffer<u8>,
     shades: wgpu::Texture,
-    /// The cells of each layer of them.
+    /// The cells of each layer of shadows.
     cells: Vec<Vec<u8>>,
     bind_group: Option<wgpu::BindGroup>,
 }
@@ -130,7 +130,7 @@ impl Grounds {
         bind(gpu, "ground", &self.layout, &[(0, uniform), (1, shades)])
     }
 
-    /// Draws the floors of all panels that have one.
+    /// Draws the floors of all panels.
     pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, picture: &Picture) {
         for (at, panel) in picture.panels.iter().enumerate() {
             let Some(floor) = &panel.floor else { continue };
@@ -160,7 +160,7 @@ fn shadowed(panel: &Panel, floor: &Floor) -> Option<Rectangle> {
             let point = floor.normal * floor.height + floor.axes[0] * on_floor.x + floor.axes[1] * on_floor.y;
             let at = panel.sight.clip * point.extend(1.0);
             if at.w < panel.sight.near {
-                // Behind the eye.
+                // The corner lies behind the eye.
                 return Some(panel.viewport);
             }
             let pixel = (Vec2::new(at.x, -at.y) / at.w * 0.5 + 0.5) * Vec2::new(width as f32, height as f32);
@@ -173,7 +173,7 @@ fn shadowed(panel: &Panel, floor: &Floor) -> Option<Rectangle> {
     (size.min_element() > 0).then_some([left + low.x, top + low.y, size.x, size.y])
 }
 
-/// What is left of a rectangle around another one in it.
+/// The parts of a rectangle around another one in it.
 fn around([left, top, width, height]: Rectangle, [x, y, wide, high]: Rectangle) -> Vec<Rectangle> {
     let [right, bottom] = [left + width - x - wide, top + height - y - high];
     let parts = [
@@ -217,11 +217,11 @@ fn create_shades(gpu: &Gpu, layers: u32) -> wgpu::Texture {
     written_texture(gpu, "shades", [CORNERS, CORNERS, layers], wgpu::TextureFormat::Rgba8Unorm)
 }
 
-/// Corners of cells along each side of a shadow.
+/// The number of corners of cells along each side of a shadow.
 const CORNERS: u32 = CELLS as u32 + 1;
 
-/// The four cells around each corner of the grid: left and right above it, then below it. Beyond its border the grid goes on as
-/// it ends.
+/// The four cells around each corner of the grid: left and right above it, then below it. The border cells continue
+/// beyond the border.
 fn corners_of(cells: &[u8]) -> Vec<[u8; 4]> {
     let (rows, rest) = cells.as_chunks::<CELLS>();
     debug_assert!(rows.len() == CELLS && rest.is_empty());

@@ -11,16 +11,16 @@ use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Panel, Picture, Rectangle};
 use std::ops::Range;
 
-/// Whether there are lines of turned-over elements.
+/// Whether a panel has lines of turned-over elements.
 pub(super) fn has_alarm(panel: &Panel) -> bool {
     panel.lines.iter().any(|line| line.kind.is_alarm())
 }
 
-/// The pipelines of the lines, and the lines of one picture.
+/// The pipelines and the lines of one picture.
 #[derive(Debug)]
 pub(super) struct Lines {
     module: wgpu::ShaderModule,
-    /// For each kind, made when it is first needed.
+    /// One pipeline for each kind, made when it is first needed.
     pipelines: [Option<Pipeline>; Kind::ALL.len()],
     layout: wgpu::BindGroupLayout,
     found: Option<wgpu::BindGroup>,
@@ -28,7 +28,7 @@ pub(super) struct Lines {
     segments: GrowingBuffer<Segment>,
     lines_layout: wgpu::BindGroupLayout,
     lines: wgpu::BindGroup,
-    /// The lines of each panel, by kinds.
+    /// The lines of each panel, by kind.
     ranges: Vec<[Range<u32>; Kind::ALL.len()]>,
 }
 
@@ -49,10 +49,10 @@ impl Lines {
         }
     }
 
-    /// Uploads the lines of a picture, and prepares to draw them, among solid obstacles or without any.
+    /// Uploads the lines of a picture, and prepares to draw them, with or without solid obstacles.
     ///
     /// # Errors
-    /// More lines than the device can test.
+    /// There are more lines than the device can test.
     pub(super) fn write(
         &mut self,
         gpu: &Gpu,
@@ -82,8 +82,8 @@ impl Lines {
         Ok(())
     }
 
-    /// The lines of a picture by panels and kinds, with a sample of their visibility for each pixel of their length, or
-    /// fewer, so that there are at most so many.
+    /// The lines of a picture by panel and kind. Each line has a sample of its visibility for each pixel of its length,
+    /// or fewer if the samples exceed `most`.
     fn sampled(&mut self, picture: &Picture, most: u64) -> Vec<Segment> {
         let mut segments: Vec<Segment> = Vec::new();
         self.ranges.clear();
@@ -133,7 +133,7 @@ impl Lines {
         self.visibility.retarget(gpu, bodies);
     }
 
-    /// Tests the visibility of all lines, among solid obstacles if there are any. The bodies must have been drawn.
+    /// Tests the visibility of all lines, with solid obstacles if there are any. The bodies must have been drawn.
     pub(super) fn test(
         &self,
         gpu: &Gpu,
@@ -145,7 +145,7 @@ impl Lines {
         self.visibility.find(gpu, commands, panels, places, among);
     }
 
-    /// Draws the lines of all panels, whose visibility was tested.
+    /// Draws the lines of all panels. Their visibility must have been tested.
     pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
         pass.set_bind_group(1, self.found.as_ref(), &[]);
         pass.set_bind_group(2, &self.lines, &[]);

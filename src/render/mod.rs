@@ -1,20 +1,20 @@
 //! From a [`Picture`] to an image: the passes, in order.
 //!
-//! 1. `surface`: turned-over elements, by themselves, so that they can be seen through the body, and in the bodies.
-//! 2. `surface`: the others over them, in textures no larger than the bodies; among them solid obstacles (`obstacle`).
-//! 3. `border`: smooth borders where their colours change at a line.
+//! 1. `surface`: turned-over elements, for themselves, to be seen through the body, and as surfaces of the body.
+//! 2. `surface`: other elements over them, in textures no larger than the bodies, with solid obstacles (`obstacle`).
+//! 3. `border`: smooth borders where colours change at a line.
 //! 4. `visibility`, then `line`: edges and contours as opacities, with smooth borders of their own.
-//! 5. `ground`: the floor, its grid and its shadows, into the picture.
+//! 5. `ground`: the floor with its grid and its shadows, into the picture.
 //! 6. `composite`: bodies and lines over the ground, between transparent obstacles (`obstacle`).
-//! 7. `stroke`: lines with colours of their own and nodes in space, over the bodies; only where there are any.
-//! 8. `overlay`: marks and words; between them flat curves (`curve`), only where there are any.
+//! 7. `stroke`: lines with colours of their own and nodes in space, over the bodies, if there are any.
+//! 8. `overlay`: marks and words, with flat curves (`curve`) between them, if there are any.
 //!
-//! Every pixel has one sample: all borders are found from the geometry, which costs nothing where there are none.
+//! Every pixel has one sample. All borders are found from the geometry, which costs nothing where there are none.
 //!
 //!
 //! With a scalar field, `tint` takes the place of `surface`.
 //!
-//! Each has one file here and one of the same name in `shaders/`.
+//! Each pass has one file here and one of the same name in `shaders/`.
 
 mod border;
 mod composite;
@@ -47,12 +47,12 @@ use target::{Bodies, Canvas};
 const PANEL_SHADER: &str = include_str!("../../shaders/panel.wgsl");
 const SEGMENT_SHADER: &str = include_str!("../../shaders/segment.wgsl");
 
-/// Reading around a point, reading what was drawn of the bodies, and of the turned-over set by itself.
+/// The shaders that read around a point, read the drawn bodies, and read the turned-over set.
 const TAPS_SHADER: &str = include_str!("../../shaders/taps.wgsl");
 const BODIES_SHADER: &str = include_str!("../../shaders/bodies.wgsl");
 const TURNED_OVER_SHADER: &str = include_str!("../../shaders/turned_over.wgsl");
 
-/// Why a picture cannot be drawn.
+/// A reason why a picture cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RenderError {
     /// The picture is larger than the device can draw, or empty.
@@ -97,7 +97,7 @@ pub struct Renderer {
     surfaces: surface::Surfaces,
     lines: line::Lines,
     borders: border::Borders,
-    /// Made when they are first needed.
+    /// Made when first needed.
     solids: Option<Solids>,
     slabs: Option<Slabs>,
     grounds: ground::Grounds,
@@ -117,7 +117,7 @@ impl Renderer {
     /// Prepares to draw pictures of a width and height (px).
     ///
     /// # Errors
-    /// A size that cannot be had, or a device that fails.
+    /// The device cannot draw pictures of this size, or fails.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, RenderError> {
         let [width, height] = size;
         let longest = gpu.longest_side();
@@ -151,7 +151,7 @@ impl Renderer {
     /// Draws a picture.
     ///
     /// # Errors
-    /// A picture of another size, or a device that fails.
+    /// The picture has another size, or the device fails.
     pub fn draw(&mut self, picture: &Picture) -> Result<RgbImage, RenderError> {
         let pending = self.submit(picture)?;
         let pixels = self.collect(pending)?;
@@ -160,24 +160,24 @@ impl Renderer {
         Ok(RgbImage::from_raw(width, height, pixels).expect("three bytes a pixel"))
     }
 
-    /// Waits for a picture that was submitted, and returns its pixels: three bytes each, in rows from the top left.
+    /// Waits for a submitted picture, and returns its pixels: three bytes each, in rows from the top left.
     ///
     /// # Errors
-    /// A device that fails.
+    /// The device fails.
     pub(crate) fn collect(&self, pending: Pending) -> Result<Vec<u8>, RenderError> {
         Ok(self.read_back.collect(&self.gpu, pending)?)
     }
 
-    /// Submits a picture and returns at once. It must be collected before the next one is submitted, because there is one
-    /// buffer for reading back.
+    /// Submits a picture and returns at once. Collect it before the next one is submitted: there is one buffer for
+    /// reading back.
     pub(crate) fn submit(&mut self, picture: &Picture) -> Result<Pending, RenderError> {
         if picture.size != self.size {
             return Err(RenderError::OtherSize { found: picture.size, expected: self.size });
         }
         let gpu = self.gpu.clone();
         let (places, needed) = panel::place(picture);
-        // What lies behind surfaces is drawn only where it is read: by clear surfaces, over turned-over elements, and by
-        // the lines of turned-over elements without faces.
+        // Items behind surfaces are drawn only where they are read: by clear surfaces, over turned-over elements, and
+        // by lines of turned-over elements without faces.
         let has_behind = picture.panels.iter().any(|panel| panel::has_behind(panel) || line::has_alarm(panel));
         let bodies = match self.bodies.take().filter(|bodies| bodies.suit(needed, has_behind)) {
             Some(bodies) => bodies,
@@ -245,7 +245,7 @@ impl Renderer {
         let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let (mut load, mut deep) = (CLEAR, FAR);
         if has_behind {
-            // Drawn once for both: the other surfaces are drawn over it.
+            // One drawing serves both uses: the other surfaces are drawn over it.
             let targets = [(&bodies.alarm_colour, CLEAR), (&bodies.colour, CLEAR)];
             let depth = Some((&bodies.alarm_depth, FAR));
             let mut pass = Pass::begin(&gpu, &mut commands, "turned over", &targets, depth);

@@ -1,5 +1,5 @@
-//! Solid obstacles, drawn with the bodies, and transparent ones, drawn below and above them. The pipelines are made when
-//! they are first needed.
+//! Solid obstacles, drawn with the bodies, and transparent ones, drawn below and above the bodies. Pipelines are made
+//! when they are first needed.
 
 use super::panel::{Panels, is_visible, limit, linear};
 use super::pass::Pass;
@@ -28,9 +28,9 @@ struct SolidVertex {
     normal: [f32; 3],
     colour: [f32; 3],
     rim: [f32; 3],
-    /// How far inside the outline it is (px).
+    /// Its distance from the outline, inwards (px).
     inward: f32,
-    /// How much the body occludes the ambient light.
+    /// The share of ambient light that the body occludes.
     near: f32,
 }
 
@@ -38,7 +38,7 @@ const SOLID: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
     0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x3, 4 => Float32, 5 => Float32
 ];
 
-/// In space outlines are lines, and their solids have no rim.
+/// Solids in space have no rim: lines draw their outlines.
 const DEEP_INSIDE: f32 = 1e6;
 
 /// A corner of a pane as the shader reads it.
@@ -50,7 +50,7 @@ struct PaneVertex {
     inward: f32,
     grid: [f32; 2],
     from_middle: [f32; 2],
-    /// With opacity.
+    /// Colour with opacity.
     colour: [f32; 4],
     /// Colour of the grid, and 1 if there is one.
     lined: [f32; 4],
@@ -67,7 +67,7 @@ struct EdgePiece {
     from: [f32; 3],
     to: [f32; 3],
     colour: [f32; 3],
-    /// Size of the panel (px), and its left and top in the picture (px).
+    /// Size, left and top of the panel in the picture (px).
     size: [f32; 2],
     viewport: [f32; 2],
 }
@@ -79,7 +79,7 @@ const EDGE: [wgpu::VertexAttribute; 5] =
 #[derive(Debug)]
 pub(super) struct Solids {
     pipeline: Pipeline,
-    /// For those that are seen through clear surfaces, as soon as there are any.
+    /// Solids seen through clear surfaces, made for the first ones.
     behind: Option<Pipeline>,
     vertices: GrowingBuffer<SolidVertex>,
     indices: GrowingBuffer<u32>,
@@ -87,7 +87,7 @@ pub(super) struct Solids {
 }
 
 impl Solids {
-    /// Whether a picture has any.
+    /// Whether a picture has solid obstacles.
     pub(super) fn are_in(picture: &Picture) -> bool {
         picture.panels.iter().any(|panel| !panel.obstacles.solids.is_empty())
     }
@@ -103,7 +103,7 @@ impl Solids {
     }
 
     fn pipeline(gpu: &Gpu, panels: &Panels, fragment: &'static str) -> Pipeline {
-        // The light is that on bodies.
+        // The light is that of bodies.
         let module = shader(gpu, "obstacle", &[&super::surface::parts(0)[..], &[SHADER]].concat());
         let recipe = Recipe {
             groups: &[&panels.layout],
@@ -141,12 +141,12 @@ impl Solids {
         self.indices.write(gpu, indices);
     }
 
-    /// Draws the solids of all panels, in the pass and after the bodies.
+    /// Draws the solids of all panels, after the bodies in their pass.
     pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
         self.draw_with(&self.pipeline, pass, panels, places);
     }
 
-    /// Draws the solids of all panels among the turned-over elements, if that was prepared.
+    /// Draws the solids of all panels among the turned-over elements, if this was prepared.
     pub(super) fn draw_behind(&self, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
         if let Some(pipeline) = &self.behind {
             self.draw_with(pipeline, pass, panels, places);
@@ -166,19 +166,19 @@ impl Solids {
 /// The transparent obstacles of one picture.
 #[derive(Debug)]
 pub(super) struct Slabs {
-    /// Below and above the bodies.
+    /// The pipelines below and above the bodies.
     panes: [Pipeline; 2],
     edges: [Pipeline; 2],
     layout: wgpu::BindGroupLayout,
     textures: Option<wgpu::BindGroup>,
     corners: GrowingBuffer<PaneVertex>,
     pieces: GrowingBuffer<EdgePiece>,
-    /// For each panel and slab, its corners and its edges.
+    /// The corners and edges of each slab, for each panel.
     ranges: Vec<Vec<[Range<u32>; 2]>>,
 }
 
 impl Slabs {
-    /// Whether a picture has any.
+    /// Whether a picture has transparent obstacles.
     pub(super) fn are_in(picture: &Picture) -> bool {
         picture.panels.iter().any(|panel| !panel.obstacles.slabs.is_empty())
     }
@@ -248,7 +248,7 @@ impl Slabs {
         self.pieces.write(gpu, pieces);
     }
 
-    /// Draws the slabs of all panels below the bodies, or above them where they are nearer.
+    /// Draws the slabs of all panels below the bodies, or above them where the slabs are nearer.
     pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, picture: &Picture, above: bool) {
         pass.set_bind_group(1, self.textures.as_ref(), &[]);
         for (at, (panel, slabs)) in picture.panels.iter().zip(&self.ranges).enumerate() {

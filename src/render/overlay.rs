@@ -12,11 +12,11 @@ use std::ops::Range;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/overlay.wgsl");
 
-/// Around words over bodies, glyphs in the colour of the ground make a halo: the radii of rings, in parts of the type's
-/// size, and how many glyphs stand on each.
+/// Words over bodies have a halo of glyphs in the colour of the ground: the radii of rings, in parts of the type's
+/// size, and the number of glyphs on each.
 const HALO: [(f32, u32); 2] = [(0.07, 8), (0.14, 16)];
 
-/// Offsets of whole pixels, about evenly on a circle: glyphs are read pixel by pixel.
+/// Offsets of whole pixels, roughly even on a circle: glyphs are read pixel by pixel.
 fn ring(radius: f32, count: u32) -> impl Iterator<Item = [f32; 2]> {
     (0..count).map(move |at| {
         let (sine, cosine) = (at as f32 / count as f32 * std::f32::consts::TAU).sin_cos();
@@ -52,16 +52,16 @@ pub(super) struct CanvasUniform {
     pub(super) unused: [f32; 2],
 }
 
-/// The pipeline of the overlay, and the marks and glyphs of one picture.
+/// The pipelines of the overlay, and the marks and glyphs of one picture.
 #[derive(Debug)]
 pub(super) struct Overlay {
-    /// For rectangles, for other marks, and for glyphs.
+    /// Pipelines for rectangles, for other marks, and for glyphs.
     pipelines: [Pipeline; 3],
     layout: wgpu::BindGroupLayout,
     canvas: GrowingBuffer<CanvasUniform>,
     glyphs: Glyphs,
     marks: GrowingBuffer<Mark>,
-    /// The pipeline of runs of marks in the order in which they are drawn: below the bodies, above them, and words.
+    /// Runs of marks that share a pipeline, in drawing order: below the bodies, above them, and words.
     runs: [Vec<(usize, Range<u32>)>; 3],
     bind_group: Option<wgpu::BindGroup>,
 }
@@ -112,7 +112,7 @@ impl Overlay {
         }
     }
 
-    /// Adds the glyphs of a line of text in a colour, moved (px).
+    /// Adds the glyphs of a line of text in a colour, shifted (px).
     fn write_run(&mut self, fonts: &Fonts, run: &TextRun, colour: Colour, offset: [f32; 2], marks: &mut Vec<Mark>) {
         for glyph in &run.glyphs {
             if let Some((raster, [x, y])) = self.glyphs.raster(fonts, run, glyph) {
@@ -169,7 +169,7 @@ fn pipeline(mark: &Mark) -> usize {
     }
 }
 
-/// Marks in a range, in runs that share a pipeline.
+/// The marks of a range, in runs that share a pipeline.
 fn runs(marks: &[Mark], range: Range<u32>) -> Vec<(usize, Range<u32>)> {
     let mut start = range.start;
     let of_one =

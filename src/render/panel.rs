@@ -1,4 +1,4 @@
-//! The data of a panel that every pass reads, and the places of bodies in the textures that hold them.
+//! The data of a panel for all passes, and the places of bodies in their textures.
 
 use super::pass::Pass;
 use super::pipeline::{bind, element, group_layout, uniform_entry};
@@ -50,7 +50,7 @@ pub(super) struct OccluderUniform {
 }
 
 impl OccluderUniform {
-    /// An unused entry, which reaches nothing.
+    /// An unused entry without effect.
     const NONE: Self = Self { first: Vec4::new(0.0, 0.0, 0.0, -1e9), second: Vec4::ZERO, rotation: Vec4::W };
 
     fn new(occluder: &Occluder) -> Self {
@@ -69,9 +69,9 @@ pub(super) fn linear(colour: Colour) -> Vec3 {
     Vec3::new(one(colour[0]), one(colour[1]), one(colour[2]))
 }
 
-/// The place of each panel's region in the textures of bodies, and the size that these need (px).
+/// The place of each panel's region in the textures of bodies, and the size of these textures (px).
 ///
-/// Regions are packed in rows, so that the textures contain hardly more than bodies: every pixel costs time.
+/// Regions are packed in rows, so that the textures have few empty pixels: every pixel costs time.
 pub(super) fn place(picture: &Picture) -> (Vec<Rectangle>, [u32; 2]) {
     let widest = picture.panels.iter().map(|panel| panel.region[2]).max().unwrap_or(0).max(picture.size[0]);
     let (mut left, mut top, mut row) = (0, 0, 0);
@@ -90,7 +90,7 @@ pub(super) fn place(picture: &Picture) -> (Vec<Rectangle>, [u32; 2]) {
     (places.collect(), size)
 }
 
-/// The matrix that leads from clip space of a viewport to that of a region in it.
+/// The matrix from clip space of a viewport to clip space of a region in it.
 fn crop(viewport: Rectangle, region: Rectangle) -> Mat4 {
     let [vx, vy, vw, vh] = viewport.map(|length| length as f32);
     let [rx, ry, rw, rh] = region.map(|length| (length as f32).max(1.0));
@@ -105,13 +105,13 @@ fn crop(viewport: Rectangle, region: Rectangle) -> Mat4 {
     )
 }
 
-/// From a panel's coordinates to clip space of its body's region.
+/// The matrix from a panel's coordinates to clip space of its body's region.
 pub(super) fn cropped(panel: &Panel) -> Mat4 {
     crop(panel.viewport, panel.region) * panel.sight.clip
 }
 
-/// Whether anything may be visible through the surfaces of a panel that are not turned over, or these are dotted: one pipeline
-/// draws both.
+/// Whether something is visible through surfaces of elements that are not turned over, or these surfaces are dotted.
+/// One pipeline draws both.
 pub(super) fn has_behind(panel: &Panel) -> bool {
     let has_solids = || panel.obstacles.solids.iter().any(|solid| !solid.mesh.triangles.is_empty());
     panel.dotted || !panel.turned_over.triangles.is_empty() || (panel.opacity < 1.0 && has_solids())
@@ -128,7 +128,7 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         key: sight.key,
         flatness: if sight.flat { 1.0 } else { 0.0 },
         up: panel.floor.as_ref().map_or(Vec3::Y, |floor| floor.normal),
-        // Without a floor, everything is far above it.
+        // Without a floor, it lies far below everything.
         floor: panel.floor.as_ref().map_or(-1e6, |floor| floor.height),
         sound: linear(if sight.flat { palette.sound_flat } else { palette.sound }),
         element: sight.element,
@@ -156,10 +156,10 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
     }
 }
 
-/// The distance between two panels' data in the buffer (bytes): a multiple of 256, to which devices may align it.
+/// The distance between the data of two panels in the buffer (bytes): a multiple of 256, to which devices may align it.
 const STRIDE: usize = 768;
 
-/// The data of all panels, twice: as seen in the bodies' regions, and in the whole panels.
+/// The data of all panels, for the bodies' regions and for whole panels.
 #[derive(Debug)]
 pub(super) struct Panels {
     buffer: GrowingBuffer<u8>,
@@ -191,7 +191,7 @@ impl Panels {
         }
     }
 
-    /// Draws each panel that has anything in its rectangle, limited to that rectangle and bound for its body's region.
+    /// Draws each panel with something in its rectangle, limited to that rectangle and bound for its body's region.
     pub(super) fn draw_regions(
         &self,
         pass: &mut Pass<'_>,
@@ -222,7 +222,7 @@ pub(super) fn limit(pass: &mut Pass<'_>, [left, top, width, height]: Rectangle) 
     pass.set_scissor_rect(left, top, width, height);
 }
 
-/// Whether there is anything in a rectangle.
+/// Whether a rectangle is not empty.
 pub(super) fn is_visible([_, _, width, height]: Rectangle) -> bool {
     width > 0 && height > 0
 }

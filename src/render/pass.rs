@@ -1,10 +1,10 @@
-//! Passes in which pipelines draw.
+//! Passes of drawing.
 
 use super::pipeline::Pipeline;
 use crate::gpu::{Gpu, Work};
 use std::ops::{Deref, DerefMut, Range};
 
-/// A pass that draws nothing where there is nothing to draw, and notes the rest.
+/// A pass that skips empty draws and notes the others.
 pub(super) struct Pass<'a> {
     pass: wgpu::RenderPass<'a>,
     gpu: &'a Gpu,

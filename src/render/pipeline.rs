@@ -2,11 +2,11 @@
 
 use crate::gpu::{Gpu, Work};
 
-/// How bodies are stored while they are drawn: square roots of linear colours, multiplied with alpha.
+/// The format of bodies: square roots of linear colours, multiplied with alpha.
 pub(super) const BODY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Depth is the near distance over the distance: 1 nearest, 0 infinitely far.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// What is added to linear colours at borders, multiplied with alpha.
+/// The format of borders: additions to linear colours, multiplied with alpha.
 pub(super) const BORDER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Opacities of four kinds of lines.
 pub(super) const LINE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -15,14 +15,14 @@ pub(super) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba
 /// The finished picture, written as sRGB values.
 pub(super) const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// What draws, by its label.
+/// A pipeline and its label.
 #[derive(Debug)]
 pub(super) struct Pipeline {
     pub(super) label: &'static str,
     pub(super) pipeline: wgpu::RenderPipeline,
 }
 
-/// The description of a pipeline, as far as pipelines differ.
+/// The properties in which pipelines differ.
 pub(super) struct Recipe<'a> {
     pub(super) label: &'static str,
     pub(super) shader: &'a wgpu::ShaderModule,
@@ -31,14 +31,14 @@ pub(super) struct Recipe<'a> {
     pub(super) vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub(super) topology: wgpu::PrimitiveTopology,
     pub(super) target: wgpu::TextureFormat,
-    /// How many targets of that format there are.
+    /// The number of targets of that format.
     pub(super) targets: usize,
     pub(super) blend: Option<wgpu::BlendState>,
     pub(super) depth: bool,
 }
 
 impl<'a> Recipe<'a> {
-    /// Rectangles of four corners without depth, blended into a target by their opacity.
+    /// Rectangles of four corners without depth, blended by their opacity.
     pub(super) fn rectangles(
         label: &'static str,
         shader: &'a wgpu::ShaderModule,
@@ -59,7 +59,7 @@ impl<'a> Recipe<'a> {
         }
     }
 
-    /// Like [`Self::rectangles`], of triangles: three vertices for each line.
+    /// Triangles without depth, blended by their opacity: three vertices for each line.
     pub(super) fn lines(
         label: &'static str,
         shader: &'a wgpu::ShaderModule,
@@ -152,7 +152,7 @@ pub(super) fn for_instances<T>(attributes: &[wgpu::VertexAttribute]) -> wgpu::Ve
     wgpu::VertexBufferLayout { step_mode: wgpu::VertexStepMode::Instance, ..for_vertices::<T>(attributes) }
 }
 
-/// A shader from its parts, one behind the other.
+/// A shader from its parts, in order.
 pub(super) fn shader(gpu: &Gpu, label: &str, parts: &[&str]) -> wgpu::ShaderModule {
     gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),
@@ -211,7 +211,7 @@ pub(super) fn group_layout(gpu: &Gpu, label: &str, entries: &[wgpu::BindGroupLay
     gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
 }
 
-/// Resources bound to the numbers given with them.
+/// Resources bound to numbers.
 pub(super) fn bind(
     gpu: &Gpu,
     label: &str,
@@ -225,7 +225,7 @@ pub(super) fn bind(
     gpu.device().create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
-/// Textures bound to the numbers given with them.
+/// Textures bound to numbers.
 pub(super) fn bind_textures(
     gpu: &Gpu,
     label: &str,

@@ -1,4 +1,4 @@
-//! Lines on the regions of their panels, as the passes read them that test, draw and smooth them.
+//! Lines on the regions of their panels, for the passes that test, draw and smooth them.
 
 use super::panel::cropped;
 use super::pipeline::{bind, group_layout, storage_entry};
@@ -14,12 +14,12 @@ const SHADER: &str = include_str!("../../shaders/line.wgsl");
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Segment {
-    /// Its ends on the region of its panel (px), and their depths.
+    /// The ends on the region of the panel (px), and their depths.
     ends: [f32; 4],
     depths: [f32; 2],
-    /// Its kind, its opacity (of 255), and the number of samples of its visibility.
+    /// The kind, the opacity (of 255), and the number of visibility samples.
     look: u32,
-    /// The first of these.
+    /// The first visibility sample.
     first: u32,
 }
 
@@ -27,12 +27,12 @@ pub(super) struct Segment {
 pub(super) const KIND_BITS: u32 = 4;
 pub(super) const STRENGTH_BITS: u32 = 8;
 
-/// The binding of the lines that a pass draws: three vertices each.
+/// The layout of lines for a pass: three vertices each.
 pub(super) fn lines_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     group_layout(gpu, "lines", &[storage_entry(1)])
 }
 
-/// Lines bound as that layout has it.
+/// Lines bound in that layout.
 pub(super) fn bind_lines(gpu: &Gpu, layout: &wgpu::BindGroupLayout, lines: &wgpu::Buffer) -> wgpu::BindGroup {
     bind(gpu, "lines", layout, &[(1, lines.as_entire_binding())])
 }
@@ -43,29 +43,29 @@ pub(super) fn corners(lines: &Range<u32>) -> Range<u32> {
 }
 
 impl Segment {
-    /// Its length (px).
+    /// Length (px).
     pub(super) fn length(&self) -> f32 {
         let [x, y, to_x, to_y] = self.ends;
         Vec2::new(x, y).distance(Vec2::new(to_x, to_y))
     }
 
-    /// Gives it samples of its visibility.
+    /// Gives the line samples of its visibility.
     pub(super) fn sample(&mut self, samples: Range<u32>) {
         self.look |= (samples.len() as u32) << (KIND_BITS + STRENGTH_BITS);
         self.first = samples.start;
     }
 
-    /// The samples of its visibility.
+    /// The samples of the line's visibility.
     pub(super) fn samples(&self) -> Range<u32> {
         self.first..self.first + (self.look >> (KIND_BITS + STRENGTH_BITS))
     }
 }
 
-/// Lines of turned-over elements are this much nearer (sides), as their surfaces are. Moving all lines as far would let stubs of
-/// hidden ones show at corners.
+/// Lines of turned-over elements are this much nearer (sides), like their surfaces. With all lines so near, stubs of
+/// hidden ones would show at corners.
 const NEARER: f32 = 0.02;
 
-/// What of lines lies on the region of a panel, or so near to it that they reach into it.
+/// The parts of lines on the region of a panel, or near enough to reach into it.
 pub(super) fn projected(panel: &Panel) -> impl Fn(&Line) -> Option<Segment> {
     let (clip, near) = (cropped(panel), panel.sight.near);
     let size = Vec2::new(panel.region[2] as f32, panel.region[3] as f32);
@@ -82,7 +82,7 @@ pub(super) fn projected(panel: &Panel) -> impl Fn(&Line) -> Option<Segment> {
         }
         let nearer = if line.kind.is_alarm() { NEARER } else { 0.0 };
         let place = |at: Vec4| (Vec2::new(at.x, -at.y) / at.w * 0.5 + 0.5) * size;
-        // A depth is as linear on the screen as places are.
+        // Depths are linear on the screen, like places.
         let [from, to] = [a, b].map(|at| place(at).extend(at.z / (at.w - nearer).max(near)));
         let [start, end] = shares_within(from.truncate(), to.truncate(), [Vec2::splat(-around), size + around])?;
         let [from, to] = [from.lerp(to, start), from.lerp(to, end)];
@@ -92,7 +92,7 @@ pub(super) fn projected(panel: &Panel) -> impl Fn(&Line) -> Option<Segment> {
     }
 }
 
-/// From which part of a line to which one it lies in a rectangle.
+/// The ends of a line's part in a rectangle, as shares of the line.
 fn shares_within(from: Vec2, to: Vec2, [low, high]: [Vec2; 2]) -> Option<[f32; 2]> {
     let way = to - from;
     let (mut start, mut end) = (0.0_f32, 1.0_f32);
@@ -114,20 +114,20 @@ pub(super) fn parts() -> [&'static str; 3] {
     [super::PANEL_SHADER, super::SEGMENT_SHADER, SHADER]
 }
 
-/// Lines that are drawn by one pipeline. A software driver would do the work of all kinds for each of them.
+/// Lines of one pipeline. With one for all kinds, a software driver would do the work of all kinds for each line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Edge,
     AlarmEdge,
     Contour,
     AlarmContour,
-    /// Everything in the plane.
+    /// All lines in the plane.
     Flat,
 }
 
 impl Kind {
     pub(super) const ALL: [Self; 5] = [Self::Edge, Self::AlarmEdge, Self::Contour, Self::AlarmContour, Self::Flat];
-    /// What tests the visibility of the first of these. Nothing hides what is in the plane.
+    /// The entry point of the visibility test of each kind. Nothing hides lines in the plane.
     pub(super) const TESTED: [&'static str; 4] = ["edges", "alarm_edges", "contours", "alarm_contours"];
 
     /// The kind of a line in a panel.
@@ -141,7 +141,7 @@ impl Kind {
         }
     }
 
-    /// What draws them.
+    /// The entry point that draws the kind.
     pub(super) fn entry(self) -> &'static str {
         match self {
             Self::Edge => "edge_opacity",
@@ -166,7 +166,7 @@ mod tests {
         assert_eq!(within([3.0, -1e3], [3.0, -1.0]), None);
         assert_eq!(within([-1.0, 6.0], [12.0, 6.0]), None);
         assert_eq!(within([4.0, 4.0], [4.0, 4.0]), Some([0.0, 1.0]));
-        // Past a corner.
+        // The line passes a corner.
         assert_eq!(within([-2.0, 4.0], [4.0, 10.0]), None);
     }
 }

@@ -1,4 +1,4 @@
-//! All shaders are valid, and their structs have the same layout as those in Rust. Needs no graphics device.
+//! All shaders are valid, and their structs have the layout of the structs in Rust. Needs no graphics device.
 
 use super::ground::GroundUniform;
 use super::overlay::CanvasUniform;

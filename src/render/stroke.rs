@@ -35,7 +35,7 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 7] = wgpu::vertex_attr_array![
     0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4, 3 => Unorm8x4, 4 => Unorm8x4, 5 => Float32, 6 => Uint32
 ];
 
-/// The pipeline, and the lines and discs of one picture. Made for the first picture that has any.
+/// The pipeline and the lines and discs of one picture. Made for the first picture that has any.
 #[derive(Debug)]
 pub(super) struct Strokes {
     pipeline: Pipeline,
@@ -46,7 +46,7 @@ pub(super) struct Strokes {
 }
 
 impl Strokes {
-    /// Whether a picture has any.
+    /// Whether a picture has lines or discs.
     pub(super) fn are_in(picture: &Picture) -> bool {
         picture.panels.iter().any(|panel| !panel.strokes.is_empty() || !panel.beads.is_empty())
     }

@@ -1,4 +1,4 @@
-//! Surfaces of bodies: first the turned-over set, for itself and as what is seen through the body, then the other set over it.
+//! Surfaces of bodies: first the turned-over set, for itself and as seen through the body, then the other set over it.
 
 use super::panel::{Panels, has_behind};
 use super::pass::Pass;
@@ -12,16 +12,16 @@ pub(super) const SHADER: &str = include_str!("../../shaders/surface.wgsl");
 
 const ATTRIBUTES: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32];
 
-/// How corners lie in their buffer.
+/// The layout of corners in their buffer.
 pub(super) fn vertices() -> wgpu::VertexBufferLayout<'static> {
     for_vertices::<Vertex>(&ATTRIBUTES)
 }
 
-/// The part of the shader about the occlusion by obstacles near a body, without any and with some.
+/// The part of the shader about occlusion by obstacles near a body, without obstacles and with some.
 const ALONE_SHADER: &str = include_str!("../../shaders/light_alone.wgsl");
 const AMONG_SHADER: &str = include_str!("../../shaders/light_among.wgsl");
 
-/// The number of obstacles as a constant, so that the loop is unrolled: much faster with a software driver.
+/// The number of obstacles is a constant, so that the loop is unrolled: much faster with a software driver.
 const COUNTS: [&str; MOST_OCCLUDERS + 1] = [
     "",
     "const OCCLUDERS = 1u;\n",
@@ -43,20 +43,20 @@ pub(super) fn occluders(picture: &Picture) -> usize {
     counts.max().unwrap_or(0).min(MOST_OCCLUDERS)
 }
 
-/// One for each number of obstacles near a body, made when it is first needed.
+/// Pipelines by number of obstacles near a body, made when first needed.
 pub(super) type ForOccluders<T> = [Option<T>; MOST_OCCLUDERS + 1];
 
 /// The pipelines that draw surfaces.
 #[derive(Debug)]
 pub(super) struct Pipelines {
-    /// Into two targets: as seen through the body, and as surfaces of it.
+    /// Pipelines into two targets: as seen through the body, and as surfaces of it.
     pub(super) alarm: Pipeline,
     pub(super) sound: Pipeline,
-    /// The same where something lies behind, or elements are flat.
+    /// Pipelines where something lies behind, or elements are flat.
     pub(super) before: Pipeline,
 }
 
-/// The two sets of elements of a panel, in the order in which they are stored.
+/// The two sets of elements of a panel, in stored order.
 const SOUND: usize = 0;
 const TURNED_OVER: usize = 1;
 
@@ -64,27 +64,27 @@ const TURNED_OVER: usize = 1;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Colouring<'a> {
     pub(super) pipelines: &'a Pipelines,
-    /// The bindings of each set besides the panel.
+    /// The bindings of each set, without the panel.
     pub(super) groups: [Option<&'a wgpu::BindGroup>; 2],
-    /// The places of corners on the scale of a field, as a second buffer of vertices.
+    /// The places of corners on the scale of a field, in a second vertex buffer.
     pub(super) shades: Option<&'a wgpu::Buffer>,
 }
 
-/// The textures of the turned-over set, which is seen through the other surfaces.
+/// The textures of the turned-over set, seen through the other surfaces.
 pub(super) fn behind_entries() -> [wgpu::BindGroupLayoutEntry; 2] {
     [texture_entry(2, true), texture_entry(3, false)]
 }
 
-/// The pipelines of the surfaces, and the meshes of one picture.
+/// The pipelines of surfaces and the meshes of one picture.
 #[derive(Debug)]
 pub(super) struct Surfaces {
-    /// Made when they are first needed.
+    /// Made when first needed.
     pipelines: ForOccluders<Pipelines>,
     behind_layout: wgpu::BindGroupLayout,
     behind: Option<wgpu::BindGroup>,
     vertices: GrowingBuffer<Vertex>,
     indices: GrowingBuffer<u32>,
-    /// The indices of each panel's two sets.
+    /// The indices of the two sets of each panel.
     ranges: Vec<[Range<u32>; 2]>,
     /// Whether anything lies behind a panel's surfaces or is dotted.
     with_behind: Vec<bool>,
@@ -146,7 +146,7 @@ impl Surfaces {
         self.behind = Some(bind_textures(gpu, "turned over", &self.behind_layout, &views));
     }
 
-    /// Without a field, for a number of obstacles near a body that was prepared.
+    /// The pipelines without a field, prepared for a number of obstacles near a body.
     pub(super) fn plain(&self, occluders: usize) -> Colouring<'_> {
         let pipelines = self.pipelines[occluders].as_ref().expect("prepared");
         Colouring { pipelines, groups: [self.behind.as_ref(), None], shades: None }
@@ -163,7 +163,7 @@ impl Surfaces {
         self.draw(pass, panels, places, colouring, |pipelines| &pipelines.alarm, (TURNED_OVER, true));
     }
 
-    /// Draws the other sets, over the turned-over ones.
+    /// Draws the other sets over the turned-over ones.
     pub(super) fn draw_sound(
         &self,
         pass: &mut Pass<'_>,

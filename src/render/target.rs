@@ -3,16 +3,16 @@
 use super::pipeline::{BODY_FORMAT, BORDER_FORMAT, DEPTH_FORMAT, ENCODED_FORMAT, LINE_FORMAT, PICTURE_FORMAT};
 use crate::gpu::Gpu;
 
-/// Textures that hold bodies grow in steps of this length (px), so that a body in motion seldom needs new ones.
+/// Textures of bodies grow in steps of this length (px), so that a moving body seldom needs new ones.
 const STEP: u32 = 64;
 
 /// The finished picture.
 #[derive(Debug)]
 pub(super) struct Canvas {
     pub(super) texture: wgpu::Texture,
-    /// For passes that work with linear light.
+    /// The view for passes that work with linear light.
     pub(super) linear: wgpu::TextureView,
-    /// For passes that work with sRGB values.
+    /// The view for passes that work with sRGB values.
     pub(super) encoded: wgpu::TextureView,
 }
 
@@ -34,26 +34,26 @@ impl Canvas {
     }
 }
 
-/// The textures that hold the bodies' regions side by side.
+/// The textures of bodies, with their regions side by side.
 #[derive(Debug)]
 pub(super) struct Bodies {
     pub(super) size: [u32; 2],
-    /// Everything of the bodies.
+    /// The whole bodies.
     pub(super) colour: wgpu::TextureView,
     pub(super) depth: wgpu::TextureView,
     /// Whether the next two have the full size, or a single pixel that is never read.
     has_behind: bool,
-    /// The turned-over elements by themselves.
+    /// The turned-over elements alone.
     pub(super) alarm_colour: wgpu::TextureView,
     pub(super) alarm_depth: wgpu::TextureView,
-    /// What pixels gain that borders cross.
+    /// The light that borders add to pixels.
     pub(super) borders: wgpu::TextureView,
     /// Opacities of lines.
     pub(super) lines: wgpu::TextureView,
 }
 
 impl Bodies {
-    /// Textures of a size, with or without those of the turned-over set alone.
+    /// Textures of a size, with or without the turned-over set alone.
     pub(super) fn new(gpu: &Gpu, size: [u32; 2], has_behind: bool) -> Self {
         let texture = |label, size, format, copied| {
             let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
@@ -88,8 +88,8 @@ impl Bodies {
         commands.copy_texture_to_texture(from, to, extent(self.size));
     }
 
-    /// Whether regions of a size fit, with what lies behind surfaces if anything does, and fill enough of the textures that
-    /// smaller ones would hardly be quicker.
+    /// Whether regions of a size fit, with space for items behind surfaces if there are any, and fill enough of the
+    /// textures that smaller ones would hardly be quicker.
     pub(super) fn suit(&self, needed: [u32; 2], has_behind: bool) -> bool {
         let area = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height);
         let fits = needed[0] <= self.size[0] && needed[1] <= self.size[1];

@@ -1,4 +1,4 @@
-//! Surfaces coloured by a scalar field, in place of the plain ones.
+//! Surfaces coloured by a scalar field.
 
 use super::panel::{Panels, linear};
 use super::pipeline::{Recipe, bind, for_vertices, group_layout, shader, uniform_entry};
@@ -12,13 +12,13 @@ pub(super) const SHADER: &str = include_str!("../../shaders/tint.wgsl");
 
 const ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![3 => Float32];
 
-/// The pipelines of coloured surfaces with their scale, and where the corners of one picture stand on it. Made for the
-/// first picture that has a field.
+/// The pipelines of coloured surfaces with their scale, and the places of corners on it. Made for the first picture
+/// that has a field.
 #[derive(Debug)]
 pub(super) struct Tint {
     pipelines: ForOccluders<Pipelines>,
     alarm_layout: wgpu::BindGroupLayout,
-    /// For the turned-over sets: the scale; for the others also what lies behind them.
+    /// The bindings: for turned-over sets the scale, for others also the items behind them.
     alarm_group: wgpu::BindGroup,
     sound_group: wgpu::BindGroup,
     sound_layout: wgpu::BindGroupLayout,
@@ -72,7 +72,7 @@ impl Tint {
         self.pipelines[count].get_or_insert_with(|| Self::made(gpu, panels, layouts, count));
     }
 
-    /// By the field, for a number of obstacles near a body that was prepared.
+    /// The pipelines of the field, prepared for a number of obstacles near a body.
     pub(super) fn colouring(&self, occluders: usize) -> Colouring<'_> {
         Colouring {
             pipelines: self.pipelines[occluders].as_ref().expect("prepared"),
@@ -86,7 +86,7 @@ impl Tint {
         self.sound_group = sound_group(gpu, &self.sound_layout, &self.ramp, bodies);
     }
 
-    /// Uploads the scale of a picture and where its corners stand, in the order of its vertices.
+    /// Uploads the scale of a picture and the places of corners, in the order of its vertices.
     pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
         let colours: Vec<_> = picture.ramp.iter().take(SHADES).map(|&colour| linear(colour).extend(1.0)).collect();
         self.ramp.write(gpu, colours);

@@ -1,5 +1,5 @@
-//! How visible lines are: tested once for each pixel of their length, before they are drawn. Testing each pixel that a line
-//! covers would take several times as long.
+//! The visibility of lines, tested once for each pixel of their length before they are drawn. Testing each pixel that a
+//! line covers would take several times as long.
 
 use super::panel::Panels;
 use super::pipeline::{
@@ -12,14 +12,14 @@ use crate::picture::Rectangle;
 use std::ops::Range;
 
 const SHADER: &str = include_str!("../../shaders/visibility.wgsl");
-/// The part of the shader about solid obstacles, without any and with some.
+/// The part of the shader about solid obstacles, without obstacles and with some.
 const ALONE_SHADER: &str = include_str!("../../shaders/line_alone.wgsl");
 const AMONG_SHADER: &str = include_str!("../../shaders/line_among.wgsl");
 
-/// The format of what is found: four shares, which have no more than a byte's precision when they are used.
+/// The format of results: four shares, used with the precision of a byte.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// As in the shaders: samples in a row of the texture, samples that a chunk has, and threads of a group.
+/// As in the shaders: samples in a row of the texture, samples of a chunk, and threads of a group.
 pub(super) const WIDTH: u32 = 2048;
 pub(super) const CHUNK: u32 = 4;
 pub(super) const GROUP: u32 = 128;
@@ -27,7 +27,7 @@ pub(super) const GROUP: u32 = 128;
 /// The distance between two ranges in their buffer (bytes).
 const STRIDE: usize = 256;
 
-/// The parts of the shader, alone or among solid obstacles.
+/// The parts of the shader, without or with solid obstacles.
 pub(super) fn parts(among: bool) -> [&'static str; 8] {
     let obstacles = if among { AMONG_SHADER } else { ALONE_SHADER };
     let [panel, segment, line] = segment::parts();
@@ -39,20 +39,20 @@ pub(super) fn parts(among: bool) -> [&'static str; 8] {
 struct Variant {
     among: bool,
     module: wgpu::ShaderModule,
-    /// For each kind of lines, made when it is first needed.
+    /// Pipelines for each kind of line, made when first needed.
     pipelines: [Option<wgpu::ComputePipeline>; Kind::TESTED.len()],
     layout: wgpu::BindGroupLayout,
     textures: Option<wgpu::BindGroup>,
 }
 
-/// What tests the visibility of lines, and what it found for those of one picture.
+/// The pipelines, and the visibility of the lines of one picture.
 #[derive(Debug)]
 pub(super) struct Visibility {
     alone: Variant,
-    /// Among solid obstacles, as soon as there are any.
+    /// Pipelines with solid obstacles, made for the first ones.
     among: Option<Variant>,
     layout: wgpu::BindGroupLayout,
-    /// The line of each chunk of samples, and the first of them on it.
+    /// The line of each chunk of samples, and the chunk's first sample on it.
     chunks: GrowingBuffer<[u32; 2]>,
     ranges: GrowingBuffer<u8>,
     bind_group: Option<wgpu::BindGroup>,
@@ -86,7 +86,7 @@ impl Visibility {
         }
     }
 
-    /// What was found.
+    /// The results.
     pub(super) fn found(&self) -> wgpu::TextureView {
         self.found.create_view(&wgpu::TextureViewDescriptor::default())
     }
@@ -97,8 +97,8 @@ impl Visibility {
         self.among.iter_mut().for_each(|among| among.retarget(gpu, bodies));
     }
 
-    /// Prepares to test the lines of a picture, which lie in `lines` by panels and kinds. Returns whether what is found has a
-    /// new place.
+    /// Prepares to test the lines of a picture, which lie in `lines` by panel and kind. Returns true if the results
+    /// have a new texture.
     pub(super) fn write(
         &mut self,
         gpu: &Gpu,
@@ -154,7 +154,7 @@ impl Visibility {
         is_small
     }
 
-    /// Tests all lines, among solid obstacles if there are any.
+    /// Tests all lines, with solid obstacles if there are any.
     pub(super) fn find(
         &self,
         gpu: &Gpu,
@@ -185,15 +185,15 @@ impl Visibility {
     }
 }
 
-/// All devices can do so many groups in each direction.
+/// The number of groups in each direction that all devices support.
 const MOST_GROUPS: u32 = 65_535;
 
-/// The number of samples for which a device has room.
+/// The number of samples that a device has room for.
 pub(super) fn most_samples(gpu: &Gpu) -> u64 {
     u64::from(WIDTH) * u64::from(gpu.longest_side())
 }
 
-/// The number of lines for which a device has room: two samples each use half of that for samples.
+/// The number of lines that a device has room for: two samples each take half of its room for samples.
 pub(super) fn most_lines<T>(gpu: &Gpu) -> usize {
     most_bound::<T>(gpu).min((most_samples(gpu) / 4) as usize)
 }

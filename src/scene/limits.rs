@@ -106,7 +106,7 @@ impl BodySize {
             Some(Excess { message, help, run: (0..runs.len()).max_by_key(|&run| springs_of_run[run]) })
         } else if !is_given(memory) {
             let help = "make the body smaller, or take a larger machine";
-            excess(format!("{asked}, which this machine does not give"), help.to_owned())
+            excess(format!("{asked}, more than this machine has"), help.to_owned())
         } else {
             None
         }
@@ -179,7 +179,7 @@ mod tests {
     fn what_no_machine_gives_is_said_beforehand() {
         let enormous = BodySize::new(8, [(usize::MAX, 1)]);
         let message = beyond(&enormous, &runs(["'shape-based'"]), &Limits::NONE).unwrap().message;
-        assert!(message.contains("which this machine does not give"), "{message}");
+        assert!(message.contains("more than this machine has"), "{message}");
         assert_eq!(beyond(&block(1), &runs(["'shape-based'"]), &Limits::NONE), None);
     }
 

@@ -44,8 +44,8 @@ impl Scene {
         (run.integrator == Integrator::ExplicitEuler && is_undamped).then(|| {
             let name = quoted(&run.name);
             [
-                format!("`explicit-euler` adds energy to {name} in each step, however small, as it has no damping"),
-                "use \"semi-implicit-euler\", or give it `damping_ratio`".to_owned(),
+                format!("`explicit-euler` adds energy to {name} with any step, because the run has no damping"),
+                "use \"semi-implicit-euler\", or give the run a `damping_ratio`".to_owned(),
             ]
         })
     }

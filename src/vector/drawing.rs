@@ -1,10 +1,10 @@
-//! What pages are made of, whatever their format: filled and stroked paths, images and text.
+//! Items of pages in any format: filled and stroked paths, images and text.
 
 use crate::picture::{Colour, TextRun};
 use glam::Vec2;
 use std::f32::consts::TAU;
 
-/// One thing on a page. Things are drawn in their order.
+/// An item of a page. Items are drawn in their order.
 #[derive(Clone, Debug)]
 pub(super) enum Item<'a> {
     /// The inside of a path (nonzero winding).
@@ -14,13 +14,13 @@ pub(super) enum Item<'a> {
         /// Its colour.
         paint: Paint,
     },
-    /// Lines along a path. Where several of one item cross, they are painted once.
+    /// Lines along a path. Where lines of one item cross, they are painted once.
     Stroke {
-        /// Their middle.
+        /// The middle of the lines.
         path: Path,
-        /// How they are drawn.
+        /// The stroke.
         pen: Pen,
-        /// Their colour.
+        /// Its colour.
         paint: Paint,
     },
     /// The inside of a path with a colour that changes evenly from one point to another.
@@ -35,7 +35,7 @@ pub(super) enum Item<'a> {
     Image(Image),
     /// A line of text.
     Text(&'a TextRun),
-    /// What follows is drawn inside a path only, until [`Item::Unclip`]. Clips do not nest.
+    /// Limits the next items to the inside of a path, until [`Item::Unclip`]. Clips do not nest.
     Clip(Path),
     /// Ends a clip.
     Unclip,
@@ -55,12 +55,12 @@ impl From<Colour> for Paint {
     }
 }
 
-/// How lines are drawn.
+/// The stroke of lines.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pen {
-    /// Their width (px).
+    /// Width (px).
     pub(super) width: f32,
-    /// Lengths of dashes and gaps by turns (px); empty for a solid line.
+    /// Lengths of dashes and gaps in turn (px); empty for a solid line.
     pub(super) dash: Vec<f32>,
     /// Whether ends are round. Joints always are.
     pub(super) round: bool,
@@ -80,7 +80,7 @@ pub(super) struct Image {
     pub(super) size: [u32; 2],
     /// Red, green and blue of each pixel, or these and opacity, in rows from the top left.
     pub(super) pixels: Vec<u8>,
-    /// Where its left upper corner lies, and what its upper and its left side are (px of the page).
+    /// Its upper left corner, its upper side and its left side as vectors (px of the page).
     pub(super) place: [Vec2; 3],
 }
 
@@ -145,12 +145,12 @@ impl Path {
         }));
     }
 
-    /// Adds an arc of a circle from one angle to another (rad, from the right downwards), which begins a new piece or
-    /// goes on with a straight line to its begin.
+    /// Adds an arc of a circle from one angle to another (rad, from the right downwards). The arc begins a new piece,
+    /// or is joined to the piece by a straight line.
     pub(super) fn add_arc(&mut self, middle: Vec2, radius: f32, [from, to]: [f32; 2], begins: bool) {
         let pieces = ((to - from).abs() / (TAU / 4.0) - 1e-4).ceil().max(1.0);
         let step = (to - from) / pieces;
-        // The curve with the circle's direction at both ends and its middle on the circle.
+        // The curve has the circle's direction at both ends, and its middle is on the circle.
         let reach = 4.0 / 3.0 * (step / 4.0).tan() * radius;
         let at = |angle: f32| middle + radius * Vec2::from_angle(angle);
         self.0.push(if begins { Step::Move(at(from)) } else { Step::Line(at(from)) });
@@ -161,7 +161,7 @@ impl Path {
         }
     }
 
-    /// Whether there is nothing in it.
+    /// Whether the path is empty.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

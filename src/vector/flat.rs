@@ -6,7 +6,7 @@ use crate::colour::{encoded, linear};
 use crate::picture::{Bead, Colour, Fading, Line, LineKind, Mesh, Panel, Picture, Second, Solid, Stroke};
 use glam::{Vec2, Vec3, Vec4Swizzles};
 
-/// The hatch of turned-over elements: its period (px in the reference picture), how much of that is dark, and how dark.
+/// The hatch of turned-over elements: period (px in the reference picture), dark share of it, and strength.
 const PERIOD: f32 = 9.0;
 const STRIPE: f32 = 0.19;
 const STRIPE_ALPHA: f32 = 0.62;
@@ -26,10 +26,10 @@ const BEAD_RIM: f32 = 0.32;
 /// The width of a casing, in parts of the line's, and the least (px).
 const CASING: f32 = 0.24;
 const LEAST_CASING: f32 = 0.6;
-/// Into how many pieces a line of changing colour is cut.
+/// The number of pieces of a line of changing colour.
 const PIECES: u32 = 8;
 
-/// One panel with the picture that it belongs to.
+/// One panel with its picture.
 struct Flat<'a> {
     picture: &'a Picture,
     panel: &'a Panel,
@@ -70,7 +70,7 @@ impl Flat<'_> {
         Vec2::new(left, top) + (at.xy() / at.w * Vec2::new(0.5, -0.5) + 0.5) * Vec2::new(width, height)
     }
 
-    /// The triangles of a mesh, all running the same way, with a value at each corner.
+    /// The triangles of a mesh, all counter-clockwise or all clockwise, with a value at each corner.
     fn triangles(&self, mesh: &Mesh, value: impl Fn(usize) -> f32) -> Vec<[(Vec2, f32); 3]> {
         let corner = |at: u32| (self.pixel(mesh.vertices[at as usize].position), value(at as usize));
         let one = |triangle: &[u32; 3]| {
@@ -97,8 +97,8 @@ impl Flat<'_> {
         }
     }
 
-    /// Lets obstacles fade out at the sides of their room, before the body is drawn: covers them with the background, in strips of
-    /// a pixel within the region (left, top, right and bottom, px).
+    /// Fades obstacles out at the sides of their room, before the body is drawn: covers them with the background, in
+    /// strips of a pixel within the region (left, top, right and bottom, px).
     fn fade(&self, Fading { room, distance, strength }: Fading, region: [f32; 4], items: &mut Vec<Item<'_>>) {
         let solids = self.panel.obstacles.solids.iter();
         let triangles = solids.flat_map(|solid| self.triangles(&solid.mesh, |at| solid.mesh.vertices[at].hatch));
@@ -113,7 +113,7 @@ impl Flat<'_> {
             }
         };
         for side in 0..4 {
-            // From the side of the region to that of the room, and from there inwards.
+            // First from the side of the region to the side of the room, then inwards.
             let strip = |from: f32, to: f32| {
                 let mut strip = region;
                 let inwards = if side < 2 { 1.0 } else { -1.0 };
@@ -132,7 +132,7 @@ impl Flat<'_> {
         items.push(Item::Unclip);
     }
 
-    /// The surface of elements, in the colour of their kind or in those of a field.
+    /// The surface of elements, in the colour of their kind or in the colours of a field.
     fn surface(&self, mesh: &Mesh, items: &mut Vec<Item<'_>>) {
         if mesh.triangles.is_empty() {
             return;
@@ -154,7 +154,7 @@ impl Flat<'_> {
         let bands = ramp.len() - 1;
         let triangles = self.triangles(mesh, |at| mesh.shades[at] * bands as f32);
         if triangles.iter().all(|[a, b, c]| a.1 == b.1 && b.1 == c.1) {
-            // One value for each element. Where a body is folded over itself, the renderer shows what it draws first.
+            // Each element has one value. Where a body is folded over itself, the renderer shows what it draws first.
             for same in triangles.chunk_by(|one, other| one[0].1 == other[0].1).rev() {
                 let path = path_of(same.iter().map(|triangle| triangle.map(|(at, _)| at).to_vec()));
                 let value = same[0][0].1;
@@ -167,7 +167,7 @@ impl Flat<'_> {
         }
         for band in 0..bands {
             let [low, high] = [band, band + 1].map(|level| level as f32);
-            // The ends of the scale go on.
+            // Values beyond the scale have the colours of its ends.
             let [from, to] = [
                 if band == 0 { -0.5 * bands as f32 } else { low },
                 if band + 1 == bands { f32::INFINITY } else { high },
@@ -186,7 +186,7 @@ impl Flat<'_> {
         }
     }
 
-    /// The stripes on turned-over elements, which go along with the body.
+    /// The stripes on turned-over elements, fixed to the body.
     fn hatch(&self, [left, top, width, height]: [f32; 4], items: &mut Vec<Item<'_>>) {
         let palette = &self.picture.palette;
         let sight = &self.panel.sight;
@@ -218,7 +218,7 @@ impl Flat<'_> {
         items.push(Item::Unclip);
     }
 
-    /// Edges and contours. Those of one kind are one path, so that joints are even.
+    /// Edges and contours. Lines of one kind are one path, so that joints are even.
     fn lines(&self, items: &mut Vec<Item<'_>>) {
         let (palette, sight) = (&self.picture.palette, &self.panel.sight);
         let element = sight.element;
@@ -294,7 +294,7 @@ impl Flat<'_> {
         }
         let pieces = if first == last { 1 } else { PIECES };
         for piece in 0..pieces {
-            // Each goes on to the end of the line, below the next one: no seams.
+            // Each piece extends to the end of the line, below the next piece: no seams.
             let begin = from.lerp(to, piece as f32 / pieces as f32);
             let colour = mixed(first, last, (piece as f32 + 0.5) / pieces as f32);
             let pen = Pen { round: round && pieces == 1, ..Pen::solid(width) };
@@ -309,7 +309,7 @@ impl Flat<'_> {
         items.push(Item::Fill { path: Path::circle(at, radius), paint: bead.colour.into() });
     }
 
-    /// The opacity that gives, where bytes are blended, what an opacity gives where light is.
+    /// The opacity that looks the same in blended bytes as a given opacity in blended light.
     fn alpha(&self, alpha: f32, above: Colour, below: Colour) -> f32 {
         let seen = mixed(below, above, alpha);
         let [whole, part] = [above, seen].map(|colour| {
@@ -319,14 +319,14 @@ impl Flat<'_> {
     }
 }
 
-/// Polygons as one path, as far as they have an inside.
+/// Polygons with an area as one path.
 fn path_of(polygons: impl Iterator<Item = Vec<Vec2>>) -> Path {
     let mut path = Path::default();
     polygons.filter(|polygon| polygon.len() > 2).for_each(|polygon| path.add_polygon(&polygon));
     path
 }
 
-/// The part of a triangle where its value lies between two others.
+/// The part of a triangle with values between two others.
 fn part(triangle: &[(Vec2, f32); 3], low: f32, high: f32) -> Vec<Vec2> {
     let mut polygon = triangle.to_vec();
     for (level, sign) in [(low, 1.0), (high, -1.0)] {
@@ -349,7 +349,7 @@ fn part(triangle: &[(Vec2, f32); 3], low: f32, high: f32) -> Vec<Vec2> {
     polygon.into_iter().map(|(at, _)| at).collect()
 }
 
-/// A colour on the way from one to another, as light mixes.
+/// A mix of two colours, as light mixes.
 fn mixed(from: Colour, to: Colour, share: f32) -> Colour {
     let ([a, b], share) = ([from, to].map(linear), f64::from(share));
     encoded(std::array::from_fn(|at| a[at] + (b[at] - a[at]) * share))

@@ -1,4 +1,4 @@
-//! The fonts of a page, with the glyphs that it uses and no others.
+//! The fonts of a page, reduced to the glyphs that it uses.
 
 use super::VectorError;
 use crate::picture::{Fonts, TextRun};
@@ -7,21 +7,21 @@ use subsetter::GlyphRemapper;
 
 /// A part of a font.
 pub(super) struct Subset<'a> {
-    /// The font that it is part of, by its number among those of the picture.
+    /// The index of the whole font in the picture.
     pub(super) face: u8,
-    /// The font as it was read.
+    /// The whole font.
     pub(super) whole: ttf_parser::Face<'a>,
     /// The part, an OpenType font without a table of characters.
     bytes: Vec<u8>,
-    /// What each glyph is called in the part.
+    /// The number of each glyph in the part.
     glyphs: GlyphRemapper,
-    /// The glyph in the part of each character.
+    /// The glyph of each character in the part.
     pub(super) characters: BTreeMap<char, u16>,
     /// The width of each glyph of the part (thousandths of the type's size).
     pub(super) widths: Vec<f32>,
 }
 
-/// The parts of all fonts that lines of text need, in the order of their numbers.
+/// The parts of all fonts that lines of text need, by index.
 pub(super) fn subsets<'a>(fonts: &'a Fonts, words: &[TextRun]) -> Result<Vec<Subset<'a>>, VectorError> {
     let mut used: BTreeMap<u8, BTreeMap<u16, Vec<char>>> = BTreeMap::new();
     for run in words {
@@ -40,7 +40,7 @@ impl<'a> Subset<'a> {
         let bytes = subsetter::subset(data, 0, &glyphs)
             .map_err(|error| VectorError::Font(format!("{error:?}").to_lowercase()))?;
         let all = used.iter().flat_map(|(&glyph, characters)| characters.iter().map(move |&one| (one, glyph)));
-        // The first glyph of a font is a box for characters that it does not have.
+        // The first glyph of a font is a box for missing characters.
         let known = all.filter(|(_, glyph)| *glyph != 0);
         let characters = known.map(|(character, glyph)| (character, glyphs.get(glyph).unwrap_or(0))).collect();
         let units = f32::from(whole.units_per_em());
@@ -49,7 +49,7 @@ impl<'a> Subset<'a> {
         Ok(Self { face, whole, bytes, glyphs, characters, widths })
     }
 
-    /// What a glyph is called in the part.
+    /// The number of a glyph in the part.
     pub(super) fn glyph(&self, glyph: u16) -> u16 {
         self.glyphs.get(glyph).unwrap_or(0)
     }
@@ -59,7 +59,7 @@ impl<'a> Subset<'a> {
         self.whole.names().into_iter().filter(|name| name.name_id == kind).find_map(|name| name.to_string())
     }
 
-    /// The part as it is embedded in PDF: outlines of PostScript alone, or a font of TrueType.
+    /// The part for PDF: outlines of PostScript alone, or a TrueType font.
     pub(super) fn for_pdf(&self) -> (&[u8], bool) {
         match self.tables().find(|(tag, _)| tag == b"CFF ") {
             Some((_, outlines)) => (outlines, true),
@@ -67,7 +67,7 @@ impl<'a> Subset<'a> {
         }
     }
 
-    /// The part as a font that browsers read, with its table of characters.
+    /// The part as a font for browsers, with its table of characters.
     pub(super) fn for_browsers(&self) -> Vec<u8> {
         let characters = cmap(&self.characters);
         let metrics = self.whole.raw_face().table(ttf_parser::Tag::from_bytes(b"OS/2"));
@@ -125,7 +125,7 @@ fn font_of(kind: &[u8], tables: &[([u8; 4], &[u8])]) -> Vec<u8> {
     font
 }
 
-/// The sum of a table's numbers.
+/// The checksum of a table.
 fn checksum(table: &[u8]) -> u32 {
     let number = |four: &[u8]| four.iter().enumerate().map(|(at, &byte)| u32::from(byte) << (24 - 8 * at)).sum::<u32>();
     table.chunks(4).map(number).fold(0, u32::wrapping_add)

@@ -5,14 +5,14 @@ use crate::picture::{Curve, Mark, MarkShape};
 use glam::Vec2;
 use std::f32::consts::TAU;
 
-/// The ring arrow, in parts of its mark's radius: radius and thickness, where its line begins and ends (rad,
+/// The ring arrow, in parts of its mark's radius: radius and thickness, start and end of its line (rad,
 /// counter-clockwise from the right), length and half width of its head.
 const RING: f32 = 0.80;
 const THICKNESS: [f32; 2] = [0.14, 0.22];
 const ENDS: [f32; 2] = [0.9, TAU - 0.25];
 const HEAD: [f32; 2] = [0.72, 0.42];
-/// A long arrow in parts of the width of its head: length and notch of the head, thickness of the shaft, the halo and how
-/// much of its room that fills. The head of a short one is the last number of its length.
+/// A long arrow in parts of the width of its head: length and notch of the head, thickness of the shaft, the halo and
+/// the share of its room that it fills. The last number is the head of a short arrow, in parts of its length.
 const ARROW_HEAD: [f32; 2] = [1.235, 0.2];
 const ARROW_SHAFT: f32 = 0.247;
 const ARROW_HALO: f32 = 0.17647;
@@ -25,10 +25,10 @@ const HALO_ALPHA: f32 = 0.75;
 const FADING: f32 = 0.75;
 const SHADOW: f32 = 0.42;
 
-/// Half a pixel: what smooth borders take of a mark, or what covers the seam between two of them.
+/// Half a pixel: the smooth border of a mark, and the overlap at the seam between two marks.
 const HALF: f32 = 0.5;
 
-/// Where a mark lies on the page.
+/// The place of a mark on the page.
 struct Place {
     corner: Vec2,
     size: Vec2,
@@ -54,7 +54,7 @@ impl Place {
         self.polygon([[left, top], [right, top], [right, bottom], [left, bottom]])
     }
 
-    /// Pixels whose opacity depends on how far right and down they are, from 0 to 1.
+    /// Pixels with an opacity that depends on their place, from 0 to 1 to the right and down.
     fn soft(&self, mark: &Mark, columns: u32, opacity: impl Fn(f32, f32) -> f32) -> Item<'static> {
         let size = [columns, self.size.y.ceil().max(1.0) as u32];
         let mut pixels = Vec::with_capacity(4 * (size[0] * size[1]) as usize);
@@ -71,7 +71,7 @@ impl Place {
     }
 }
 
-/// Adds a mark to a page. `next` is what is drawn after it.
+/// Adds a mark to a page, below the mark `next`.
 pub(super) fn mark<'a>(mark: &Mark, next: Option<&Mark>, items: &mut Vec<Item<'a>>) {
     let [left, top, width, height] = mark.rectangle;
     if width <= 0.0 || height <= 0.0 || mark.opacity == 0 {
@@ -91,14 +91,14 @@ pub(super) fn mark<'a>(mark: &Mark, next: Option<&Mark>, items: &mut Vec<Item<'a
         }
         MarkShape::Struck => {
             fill(place.part([0.0, 0.0, width, height]), paint);
-            // Half the line's width, as a part of the way from the diagonal to a corner.
+            // Half the line's width, as a part of the distance from the diagonal to a corner.
             let part = 0.045 * (width + height) * (width.recip().hypot(height.recip()));
             let [x, y] = [width * part.min(1.0), height * part.min(1.0)];
             let line = [[width - x, 0.0], [width, 0.0], [width, y], [x, height], [0.0, height], [0.0, height - y]];
             fill(place.polygon(line), second(1.0));
         }
         MarkShape::Node => {
-            // Beside each other and not over each other, for both may be transparent.
+            // Side by side, because both may be transparent.
             let rim = 0.16 * width;
             fill(Path::circle(place.middle(), radius - if mark.colour == mark.second { 0.0 } else { rim }), paint);
             if mark.colour != mark.second {
@@ -119,7 +119,7 @@ pub(super) fn mark<'a>(mark: &Mark, next: Option<&Mark>, items: &mut Vec<Item<'a
         }
         MarkShape::Arrow => arrow(&place, paint, second(ARROW_HALO_ALPHA), items),
         MarkShape::Blend => {
-            // A little of the next one's ground, so that no seam is seen between them.
+            // Extends under the next mark, so that no seam is seen.
             let meets = next.is_some_and(|next| next.shape == MarkShape::Blend);
             let path = place.part([0.0, 0.0, if meets { width + HALF } else { width }, height]);
             let ends = [place.at(0.0, 0.0), place.at(width, 0.0)];
@@ -165,7 +165,7 @@ fn ring_arrow(middle: Vec2, radius: f32, thickness: f32, way: f32) -> Path {
     let along = out.perp();
     let corners = [RING * out + HEAD[1] * out, RING * out + HEAD[0] * along, RING * out - HEAD[1] * out];
     let mut corners = corners.map(|corner| at(corner.x, corner.y));
-    // The head winds like the ring, or the two would cancel where they overlap.
+    // The head winds like the ring: otherwise both would cancel where they overlap.
     if winding(&corners) * winding(&ends_of(&path)) < 0.0 {
         corners.reverse();
     }
@@ -179,7 +179,7 @@ pub(super) fn winding(points: &[Vec2]) -> f32 {
     points.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum()
 }
 
-/// The points through which a path goes.
+/// The points of a path.
 fn ends_of(path: &Path) -> Vec<Vec2> {
     use super::drawing::Step;
     let end = |step: &Step| match *step {

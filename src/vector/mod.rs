@@ -1,5 +1,5 @@
-//! Pictures as vectors, for print: SVG and PDF. Text stays text, in parts of its fonts that are embedded; curves, marks and
-//! panels in the plane are paths; lit bodies are images that the renderer drew.
+//! Pictures as SVG and PDF, for print. Text stays text, in embedded parts of its fonts. Curves, marks and panels in the
+//! plane are paths. Lit bodies are images from the renderer.
 //!
 //! ```text
 //! Picture ─▶ items (paths, text, images) ─▶ SVG or PDF
@@ -18,7 +18,7 @@ use crate::picture::{Panel, Picture, TextRun};
 use drawing::{Image, Item, Path, Pen};
 use glam::Vec2;
 
-/// The format of a file of vectors.
+/// The format of a vector file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Format {
     /// Scalable Vector Graphics.
@@ -28,7 +28,7 @@ pub(crate) enum Format {
 }
 
 impl Format {
-    /// The format that the name of a file stands for, if it is one of vectors.
+    /// The format of a file name, if its ending is that of a vector file.
     pub(crate) fn of(path: &std::path::Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "svg" => Some(Self::Svg),
@@ -40,22 +40,22 @@ impl Format {
 
 /// A picture as a page.
 pub(crate) struct Page<'a> {
-    /// What it shows.
+    /// The picture.
     pub(crate) picture: &'a Picture,
-    /// The pixels of the picture's lit panels, as [`bodies`] asks for them: red, green and blue of each, in rows
-    /// from the top left; `None` if it has none.
+    /// The pixels of the picture's lit panels, as [`bodies`] asks for them: red, green and blue of each, or these and
+    /// opacity, in rows from the top left; `None` without lit panels.
     pub(crate) bodies: Option<&'a [u8]>,
-    /// Width and height (mm); if not given, pixels are those of the web, 96 to an inch.
+    /// Width and height (mm). By default a pixel is 1/96 of an inch.
     pub(crate) size_mm: Option<[f64; 2]>,
     /// Its title; empty for none.
     pub(crate) title: &'a str,
-    /// The program that makes it, with its version.
+    /// The program and its version.
     pub(crate) maker: &'a str,
-    /// What the file says about itself: names without `localshape:`, and texts.
+    /// Metadata: names without `localshape:`, and texts.
     pub(crate) tags: &'a [(&'static str, String)],
 }
 
-/// Why a page could not be written.
+/// An error of writing a page.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum VectorError {
     /// A font cannot be embedded.
@@ -66,7 +66,7 @@ pub(crate) enum VectorError {
 /// Half the width of the halo around words over bodies, in parts of the type's size.
 const HALO: f32 = 0.14;
 
-/// What the renderer draws of a picture for a page: its lit panels, without what is flat; `None` if there are none.
+/// The part of a picture that the renderer draws for a page: lit panels without flat items; `None` if there are none.
 pub(crate) fn bodies(picture: &Picture) -> Option<Picture> {
     let lit = |panel: &Panel| !panel.sight.flat;
     if !picture.panels.iter().any(lit) {
@@ -88,7 +88,7 @@ pub(crate) fn write(page: &Page<'_>, format: Format) -> Result<Vec<u8>, VectorEr
     })
 }
 
-/// Everything on a page, in order.
+/// The items of a page, in order.
 fn items<'a>(page: &Page<'a>) -> Vec<Item<'a>> {
     let picture = page.picture;
     let mut items = Vec::new();
@@ -117,7 +117,7 @@ fn items<'a>(page: &Page<'a>) -> Vec<Item<'a>> {
     items
 }
 
-/// The part of a lit panel in which there is anything.
+/// The part of a lit panel that is not empty.
 fn image(picture: &Picture, panel: &Panel, pixels: &[u8]) -> Option<Image> {
     let width = picture.size[0] as usize;
     let [left, top, wide, high] = panel.viewport.map(|length| length as usize);
@@ -153,7 +153,7 @@ fn outlines(picture: &Picture, run: &TextRun) -> Path {
     path
 }
 
-/// Takes the outline of a glyph.
+/// Collects the outline of a glyph.
 struct Outline<'a> {
     path: &'a mut Path,
     origin: Vec2,

@@ -15,7 +15,7 @@ use std::io::Write;
 
 /// Points of PDF in a millimetre.
 const POINTS: f64 = 72.0 / 25.4;
-/// Characters are numbers of glyphs.
+/// The encoding: characters are numbers of glyphs.
 const IDENTITY: SystemInfo<'static> = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 
 pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) -> Vec<u8> {
@@ -34,7 +34,7 @@ pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) 
         paint: [None; 2],
     };
     let [catalog, pages, sheet, content, info] = [0; 5].map(|_| writer.next.bump());
-    // Near the beginning, where it is found without reading all.
+    // Near the beginning, where readers find it without reading the whole file.
     let mut about = writer.pdf.document_info(info);
     about.producer(TextStr(page.maker));
     if !page.title.is_empty() {
@@ -46,7 +46,7 @@ pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) 
     about.finish();
     writer.pdf.catalog(catalog).pages(pages);
     writer.pdf.pages(pages).kids([sheet]).count(1);
-    // From the pixels of the picture, downwards, to points, upwards.
+    // The transformation from pixels of the picture, downwards, to points, upwards.
     let [x, y] = [width / page.picture.size[0] as f32, height / page.picture.size[1] as f32];
     writer.content.transform([x, 0.0, 0.0, -y, 0.0, height]);
     writer.content.set_line_join(LineJoinStyle::RoundJoin);
@@ -74,7 +74,7 @@ pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) 
     pdf.finish()
 }
 
-/// Opacities are told apart as finely as this.
+/// Opacities are distinguished to this precision.
 const ALPHAS: f32 = 1000.0;
 
 struct Writer<'a> {
@@ -86,7 +86,7 @@ struct Writer<'a> {
     alphas: Vec<u16>,
     images: Vec<Ref>,
     shadings: Vec<Ref>,
-    /// The colours that are set, with their opacities: of fills and of strokes. A clip that ends forgets them.
+    /// The current colours of fills and of strokes, with their opacities. The end of a clip resets them.
     paint: [Option<(Colour, u16)>; 2],
 }
 
@@ -119,7 +119,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Sets the colour of fills or of strokes, and the opacity of both.
+    /// Sets the colour of fills or strokes, and the opacity of both.
     fn set(&mut self, use_of: usize, Paint { colour, alpha }: Paint) {
         let alpha = (alpha * ALPHAS).round() as u16;
         let wanted = Some((colour, alpha));
@@ -136,7 +136,7 @@ impl Writer<'_> {
             _ => self.content.set_stroke_rgb(r, g, b),
         };
         self.paint[use_of] = wanted;
-        // The opacity is that of both.
+        // One opacity holds for both.
         self.paint[1 - use_of] = self.paint[1 - use_of].filter(|(_, other)| *other == alpha);
     }
 
@@ -208,7 +208,7 @@ impl Writer<'_> {
 
     fn run(&mut self, run: &TextRun) {
         self.set(0, run.colour.into());
-        // Digits stand in cells of one width. Readers would take the room around narrow ones for blanks.
+        // Digits stand in cells of one width. Readers would take the space around narrow digits for blanks.
         self.content.begin_marked_content_with_properties(Name(b"Span")).properties().actual_text(TextStr(&run.text));
         self.content.begin_text();
         for group in run.glyphs.chunk_by(|one, other| one.face == other.face) {
@@ -238,7 +238,7 @@ impl Writer<'_> {
         let (bytes, is_postscript) = subset.for_pdf();
         let own = subset.name(6).unwrap_or_default();
         let own: String = own.chars().filter(|&sign| sign == '-' || sign.is_ascii_alphanumeric()).collect();
-        // Parts of fonts have six letters before their names.
+        // Names of font parts begin with six letters.
         let letter = |at: u8| char::from(b'A' + (subset.face + at) % 26);
         let own = format!("{}+{own}", (0..6).map(letter).collect::<String>());
         let (kind, subtype) = match is_postscript {
@@ -267,7 +267,7 @@ impl Writer<'_> {
         about.italic_angle(whole.italic_angle()).ascent(thousandths(whole.ascender()));
         about.descent(thousandths(whole.descender()));
         about.cap_height(thousandths(whole.capital_height().unwrap_or(whole.ascender())));
-        // Fonts do not say how thick their stems are; a tenth of the weight is usual.
+        // Fonts do not tell the thickness of their stems; a tenth of the weight is usual.
         about.stem_v(f32::from(whole.weight().to_number()) / 5.0);
         match is_postscript {
             true => about.font_file3(data),
@@ -296,7 +296,7 @@ impl Writer<'_> {
     }
 }
 
-/// Gives names of a letter and a number to resources of one kind.
+/// Names resources of one kind by a letter and a number.
 fn put(mut dictionary: Dict<'_>, letter: char, resources: impl Iterator<Item = (usize, Ref)>) {
     for (number, id) in resources {
         dictionary.pair(Name(name(letter, number).as_bytes()), id);
@@ -311,7 +311,7 @@ fn light(colour: Colour) -> [f32; 3] {
     colour.map(|byte| f32::from(byte) / 255.0)
 }
 
-/// A length with three decimals: fewer bytes.
+/// A length with three decimals, for short files.
 fn fine(length: f32) -> f32 {
     (length * 1000.0).round() / 1000.0
 }

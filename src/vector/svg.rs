@@ -23,7 +23,7 @@ pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) 
 struct Svg<'a> {
     text: String,
     subsets: &'a [Subset<'a>],
-    /// How many clips and blends have a name.
+    /// The number of named clips and blends.
     names: usize,
 }
 
@@ -53,7 +53,7 @@ impl Svg<'_> {
         for subset in self.subsets {
             let font = STANDARD.encode(subset.for_browsers());
             let face = subset.face;
-            // One font serves all weights: nothing is made bolder by the browser.
+            // One font serves all weights, so the browser must not make it bolder.
             self.add(format_args!(
                 "@font-face{{font-family:\"face{face}\";font-weight:100 900;src:url(data:font/otf;base64,{font})}}\n"
             ));
@@ -101,7 +101,7 @@ impl Svg<'_> {
         let [corner, right, down] = image.place;
         let matrix = [right.x, right.y, down.x, down.y, corner.x, corner.y];
         let [width, height] = image.size;
-        // Pixels are placed as units of the page, then turned: a unit square would be too small for some programs.
+        // Pixels are placed as units of the page, then transformed: a unit square would be too small for some programs.
         let matrix = std::array::from_fn(|at: usize| match at {
             0 | 1 => f64::from(matrix[at]) / f64::from(width),
             2 | 3 => f64::from(matrix[at]) / f64::from(height),
@@ -114,7 +114,7 @@ impl Svg<'_> {
         ));
     }
 
-    /// A line of text. Whatever does not stand where the font alone would set it says where it stands.
+    /// A line of text. Glyphs that are kerned carry their own position.
     fn run(&mut self, run: &TextRun) {
         let weight = match run.weight {
             Weight::Regular => 400,
@@ -141,7 +141,7 @@ impl Svg<'_> {
         self.text += "</text>\n";
     }
 
-    /// Whether a glyph stands where the font sets it after another.
+    /// Whether a glyph stands where the font alone would set it after another.
     fn goes_on(&self, size: f32, one: &Glyph, other: &Glyph) -> bool {
         const NEAR: f32 = 0.05;
         let subset = self.subsets.iter().find(|subset| subset.face == one.face);
@@ -149,7 +149,7 @@ impl Svg<'_> {
         one.face == other.face && end.is_some_and(|end| (end - other.x).abs() < NEAR)
     }
 
-    /// The embedded font, then the same font of the computer's own, then one like it.
+    /// The embedded font, then the same font on the computer, then a similar one.
     fn family(&self, face: u8) -> String {
         let own = self.subsets.iter().find(|subset| subset.face == face).and_then(|subset| subset.name(1));
         let own = own.map_or(String::new(), |name| format!(" '{}',", escaped(&name.replace(['\'', '\\'], ""))));
@@ -168,7 +168,7 @@ fn number(length: f32) -> String {
     }
 }
 
-/// A path as `d` says it.
+/// A path as the attribute `d`.
 fn data(path: &Path) -> String {
     let mut text = String::new();
     let mut add = |letter: char, points: &[Vec2]| {

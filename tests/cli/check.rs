@@ -221,7 +221,7 @@ fn what_cannot_be_meant_is_told() {
     place.write("euler.toml", &euler);
     for command in ["check euler.toml", "simulate euler.toml --frames 0-1"] {
         let ran = place.run(command);
-        let words = "warning: euler.toml:16:14: `explicit-euler` adds energy to \"Local shape\" in each step";
+        let words = "warning: euler.toml:16:14: `explicit-euler` adds energy to \"Local shape\" with any step";
         assert!(ran.status == Some(0) && ran.err.starts_with(words), "{ran:?}");
     }
     place.write("of.toml", &SMALL.replace("friction = 0.3", "friction_of = \"path\""));

@@ -53,7 +53,7 @@ fn paths_that_would_jump_or_go_nowhere() {
     case(
         WORLD,
         &sphere("path = { repeat = true, keys = [{ time = 0 }, { time = 1, shift = [0, 0, 1] }] }"),
-        "5:47 repeats, but does not end where it begins: it would jump",
+        "5:47 repeats, but does not end where it begins, so the motion would jump",
     );
     case(WORLD, &sphere("path = { repeat = true, keys = [{ time = 0 }] }"), "5:8 repeats, but has a single key");
     case(WORLD, &sphere("swing = { period = 1 }"), "5:9 has neither `shift` nor `rotation`");
@@ -77,7 +77,7 @@ fn motions_that_a_step_cannot_follow() {
     case(
         WORLD,
         &sphere("swing = { period = 1e-3, shift = [1, 0, 0] }"),
-        "5:20 it would oscillate once in 0.001 s, but a time step takes 1.257e-3 s use a period of at least 4 steps",
+        "5:20 one oscillation takes 0.001 s, but a time step takes 1.257e-3 s use a period of at least 4 steps",
     );
     case(
         WORLD,
@@ -87,9 +87,9 @@ fn motions_that_a_step_cannot_follow() {
     case(
         WORLD,
         "[[hold]]\nnodes = [1]\nfrom = 0.5\nuntil = 0.5005",
-        "4:9 `hold[0]` lasts 5.000e-4 s, but a time step takes 1.257e-3 s it would hold nothing",
+        "4:9 `hold[0]` lasts 5.000e-4 s, but a time step takes 1.257e-3 s make it longer",
     );
-    case(WORLD, "[[grab]]\nnodes = [1]\npath.keys = [{ time = 0.5 }, { time = 0.5001 }]", "3:39 it would jump");
+    case(WORLD, "[[grab]]\nnodes = [1]\npath.keys = [{ time = 0.5 }, { time = 0.5001 }]", "3:39 the motion would jump");
 }
 
 /// All runs must be able to follow a path: the longest time step counts.
@@ -114,7 +114,7 @@ fn motions_that_the_longest_of_several_steps_cannot_follow() {
         case(&world, &path, "5:37 is 5.000e-3 s after the key before it, but a time step takes 1.000e-2 s");
         case(&world, hold, "4:9 lasts 5.000e-3 s, but a time step takes 1.000e-2 s");
         case(&world, grab, "3:39 is 5.000e-3 s after the key before it, but a time step takes 1.000e-2 s");
-        case(&world, &swing, "5:20 it would oscillate once in 0.03 s, but a time step takes 1.000e-2 s");
+        case(&world, &swing, "5:20 one oscillation takes 0.03 s, but a time step takes 1.000e-2 s");
     }
     let short = world(["1e-3", "2e-3"]);
     [path.as_str(), hold, grab, &swing].iter().for_each(|added| drop(good(&format!("{short}{added}"))));

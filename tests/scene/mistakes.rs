@@ -271,15 +271,15 @@ fn keys_that_exclude_or_need_each_other() {
         SPACE,
         "duration = 3",
         &format!("{}\nstep = 'T/50'", method("dormand-prince")),
-        "5:8 \"dormand-prince\" finds its own steps give `tolerance` in place of `step`",
+        "5:8 \"dormand-prince\" chooses its own steps give `tolerance` in place of `step`",
     );
     for (method, words) in [
         (
             "explicit-euler",
-            "`step = \"auto\"`: for \"Local shape\" \"explicit-euler\" has no stable step without damping give a step",
+            "`step = \"auto\"` finds no step for \"Local shape\": \"explicit-euler\" is never stable without damping give a step",
         ),
         ("backward-euler", "\"backward-euler\" is stable with any step give a step"),
-        ("dormand-prince", "\"dormand-prince\" finds its own steps"),
+        ("dormand-prince", "\"dormand-prince\" chooses its own steps"),
     ] {
         let text = format!("duration = 3\nstep = 'auto'\nintegrator = '{method}'");
         case(SPACE, "duration = 3", &text, &format!("4:8 {words}"));

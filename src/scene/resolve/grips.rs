@@ -66,7 +66,7 @@ pub(super) fn check_steps(holds: &[Option<HoldFile>], grabs: &[Option<GrabFile>]
         let until = hold.as_ref().and_then(|hold| Some((hold.until?, hold.from)));
         if let Some((until, from)) = until.filter(|(until, from)| (0.0..step).contains(&(until - from))) {
             let message = format!("`hold[{at}]` lasts {:.3e} s, but a time step takes {step:.3e} s", until - from);
-            let help = "it would hold nothing: make it longer".to_owned();
+            let help = "make it longer, or it holds nothing".to_owned();
             report.at(&way!["hold", at, "until"], message, help);
         }
     }

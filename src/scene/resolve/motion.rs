@@ -88,7 +88,8 @@ pub(super) fn keys(
             return None;
         }
         if !same(first.offset, last.offset) {
-            let message = format!("`{}` repeats, but does not end where it begins: it would jump", written(path));
+            let message =
+                format!("`{}` repeats, but does not end where it begins, so the motion would jump", written(path));
             let help = "give the last key the first one's `shift`, and its `rotation` up to whole turns".to_owned();
             report.at(&way![path; "keys", keys.len() - 1], message, help);
             return None;
@@ -124,7 +125,7 @@ pub(super) fn check_steps(typed: &MotionPath, step: f64, path: &[Way<'_>], repor
         if apart > 0.0 && apart < step {
             let key = way![path; "keys", at + 1];
             let message = format!(
-                "`{}` is {apart:.3e} s after the key before it, but a time step takes {step:.3e} s: it would jump",
+                "`{}` is {apart:.3e} s after the key before it, but a time step takes {step:.3e} s: the motion would jump",
                 written(&key)
             );
             report.at(&way![key; "time"], message, "leave more time between them".to_owned());

@@ -190,7 +190,7 @@ pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mu
             motion::check_steps(typed, step, &way![path; "path"], report);
         }
         if let Some(swing) = obstacle.swing.as_ref().filter(|swing| swing.period < LEAST_STEPS * step) {
-            let message = format!("it would oscillate once in {} s, but a time step takes {step:.3e} s", swing.period);
+            let message = format!("one oscillation takes {} s, but a time step takes {step:.3e} s", swing.period);
             let help = format!("use a period of at least {LEAST_STEPS} steps, or shorter steps");
             report.at(&way![path; "swing", "period"], message, help);
         }

@@ -73,8 +73,7 @@ pub(super) fn resolve(
             },
         };
         if !(step.is_normal() && step > 0.0 && time.duration / step <= MOST_STEPS) {
-            let message =
-                format!("the time step comes out as {step:e} s with T = {cycle:.4e} s, which cannot be counted");
+            let message = format!("the time step is {step:e} s with T = {cycle:.4e} s: such steps cannot be counted");
             report.at(path, message, "make it larger, or masses and stiffness less extreme");
             return None;
         }
@@ -131,7 +130,7 @@ fn misplaced(
     if integrator.is_adaptive() {
         let path = if run.step.is_some() { own("step") } else { common("step") };
         let is_typed = run.step.is_some() || time.step.is_some() && run.integrator.is_none();
-        let message = format!("{name} finds its own steps");
+        let message = format!("{name} chooses its own steps");
         return is_typed.then(|| (path, message, "give `tolerance` in place of `step`, such as 1e-6".into()));
     }
     let path = if run.tolerance.is_some() { own("tolerance") } else { common("tolerance") };
@@ -182,11 +181,11 @@ fn no_limit(run: &RunFile, integrator: Integrator, limit: f64) -> (String, Strin
     let (name, method) = (words::quoted(&run.name), words::quoted(&crate::sim::words::typed(&integrator)));
     match limit > 0.0 {
         true => (
-            format!("`step = \"auto\"`: for {name} {method} is stable with any step"),
-            "give a step that resolves the motion wanted".into(),
+            format!("`step = \"auto\"` finds no limit for {name}: {method} is stable with any step"),
+            "give a step that resolves the motion".into(),
         ),
         false => (
-            format!("`step = \"auto\"`: for {name} {method} has no stable step without damping"),
+            format!("`step = \"auto\"` finds no step for {name}: {method} is never stable without damping"),
             "give a step, or take another integrator".into(),
         ),
     }
