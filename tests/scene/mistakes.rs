@@ -417,7 +417,7 @@ fn runs_and_times_that_cannot_be() {
     case(PLANE, "'Mass-spring'", "'a/b'", "14:8 the name \"a/b\" cannot be used in files");
     case(PLANE, "'Mass-spring'", "' a'", "14:8 the name \" a\" cannot be used in files");
     case(PLANE, "'T/50'", "10", "4:8 the time step of \"Local shape\" is 10 s, longer than the whole scene of 3 s");
-    case(PLANE, "'T/50'", "1e-300", "4:8 the time step comes out as 1e-300 s");
+    case(PLANE, "'T/50'", "1e-300", "4:8 the time step is 1e-300 s");
     case(PLANE, "= 3\n", "= 1e9\n", "3:12 make 6.000e10 frames; the most is 10 000 000");
 }
 
