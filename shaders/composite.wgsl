@@ -76,11 +76,9 @@ fn layered(corner: Corner) -> @location(0) vec4<f32> {
 // Outlines reach so far out of bodies, also where they cross pixels (px in the reference picture).
 const LINE_REACH = 2.0;
 
-// Whether a body lies at a texel of the region: it has its own opacity. Rims of obstacles have less than their insides.
+// Whether a body lies at a texel of the region: its opacity is greater than that of obstacles.
 fn stays(at: vec2<i32>) -> bool {
-    let alpha = body_at(at).a;
-    return alpha > OBSTACLE + 0.001
-        || (panel_data.opacity < 1.0 && abs(alpha - min(panel_data.opacity, MOST_OPACITY)) < 0.003);
+    return body_at(at).a > OBSTACLE + 0.001;
 }
 
 @fragment
@@ -94,6 +92,6 @@ fn layered_fading(corner: Corner) -> @location(0) vec4<f32> {
         || stays(at + vec2(0, reach)) || stays(at - vec2(0, reach)));
     let room = panel_data.fade_room;
     let inside = vec4(pixel - room.xy, room.zw - pixel);
-    let left = 1.0 - panel_data.fade_strength * (1.0 - smoothstep(vec4(0.0), panel_data.fade_distance, inside));
+    let left = 1.0 - panel_data.fade_strength * (1.0 - smoothstep(vec4(0.0), panel_data.fade_distance.xyxy, inside));
     return colour * select(left.x * left.y * left.z * left.w, 1.0, beside || stays(at));
 }

@@ -11,14 +11,13 @@ struct Segment {
     @location(3) @interpolate(flat) strength: f32,
     @location(4) @interpolate(flat) samples: vec2<u32>,
     // What all pixels of a panel share.
-    @location(5) @interpolate(flat) scales: vec4<f32>,
+    @location(5) @interpolate(flat) scales: vec3<f32>,
 }
 
 fn unpack(segment: Segment) {
     panel.line_scale = segment.scales.x;
     panel.contour_share = segment.scales.y;
     panel.element = segment.scales.z;
-    panel.opacity = segment.scales.w;
 }
 
 const EDGE = 0u;
@@ -32,10 +31,9 @@ const OBSTACLE_CONTOUR = 9u;
 const KIND_BITS = 4u;
 const STRENGTH_BITS = 8u;
 
-// Opacities of hidden edges: of elements that are not inverted and of turned-over ones, behind surfaces that hide
-// everything and behind those that hide nothing.
-const HIDDEN = vec2<f32>(0.16, 0.62);
-const SEEN_THROUGH = vec2<f32>(0.70, 0.95);
+// Opacities of hidden edges: of elements that are not inverted, and of turned-over ones.
+const HIDDEN_ALPHA = 0.16;
+const ALARM_HIDDEN_ALPHA = 0.62;
 // Opacities of lines that are seen.
 const EDGE_ALPHA = 0.80;
 const FLAT_EDGE_ALPHA = 0.75;
@@ -89,7 +87,7 @@ fn segment(@builtin(vertex_index) vertex: u32) -> Segment {
     let samples = vec2(line.rest.w, look >> (KIND_BITS + STRENGTH_BITS));
     let reach = 0.5 * max(widest(kind) * panel.line_scale, 1.0) + 0.5;
     let place = triangle_corner(vertex % 3u, ends.xy, ends.zw, reach, panel.region.zw);
-    let scales = vec4(panel.line_scale, panel.contour_share, panel.element, panel.opacity);
+    let scales = vec3(panel.line_scale, panel.contour_share, panel.element);
     let depths = bitcast<vec2<f32>>(line.rest.xy);
     return Segment(place, ends + panel.region.xyxy, depths, kind, strength, samples, scales);
 }
@@ -150,11 +148,6 @@ fn visibility_at(segment: Segment, share: f32) -> vec4<f32> {
     return mix(one, other, along - f32(before));
 }
 
-// Opacities behind surfaces of elements that are not inverted, and of turned-over ones.
-fn hidden_alpha() -> vec2<f32> {
-    return mix(SEEN_THROUGH, HIDDEN, panel.opacity);
-}
-
 @fragment
 fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     unpack(segment);
@@ -163,13 +156,12 @@ fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let kind = segment.kind;
     let shares = visibility_at(segment, at.share);
     let strength = edge_strength();
-    let behind = hidden_alpha().x;
     let of_obstacle = kind == OBSTACLE_EDGE;
     let seen = EDGE_ALPHA * select(strength, 1.0, of_obstacle) * covered(at.distance, EDGE_WIDTH * scale);
-    let weak = behind * strength * strength * covered(at.distance, 0.9 * scale);
-    let hidden = select(weak, (1.0 - panel.opacity) * seen, of_obstacle);
+    let weak = HIDDEN_ALPHA * strength * strength * covered(at.distance, 0.9 * scale);
+    let hidden = select(weak, 0.0, of_obstacle);
     let edge = shares.x * seen + segment.strength * shares.y * hidden;
-    let bar = mix(behind, BAR_ALPHA, shares.x) * covered(at.distance, BAR_WIDTH * scale);
+    let bar = mix(HIDDEN_ALPHA, BAR_ALPHA, shares.x) * covered(at.distance, BAR_WIDTH * scale);
     return vec4(select(edge, bar, kind == BAR), 0.0, 0.0, 0.0);
 }
 
@@ -179,7 +171,7 @@ fn alarm_edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let at = beside(segment);
     let shares = visibility_at(segment, at.share);
     // Turned-over elements hide more of it than others.
-    let behind = mix(0.15, hidden_alpha().y, shares.z);
+    let behind = mix(0.15, ALARM_HIDDEN_ALPHA, shares.z);
     let alpha = ALARM_EDGE_ALPHA * shares.x + behind * shares.y;
     let width = ALARM_EDGE_WIDTH * panel.line_scale * panel.contour_share;
     return vec4(0.0, edge_strength() * alpha * covered(at.distance, width), 0.0, 0.0);

@@ -41,7 +41,9 @@ fn solid_corner(
     return SolidCorner(place, position, normal, colour, rim, inward, above, near, same[0], same[1], same[2], same[3]);
 }
 
-fn solid(corner: SolidCorner, opacity: f32) -> vec4<f32> {
+@fragment
+fn solid_surface(corner: SolidCorner) -> @location(0) vec4<f32> {
+    unpack_solid(corner);
     let rise = length(vec2(dpdx(corner.above), dpdy(corner.above)));
     let light = light_left(corner.position, facing_normal(corner.position, corner.normal), 1.0 - TAKEN * corner.near);
     let material = mix(corner.rim, corner.colour, saturate(corner.inward - RIM_WIDTH * panel.line_scale + 0.5));
@@ -51,18 +53,5 @@ fn solid(corner: SolidCorner, opacity: f32) -> vec4<f32> {
     if inside <= 0.0 {
         discard;
     }
-    return vec4(sqrt(saturate(colour) * inside), opacity * inside);
-}
-
-@fragment
-fn solid_surface(corner: SolidCorner) -> @location(0) vec4<f32> {
-    unpack_solid(corner);
-    return solid(corner, OBSTACLE);
-}
-
-// Among the turned-over elements, to be seen through clear surfaces.
-@fragment
-fn solid_behind(corner: SolidCorner) -> @location(0) vec4<f32> {
-    unpack_solid(corner);
-    return solid(corner, 1.0);
+    return vec4(sqrt(saturate(colour) * inside), OBSTACLE * inside);
 }

@@ -2,8 +2,6 @@
 
 // The opacity stored for an obstacle, by which later passes recognise it. The difference to opaque is invisible.
 const OBSTACLE = 254.0 / 255.0;
-// The highest opacity stored for a transparent surface.
-const MOST_OPACITY = 252.0 / 255.0;
 
 struct Occluder {
     // The middle of a box, and how far around it the obstacle reaches.
@@ -46,17 +44,14 @@ struct Panel {
     // Its left and top in the picture (px), less its left and top in those textures; the middle of the body in the
     // picture (px).
     place: vec4<f32>,
-    // Opacity of elements that are not inverted.
-    opacity: f32,
     // 1 if turned-over elements are hatched, else 0.
     hatch: f32,
-    unused: f32,
     // How wide contours of bodies are, from 0 to 1.
     contour_share: f32,
-    // Left, upper, right and lower side of the room in which solid obstacles fade out (px), over how far (px) and how
-    // strongly they do so at each.
+    // Over how far solid obstacles fade out across and down (px); left, upper, right and lower side of the room in which they
+    // do so (px), and how strongly at each.
+    fade_distance: vec2<f32>,
     fade_room: vec4<f32>,
-    fade_distance: vec4<f32>,
     fade_strength: vec4<f32>,
     // The obstacles near the body; unused entries reach nothing.
     occluders: array<Occluder, 5>,

@@ -16,10 +16,10 @@ struct Corner {
 // take longer to set up for small triangles than they save.
 fn pack_shared(own: vec3<f32>) -> array<vec4<f32>, 4> {
     return array(
-        vec4(panel.eye, panel.opacity),
+        vec4(panel.eye, panel.soft),
         vec4(panel.key, panel.flatness),
         vec4(panel.up, panel.floor),
-        vec4(own, panel.soft),
+        vec4(own, 0.0),
     );
 }
 
@@ -27,12 +27,11 @@ fn pack_shared(own: vec3<f32>) -> array<vec4<f32>, 4> {
 fn unpack_shared(same: array<vec4<f32>, 4>) -> vec3<f32> {
     panel = panel_data;
     panel.eye = same[0].xyz;
-    panel.opacity = same[0].w;
+    panel.soft = same[0].w;
     panel.key = same[1].xyz;
     panel.flatness = same[1].w;
     panel.up = same[2].xyz;
     panel.floor = same[2].w;
-    panel.soft = same[3].w;
     return same[3].xyz;
 }
 
@@ -73,8 +72,6 @@ const DOT = 1.3;
 const DOT_ALPHA = 0.6;
 // The depth (soft units) behind the visible surface from which on a turned-over element no longer gains from being near.
 const THROUGH_DEPTH = 0.6;
-// What lies behind with a higher alpha is no turned-over element but a solid obstacle.
-const SOLID_BEHIND = 0.99;
 // The brightness of a surface that is drawn without light.
 const UNLIT = 0.86;
 
@@ -191,30 +188,17 @@ fn opaque(colour: vec3<f32>) -> vec4<f32> {
     return vec4(sqrt(saturate(colour)), 1.0);
 }
 
-// What is stored of a surface that is not inverted of a colour, which lets through what is behind.
-fn see_through(colour: vec3<f32>) -> vec4<f32> {
-    let alpha = select(min(panel.opacity, MOST_OPACITY), 1.0, panel.opacity >= 1.0);
-    return vec4(sqrt(saturate(colour) * panel.opacity), alpha);
-}
-
 // What is stored of a surface of a colour over what lies behind it.
 fn over_behind(colour: vec3<f32>, corner: Corner) -> vec4<f32> {
     let at = vec2<i32>(corner.place.xy);
     let behind = load_alarm_depth(at);
     let stored = load_alarm_colour(at);
-    if behind <= 0.0 {
-        return see_through(colour);
-    }
-    if panel.opacity < 1.0 && stored.a > SOLID_BEHIND {
-        return opaque(mix(stored.rgb * stored.rgb, colour, panel.opacity));
-    }
     // In the plane, turned-over elements lie before others.
-    if panel.flatness > 0.5 {
-        return see_through(colour);
+    if behind <= 0.0 || panel.flatness > 0.5 {
+        return opaque(colour);
     }
     let depth = panel.near / behind - 1.0 / corner.place.w;
-    // The clearer the surface, the less what is deep under it loses.
-    let deep = panel.opacity * smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
+    let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
     let lit = stored.rgb * stored.rgb;
     let unlit = lit * (UNLIT / max(2.0 * stored.a, 0.05));
     let alarm = mix(lit, unlit, 0.65 * deep);
@@ -242,7 +226,7 @@ fn sound(corner: Corner, own: vec3<f32>) -> vec3<f32> {
 @fragment
 fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
     unpack_sound(corner);
-    return see_through(sound(corner, panel.sound));
+    return opaque(sound(corner, panel.sound));
 }
 
 // Where something lies behind such surfaces, or elements are flat. A software driver would run all of it for every surface.

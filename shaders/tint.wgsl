@@ -91,9 +91,7 @@ fn tinted_alarm(corner: TintedCorner) -> TurnedOver {
     panel.alarm = unpack_tinted(corner);
     let alarm = alarm_tint(corner);
     let colour = sqrt(saturate(alarm.rgb));
-    // Under a clear surface, their own colour is seen, too.
-    let alpha = select(1.0, 0.5, panel.opacity < 1.0) * alarm.a;
-    return TurnedOver(vec4(colour, alpha), vec4(colour, 1.0));
+    return TurnedOver(vec4(colour, alarm.a), vec4(colour, 1.0));
 }
 
 // As for plain surfaces.
@@ -101,14 +99,8 @@ fn tinted_over(colour: vec3<f32>, corner: TintedCorner) -> vec4<f32> {
     let at = vec2<i32>(corner.place.xy);
     let behind = load_alarm_depth(at);
     let stored = load_alarm_colour(at);
-    let is_solid = panel.opacity < 1.0 && stored.a > SOLID_BEHIND;
-    if behind <= 0.0 || (panel.flatness > 0.5 && !is_solid) {
-        return see_through(colour);
-    }
-    if panel.opacity < 1.0 {
-        // Turned-over elements keep their own opacity: a little of the surface shows that it lies before them.
-        let covering = select(panel.opacity * panel.opacity, panel.opacity, is_solid);
-        return opaque(mix(stored.rgb * stored.rgb, colour, covering));
+    if behind <= 0.0 || panel.flatness > 0.5 {
+        return opaque(colour);
     }
     let depth = panel.near / behind - 1.0 / corner.place.w;
     let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
@@ -121,7 +113,7 @@ fn tinted_over(colour: vec3<f32>, corner: TintedCorner) -> vec4<f32> {
 @fragment
 fn tinted_sound(corner: TintedCorner) -> @location(0) vec4<f32> {
     panel.sound = unpack_tinted(corner);
-    return see_through(tint(corner));
+    return opaque(tint(corner));
 }
 
 @fragment

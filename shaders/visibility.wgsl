@@ -29,7 +29,7 @@ fn edge_shares(at: Beside, tap: u32) -> vec2<f32> {
     let sides = vec2(tap_depth(at.middle + across, tap), tap_depth(at.middle - across, tap));
     let beside = select(sides, vec2(here), sides <= vec2(0.0));
     let seen = visible_share(at.depth * (1.0 + OFFSET), min(here, min(beside.x, beside.y)));
-    // Obstacles hide all edges; their own edges are seen through clear surfaces only.
+    // Obstacles hide all edges.
     let through = !(seen < 1.0 && is_obstacle(at.middle, tap));
     return vec2(seen, select(0.0, 1.0 - seen, through));
 }

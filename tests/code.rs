@@ -118,7 +118,6 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
         .size([640, 360])
         .theme(Theme::Dark)
         .colour_by(Field::Strain)
-        .opacity(0.5)
         .strip(Diagnostic::Energy)
         .camera(0.2, 0.3);
     let text = "
@@ -135,7 +134,7 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
                 integrator = 'blanes-moan' },
         ]
         hold = [{ nodes = [0, 1] }, { nodes = { of = [0.1, 1.2, 0.1], within = 0.01 }, from = 0.25, until = 0.5 }]
-        view = { size = [640, 360], theme = 'dark', colour.by = 'strain', opacity = 0.5, strip = 'energy',
+        view = { size = [640, 360], theme = 'dark', colour.by = 'strain', strip = 'energy',
             camera = { azimuth = 0.2, elevation = 0.3 } }
         [[obstacle]]
         kind = 'floor'
@@ -279,10 +278,6 @@ fn mistakes_in_code_are_told_as_those_in_files() {
         ),
         (with(arrays()).hold(NodeSet::ball([5.0, 5.0], 0.1), ..), "`hold[0].nodes`"),
         (with(arrays()).size([0, 5]), "`view.size[0]` is 0; expected a whole number from 16 to 16384"),
-        (
-            with(arrays()).colour_by(Field::Strain).opacity(0.0),
-            "`view.opacity` is 0.0; expected a number from 0.1 to 1",
-        ),
     ] {
         let error = wrong.build(&Limits::default()).expect_err(expected);
         let (message, first) = (error.to_string(), &error.mistakes()[0]);

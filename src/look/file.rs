@@ -65,9 +65,6 @@ pub(crate) struct ViewFile {
     /// say when elements first turn over and when their count settles, or the extreme value; and where nearly
     /// everything happens early, that part of the time has a larger scale. Default: none.
     pub(crate) strip: Option<Diagnostic>,
-    /// Opacity of elements that are not turned over: below 1, what is behind and inside the body is seen through them.
-    #[schemars(range(min = 0.1, max = 1.0))]
-    pub(crate) opacity: f64,
     /// A dashed outline over each body: `"rest"` for the rest shape in its best rigid fit, or the name of a run for its body at the
     /// same moment, in the colour of that run. All runs then have the time step of that one. Default: none.
     #[schemars(length(min = 1, max = 80))]
@@ -113,7 +110,6 @@ impl Default for ViewFile {
             caption: String::new(),
             labels: Labels::default(),
             strip: None,
-            opacity: 1.0,
             ghost: None,
             paths: None,
             light: Light::default(),

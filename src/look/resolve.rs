@@ -92,7 +92,6 @@ pub(crate) fn resolve(
         caption: typed.caption.trim().to_owned(),
         labels: typed.labels,
         strip: typed.strip,
-        opacity: typed.opacity,
         ghost,
         paths,
         light: typed.light,

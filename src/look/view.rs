@@ -44,8 +44,6 @@ pub struct View {
     pub labels: Labels,
     /// The diagnostic of all runs that is drawn over time below the panels.
     pub strip: Option<Diagnostic>,
-    /// Opacity of elements that are not turned over, from 0.1 to 1.
-    pub opacity: f64,
     /// What is outlined over each body, if anything.
     pub ghost: Option<Ghost>,
     /// What leaves a path behind it.
@@ -99,7 +97,6 @@ impl Default for View {
             caption: String::new(),
             labels: Labels::default(),
             strip: None,
-            opacity: 1.0,
             ghost: None,
             paths: Vec::new(),
             light: Light::default(),

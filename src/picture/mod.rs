@@ -101,8 +101,6 @@ pub(crate) struct Panel {
     pub floor: Option<Floor>,
     /// The boundary of the elements that have not turned over.
     pub sound: Mesh,
-    /// Its opacity, above 0 and up to 1.
-    pub opacity: f32,
     /// The boundary of the elements that have turned over.
     pub turned_over: Mesh,
     /// Whether that is hatched.

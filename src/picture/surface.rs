@@ -46,8 +46,6 @@ pub(super) struct Surroundings<'a> {
     pub(super) soft: f64,
     /// Length of an element's edge (px).
     pub(super) element: f64,
-    /// Opacity of elements that are not turned over.
-    pub(super) opacity: f64,
     /// Whether each element is flat.
     pub(super) flat: &'a [bool],
     /// The field that colours the surfaces.
@@ -267,7 +265,7 @@ impl Surroundings<'_> {
             LineKind::Edge => self.edges,
             _ => [true; 2],
         };
-        let is_large = self.element > if is_hidden { SEEN_THROUGH * self.opacity } else { SMALLEST_ELEMENT };
+        let is_large = self.element > if is_hidden { SEEN_THROUGH } else { SMALLEST_ELEMENT };
         if is_large && if is_hidden { behind } else { in_front } {
             lines.drawn.push(self.line(start, end, kinds.edge, if behind { 1.0 } else { 0.0 }));
         }

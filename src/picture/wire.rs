@@ -19,8 +19,6 @@ const BARE: f64 = 2.0;
 const CASED: f64 = 1.9;
 /// Opacity of a spring behind a surface (of 255).
 const BEHIND: f64 = 28.0;
-/// The same behind a surface of opacity 0.
-const CLEAR: f64 = 160.0;
 /// Elements smaller than this (px) get thinner lines, down to this part of their width, and fainter ones behind surfaces,
 /// or lines would cover everything.
 const SMALL_ELEMENT: f64 = 26.0;
@@ -77,9 +75,8 @@ pub(super) struct Wire<'a> {
     pub(super) line: f64,
     /// Length of an element's edge (px).
     pub(super) element: f64,
-    /// Whether surfaces are drawn, too, and how opaque they are.
+    /// Whether surfaces are drawn, too.
     pub(super) surfaces: bool,
-    pub(super) opacity: f64,
     /// The field that colours lines and nodes where there are no surfaces: its colours, and a place for each node.
     pub(super) shades: Option<(&'a [Colour], &'a [f32])>,
 }
@@ -92,7 +89,7 @@ impl Wire<'_> {
 
     /// Whether springs inside the body are invisible.
     pub(super) fn hides_inside(&self) -> bool {
-        self.surfaces && self.element < SEEN_THROUGH * self.opacity
+        self.surfaces && self.element < SEEN_THROUGH
     }
 
     /// Springs, the farthest first. With a scale and its colours, each has the colour of its strain, and the more
@@ -245,8 +242,7 @@ impl Wire<'_> {
 
     fn straight(&self, ends: [DVec3; 2], colours: [Colour; 2], width: f64) -> Placed {
         let strength = (self.element / SMALL_ELEMENT).clamp(0.0, 1.0);
-        let behind = (CLEAR + (BEHIND - CLEAR) * self.opacity) * strength * strength;
-        let behind = behind.round() as u8;
+        let behind = (BEHIND * strength * strength).round() as u8;
         let stroke = Stroke {
             ends: ends.map(|end| self.relative(end)),
             colours,

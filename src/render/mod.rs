@@ -176,8 +176,8 @@ impl Renderer {
         }
         let gpu = self.gpu.clone();
         let (places, needed) = panel::place(picture);
-        // Items behind surfaces are drawn only where they are read: by clear surfaces, over turned-over elements, and
-        // by lines of turned-over elements without faces.
+        // Items behind surfaces are drawn only where they are read: over turned-over elements, and by lines of turned-over
+        // elements without faces.
         let has_behind = picture.panels.iter().any(|panel| panel::has_behind(panel) || line::has_alarm(panel));
         let bodies = match self.bodies.take().filter(|bodies| bodies.suit(needed, has_behind)) {
             Some(bodies) => bodies,
@@ -207,14 +207,8 @@ impl Renderer {
         let curves = self.curves.as_ref().filter(|_| !picture.curves.is_empty());
         let [with_solids, with_slabs] = [Solids::are_in(picture), Slabs::are_in(picture)];
         self.lines.write(&gpu, &self.panels, &bodies, picture, with_solids)?;
-        let with_clear = picture.panels.iter().any(|panel| panel.opacity < 1.0);
         if with_solids {
-            let new = || Solids::new(&gpu, &self.panels);
-            let solids = self.solids.get_or_insert_with(new);
-            solids.write(&gpu, picture);
-            if with_clear {
-                solids.prepare_behind(&gpu, &self.panels);
-            }
+            self.solids.get_or_insert_with(|| Solids::new(&gpu, &self.panels)).write(&gpu, picture);
         }
         if with_slabs {
             let new = || {
@@ -253,12 +247,6 @@ impl Renderer {
             drop(pass);
             bodies.copy_depth(&mut commands);
             (load, deep) = (wgpu::LoadOp::Load, wgpu::LoadOp::Load);
-            if let Some(solids) = solids.filter(|_| with_clear) {
-                let targets = [(&bodies.alarm_colour, wgpu::LoadOp::Load)];
-                let depth = Some((&bodies.alarm_depth, wgpu::LoadOp::Load));
-                let mut pass = Pass::begin(&gpu, &mut commands, "obstacles behind", &targets, depth);
-                solids.draw_behind(&mut pass, &self.panels, &places);
-            }
         }
         {
             let depth = Some((&bodies.depth, deep));

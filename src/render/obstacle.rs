@@ -79,8 +79,6 @@ const EDGE: [wgpu::VertexAttribute; 5] =
 #[derive(Debug)]
 pub(super) struct Solids {
     pipeline: Pipeline,
-    /// Solids seen through clear surfaces, made for the first ones.
-    behind: Option<Pipeline>,
     vertices: GrowingBuffer<SolidVertex>,
     indices: GrowingBuffer<u32>,
     ranges: Vec<Range<u32>>,
@@ -93,29 +91,19 @@ impl Solids {
     }
 
     pub(super) fn new(gpu: &Gpu, panels: &Panels) -> Self {
-        Self {
-            pipeline: Self::pipeline(gpu, panels, "solid_surface"),
-            behind: None,
-            vertices: GrowingBuffer::new(gpu, "corners of obstacles", wgpu::BufferUsages::VERTEX, 4096),
-            indices: GrowingBuffer::new(gpu, "triangles of obstacles", wgpu::BufferUsages::INDEX, 16384),
-            ranges: Vec::new(),
-        }
-    }
-
-    fn pipeline(gpu: &Gpu, panels: &Panels, fragment: &'static str) -> Pipeline {
         // The light is that of bodies.
         let module = shader(gpu, "obstacle", &[&super::surface::parts(0)[..], &[SHADER]].concat());
         let recipe = Recipe {
             groups: &[&panels.layout],
             vertices: &[Some(for_vertices::<SolidVertex>(&SOLID))],
-            ..Recipe::bodies(fragment, &module, ["solid_corner", fragment])
+            ..Recipe::bodies("solid_surface", &module, ["solid_corner", "solid_surface"])
         };
-        recipe.build(gpu)
-    }
-
-    /// Prepares to draw solids seen through clear surfaces.
-    pub(super) fn prepare_behind(&mut self, gpu: &Gpu, panels: &Panels) {
-        self.behind.get_or_insert_with(|| Self::pipeline(gpu, panels, "solid_behind"));
+        Self {
+            pipeline: recipe.build(gpu),
+            vertices: GrowingBuffer::new(gpu, "corners of obstacles", wgpu::BufferUsages::VERTEX, 4096),
+            indices: GrowingBuffer::new(gpu, "triangles of obstacles", wgpu::BufferUsages::INDEX, 16384),
+            ranges: Vec::new(),
+        }
     }
 
     /// Uploads the solids of a picture.
@@ -143,18 +131,7 @@ impl Solids {
 
     /// Draws the solids of all panels, after the bodies in their pass.
     pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
-        self.draw_with(&self.pipeline, pass, panels, places);
-    }
-
-    /// Draws the solids of all panels among the turned-over elements, if this was prepared.
-    pub(super) fn draw_behind(&self, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
-        if let Some(pipeline) = &self.behind {
-            self.draw_with(pipeline, pass, panels, places);
-        }
-    }
-
-    fn draw_with(&self, pipeline: &Pipeline, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
-        pass.set_pipeline(pipeline);
+        pass.set_pipeline(&self.pipeline);
         pass.set_vertex_buffer(0, self.vertices.buffer().slice(..));
         pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
         panels.draw_regions(pass, places.iter().copied(), |pass, panel| {

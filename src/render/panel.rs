@@ -3,9 +3,9 @@
 use super::pass::Pass;
 use super::pipeline::{bind, element, group_layout, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{Colour, Fading, MOST_OCCLUDERS, Occluder, Panel, Picture, Rectangle};
+use crate::picture::{Colour, MOST_OCCLUDERS, Occluder, Panel, Picture, Rectangle};
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 
 /// The struct `Panel` of `shaders/panel.wgsl`, field by field.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -30,12 +30,10 @@ pub(super) struct PanelUniform {
     pub(super) soft: f32,
     pub(super) region: Vec4,
     pub(super) place: Vec4,
-    pub(super) opacity: f32,
     pub(super) hatch: f32,
-    pub(super) unused: f32,
     pub(super) contour_share: f32,
+    pub(super) fade_distance: Vec2,
     pub(super) fade_room: Vec4,
-    pub(super) fade_distance: Vec4,
     pub(super) fade_strength: Vec4,
     pub(super) occluders: [OccluderUniform; MOST_OCCLUDERS],
 }
@@ -113,8 +111,7 @@ pub(super) fn cropped(panel: &Panel) -> Mat4 {
 /// Whether something is visible through surfaces of elements that are not turned over, or these surfaces are dotted.
 /// One pipeline draws both.
 pub(super) fn has_behind(panel: &Panel) -> bool {
-    let has_solids = || panel.obstacles.solids.iter().any(|solid| !solid.mesh.triangles.is_empty());
-    panel.dotted || !panel.turned_over.triangles.is_empty() || (panel.opacity < 1.0 && has_solids())
+    panel.dotted || !panel.turned_over.triangles.is_empty()
 }
 
 fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> PanelUniform {
@@ -143,12 +140,10 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         soft: sight.soft,
         region: Vec4::from_array(region.map(|length| length as f32)),
         place: Vec4::new(left, top, sight.middle[0], sight.middle[1]),
-        opacity: panel.opacity,
         hatch: if panel.hatch { 1.0 } else { 0.0 },
-        unused: 0.0,
         contour_share: sight.contour_share,
         fade_room: Vec4::from_array(panel.obstacles.fade.map_or([0.0; 4], |fade| fade.room)),
-        fade_distance: panel.obstacles.fade.map_or(Vec4::ONE, |Fading { distance: [x, y], .. }| Vec4::new(x, y, x, y)),
+        fade_distance: panel.obstacles.fade.map_or(Vec2::ONE, |fade| Vec2::from_array(fade.distance)),
         fade_strength: Vec4::from_array(panel.obstacles.fade.map_or([0.0; 4], |fade| fade.strength)),
         occluders: std::array::from_fn(|at| {
             panel.obstacles.occluders.get(at).map_or(OccluderUniform::NONE, OccluderUniform::new)

@@ -140,16 +140,12 @@ impl Flat<'_> {
         let palette = &self.picture.palette;
         let is_alarm = std::ptr::eq(mesh, &self.panel.turned_over);
         let has_field = !mesh.shades.is_empty() && self.picture.ramp.len() > 1 && (!is_alarm || self.panel.hatch);
-        let opacity = if is_alarm { 1.0 } else { self.panel.opacity };
         let plain = if is_alarm && !has_field { palette.alarm } else { palette.sound_flat };
         if !has_field {
-            let alpha = self.alpha(opacity, plain, palette.background);
-            items.push(Item::Fill { path: self.whole(mesh), paint: Paint { colour: plain, alpha } });
+            items.push(Item::Fill { path: self.whole(mesh), paint: plain.into() });
             return;
         }
-        // Bands of equal colour lie over each other, so they cannot be transparent: the ground is mixed in instead.
-        let opaque = |colour: Colour| mixed(palette.background, colour, opacity);
-        items.push(Item::Fill { path: self.whole(mesh), paint: opaque(plain).into() });
+        items.push(Item::Fill { path: self.whole(mesh), paint: plain.into() });
         let ramp = &self.picture.ramp;
         let bands = ramp.len() - 1;
         let triangles = self.triangles(mesh, |at| mesh.shades[at] * bands as f32);
@@ -161,7 +157,7 @@ impl Flat<'_> {
                 let band = (value.max(0.0) as usize).min(bands - 1);
                 let shade = mixed(ramp[band], ramp[band + 1], (value - band as f32).clamp(0.0, 1.0));
                 let colour = if value > -0.5 * bands as f32 { shade } else { palette.sound_flat };
-                items.push(Item::Fill { path, paint: opaque(colour).into() });
+                items.push(Item::Fill { path, paint: colour.into() });
             }
             return;
         }
@@ -180,7 +176,7 @@ impl Flat<'_> {
             // Each band reaches under the next one, so that no seam is seen between them.
             let path = path_of(seen.map(|triangle| part(triangle, from, to + 1.0)));
             if !path.is_empty() {
-                let colour = opaque(mixed(ramp[band], ramp[band + 1], 0.5));
+                let colour = mixed(ramp[band], ramp[band + 1], 0.5);
                 items.push(Item::Fill { path, paint: colour.into() });
             }
         }

@@ -134,7 +134,6 @@ fn nothing_flickers_in_slow_motion() {
         ("tests/golden/primitives/obstacles.toml", 3),
         ("tests/golden/primitives/obstacles-plane.toml", 3),
         ("tests/golden/primitives/plane.toml", 1),
-        ("tests/golden/primitives/see-through.toml", 3),
         ("tests/golden/primitives/spring-strain.toml", 3),
     ] {
         let mut scene = Scene::load(&root.join(file), &Limits::default()).unwrap_or_else(|error| panic!("{error}"));

@@ -658,7 +658,6 @@ fn mistakes_of_what_is_shown() {
     view("title = \"a\\nb\"", "20:9 contains the control character");
     view("caption = \"a\\tb\"", "20:11 contains the control character '\\t'; it is lines of text");
     view("strip = 'turned over'", "20:9 did you mean \"turned_over\"?");
-    view("opacity = 0", "20:11 expected a number from 0.1 to 1");
     view("labels = ['title']", "20:11 expected \"letters\", \"name\", \"model\", \"clock\", \"count\", \"number\"");
     view("light = { elevation = 0 }", "20:23 expected a number from 0.2 to 1.57");
     view("floor = 'tiles'", "20:9 expected \"grid\", \"plain\" or \"none\"");

@@ -38,7 +38,6 @@ impl Draft<'_> {
             soft: self.composer.soft * self.side,
             edges: self.scene.view.edges,
             element: self.element,
-            opacity: self.scene.view.opacity,
             flat: &self.run.snapshot.flat,
             shades: self.shades.as_ref(),
         };
@@ -147,7 +146,6 @@ impl Draft<'_> {
             line: self.scale.line(),
             element: self.element,
             surfaces: self.scene.view.visible.surfaces,
-            opacity: self.scene.view.opacity,
             shades: (!self.of_nodes.is_empty()).then_some((&self.composer.ramp[..], &self.of_nodes[..])),
         }
     }

@@ -104,12 +104,10 @@ impl Draft<'_> {
         } else {
             std::array::from_fn(|_| Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
         };
-        // A transparent body lets most of the light through.
-        let opacity = if self.scene.view.visible.surfaces { self.scene.view.opacity } else { 0.0 };
-        if opacity < 1.0 {
-            let left = SHEER + (1.0 - SHEER) * opacity;
+        // A body without surfaces lets most of the light through.
+        if !self.scene.view.visible.surfaces {
             let cells = shades.iter_mut().flat_map(|shade| &mut shade.cells);
-            cells.for_each(|cell| *cell = (f64::from(*cell) * left).round() as u8);
+            cells.for_each(|cell| *cell = (f64::from(*cell) * SHEER).round() as u8);
         }
         shades
     }

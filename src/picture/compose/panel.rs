@@ -150,7 +150,6 @@ impl<'a> Draft<'a> {
             sight: self.sight(),
             floor: self.floor(&staged),
             sound,
-            opacity: narrow(self.scene.view.opacity),
             turned_over,
             hatch: self.scene.view.hatch,
             dotted: self.run.snapshot.flat.contains(&true),

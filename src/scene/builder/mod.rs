@@ -153,8 +153,6 @@ impl SceneBuilder {
         theme(theme: Theme) 0.view.theme = theme;
         /// Colours the body by a field.
         colour_by(field: Field) 0.view.colour = Some(ColourFile { by: field, range: None, map: ColourMap::default() });
-        /// Opacity of elements that are not turned over, from 0.1 to 1.
-        opacity(opacity: f64) 0.view.opacity = opacity;
         /// Draws a diagnostic over time below each panel.
         strip(diagnostic: Diagnostic) 0.view.strip = Some(diagnostic);
     }
@@ -168,7 +166,7 @@ impl SceneBuilder {
     /// Checks all that was said, and gives it its meaning. The camera shows the body and what comes near it.
     ///
     /// What pictures show besides is in [`Scene::view`] and may be changed before they are composed: title, caption and
-    /// labels, what is drawn of the body, edges, light, line and text scale, and every number of the camera.
+    /// labels, what is drawn of the body, edges, text scale, and every number of the camera.
     ///
     /// ```
     /// # use localshape::scene::{BodyBuilder, Limits, Scene};
