@@ -1,13 +1,13 @@
-// Smooth borders of surfaces: where their colours change at a line, what a pixel that the line crosses gains from the area that
-// lies on the other side. What several lines add is summed, as each covers another part of the pixel.
+// Smooth borders of surfaces. A pixel that a line between two colours crosses gets the colour of the other side for the
+// area there. Gains from several lines are summed, because each covers another part of the pixel.
 
-// A line is hidden by what lies before it by more than so many pixels are wide there.
+// A line is hidden by depths that lie before it by more than this many pixels.
 const HIDDEN_BY = 6.0;
-// From this distance (px) to the line on, rounding cannot make a pixel belong to the other side.
+// Beyond this distance (px) from the line, rounding cannot put a pixel on the other side.
 const SURE = 0.004;
 
-// The part of a pixel that lies on the side of a line to which its normal points, if the middle of the pixel is so far on that
-// side (px).
+// The part of a pixel on the side of a line to which its normal points, if the middle of the pixel has this distance
+// from the line (px).
 fn area_beyond(off: f32, normal: vec2<f32>) -> f32 {
     let wide = max(abs(normal.x), abs(normal.y));
     let narrow = min(abs(normal.x), abs(normal.y));
@@ -21,7 +21,7 @@ fn border_colour(segment: Segment) -> @location(0) vec4<f32> {
     return gained(segment, false);
 }
 
-// Of the turned-over set, which has a depth of its own.
+// The depth of the turned-over set alone.
 @fragment
 fn alarm_border_colour(segment: Segment) -> @location(0) vec4<f32> {
     return gained(segment, true);
@@ -44,7 +44,7 @@ fn gained(segment: Segment, of_alarm: bool) -> vec4<f32> {
     let from_start = segment.place.xy - start;
     let off = dot(from_start, normal);
     let gone = dot(from_start, along);
-    // How far from its middle a pixel reaches, along the line and across.
+    // Half the size of a pixel along the line and across.
     let reach = 0.5 * (abs(normal.x) + abs(normal.y));
     let within = min(gone + reach, extent) - max(gone - reach, 0.0);
     if abs(off) >= reach || within <= 0.0 {
@@ -58,13 +58,13 @@ fn gained(segment: Segment, of_alarm: bool) -> vec4<f32> {
     let own_texel = texel_of(segment.place.xy);
     let share = saturate(gone / max(extent, 1e-6));
     let depths = vec3(depth_of(first, of_alarm), depth_of(second, of_alarm), depth_of(own_texel, of_alarm));
-    // Faces meet in a crease on both of its sides, so it is hidden by what is before the nearer one. A contour has the surface
-    // on one side: it is hidden if all that is around it is before it.
+    // A crease has faces on both sides, so depths before the nearer one hide it. A contour has the surface on one side,
+    // so it is hidden if all depths around it are before it.
     let is_crease = segment.kind == EDGE || segment.kind == ALARM_EDGE;
     let beside = select(min(min(depths.x, depths.y), depths.z), max(depths.x, depths.y), is_crease);
     let distance = distance_of(mix(segment.depths.x, segment.depths.y, share));
     let is_hidden = distance * (1.0 - HIDDEN_BY / panel.focal) > distance_of(beside);
-    // Where a set is seen through others, its hidden edges would count, too, where they end at its outline.
+    // Hidden edges of a set that is seen through others would count where they end at its outline.
     if is_hidden || (segment.kind == ALARM_EDGE && min(depths.x, depths.y) <= 0.0) {
         discard;
     }

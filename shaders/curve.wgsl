@@ -1,17 +1,16 @@
-// Flat curves over the finished picture, as straight pieces that fit together. They are blended as sRGB values, like
-// marks and words.
+// Flat curves over the finished picture, as straight pieces that fit together, blended as sRGB values like marks and
+// words.
 
 struct Piece {
     // Both ends (px).
     @location(0) ends: vec4<f32>,
-    // Normals of the lines that part it from the pieces before and after it; zero where there is none.
+    // Normals of the lines between this piece and its neighbours; zero at the ends of a curve.
     @location(1) joints: vec4<f32>,
-    // sRGB, and the opacity.
+    // sRGB and opacity.
     @location(2) colour: vec4<f32>,
-    // Its width, how much of the pattern the curve has gone through before, and how long the pattern is (px): 0 for a solid
-    // curve.
+    // Width, start in the pattern, and length of the pattern (px): 0 for a solid curve.
     @location(3) pattern: vec3<f32>,
-    // The lengths of three dashes, each with that of the gap after it (px); 0 for those that it does not have.
+    // The lengths of three dashes and of the gaps after them (px); 0 for absent ones.
     @location(4) dashes: vec4<f32>,
     @location(5) last_dash: vec2<f32>,
 }
@@ -54,7 +53,7 @@ fn piece(@builtin(vertex_index) index: u32, piece: Piece) -> Corner {
 fn piece_colour(corner: Corner) -> @location(0) vec4<f32> {
     let from_start = corner.place.xy - corner.ends.xy;
     let from_end = corner.place.xy - corner.ends.zw;
-    // Each pixel belongs to one of two pieces that meet, so that no joint is covered twice. Both compute the same bits.
+    // Each pixel belongs to one of two joined pieces, so that no joint is covered twice. Both compute the same bits.
     let before = dot(from_start, corner.joints.xy) < 0.0;
     let after = any(corner.joints.zw != vec2(0.0)) && dot(from_end, corner.joints.zw) >= 0.0;
     if before || after {
@@ -73,7 +72,7 @@ fn piece_colour(corner: Corner) -> @location(0) vec4<f32> {
         let first = corner.dashes.x;
         let second = first + corner.dashes.y;
         let third = second + corner.dashes.z + corner.dashes.w;
-        // How far inside of a dash this is, of one of the pattern or the first of the next.
+        // The depth inside a dash, of this pattern or the first of the next.
         var inside = max(min(phase, first - phase), phase - period);
         if corner.dashes.z > 0.0 {
             inside = max(inside, min(phase - second, second + corner.dashes.z - phase));

@@ -1,17 +1,17 @@
 // The floor with its grid and the soft shadows on it. It fades out before the horizon.
 
 struct Ground {
-    // Unit vectors along the grid, and in w what to add to coordinates so that its lines are at whole cells.
+    // Unit vectors along the grid. w is added to coordinates so that lines of the grid are at whole cells.
     first: vec4<f32>,
     second: vec4<f32>,
-    // Coordinates of the middle; from where to where it fades.
+    // Coordinates of the middle; start and end of the fade.
     middle: vec2<f32>,
     fade: vec2<f32>,
     // For key light and sky: corner, inverse length and opacity of the shadow.
     key: vec4<f32>,
     sky: vec4<f32>,
-    // Linear colours; in w the layers of the two shadows, the distance of the grid's lines, and over which height the
-    // floor fades above the lower side of the panel (px).
+    // Linear colours. w has the layers of the two shadows, the distance of the grid's lines, and the height over which
+    // the floor fades above the lower side of the panel (px).
     background: vec4<f32>,
     floor: vec4<f32>,
     grid: vec4<f32>,
@@ -90,8 +90,8 @@ fn dither(pixel: vec2<f32>) -> f32 {
     return (f32(order) + 0.5) / 64.0 - 0.5;
 }
 
-// The linear light of about 0.8 steps of a byte of sRGB, from the derivative of its curve: with a whole one, rounding could
-// change what is exactly a byte, such as the plain background.
+// The linear light of about 0.8 steps of a byte of sRGB, from the derivative of its curve. A whole step and rounding
+// could change exact bytes, such as the plain background.
 fn byte_step(colour: vec3<f32>) -> vec3<f32> {
     return sqrt(colour) * (1.2 + 0.7 * colour) / 255.0;
 }
@@ -108,7 +108,7 @@ fn taken(shade: vec4<f32>, layer: f32, on_floor: vec2<f32>) -> f32 {
     return select(0.0, shade.w * mix(rows.x, rows.y, beyond.y), inside);
 }
 
-// The colour of the floor where so much of its light is left by the body.
+// The colour of the floor where the body leaves this much of its light.
 fn floor_light(corner: Corner, left: f32) -> vec4<f32> {
     let at = corner.on_floor;
     let pixel = corner.place.xy - ground.viewport.xy;
@@ -133,7 +133,7 @@ fn floor_light(corner: Corner, left: f32) -> vec4<f32> {
     colour = mix(colour, ground.grid.rgb, GRID_ALPHA * max(line.x, line.y));
     colour = mix(ground.shadow.rgb, colour, left);
     let faded = mix(ground.background.rgb, colour, fade);
-    // Without a dither, wide shadows show the borders of their 256 steps.
+    // Without dithering, wide shadows show the borders of their 256 steps.
     return vec4(faded + dither(corner.place.xy) * byte_step(faded), 1.0);
 }
 
@@ -143,7 +143,8 @@ fn floor_colour(corner: Corner) -> @location(0) vec4<f32> {
     return floor_light(corner, 1.0);
 }
 
-// Reading shadows takes longer than all the rest. A software driver does it for each pixel, so it is a pipeline of its own.
+// Reading shadows takes longer than all other work, and a software driver would do it for each pixel. So it has a
+// pipeline of its own.
 @fragment
 fn shadowed_colour(corner: Corner) -> @location(0) vec4<f32> {
     unpack(corner);

@@ -1,11 +1,11 @@
-// Marks and words on top of everything. They are blended as sRGB values, the way type is made for.
+// Marks and words on top of everything, blended as sRGB values, for which type is made.
 
 struct Mark {
     // Left, top, width and height (px).
     @location(0) rectangle: vec4<f32>,
     // Unit vector along its width.
     @location(1) along: vec2<f32>,
-    // sRGB; in alpha how much of the mark is seen.
+    // sRGB; alpha is the opacity of the mark.
     @location(2) colour: vec4<f32>,
     @location(3) second: vec4<f32>,
     // Left and top in the atlas of glyphs.
@@ -47,15 +47,15 @@ const HAND = 13u;
 // The opacity of a halo.
 const HALO = 0.75;
 
-// The ring arrow: radius and thickness in parts of the mark, where its line begins and ends (rad, counter-clockwise from
-// the right), length and half width of its head.
+// The ring arrow: radius and thickness in parts of the mark, start and end of its line (rad, counter-clockwise from the
+// right), length and half width of its head.
 const RING = 0.80;
 const THICKNESS = vec2<f32>(0.14, 0.22);
 const BEGIN = 0.9;
 const END = -0.25;
 const HEAD = vec2<f32>(0.72, 0.42);
 
-// The opacity of a ring arrow; coordinates run from −1 to 1, upwards, and a pixel is `pixel` of them.
+// The opacity of a ring arrow. Coordinates run from −1 to 1, upwards; a pixel has the size `pixel`.
 fn ring_arrow(at: vec2<f32>, thickness: f32, pixel: f32) -> f32 {
     let off_ring = abs(length(at) - RING) - 0.5 * thickness;
     let angle = atan2(at.y, at.x);
@@ -72,7 +72,7 @@ fn ring_arrow(at: vec2<f32>, thickness: f32, pixel: f32) -> f32 {
     return saturate(max(ring, head));
 }
 
-// A mark with a halo: how far a pixel is outside of it (px).
+// A mark with a halo: the distance of a pixel outside it (px).
 fn with_halo(colour: vec4<f32>, halo: vec3<f32>, outside: f32, width: f32) -> vec4<f32> {
     let inner = saturate(0.5 - outside);
     let outer = HALO * saturate(0.5 + width - outside);
@@ -80,13 +80,13 @@ fn with_halo(colour: vec4<f32>, halo: vec3<f32>, outside: f32, width: f32) -> ve
     return vec4((colour.rgb * inner + halo * outer * (1.0 - inner)) / max(alpha, 1e-6), alpha);
 }
 
-// A long arrow in parts of the width of its head: length and depth of notch of the head, thickness of the shaft, and the
-// halo. The head of a short one is this part of its length, and all of it is as much smaller.
+// A long arrow in parts of the width of its head: length and depth of notch of the head, thickness of the shaft, and
+// the halo. The head of a short arrow is this part of its length, and the whole arrow is scaled with it.
 const ARROW_HEAD = vec2<f32>(1.235, 0.2);
 const ARROW_SHAFT = 0.247;
 const ARROW_HALO = 0.17647;
-// The part of the halo's room that it fills, so that it is as wide beside its arrow in pictures of all sizes: 2.5 of the 3
-// pixels around a long arrow in the reference picture, which leaves half a pixel there for its smooth border.
+// The part of the halo's room that it fills, so that it is equally wide beside its arrow in pictures of all sizes: 2.5
+// of the 3 pixels around a long arrow in the reference picture. Half a pixel is left for its smooth border.
 const ARROW_HALO_FILLED = 0.83333;
 const ARROW_SHORT = 0.62;
 
@@ -96,7 +96,7 @@ fn off_segment(at: vec2<f32>, from_end: vec2<f32>, to_end: vec2<f32>) -> f32 {
     return length(at - from_end - share * along);
 }
 
-// How far a point is outside of an arrow (px), for a mark of a size, negative inside; and the width of its halo.
+// The distance of a point outside an arrow (px), for a mark of a size, negative inside; and the width of its halo.
 fn off_arrow(at: vec2<f32>, size: vec2<f32>) -> vec2<f32> {
     let wide = size.y / (1.0 + 2.0 * ARROW_HALO);
     let pad = wide * ARROW_HALO;
@@ -122,12 +122,12 @@ fn off_arrow(at: vec2<f32>, size: vec2<f32>) -> vec2<f32> {
     return vec2(select(off, -off, inside), ARROW_HALO_FILLED * pad * max(part, 0.5));
 }
 
-// How much of a pixel lies between the upper corners of a rectangle and below its upper side.
+// The part of a pixel between the upper corners of a rectangle and below its upper side.
 fn within(at: vec2<f32>, size: vec2<f32>) -> f32 {
     return saturate(at.x + 0.5) * saturate(size.x - at.x + 0.5) * saturate(at.y + 0.5);
 }
 
-// How far a mark reaches beyond its rectangle (px): by its smooth border, and ring arrows by their heads.
+// The reach of a mark beyond its rectangle (px): its smooth border, and the heads of ring arrows.
 fn room_around(mark: Mark) -> f32 {
     switch mark.shape {
         case NODE, PIN, HAND, FADING, SHADOW, ARROW: { return 1.0; }
@@ -157,7 +157,7 @@ fn glyph_colour(corner: Corner) -> @location(0) vec4<f32> {
     return vec4(corner.colour.rgb, textureLoad(glyphs, texel, 0).r);
 }
 
-// Rectangles, the greatest part of all marks. A software driver would run the code of all shapes for each pixel.
+// Rectangles, the most frequent marks. A software driver would run the code of all shapes for each pixel.
 @fragment
 fn rectangle_colour(corner: Corner) -> @location(0) vec4<f32> {
     return corner.colour;
@@ -169,7 +169,7 @@ fn mark_colour(corner: Corner) -> @location(0) vec4<f32> {
     return vec4(opaque.rgb, opaque.a * corner.colour.a);
 }
 
-// The colour of a pixel of an opaque mark, and how much of the pixel it covers.
+// The colour of a pixel of an opaque mark, and the part of the pixel that it covers.
 fn opaque_colour(corner: Corner) -> vec4<f32> {
     let at = in_mark(corner);
     if corner.shape == STRUCK {

@@ -1,5 +1,5 @@
-// Transparent plates and walls: polygons with smooth borders and their edges, from the farthest to the nearest. All of
-// them are drawn below the bodies first, and above the bodies again where they are nearer.
+// Transparent plates and walls: polygons with smooth borders and their edges, from the farthest to the nearest. All are
+// drawn below the bodies, and above the bodies again where they are nearer.
 
 @group(1) @binding(2) var lines: texture_2d<f32>;
 
@@ -15,13 +15,13 @@ struct PaneCorner {
     @location(6) @interpolate(flat) lined: vec4<f32>,
 }
 
-// The circle in which a wall fades out begins to do so here.
+// The start of the fade in the circle of a wall.
 const FADE = 0.45;
-// The parts of the panel's width and height in which walls fade out at its sides, below, and above, where words stand.
+// The parts of the panel's width and height in which walls fade out: at the sides, below, and above, where words stand.
 const SIDE_FADE = 0.14;
 const LOWER_FADE = 0.13;
 const UPPER_FADE = vec2<f32>(0.11, 0.20);
-// The opacity of a grid on a wall, and of the line in which it meets the floor.
+// The opacity of a grid on a wall, and of the line where the wall meets the floor.
 const GRID_ALPHA = 0.85;
 const CREASE_ALPHA = 0.85;
 // Below this height above the floor (soft units) a wall is this much darker.
@@ -29,11 +29,11 @@ const CREASE_HEIGHT = 0.8;
 const CREASE_SHADE = 0.10;
 // Edges: thickness (px in the reference picture) and opacity.
 const EDGE = vec2<f32>(1.35, 0.86);
-// Before bodies a pane is this part as opaque, so that they stay visible.
+// The opacity of a pane before bodies, as a part of its own, so that they stay visible.
 const OVER_BODIES = 0.6;
-// A wall that stands before bodies hides even less of them.
+// A wall before bodies hides even less of them.
 const WALL_OVER_BODIES = 0.35;
-// As for other lines: so much nearer than its faces is an edge, as a part of the distance.
+// As for other lines: an edge is this much nearer than its faces, as a part of the distance.
 const OFFSET = 0.0016;
 
 @vertex
@@ -51,7 +51,7 @@ fn pane_corner(
     return PaneCorner(place, grid, from_middle, inward, above, place.xyw, colour, lined);
 }
 
-// The share of a pixel in which something at a depth lies before a body: 0 where there is no body.
+// The share of a pixel in which a depth lies before a body: 0 where there is no body.
 fn before_bodies(pixel: vec2<f32>, depth: f32) -> f32 {
     let inside = pixel - panel.place.xy - panel.region.xy;
     if any(inside < vec2(0.0)) || any(inside >= panel.region.zw) {
@@ -60,7 +60,7 @@ fn before_bodies(pixel: vec2<f32>, depth: f32) -> f32 {
     let at = vec2<i32>(pixel - panel.place.xy);
     let here = load_depth(at);
     var share = select(0.0, 1.0, here > 0.0 && here < depth);
-    // Outlines stand over the border of their body: beside it they lie as deep as what is next to them.
+    // Outlines reach over the border of their body, where they have the depth of its neighbour.
     let opacity = textureLoad(lines, at, 0);
     let drawn = max(max(opacity.r, opacity.g), max(opacity.b, opacity.a));
     if drawn > share {
@@ -97,7 +97,7 @@ fn pane_colour(corner: PaneCorner) -> vec4<f32> {
     let off = abs(fract(corner.grid - 0.5) - 0.5) / width;
     let cells = clamp(0.5 * thickness + 0.5 - off, vec2(0.0), vec2(1.0))
         * (panel.line_scale / thickness) * (1.0 - smoothstep(vec2(0.12), vec2(0.4), width));
-    // A line over a faint wall is not much fainter than one over a strong one.
+    // A line over a faint wall is nearly as strong as one over a strong wall.
     let line = GRID_ALPHA * max(cells.x, cells.y) * (0.35 + 0.65 * alpha);
     let near_floor = 1.0 - smoothstep(0.0, CREASE_HEIGHT * panel.soft, corner.above);
     colour *= 1.0 - CREASE_SHADE * near_floor;

@@ -1,6 +1,6 @@
-// A straight line in space as a strip of pixels: what all passes that draw lines share.
+// A straight line in space as a strip of pixels, for all passes that draw lines.
 
-// The ends of a line in clip space, without what lies behind the eye.
+// The ends of a line in clip space, without the part behind the eye.
 struct Ends {
     a: vec4<f32>,
     b: vec4<f32>,
@@ -22,12 +22,12 @@ fn ends_of(start: vec3<f32>, end: vec3<f32>) -> Ends {
 
 const FLIP = vec2<f32>(0.5, -0.5);
 
-// Where a point in clip space lies in a target of a size (px).
+// The place of a point in clip space in a target of a size (px).
 fn pixel_of(at: vec4<f32>, size: vec2<f32>) -> vec2<f32> {
     return (at.xy / at.w * FLIP + 0.5) * size;
 }
 
-// A corner of the strip that reaches so far (px) around a line between two pixels.
+// A corner of the strip of this half width (px) around a line between two pixels.
 fn strip_corner(corner: u32, from_pixel: vec2<f32>, to_pixel: vec2<f32>, reach: f32, size: vec2<f32>) -> vec4<f32> {
     let difference = to_pixel - from_pixel;
     let extent = length(difference);
@@ -38,14 +38,15 @@ fn strip_corner(corner: u32, from_pixel: vec2<f32>, to_pixel: vec2<f32>, reach: 
     return vec4((pixel / size - 0.5) / FLIP, 0.5, 1.0);
 }
 
-// A corner of one triangle around that strip, for lines that are nothing outside of it: half of the work for short ones, of
-// which each triangle is more than its pixels.
+// A corner of one triangle around that strip, for lines that are empty outside it. It halves the work for short lines,
+// whose triangles cost more than their pixels.
 fn triangle_corner(corner: u32, from_pixel: vec2<f32>, to_pixel: vec2<f32>, reach: f32, size: vec2<f32>) -> vec4<f32> {
     let difference = to_pixel - from_pixel;
     let extent = length(difference);
     let along = select(vec2(1.0, 0.0), difference / extent, extent > 1e-6);
     let across = vec2(-along.y, along.x);
-    // The base lies along the strip, twice as long; the triangle is twice as high as the strip, whose corners lie on its sides.
+    // The base lies along the strip, twice as long. The triangle is twice as high as the strip, whose corners lie on
+    // its sides.
     let half = 0.5 * extent + reach;
     let base = select(-2.0, 2.0, corner == 1u) * half * along - reach * across;
     let pixel = 0.5 * (from_pixel + to_pixel) + select(base, 3.0 * reach * across, corner == 2u);

@@ -1,5 +1,5 @@
-// Lines with colours of their own, and nodes as discs that face the viewer, over the finished bodies. What a surface
-// hides is fainter or not drawn.
+// Lines with colours of their own, and nodes as discs that face the viewer, over the finished bodies. Parts behind a
+// surface are fainter or not drawn.
 
 struct Stroke {
     @builtin(position) place: vec4<f32>,
@@ -13,7 +13,8 @@ struct Stroke {
     @location(6) @interpolate(flat) kind: u32,
 }
 
-// Besides plain lines: a line with another colour over surfaces, a disc, and a line with another colour at its sides.
+// Shapes besides plain lines: a line with another colour over surfaces, a disc, and a line with another colour at its
+// sides.
 const LINE_ON_BODY = 1u;
 const DISC = 2u;
 const CASED_LINE = 3u;
@@ -27,8 +28,8 @@ const CASING = 0.24;
 const LEAST_CASING = 0.6;
 // The rim of a disc, in parts of its radius.
 const RIM = 0.32;
-// A disc is cut off by what is nearer than the front of a ball this much larger, and fades over half of that before and
-// behind it: of a sheet seen nearly from its side, depths change within a pixel by more than a step could bear.
+// A disc is cut off by depths before the front of a ball this much larger. It fades over half of that before and
+// behind: depths of a sheet seen nearly from its side change too much within a pixel for a step.
 const FRONT = 2.0;
 
 @vertex
@@ -61,22 +62,21 @@ fn decoded(colour: vec3<f32>) -> vec3<f32> {
     return select(pow((colour + 0.055) / 1.055, vec3(2.4)), colour / 12.92, colour <= vec3(0.04045));
 }
 
-// The visibility of a disc, for one tap of the pixel around its middle and one of the pixel that is drawn.
+// The visibility of a disc, at one tap of the pixel around its middle and one of the drawn pixel.
 fn disc_share(middle: vec2<f32>, pixel: vec2<f32>, before: f32, nearness: f32, tap: u32) -> f32 {
-    // At an outline, the next pixel may be the background's.
+    // At an outline, the next pixel may be background.
     let beside = min(
         min(tap_depth(middle + vec2(1.5, 0.0), tap), tap_depth(middle - vec2(1.5, 0.0), tap)),
         min(tap_depth(middle + vec2(0.0, 1.5), tap), tap_depth(middle - vec2(0.0, 1.5), tap)),
     );
     let seen = visible_share(before, min(tap_depth(middle, tap), beside));
-    // The taps around the middle of a pixel are all in it, so the neighbours count, too.
+    // The taps around the middle of a pixel are all in it, so its neighbours count, too.
     let here = max(tap_depth(pixel, tap), tap_depth(pixel + 0.5 - tap_place(tap), tap));
     let front = before / (1.0 - FRONT * nearness);
     return seen * saturate(0.5 + 0.5 * (front - here) / (max(0.5 * FRONT * nearness, FADED_DEPTH) * max(here, 1e-9)));
 }
 
-// The visibility of a line, and how much of it runs over a surface and not along an outline, where it is seen against
-// the ground.
+// The visibility of a line, and the part of it that runs over a surface, not along an outline against the ground.
 fn line_shares(middle: vec2<f32>, across: vec2<f32>, before: f32, tap: u32) -> vec2<f32> {
     let here = tap_depth(middle, tap);
     let inside = here > 0.0 && min(tap_depth(middle + across, tap), tap_depth(middle - across, tap)) > 0.0;
@@ -127,7 +127,7 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
         covered *= saturate(0.5 + min(unbounded, 1.0 - unbounded) * length(difference));
     }
     let colour = mix(own, stroke.other.rgb, select(0.0, shares.y, stroke.kind == LINE_ON_BODY));
-    // Where many faint lines meet, their round ends would add up to a dot.
+    // Round ends of many faint lines would add up to a dot.
     let hidden = select(0.0, stroke.other.a, unbounded == share);
     return vec4(decoded(colour), covered * mix(hidden, 1.0, shares.x));
 }

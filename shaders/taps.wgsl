@@ -1,4 +1,4 @@
-// Reading around a point: four places in the pixel around it, no two of them in one row or column.
+// Reading around a point: four places in the pixel around it, in different rows and columns.
 
 const TAPS = 4u;
 
@@ -25,8 +25,8 @@ fn tap_depth(place: vec2<f32>, tap: u32) -> f32 {
     return load_depth(texel_around(place, tap));
 }
 
-// Lines fade over this range of depths before and behind the surface, as a part of the distance, so that none appears or
-// disappears suddenly.
+// Lines fade over this range of depths before and behind the surface, as a part of the distance, so that they do not
+// pop.
 const FADED_DEPTH = 0.0008;
 
 // The visibility of a line at one depth behind or before a surface at another.
