@@ -13,7 +13,7 @@
 //! roots and divisions are rounded identically on every machine.
 //!
 //! All methods in space are behind [`RotationReading::follow`]. `localshape study rotation` measures their errors and
-//! their cost; `docs/accuracy.md` has the results, and why [`robust`] is the default.
+//! their cost; `docs/accuracy.md` has the results, and why [`robust`](mod@robust) is the default.
 
 pub(crate) mod closed_form;
 pub mod davenport1968;
