@@ -89,6 +89,7 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
             let tags: Vec<(&'static str, String)> = vec![("version", "0.1.0".to_owned())];
             vec![localshape::internals::encode([3, 2], &[7; 18], &tags, localshape::internals::Compression::Fast)]
         }
+        "golden" => files("tests/golden/scenes/wheel", "toml"),
         _ => panic!("{name} has no seeds"),
     }
 }

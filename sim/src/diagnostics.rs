@@ -130,9 +130,7 @@ impl From<DVec3> for Value {
 pub enum Reach {
     /// Nowhere else.
     Frames,
-    /// Also to goldens. Adding one changes the format of goldens.
-    Goldens,
-    /// Also to goldens and to summaries of single states: `run.json`, and the JSON of figures.
+    /// Also to summaries of single states: `run.json`, and the JSON of figures.
     Summaries,
 }
 
@@ -220,14 +218,14 @@ macro_rules! diagnostics {
 
 diagnostics! { facts:
     /// Kinetic energy (J).
-    Kinetic, kinetic: f64, "kinetic energy", "J", Goldens =
+    Kinetic, kinetic: f64, "kinetic energy", "J", Frames =
         facts.sum(|mass, _, velocity| 0.5 * mass * velocity.length_squared());
 
     /// Elastic energy (J).
-    Elastic, elastic: f64, "elastic energy", "J", Goldens = facts.report.energy.unwrap_or(f64::NAN);
+    Elastic, elastic: f64, "elastic energy", "J", Frames = facts.report.energy.unwrap_or(f64::NAN);
 
     /// Potential energy in the field of gravity (J), zero at the origin.
-    Gravitational, gravitational: f64, "energy in gravity", "J", Goldens =
+    Gravitational, gravitational: f64, "energy in gravity", "J", Frames =
         facts.sum(|mass, position, _| -(mass * facts.gravity.dot(position)));
 
     /// Momentum (kg m/s); as one number, its length.
@@ -280,20 +278,6 @@ impl Chosen {
         Self(Diagnostic::within(reach).map(|diagnostic| (diagnostic, diagnostic.value(all))).collect())
     }
 
-    /// The same, each parsed from a text; `None` if a text is not a number, or if a count is not whole.
-    pub fn read<'t>(reach: Reach, text_of: impl Fn(usize, Diagnostic) -> Option<&'t str>) -> Option<Self> {
-        let read = |(at, diagnostic): (usize, Diagnostic)| {
-            let text = text_of(at, diagnostic)?;
-            let value = match diagnostic.value(&Diagnostics::default()) {
-                Value::Count(_) => Value::Count(text.parse().ok()?),
-                Value::Number(_) => Value::Number(text.parse().ok()?),
-                Value::Vector(_) => return None,
-            };
-            Some((diagnostic, value))
-        };
-        Diagnostic::within(reach).enumerate().map(read).collect::<Option<_>>().map(Self)
-    }
-
     /// Each with its value.
     pub fn iter(&self) -> impl Iterator<Item = (Diagnostic, Value)> {
         self.0.iter().copied()
@@ -337,13 +321,8 @@ mod tests {
     }
 
     #[test]
-    fn what_is_chosen_is_read_as_it_was_written() {
+    fn chosen_diagnostics_are_a_table() {
         let all = Diagnostics { kinetic: 0.1, turned_over: 3, volume_ratio: f64::NAN, ..Diagnostics::default() };
-        let chosen = Chosen::within(Reach::Goldens, &all);
-        let texts: Vec<_> = chosen.iter().map(|(_, value)| value.size().to_string()).collect();
-        let read = Chosen::read(Reach::Goldens, |at, _| Some(&texts[at])).expect("numbers");
-        assert_eq!(format!("{read:?}"), format!("{chosen:?}"));
-        assert_eq!(Chosen::read(Reach::Goldens, |_, _| Some("0.5")), None, "no half element turns over");
         let json = serde_json::to_string(&Chosen::within(Reach::Summaries, &all)).expect("plain data");
         assert_eq!(json, r#"{"turned_over":3,"volume_ratio":null,"shape_error":0.0}"#);
     }

@@ -104,15 +104,6 @@ impl Pixels {
         }
         Ok(Self { size: [width, height], channels, bytes, label })
     }
-
-    /// The metadata in the header of a PNG file, without its pixels.
-    ///
-    /// # Errors
-    /// As [`Self::read`], as far as the header shows.
-    pub(super) fn read_label(path: &Path) -> Result<Option<Tags>, PictureError> {
-        let reader = decoder(io::BufReader::new(open(path)?)).read_info().map_err(broken)?;
-        Tags::of(reader.info()).map_err(PictureError::Label)
-    }
 }
 
 /// The bytes of a PNG file.

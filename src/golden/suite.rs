@@ -1,11 +1,12 @@
 //! Goldens in `cargo test`.
 
-use super::draw::{DrawError, DrawOptions, Subject, draw, usual_gpu};
-use super::{BlessError, Comparison, RECORD_FILE, Side};
+use super::draw::{PICTURES, Subject, draw, usual_gpu};
+use super::{Comparison, Golden};
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::scene::Limits;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// The environment variable that asks to accept changes.
@@ -28,8 +29,8 @@ const UPDATE: &str = "UPDATE_GOLDENS";
 /// states. [`Self::finish`] panics with all failures: states that moved, pictures that are drawn differently, missing
 /// goldens, and goldens without a scene.
 ///
-/// With `UPDATE_GOLDENS=1` in the environment, missing goldens are made and failed pictures renewed, but states that moved
-/// are accepted with `UPDATE_GOLDENS=state` only. Each failure has a report for a browser in `target/golden/`.
+/// With `UPDATE_GOLDENS=1` in the environment, goldens are made or renewed instead, and what is accepted is told on the standard
+/// error output, states that moved above all. Each failure has a page for a browser in `target/golden/`.
 ///
 /// Pictures are drawn by the kind of adapter that drew the goldens if the machine has it, else by a software driver, else by
 /// any adapter. Without a graphics adapter only states are compared; with `LOCALSHAPE_REQUIRE_GPU=1` this is a failure.
@@ -38,7 +39,8 @@ const UPDATE: &str = "UPDATE_GOLDENS";
 pub struct Suite {
     goldens: PathBuf,
     reports: PathBuf,
-    options: DrawOptions,
+    /// The number of pictures of new goldens.
+    pictures: u64,
     /// A requested adapter instead of the usual one.
     adapter: Option<AdapterChoice>,
     gpu: Option<Option<Gpu>>,
@@ -54,7 +56,7 @@ impl Suite {
         Self {
             goldens: goldens.into(),
             reports: target.join("golden"),
-            options: DrawOptions::default(),
+            pictures: PICTURES,
             adapter: None,
             gpu: None,
             used: BTreeSet::new(),
@@ -65,13 +67,7 @@ impl Suite {
 
     /// The number of pictures of new goldens, evenly spaced up to the end of the scene (default 3).
     pub fn pictures(mut self, count: u64) -> Self {
-        self.options.pictures = Some(count);
-        self
-    }
-
-    /// The width of the pictures of new goldens (px; default 320, or that of the scene if it is smaller).
-    pub fn width(mut self, width: u32) -> Self {
-        self.options.width = Some(width);
+        self.pictures = count;
         self
     }
 
@@ -101,55 +97,43 @@ impl Suite {
     }
 
     fn check(&mut self, path: &Path, name: &str) -> Result<(), String> {
-        let subject = Subject::load(path, &Limits::default()).map_err(|error| error.to_string())?;
-        let expected = Side::read_or_absent(&self.goldens.join(name)).map_err(|error| error.to_string())?;
-        if !expected.is_golden() {
-            let golden = expected.typed();
-            return Err(format!(
-                "{golden} is no golden: it has pictures but no {RECORD_FILE}; delete it and make it again"
-            ));
+        let update = std::env::var(UPDATE).unwrap_or_default();
+        if !["", "0", "1"].contains(&update.as_str()) {
+            return Err(format!("{UPDATE}={update} means nothing; {UPDATE}=1 makes and renews goldens"));
         }
-        let gpu = self.device(&expected)?.cloned();
-        let told = |error: DrawError| error.to_string();
-        let actual = draw(path, &subject, &self.options, &expected, gpu.as_ref(), &mut || true).map_err(told)?;
-        let actual = actual.expect("it is not interrupted");
-        let comparison = Comparison::between(expected, actual).map_err(|error| error.to_string())?;
+        let updates = update == "1" && self.adapter.is_none();
+        let folder = self.goldens.join(name);
+        let subject = Subject::load(path, &Limits::default()).map_err(|error| error.to_string())?;
+        let golden = if updates { Golden::read(&folder) } else { Golden::read_whole(&folder) };
+        let golden = golden.map_err(|error| error.to_string())?;
+        let gpu = self.device(&golden)?.cloned();
+        let drawn = draw(path, &subject, &golden, self.pictures, gpu.as_ref(), &mut || true);
+        let drawn = drawn.map_err(|error| error.to_string())?.expect("it is not interrupted");
+        let comparison = Comparison::of_golden(&golden, &drawn);
         let report = self.reports.join(format!("{name}.html"));
-        if comparison.passes() {
-            // A report of an earlier failure is out of date.
-            let _ = std::fs::remove_file(&report);
+        // A report of an earlier failure is out of date.
+        let _ = std::fs::remove_file(&report);
+        if updates {
+            let told = comparison.accept(&golden, &drawn).map_err(|error| error.to_string())?;
+            // Not by a macro, whose output `cargo test` keeps for itself.
+            let told = told.iter().fold(String::new(), |told, line| format!("{told}{name}: {line}\n"));
+            let _ = std::io::stderr().write_all(told.as_bytes());
             return Ok(());
         }
-        let update = std::env::var(UPDATE).unwrap_or_default();
-        let is_renewed = matches!(update.as_str(), "1" | "state") && self.adapter.is_none();
-        let refused = match is_renewed.then(|| comparison.bless(update == "state")) {
-            None => format!(
-                "\nmake what is missing and accept what is drawn differently with: {UPDATE}=1 cargo test\n\
-                 and states that moved with: {UPDATE}=state cargo test"
-            ),
-            Some(Ok(blessed)) => {
-                eprint!("{name}: {blessed}");
-                return Ok(());
-            }
-            Some(Err(BlessError::StateMoved { .. })) => {
-                format!("\nthe state moved, so nothing was accepted; to accept it anyway: {UPDATE}=state cargo test")
-            }
-            Some(Err(BlessError::Damaged { .. })) => {
-                format!("\nwhat was expected is damaged; to replace it by what is there: {UPDATE}=state cargo test")
-            }
-            Some(Err(error)) => format!("\n{error}"),
-        };
+        if comparison.passes() {
+            return Ok(());
+        }
         let written =
             std::fs::create_dir_all(&self.reports).and_then(|()| std::fs::write(&report, comparison.report().page()));
         let seen = match written {
-            Ok(()) => format!("see the report {}", report.display()),
+            Ok(()) => format!("see {}", report.display()),
             Err(error) => format!("there is no report: {} cannot be written: {error}", report.display()),
         };
-        Err(format!("{}\n{seen}{refused}", comparison.text(false).trim_end()))
+        Err(format!("{comparison}{seen}\naccept with: {UPDATE}=1 cargo test"))
     }
 
     /// The device to draw with, opened once; `None` without any adapter.
-    fn device(&mut self, golden: &Side) -> Result<Option<&Gpu>, String> {
+    fn device(&mut self, golden: &Golden) -> Result<Option<&Gpu>, String> {
         if self.gpu.is_none() {
             let opened = match &self.adapter {
                 None => usual_gpu(golden).or_else(|_| Gpu::new(&AdapterChoice::Auto)),

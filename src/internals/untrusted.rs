@@ -3,7 +3,7 @@
 //! Whatever it is given, a reader returns a mistake or a meaning. It never panics, and takes no more time and memory than
 //! limits and the length of the file allow.
 
-use crate::golden::Pixels;
+use crate::golden::{Pixels, is_record};
 use crate::output::StoredStates;
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::figure::Figure;
@@ -22,7 +22,7 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 8] = [
+pub const READERS: [Reader; 9] = [
     Reader { name: "scene", read: scene },
     Reader { name: "figure", read: figure },
     Reader { name: "body", read: body },
@@ -31,6 +31,7 @@ pub const READERS: [Reader; 8] = [
     Reader { name: "state", read: |bytes| drop(State::from_bytes(bytes)) },
     Reader { name: "cells", read: cells },
     Reader { name: "picture", read: |bytes| drop(Pixels::from_bytes(bytes)) },
+    Reader { name: "golden", read: golden },
 ];
 
 /// Reads a file by the reader of this name.
@@ -122,6 +123,13 @@ fn checkpoint(bytes: &[u8]) {
 fn cells(bytes: &[u8]) {
     if let Ok(text) = std::str::from_utf8(bytes) {
         crate::study::stability::read(text).for_each(drop);
+    }
+}
+
+/// The record of a golden.
+fn golden(bytes: &[u8]) {
+    if let Ok(text) = std::str::from_utf8(bytes) {
+        is_record(text);
     }
 }
 

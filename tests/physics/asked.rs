@@ -135,7 +135,7 @@ fn figures_ask_for_energies_only_where_they_show_them() {
     for (reach, number, strip, asked) in [
         (Reach::Summaries, None, ratio, 0),
         (Reach::Summaries, Some(elastic), ratio, shown),
-        (Reach::Goldens, None, ratio, shown),
+        (Reach::Frames, None, ratio, shown),
         (Reach::Summaries, None, elastic, 0),
     ] {
         let Content::Sheet(sheet) = &mut figure.content else { panic!("a contact sheet") };

@@ -45,10 +45,6 @@ const NAMED_KEYS: [(&str, u32, &str); 9] = [
     ("Enter", 13, "\r"),
 ];
 
-/// What is held down with a key: nothing, or the shift key.
-pub(crate) const PLAIN: u32 = 0;
-pub(crate) const SHIFT: u32 = 8;
-
 impl Browser {
     /// A browser, or `None` with a line on the standard error output if there is none and none is required.
     pub(crate) fn start() -> Option<Self> {
@@ -130,16 +126,15 @@ impl Browser {
         std::fs::read_to_string(self.folder.path().join("log")).unwrap_or_default()
     }
 
-    /// Opens a page that is written to a file of its own; `hash` is what follows the address. Returns the address.
-    pub(crate) fn open(&mut self, page: &str, hash: &str) -> String {
+    /// Opens a page that is written to a file of its own, and returns its address.
+    pub(crate) fn open(&mut self, page: &str) -> String {
         let path = self.folder.path().join("report.html");
         std::fs::write(&path, page).expect("a file for the page");
         let address = format!("file://{}", path.display());
-        // From another page, for a change of what follows the address alone would load nothing.
         self.order("Page.navigate", json!({ "url": "about:blank" }));
         self.until("an empty page", "location.href === 'about:blank'");
         self.events.clear();
-        let opened = self.order("Page.navigate", json!({ "url": format!("{address}{hash}") }));
+        let opened = self.order("Page.navigate", json!({ "url": address }));
         assert!(opened.get("errorText").is_none(), "{address}: {opened}");
         self.until("the page", "location.protocol === 'file:' && document.readyState === 'complete'");
         address
@@ -149,11 +144,6 @@ impl Browser {
     pub(crate) fn resize(&mut self, [width, height]: [u32; 2]) {
         let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
         self.order("Emulation.setDeviceMetricsOverride", metrics);
-    }
-
-    /// What a medium is said to be like, such as `prefers-reduced-motion`.
-    pub(crate) fn pretend(&mut self, feature: &str, value: &str) {
-        self.order("Emulation.setEmulatedMedia", json!({ "features": [{ "name": feature, "value": value }] }));
     }
 
     /// The value of an expression in the page.
@@ -186,12 +176,12 @@ impl Browser {
     }
 
     /// Presses and releases a key: a sign such as `b`, or a name such as `ArrowLeft`.
-    pub(crate) fn press(&mut self, key: &str, held: u32) {
+    pub(crate) fn press(&mut self, key: &str) {
         let named = NAMED_KEYS.iter().find(|(name, ..)| *name == key);
         let letter = key.chars().next().unwrap_or_default().to_ascii_uppercase();
         let (code, text) = named.map_or((letter as u32, key), |&(_, code, text)| (code, text));
         let code = if named.is_none() && !letter.is_ascii_alphanumeric() && letter != ' ' { 0 } else { code };
-        let mut event = json!({ "type": "keyDown", "key": key, "windowsVirtualKeyCode": code, "modifiers": held });
+        let mut event = json!({ "type": "keyDown", "key": key, "windowsVirtualKeyCode": code });
         if text.is_empty() {
             event["type"] = json!("rawKeyDown");
         } else {
@@ -200,17 +190,6 @@ impl Browser {
         self.order("Input.dispatchKeyEvent", event.clone());
         event["type"] = json!("keyUp");
         self.order("Input.dispatchKeyEvent", event);
-    }
-
-    /// Moves the focus on until it is on the element with this id.
-    pub(crate) fn tab_to(&mut self, id: &str) {
-        for _ in 0..60 {
-            if self.value("document.activeElement.id") == id {
-                return;
-            }
-            self.press("Tab", PLAIN);
-        }
-        panic!("the focus never comes to {id}");
     }
 
     fn mouse(&mut self, kind: &str, [x, y]: [f64; 2], buttons: u32) {
@@ -224,17 +203,6 @@ impl Browser {
         self.mouse("mouseMoved", at, 0);
     }
 
-    /// Clicks with the left button.
-    pub(crate) fn click(&mut self, at: [f64; 2]) {
-        self.drag(at, at);
-    }
-
-    /// Clicks on what a selector finds.
-    pub(crate) fn click_on(&mut self, selector: &str) {
-        let [x, y, width, height] = self.place(selector);
-        self.click([x + width / 2.0, y + height / 2.0]);
-    }
-
     /// Presses the left button at one place, moves to another one and releases it there.
     pub(crate) fn drag(&mut self, from: [f64; 2], to: [f64; 2]) {
         self.point(from);
@@ -245,12 +213,6 @@ impl Browser {
             self.mouse("mouseMoved", to, 1);
         }
         self.mouse("mouseReleased", to, 0);
-    }
-
-    /// Turns the wheel with Ctrl held down (px; up is negative).
-    pub(crate) fn wheel(&mut self, [x, y]: [f64; 2], turned: f64) {
-        let event = json!({ "type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": turned, "modifiers": 2 });
-        self.order("Input.dispatchMouseEvent", event);
     }
 
     /// Left, top, width and height of what a selector finds, after scrolling to it (px in the window).

@@ -76,11 +76,11 @@ fn first_and_last_frames_are_shown() {
         let file = &format!("slow.{ending}");
         // The first frame for half a minute.
         animate(folder, file, &["--speed", "0.001"]);
-        browser.open(&image(file), "");
+        browser.open(&image(file));
         is_shown(&mut browser, file, FIRST);
         let file = &format!("once.{ending}");
         animate(folder, file, &["--loop", "1"]);
-        browser.open(&image(file), "");
+        browser.open(&image(file));
         is_shown(&mut browser, file, LAST);
     }
     let has_ffmpeg = Command::new("ffmpeg").arg("-version").stdout(Stdio::null()).status().is_ok();
@@ -98,7 +98,7 @@ fn first_and_last_frames_are_shown() {
         }
         animate(folder, file, &[]);
         let address = folder.join(file);
-        browser.open(&page(&format!("<video muted preload=auto src=\"file://{}\">", address.display())), "");
+        browser.open(&page(&format!("<video muted preload=auto src=\"file://{}\">", address.display())));
         const FILM: &str = "document.querySelector('video')";
         browser.until(file, &format!("{FILM}.readyState === 4"));
         let [seconds, width, height] =

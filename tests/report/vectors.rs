@@ -48,7 +48,7 @@ fn a_browser_shows_the_same_as_the_png_file() {
     let file = folder.join("fig2.svg");
     let style = "<!doctype html><body style=\"margin: 0\">";
     let image = format!("{style}<img width={} height={} src=\"file://{}\">", SIZE[0], SIZE[1], file.display());
-    browser.open(&image, "");
+    browser.open(&image);
     browser.until("the picture", "document.images[0].complete && document.images[0].naturalWidth > 0");
 
     // Where nothing changes nearby, colours are equal: bodies, ghosts, arrows, ground.

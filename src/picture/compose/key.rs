@@ -35,8 +35,7 @@ impl Composer<'_> {
             count if count == all => "change of length over length at rest",
             _ => "of springs: change of length over length at rest",
         };
-        let [name, definition] = self.field_name.unwrap_or([field.name(), definition]);
-        Some(Bar::new([name, field.unit(), definition], colour.range, self.extent, &self.ramp, values))
+        Some(Bar::new([field.name(), field.unit(), definition], colour.range, self.extent, &self.ramp, values))
     }
 
     /// The values of the springs of a run on a scale.

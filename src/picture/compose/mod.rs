@@ -68,8 +68,6 @@ pub struct Composer<'a> {
     ears: Ears,
     /// Elements without faces.
     bare: Vec<usize>,
-    /// What the field is called in keys, and its definition there, if not as usual.
-    field_name: Option<[&'static str; 2]>,
     /// The colours of a field, if one is shown.
     ramp: Vec<Colour>,
     /// The edges of the elements, if surfaces are not shown.
@@ -138,7 +136,6 @@ impl<'a> Composer<'a> {
         Self {
             scene,
             ramp: map.map_or_else(Vec::new, |map| ramp(map, scene.view.look.theme)),
-            field_name: None,
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
             palette: scene.view.look.palette,
@@ -161,11 +158,6 @@ impl<'a> Composer<'a> {
             reach: Reach::default(),
             arranged: OnceLock::new(),
         }
-    }
-
-    /// The same with another name and definition for the field that it shows.
-    pub(crate) fn naming_field(self, name: &'static str, definition: &'static str) -> Self {
-        Self { field_name: Some([name, definition]), ..self }
     }
 
     /// Sets the time series: those of all runs to be shown, over the whole scene. The chart and paths show them,

@@ -1,0 +1,257 @@
+//! Two sides beside each other: pictures, folders of pictures, or a scene and its golden.
+
+use super::ComparisonError;
+use super::folder::{Drawn, Golden, Pictures, Source, pictures_in};
+use super::keys::{self, ChangedKey};
+use super::record::RECORD_FILE;
+use super::states::{Moved, State, States, moved};
+use super::verdict::{Compared, Verdict};
+use crate::output::{Shown, Tags, shell};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// Number of pictures that are listed one by one.
+const MOST_LISTED: usize = 12;
+
+/// The result of comparing the pictures and states of two sides.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Comparison {
+    /// One for each picture on either side, in the order of their names.
+    pub(crate) pictures: Vec<Compared>,
+    /// The runs whose states are not as expected, in any frame known on both sides, drawn or not.
+    pub(crate) moved: Vec<Moved>,
+    /// The keys of the scene that changed, compared with its golden.
+    pub(crate) keys: Vec<ChangedKey>,
+    /// The last frame of the golden and that of its scene, if the scene ends earlier.
+    pub(crate) ends_early: Option<[u64; 2]>,
+    /// Whether the golden is still to be made.
+    pub(crate) golden_is_missing: bool,
+    /// Further remarks.
+    pub(crate) notes: Vec<String>,
+    /// The number of states known on both sides, if there is a golden.
+    pub(crate) states: Option<usize>,
+    #[serde(skip)]
+    pub(super) sources: Vec<[Option<Source>; 2]>,
+    #[serde(skip)]
+    pub(super) sides: [PathBuf; 2],
+    /// The command that makes or renews the golden.
+    #[serde(skip)]
+    command: Option<String>,
+}
+
+impl Comparison {
+    /// Compares two pictures, or two folders of pictures, which are paired by name.
+    ///
+    /// # Errors
+    /// If one of the sides cannot be read or has nothing to compare. Errors of single pictures are verdicts.
+    pub(crate) fn of_pictures(expected: &Path, actual: &Path) -> Result<Self, ComparisonError> {
+        let sides = [expected, actual];
+        let is_folder = |path: &Path| match path.metadata() {
+            Ok(found) => Ok(found.is_dir()),
+            Err(source) if source.kind() == ErrorKind::NotFound => Err(ComparisonError::Absent { path: path.into() }),
+            Err(source) => Err(ComparisonError::Read { path: path.into(), source }),
+        };
+        let are_folders = [is_folder(expected)?, is_folder(actual)?];
+        let pairs: Vec<(String, [Option<Source>; 2])> = match are_folders {
+            [false, false] => {
+                let name = actual.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+                vec![(name, sides.map(|path| Some(Source::File(path.into()))))]
+            }
+            [true, true] => {
+                if let Some(path) = sides.into_iter().find(|path| path.join(RECORD_FILE).exists()) {
+                    return Err(ComparisonError::Golden { path: path.into() });
+                }
+                paired(pictures_in(expected)?, pictures_in(actual)?)
+            }
+            [is_folder, _] => {
+                let [folder, file] = if is_folder { sides } else { [actual, expected] }.map(Path::to_owned);
+                return Err(ComparisonError::Unlike { folder, file });
+            }
+        };
+        let [expected, actual] = sides.map(Path::to_owned);
+        if pairs.is_empty() {
+            return Err(ComparisonError::Empty { expected, actual });
+        }
+        let mut comparison = Self::of_pairs(pairs, [expected, actual]);
+        let tags = [0, 1].map(|side| -> Vec<&Tags> {
+            comparison.pictures.iter().filter_map(|picture| picture.tags[side].as_ref()).collect()
+        });
+        let scenes = tags.each_ref().map(|tags| tags.iter().flat_map(|tags| &tags.scenes).collect::<BTreeSet<_>>());
+        let are_other = scenes.iter().all(|scenes| !scenes.is_empty()) && scenes[0] != scenes[1];
+        // The verdict on a single picture says as much.
+        let moved = if are_folders[0] { moved(&states_of(&tags[0]), &states_of(&tags[1])) } else { Vec::new() };
+        comparison.moved = moved;
+        comparison.notes.extend(are_other.then(|| "the scenes are not the same".to_owned()));
+        Ok(comparison)
+    }
+
+    /// Compares what was drawn of a scene or figure with its golden.
+    pub(crate) fn of_golden(golden: &Golden, drawn: &Drawn) -> Self {
+        let pictures = drawn.pictures.clone().map(|actual| paired(golden.pictures.clone(), actual));
+        let sides = [golden.folder.clone(), drawn.origin.clone()];
+        let mut comparison = Self::of_pairs(pictures.unwrap_or_default(), sides);
+        let typed = [&golden.folder, &drawn.origin].map(|path| typed(path));
+        comparison.command = Some(format!("localshape compare --bless {}", typed.join(" ")));
+        comparison.notes = drawn.notes.clone();
+        if drawn.pictures.is_none() {
+            comparison.notes.push("no graphics adapter: states were compared, pictures were not".to_owned());
+        }
+        let Some(record) = &golden.record else {
+            comparison.golden_is_missing = true;
+            return comparison;
+        };
+        let [before, after] = [record, &drawn.record];
+        comparison.moved = moved(&before.states, &after.states);
+        comparison.keys = keys::changed(&before.keys, &after.keys);
+        let runs = before.states.runs.iter().filter_map(|run| Some((run, after.states.run(&run.name)?)));
+        let both = |(one, other): (&super::states::Run, &super::states::Run)| {
+            one.states.keys().filter(|frame| other.states.contains_key(frame)).count()
+        };
+        comparison.states = Some(runs.map(both).sum());
+        if before.subject != after.subject {
+            comparison.notes.push(format!("the golden is of {}, and this is {}", before.subject, after.subject));
+        }
+        if let (Some(recorded), Some(end)) = (before.states.last(), after.states.last()) {
+            comparison.ends_early = (end < recorded).then_some([recorded, end]);
+            let told = match end.cmp(&recorded) {
+                std::cmp::Ordering::Less => Some(["continues to", "ends with"]),
+                std::cmp::Ordering::Equal => None,
+                std::cmp::Ordering::Greater => Some(["ends with", "continues to"]),
+            };
+            let told =
+                told.map(|[one, other]| format!("the golden {one} frame {recorded}, the scene {other} frame {end}"));
+            comparison.notes.extend(told);
+        }
+        comparison
+    }
+
+    fn of_pairs(pairs: Vec<(String, [Option<Source>; 2])>, sides: [PathBuf; 2]) -> Self {
+        let read = |(name, sources): &(String, [Option<Source>; 2])| Compared::read(name.clone(), sources);
+        let pictures = match &pairs[..] {
+            // Starting threads takes a tenth of the time of a pair.
+            [pair] => vec![read(pair)],
+            pairs => pairs.par_iter().map(read).collect(),
+        };
+        let sources = pairs.into_iter().map(|(_, sources)| sources).collect();
+        let (moved, keys, notes) = Default::default();
+        let (ends_early, golden_is_missing, states, command) = (None, false, None, None);
+        Self { pictures, moved, keys, ends_early, golden_is_missing, notes, states, sources, sides, command }
+    }
+
+    /// Whether everything is as expected.
+    pub(crate) fn passes(&self) -> bool {
+        let is_whole = !self.golden_is_missing && self.ends_early.is_none();
+        is_whole && self.moved.is_empty() && self.failures() == 0
+    }
+
+    /// The overall verdict: the worst one.
+    pub(crate) fn verdict(&self) -> Verdict {
+        let moved = (!self.moved.is_empty()).then_some(Verdict::StateMoved);
+        let missing = (self.golden_is_missing || self.ends_early.is_some()).then_some(Verdict::Missing);
+        let pictures = self.pictures.iter().map(|picture| picture.verdict);
+        pictures.chain(moved).chain(missing).max().unwrap_or(Verdict::Identical)
+    }
+
+    /// The command that makes or renews the golden, if it is not as its scene is.
+    pub(crate) fn command_to_accept(&self) -> Option<&str> {
+        self.command.as_deref().filter(|_| !self.passes())
+    }
+
+    fn failures(&self) -> usize {
+        self.pictures.iter().filter(|picture| !picture.verdict.passes()).count()
+    }
+
+    /// The result of all pictures in words.
+    pub(super) fn summary(&self) -> String {
+        let all = match self.pictures.len() {
+            1 => "1 picture".to_owned(),
+            all => format!("{all} pictures"),
+        };
+        match self.failures() {
+            0 => {
+                let mut counts: BTreeMap<Verdict, usize> = BTreeMap::new();
+                for picture in &self.pictures {
+                    *counts.entry(picture.verdict).or_default() += 1;
+                }
+                let counts: Vec<_> =
+                    counts.iter().map(|(verdict, count)| format!("{count} {}", verdict.words())).collect();
+                format!("{all}: {}", counts.join(", "))
+            }
+            1 => format!("1 of {all} is not as expected"),
+            failed => format!("{failed} of {all} are not as expected"),
+        }
+    }
+
+    /// What was found, line by line, besides the verdicts on single pictures.
+    pub(super) fn findings(&self) -> Vec<String> {
+        let mut told: Vec<String> = Vec::new();
+        if self.golden_is_missing {
+            told.push(format!("the golden {} is missing", self.sides[0].display()));
+        }
+        told.extend(self.moved.iter().map(|moved| format!("state moved: {moved}")));
+        told.extend(self.keys.iter().map(|key| format!("changed: {key}")));
+        told.extend(self.notes.iter().cloned());
+        told
+    }
+}
+
+/// Pictures of two folders by name.
+fn paired(expected: Pictures, actual: Pictures) -> Vec<(String, [Option<Source>; 2])> {
+    let mut pairs: BTreeMap<String, [Option<Source>; 2]> = BTreeMap::new();
+    for (side, pictures) in [expected, actual].into_iter().enumerate() {
+        for (name, source) in pictures {
+            pairs.entry(name).or_default()[side] = Some(source);
+        }
+    }
+    pairs.into_iter().collect()
+}
+
+/// The states that pictures record; none if they are of several scenes, whose frames have nothing to do with each other.
+fn states_of(tags: &[&Tags]) -> States {
+    let mut states = States::default();
+    let scenes: BTreeSet<_> = tags.iter().flat_map(|tags| &tags.scenes).collect();
+    for tags in tags.iter().filter(|_| scenes.len() <= 1) {
+        let Shown::Frame { frame, .. } = tags.shows else { continue };
+        for (digest, run) in &tags.states {
+            states.run_mut(run).states.insert(frame, State { digest: digest.clone(), positions: None });
+        }
+    }
+    states
+}
+
+/// A path, quoted for the command line.
+fn typed(path: &Path) -> String {
+    let path = path.to_string_lossy();
+    // Prefixed so that a name which begins with - is not taken for an option.
+    let path = if path.starts_with('-') { format!("./{path}").into() } else { path };
+    shell::word(&path)
+}
+
+impl fmt::Display for Comparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.findings().iter().try_for_each(|finding| writeln!(f, "{finding}"))?;
+        if self.golden_is_missing {
+            return Ok(());
+        }
+        let wrong: Vec<_> = self.pictures.iter().filter(|picture| !picture.verdict.passes()).collect();
+        // A single picture that passes is listed, too.
+        let listed = if self.pictures.len() == 1 { self.pictures.iter().collect() } else { wrong };
+        for picture in listed.iter().take(MOST_LISTED) {
+            writeln!(f, "{}: {picture}", picture.name)?;
+        }
+        if listed.len() > MOST_LISTED {
+            writeln!(f, "and {} more", listed.len() - MOST_LISTED)?;
+        }
+        if self.pictures.len() > 1 {
+            writeln!(f, "{}", self.summary())?;
+        }
+        match self.states {
+            Some(states) if self.moved.is_empty() => writeln!(f, "{states} states are the same"),
+            _ => Ok(()),
+        }
+    }
+}
