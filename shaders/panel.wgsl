@@ -44,10 +44,9 @@ struct Panel {
     // Its left and top in the picture (px), less its left and top in those textures; the middle of the body in the
     // picture (px).
     place: vec4<f32>,
-    // 1 if turned-over elements are hatched, else 0.
-    hatch: f32,
     // How wide contours of bodies are, from 0 to 1.
     contour_share: f32,
+    unused: f32,
     // Over how far solid obstacles fade out across and down (px); left, upper, right and lower side of the room in which they
     // do so (px), and how strongly at each.
     fade_distance: vec2<f32>,

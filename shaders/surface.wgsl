@@ -165,7 +165,7 @@ struct AlarmColour {
 
 fn alarm(corner: Corner) -> AlarmColour {
     let light = light(corner.position, corner.normal);
-    let dark = panel.hatch * STRIPE_ALPHA * stripes(corner.hatch, corner.place.xy);
+    let dark = STRIPE_ALPHA * stripes(corner.hatch, corner.place.xy);
     let colour = mix(panel.alarm, panel.alarm_line, dark);
     return AlarmColour(colour * light.diffuse + light.gloss, dot(light.diffuse, LUMINANCE));
 }

@@ -1,6 +1,5 @@
 // Surfaces coloured by a scalar field, lit so mildly that the colours of its scale stay what they are. Turned-over
-// elements are coloured by it, too, and keep their hatch, in vermilion; deep in the body only that is seen. Without a
-// hatch they are vermilion, lit like plain ones.
+// elements are coloured by it, too, and keep their hatch, in vermilion; deep in the body only that is seen.
 
 // The colours of the scale, linear.
 @group(1) @binding(4) var<uniform> ramp: array<vec4<f32>, SHADES>;
@@ -74,15 +73,10 @@ fn tint(corner: TintedCorner) -> vec3<f32> {
     return colour * min(lightness * lightness * lightness, most);
 }
 
-// The colour of a turned-over element, and how much of it is the alarm's: the stripes of its hatch, or all of it.
+// The colour of a turned-over element, and how much of it is the stripes of its hatch.
 fn alarm_tint(corner: TintedCorner) -> vec4<f32> {
     let covered = stripes(corner.hatch, corner.place.xy);
-    if panel.hatch > 0.5 {
-        return vec4(mix(tint(corner), panel.alarm, covered), covered);
-    }
-    // Nothing but light tells its faces from each other.
-    let light = light(corner.position, corner.normal);
-    return vec4(panel.alarm * light.diffuse + light.gloss, 1.0);
+    return vec4(mix(tint(corner), panel.alarm, covered), covered);
 }
 
 // Behind the body, how much of a pixel its hatch covers.
@@ -105,8 +99,7 @@ fn tinted_over(colour: vec3<f32>, corner: TintedCorner) -> vec4<f32> {
     let depth = panel.near / behind - 1.0 / corner.place.w;
     let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
     // Of a hatch only the stripes are seen, whatever lies between them.
-    let alarm = select(stored.rgb * stored.rgb, panel.alarm, panel.hatch > 0.5);
-    let through = mix(colour, alarm, THROUGH * (1.0 - 0.4 * deep) * stored.a);
+    let through = mix(colour, panel.alarm, THROUGH * (1.0 - 0.4 * deep) * stored.a);
     return opaque(mix(stored.rgb * stored.rgb, through, smoothstep(0.0, NEAR_DEPTH * panel.soft, depth)));
 }
 

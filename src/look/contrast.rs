@@ -1,8 +1,7 @@
 //! Resolves the look of a scene, and checks the contrast and the difference of colours.
 
-use super::file::{ShowFile, ViewFile};
-use super::palette::{Palette, Theme};
-use super::ramp::ramp;
+use super::file::ViewFile;
+use super::palette::Palette;
 use super::typed::ColoursFile;
 use super::view::{FontFiles, Style};
 use crate::colour::{Colour, LINE_CONTRAST, Vision, contrast, difference, readable, written};
@@ -19,7 +18,6 @@ pub(crate) fn resolve(typed: &ViewFile, font: FontFiles, text_scale: f64, report
     let palette = Palette::with(theme, background, &typed.colours);
     let known = report.total();
     check_alarm(&typed.colours, &palette, report);
-    check_field(typed, theme, &palette, report);
     (report.total() == known).then_some(Style { theme, palette, font, text_scale })
 }
 
@@ -72,22 +70,6 @@ fn check_alarm(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) 
     let opposite = written(if key == "body" { palette.alarm } else { found.colour });
     let message = format!("`view.colours.{key}` is too similar to {other} {opposite} {}: {found}", found.place);
     report.at(&way(key), message, "choose another hue, or make one of them much lighter than the other".to_owned());
-}
-
-/// Checks the difference of turned-over elements from those coloured by a field, where no hatch marks them.
-fn check_field(typed: &ViewFile, theme: Theme, palette: &Palette, report: &mut Report<'_>) {
-    let shows_surfaces = typed.show.as_ref().is_none_or(|shown| shown.contains(&ShowFile::Surfaces));
-    let Some(colour) = typed.colour.as_ref().filter(|_| !typed.hatch && shows_surfaces) else { return };
-    let shades = ramp(colour.map, theme).into_iter().map(|shade| (shade, ()));
-    let Some(found) = TooLike::find(shades, palette.alarm) else { return };
-    let message = format!(
-        "without hatching, only their colour distinguishes turned-over elements from the field, and {} is too similar to \
-         {} on its scale: {found}",
-        written(palette.alarm),
-        written(found.colour)
-    );
-    let help = "remove `hatch`, or choose another `view.colour.map` or `view.colours.turned_over`".to_owned();
-    report.at(&[Way::Key("view"), Way::Key("hatch")], message, help);
 }
 
 /// A colour that may be mistaken for that of turned-over elements.

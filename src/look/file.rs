@@ -85,9 +85,6 @@ pub(crate) struct ViewFile {
     /// over. With `outline = false` and `edges = "outline"` such elements have no lines at all. Outlines of turned-over
     /// elements are always drawn.
     pub(crate) outline: bool,
-    /// Whether turned-over elements are hatched. Without hatching only their colour marks them, also where a field colours
-    /// surfaces; the field then needs a colour map that differs from it, also with colour blindness.
-    pub(crate) hatch: bool,
     /// The camera. Default: one that shows the body and what comes near it.
     pub(crate) camera: CameraFile,
 }
@@ -117,7 +114,6 @@ impl Default for ViewFile {
             floor: FloorStyle::default(),
             edges: EdgesFile::default(),
             outline: true,
-            hatch: true,
             camera: CameraFile::default(),
         }
     }

@@ -103,7 +103,6 @@ pub(crate) fn resolve(
             EdgesFile::Outline => [false, false],
         },
         outline: typed.outline,
-        hatch: typed.hatch,
     })
 }
 

@@ -58,8 +58,6 @@ pub struct View {
     pub edges: [bool; 2],
     /// Whether the outlines of solid obstacles and of elements that are not turned over are drawn.
     pub outline: bool,
-    /// Whether turned-over elements are hatched, besides having a colour of their own.
-    pub hatch: bool,
 }
 
 impl View {
@@ -104,7 +102,6 @@ impl Default for View {
             floor: FloorStyle::default(),
             edges: [true; 2],
             outline: true,
-            hatch: true,
         }
     }
 }

@@ -103,8 +103,6 @@ pub(crate) struct Panel {
     pub sound: Mesh,
     /// The boundary of the elements that have turned over.
     pub turned_over: Mesh,
-    /// Whether that is hatched.
-    pub hatch: bool,
     /// Whether others are flat, and so dotted.
     pub dotted: bool,
     /// Whether the body is drawn in greys, because its run diverges or did so.

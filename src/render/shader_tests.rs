@@ -61,7 +61,7 @@ fn structs_are_laid_out_alike_on_both_sides() {
     let module = parse(&[PANEL_SHADER, ground::SHADER]);
     same_layout!(module, "Panel", PanelUniform,
         clip eye near key flatness up floor sound element alarm line_scale alarm_line outline_alpha edge focal outline soft
-        region place hatch contour_share fade_distance fade_room fade_strength occluders);
+        region place contour_share unused fade_distance fade_room fade_strength occluders);
     same_layout!(module, "Occluder", OccluderUniform, first second rotation);
     same_layout!(module, "Ground", GroundUniform,
         first second middle fade key sky background floor grid shadow viewport);

@@ -40,6 +40,7 @@ const GONE: &[Gone] = &[
     key("view.difference_of", "remove it"),
     key("view.columns", "write the number in `view.panels`"),
     key("view.explode", "remove it"),
+    key("view.hatch", "remove it; turned-over elements are always hatched"),
     key("view.inset", "remove it"),
     key("view.legend", "leave `\"legend\"` in `view.labels`, or take it out"),
     key("view.letters", "write `\"letters\"` in `view.labels`"),

@@ -52,7 +52,7 @@ pub(super) fn panel(picture: &Picture, panel: &Panel, items: &mut Vec<Item<'_>>)
     }
     flat.surface(&panel.sound, items);
     flat.surface(&panel.turned_over, items);
-    if panel.hatch && !panel.turned_over.triangles.is_empty() {
+    if !panel.turned_over.triangles.is_empty() {
         items.push(Item::Unclip);
         flat.hatch([left, top, width, height], items);
         items.push(room());
@@ -139,7 +139,7 @@ impl Flat<'_> {
         }
         let palette = &self.picture.palette;
         let is_alarm = std::ptr::eq(mesh, &self.panel.turned_over);
-        let has_field = !mesh.shades.is_empty() && self.picture.ramp.len() > 1 && (!is_alarm || self.panel.hatch);
+        let has_field = !mesh.shades.is_empty() && self.picture.ramp.len() > 1;
         let plain = if is_alarm && !has_field { palette.alarm } else { palette.sound_flat };
         if !has_field {
             items.push(Item::Fill { path: self.whole(mesh), paint: plain.into() });
@@ -222,7 +222,7 @@ impl Flat<'_> {
         let share = ((element - low) / (high - low)).clamp(0.0, 1.0);
         let strength = (element / SMALL_ELEMENT).min(1.0) * share * share * (3.0 - 2.0 * share);
         let body = palette.sound_flat;
-        let is_plain = self.picture.ramp.is_empty() || !self.panel.hatch;
+        let is_plain = self.picture.ramp.is_empty();
         let alarm = if is_plain { palette.alarm_line } else { palette.alarm };
         let kinds: [(&[LineKind], [f32; 2], Colour, Colour); 5] = [
             (&[LineKind::Edge, LineKind::ObstacleEdge], [EDGE[0], EDGE[1] * strength], palette.edge, body),

@@ -406,7 +406,7 @@ fn light_keeps_the_colours_of_the_key() {
     let Some(gpu) = gpu("light_keeps_the_colours_of_the_key") else { return };
     let (mut scene, mut frame) = with_field(Field::Speed, [0.0, 1.0], 4);
     let view = &mut scene.view;
-    (view.size, view.edges, view.outline, view.hatch) = ([200, 160], [false; 2], false, false);
+    (view.size, view.edges, view.outline) = ([200, 160], [false; 2], false);
     frame.runs.truncate(1);
     let mut renderer = localshape::render::Renderer::new(gpu, scene.view.size).expect("a size that can be drawn");
     let maps = [MintIndigo, Viridis, Cividis, Magma, Greys, VioletGreen, PurpleGreen];

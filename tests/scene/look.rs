@@ -162,21 +162,21 @@ fn scales_have_named_colours_and_factors() {
 }
 
 #[test]
-fn outlines_and_the_hatch_are_there_unless_they_are_not_wanted() {
+fn outlines_are_there_unless_they_are_not_wanted() {
     let drawn = |view: &str| {
         let view = good(&with(view)).view;
-        (view.outline, view.hatch, view.edges)
+        (view.outline, view.edges)
     };
-    assert_eq!(drawn(""), (true, true, [true; 2]));
-    assert_eq!(drawn("outline = false"), (false, true, [true; 2]));
-    assert_eq!(drawn("hatch = false\nedges = 'outline'"), (true, false, [false; 2]));
+    assert_eq!(drawn(""), (true, [true; 2]));
+    assert_eq!(drawn("outline = false"), (false, [true; 2]));
+    assert_eq!(drawn("edges = 'outline'"), (true, [false; 2]));
 }
 
 #[test]
 fn the_digest_follows_what_colours_mean() {
     let digest = |view: &str| good(&with(view)).digest;
     let plain = digest("");
-    for same in ["colours = {}", "text_scale = 1", "outline = true\nhatch = true"] {
+    for same in ["colours = {}", "text_scale = 1", "outline = true"] {
         assert_eq!(digest(same), plain, "{same}");
     }
     assert_eq!(digest("colours.body = 'steelblue'"), digest("colours = { body = '#4682B4' }"));
@@ -189,7 +189,6 @@ fn the_digest_follows_what_colours_mean() {
         "colours.turned_over = 'purple'",
         "text_scale = 1.1",
         "outline = false",
-        "hatch = false",
         "colour.by = 'speed'",
         "colour = { by = 'speed', map = 'greys' }",
     ]
@@ -197,7 +196,7 @@ fn the_digest_follows_what_colours_mean() {
     .to_vec();
     all.sort();
     all.dedup();
-    assert_eq!(all.len(), 9);
+    assert_eq!(all.len(), 8);
 }
 
 #[track_caller]
@@ -226,23 +225,6 @@ fn mistakes_of_colours() {
     view("color = 'red'", "20:1 unknown key `color` in `view` did you mean `colour`?");
     // All of them at once.
     view("colours = { body = 'x', turned_over = 'y' }", "20:20 `view.colours.body`\n20:39 `view.colours.turned_over`");
-}
-
-#[test]
-fn a_field_without_a_hatch_has_a_map_that_all_eyes_tell_from_turned_over_elements() {
-    for (map, found) in [("mint-indigo", None), ("greys", None), ("viridis", Some("10.5")), ("magma", Some("7.7"))] {
-        let text = format!("hatch = false\ncolour = {{ by = 'speed', map = '{map}' }}");
-        let Some(found) = found else {
-            assert!(!good(&with(&text)).view.hatch);
-            continue;
-        };
-        let expected = format!("(deuteranopia) they differ by {found} (CIEDE2000); expected at least 20");
-        view(&text, &format!("20:9 {expected}"));
-        view(&text, "20:9 remove `hatch`, or choose another `view.colour.map` or `view.colours.turned_over`");
-        // With a hatch, or if the field does not colour surfaces, turned-over elements are marked in another way.
-        good(&with(&format!("colour = {{ by = 'speed', map = '{map}' }}")));
-        good(&with(&format!("{text}\nshow = ['nodes']")));
-    }
 }
 
 #[test]
@@ -302,7 +284,6 @@ fn mistakes_of_maps_and_factors() {
         "size = { mm = [40, 20] }\ntext_scale = { pt = 20 }",
         "21:14 type of 20 pt does not fit a picture of this size; expected ",
     );
-    view("hatch = 0", "20:9 `view.hatch` is the whole number 0; expected true or false");
     view("outline = 'no'", "20:11 `view.outline` is the string \"no\"; expected true or false");
 }
 

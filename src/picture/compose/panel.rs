@@ -151,7 +151,6 @@ impl<'a> Draft<'a> {
             floor: self.floor(&staged),
             sound,
             turned_over,
-            hatch: self.scene.view.hatch,
             dotted: self.run.snapshot.flat.contains(&true),
             greyed: self.greyed,
             lines,
