@@ -3,7 +3,7 @@
 use super::palette::Theme;
 use super::print::{SizeFile, TextScaleFile};
 use super::typed::{ColoursFile, FontFile, TypedColour};
-use super::view::{ColourMap, FloorStyle, Label, Labels, Light};
+use super::view::{ColourMap, FloorStyle, Label, Labels};
 use crate::reading::coordinates::Coordinates;
 use crate::sim::field::Field;
 use crate::sim::snapshot::Diagnostic;
@@ -73,8 +73,6 @@ pub(crate) struct ViewFile {
     /// and nodes, counted from 0, such as `["centre", 26]`. The whole scene is simulated before the first frame is drawn. Default: none.
     #[schemars(length(min = 1, max = 64))]
     pub(crate) paths: Option<Vec<PathFile>>,
-    /// Direction of the light, in space, such as `{ azimuth = -0.9 }`.
-    pub(crate) light: Light,
     /// Whether bodies and obstacles cast shadows on the floor.
     pub(crate) shadow: bool,
     /// How floors are drawn. In the plane they never have a grid.
@@ -109,7 +107,6 @@ impl Default for ViewFile {
             strip: None,
             ghost: None,
             paths: None,
-            light: Light::default(),
             shadow: true,
             floor: FloorStyle::default(),
             edges: EdgesFile::default(),

@@ -30,6 +30,4 @@ pub(crate) use run_lines::LineStyle;
 pub(crate) use subject::Subject;
 #[cfg(feature = "render")]
 pub(crate) use view::axes;
-pub use view::{
-    Camera, ColourMap, ColourScale, FloorStyle, FontFiles, Ghost, Labels, Light, Style, Traced, View, Visible,
-};
+pub use view::{Camera, ColourMap, ColourScale, FloorStyle, FontFiles, Ghost, Labels, Style, Traced, View, Visible};

@@ -94,7 +94,6 @@ pub(crate) fn resolve(
         strip: typed.strip,
         ghost,
         paths,
-        light: typed.light,
         shadow: typed.shadow,
         floor: typed.floor,
         edges: match typed.edges {

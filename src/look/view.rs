@@ -48,8 +48,6 @@ pub struct View {
     pub ghost: Option<Ghost>,
     /// What leaves a path behind it.
     pub paths: Vec<Traced>,
-    /// From where the light falls.
-    pub light: Light,
     /// Whether there are shadows.
     pub shadow: bool,
     /// How floors are drawn.
@@ -97,7 +95,6 @@ impl Default for View {
             strip: None,
             ghost: None,
             paths: Vec::new(),
-            light: Light::default(),
             shadow: true,
             floor: FloorStyle::default(),
             edges: [true; 2],
@@ -212,26 +209,6 @@ pub(crate) enum Label {
     ScaleBar,
     /// What colours and arrows mean, if there are any and room for it, below all panels.
     Legend,
-}
-
-/// Direction of the light, relative to the camera.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Light {
-    /// Azimuth from straight behind the viewer to the left (rad); negative to the right. Default: 62°.
-    #[schemars(range(min = -3.15, max = 3.15))]
-    pub azimuth: f64,
-    /// Elevation above the horizon (rad). Default: 50°. The light is steeper for bodies that fly high, whose shadows would
-    /// otherwise leave the picture.
-    #[schemars(range(min = 0.2, max = 1.57))]
-    pub elevation: f64,
-}
-
-impl Default for Light {
-    /// 62° from the left, 50° up.
-    fn default() -> Self {
-        Self { azimuth: 62.0 / 180.0 * std::f64::consts::PI, elevation: 50.0 / 180.0 * std::f64::consts::PI }
-    }
 }
 
 /// How floors are drawn.

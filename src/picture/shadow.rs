@@ -7,7 +7,6 @@
 
 use super::camera::{Framing, Lens};
 use super::narrow::narrow;
-use crate::look::Light;
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
@@ -15,6 +14,9 @@ use std::borrow::Cow;
 pub(crate) const CELLS: usize = 128;
 /// Half the angle of the cone from which the key light comes (rad).
 const KEY_CONE: f64 = 0.12;
+/// Azimuth of the key light from straight behind the viewer to the left, and its elevation above the horizon (rad).
+const KEY_AZIMUTH: f64 = 62.0 / 180.0 * std::f64::consts::PI;
+const KEY_ELEVATION: f64 = 50.0 / 180.0 * std::f64::consts::PI;
 /// How much steeper the key light falls for each distance of the camera that bodies have risen: the shadow stays in the
 /// panel.
 const KEY_STEEPENING: f64 = 8.0;
@@ -76,11 +78,11 @@ impl Plane {
 }
 
 /// Unit vector towards the key light, which goes with a camera.
-pub(super) fn key_light(lens: &Lens, framing: &Framing, light: Light) -> DVec3 {
+pub(super) fn key_light(lens: &Lens, framing: &Framing) -> DVec3 {
     let towards_viewer = lens.right.cross(DVec3::Y);
-    let (left, towards) = libm::sincos(light.azimuth);
+    let (left, towards) = libm::sincos(KEY_AZIMUTH);
     let level = towards * towards_viewer - left * lens.right;
-    let slope = libm::tan(light.elevation) + KEY_STEEPENING * framing.rise / framing.distance;
+    let slope = libm::tan(KEY_ELEVATION) + KEY_STEEPENING * framing.rise / framing.distance;
     (level + slope * DVec3::Y).normalize()
 }
 

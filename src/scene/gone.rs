@@ -46,6 +46,7 @@ const GONE: &[Gone] = &[
     key("view.letters", "write `\"letters\"` in `view.labels`"),
     key("view.line_scale", "remove it"),
     key("view.margin", "remove it"),
+    key("view.light", "remove it"),
     key("view.opacity", "remove it; elements that are turned over show through the others"),
     key("view.points", "remove it"),
     key("view.scale_bar", "leave `\"scale-bar\"` in `view.labels`, or take it out"),

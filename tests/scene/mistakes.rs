@@ -659,7 +659,6 @@ fn mistakes_of_what_is_shown() {
     view("caption = \"a\\tb\"", "20:11 contains the control character '\\t'; it is lines of text");
     view("strip = 'turned over'", "20:9 did you mean \"turned_over\"?");
     view("labels = ['title']", "20:11 expected \"letters\", \"name\", \"model\", \"clock\", \"count\", \"number\"");
-    view("light = { elevation = 0 }", "20:23 expected a number from 0.2 to 1.57");
     view("floor = 'tiles'", "20:9 expected \"grid\", \"plain\" or \"none\"");
     view("edges = 'none'", "20:9 expected \"all\", \"visible\" or \"outline\"");
     view("show = []", "20:8 `view.show` is empty; expected at least 1");

@@ -111,7 +111,7 @@ impl<'a> Draft<'a> {
             viewport,
             clear: layout::clear_of_words(viewport, view, scale),
             scale,
-            key: key_light(&lens, framing, view.light),
+            key: key_light(&lens, framing),
             origin: framing.target,
             side: view.side,
             position,
