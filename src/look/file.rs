@@ -79,10 +79,6 @@ pub(crate) struct ViewFile {
     pub(crate) floor: FloorStyle,
     /// Which lines are drawn on surfaces.
     pub(crate) edges: EdgesFile,
-    /// Whether silhouettes are drawn: outlines and occluding contours of solid obstacles and of elements that are not turned
-    /// over. With `outline = false` and `edges = "outline"` such elements have no lines at all. Outlines of turned-over
-    /// elements are always drawn.
-    pub(crate) outline: bool,
     /// The camera. Default: one that shows the body and what comes near it.
     pub(crate) camera: CameraFile,
 }
@@ -110,7 +106,6 @@ impl Default for ViewFile {
             shadow: true,
             floor: FloorStyle::default(),
             edges: EdgesFile::default(),
-            outline: true,
             camera: CameraFile::default(),
         }
     }
@@ -138,12 +133,12 @@ pub(crate) enum PathPointFile {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum EdgesFile {
-    /// The outline, unless `outline = false`, and all edges; hidden ones faintly.
+    /// The outline and all edges; hidden ones faintly.
     #[default]
     All,
-    /// The outline, unless `outline = false`, and visible edges.
+    /// The outline and visible edges.
     Visible,
-    /// Only the outline, unless `outline = false`. Edges of turned-over elements are always drawn.
+    /// Only the outline. Edges of turned-over elements are always drawn.
     Outline,
 }
 

@@ -101,7 +101,6 @@ pub(crate) fn resolve(
             EdgesFile::Visible => [true, false],
             EdgesFile::Outline => [false, false],
         },
-        outline: typed.outline,
     })
 }
 

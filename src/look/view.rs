@@ -54,8 +54,6 @@ pub struct View {
     pub floor: FloorStyle,
     /// Whether edges in front, and edges behind the body, are drawn.
     pub edges: [bool; 2],
-    /// Whether the outlines of solid obstacles and of elements that are not turned over are drawn.
-    pub outline: bool,
 }
 
 impl View {
@@ -98,7 +96,6 @@ impl Default for View {
             shadow: true,
             floor: FloorStyle::default(),
             edges: [true; 2],
-            outline: true,
         }
     }
 }

@@ -48,6 +48,7 @@ const GONE: &[Gone] = &[
     key("view.margin", "remove it"),
     key("view.light", "remove it"),
     key("view.opacity", "remove it; elements that are turned over show through the others"),
+    key("view.outline", "remove it; outlines are always drawn"),
     key("view.points", "remove it"),
     key("view.scale_bar", "leave `\"scale-bar\"` in `view.labels`, or take it out"),
     key("view.spring_colour", "write `colour = { by = \"strain\", range = [-0.3, 0.3], map = \"violet-green\" }`"),

@@ -406,7 +406,7 @@ fn light_keeps_the_colours_of_the_key() {
     let Some(gpu) = gpu("light_keeps_the_colours_of_the_key") else { return };
     let (mut scene, mut frame) = with_field(Field::Speed, [0.0, 1.0], 4);
     let view = &mut scene.view;
-    (view.size, view.edges, view.outline) = ([200, 160], [false; 2], false);
+    (view.size, view.edges) = ([200, 160], [false; 2]);
     frame.runs.truncate(1);
     let mut renderer = localshape::render::Renderer::new(gpu, scene.view.size).expect("a size that can be drawn");
     let maps = [MintIndigo, Viridis, Cividis, Magma, Greys, VioletGreen, PurpleGreen];
@@ -418,6 +418,7 @@ fn light_keeps_the_colours_of_the_key() {
             let mut picture = compose(&scene, &frame);
             (picture.words, picture.marks) = Default::default();
             picture.panels[0].borders.clear();
+            picture.panels[0].lines.clear();
             let key = picture.ramp[at];
             let image = renderer.draw(&picture).expect("the device works");
             picture.panels[0].sound = Mesh::default();

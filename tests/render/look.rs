@@ -39,7 +39,7 @@ fn fonts_that_a_scene_brings_are_the_ones_it_is_written_with() {
 }
 
 #[test]
-fn without_outlines_there_are_none_but_those_of_turned_over_elements() {
+fn without_edges_outlines_and_turned_over_elements_stay() {
     let (mut scene, mut frame) = fig4b(12);
     frame.runs[1].snapshot.turned_over[0] = true;
     let kinds = |picture: &Picture| {
@@ -50,17 +50,9 @@ fn without_outlines_there_are_none_but_those_of_turned_over_elements() {
         [LineKind::Contour, LineKind::AlarmContour, LineKind::Edge, LineKind::AlarmEdge].map(count)
     };
     let usual = kinds(&compose(&scene, &frame));
-    scene.view.outline = false;
+    scene.view.edges = [false; 2];
     assert!(usual.iter().all(|&count| count > 0), "{usual:?}");
-    assert_eq!(kinds(&compose(&scene, &frame)), [0, usual[1], usual[2], usual[3]]);
-    for text in [include_str!("../../scenes/obstacles.toml"), include_str!("../../scenes/wheel.toml")] {
-        let mut scene = parse(text);
-        scene.view.outline = false;
-        let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
-        assert!(picture.panels[0].lines.iter().all(|line| line.kind != LineKind::ObstacleContour));
-        let solids = &picture.panels[0].obstacles.solids;
-        assert!(solids.iter().all(|solid| solid.rim.is_none_or(|rim| rim == solid.colour)));
-    }
+    assert_eq!(kinds(&compose(&scene, &frame)), [usual[0], usual[1], 0, usual[3]]);
 }
 
 /// A picture of nothing but its bodies' surfaces.

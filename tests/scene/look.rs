@@ -162,21 +162,10 @@ fn scales_have_named_colours_and_factors() {
 }
 
 #[test]
-fn outlines_are_there_unless_they_are_not_wanted() {
-    let drawn = |view: &str| {
-        let view = good(&with(view)).view;
-        (view.outline, view.edges)
-    };
-    assert_eq!(drawn(""), (true, [true; 2]));
-    assert_eq!(drawn("outline = false"), (false, [true; 2]));
-    assert_eq!(drawn("edges = 'outline'"), (true, [false; 2]));
-}
-
-#[test]
 fn the_digest_follows_what_colours_mean() {
     let digest = |view: &str| good(&with(view)).digest;
     let plain = digest("");
-    for same in ["colours = {}", "text_scale = 1", "outline = true"] {
+    for same in ["colours = {}", "text_scale = 1", "shadow = true"] {
         assert_eq!(digest(same), plain, "{same}");
     }
     assert_eq!(digest("colours.body = 'steelblue'"), digest("colours = { body = '#4682B4' }"));
@@ -188,7 +177,7 @@ fn the_digest_follows_what_colours_mean() {
         "colours.body = 'white'",
         "colours.turned_over = 'purple'",
         "text_scale = 1.1",
-        "outline = false",
+        "shadow = false",
         "colour.by = 'speed'",
         "colour = { by = 'speed', map = 'greys' }",
     ]
@@ -284,7 +273,7 @@ fn mistakes_of_maps_and_factors() {
         "size = { mm = [40, 20] }\ntext_scale = { pt = 20 }",
         "21:14 type of 20 pt does not fit a picture of this size; expected ",
     );
-    view("outline = 'no'", "20:11 `view.outline` is the string \"no\"; expected true or false");
+    view("shadow = 'no'", "20:10 `view.shadow` is the string \"no\"; expected true or false");
 }
 
 /// A folder with a scene that names fonts, and files beside it.

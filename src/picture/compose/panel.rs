@@ -13,7 +13,7 @@ use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
 use crate::picture::shadow::key_light;
 use crate::picture::surface::SurfaceLines;
-use crate::picture::{Framing, Line, LineKind, Mark, Mesh, Obstacles, Panel, Sight};
+use crate::picture::{Framing, Line, Mark, Mesh, Obstacles, Panel, Sight};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension};
 use crate::sim::contact;
@@ -139,9 +139,6 @@ impl<'a> Draft<'a> {
         self.fade_obstacles(&mut obstacles, above);
         above.extend(arrows);
         let borders = borders.into_iter().map(|border| border.line).chain(lines[of_body..].iter().copied()).collect();
-        if !self.scene.view.outline {
-            lines.retain(|line| !matches!(line.kind, LineKind::Contour | LineKind::ObstacleContour));
-        }
         self.hands(above);
         self.arrows(above);
         Panel {
@@ -245,8 +242,7 @@ impl<'a> Draft<'a> {
             palette: &self.composer.palette,
         };
         if self.flat {
-            let outline = self.scene.view.outline;
-            let flat = obstacle::Flat { site, line_scale: self.scale.line(), outline };
+            let flat = obstacle::Flat { site, line_scale: self.scale.line() };
             flat.arrows(&self.pointers(self.viewport), above);
             return flat.draw();
         }

@@ -23,8 +23,6 @@ pub(in crate::picture) struct Flat<'a> {
     pub(in crate::picture) site: Site<'a>,
     /// Thickness of lines, in parts of that in the reference picture.
     pub(in crate::picture) line_scale: f64,
-    /// Whether outlines are drawn.
-    pub(in crate::picture) outline: bool,
 }
 
 impl Flat<'_> {
@@ -79,8 +77,6 @@ impl Flat<'_> {
             mesh.triangles.extend((2..polygon.len() as u32).map(|at| [base, base + at - 1, base + at]));
         }
         let [colour, rim] = self.site.palette.obstacle_flat;
-        // Without its outline it still has a smooth border.
-        let rim = if self.outline { rim } else { colour };
         (!mesh.triangles.is_empty()).then_some(Solid { mesh, colour, rim: Some(rim), near: Vec::new() })
     }
 
