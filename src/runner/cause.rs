@@ -1,4 +1,4 @@
-//! Why a run diverges: found by simulating the way into it once more, also with smaller steps.
+//! The cause of a divergence, found by simulating the steps before it once more, also with smaller steps.
 
 use super::last_fit::fits;
 use crate::scene::{Run, Scene};
@@ -13,26 +13,26 @@ use crate::sim::world::World;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Where and why a run diverged.
+/// The place and the cause of a divergence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Cause {
-    /// The first node that would have become too fast, or not a number.
+    /// The first node whose speed became too large or no number.
     pub(crate) node: usize,
-    /// What made it so and what to do, as sentences in one line.
+    /// The cause and the remedy, as sentences in one line.
     #[serde(rename = "cause")]
     pub(crate) words: String,
 }
 
-/// Number of steps after which it is tested whether a state fits.
+/// The number of steps between tests of a state.
 const STRIDE: u64 = 64;
-/// Steps are halved so many times.
+/// The number of times that steps are halved.
 const HALVINGS: u32 = 5;
-/// The most steps of an element that are simulated again for each part of the search: about a second.
+/// The most steps of an element that each part of the search simulates: about a second.
 const MOST_ELEMENT_STEPS: u64 = 10_000_000;
 
 impl Cause {
-    /// Of a run that diverges after a sound state of it, with so many threads. `None` where the way from there is too long to be
-    /// simulated again.
+    /// The explanation of a run that diverges after a sound state, found with some threads. `None` if too many steps
+    /// lie between.
     pub(crate) fn find(
         scene: &Scene,
         run: usize,
@@ -46,7 +46,7 @@ impl Cause {
         let mut world = scene.world(run);
         world.set_crew(Crew::new(threads));
         world.set_state(sound.clone());
-        // The way begins at least a stride before the last state that fits.
+        // The search begins at least a stride before the last state that fits.
         let (mut begin, mut fitting) = (sound.clone(), sound.clone());
         while world.status() == Status::Ok && world.steps() < divergence.step {
             world.advance(STRIDE.min(divergence.step - world.steps()));
@@ -63,9 +63,9 @@ impl Cause {
         Some(Self { node, words: format!("{what}: {why}") })
     }
 
-    /// What moves so far in a step that the step cannot follow it, if anything does.
+    /// The cause that something moves too far for one step, if anything does.
     fn too_fast(scene: &Scene, run: usize, world: &World, node: usize, divergence: Divergence) -> Option<String> {
-        /// In sizes of an element.
+        /// The distance of a step in sizes of an element.
         const FAR: f64 = 0.5;
         let (end, at) = (divergence.time, world.state().position[node]);
         let begin = end - scene.runs[run].step;
@@ -90,7 +90,7 @@ impl Cause {
         })
     }
 
-    /// Whether smaller steps from the beginning of the way get past the divergence.
+    /// Whether smaller steps from the start of the search get past the divergence.
     fn by_steps(scene: &Scene, run: usize, begin: &State, divergence: Divergence, threads: usize) -> String {
         let Run { step, integrator, .. } = scene.runs[run];
         let hint = match integrator {
@@ -102,7 +102,7 @@ impl Cause {
         let mut tried = None;
         for halving in (1..=HALVINGS).filter(|_| !integrator.is_adaptive()) {
             let parts = 1_u64 << halving;
-            // Twice as far.
+            // The search simulates twice as far.
             let steps = (divergence.step - begin.steps).saturating_mul(2 * parts);
             if steps > left {
                 break;
@@ -112,7 +112,7 @@ impl Cause {
             let mut world = finer.world(run);
             world.set_crew(Crew::new(threads));
             let mut state = State { steps: begin.steps.saturating_mul(parts), ..begin.clone() };
-            // The integrator begins anew with other steps.
+            // The integrator starts anew with other steps.
             state.memory.integrator.clear();
             world.set_state(state);
             world.advance(steps);
@@ -127,7 +127,7 @@ impl Cause {
     }
 }
 
-/// The most steps of a scene that are simulated again for each part of the search.
+/// The most steps of a scene that each part of the search simulates.
 fn most_steps(scene: &Scene) -> u64 {
     MOST_ELEMENT_STEPS / (scene.body.elements.len() as u64).max(1)
 }

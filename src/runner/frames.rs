@@ -1,5 +1,5 @@
-//! Frames in rising order: simulated as they are asked for, all before the first one, or read from stored states; and where their
-//! simulation has come to, so that another process can go on from there.
+//! Frames in rising order: simulated as they are asked for, all simulated before the first one, or read from stored
+//! states. The progress can be saved, so that another process continues.
 
 use super::last_fit::Fitting;
 use super::{History, Runner, Running};
@@ -10,74 +10,75 @@ use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
-/// Frames of a scene in rising order, simulated once, also if the time series of the whole scene have to be known
-/// before the first frame is drawn, or not at all if their states are stored.
+/// Frames of a scene in rising order. The scene is simulated once, even if the first frame needs the time series of the
+/// whole scene, or not at all if its states are stored.
 pub(crate) struct Frames<'a> {
     runner: Runner<'a>,
     frames: Vec<u64>,
-    /// Number of frames returned, or that need not be.
+    /// The number of frames that were returned or skipped.
     taken: usize,
-    /// Whether the runs have the states of the next frame, and what pictures show of those that diverge is looked for.
+    /// True when every run has reached the next frame.
     is_searching: bool,
-    /// Steps that each run had taken in an earlier process.
+    /// The steps of each run in earlier processes.
     before: Vec<u64>,
     source: Source<'a>,
 }
 
-/// How far a simulation has come, with all that it needs to go on with the same bits.
+/// The progress of a simulation, from which it continues with the same bits.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Progress {
     /// The present state of each run, as bytes.
     states: Vec<Vec<u8>>,
     /// The time series so far.
     history: History,
-    /// What [`Frames::last_fit`] returns of each run, with states as bytes.
+    /// The results of [`Frames::last_fit`] for each run, with states as bytes.
     last_fits: Vec<Option<StoredFit>>,
-    /// Number of frames returned.
+    /// The number of frames returned.
     pub(crate) taken: usize,
-    /// If states wait until the end of the simulation, where each of those that do so ends in their file.
+    /// The end of each waiting state in its file, if states wait until the end of the simulation.
     waiting: Option<Vec<u64>>,
 }
 
-/// A last state that fits, as bytes, and how many times wider the body is at the end; `None` if a run does not diverge.
+/// A last state that fits, as bytes, and the final width of the body relative to it; `None` if the run does not
+/// diverge.
 type StoredFit = Option<(Vec<u8>, f64)>;
 
 impl Progress {
-    /// Length of the file with waiting states (bytes).
+    /// The length of the file with waiting states (bytes).
     pub(crate) fn waiting_length(&self) -> u64 {
         self.waiting.as_ref().and_then(|ends| ends.last()).copied().unwrap_or(0)
     }
 }
 
-/// Where the states of frames come from.
+/// The source of the states of frames.
 enum Source<'a> {
-    /// From the simulation, one after the other.
+    /// The simulation, one frame after the other.
     Simulated,
-    /// From the simulation, after all of it: they wait until the time series are known.
+    /// The simulation, after its end: states wait until the time series are known.
     Waiting(Waiting),
-    /// From an earlier simulation, with its time series until they are returned.
+    /// An earlier simulation, with its time series until they are returned.
     Stored(Box<dyn Stored + 'a>, Option<History>),
 }
 
-/// What an earlier simulation of the same runs of the same scene has stored.
+/// The stored results of an earlier simulation of the same runs of the same scene.
 pub(crate) trait Stored: Send {
-    /// The state of the run at this place among the runs, in a frame, which it reaches after so many steps.
+    /// The state of the run with this index in a frame, after its number of steps.
     ///
     /// # Errors
-    /// If it cannot be read.
+    /// The state cannot be read.
     fn state(&mut self, place: usize, frame: u64, steps: u64) -> io::Result<State>;
 
     /// Takes the time series, if there are any.
     fn take_history(&mut self) -> Option<History>;
 
-    /// What [`Frames::last_fit`] returned of a run.
+    /// The result of [`Frames::last_fit`] for a run.
     fn last_fit(&self, place: usize) -> Option<Option<(State, f64)>>;
 }
 
 /// The states of frames, stored until they are drawn.
 struct Waiting {
     states: Store,
-    /// Number of frames reached by the simulation.
+    /// The number of frames reached by the simulation.
     reached: usize,
     is_known: bool,
 }
@@ -91,12 +92,12 @@ pub(crate) enum Next {
     TimeSeries(History),
     /// The next frame.
     Frame(Frame),
-    /// There are no more.
+    /// No frames are left.
     Done,
 }
 
 impl<'a> Frames<'a> {
-    /// Frames of a runner at its start, in rising order. With a file for `waiting` states the runner has to record time
+    /// Frames of a runner at its start, in rising order. With a file for `waiting` states the runner must record time
     /// series, and everything is simulated before the first frame is returned.
     pub(crate) fn new(runner: Runner<'a>, frames: &[u64], waiting: Option<File>) -> Self {
         let source = match waiting {
@@ -107,10 +108,10 @@ impl<'a> Frames<'a> {
         Self { runner, frames: frames.to_vec(), taken: 0, is_searching: false, before, source }
     }
 
-    /// Where the simulation has come to; `None` if there is nothing left to simulate. Waiting states are on the disk then.
+    /// The progress of the simulation; `None` once it is finished. Waiting states are on the disk then.
     ///
     /// # Errors
-    /// If they cannot be written.
+    /// The waiting states cannot be written.
     pub(crate) fn progress(&mut self) -> io::Result<Option<Progress>> {
         let Self { runner, frames, taken, source, .. } = self;
         let waiting = match source {
@@ -134,10 +135,11 @@ impl<'a> Frames<'a> {
         Ok(Some(Progress { states, history, last_fits, taken, waiting }))
     }
 
-    /// Goes on where another process has come to with the same runs and frames, before the first call of [`Self::next`].
+    /// Continues from the progress of another process with the same runs and frames, before the first call of
+    /// [`Self::next`].
     ///
     /// # Errors
-    /// If it was not with these.
+    /// The progress belongs to other runs or frames.
     pub(crate) fn resume(&mut self, progress: Progress) -> io::Result<()> {
         let Self { runner, frames, taken, before, source, .. } = self;
         let Progress { states, history, last_fits, taken: returned, waiting } = progress;
@@ -152,7 +154,7 @@ impl<'a> Frames<'a> {
         };
         let reached = reached.filter(|&reached| reached <= frames.len()).ok_or(io::ErrorKind::InvalidData)?;
         let end = runner.scene.last_frame();
-        // Neither the next frame nor the next moment of a time series may have passed.
+        // The next frame and the next moment of a time series must lie ahead.
         let next = runner.scene.moment(frames.get(reached).copied().unwrap_or(end));
         let fit = [states.len(), history.series.len(), last_fits.len()] == [runs; 3];
         if !fit || !history.series.iter().zip(&runner.runs).all(|(series, running)| series.fits(&running.series)) {
@@ -185,10 +187,10 @@ impl<'a> Frames<'a> {
         Ok(())
     }
 
-    /// Frames of a runner, in rising order, that an earlier simulation has stored.
+    /// Stored frames of a runner, in rising order.
     ///
     /// # Errors
-    /// If what is stored does not belong to these runs.
+    /// The stored results do not belong to these runs.
     pub(crate) fn stored(mut runner: Runner<'a>, frames: &[u64], mut stored: impl Stored + 'a) -> io::Result<Self> {
         for (place, running) in runner.runs.iter_mut().enumerate() {
             let Some(found) = stored.last_fit(place) else { continue };
@@ -206,7 +208,7 @@ impl<'a> Frames<'a> {
     /// Advances each run by at most `most_steps`.
     ///
     /// # Errors
-    /// If stored states cannot be written or read.
+    /// Stored states cannot be written or read.
     pub(crate) fn next(&mut self, most_steps: u64) -> io::Result<Next> {
         let Self { runner, frames, taken, is_searching, source, .. } = self;
         if let Source::Stored(_, history) = source
@@ -254,7 +256,7 @@ impl<'a> Frames<'a> {
         Ok(Next::Frame(runner.taken(frame)))
     }
 
-    /// Steps taken so far, and steps at the end, of all runs together.
+    /// The steps taken so far and the steps at the end, of all runs together.
     pub(crate) fn steps(&self) -> [u64; 2] {
         let scene = self.runner.scene;
         let last = match self.source {
@@ -265,7 +267,7 @@ impl<'a> Frames<'a> {
         [self.reached().into_iter().fold(0, u64::saturating_add), self.runner.steps_at(scene.moment(last))]
     }
 
-    /// The time that all runs have reached, and that of the last frame (s); `None` if nothing is left to simulate.
+    /// The time that all runs have reached, and the time of the last frame (s); `None` once the simulation is finished.
     pub(crate) fn on_the_way(&self) -> Option<[f64; 2]> {
         let end = match &self.source {
             Source::Simulated => *self.frames.get(self.taken..)?.last()?,
@@ -276,46 +278,46 @@ impl<'a> Frames<'a> {
         Some([times.fold(f64::INFINITY, f64::min), self.runner.scene.frame_time(end)])
     }
 
-    /// Steps that each run has taken so far in this process.
+    /// The steps of each run in this process.
     pub(crate) fn simulated(&self) -> Vec<u64> {
         self.reached().into_iter().zip(&self.before).map(|(steps, before)| steps - before).collect()
     }
 
-    /// Steps that each run has taken so far.
+    /// The steps of each run so far.
     fn reached(&self) -> Vec<u64> {
         let end = self.runner.scene.moment(self.runner.scene.last_frame());
         let steps = |running: &Running| match &self.source {
             Source::Stored(..) => 0,
-            // Runs that have gone all the way are then set back to each frame.
+            // Finished runs are then set back to each frame.
             Source::Waiting(waiting) if waiting.is_known => running.world.steps_at(end),
             _ => running.world.steps(),
         };
         self.runner.runs.iter().map(steps).collect()
     }
 
-    /// The states of all runs in the last frame that was returned; before the first, those at the start.
+    /// The states of all runs in the last returned frame; before the first one, those at the start.
     pub(crate) fn states(&self) -> impl Iterator<Item = &State> {
         self.runner.runs.iter().map(|running| running.world.state())
     }
 
-    /// What pictures of the frames returned so far show of a run that diverges, if they show anything but its states: the
-    /// last state that fits, and how many times wider the body is at the end. `None` inside if it does not diverge.
+    /// The drawn state of a run that diverges, if the returned frames show another than the present one: the last state
+    /// that fits, and the final width of the body relative to it. The inner `None` means that the run does not diverge.
     pub(crate) fn last_fit(&self, place: usize) -> Option<Option<(&State, f64)>> {
         let found = self.runner.runs[place].last_fit.get()?;
         Some(found.as_ref().map(|found| (&found.state, found.shown.times_wider)))
     }
 
-    /// The time series recorded so far, if they were not returned.
+    /// The time series so far, unless they were returned.
     pub(crate) fn take_history(&mut self) -> History {
         self.runner.take_history()
     }
 
-    /// Number of frames returned.
+    /// The number of frames returned.
     pub(crate) fn taken(&self) -> usize {
         self.taken
     }
 
-    /// Calls `ask` on each helper thread of the runs; these do not belong to the rayon pool.
+    /// Calls `ask` on each helper thread of the runs, which are not in the rayon pool.
     pub(crate) fn ask_helpers(&mut self, ask: &(dyn Fn() + Sync)) {
         self.runner.ask_helpers(ask);
     }
@@ -324,7 +326,7 @@ impl<'a> Frames<'a> {
 /// Blocks of bytes in a file.
 struct Store {
     file: File,
-    /// Where each block ends.
+    /// The end of each block.
     ends: Vec<u64>,
 }
 

@@ -1,4 +1,4 @@
-//! The state that pictures show of a run that diverged: the last one that is not much wider than the body.
+//! The drawn state of a run that diverged: the last one that is not much wider than the body.
 
 use crate::scene::Scene;
 use crate::sim::crew::Crew;
@@ -8,22 +8,23 @@ use crate::sim::world::World;
 use glam::DVec3;
 
 /// A state fits if its nodes lie within this many times the radius of the body at rest or at the start, whichever is
-/// larger. A motion that ends well stretches few bodies so far; one that diverges has hardly begun to.
+/// larger. Sound motions stretch few bodies so far; diverging ones have hardly begun to.
 const FITS: f64 = 1.5;
-/// Number of steps after which it is tested whether a state fits. From the last of these that does on, each step is tested.
+/// The number of steps between tests of a state. From the last fitting one on, each step is tested.
 const STRIDE: u64 = 64;
 
-/// The last state that fits of a run that diverges, and what pictures show of it.
+/// The last state that fits of a run that diverges, and the drawn snapshot.
 #[derive(Clone, Debug)]
 pub(crate) struct Fitting {
-    /// The state. Its status says where the run diverges.
+    /// The state. Its status has the divergence.
     pub(crate) state: State,
-    /// What is shown.
+    /// The drawn snapshot.
     pub(crate) shown: LastFit,
 }
 
 impl Fitting {
-    /// From the state, in the world of its run, which then has it, and how many times wider the body is at the end.
+    /// The last fit with a state, in the world of its run, which takes the state, and the final width of the body
+    /// relative to it.
     pub(crate) fn new(world: &mut World, state: State, times_wider: f64) -> Self {
         world.set_state(state.clone());
         Self { state, shown: LastFit { snapshot: world.snapshot(), times_wider } }
@@ -35,21 +36,21 @@ pub(crate) fn fits(scene: &Scene, position: &[DVec3]) -> bool {
     radius(position) <= FITS * radius(&scene.body.rest).max(radius(&scene.initial.position))
 }
 
-/// The search for the last state that fits of a run that diverges before the scene ends. It simulates the run once more, which
-/// only runs pay for that diverge or have a state that does not fit.
+/// The search for the last state that fits of a run that diverges. It simulates the run once more, so only runs pay for
+/// it that diverge or have a state that does not fit.
 pub(crate) struct Search {
     world: World,
-    /// The last step looked at.
+    /// The last tested step.
     last: u64,
     stride: u64,
     /// The last state that fits so far.
     fitting: State,
-    /// Where the run diverges, and its radius there (m).
+    /// The divergence, and the radius there (m).
     end: Option<(Divergence, f64)>,
 }
 
 impl Search {
-    /// The search in a run of a scene, with threads of its own.
+    /// The search in a run of a scene, with its own threads.
     pub(crate) fn new(scene: &Scene, run: usize, threads: usize) -> Self {
         let mut world = scene.world(run);
         world.set_crew(Crew::new(threads));
@@ -58,8 +59,8 @@ impl Search {
         Self { world, last, stride: STRIDE, fitting, end: None }
     }
 
-    /// Searches on through about so many steps, and returns what it has found if it is at its end: `None` inside for a run that
-    /// does not diverge.
+    /// Searches about this many steps, and returns the result at the end: the inner `None` means that the run does not
+    /// diverge.
     pub(crate) fn advance(&mut self, scene: &Scene, most_steps: u64) -> Option<Option<Fitting>> {
         let mut left = most_steps;
         loop {
@@ -92,7 +93,7 @@ impl Search {
     }
 }
 
-/// The distance of the farthest point from the mean of all (m): the same however a body is turned.
+/// The distance of the farthest point from the mean of all (m), which rotations do not change.
 fn radius(points: &[DVec3]) -> f64 {
     let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
     points.iter().map(|point| point.distance(middle)).fold(0.0, f64::max)
@@ -127,7 +128,7 @@ mod tests {
             let expected = (run.snapshot.step > snapshot.step).then_some(last_fit);
             assert_eq!(run.last_fit.as_deref(), expected, "frame {}", frame.index);
         }
-        // From the next step on no state fits, up to the last one.
+        // No later state fits.
         let mut world = scene.world(2);
         world.advance(snapshot.step);
         assert_eq!(world.state().position, snapshot.position);
@@ -174,7 +175,7 @@ mod tests {
     fn a_body_that_is_stretched_and_does_not_diverge_shows_itself() {
         let scene = scene();
         let mut stretched = scene.clone();
-        // What is wider than the start without end, here by the speed it starts with.
+        // A body that grows without end, by its initial speed.
         stretched.initial.velocity.iter_mut().zip(&scene.initial.position).for_each(|(speed, at)| *speed = *at * 60.0);
         let mut runner = Runner::new(&stretched, &[0]);
         let wide = (1..40)

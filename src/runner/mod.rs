@@ -1,5 +1,5 @@
 //! Advances runs of a scene, in parallel, to requested moments: frames, states of a figure, moments of a time series.
-//! All other code simulates through this one.
+//! All other code simulates through this module.
 
 pub(crate) mod cause;
 mod frames;
@@ -39,17 +39,17 @@ struct Running {
     notes: Vec<Moment>,
     /// The diagnostics of the time series.
     wanted: Vec<Diagnostic>,
-    /// The points whose paths it has.
+    /// The points with recorded paths.
     traced: Vec<Traced>,
     body: Arc<Body>,
     series: TimeSeries,
-    /// Threads within the run.
+    /// The threads within the run.
     threads: usize,
-    /// Whether it is drawn.
+    /// Whether the run is drawn.
     is_drawn: bool,
-    /// What pictures show of it from there on if it diverges, known as soon as it is needed.
+    /// The drawn state after a divergence, found as soon as it is needed.
     last_fit: OnceLock<Option<Fitting>>,
-    /// The search for that, while it goes on.
+    /// The search for that state, while it runs.
     search: Option<Search>,
 }
 
@@ -57,14 +57,14 @@ impl<'a> Runner<'a> {
     /// The given runs of a scene at their start.
     ///
     /// # Panics
-    /// If the scene has no such run.
+    /// The scene has no such run.
     pub fn new(scene: &'a Scene, runs: &[usize]) -> Self {
         Self::among(runs.len(), scene, runs)
     }
 
-    /// The same, for `all` runs in total that share the threads.
+    /// A runner for some of `all` runs that share the threads.
     pub(crate) fn among(all: usize, scene: &'a Scene, runs: &[usize]) -> Self {
-        /// Least number of elements for each additional thread within a run.
+        /// The least number of elements for each additional thread within a run.
         const LEAST: usize = 2000;
         let threads = (rayon::current_num_threads() / all.max(1)).min(scene.body.elements.len() / LEAST).max(1);
         let running = |&run: &usize| {
@@ -88,8 +88,8 @@ impl<'a> Runner<'a> {
         Self { scene, runs: runs.iter().map(running).collect() }
     }
 
-    /// The same without computing what only pictures need: the field by which the scene is coloured, and the last states
-    /// that fit of runs that diverge.
+    /// Leaves out computations for pictures: the field that colours the scene, and the last states that fit of runs
+    /// that diverge.
     pub(crate) fn without_pictures(mut self) -> Self {
         for running in &mut self.runs {
             running.world.show(None);
@@ -98,19 +98,19 @@ impl<'a> Runner<'a> {
         self
     }
 
-    /// The same with these diagnostics only in its frames.
+    /// Computes only these diagnostics in frames.
     pub(crate) fn with_diagnostics(mut self, wanted: &[Diagnostic]) -> Self {
         self.runs.iter_mut().for_each(|running| running.world.want(wanted));
         self
     }
 
-    /// The same, recording time series of some diagnostics of all runs.
+    /// Records time series of some diagnostics of all runs.
     pub(crate) fn with_time_series(self, wanted: &[Diagnostic]) -> Self {
         self.with_closer_time_series(wanted, None, &[])
     }
 
-    /// The same with more moments: the interval `closer` (s), if given, has as many moments as the whole scene usually
-    /// has, and the steps nearest to each of `shown` (s) are added.
+    /// Records more moments: the interval `closer` (s), if given, has as many moments as the whole scene usually has,
+    /// and the steps nearest to each of `shown` (s) are added.
     pub(crate) fn with_closer_time_series(
         mut self,
         wanted: &[Diagnostic],
@@ -130,24 +130,24 @@ impl<'a> Runner<'a> {
     /// have the same bits however the steps are divided into calls.
     ///
     /// # Panics
-    /// If the moment has passed.
+    /// The moment has passed.
     pub fn advance_towards(&mut self, moment: Moment, most_steps: u64) -> bool {
         let scene = self.scene;
         let arrived = self.runs.par_iter_mut().map(|running| running.advance_towards(scene, moment, most_steps));
         arrived.reduce(|| true, |one, other| one && other)
     }
 
-    /// Steps taken so far, summed over all runs.
+    /// The steps taken so far, summed over all runs.
     pub fn steps(&self) -> u64 {
         self.runs.iter().fold(0, |sum, running| sum.saturating_add(running.world.steps()))
     }
 
-    /// Steps that all runs together have taken at a moment.
+    /// The steps of all runs together at a moment.
     pub(crate) fn steps_at(&self, moment: Moment) -> u64 {
         self.runs.iter().fold(0, |sum, running| sum.saturating_add(running.world.steps_at(moment)))
     }
 
-    /// The runs at the last moment that all have reached.
+    /// The states of the runs at the last moment that all have reached.
     pub fn snapshots(&self) -> Vec<RunFrame> {
         self.runs.par_iter().map(|running| running.frame(self.scene)).collect()
     }
@@ -155,7 +155,7 @@ impl<'a> Runner<'a> {
     /// Advances to a frame and returns it.
     ///
     /// # Panics
-    /// If the frame is before the last moment that was reached.
+    /// The frame is before the last moment that was reached.
     pub fn frame(&mut self, index: u64) -> Frame {
         self.advance_towards(self.scene.moment(index), u64::MAX);
         self.taken(index)
@@ -179,7 +179,7 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// The time series recorded so far. From then on nothing is.
+    /// The time series recorded so far. Recording ends.
     pub(crate) fn take_history(&mut self) -> History {
         let take = |running: &mut Running| {
             running.notes.clear();
@@ -192,7 +192,7 @@ impl<'a> Runner<'a> {
 }
 
 impl Running {
-    /// The present state, and what pictures show instead if it has diverged.
+    /// The present state, and the drawn one if the run has diverged.
     fn frame(&self, scene: &Scene) -> RunFrame {
         let Self { run, world, threads, is_drawn, last_fit, .. } = self;
         let frame = RunFrame::new(*run, world.snapshot());
@@ -205,7 +205,7 @@ impl Running {
         RunFrame { last_fit: shown.cloned().map(Box::new), ..frame }
     }
 
-    /// Whether pictures show its present state.
+    /// Whether pictures show the present state.
     fn shows_itself(&self, scene: &Scene) -> bool {
         self.world.status() == Status::Ok && fits(scene, &self.world.state().position)
     }
