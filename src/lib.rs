@@ -106,10 +106,8 @@ mod reading;
 pub mod render;
 pub mod runner;
 pub mod scene;
-mod study;
-mod table;
 #[cfg(feature = "render")]
-mod vector;
+pub mod vector;
 
 // Tests of what is inside, as large as other crates.
 #[cfg(test)]

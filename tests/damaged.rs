@@ -83,7 +83,6 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
         "body" => files("tests/cli", "npz"),
         "states" => vec![states()],
         "checkpoint" => vec![checkpoint_of_scene()],
-        "cells" => vec![b"0 4652007308841189376 0 12 3;\n1 4652007308841189376 0 12 diverged;\n".to_vec()],
         "state" => vec![localshape::sim::State::at_rest(vec![glam::DVec3::ONE; 3]).to_bytes()],
         "picture" => {
             let tags: Vec<(&'static str, String)> = vec![("version", "0.1.0".to_owned())];

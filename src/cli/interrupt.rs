@@ -2,7 +2,6 @@
 //! checkpoint, and the command ends.
 
 use super::failure::Status;
-use indicatif::ProgressBar;
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -80,12 +79,4 @@ fn take_requests(mut request: impl FnMut(bool) -> bool + Send + 'static) {
 /// Whether an interruption was requested.
 pub(super) fn requested() -> bool {
     REQUESTED.load(Ordering::SeqCst)
-}
-
-/// Advances a bar by the work done, and tells whether to go on.
-pub(super) fn watch(bar: &ProgressBar) -> impl Fn(u64) -> bool + Sync {
-    |more| {
-        bar.inc(more);
-        !requested()
-    }
 }

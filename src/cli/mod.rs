@@ -36,10 +36,6 @@ mod schema;
 mod simulate;
 #[cfg(feature = "render")]
 mod still;
-mod study;
-mod table;
-#[cfg(feature = "render")]
-mod table_figure;
 
 #[cfg(feature = "render")]
 pub use driver::settle;
@@ -64,8 +60,6 @@ const EXAMPLES: &str = "\
 Examples:
   localshape simulate scenes/fig4b.toml        diagnostics and a summary in output/fig4b/
   localshape check scenes/*.toml               what scenes contain, or every mistake in them
-  localshape table                             the paper's numbers beside ours
-  localshape study rotation                    solvers of rotations: error against time
 
 This program was built without the feature `render`: it cannot draw pictures.";
 
@@ -76,9 +70,7 @@ Examples:
   localshape simulate scenes/fig4b.toml        the same without pictures
   localshape check scenes/*.toml               what scenes contain, or every mistake in them
   localshape animate output/fig4b -o fig4b.gif frames as an animation
-  localshape figure all                        the paper's figures in output/figures/
-  localshape table                             the paper's numbers beside ours
-  localshape study rotation                    solvers of rotations: error against time";
+  localshape figure all                        the paper's figures in output/figures/";
 
 /// Simulate deformable bodies that keep their local shapes, and draw them beside mass-spring models
 #[derive(Debug, Parser)]
@@ -99,8 +91,6 @@ enum Command {
     Animate(animate::Animate),
     Check(check::Check),
     Compare(compare::Compare),
-    Table(table::Table),
-    Study(study::Study),
     Info(info::Info),
     Schema(schema::Schema),
     Completions(completions::Completions),
@@ -134,8 +124,6 @@ impl Command {
             Self::Animate(animate) => animate.run(words),
             Self::Check(check) => check.run(),
             Self::Compare(compare) => compare.run(),
-            Self::Table(table) => table.run(),
-            Self::Study(study) => study.run(),
             Self::Info(info) => info.run(),
             Self::Schema(schema) => schema.run(),
             Self::Completions(completions) => completions.run(),

@@ -8,5 +8,4 @@ pub use crate::golden::Pixels;
 pub use crate::golden::report::{PicturePair, Report};
 pub use crate::output::{Compression, Shown, Spent, Tags, Timings, encode, read_tags};
 pub use crate::sim::floor::{lanes, limit_lanes, multiply_adds};
-pub use crate::table::ratio;
 pub mod untrusted;

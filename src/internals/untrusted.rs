@@ -22,14 +22,13 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 9] = [
+pub const READERS: [Reader; 8] = [
     Reader { name: "scene", read: scene },
     Reader { name: "figure", read: figure },
     Reader { name: "body", read: body },
     Reader { name: "states", read: states },
     Reader { name: "checkpoint", read: checkpoint },
     Reader { name: "state", read: |bytes| drop(State::from_bytes(bytes)) },
-    Reader { name: "cells", read: cells },
     Reader { name: "picture", read: |bytes| drop(Pixels::from_bytes(bytes)) },
     Reader { name: "golden", read: golden },
 ];
@@ -116,13 +115,6 @@ fn checkpoint(bytes: &[u8]) {
                 return;
             }
         }
-    }
-}
-
-/// The finished cells of a study of stability.
-fn cells(bytes: &[u8]) {
-    if let Ok(text) = std::str::from_utf8(bytes) {
-        crate::study::stability::read(text).for_each(drop);
     }
 }
 

@@ -155,7 +155,7 @@ impl Folder {
         if let Some(shard) = self.access.shard {
             return self.prepare_shared(shard, summary);
         }
-        let lock = FolderLock::alone_with_leftovers(&self.path)?;
+        let lock = FolderLock::alone(&self.path)?;
         let read = || Checkpoint::read(&self.path, &self.scene, &self.plan);
         let checkpoint = if self.access.resume { read()? } else { None };
         let found = self.find()?;

@@ -3,7 +3,6 @@
 //! The folder itself is locked. Processes on other machines that share it do not see the lock.
 
 use super::OutputError;
-use super::atomic::remove_leftovers;
 use std::fs::{File, TryLockError};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -21,18 +20,11 @@ pub(crate) struct FolderLock {
 }
 
 impl FolderLock {
-    /// Locks an existing folder for exclusive use, and removes leftovers of killed processes from it.
+    /// Locks an existing folder for exclusive use, leaving leftovers of killed processes, which may be the way to go on.
     ///
     /// # Errors
-    /// If another process writes to it, or it cannot be written to.
-    pub(crate) fn alone(path: &Path) -> Result<Self, OutputError> {
-        let lock = Self::alone_with_leftovers(path)?;
-        remove_leftovers(path, None)?;
-        Ok(lock)
-    }
-
-    /// The same, leaving leftovers, which may be the way to go on.
-    pub(super) fn alone_with_leftovers(path: &Path) -> Result<Self, OutputError> {
+    /// If another process writes to it.
+    pub(super) fn alone(path: &Path) -> Result<Self, OutputError> {
         let lock = Self::open(path);
         if lock.take(true) { Ok(lock) } else { Err(in_use(path)) }
     }

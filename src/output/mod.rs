@@ -13,7 +13,6 @@ mod folder;
 mod frames;
 mod lock;
 mod png;
-mod sheets;
 pub(crate) mod shell;
 mod states;
 #[cfg_attr(not(feature = "render"), allow(dead_code, reason = "only drawing reads states"))]
@@ -35,7 +34,6 @@ pub(crate) use lock::FolderLock;
 pub(crate) use png::packed;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
 pub(crate) use png::{Texts, encode_like, encode_print, is_drawn};
-pub(crate) use sheets::SheetFiles;
 pub(crate) use states::{STATES_FILE, StatesWriter};
 pub(crate) use stored::StoredStates;
 pub(crate) use summary::{Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary, document};

@@ -26,8 +26,6 @@ mod step;
 mod structure;
 mod summary;
 
-pub(crate) use generate::random;
-
 pub use crate::reading::{Mistake, Mistakes};
 pub use builder::{BodyBuilder, NodeSet, ObstacleBuilder, RunBuilder, SceneBuilder};
 pub use error::SceneError;

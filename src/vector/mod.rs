@@ -20,7 +20,7 @@ use glam::Vec2;
 
 /// The format of a vector file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Format {
+pub enum Format {
     /// Scalable Vector Graphics.
     Svg,
     /// Portable Document Format.
@@ -39,25 +39,34 @@ impl Format {
 }
 
 /// A picture as a page.
-pub(crate) struct Page<'a> {
+#[derive(Clone, Copy, Debug)]
+pub struct Page<'a> {
     /// The picture.
-    pub(crate) picture: &'a Picture,
+    pub picture: &'a Picture,
     /// The pixels of the picture's lit panels, as [`bodies`] asks for them: red, green and blue of each, or these and
     /// opacity, in rows from the top left; `None` without lit panels.
-    pub(crate) bodies: Option<&'a [u8]>,
+    pub bodies: Option<&'a [u8]>,
     /// Width and height (mm). By default a pixel is 1/96 of an inch.
-    pub(crate) size_mm: Option<[f64; 2]>,
+    pub size_mm: Option<[f64; 2]>,
     /// Its title; empty for none.
-    pub(crate) title: &'a str,
+    pub title: &'a str,
     /// The program and its version.
-    pub(crate) maker: &'a str,
+    pub maker: &'a str,
     /// Metadata: names without `localshape:`, and texts.
-    pub(crate) tags: &'a [(&'static str, String)],
+    pub tags: &'a [(&'static str, String)],
+}
+
+impl<'a> Page<'a> {
+    /// A page without lit panels, title and metadata, where a pixel is 1/96 of an inch.
+    pub fn new(picture: &'a Picture) -> Self {
+        let maker = concat!("localshape ", env!("CARGO_PKG_VERSION"));
+        Self { picture, bodies: None, size_mm: None, title: "", maker, tags: &[] }
+    }
 }
 
 /// An error of writing a page.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub(crate) enum VectorError {
+pub enum VectorError {
     /// A font cannot be embedded.
     #[error("the font cannot be embedded in SVG or PDF ({0}); write PNG, or use another `view.font`")]
     Font(String),
@@ -67,7 +76,7 @@ pub(crate) enum VectorError {
 const HALO: f32 = 0.14;
 
 /// The part of a picture that the renderer draws for a page: lit panels without flat items; `None` if there are none.
-pub(crate) fn bodies(picture: &Picture) -> Option<Picture> {
+pub fn bodies(picture: &Picture) -> Option<Picture> {
     let lit = |panel: &Panel| !panel.sight.flat;
     if !picture.panels.iter().any(lit) {
         return None;
@@ -79,7 +88,10 @@ pub(crate) fn bodies(picture: &Picture) -> Option<Picture> {
 }
 
 /// The file of a page.
-pub(crate) fn write(page: &Page<'_>, format: Format) -> Result<Vec<u8>, VectorError> {
+///
+/// # Errors
+/// A font that cannot be embedded.
+pub fn write(page: &Page<'_>, format: Format) -> Result<Vec<u8>, VectorError> {
     let subsets = font::subsets(&page.picture.fonts, &page.picture.words)?;
     let items = items(page);
     Ok(match format {

@@ -141,9 +141,8 @@ fn files_of_others_under_our_names_are_refused_unless_told() {
 fn a_file_in_the_way() {
     let place = Place::with_small();
     place.write("taken", "a file");
-    let commands =
-        ["simulate small.toml", "table table1", "table all", "study rotation", "render small.toml", "figure fig1"];
-    for command in commands.iter().take(if cfg!(feature = "render") { 6 } else { 4 }) {
+    let commands = ["simulate small.toml", "render small.toml", "figure fig1"];
+    for command in commands.iter().take(if cfg!(feature = "render") { 3 } else { 1 }) {
         for folder in ["taken", "taken/below"] {
             let ran = place.run(&format!("{command} -o {folder}"));
             ran.bad(4, &["error: taken is a file, not a folder; choose another folder with -o\n"]);
@@ -174,8 +173,6 @@ fn pipes_under_our_names_are_told_at_once() {
             assert_eq!(place.names("out"), [name]);
         }
     }
-    fifo("table1.md");
-    place.run("table table1 -o out").bad(2, &["out holds table1.md"]);
     if cfg!(feature = "render") {
         fifo("fig1.png");
         place.run("figure fig1 -o out").bad(2, &["out holds fig1.png"]);
@@ -238,13 +235,7 @@ fn one_program_at_a_time() {
         refused.push(format!("process {} ", first.id()));
     }
     let words: Vec<_> = refused.iter().map(String::as_str).collect();
-    for command in [
-        "simulate long.toml",
-        "simulate other.toml",
-        "simulate other.toml --overwrite",
-        "table table1",
-        "study rotation",
-    ] {
+    for command in ["simulate long.toml", "simulate other.toml", "simulate other.toml --overwrite"] {
         place.run(&format!("{command} -o out")).bad(2, &words);
     }
     assert!(first.is_running());
@@ -284,9 +275,7 @@ fn a_folder_that_may_not_be_written() {
     if std::fs::write(place.path("locked/probe"), "").is_ok() {
         return crate::support::skip("this user may write anywhere; the test needs one who may not");
     }
-    for command in ["simulate small.toml", "table ratio"] {
-        place.run(&format!("{command} -o locked")).bad(4, &["cannot write locked", "ermission denied"]);
-    }
+    place.run("simulate small.toml -o locked").bad(4, &["cannot write locked", "ermission denied"]);
     assert_eq!(place.names("locked"), ["notes.txt"]);
     std::fs::set_permissions(place.path("locked"), PermissionsExt::from_mode(0o755)).unwrap();
 }

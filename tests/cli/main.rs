@@ -21,7 +21,5 @@ mod set;
 #[cfg(feature = "render")]
 mod shards;
 mod simulate;
-mod study;
 mod support;
-mod table;
 mod usage;

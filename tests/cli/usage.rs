@@ -6,35 +6,11 @@ use crate::support::{Place, SMALL, run};
 fn help_and_version_are_results() {
     let place = Place::new();
     let help = place.run("--help").good();
-    for word in [
-        "render",
-        "simulate",
-        "check",
-        "table",
-        "study",
-        "info",
-        "schema",
-        "completions",
-        "Exit status:",
-        "130",
-        "Examples:",
-    ] {
+    for word in ["render", "simulate", "check", "info", "schema", "completions", "Exit status:", "130", "Examples:"] {
         assert!(help.out.contains(word) || (word == "render" && cfg!(not(feature = "render"))), "{word}");
     }
     assert_eq!(place.run("--version").good().out, format!("localshape {}\n", env!("CARGO_PKG_VERSION")));
-    for command in [
-        "simulate",
-        "check",
-        "table",
-        "study",
-        "study rotation",
-        "study stability",
-        "study stress",
-        "study work-precision",
-        "info",
-        "schema",
-        "completions",
-    ] {
+    for command in ["simulate", "check", "info", "schema", "completions"] {
         place.run(&format!("{command} --help")).good();
     }
 }
@@ -45,11 +21,6 @@ fn unknown_words() {
     place.run("simulat small.toml").bad(2, &["simulat", "simulate"]);
     place.run("simulate small.toml --thread 2").bad(2, &["--thread", "--threads"]);
     place.run("simulate").bad(2, &["SCENE"]);
-    place.run("study").bad(2, &["study <COMMAND>", "rotation"]);
-    place.run("study rotations").bad(2, &["rotations", "'rotation'"]);
-    place.run("study rotation --json --quiet").bad(2, &["--json", "--quiet"]);
-    place.run("study work-precision --only a").bad(2, &["--only", "<SCENE>"]);
-    place.run("study work-precision small.toml --only nobody").bad(2, &["--only", "nobody"]);
     place.run("simulate small.toml --json --quiet").bad(2, &["--json", "--quiet"]);
     for threads in ["0", "-1", "many", "100000"] {
         place.run(&format!("simulate small.toml --threads={threads}")).bad(2, &["--threads", threads]);

@@ -22,7 +22,5 @@ mod restore;
 mod runaway;
 mod stability;
 mod state;
-mod stress;
 mod support;
-mod table1;
 mod threads;

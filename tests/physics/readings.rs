@@ -2,7 +2,9 @@
 
 use super::support::{after, free, lattice, shape_based, shipped};
 use glam::DVec3;
+use localshape::scene::{Limits, Scene};
 use localshape::sim::body::Body;
+use localshape::sim::model::Report;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape::sim::snapshot::Status;
 use localshape::sim::state::State;
@@ -82,4 +84,32 @@ fn the_length_as_angle_leaves_more_error_than_the_arctangent() {
     };
     let [arctangent, length] = [RotationReading::Arctangent, RotationReading::VectorLength].map(residual);
     assert!(length > 10.0 * arctangent, "{arctangent:e} {length:e}");
+}
+
+/// Computed before the step, and after it from the rotations of the step: the same bits.
+#[test]
+fn alpha_follows_from_what_a_step_leaves_behind() {
+    for rotation in ["arctangent", "robust", "vector-length", "linear-update"] {
+        let text = format!(
+            "gravity = [0, -9.8, 0]
+            time = {{ duration = 1, step = 0.006 }}
+            body = {{ lattice = {{ cells = [2, 1, 1], side = 0.1 }}, lowest = 0.1, rotation = {{ axis = [1, 2, 3], angle = 1 }} }}
+            obstacle = [{{ kind = 'floor', restitution = 1, friction = 0 }}]
+            run = [{{ name = 'one', kernel = 'reference', \
+                      model = {{ kind = 'shape-based', stiffness = 1e4, rotation = '{rotation}' }} }}]"
+        );
+        let scene = Scene::parse(&text, "alpha", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let mut world = scene.world(0);
+        let mut largest = 0.0f64;
+        for _ in 0..100 {
+            let asked = world.report(0).residual(Report::ROTATION).expect("rotations");
+            let before = world.state().position.clone();
+            world.advance(1);
+            let left = world.residuals(&before);
+            assert_eq!(left.len(), 2);
+            assert_eq!(left.into_iter().fold(0.0, f64::max).to_bits(), asked.to_bits(), "{rotation}");
+            largest = largest.max(asked);
+        }
+        assert!(largest > 0.0, "{rotation}");
+    }
 }

@@ -6,7 +6,7 @@ mod grid;
 mod irregular;
 mod lattice;
 mod mixed;
-pub(crate) mod random;
+mod random;
 mod shapes;
 mod start;
 

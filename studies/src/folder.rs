@@ -1,0 +1,204 @@
+//! The folder of a study, which belongs to one command, and the notes from which an interrupted study goes on.
+
+use crate::failure::Failure;
+use std::collections::HashMap;
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// The folder of a study.
+pub(crate) struct Folder {
+    path: PathBuf,
+    /// The name of the study.
+    name: &'static str,
+    /// The first line of its Markdown file and of its notes: which command makes them.
+    mark: String,
+}
+
+impl Folder {
+    /// A folder for what a command makes: a new or an empty one, or one in which the same command has made a study; any with
+    /// `overwrite`.
+    ///
+    /// # Errors
+    /// A folder that is refused, or cannot be written to.
+    pub(crate) fn new(path: PathBuf, name: &'static str, command: &str, overwrite: bool) -> Result<Self, Failure> {
+        if let Some(file) = path.ancestors().find(|path| path.is_file()) {
+            let file = file.display();
+            return Err(Failure::Files(format!("{file} is a file, not a folder; choose another folder with -o")));
+        }
+        let probe = hidden(&path, name);
+        fs::create_dir_all(&path)
+            .and_then(|()| fs::write(&probe, ""))
+            .and_then(|()| fs::remove_file(&probe))
+            .map_err(|error| cannot_write(&path, &error))?;
+        let folder = Self { mark: format!("<!-- {command} -->"), path, name };
+        let refused = |what: String| {
+            let path = folder.path.display();
+            Err(Failure::Usage(format!(
+                "{path} holds {what}; choose another folder with -o, or replace with --overwrite"
+            )))
+        };
+        let marks: Vec<_> = ["md", "unfinished"].iter().filter_map(|kind| folder.first_line(kind)).collect();
+        match marks.iter().find(|mark| **mark != folder.mark) {
+            _ if overwrite => Ok(folder),
+            Some(mark) => match mark.strip_prefix("<!-- ").and_then(|mark| mark.strip_suffix(" -->")) {
+                Some(other) => refused(format!("what `{other}` made")),
+                None => refused(format!("{name}.md, which was not written by localshape-study")),
+            },
+            None if !marks.is_empty() => Ok(folder),
+            None => match folder.some_file() {
+                Some(file) => refused(format!("{file}, which was not written by localshape-study")),
+                None => Ok(folder),
+            },
+        }
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The first line of the Markdown file.
+    pub(crate) fn mark(&self) -> &str {
+        &self.mark
+    }
+
+    /// The first line of a file of the study, if there is one.
+    fn first_line(&self, kind: &str) -> Option<String> {
+        let path = self.path.join(format!("{}.{kind}", self.name));
+        // A pipe would be waited for.
+        let text = path.is_file().then(|| fs::read(path))?.ok()?;
+        Some(String::from_utf8_lossy(text.split(|&byte| byte == b'\n').next()?).into_owned())
+    }
+
+    /// The first of the files in the folder by its name, hidden ones aside.
+    fn some_file(&self) -> Option<String> {
+        let names = fs::read_dir(&self.path).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+        names.filter(|name| !name.starts_with('.')).min()
+    }
+
+    /// Writes files, each completely or not at all.
+    ///
+    /// # Errors
+    /// If one cannot be written; those before it are kept.
+    pub(crate) fn write(&self, files: &[(String, Vec<u8>)]) -> Result<(), Failure> {
+        for (name, bytes) in files {
+            let (part, path) = (hidden(&self.path, name), self.path.join(name));
+            let written = fs::write(&part, bytes).and_then(|()| fs::rename(&part, &path));
+            written.map_err(|error| cannot_write(&path, &error))?;
+        }
+        Ok(())
+    }
+
+    /// The notes of this study: those that were kept when it was interrupted, if they have the same digest.
+    pub(crate) fn notes(&self, digest: &str) -> Notes {
+        let path = self.path.join(format!("{}.unfinished", self.name));
+        Notes::new(path, format!("{}\n{} {digest}\n", self.mark, env!("CARGO_PKG_VERSION")))
+    }
+}
+
+/// The name that a file has until it is complete.
+fn hidden(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!(".{name}.part"))
+}
+
+fn cannot_write(path: &Path, error: &io::Error) -> Failure {
+    Failure::Files(format!("cannot write {}: {error}", path.display()))
+}
+
+/// What a study has found so far, in a file with a line for each finding. After an interruption the same command goes on from there.
+pub(crate) struct Notes {
+    path: PathBuf,
+    /// The first lines, which say of which study the findings are.
+    head: String,
+    /// What was found before the interruption.
+    known: HashMap<String, String>,
+    /// Opened with the first finding.
+    file: Mutex<Option<File>>,
+}
+
+impl Notes {
+    fn new(path: PathBuf, head: String) -> Self {
+        let known = fs::read(&path).unwrap_or_default();
+        let known = String::from_utf8_lossy(&known);
+        let known = known.strip_prefix(&head).unwrap_or_default();
+        // The last line may be incomplete.
+        let finding = |line: &str| {
+            let (key, found) = line.strip_suffix(";\n")?.split_once('\t')?;
+            Some((key.to_owned(), found.to_owned()))
+        };
+        let known = known.split_inclusive('\n').filter_map(finding).collect();
+        Self { path, head, known, file: Mutex::new(None) }
+    }
+
+    /// What was found for a key before the interruption.
+    pub(crate) fn known(&self, key: &str) -> Option<&str> {
+        self.known.get(key).map(String::as_str)
+    }
+
+    /// Writes down what was found. A disk without room for notes may have room for the results, so no error is told.
+    pub(crate) fn add(&self, key: &str, found: &str) {
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let line = |(key, found): (&str, &str)| format!("{key}\t{found};\n");
+        if file.is_none() {
+            let known = self.known.iter().map(|(key, found)| line((key, found)));
+            let text = [self.head.clone()].into_iter().chain(known).collect::<String>();
+            *file = fs::write(&self.path, text).and_then(|()| File::options().append(true).open(&self.path)).ok();
+        }
+        if let Some(file) = file.as_mut() {
+            let _ = file.write_all(line((key, found)).as_bytes());
+        }
+    }
+
+    /// Whether there are any.
+    pub(crate) fn are_kept(&self) -> bool {
+        self.path.is_file()
+    }
+
+    /// Removes them, once the study is made.
+    pub(crate) fn remove(&self) {
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(path: &Path, command: &str) -> Result<Folder, Failure> {
+        Folder::new(path.to_owned(), "study", command, false)
+    }
+
+    #[test]
+    fn findings_are_found_again() {
+        let place = tempfile::tempdir().expect("a folder");
+        let notes = |digest: &str| folder(place.path(), "study 1").expect("it is ours").notes(digest);
+        let made = notes("ab");
+        assert!(!made.are_kept() && made.known("a 0.2").is_none());
+        for (key, found) in [("a 0.2", "9"), ("a 0.4", "9"), ("b 0.8", "diverged")] {
+            made.add(key, found);
+        }
+        // As if the program was killed while it wrote.
+        let path = place.path().join("study.unfinished");
+        let text = fs::read_to_string(&path).expect("findings");
+        fs::write(&path, &text[..text.len() - 3]).expect("to cut it");
+        let again = notes("ab");
+        assert_eq!(["a 0.2", "a 0.4", "b 0.8"].map(|key| again.known(key)), [Some("9"), Some("9"), None]);
+        again.add("b 0.8", "diverged");
+        let all = notes("ab");
+        assert_eq!(["a 0.2", "a 0.4", "b 0.8"].map(|key| all.known(key)), [Some("9"), Some("9"), Some("diverged")]);
+        assert!(folder(place.path(), "study 2").is_err(), "of another command");
+        assert!(notes("cd").known("a 0.2").is_none(), "of an edited scene");
+        // Whatever the file holds, what is left of it can be read, and nothing ends the program.
+        let whole = fs::read(&path).expect("findings");
+        for at in 0..whole.len() {
+            fs::write(&path, &whole[..at]).expect("to cut it");
+            Notes::new(path.clone(), all.head.clone());
+            let damaged: Vec<_> = whole.iter().enumerate().map(|(i, b)| if i == at { b ^ 0x95 } else { *b }).collect();
+            fs::write(&path, damaged).expect("to damage it");
+            Notes::new(path.clone(), all.head.clone());
+        }
+        all.remove();
+        assert!(!path.exists());
+    }
+}

@@ -1,0 +1,225 @@
+//! Measurements with `localshape`: the accuracy and the cost of its methods, their limits of stability, what breaks which model, and
+//! the tables of the paper. All is made through the public interface of the library.
+//!
+//! A study has a name, a measurement, and findings: text, tables and pages ([`study`]). It does not depend on files or on the
+//! command line.
+
+mod failure;
+mod folder;
+mod methods;
+mod model;
+#[cfg(feature = "render")]
+mod page;
+mod progress;
+mod random;
+mod ratio;
+#[cfg(test)]
+#[path = "../tests/inside/reading.rs"]
+mod reading;
+mod rotation;
+mod solver;
+mod spread;
+mod stability;
+mod stress;
+mod study;
+mod table;
+mod table1;
+mod turns;
+mod work_precision;
+
+use clap::{Args, Parser, Subcommand, ValueHint};
+use failure::Failure;
+use localshape::{Limits, Scene};
+use ratio::Ratio;
+use rotation::Rotation;
+use stability::{Protocol, Stability};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use stress::Stress;
+use study::{Options, Study};
+use table1::Table1;
+use work_precision::{Effort, Subject, WorkPrecision};
+
+const EXAMPLES: &str = "\
+Examples:
+  localshape-study rotation                    solvers of rotations in output/study-rotation/
+  localshape-study rotation -o rotations       the same elsewhere
+  localshape-study work-precision              integrators in output/study-work-precision/
+  localshape-study work-precision scenes/fig4b.toml  on a scene
+  localshape-study stability                   the largest stable steps in output/study-stability/
+  localshape-study stress                      what breaks which model in output/study-stress/
+  localshape-study table1 --orientations 200   Table 1 of the paper, from more starts
+  localshape-study ratio --threads 4 -o four   the ratio of computation times on four threads
+
+The folder then has the results as Markdown, which is also printed, as CSV with all digits, and most as plots in SVG and PNG. Times \
+are those of this machine, which should be idle otherwise.
+
+Exit status:
+    0  done
+    2  wrong usage, or mistakes in a scene file
+    3  no usable graphics adapter
+    4  reading or writing failed
+  130  interrupted by Ctrl-C or SIGTERM";
+
+/// Measure what the methods of localshape can do, as tables and plots
+#[derive(Debug, Parser)]
+#[command(name = "localshape-study", version, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    name: Name,
+
+    #[command(flatten)]
+    options: Options,
+}
+
+/// What is studied.
+#[derive(Debug, Subcommand)]
+enum Name {
+    /// The solvers of rotations: angle error against time for each element, and what they make of degenerate elements
+    Rotation,
+    /// The integrators: error of the positions against evaluations of the forces and time
+    WorkPrecision {
+        /// Only this run of the scene; can be repeated [default: all]
+        #[arg(long, value_name = "RUN", requires = "scene")]
+        only: Vec<String>,
+        #[command(flatten)]
+        of: OfScene,
+    },
+    /// The runs of a scene for stiffnesses over three decades and steps up to beyond the predicted limit: whole, turned over or
+    /// diverged
+    Stability {
+        #[command(flatten)]
+        of: OfScene,
+        #[command(flatten)]
+        threads: Threads,
+    },
+    /// Falls, impacts, degenerate starts and elements, very long runs: what becomes of each with every model
+    Stress {
+        #[command(flatten)]
+        threads: Threads,
+    },
+    /// Table 1 of the paper, the errors of the rotations from Eq. (15), beside ours
+    Table1 {
+        /// Number of random orientations, of which the first are always the same
+        #[arg(long, value_name = "N", default_value_t = Table1::ORIENTATIONS)]
+        #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
+        orientations: u32,
+        #[command(flatten)]
+        threads: Threads,
+    },
+    /// The computation time of the shape model over that of mass-spring, beside the paper's (section 4)
+    Ratio {
+        /// Number of threads
+        #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+        threads: u16,
+    },
+}
+
+/// Options of studies of a scene.
+#[derive(Args, Debug)]
+struct OfScene {
+    /// The scene [default: built-in ones]
+    #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
+    scene: Option<PathBuf>,
+
+    /// Measure more, which takes ten times as long or longer
+    #[arg(long)]
+    full: bool,
+}
+
+impl OfScene {
+    /// The arguments that repeat it.
+    fn arguments(&self) -> String {
+        let scene = self.scene.as_ref().map_or_else(String::new, |path| format!(" {}", path.display()));
+        format!("{scene}{}", if self.full { " --full" } else { "" })
+    }
+
+    fn load(&self) -> Result<Option<Scene>, Failure> {
+        self.scene.as_deref().map(load).transpose()
+    }
+}
+
+fn load(path: &Path) -> Result<Scene, Failure> {
+    let scene = Scene::load(path, &Limits::default()).map_err(|error| Failure::Usage(error.to_string()))?;
+    if scene.duration == 0.0 {
+        let path = path.display();
+        return Err(Failure::Usage(format!(
+            "{path}: `time.duration` is 0: nothing moves, and there is nothing to measure; make it longer"
+        )));
+    }
+    Ok(scene)
+}
+
+/// Options of studies with the same results for any number of threads.
+#[derive(Args, Debug)]
+struct Threads {
+    /// Number of threads, which does not change the results [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+impl Threads {
+    fn count(&self) -> usize {
+        self.threads.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from)
+    }
+}
+
+impl Name {
+    fn study(self) -> Result<Box<dyn Study>, Failure> {
+        Ok(match self {
+            Self::Rotation => Box::new(Rotation::default()),
+            Self::WorkPrecision { only, of } => {
+                let mut arguments = of.arguments();
+                only.iter().for_each(|run| arguments += &format!(" --only \"{run}\""));
+                let effort = if of.full { Effort::FULL } else { Effort::USUAL };
+                let subjects =
+                    of.load()?.map_or_else(|| Ok(work_precision::usual()), |scene| subjects(&scene, &only))?;
+                Box::new(WorkPrecision { effort, subjects, arguments })
+            }
+            Self::Stability { of, threads } => {
+                let study = Stability {
+                    arguments: of.arguments(),
+                    protocol: if of.full { Protocol::full() } else { Protocol::usual() },
+                    scene: of.load()?.unwrap_or_else(stability::usual),
+                    threads: threads.count(),
+                };
+                if study.work() == 0 {
+                    return Err(Failure::Usage(format!(
+                        "all runs of “{}” find their own steps: there is nothing to map; give one another integrator",
+                        study.scene.title
+                    )));
+                }
+                Box::new(study)
+            }
+            Self::Stress { threads } => Box::new(Stress { steps: Stress::STEPS, threads: threads.count() }),
+            Self::Table1 { orientations, threads } => Box::new(Table1::new(orientations, threads.count())),
+            Self::Ratio { threads } => Box::new(Ratio::new(threads.into())),
+        })
+    }
+}
+
+/// The runs of a scene, or those with these names.
+fn subjects(scene: &Scene, only: &[String]) -> Result<Vec<Subject>, Failure> {
+    if let Some(unknown) = only.iter().find(|name| scene.runs.iter().all(|run| run.name != **name)) {
+        let names: Vec<_> = scene.runs.iter().map(|run| format!("“{}”", run.name)).collect();
+        let names = names.join(", ");
+        return Err(Failure::Usage(format!(
+            "--only {unknown}: “{}” has no run of this name; its runs are {names}",
+            scene.title
+        )));
+    }
+    let runs = (0..scene.runs.len()).filter(|&run| only.is_empty() || only.contains(&scene.runs[run].name));
+    let subject = |run: usize| {
+        let name = match scene.runs.len() {
+            1 => scene.title.clone(),
+            _ => format!("{}: {}", scene.title, scene.runs[run].name),
+        };
+        Subject { name, scene: scene.clone(), run }
+    };
+    Ok(runs.map(subject).collect())
+}
+
+fn main() -> ExitCode {
+    let Cli { name, options } = Cli::parse();
+    name.study().and_then(|study| study::make(study.as_ref(), &options)).unwrap_or_else(Failure::report).into()
+}

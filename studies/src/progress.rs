@@ -1,0 +1,100 @@
+//! How far a study is, on standard error: a bar in a terminal, else a line every few seconds.
+
+use crate::failure::Status;
+use crate::study::Watch;
+use indicatif::{ProgressBar, ProgressStyle};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+use std::io::{self, IsTerminal, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// From one line to the next.
+const EVERY: Duration = Duration::from_secs(5);
+
+/// Whether the user asks for the end of the study: by Ctrl-C or SIGTERM. A second Ctrl-C ends the program at once.
+pub(crate) fn interrupt() -> Arc<AtomicBool> {
+    let asked = Arc::new(AtomicBool::new(false));
+    // Without handlers, signals end the program.
+    let _ = flag::register_conditional_shutdown(SIGINT, Status::Interrupted as i32, Arc::clone(&asked));
+    for signal in [SIGINT, SIGTERM] {
+        let _ = flag::register(signal, Arc::clone(&asked));
+    }
+    asked
+}
+
+/// Calls `measure` with a function that takes the work done, of `work` in all, and tells whether to go on. Shows the progress
+/// unless `is_quiet`.
+pub(crate) fn shown<T>(name: &str, work: u64, is_quiet: bool, measure: impl FnOnce(&Watch<'_>) -> T) -> T {
+    let asked = interrupt();
+    let goes_on = || !asked.load(Ordering::SeqCst);
+    if is_quiet {
+        return measure(&|_| goes_on());
+    }
+    if io::stderr().is_terminal() {
+        let style = ProgressStyle::with_template("{prefix}  {wide_bar}  {eta} left").expect("a template of known keys");
+        let bar = ProgressBar::new(work).with_style(style).with_prefix(name.to_owned());
+        let found = measure(&|more| {
+            bar.inc(more);
+            goes_on()
+        });
+        bar.finish_and_clear();
+        return found;
+    }
+    told(name, work, EVERY, &mut io::stderr(), |done| measure(&|more| done(more) && goes_on()))
+}
+
+/// Calls `measure` with a function that takes the work done and returns true, and writes a line at the start and then as often as
+/// this.
+fn told<T>(
+    name: &str,
+    work: u64,
+    every: Duration,
+    to: &mut (impl Write + Send),
+    measure: impl FnOnce(&Watch<'_>) -> T,
+) -> T {
+    let (done, begun) = (AtomicU64::new(0), Instant::now());
+    let (ended, wait) = channel::<()>();
+    thread::scope(|scope| {
+        let done = &done;
+        scope.spawn(move || {
+            loop {
+                let percent = 100 * done.load(Ordering::Relaxed) / work.max(1);
+                // A reader that is gone does not stop the study.
+                let _ = writeln!(to, "{name}: {percent} % after {} s", begun.elapsed().as_secs());
+                if wait.recv_timeout(every) != Err(RecvTimeoutError::Timeout) {
+                    return;
+                }
+            }
+        });
+        let found = measure(&|more| {
+            done.fetch_add(more, Ordering::Relaxed);
+            true
+        });
+        drop(ended);
+        found
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Also where nothing is done for a long time.
+    #[test]
+    fn lines_come_without_a_terminal() {
+        let mut lines = Vec::new();
+        let found = told("one", 4, Duration::from_millis(1), &mut lines, |watch| {
+            watch(1);
+            thread::sleep(Duration::from_millis(100));
+            7
+        });
+        let lines = String::from_utf8(lines).unwrap();
+        assert_eq!(found, 7);
+        assert!(lines.starts_with("one: ") && lines.lines().count() > 1, "{lines}");
+        assert!(lines.lines().last().unwrap().starts_with("one: 25 % after "), "{lines}");
+    }
+}

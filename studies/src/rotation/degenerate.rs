@@ -1,0 +1,110 @@
+//! What solvers make of elements whose rotation is hardly determined or not at all.
+
+use super::method::Method;
+use super::reference::angle;
+use super::sample::Sample;
+use crate::random::Random;
+use glam::{DMat3, DQuat, DVec3};
+use localshape::sim::rotation::davenport1968::optimum;
+
+/// A class of elements: cubes that are deformed, and the rotation from which solvers start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Class {
+    /// What it is.
+    pub(crate) name: &'static str,
+    /// The stretches along the axes.
+    stretch: DVec3,
+    /// The angle of the half turn or less from the last rotation to that of the deformation (rad); `None` for any.
+    turn: Option<f64>,
+}
+
+/// The classes.
+pub(crate) const CLASSES: [Class; 8] = [
+    class("at a point", DVec3::ZERO, None),
+    class("on a line", DVec3::X, None),
+    class("in a plane", DVec3::new(1.0, 1.0, 0.0), None),
+    class("mirrored", DVec3::new(1.0, 1.0, -1.0), None),
+    class("point inversion", DVec3::new(-1.0, -1.0, -1.0), None),
+    class("rigid, turned by 90°", DVec3::ONE, Some(0.5 * std::f64::consts::PI)),
+    class("rigid, turned by 180°", DVec3::ONE, Some(std::f64::consts::PI)),
+    class("1e-90 times as large", DVec3::new(1e-90, 0.8e-90, 0.5e-90), None),
+];
+
+const fn class(name: &'static str, stretch: DVec3, turn: Option<f64>) -> Class {
+    Class { name, stretch, turn }
+}
+
+/// What a solver made of the elements of a class, at worst.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Outcome {
+    /// The optimum; where there are several, the one nearest to the last rotation.
+    Nearest,
+    /// An optimum, but not the nearest.
+    Some,
+    /// A rotation that is no optimum.
+    Wrong,
+    /// No numbers.
+    NotANumber,
+}
+
+impl Outcome {
+    /// In a few words.
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::Nearest => "optimum",
+            Self::Some => "an optimum",
+            Self::Wrong => "stalls",
+            Self::NotANumber => "NaN",
+        }
+    }
+}
+
+/// How much less than the optimum counts as wrong, and how far apart rotations are different ones (rad).
+const EQUAL: f64 = 1e-9;
+const NEAR: f64 = 1e-6;
+/// The number of elements of a class.
+const ELEMENTS: usize = 200;
+
+/// Elements of a class.
+pub(super) fn elements(class: &Class) -> Vec<Sample> {
+    let mut random = Random(5);
+    let one = || {
+        let (axes, turn) = (DMat3::from_quat(random.rotation()), random.rotation());
+        let deformation = axes * DMat3::from_diagonal(class.stretch) * axes.transpose();
+        let at_rest = (DMat3::from_quat(turn) * deformation).transpose();
+        let last = match class.turn {
+            Some(angle) => {
+                let (sine, cosine) = libm::sincos(0.5 * angle);
+                let axis = random.direction() * sine;
+                (DQuat::from_xyzw(axis.x, axis.y, axis.z, cosine) * turn).normalize()
+            }
+            None => random.rotation(),
+        };
+        Sample { at_rest, last }
+    };
+    std::iter::repeat_with(one).take(ELEMENTS).collect()
+}
+
+/// What a method makes of a class.
+pub(super) fn outcome(method: &Method, class: &Class) -> Outcome {
+    elements(class).iter().map(|sample| outcome_of(method, sample)).max().expect("some elements")
+}
+
+fn outcome_of(method: &Method, sample: &Sample) -> Outcome {
+    let (found, sought) = (method.rotation(sample), optimum(sample.at_rest, sample.last));
+    if !found.is_finite() || (found.length_squared() - 1.0).abs() > 1e-12 {
+        return Outcome::NotANumber;
+    }
+    let trace = |q: DQuat| {
+        let a = DMat3::from_quat(q) * sample.at_rest;
+        a.x_axis.x + a.y_axis.y + a.z_axis.z
+    };
+    let size: f64 = sample.at_rest.to_cols_array().iter().map(|entry| entry.abs()).sum();
+    if trace(found) < trace(sought) - EQUAL * size {
+        Outcome::Wrong
+    } else if angle(found, sought) > NEAR {
+        Outcome::Some
+    } else {
+        Outcome::Nearest
+    }
+}

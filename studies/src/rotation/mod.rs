@@ -1,0 +1,161 @@
+//! The solvers of rotations: the angle error of each against its time for each element, for elements turned by more or
+//! less since the last rotation and strained up to inversion, and what each makes of degenerate elements.
+//!
+//! All methods are plain code in double precision, called for one element after the other, as the reference code of the
+//! simulation does. They take turns, in an order that is rotated, and each time is the median of its turns: other load of
+//! the machine affects all alike. Processor time is measured, or wall time if the system does not provide it.
+
+mod degenerate;
+mod method;
+#[cfg(feature = "render")]
+mod page;
+mod reference;
+mod sample;
+#[cfg(test)]
+#[path = "../../tests/inside/rotation.rs"]
+mod solver_tests;
+mod text;
+
+use crate::folder::Notes;
+use crate::spread::Spread;
+use crate::study::{Findings, Study, Watch};
+use crate::turns::{Clock, take_turns};
+use degenerate::{CLASSES, Outcome};
+use glam::DQuat;
+use method::Method;
+use sample::{Kind, Sample};
+use std::hint::black_box;
+
+/// The number of passes of iterations on degenerate elements: what has not converged by then stalls.
+const MANY: u32 = 20;
+
+/// The study.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Rotation {
+    /// Strains of elements.
+    pub(crate) strains: Vec<f64>,
+    /// Angles from the last rotation (rad).
+    pub(crate) increments: Vec<f64>,
+    /// The number of elements of each kind.
+    pub(crate) elements: usize,
+    /// How often each method goes through them in a turn.
+    pub(crate) repeats: u32,
+    /// The number of turns of each method.
+    pub(crate) rounds: u32,
+}
+
+impl Default for Rotation {
+    fn default() -> Self {
+        Self {
+            strains: vec![0.0, 0.1, 0.5, 0.9, 1.0, 1.5],
+            increments: vec![1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0],
+            elements: 512,
+            repeats: 4,
+            rounds: 15,
+        }
+    }
+}
+
+impl Rotation {
+    /// The kinds of elements.
+    fn kinds(&self) -> Vec<Kind> {
+        let of = |&strain| self.increments.iter().map(move |&increment| Kind::Warm { strain, increment });
+        self.strains.iter().flat_map(of).chain([Kind::Cold]).collect()
+    }
+}
+
+impl Study for Rotation {
+    fn name(&self) -> &'static str {
+        "rotation"
+    }
+
+    fn work(&self) -> u64 {
+        self.kinds().len() as u64 * u64::from(self.rounds) * method::all().len() as u64
+    }
+
+    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+        Some(measure(self, watch)?.findings())
+    }
+}
+
+/// One method on one kind of elements.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Measured {
+    /// The number of the method.
+    method: usize,
+    /// The elements.
+    kind: Kind,
+    /// The median and the greatest error (rad); infinite if any result is not a number.
+    pub(crate) median: f64,
+    /// The greatest error (rad).
+    pub(crate) worst: f64,
+    /// Time for each element (ns).
+    pub(crate) time: Spread,
+    /// The share of elements that needed the global solver, for the default.
+    pub(crate) global: Option<f64>,
+}
+
+/// What was found on one machine.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Results {
+    protocol: Rotation,
+    methods: Vec<Method>,
+    measured: Vec<Measured>,
+    /// What each solver makes of each class, after [`MANY`] passes.
+    outcomes: Vec<(Method, [Outcome; CLASSES.len()])>,
+}
+
+/// Measures all methods; `None` if `watch`, which is called after each turn, stops the measurement.
+pub(crate) fn measure(protocol: &Rotation, watch: &Watch<'_>) -> Option<Results> {
+    let methods = method::all();
+    let mut measured = Vec::new();
+    for kind in protocol.kinds() {
+        let (elements, sought): (Vec<_>, Vec<_>) = sample::samples(kind, protocol.elements).into_iter().unzip();
+        let turn = |number: usize| {
+            let (method, clock) = (black_box(&methods[number]), Clock::start());
+            for _ in 0..protocol.repeats {
+                elements.iter().for_each(|element| method.work(black_box(element)));
+            }
+            clock.seconds() * 1e9 / (f64::from(protocol.repeats) * elements.len() as f64)
+        };
+        // The first turns warm caches and are not counted.
+        let _ = (0..methods.len()).map(turn).sum::<f64>();
+        let times = take_turns(methods.len(), protocol.rounds, watch, turn)?;
+        for (number, (method, times)) in methods.iter().zip(times).enumerate() {
+            let mut errors: Vec<_> =
+                elements.iter().zip(&sought).map(|(one, &sought)| error(method, one, sought)).collect();
+            errors.sort_by(f64::total_cmp);
+            let globals: Option<Vec<bool>> = elements.iter().map(|one| method.is_global(one)).collect();
+            let share = |all: Vec<bool>| all.iter().filter(|&&one| one).count() as f64 / all.len() as f64;
+            measured.push(Measured {
+                method: number,
+                kind,
+                median: errors[errors.len() / 2],
+                worst: errors[errors.len() - 1],
+                time: Spread::of(times),
+                global: globals.map(share),
+            });
+        }
+    }
+    let mut solvers: Vec<_> = methods.iter().map(|method| method.with_passes(MANY)).collect();
+    solvers.dedup();
+    let outcomes = solvers.into_iter().map(|solver| {
+        let outcomes = CLASSES.map(|class| degenerate::outcome(&solver, &class));
+        (solver, outcomes)
+    });
+    let outcomes = outcomes.collect();
+    Some(Results { protocol: protocol.clone(), methods, measured, outcomes })
+}
+
+/// The angle error of a method (rad).
+fn error(method: &Method, element: &Sample, sought: DQuat) -> f64 {
+    let found = method.rotation(element);
+    if found.is_finite() { reference::angle(found, sought) } else { f64::INFINITY }
+}
+
+impl Results {
+    /// A method on elements with any stretches and any last rotation.
+    fn cold(&self, method: usize) -> Option<&Measured> {
+        self.measured.iter().find(|one| one.method == method && one.kind == Kind::Cold)
+    }
+}

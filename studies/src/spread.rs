@@ -1,0 +1,51 @@
+//! The distribution of numbers.
+
+/// Median, quartiles and range of some numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Spread {
+    pub(crate) least: f64,
+    /// The lower quartile.
+    pub(crate) lower: f64,
+    pub(crate) median: f64,
+    /// The upper quartile.
+    pub(crate) upper: f64,
+    /// The greatest.
+    pub(crate) most: f64,
+}
+
+impl Spread {
+    /// The quantiles of `values`, interpolated linearly, as in most programs; NaN for no values.
+    pub(crate) fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        let mut sorted: Vec<f64> = values.into_iter().collect();
+        sorted.sort_by(f64::total_cmp);
+        let quantile = |quarters: usize| {
+            let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+            let (below, rest) = (last * quarters / 4, (last * quarters % 4) as f64 / 4.0);
+            // At an exact position the value above has no weight: it may be NaN.
+            if rest == 0.0 {
+                return sorted[below];
+            }
+            sorted[below] + (sorted[below + 1] - sorted[below]) * rest
+        };
+        let [least, lower, median, upper, most] = [0, 1, 2, 3, 4].map(quantile);
+        Self { least, lower, median, upper, most }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_those_of_other_programs() {
+        // numpy.percentile([7, 1, 3, 2], [0, 25, 50, 75, 100])
+        let spread = Spread::of([7.0, 1.0, 3.0, 2.0]);
+        assert_eq!(spread, Spread { least: 1.0, lower: 1.75, median: 2.5, upper: 4.0, most: 7.0 });
+        let one = Spread::of([5.0]);
+        assert_eq!((one.least, one.median, one.most), (5.0, 5.0, 5.0));
+        assert!(Spread::of([]).median.is_nan());
+        // NaN is sorted as the greatest.
+        let odd = Spread::of([1.0, f64::NAN, 2.0]);
+        assert!((odd.least, odd.median) == (1.0, 2.0) && odd.most.is_nan());
+    }
+}

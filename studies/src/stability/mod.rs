@@ -1,0 +1,324 @@
+//! What becomes of a scene's runs for stiffnesses over decades and steps up to beyond the predicted limit: a map for each run.
+//!
+//! The stiffness of a run is multiplied, and its damping so that the damping ratio stays. Then the predicted limit goes with `1/√k`,
+//! and a row of the map is the same share of it for every stiffness. Impacts are made faster by multiplying the initial velocities,
+//! and gravity by the square. Outcomes have the same bits on every machine; the cells of a map are simulated in parallel.
+
+#[cfg(feature = "render")]
+mod page;
+mod text;
+
+use crate::folder::Notes;
+use crate::study::{Findings, Study, Watch};
+use crate::table::typed;
+use localshape::scene::Run;
+use localshape::sim::stability::Stability as Limit;
+use localshape::sim::{Diagnostic, Status};
+use localshape::{Limits, Scene};
+use rayon::prelude::*;
+use text::short;
+
+/// The study.
+pub(crate) struct Stability {
+    pub(crate) protocol: Protocol,
+    pub(crate) scene: Scene,
+    /// The arguments that repeat it.
+    pub(crate) arguments: String,
+    pub(crate) threads: usize,
+}
+
+impl Study for Stability {
+    fn name(&self) -> &'static str {
+        "stability"
+    }
+
+    fn command(&self) -> String {
+        format!("localshape-study stability{}", self.arguments)
+    }
+
+    fn digest(&self) -> &str {
+        &self.scene.digest
+    }
+
+    fn threads(&self) -> usize {
+        self.threads
+    }
+
+    fn work(&self) -> u64 {
+        self.protocol.work(&self.scene)
+    }
+
+    fn measure(&self, watch: &Watch<'_>, notes: &Notes) -> Option<Findings> {
+        let known = |cell: &Cell| Outcome::read(notes.known(&cell.key())?);
+        let done = |cell: &Cell| notes.add(&cell.key(), &cell.outcome.note());
+        Some(measure(self.protocol.clone(), &self.scene, &known, &done, watch)?.findings())
+    }
+}
+
+/// What is measured.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Protocol {
+    /// By which the stiffness of all runs is multiplied.
+    stiffnesses: Vec<f64>,
+    /// Steps, as shares of the predicted limit.
+    shares: Vec<f64>,
+    /// By which impacts are made faster.
+    speeds: Vec<f64>,
+    /// By which the damping ratio is multiplied.
+    dampings: Vec<f64>,
+}
+
+impl Protocol {
+    /// A few minutes for the built-in scene.
+    pub(crate) fn usual() -> Self {
+        Self::new(4, 12, vec![1.0], vec![1.0])
+    }
+
+    /// A finer grid, slower and faster impacts, no damping and more.
+    pub(crate) fn full() -> Self {
+        Self::new(8, 24, vec![0.5, 1.0, 2.0], vec![0.0, 1.0, 3.0])
+    }
+
+    /// `columns` in each decade of stiffness, from a tenth to a hundred times that of the scene, and `rows` up to 1.2 times the limit,
+    /// which lies between two of them.
+    fn new(columns: u32, rows: u32, speeds: Vec<f64>, dampings: Vec<f64>) -> Self {
+        let decades = |at: u32| f64::from(at) / f64::from(columns) - 1.0;
+        Self {
+            stiffnesses: (0..=3 * columns).map(|at| libm::exp10(decades(at))).collect(),
+            shares: (0..rows).map(|at| 1.2 * (f64::from(at) + 0.5) / f64::from(rows)).collect(),
+            speeds,
+            dampings,
+        }
+    }
+
+    /// The number of cells of a scene's maps.
+    pub(crate) fn work(&self, scene: &Scene) -> u64 {
+        let runs = scene.runs.iter().filter(|run| run.tolerance.is_none()).count();
+        (runs * self.stiffnesses.len() * self.shares.len() * self.speeds.len() * self.dampings.len()) as u64
+    }
+}
+
+/// The scene that is studied if none is given: the fall of Fig. 4(b), with three integrators.
+pub(crate) fn usual() -> Scene {
+    let model = |kind: &str| format!("model = {{ kind = '{kind}, stiffness = 1e4, damping_ratio = 0.1 }}");
+    let (shape, springs) = (model("shape-based'"), model("mass-spring', springs = 'edges+one-diagonal'"));
+    let runs = ["semi-implicit-euler", "velocity-verlet", "runge-kutta"].map(|integrator| {
+        let run = |name: &str, model: &str| {
+            format!("{{ name = '{name}, {integrator}', integrator = '{integrator}', {model} }}")
+        };
+        format!("{},\n{}", run("Local shape", &shape), run("Mass-spring", &springs))
+    });
+    let text = format!(
+        "title = '3×3×3 cubes that hit a floor after a fall of 5 m'
+        gravity = [0, -9.8, 0]
+        time.duration = 2
+        body = {{ lattice = {{ cells = [3, 3, 3], side = 0.1 }}, velocity = [0, -9.899495, 0], lowest = 0, \
+            rotation = {{ axis = [1, 0, 1], angle = 0.028284 }} }}
+        obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3 }}]
+        run = [{}]",
+        runs.join(",\n")
+    );
+    Scene::parse(&text, "fall", &Limits::default()).unwrap_or_else(|error| panic!("a scene without mistakes: {error}"))
+}
+
+/// What became of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// No element is turned over at the end.
+    Whole,
+    /// So many are.
+    TurnedOver(usize),
+    /// It diverged.
+    Diverged,
+}
+
+/// A run with one stiffness and one step.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Cell {
+    /// The number of the run.
+    pub(crate) run: usize,
+    /// The stiffness over the mass of the lightest node (1/s²).
+    pub(crate) rate: f64,
+    /// The factors of the speed of impacts and of the damping ratio.
+    pub(crate) speed: f64,
+    pub(crate) damping: f64,
+    /// The step as a share of the predicted limit, or of [`Grid::unit`] where there is none.
+    pub(crate) share: f64,
+    /// Time step (s).
+    pub(crate) step: f64,
+    pub(crate) outcome: Outcome,
+}
+
+/// What is common to the cells of a run with one damping ratio.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Grid {
+    pub(crate) run: usize,
+    pub(crate) damping: f64,
+    /// `k/m` of the scene (1/s²).
+    pub(crate) rate: f64,
+    /// The predicted limit for that (s), or a π-th of the cycle T for integrators that have none: the limit of semi-implicit Euler
+    /// for a single element.
+    pub(crate) unit: f64,
+    /// The predicted limit, if there is one, as a share of T.
+    pub(crate) limit: Option<f64>,
+    /// The limit for springs however far they are stretched, as a share of the other.
+    pub(crate) stretched: Option<f64>,
+}
+
+impl Grid {
+    fn new(scene: &Scene, run: usize, damping: f64) -> Option<Self> {
+        let mut scene = scene.clone();
+        let model = scene.runs[run].model.scaled(1.0, damping)?;
+        scene.runs[run].model = model;
+        let cycle = scene.runs[run].model.shortest_period(&scene.body);
+        let Scene { body, runs, grips, duration, .. } = &scene;
+        let predicted = Limit::of(body, runs[run].model.as_ref(), runs[run].integrator, grips, *duration);
+        let limit = (predicted.largest > 0.0 && predicted.largest.is_finite()).then_some(predicted.largest);
+        Some(Self {
+            run,
+            damping,
+            rate: scene.runs[run].model.stiffness() / scene.body.lightest(),
+            unit: limit.unwrap_or(cycle * std::f64::consts::FRAC_1_PI),
+            limit: limit.map(|limit| limit / cycle),
+            stretched: limit.and_then(|limit| Some(predicted.stretched? / limit)),
+        })
+    }
+}
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Results {
+    pub(crate) protocol: Protocol,
+    pub(crate) told: Told,
+    pub(crate) grids: Vec<Grid>,
+    /// In the order of grids, speeds, stiffnesses and shares.
+    pub(crate) cells: Vec<Cell>,
+}
+
+/// What is told of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Told {
+    pub(crate) title: String,
+    pub(crate) duration: f64,
+    /// Name, model and integrator of each run.
+    pub(crate) runs: Vec<[String; 3]>,
+    /// Runs that are not studied, and why.
+    pub(crate) skipped: Vec<String>,
+}
+
+/// Simulates all cells with the rayon thread pool of the caller, except those for which `known` has an outcome, and calls `done` with
+/// each of the others; `None` if `watch` stops it.
+pub(crate) fn measure(
+    protocol: Protocol,
+    scene: &Scene,
+    known: &(dyn Fn(&Cell) -> Option<Outcome> + Sync),
+    done: &(dyn Fn(&Cell) + Sync),
+    watch: &Watch<'_>,
+) -> Option<Results> {
+    let (studied, skipped): (Vec<_>, Vec<_>) =
+        (0..scene.runs.len()).partition(|&run| scene.runs[run].tolerance.is_none());
+    let each = |run: usize| protocol.dampings.iter().filter_map(move |&damping| Grid::new(scene, run, damping));
+    let grids: Vec<Grid> = studied.into_iter().flat_map(each).collect();
+    let mut cells = Vec::new();
+    for grid in &grids {
+        for (&speed, &stiffness) in
+            protocol.speeds.iter().flat_map(|speed| protocol.stiffnesses.iter().map(move |k| (speed, k)))
+        {
+            cells.extend(protocol.shares.iter().map(|&share| Cell {
+                run: grid.run,
+                rate: grid.rate * stiffness,
+                speed,
+                damping: grid.damping,
+                share,
+                step: share * grid.unit / stiffness.sqrt(),
+                outcome: Outcome::Whole,
+            }));
+        }
+    }
+    let stiffness_of = |cell: &Cell| {
+        let grid = grids.iter().find(|grid| grid.run == cell.run).expect("the cells are those of grids");
+        cell.rate / grid.rate
+    };
+    cells.par_iter_mut().with_max_len(1).try_for_each(|cell| {
+        let found = known(cell);
+        cell.outcome = match found {
+            Some(outcome) => outcome,
+            None => outcome(scene, cell, stiffness_of(cell), watch)?,
+        };
+        if found.is_none() {
+            done(cell);
+        }
+        watch(1).then_some(())
+    })?;
+    let words = |run: &Run| [run.name.clone(), run.model.describe_fully(&scene.body), typed(&run.integrator)];
+    let skipped = skipped.into_iter().map(|run| scene.runs[run].name.clone()).collect();
+    let told = Told {
+        title: scene.title.clone(),
+        duration: scene.duration,
+        runs: scene.runs.iter().map(words).collect(),
+        skipped,
+    };
+    Some(Results { protocol, told, grids, cells })
+}
+
+/// Simulates a cell, until it diverges; `None` if `watch` stops it.
+fn outcome(scene: &Scene, cell: &Cell, stiffness: f64, watch: &Watch<'_>) -> Option<Outcome> {
+    /// Steps between two looks.
+    const STRETCH: u64 = 4096;
+    let mut scene = scene.clone();
+    scene.gravity *= cell.speed * cell.speed;
+    scene.initial.velocity.iter_mut().for_each(|velocity| *velocity *= cell.speed);
+    let run = &mut scene.runs[cell.run];
+    run.model = run.model.scaled(stiffness, stiffness.sqrt() * cell.damping).expect("grids are of models that can be");
+    run.step = cell.step;
+    let mut world = scene.world(cell.run);
+    let mut left = (scene.duration / cell.step).ceil() as u64;
+    while left > 0 && world.status() == Status::Ok {
+        world.advance(left.min(STRETCH));
+        left = left.saturating_sub(STRETCH);
+        if !watch(0) {
+            return None;
+        }
+    }
+    Some(match world.status() {
+        Status::Diverged(_) => Outcome::Diverged,
+        Status::Ok => match world.some_diagnostics(&[Diagnostic::TurnedOver]).turned_over {
+            0 => Outcome::Whole,
+            count => Outcome::TurnedOver(count),
+        },
+    })
+}
+
+impl Results {
+    /// The cells of a grid with one speed of impacts, column by column.
+    pub(crate) fn of<'a>(&'a self, grid: &'a Grid, speed: f64) -> impl Iterator<Item = &'a Cell> {
+        let is_of = move |cell: &&Cell| cell.run == grid.run && cell.damping == grid.damping && cell.speed == speed;
+        self.cells.iter().filter(is_of)
+    }
+
+    /// The grids with the speeds of their maps.
+    pub(crate) fn maps(&self) -> impl Iterator<Item = (&Grid, f64)> {
+        self.grids.iter().flat_map(|grid| self.protocol.speeds.iter().map(move |&speed| (grid, speed)))
+    }
+
+    /// The name of a map, its impacts and damping where the protocol has several, and the model.
+    pub(crate) fn words(&self, grid: &Grid, speed: f64) -> [String; 3] {
+        let [name, model, _] = &self.told.runs[grid.run];
+        let Protocol { speeds, dampings, .. } = &self.protocol;
+        let speed = (speeds.len() > 1).then(|| format!("impacts {} × as fast", short(speed)));
+        let damping = (dampings.len() > 1).then(|| format!("{} × the damping", short(grid.damping)));
+        let conditions: Vec<_> = speed.into_iter().chain(damping).collect();
+        [name.clone(), conditions.join(", "), model.clone()]
+    }
+
+    /// The largest share up to which every step, with every stiffness, has one of these outcomes; 0 for none.
+    fn up_to(&self, grid: &Grid, speed: f64, is_good: impl Fn(Outcome) -> bool) -> f64 {
+        let bad = self.of(grid, speed).filter(|cell| !is_good(cell.outcome)).map(|cell| cell.share);
+        let least = bad.fold(f64::INFINITY, f64::min);
+        self.protocol.shares.iter().copied().filter(|&share| share < least).fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/inside/stability.rs"]
+mod tests;

@@ -1,0 +1,57 @@
+//! A map for each run, damping and speed.
+
+use super::text::short;
+use super::{Cell, Grid, Outcome, Results};
+use crate::page::{Map, Maps, Tile};
+
+impl Results {
+    pub(super) fn page(&self) -> Maps {
+        /// Shares at which steps are written.
+        const TICKS: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
+        let map = |(grid, speed): (&Grid, f64)| {
+            let cells: Vec<_> = self.of(grid, speed).collect();
+            let mut across: Vec<f64> = cells.iter().map(|cell| cell.rate).collect();
+            across.dedup();
+            let tile = |cell: &&Cell| match cell.outcome {
+                Outcome::Whole => Tile::Whole,
+                Outcome::TurnedOver(_) => Tile::TurnedOver,
+                Outcome::Diverged => Tile::Diverged,
+            };
+            let tick = |share: f64| (share, [short(share), format!("T/{:.1}", grid.steps_per_cycle(share))]);
+            let limit = grid.limit.map(|_| (1.0, "predicted limit"));
+            let stretched = grid.stretched.filter(|&share| share < 1.0).map(|share| (share, "with stretched springs"));
+            // Of several maps of a run, what tells them apart; the model stands in the tables.
+            let [name, conditions, model] = self.words(grid, speed);
+            Map {
+                name: [name, if conditions.is_empty() { model } else { conditions }],
+                across,
+                up: self.protocol.shares.clone(),
+                cells: cells.iter().map(tile).collect(),
+                ticks: TICKS.map(tick).into(),
+                lines: limit.into_iter().chain(stretched).collect(),
+                axes: [
+                    "k/m (1/s²)".to_owned(),
+                    if grid.limit.is_some() { "ΔT, as a share of the limit" } else { "ΔT, as a share of T/π" }
+                        .to_owned(),
+                    "ΔT".to_owned(),
+                ],
+            }
+        };
+        Maps {
+            title: format!("Stability: {}", self.told.title),
+            caption: vec![
+                "Each cell is a run. The stiffness changes with the same damping ratio; the limit is predicted before the run, at rest."
+                    .to_owned(),
+            ],
+            maps: self.maps().map(map).collect(),
+            columns: self.protocol.speeds.len().clamp(2, 3),
+        }
+    }
+}
+
+impl Grid {
+    /// The cycle T as so many steps, for a share of the unit.
+    fn steps_per_cycle(&self, share: f64) -> f64 {
+        1.0 / (share * self.limit.unwrap_or(std::f64::consts::FRAC_1_PI))
+    }
+}

@@ -1,0 +1,121 @@
+//! The results as text and as a table, and the notes of cells.
+
+use super::{Cell, Grid, Outcome, Results};
+use crate::study::Findings;
+use crate::table::Table;
+
+impl Outcome {
+    /// In words, as in tables.
+    fn words(self) -> &'static str {
+        match self {
+            Self::Whole => "whole",
+            Self::TurnedOver(_) => "turned over",
+            Self::Diverged => "diverged",
+        }
+    }
+
+    /// How many elements are turned over at the end.
+    fn turned_over(self) -> Option<usize> {
+        match self {
+            Self::Whole => Some(0),
+            Self::TurnedOver(count) => Some(count),
+            Self::Diverged => None,
+        }
+    }
+}
+
+impl Cell {
+    /// What distinguishes a cell from the others of its study.
+    pub(super) fn key(&self) -> String {
+        let numbers =
+            [self.rate, self.speed, self.damping, self.share, self.step].map(|number| number.to_bits().to_string());
+        format!("{} {}", self.run, numbers.join(" "))
+    }
+}
+
+impl Outcome {
+    /// In a note.
+    pub(super) fn note(self) -> String {
+        self.turned_over().map_or_else(|| "diverged".to_owned(), |count| count.to_string())
+    }
+
+    /// From a note; `None` from anything else.
+    pub(super) fn read(note: &str) -> Option<Self> {
+        match note {
+            "diverged" => Some(Self::Diverged),
+            "0" => Some(Self::Whole),
+            count => Some(Self::TurnedOver(count.parse().ok()?)),
+        }
+    }
+}
+
+impl Results {
+    pub(super) fn findings(&self) -> Findings {
+        Findings {
+            text: self.text(),
+            tables: vec![("stability", self.table())],
+            #[cfg(feature = "render")]
+            pages: vec![("stability", Box::new(self.page()))],
+        }
+    }
+
+    /// The results for people.
+    fn text(&self) -> String {
+        let mut text = format!(
+            "# Stability: what becomes of each run\n\n\
+            {}; {} s. The stiffness is multiplied by {} to {}, with the same damping ratio. Steps are shares of the largest one that is \
+            predicted to be stable at rest; of a run that has none, of T/π. `whole`: no element is turned over at the end.\n\n",
+            self.told.title,
+            self.told.duration,
+            short(self.protocol.stiffnesses.first().copied().unwrap_or(1.0)),
+            short(self.protocol.stiffnesses.last().copied().unwrap_or(1.0)),
+        );
+        let row = |(grid, speed): (&Grid, f64)| {
+            let [name, conditions, model] = self.words(grid, speed);
+            let up_to =
+                |is_good: fn(Outcome) -> bool| Some(self.up_to(grid, speed, is_good)).filter(|&share| share > 0.0);
+            let or_dash = |text: Option<String>| text.unwrap_or_else(|| "–".to_owned()).into();
+            [
+                ("run", name.into()),
+                ("model", if conditions.is_empty() { model } else { format!("{conditions}, {model}") }.into()),
+                ("predicted limit", or_dash(grid.limit.map(|limit| format!("T/{}", short(1.0 / limit))))),
+                ("stretched springs", or_dash(grid.stretched.map(short))),
+                ("none diverges up to", or_dash(up_to(|outcome| outcome != Outcome::Diverged).map(short))),
+                ("all are whole up to", or_dash(up_to(|outcome| outcome == Outcome::Whole).map(short))),
+            ]
+        };
+        text += &Table::of(self.maps().map(row)).markdown(2);
+        for name in &self.told.skipped {
+            text += &format!("\n{name} finds its own steps and is left out.\n");
+        }
+        text
+    }
+
+    /// All cells, with all digits.
+    pub(super) fn table(&self) -> Table {
+        let row = |cell: &Cell| {
+            let [name, _, integrator] = &self.told.runs[cell.run];
+            let grid = self.grids.iter().find(|grid| grid.run == cell.run && grid.damping == cell.damping);
+            let has_limit = grid.is_some_and(|grid| grid.limit.is_some());
+            [
+                ("run", name.as_str().into()),
+                ("integrator", integrator.as_str().into()),
+                ("stiffness_over_mass", cell.rate.into()),
+                ("speed", cell.speed.into()),
+                ("damping", cell.damping.into()),
+                ("step_s", cell.step.into()),
+                ("step_over_limit", has_limit.then_some(cell.share).into()),
+                ("step_over_cycle", (cell.step * cell.rate.sqrt() / std::f64::consts::TAU).into()),
+                ("outcome", cell.outcome.words().into()),
+                ("turned_over", cell.outcome.turned_over().into()),
+            ]
+        };
+        Table::of(self.cells.iter().map(row))
+    }
+}
+
+/// A number with at most four digits.
+pub(super) fn short(number: f64) -> String {
+    let text = format!("{number:.3e}");
+    text.parse::<f64>().unwrap_or(number).to_string()
+}

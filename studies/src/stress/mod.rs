@@ -1,0 +1,305 @@
+//! Stress: what becomes of bodies of every model under what is likely to break them, and what must hold.
+//!
+//! Each trial is one body with one treatment, simulated with every model and the same time step, at most half of the shape
+//! model's limit of stability.
+
+mod text;
+mod trials;
+
+use crate::folder::Notes;
+use crate::study::{Findings, Study, Watch};
+use glam::DVec3;
+use localshape::sim::model::ElasticModel;
+use localshape::sim::model::mass_spring::MassSpring;
+use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use localshape::sim::world::Stepping;
+use localshape::sim::{Body, Integrator, Kernel, Springs, State, Status, World};
+use rayon::prelude::*;
+use trials::{Trial, trials};
+
+/// The study.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stress {
+    /// Steps of bodies that rest or spin.
+    pub(crate) steps: u64,
+    pub(crate) threads: usize,
+}
+
+impl Stress {
+    /// The usual number of steps.
+    pub(crate) const STEPS: u64 = 1_000_000;
+}
+
+impl Study for Stress {
+    fn name(&self) -> &'static str {
+        "stress"
+    }
+
+    fn threads(&self) -> usize {
+        self.threads
+    }
+
+    fn work(&self) -> u64 {
+        (trials(self.steps).len() * MODELS.len()) as u64
+    }
+
+    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+        Some(measure(self.steps, watch)?.findings())
+    }
+}
+
+/// The models that are compared.
+pub(crate) const MODELS: [Model; 4] = [Model::Shape, Model::Printed, Model::EdgesFaceDiagonals, Model::All];
+
+/// A model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Model {
+    /// Shape-based with the default rotations.
+    Shape,
+    /// Shape-based with two passes of Eq. (15), as the paper advises.
+    Printed,
+    /// Springs on edges and both diagonals of faces.
+    EdgesFaceDiagonals,
+    /// Springs between all nodes of each element.
+    All,
+}
+
+impl Model {
+    /// Its name in tables.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Shape => "shape-based",
+            Self::Printed => "shape-based, Eq. (15) twice",
+            Self::EdgesFaceDiagonals => "springs, edges and face diagonals",
+            Self::All => "springs, all pairs of an element",
+        }
+    }
+
+    fn prepare(self, body: &Body, stiffness: f64, damping: f64) -> Box<dyn ElasticModel> {
+        let shape = |rotation| ShapeBased {
+            stiffness,
+            damping,
+            passes: 2,
+            rotation,
+            damping_of: DampingReading::RelativeMotion,
+        };
+        let springs = |named| MassSpring { stiffness, damping, springs: body.topology().springs(named).into() };
+        match self {
+            Self::Shape => Box::new(shape(RotationReading::Robust)),
+            Self::Printed => Box::new(shape(RotationReading::Arctangent)),
+            Self::EdgesFaceDiagonals => Box::new(springs(Springs::EdgesFaceDiagonals)),
+            Self::All => Box::new(springs(Springs::All)),
+        }
+    }
+}
+
+/// What must hold at the end of a trial with the default model, besides numbers that are finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Promise {
+    /// No element is turned over, and the shape error (see [`Outcome::shape_error`]) is at most this.
+    Restored(f64),
+    /// No element is turned over, and all heights are those of the static equilibrium within this part of a side.
+    Settled(f64),
+    /// Nothing is said about the shape: the motion is not damped.
+    Bounded,
+}
+
+/// What became of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Outcome {
+    /// The time at which it diverged (s), if it did.
+    pub(crate) diverged: Option<f64>,
+    /// Whether all positions and velocities are finite.
+    pub(crate) is_finite: bool,
+    /// The number of elements that are turned over at the end.
+    pub(crate) turned_over: usize,
+    /// RMS distance of the nodes from the best placement of the rest shape, as a part of a side.
+    pub(crate) shape_error: f64,
+    /// The greatest difference of a height from the static equilibrium, as a part of a side; NaN where there is none.
+    pub(crate) unsettled: f64,
+    /// The greatest total energy over that at the start; NaN where work is done on the body.
+    pub(crate) energy: f64,
+    /// The change of momentum, and of angular momentum about the centre of mass, over the sums of their sizes at the fastest;
+    /// NaN where a force acts from outside, or damping that brakes rotation.
+    pub(crate) momentum: [f64; 2],
+    /// How far the centre of mass crept sideways, as a part of a side; NaN where the body is to move.
+    pub(crate) creep: f64,
+}
+
+/// The outcomes of a trial, one for each of [`MODELS`].
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) group: &'static str,
+    pub(crate) name: String,
+    pub(crate) elements: usize,
+    pub(crate) steps: u64,
+    pub(crate) promise: Promise,
+    pub(crate) outcomes: Vec<Outcome>,
+}
+
+/// What was found; the same on every machine.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Results {
+    pub(crate) rows: Vec<Row>,
+}
+
+/// The greatest energy over that at the start: semi-implicit Euler oscillates by some per cent at half of its limit, and
+/// rebounds add to it.
+const MOST_ENERGY: f64 = 1.5;
+/// The greatest relative change of momentum: round-off of a million steps.
+const MOST_CHANGE: f64 = 1e-9;
+/// The farthest that a body on a level floor creeps, in sides.
+const MOST_CREEP: f64 = 1e-3;
+
+/// Makes all trials on the thread pool of the caller; `None` if `watch` stops it.
+pub(crate) fn measure(steps: u64, watch: &Watch<'_>) -> Option<Results> {
+    let trials = trials(steps);
+    let pairs: Vec<_> = trials.iter().flat_map(|trial| MODELS.map(|model| (trial, model))).collect();
+    let outcomes: Option<Vec<_>> = pairs
+        .par_iter()
+        .map(|(trial, model)| {
+            let outcome = trial.outcome(*model);
+            watch(1).then_some(outcome)
+        })
+        .collect();
+    let mut outcomes = outcomes?.into_iter();
+    let row = |trial: Trial| Row {
+        group: trial.group,
+        name: trial.name,
+        elements: trial.body.elements.len(),
+        steps: trial.steps,
+        promise: trial.promise,
+        outcomes: outcomes.by_ref().take(MODELS.len()).collect(),
+    };
+    Some(Results { rows: trials.into_iter().map(row).collect() })
+}
+
+impl Row {
+    /// What the default model does not keep of what must hold; empty if all is well.
+    pub(crate) fn broken(&self) -> Vec<String> {
+        let one = &self.outcomes[0];
+        let mut broken = Vec::new();
+        let mut demand = |holds: bool, what: String| {
+            if !holds {
+                broken.push(what);
+            }
+        };
+        demand(one.diverged.is_none(), "diverged".to_owned());
+        if self.promise != Promise::Bounded {
+            demand(one.turned_over == 0, format!("{} of {} turned over", one.turned_over, self.elements));
+        }
+        match self.promise {
+            Promise::Restored(most) => demand(one.shape_error <= most, format!("shape error {:.1e}", one.shape_error)),
+            Promise::Settled(most) => demand(one.unsettled <= most, format!("not settled by {:.1e}", one.unsettled)),
+            Promise::Bounded => {}
+        }
+        // NaN is what is not measured.
+        demand(one.energy.is_nan() || one.energy <= MOST_ENERGY, format!("energy × {:.2}", one.energy));
+        for change in one.momentum {
+            demand(change.is_nan() || change <= MOST_CHANGE, format!("momentum changed by {change:.0e}"));
+        }
+        demand(one.creep.is_nan() || one.creep <= MOST_CREEP, format!("crept by {:.1e}", one.creep));
+        // No model may give numbers that are none.
+        for (model, outcome) in MODELS.iter().zip(&self.outcomes) {
+            demand(outcome.is_finite, format!("{} is not finite", model.name()));
+        }
+        broken
+    }
+}
+
+impl Trial {
+    fn world(&self, model: Model, integrator: Integrator, damping: f64, start: State) -> World {
+        let model = model.prepare(&self.body, self.stiffness, damping);
+        let Self { body, around, step, .. } = self;
+        let stepping = Stepping {
+            integrator,
+            step: *step,
+            tolerance: Integrator::TOLERANCE,
+            kernel: Kernel::of(model.as_ref(), integrator),
+        };
+        World::new(body, start, model.as_ref(), around.clone(), stepping)
+    }
+
+    fn outcome(&self, model: Model) -> Outcome {
+        /// How often the state is looked at.
+        const LOOKS: u64 = 64;
+        let mut world = self.world(model, Integrator::default(), self.damping, self.start.clone());
+        let first = Look::of(self, &world);
+        let (mut most, mut fastest, mut changed) = (first.energy, first.sizes, [0.0f64; 2]);
+        for look in 0..LOOKS {
+            world.advance(self.steps * (look + 1) / LOOKS - self.steps * look / LOOKS);
+            let now = Look::of(self, &world);
+            // Unlike the maximum of two numbers, these keep NaN.
+            most = if now.energy <= most { most } else { now.energy };
+            fastest = [0, 1].map(|at| now.sizes[at].max(fastest[at]));
+            changed = [0, 1].map(|at| changed[at].max((now.momenta[at] - first.momenta[at]).length()));
+        }
+        let (d, state) = (world.diagnostics(), world.state());
+        let diverged = match world.status() {
+            Status::Ok => None,
+            Status::Diverged(at) => Some(at.time),
+        };
+        let last = Look::of(self, &world);
+        let measured = |is_measured: bool, value: f64| if is_measured { value } else { f64::NAN };
+        Outcome {
+            diverged,
+            is_finite: state.position.iter().chain(&state.velocity).all(|vector| vector.is_finite()),
+            turned_over: d.turned_over,
+            shape_error: d.shape_error / self.side,
+            unsettled: measured(matches!(self.promise, Promise::Settled(_)), self.unsettled(model, state)),
+            energy: measured(self.has_energy, most / first.energy),
+            momentum: [0, 1].map(|at| {
+                let is_kept = self.is_free && (at == 0 || self.damping == 0.0);
+                measured(is_kept && diverged.is_none(), changed[at] / fastest[at].max(f64::MIN_POSITIVE))
+            }),
+            creep: measured(self.is_still, (last.centre - first.centre).with_y(0.0).length() / self.side),
+        }
+    }
+
+    /// The greatest difference of a height from those of the body at rest on its side, as a part of a side. Heights are
+    /// compared in order, so it does not matter on which side of a cube it lies.
+    fn unsettled(&self, model: Model, state: &State) -> f64 {
+        let heights = |state: &State| {
+            let mut heights: Vec<_> = state.position.iter().map(|at| at.y).collect();
+            heights.sort_by(f64::total_cmp);
+            heights
+        };
+        // Velocity Verlet comes to rest on a floor completely.
+        let mut world =
+            self.world(model, Integrator::VelocityVerlet, self.damping, State::at_rest(self.body.rest.clone()));
+        world.advance(self.steps.min(20_000));
+        let pairs = heights(state).into_iter().zip(heights(world.state()));
+        pairs.fold(0.0, |most: f64, (one, other)| most.max((one - other).abs())) / self.side
+    }
+}
+
+/// What is watched of a state.
+struct Look {
+    energy: f64,
+    centre: DVec3,
+    /// Momentum, and angular momentum about the centre of mass.
+    momenta: [DVec3; 2],
+    /// The same with the sizes of all terms added up.
+    sizes: [f64; 2],
+}
+
+impl Look {
+    fn of(trial: &Trial, world: &World) -> Self {
+        let (d, state, mass) = (world.diagnostics(), world.state(), &trial.body.mass);
+        let whole: f64 = mass.iter().sum();
+        let centre = mass.iter().zip(&state.position).map(|(&mass, &at)| at * mass).sum::<DVec3>() / whole;
+        let (mut momenta, mut sizes) = ([DVec3::ZERO; 2], [0.0; 2]);
+        for ((&mass, &at), &velocity) in mass.iter().zip(&state.position).zip(&state.velocity) {
+            for (place, momentum) in [velocity * mass, (at - centre).cross(velocity * mass)].into_iter().enumerate() {
+                momenta[place] += momentum;
+            }
+            sizes[0] += mass * velocity.length();
+            sizes[1] += mass * velocity.length() * (at - centre).length();
+        }
+        Self { energy: d.kinetic + d.elastic + d.gravitational, centre, momenta, sizes }
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/inside/stress.rs"]
+mod tests;

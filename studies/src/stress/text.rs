@@ -1,0 +1,98 @@
+//! The results as text and as a table.
+
+use super::{MODELS, Outcome, Promise, Results, Row};
+use crate::study::Findings;
+use crate::table::{Cell, Table};
+
+/// The shape error of a body that counts as restored.
+const RESTORED: f64 = 1e-3;
+
+impl Results {
+    pub(super) fn findings(&self) -> Findings {
+        Findings {
+            text: self.text(),
+            tables: vec![("stress", self.table())],
+            #[cfg(feature = "render")]
+            pages: Vec::new(),
+        }
+    }
+
+    /// The results for people.
+    pub(super) fn text(&self) -> String {
+        let mut text = String::from(
+            "# Stress\n\n\
+            Each body with each model, and the same time step: half of the shape model's limit of stability or less. *Restored*: \
+            no element is turned over, and the nodes are within a thousandth of a side of the shape at rest, RMS. *At rest*: all \
+            heights are those of the static equilibrium within 1 % of a side. *Whole*: stretched by spinning, nothing else. Numbers in \
+            parentheses are RMS distances from the shape at rest, in sides. Springs diverge where so many meet at a node that \
+            this time step is too large for them.\n",
+        );
+        for group in self.rows.chunk_by(|one, other| one.group == other.group) {
+            let row = |row: &Row| {
+                let [one, two, three, four] = [0, 1, 2, 3].map(|model| row.words(&row.outcomes[model]).into());
+                let [a, b, c, d] = MODELS.map(|model| model.name());
+                [(group[0].group, row.name.as_str().into()), (a, one), (b, two), (c, three), (d, four)]
+            };
+            text += &format!("\n{}", Table::of(group.iter().map(row)).markdown(5));
+        }
+        let broken: Vec<_> = self.rows.iter().filter(|row| !row.broken().is_empty()).collect();
+        text += match broken.is_empty() {
+            true => "\nAll that must hold for the shape model holds.\n",
+            false => "\nWhat must hold for the shape model and does not:\n\n",
+        };
+        for row in broken {
+            text += &format!("- {}, {}: {}\n", row.group, row.name, row.broken().join("; "));
+        }
+        text
+    }
+
+    /// All numbers, with all digits.
+    pub(super) fn table(&self) -> Table {
+        let rows =
+            self.rows.iter().flat_map(|row| row.outcomes.iter().zip(MODELS).map(move |(one, model)| (row, one, model)));
+        let number = |value: f64| if value.is_nan() { Cell::Empty } else { value.into() };
+        Table::of(rows.map(|(row, one, model)| {
+            [
+                ("group", row.group.into()),
+                ("trial", row.name.as_str().into()),
+                ("model", model.name().into()),
+                ("steps", row.steps.into()),
+                ("elements", row.elements.into()),
+                ("diverged_s", one.diverged.into()),
+                ("turned_over", one.turned_over.into()),
+                ("shape_error_sides", number(one.shape_error)),
+                ("unsettled_sides", number(one.unsettled)),
+                ("energy_ratio", number(one.energy)),
+                ("momentum_change", number(one.momentum[0])),
+                ("angular_momentum_change", number(one.momentum[1])),
+                ("creep_sides", number(one.creep)),
+            ]
+        }))
+    }
+}
+
+impl Row {
+    /// What became of the body, in a few words.
+    fn words(&self, one: &Outcome) -> String {
+        let size = |number: f64| if number < 0.01 { format!("{number:.0e}") } else { format!("{number:.2}") };
+        if let Some(time) = one.diverged {
+            return format!("diverged after {} s", size(time));
+        }
+        if one.turned_over > 0 && self.promise != Promise::Bounded {
+            return format!("{} of {} turned over ({})", one.turned_over, self.elements, size(one.shape_error));
+        }
+        match self.promise {
+            Promise::Restored(most) if one.shape_error <= most => {
+                format!(
+                    "{} ({})",
+                    if one.shape_error <= RESTORED { "restored" } else { "whole" },
+                    size(one.shape_error)
+                )
+            }
+            Promise::Settled(most) if one.unsettled <= most => "at rest".to_owned(),
+            Promise::Bounded => format!("energy at most × {:.2}", one.energy),
+            Promise::Settled(_) => format!("not at rest by {} sides", size(one.unsettled)),
+            Promise::Restored(_) => format!("out of shape ({})", size(one.shape_error)),
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! What all studies are: a name, a measurement, and what it found as text, tables and pages; and how one is made.
+
+use crate::failure::{Failure, Status};
+use crate::folder::{Folder, Notes};
+use crate::progress;
+use crate::table::Table;
+use clap::{Args, ValueHint};
+use rayon::ThreadPoolBuilder;
+use serde_json::{Map, Value, json};
+use std::io::{self, ErrorKind, Write};
+use std::path::PathBuf;
+
+/// Called with the amount of work just done, from any thread; `false` stops the measurement.
+pub(crate) type Watch<'a> = dyn Fn(u64) -> bool + Sync + 'a;
+
+/// A measurement that is ready to be made.
+pub(crate) trait Study: Send + Sync {
+    /// Its name, which its folder and its files have.
+    fn name(&self) -> &'static str;
+
+    /// The command that repeats it.
+    fn command(&self) -> String {
+        format!("localshape-study {}", self.name())
+    }
+
+    /// What notes of an interrupted study depend on, besides the command.
+    fn digest(&self) -> &str {
+        ""
+    }
+
+    /// The number of threads.
+    fn threads(&self) -> usize {
+        1
+    }
+
+    /// The amount of work, which is the sum of what [`Self::measure`] reports.
+    fn work(&self) -> u64;
+
+    /// Measures, with the thread pool of the caller (rayon); `None` if `watch` stops it. Notes are kept until the study is made.
+    fn measure(&self, watch: &Watch<'_>, notes: &Notes) -> Option<Findings>;
+}
+
+/// What a study found.
+pub(crate) struct Findings {
+    /// For people, as Markdown.
+    pub(crate) text: String,
+    /// With all digits, with the names of their CSV files.
+    pub(crate) tables: Vec<(&'static str, Table)>,
+    /// With the names of their SVG and PNG files, without extensions.
+    #[cfg(feature = "render")]
+    pub(crate) pages: Vec<(&'static str, Box<dyn crate::page::Page>)>,
+}
+
+/// Options of all studies.
+#[derive(Args, Debug)]
+pub(crate) struct Options {
+    /// Output folder [default: output/study-NAME]
+    #[arg(short, long, global = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Write into a folder that has other files, or a study that another command has made
+    #[arg(long, global = true)]
+    pub(crate) overwrite: bool,
+
+    /// Print errors only, neither progress nor results
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
+
+    /// Print the results as one JSON document
+    #[arg(long, global = true, conflicts_with = "quiet")]
+    pub(crate) json: bool,
+
+    /// Graphics adapter that draws plots as PNG: auto (a GPU if there is one), cpu, gpu, or part of its name
+    #[cfg(feature = "render")]
+    #[arg(long, global = true, value_name = "ADAPTER", default_value = "auto")]
+    pub(crate) adapter: localshape::AdapterChoice,
+}
+
+/// Makes a study: measures, writes its files, and prints what it found.
+pub(crate) fn make(study: &dyn Study, options: &Options) -> Result<Status, Failure> {
+    let (name, command) = (study.name(), study.command());
+    let path = options.out.clone().unwrap_or_else(|| format!("output/study-{name}").into());
+    let folder = Folder::new(path, name, &command, options.overwrite)?;
+    // What cannot be drawn is said before it is measured.
+    #[cfg(feature = "render")]
+    let gpu = localshape::Gpu::new(&options.adapter).map_err(|error| Failure::Adapter(error.to_string()))?;
+    let pool = ThreadPoolBuilder::new().num_threads(study.threads()).build();
+    let pool = pool.map_err(|error| Failure::Files(format!("cannot start threads: {error}")))?;
+    let notes = folder.notes(study.digest());
+    let found =
+        progress::shown(name, study.work(), options.quiet, |watch| pool.install(|| study.measure(watch, &notes)));
+    let Some(Findings { text, tables, .. }) = &found else {
+        if !options.quiet && !options.json {
+            let goes_on = if notes.are_kept() { "; the same command goes on from here" } else { "" };
+            print(&format!("interrupted; {name} was not made{goes_on}\n"))?;
+        }
+        return Ok(Status::Interrupted);
+    };
+    let text = format!("{}\n{text}", folder.mark());
+    let mut files = vec![(format!("{name}.md"), text.clone().into_bytes())];
+    files.extend(tables.iter().map(|(name, table)| (format!("{name}.csv"), table.csv().into_bytes())));
+    #[cfg(feature = "render")]
+    for (name, page) in found.iter().flat_map(|found| &found.pages) {
+        let [svg, png] = crate::page::files(page.as_ref(), &gpu)?;
+        files.extend([(format!("{name}.svg"), svg), (format!("{name}.png"), png)]);
+    }
+    folder.write(&files)?;
+    notes.remove();
+    let names: Vec<_> = files.iter().map(|(name, _)| name.as_str()).collect();
+    if options.json {
+        let tables: Map<String, Value> =
+            tables.iter().map(|(name, table)| ((*name).to_owned(), table.json())).collect();
+        let document = json!({ "study": name, "folder": folder.path(), "files": names, "tables": tables });
+        print(&format!("{document:#}\n"))?;
+    } else if !options.quiet {
+        print(&format!("{text}\nIn {}: {}\n", folder.path().display(), names.join(", ")))?;
+    }
+    Ok(Status::Done)
+}
+
+/// Prints results. A closed pipe is not an error.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::Files(format!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,75 @@
+//! Times of tasks that take turns, so that other load of the machine affects all alike.
+
+use crate::study::Watch;
+use std::time::Instant;
+
+/// The time that a thread spends: its processor time, or wall time if the system does not provide that.
+pub(crate) struct Clock {
+    wall: Instant,
+    processor: Option<f64>,
+}
+
+impl Clock {
+    /// From now on.
+    pub(crate) fn start() -> Self {
+        Self { wall: Instant::now(), processor: processor_time() }
+    }
+
+    /// The time since the start (s).
+    pub(crate) fn seconds(&self) -> f64 {
+        match (self.processor, processor_time()) {
+            (Some(before), Some(now)) => now - before,
+            _ => self.wall_seconds(),
+        }
+    }
+
+    /// The wall time since the start (s).
+    pub(crate) fn wall_seconds(&self) -> f64 {
+        self.wall.elapsed().as_secs_f64()
+    }
+}
+
+/// Which time [`Clock::seconds`] tells.
+pub(crate) fn kind_of_time() -> &'static str {
+    if processor_time().is_some() { "processor" } else { "wall" }
+}
+
+/// The processor time of this thread (s).
+#[cfg(unix)]
+fn processor_time() -> Option<f64> {
+    let rustix::time::Timespec { tv_sec, tv_nsec } = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Some(tv_sec as f64 + 1e-9 * tv_nsec as f64)
+}
+
+#[cfg(not(unix))]
+fn processor_time() -> Option<f64> {
+    None
+}
+
+/// The times of so many turns of each of `count` tasks, which `time` does by their numbers; `None` if `watch`, which is called
+/// after each turn, stops them. The order is rotated, so that no task always follows the same one.
+pub(crate) fn take_turns(
+    count: usize,
+    rounds: u32,
+    watch: &Watch<'_>,
+    mut time: impl FnMut(usize) -> f64,
+) -> Option<Vec<Vec<f64>>> {
+    let mut times = vec![Vec::new(); count];
+    for turn in 0..count * rounds as usize {
+        let number = (turn / count + turn) % count;
+        times[number].push(time(number));
+        if !watch(1) {
+            return None;
+        }
+    }
+    Some(times)
+}
+
+/// The machine in a few words, for tables of times.
+pub(crate) fn machine() -> String {
+    // Only Linux has this file.
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    let name = name.map_or(String::new(), |(_, name)| format!("{}, ", name.trim()));
+    format!("{name}{} {}", std::env::consts::ARCH, std::env::consts::OS)
+}

@@ -1,0 +1,81 @@
+//! The positions that errors are measured against, at each moment.
+
+use super::method::{End, MOMENTS, Method, Way};
+use super::{Reference, Subject};
+use glam::DVec3;
+use localshape::sim::model::ElasticModel;
+use std::sync::Arc;
+
+/// The tolerance of the reference, and the least that is tried: below, round-off is larger.
+pub(super) const TOLERANCE: f64 = 1e-11;
+/// Two methods that are farther apart than this share of the body's size do not agree.
+const MOST_APART: f64 = 0.03;
+
+/// The positions (m) at each moment.
+pub(super) type Course = Vec<Vec<DVec3>>;
+
+/// A course by two different methods; why there is none otherwise. `most` is the number of evaluations of the finest run.
+pub(super) fn reference(
+    subject: &Subject,
+    model: &Arc<dyn ElasticModel>,
+    accepted: &[Method],
+    most: f64,
+) -> Result<(Course, Reference), String> {
+    // With obstacles only the adaptive method is of high order, and of the others that with the smallest steps is best.
+    let best: &[Method] = if subject.scene.obstacles.is_empty() {
+        &[Method::BlanesMoan, Method::QuinlanTremaine, Method::DORMAND_PRINCE, Method::RUNGE_KUTTA]
+    } else {
+        &[Method::DORMAND_PRINCE]
+    };
+    let methods = best.iter().chain(&[Method::VERLET, Method::DEFAULT]).filter(|one| accepted.contains(one));
+    let mut courses = methods.filter_map(|&method| Some((method, finest(subject, model, method, most)?)));
+    let mut next = || courses.next().unwrap_or((Method::DEFAULT, None));
+    let ((first, one), (second, other)) = (next(), next());
+    let (Some(one), Some(other)) = (one, other) else {
+        return Err("the body diverges also with small steps: there is no finite reference".to_owned());
+    };
+    let apart = one.iter().zip(&other).map(|(one, other)| farthest(one, other));
+    let error = apart.fold(0.0, larger) / subject.scene.body.extent();
+    // NaN is no agreement.
+    if error.is_nan() || error > MOST_APART {
+        return Err(format!(
+            "{} and {} are {error:.0e} of the body's size apart also with small steps: the motion is chaotic, and there is no finite \
+             reference; shorten `time.duration`",
+            first.name(),
+            second.name(),
+        ));
+    }
+    Ok((one, Reference { methods: [first, second], error }))
+}
+
+/// The course with more than so many evaluations, or the tolerance of an adaptive method that leads to them, which is `None` if the
+/// body diverges; `None` for a method that needs far more evaluations.
+fn finest(subject: &Subject, model: &Arc<dyn ElasticModel>, method: Method, most: f64) -> Option<Option<Course>> {
+    let mut tolerance = if method.is_adaptive() { 1e-4 } else { TOLERANCE };
+    let mut before = None;
+    loop {
+        let mut course = vec![Vec::new(); MOMENTS];
+        let way = Way::new(method, most, tolerance).finer();
+        let (end, count) = way.run(subject, model, most, |at, positions| course[at] = positions.to_vec());
+        match end {
+            End::Reached => {}
+            End::Diverged => return Some(None),
+            End::GivenUp => return before,
+        }
+        if tolerance <= TOLERANCE || count as f64 > 1.5 * most {
+            return Some(Some(course));
+        }
+        before = Some(Some(course));
+        tolerance = (0.1 * tolerance).max(TOLERANCE);
+    }
+}
+
+/// The greatest distance of a node from its place (m).
+pub(super) fn farthest(ones: &[DVec3], others: &[DVec3]) -> f64 {
+    ones.iter().zip(others).map(|(one, other)| one.distance(*other)).fold(0.0, larger)
+}
+
+/// Unlike the maximum of two numbers, this keeps NaN.
+pub(super) fn larger(one: f64, other: f64) -> f64 {
+    if other <= one { one } else { other }
+}

@@ -1,0 +1,114 @@
+use super::*;
+use std::sync::Mutex;
+
+fn small() -> (Protocol, Scene) {
+    let text = "
+        gravity = [0, -9.8, 0]
+        time.duration = 2.5
+        body = { lattice = { cells = [1, 1, 1], side = 0.1 }, velocity = [0, -3, 0] }
+        obstacle = [{ kind = 'floor' }]
+        run = [
+            { name = 'shape', model = { kind = 'shape-based', stiffness = 1e4, damping_ratio = 0.1 } },
+            { name = 'springs', integrator = 'backward-euler', model = { kind = 'mass-spring', stiffness = 1e4 } },
+            { name = 'own', integrator = 'dormand-prince', tolerance = 1e-6, model = { kind = 'shape-based', stiffness = 1 } },
+        ]";
+    let scene = Scene::parse(text, "small", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    (
+        Protocol { stiffnesses: vec![0.25, 4.0], shares: vec![0.3, 0.9, 1.1], speeds: vec![1.0], dampings: vec![1.0] },
+        scene,
+    )
+}
+
+#[test]
+fn steps_below_the_limit_are_stable_and_steps_above_are_not() {
+    let (protocol, scene) = small();
+    let results = measure(protocol.clone(), &scene, &|_| None, &|_| (), &|_| true).expect("it is never stopped");
+    assert_eq!(results.cells.len() as u64, protocol.work(&scene));
+    assert_eq!(results.told.skipped, ["own"]);
+    for cell in results.cells.iter().filter(|cell| cell.run == 0) {
+        assert_eq!(cell.outcome == Outcome::Diverged, cell.share > 1.0, "{cell:?}");
+    }
+    // Four times the stiffness, half the step.
+    assert_eq!(results.cells[0].step, 4.0 * results.cells[3].step);
+    assert_eq!((results.grids[1].limit, results.grids[1].stretched), (None, None));
+    assert!(results.cells.iter().all(|cell| cell.run == 0 || cell.outcome != Outcome::Diverged));
+}
+
+/// What is known is not simulated again, and gives the same tables.
+#[test]
+fn goes_on_where_it_was_interrupted() {
+    let (protocol, scene) = small();
+    let made = Mutex::new(Vec::new());
+    let keep = |cell: &Cell| made.lock().unwrap().push(cell.clone());
+    let left = std::sync::atomic::AtomicI64::new(4);
+    let stop = |more: u64| left.fetch_sub(more as i64, std::sync::atomic::Ordering::Relaxed) > 0;
+    assert_eq!(measure(protocol.clone(), &scene, &|_| None, &keep, &stop), None);
+    let made = made.into_inner().unwrap();
+    assert!(!made.is_empty() && (made.len() as u64) < protocol.work(&scene));
+    let again = Mutex::new(0);
+    let known = |cell: &Cell| made.iter().find(|one| one.key() == cell.key()).map(|one| one.outcome);
+    let resumed = measure(protocol.clone(), &scene, &known, &|_| *again.lock().unwrap() += 1, &|_| true);
+    let whole = measure(protocol.clone(), &scene, &|_| None, &|_| (), &|_| true);
+    assert_eq!(*again.lock().unwrap() + made.len() as u64, protocol.work(&scene));
+    assert_eq!(resumed, whole);
+}
+
+#[test]
+fn notes_can_be_read_again() {
+    for outcome in [Outcome::Whole, Outcome::TurnedOver(9), Outcome::Diverged] {
+        assert_eq!(Outcome::read(&outcome.note()), Some(outcome));
+    }
+    for damaged in ["", "-1", "1.5", "diverge", "99999999999999999999999"] {
+        assert_eq!(Outcome::read(damaged), None, "{damaged}");
+    }
+}
+
+#[test]
+fn columns_are_documented() {
+    let (protocol, scene) = small();
+    let results = measure(protocol, &scene, &|_| None, &|_| (), &|_| true).expect("it is never stopped");
+    assert_eq!(results.table().heads, crate::table::documented("stability.csv"));
+    assert_eq!(results.table().rows.len(), results.cells.len());
+}
+
+/// All rows up to the largest good share are good; a bad cell counts whatever its column, and so does its own row.
+#[test]
+fn the_largest_share_is_below_every_bad_cell() {
+    let (protocol, scene) = small();
+    let mut results = measure(protocol, &scene, &|_| None, &|_| (), &|_| true).expect("it is never stopped");
+    let outcomes = [
+        // Rows with shares .3, .9 and 1.1, column by column.
+        [Outcome::Whole, Outcome::Whole, Outcome::Diverged],
+        [Outcome::Whole, Outcome::TurnedOver(1), Outcome::Whole],
+    ];
+    results.cells.iter_mut().zip(outcomes.as_flattened()).for_each(|(cell, &outcome)| cell.outcome = outcome);
+    let grid = &results.grids[0];
+    assert_eq!(results.up_to(grid, 1.0, |outcome| outcome != Outcome::Diverged), 0.9);
+    assert_eq!(results.up_to(grid, 1.0, |outcome| outcome == Outcome::Whole), 0.3);
+    assert_eq!(results.up_to(grid, 1.0, |_| true), 1.1);
+    assert_eq!(results.up_to(grid, 1.0, |_| false), 0.0);
+}
+
+/// Impacts that are twice as fast are those after a fall with four times the gravity.
+#[test]
+fn faster_impacts_have_more_gravity() {
+    let text = |gravity: f64| {
+        format!(
+            "gravity = [0, -{gravity}, 0]
+            time.duration = 3
+            body = {{ lattice = {{ cells = [3, 3, 3], side = 0.1 }}, lowest = 5, rotation = {{ axis = [1, 0, 1], angle = 0.028284 }} }}
+            obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3 }}]
+            run = [{{ name = 'springs', model = {{ kind = 'mass-spring', stiffness = 1e3, damping_ratio = 0.1, springs = 'edges+one-diagonal' }} }}]"
+        )
+    };
+    let outcomes = |gravity: f64, speed: f64| {
+        let scene = Scene::parse(&text(gravity), "fall", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let stiffnesses = vec![1.0, 2.0, 4.0, 8.0];
+        let protocol = Protocol { stiffnesses, shares: vec![0.3], speeds: vec![speed], dampings: vec![1.0] };
+        let results = measure(protocol, &scene, &|_| None, &|_| (), &|_| true).expect("it is never stopped");
+        results.cells.into_iter().map(|cell| cell.outcome).collect::<Vec<_>>()
+    };
+    let twice = outcomes(5.0, 2.0);
+    assert_eq!(twice, outcomes(20.0, 1.0));
+    assert_ne!(twice, outcomes(10.0, 1.0));
+}

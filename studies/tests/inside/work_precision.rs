@@ -1,0 +1,173 @@
+//! What a comparison of integrators promises.
+
+use super::*;
+use localshape::Limits;
+
+const QUICK: Effort = Effort { evaluations: 4096, seconds: 10.0, rounds: 1 };
+
+fn subjects(text: &str) -> Vec<Subject> {
+    let scene = Scene::parse(text, "one.toml", &Limits::default()).unwrap();
+    vec![Subject { name: "one".to_owned(), scene, run: 0 }]
+}
+
+const FREE: &str = "
+    time.duration = 0.2
+    body = { lattice = { cells = [1, 1, 1], side = 0.1 }, spin = { axis = [1, 2, 3], rate = 20 } }
+    [[run]]
+    name = 'cube'
+    model = { kind = 'shape-based', stiffness = 1e4 }
+";
+
+/// A triangle that swings, with damping that has used up most of the motion at the end.
+const DAMPED: &str = "
+    time.duration = 1
+    body.nodes = [[0, 0], [1, 0], [0.5, 0.866]]
+    body.elements = [[0, 1, 2]]
+    body.positions = [[0, 0], [1.3, 0.1], [0.4, 0.7]]
+    [[run]]
+    name = 'triangle'
+    model = { kind = 'shape-based', stiffness = 1e4, damping_ratio = 0.1 }
+";
+
+/// A body that meets a floor.
+const DROP: &str = "
+    gravity = [0, -9.8, 0]
+    time.duration = 0.06
+    body = { lattice = { cells = [1, 1, 1], side = 0.1 }, velocity = [0, -1, 0], lowest = 0.03 }
+    obstacle = [{ kind = 'floor', restitution = 0.5 }]
+    run = [{ name = 'cube', model = { kind = 'mass-spring', stiffness = 1e4 } }]
+";
+
+#[test]
+fn errors_fall_with_evaluations_and_the_reference_knows_its_own() {
+    let watched = std::sync::atomic::AtomicU64::new(0);
+    let watch = |more| watched.fetch_add(more, std::sync::atomic::Ordering::Relaxed) < u64::MAX;
+    let results = measure(QUICK, &subjects(FREE), &watch).expect("it is never stopped");
+    assert!(watched.into_inner() <= work(QUICK, &subjects(FREE)[0]));
+    let found = &results.comparisons[0];
+    assert!(found.reference.as_ref().is_ok_and(|reference| reference.error < 1e-9), "{:?}", found.reference);
+    assert!(found.refused.is_empty());
+    assert_eq!(found.methods().count(), Method::ALL.len());
+    let cost = |method| found.cost(method, Solver::DEFAULT, 1e-5).expect("it is reached").evaluations;
+    let [euler, pefrl] = [Method::DEFAULT, Method::PEFRL].map(cost);
+    assert!(euler > 5.0 * pefrl, "{euler} {pefrl}");
+    let orders = [(Method::VERLET, 2.0), (Method::PEFRL, 4.0), (Method::ForestRuth, 4.0)];
+    for (method, order) in orders {
+        let own = found.order(method).expect("it has one");
+        assert!((own - order).abs() < 0.3, "{method:?}: {own}");
+    }
+    // Each solver with all methods, or with those of one evaluation a step if it has passes.
+    assert_eq!(found.solvers().count(), Solver::ALL.len());
+    for solver in Solver::ALL {
+        let count = Method::ALL.iter().filter(|&&one| found.with(one, solver).next().is_some()).count();
+        assert_eq!(count, if solver.has_passes() { 3 } else { Method::ALL.len() }, "{solver:?}");
+    }
+    let least = |solver| {
+        let errors = found.with(Method::VERLET, solver).filter_map(|one| one.error);
+        errors.fold(f64::INFINITY, f64::min)
+    };
+    let [exact, printed, linear] = [Solver::Davenport, Solver::PRINTED, Solver::LINEAR].map(least);
+    assert!(printed < 2.0 * exact && linear > 100.0 * exact, "{exact:e} {printed:e} {linear:e}");
+    assert_eq!(results.table().rows.len(), found.measured.len());
+    assert_eq!(results.table().heads, crate::table::documented("work-precision.csv"));
+    assert!(measure(QUICK, &subjects(FREE), &|_| false).is_none());
+}
+
+/// At the end of a damped motion little is left of an error: that of the whole time counts.
+#[test]
+fn an_error_is_the_largest_over_the_whole_time() {
+    let subject = &subjects(DAMPED)[0];
+    let (_, model) = &subject.models()[0];
+    let methods = subject.accepted(model.as_ref());
+    let (exact, _) = reference(subject, model, &methods, 65_536.0).expect("there is one");
+    let way = Way::new(Method::VERLET, 512.0, 1.0);
+    let (mut last, mut largest, size) = (0.0, 0.0, subject.scene.body.extent());
+    way.run(subject, model, 1e6, |moment, positions| {
+        last = farthest(positions, &exact[moment]) / size;
+        largest = larger(largest, last);
+    });
+    assert!(largest > 10.0 * last, "{largest:e} {last:e}");
+    let results = measure(QUICK, &subjects(DAMPED), &|_| true).expect("it is never stopped");
+    let same = results.comparisons[0].of(Method::VERLET).find(|one| one.way.steps == way.steps).expect("it is tried");
+    let error = same.error.expect("it does not diverge");
+    assert!((error / largest - 1.0).abs() < 0.01, "{error:e} {largest:e}");
+}
+
+/// Two methods of low order are far from each other, and a third may be nearer to one of them than they are.
+#[test]
+fn no_error_is_below_that_of_the_reference() {
+    let results = measure(QUICK, &subjects(DROP), &|_| true).expect("it is never stopped");
+    let found = &results.comparisons[0];
+    let own = found.reference.as_ref().expect("there is one").error;
+    assert!(found.measured.iter().all(|one| one.error.is_none_or(|error| error >= own)), "{found:#?}");
+    let tried = |method| found.of(method).count();
+    assert!(Method::ALL.into_iter().any(|one| tried(one) > 0 && tried(one) < Series::of(0).count), "one is cut short");
+}
+
+/// A comparison with one method and these errors, with steps that are halved.
+fn with_errors(method: Method, errors: &[f64]) -> Comparison {
+    let measured = errors.iter().enumerate().map(|(at, &error)| Measured {
+        way: Way::new(method, 1.0, 1.0),
+        solver: None,
+        step: 0.5f64.powi(at as i32),
+        evaluations: 1 << at,
+        error: Some(error),
+        end: End::Reached,
+        time: Spread::of([1.0]),
+        is_fast: false,
+    });
+    Comparison {
+        name: "one".to_owned(),
+        words: String::new(),
+        duration: 1.0,
+        cycle: 1.0,
+        reference: Ok(Reference { methods: [method; 2], error: 1e-9 }),
+        measured: measured.collect(),
+        refused: Vec::new(),
+    }
+}
+
+#[test]
+fn orders_are_told_only_where_errors_show_one() {
+    let order = |method, errors: &[f64]| with_errors(method, errors).order(method);
+    assert_eq!(order(Method::VERLET, &[0.5, 8e-3, 2e-3, 5e-4]), Some(2.0));
+    assert_eq!(order(Method::VERLET, &[0.5, 8e-3, 2e-3]), None, "two of them in the range");
+    assert_eq!(order(Method::VERLET, &[0.5, 0.1, 8e-3, 2e-3, 1e-8]), None, "the last is round-off");
+    assert_eq!(order(Method::VERLET, &[8e-3, 2e-3, 1.9e-3]), None, "without a common order");
+    assert_eq!(order(Method::DORMAND_PRINCE, &[8e-3, 1e-3, 1e-4, 1e-5]), None, "steps are its own");
+}
+
+/// A larger error with smaller steps counts, too.
+#[test]
+fn a_cost_is_that_from_which_on_errors_are_small() {
+    let found = with_errors(Method::VERLET, &[1e-1, 1e-4, 1e-2, 1e-5]);
+    let cost = |error| found.cost(Method::VERLET, Solver::DEFAULT, error).map(|cost| cost.step);
+    assert_eq!(cost(1e-5), Some(0.125));
+    assert!((0.125..0.25).contains(&cost(1e-3).expect("it is reached")));
+    assert_eq!((cost(0.5), cost(1e-6)), (Some(1.0), None));
+}
+
+#[test]
+fn the_scenes_that_are_measured_by_default_have_no_mistakes() {
+    let has_solvers: Vec<_> = usual().iter().map(|subject| subject.models().len() > 1).collect();
+    assert_eq!(has_solvers, [true, true, false], "the last one is in the plane");
+}
+
+#[test]
+fn methods_that_cannot_advance_a_run_are_named_with_the_reason() {
+    let results = measure(QUICK, &subjects(&FREE.replace("1e4 }", "1e4, damping = 1 }")), &|_| true);
+    let results = results.expect("it is never stopped");
+    let refused: Vec<_> = results.comparisons[0].refused.iter().map(|(one, _)| one.name()).collect();
+    assert_eq!(refused, ["forest-ruth", "pefrl", "blanes-moan", "quinlan-tremaine"]);
+    assert!(results.text().contains("pefrl has substeps backwards in time"));
+}
+
+#[test]
+fn a_scene_that_methods_do_not_agree_on_has_no_reference() {
+    let results = measure(QUICK, &subjects(&FREE.replace("1e4", "1e12")), &|_| true).expect("it is never stopped");
+    let found = &results.comparisons[0];
+    let why = "no finite reference";
+    assert!(found.reference.as_ref().is_err_and(|told| told.contains(why)), "{:?}", found.reference);
+    assert!(found.measured.is_empty());
+    assert!(results.text().contains(why));
+}
