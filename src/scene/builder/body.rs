@@ -5,19 +5,19 @@ use crate::scene::file::{
     Start, StartShape,
 };
 
-/// Makes the body of a scene: its shape at rest, its masses, and how it starts.
+/// Builds the body of a scene: rest shape, masses and initial state.
 ///
-/// It starts as at rest, is turned by [`Self::rotation`], moved by [`Self::offset`], set down by [`Self::lowest`] and
-/// thrown with [`Self::velocity`], in this order. Coordinates are two in the plane and three in space.
+/// The rest shape is rotated by [`Self::rotation`], moved by [`Self::offset`], set down by [`Self::lowest`] and thrown
+/// with [`Self::velocity`], in this order. Coordinates are two in the plane and three in space.
 #[derive(Clone, Debug)]
 #[must_use = "a builder makes nothing until its scene is built"]
 pub struct BodyBuilder(pub(super) BodyFile);
 
 impl BodyBuilder {
-    /// A body of nodes (m) and elements, the numbers of their nodes counted from 0. In the plane elements are polygons,
-    /// counter-clockwise; in space tetrahedra and pyramids (the base counter-clockwise seen from the last node), wedges (two
-    /// triangles, both counter-clockwise seen from the second), hexahedra (corners in bit order: x fastest, then y, then z)
-    /// or, with any other number of nodes in any order, whatever their convex hull is. Two nodes make a bar.
+    /// A body of nodes (m), and of elements as lists of nodes, counted from 0. In the plane elements are polygons,
+    /// counter-clockwise. In space they are tetrahedra and pyramids (the base counter-clockwise seen from the last
+    /// node), wedges (both triangles counter-clockwise seen from the second), hexahedra (corners with x fastest, then
+    /// y, then z), or the convex hulls of any other number of nodes in any order. Two nodes make a bar.
     pub fn arrays(
         nodes: impl IntoIterator<Item = impl Into<Coordinates>>,
         elements: impl IntoIterator<Item = impl Into<Vec<u32>>>,
@@ -31,31 +31,32 @@ impl BodyBuilder {
     }
 
     /// One regular polygon in the plane as a single element, with its corners at a radius (m). It stands with a side on
-    /// y = 0, its middle above the origin.
+    /// y = 0, its centre above the origin.
     pub fn polygon(sides: u32, radius: f64) -> Self {
         Self(BodyFile { polygon: Some(PolygonFile { sides, radius: Positive(radius) }), ..BodyFile::default() })
     }
 
-    /// The same polygon, cut into triangles around a node in its middle.
+    /// A regular polygon in the plane, cut into triangles around a node in its centre.
     pub fn fan(sides: u32, radius: f64) -> Self {
         Self(BodyFile { fan: Some(PolygonFile { sides, radius: Positive(radius) }), ..BodyFile::default() })
     }
 
-    /// A disc in the plane of a radius (m): triangles around its middle, and rings of quadrilaterals around them.
+    /// A disc in the plane with a radius (m): triangles around its centre, and rings of quadrilaterals around the
+    /// triangles.
     pub fn disc(radius: f64, rings: u32, sectors: u32) -> Self {
         Self(BodyFile { disc: Some(DiscFile { radius: Positive(radius), rings, sectors }), ..BodyFile::default() })
     }
 
-    /// Two-node elements of a length (m), end to end from the origin on, in a direction of any length but zero.
+    /// A chain of two-node elements of a length (m) from the origin, in a direction of any length but zero.
     pub fn bars(count: u32, length: f64, direction: impl Into<Coordinates>) -> Self {
         let bars = BarsFile { count, length: Positive(length), direction: direction.into() };
         Self(BodyFile { bars: Some(bars), ..BodyFile::default() })
     }
 
     setters! {
-        /// Takes elements in space for the convex hulls of their nodes, listed in any order.
+        /// Reads elements in space as the convex hulls of their nodes, in any order.
         convex() 0.convex = true;
-        /// Springs by hand, pairs of nodes, for mass-spring models without a named topology. Only with [`Self::arrays`].
+        /// Springs as pairs of nodes, for mass-spring models without a named topology. Only with [`Self::arrays`].
         springs(springs: impl IntoIterator<Item = [u32; 2]>) 0.springs = all(springs);
         /// Faces to draw instead of those of the elements, counter-clockwise from outside. Only with [`Self::arrays`].
         faces(faces: impl IntoIterator<Item = impl Into<Vec<u32>>>) 0.faces = all(faces);
@@ -63,69 +64,70 @@ impl BodyBuilder {
         mass(mass: f64) 0.mass = Some(mass);
         /// Mass of each node (kg). Only with [`Self::arrays`].
         masses(masses: impl IntoIterator<Item = f64>) 0.masses = Some(masses.into_iter().map(Positive).collect());
-        /// Initial position of each node (m), instead of that at rest. Only with [`Self::arrays`].
+        /// Initial position of each node (m), instead of the rest position. Only with [`Self::arrays`].
         positions(positions: impl IntoIterator<Item = impl Into<Coordinates>>) 0.positions = all(positions);
         /// Initial velocity of each node (m/s). Only with [`Self::arrays`].
         velocities(velocities: impl IntoIterator<Item = impl Into<Coordinates>>) 0.velocities = all(velocities);
-        /// Starts the body without depth, turned inside out, or at random places.
+        /// A degenerate, inverted or random initial shape.
         start(start: Start) 0.start = Some(start);
-        /// A turn about the mean of the nodes before the start.
+        /// A rotation about the mean of the nodes at the start.
         rotation(rotation: Rotation) 0.rotation = Some(rotation);
-        /// A shift after the turn (m).
+        /// A translation after the rotation (m).
         offset(offset: impl Into<Coordinates>) 0.offset = Some(offset.into());
-        /// Height at which the lowest node starts, along y (m).
+        /// Height of the lowest node at the start, along y (m).
         lowest(height: f64) 0.lowest = Some(height);
         /// Initial velocity of all nodes (m/s).
         velocity(velocity: impl Into<Coordinates>) 0.velocity = Some(velocity.into());
-        /// A rigid spin about the mean of the nodes: the rotation of one second (rad/s).
+        /// A rigid spin about the mean of the nodes: the rotation in one second (rad/s).
         spin(rotation: Rotation) 0.spin = Some(SpinFile { axis: rotation.axis, rate: rotation.angle });
     }
 }
 
-/// A list of entries that are given.
+/// A list of given entries.
 fn all<T>(entries: impl IntoIterator<Item = impl Into<T>>) -> Option<Vec<T>> {
     Some(entries.into_iter().map(Into::into).collect())
 }
 
 impl Lattice {
-    /// So many cells along x, y and z, cubes of a side (m); with two numbers, squares in the plane.
+    /// A block of cells along x, y and z, cubes of a side (m). Two numbers make squares in the plane.
     pub fn new(cells: impl Into<Vec<u32>>, side: f64) -> Self {
         Self { cells: cells.into(), side: SideFile::Equal(side), elements: Cells::Cells, irregular: 0.0, seed: 1 }
     }
 
     setters! {
-        /// Cells of another length along each axis (m).
+        /// Cells with a length for each axis (m).
         sides(sides: impl IntoIterator<Item = f64>) side = SideFile::PerAxis(sides.into_iter().map(Positive).collect());
-        /// Cuts the cells, or joins them.
+        /// The elements of each cell.
         elements(elements: Cells) elements = elements;
-        /// Moves nodes at random by up to this part of a cell's shortest side, at most 0.4. No element comes out flat.
+        /// Moves nodes at random by up to this part of a cell's shortest side, at most 0.4. No element becomes flat.
         irregular(part: f64) irregular = part;
-        /// Chooses another of the random blocks.
+        /// The seed of random blocks.
         seed(seed: u32) seed = seed;
     }
 }
 
 impl Start {
-    /// A start of a shape; lines, planes and mirror images along x, clouds with seed 1.
+    /// A start of a shape. Lines, planes and mirror images are along x; clouds have seed 1.
     pub fn new(shape: StartShape) -> Self {
         Self { shape, direction: None, seed: 1 }
     }
 
     setters! {
-        /// Where the line leads, or where plane and mirror face.
+        /// The direction of the line, or the normal of the plane or mirror.
         direction(direction: impl Into<Coordinates>) direction = Some(direction.into());
-        /// Chooses another of the clouds.
+        /// The seed of a cloud.
         seed(seed: u32) seed = seed;
     }
 }
 
 impl Rotation {
-    /// By an angle (rad) about an axis of any length but zero, counter-clockwise when it points at the viewer.
+    /// A rotation by an angle (rad) about an axis of any length but zero, counter-clockwise when the axis points at the
+    /// viewer.
     pub fn about(axis: impl Into<Coordinates>, angle: f64) -> Self {
         Self { axis: Some(axis.into()), angle }
     }
 
-    /// By an angle (rad) in the plane, counter-clockwise.
+    /// A rotation by an angle (rad) in the plane, counter-clockwise.
     pub fn in_plane(angle: f64) -> Self {
         Self { axis: None, angle }
     }

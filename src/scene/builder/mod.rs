@@ -1,7 +1,7 @@
 //! Scenes made in code. Builders fill in the same description that a scene file is, so that both mean the same, have the same
 //! limits, and are checked by the same code.
 
-/// Functions that set a part of what is made: name, arguments, the part, and its value.
+/// Setters: name, arguments, the part, and its value.
 macro_rules! setters {
     ($($(#[$doc:meta])* $name:ident($($argument:ident: $type:ty),*) $($part:tt).+ = $value:expr;)*) => {$(
         $(#[$doc])*
@@ -40,14 +40,14 @@ use std::ops::RangeBounds;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Makes a [`Scene`] in code; see [`Scene::builder`]. What is not said is as in a scene file that does not say it.
+/// Builds a [`Scene`] in code; see [`Scene::builder`]. Defaults are those of scene files.
 #[derive(Clone, Debug)]
 #[must_use = "a builder makes nothing until `build` is called"]
 pub struct SceneBuilder(SceneFile);
 
 impl Scene {
-    /// Begins a scene of a name, which is also its title, and of a body: a second of it at 60 frames per second, without
-    /// gravity, obstacles and grips.
+    /// Begins a scene with a name, which is also its title, and a body. By default it lasts a second at 60 frames per
+    /// second, without gravity, obstacles and constraints.
     ///
     /// ```
     /// use localshape::scene::{BodyBuilder, Lattice, Limits, ObstacleBuilder, Rotation, Scene};
@@ -63,7 +63,7 @@ impl Scene {
     /// # Ok::<(), localshape::scene::SceneError>(())
     /// ```
     ///
-    /// Mistakes are found together when the scene is built, and named as in a scene file:
+    /// All mistakes are found when the scene is built, and named as in a scene file:
     ///
     /// ```
     /// # use localshape::scene::{BodyBuilder, Limits, Scene};
@@ -104,33 +104,34 @@ impl SceneBuilder {
         gravity(acceleration: impl Into<Coordinates>) 0.gravity = Some(acceleration.into());
         /// Simulated time (s).
         duration(seconds: f64) 0.time.duration = seconds;
-        /// Time step ΔT of all runs that have none of their own (s).
+        /// Time step ΔT (s) of runs without one of their own.
         step(seconds: f64) 0.time.step = Some(StepFile::Seconds(seconds));
-        /// So many steps in the shortest period T = 2π√(m/k) of all runs, instead of 50, for runs without a step of their own.
+        /// The number of steps in the shortest period T = 2π√(m/k) of all runs, 50 by default, for runs without a step
+        /// of their own.
         steps_per_cycle(steps: f64) 0.time.step = Some(StepFile::Named(NamedStep::Divided(steps)));
-        /// The error allowed in each step of an integrator that finds its own, as a share of the size of the body, for runs without a
-        /// tolerance of their own.
+        /// The error allowed in each step of an integrator that chooses its steps, as a share of the size of the body,
+        /// for runs without a tolerance of their own.
         tolerance(share: f64) 0.time.tolerance = Some(share);
-        /// How positions and velocities move from one step to the next, in all runs that do not say it themselves.
+        /// The integrator of runs without one of their own.
         integrator(integrator: Integrator) 0.time.integrator = integrator;
         /// Frames per second of simulated time (1/s).
         frames_per_second(rate: f64) 0.time.frames_per_second = rate;
     }
 
-    /// Adds a run: a model on the body, and a panel of the picture. Each run has a name of its own. It is stepped like the
-    /// others, unless a [`RunBuilder`] says more than the model.
+    /// Adds a run: a model on the body, and a panel of the picture. Names are unique. A [`RunBuilder`] gives the run
+    /// more settings than its model.
     pub fn run(mut self, name: impl Into<String>, run: impl Into<RunBuilder>) -> Self {
         self.0.run.push(RunFile { name: name.into(), ..run.into().0 });
         self
     }
 
-    /// Adds something that the body bounces off. Obstacles act in the order in which they are added.
+    /// Adds an obstacle. Obstacles act in the order in which they are added.
     pub fn obstacle(mut self, obstacle: ObstacleBuilder) -> Self {
         self.0.obstacle.push(obstacle.0);
         self
     }
 
-    /// Holds nodes where they are, in a range of time (s): `..` from the start for good, `0.5..2.0` for a while.
+    /// Holds nodes in a range of time (s): `..` for ever, `0.5..2.0` for a while.
     pub fn hold(mut self, nodes: NodeSet, time: impl RangeBounds<f64>) -> Self {
         let [from, until] = [time.start_bound(), time.end_bound()].map(|bound| match bound {
             std::ops::Bound::Included(&time) | std::ops::Bound::Excluded(&time) => Some(time),
@@ -140,7 +141,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Grabs nodes at the first time of a path, drags them along it, and lets them go at the last.
+    /// Grabs nodes at the first key of a path, drags them along it, and releases them at the last.
     pub fn grab(mut self, nodes: NodeSet, path: MotionPath) -> Self {
         self.0.grab.push(GrabFile { nodes: nodes.0, path });
         self
@@ -151,21 +152,21 @@ impl SceneBuilder {
         size(size: [u32; 2]) 0.view.size = SizeFile::Pixels(size);
         /// The colours of pictures.
         theme(theme: Theme) 0.view.theme = theme;
-        /// Colours the body by a field.
+        /// A scalar field that colours the body.
         colour_by(field: Field) 0.view.colour = Some(ColourFile { by: field, range: None, map: ColourMap::default() });
-        /// Draws a diagnostic over time below each panel.
+        /// Plots a diagnostic over time below all panels.
         strip(diagnostic: Diagnostic) 0.view.strip = Some(diagnostic);
     }
 
-    /// Turns the camera to the right around the vertical, and raises it above the horizon (rad).
+    /// The direction of the camera: azimuth to the right, and elevation above the horizon (rad).
     pub fn camera(mut self, azimuth: f64, elevation: f64) -> Self {
         (self.0.view.camera.azimuth, self.0.view.camera.elevation) = (Some(azimuth), Some(elevation));
         self
     }
 
-    /// Checks all that was said, and gives it its meaning. The camera shows the body and what comes near it.
+    /// Checks all settings and resolves the scene. The camera shows the body and what comes near it.
     ///
-    /// What pictures show besides is in [`Scene::view`] and may be changed before they are composed: title, caption and
+    /// [`Scene::view`] has the other settings of pictures, to be changed before they are composed: title, caption and
     /// labels, what is drawn of the body, edges, text scale, and every number of the camera.
     ///
     /// ```
@@ -181,8 +182,8 @@ impl SceneBuilder {
     /// ```
     ///
     /// # Errors
-    /// [`SceneError::Mistakes`] with all mistakes: each says which setting is wrong, what it is, what is expected, and,
-    /// if that is not all, what to do.
+    /// [`SceneError::Mistakes`] with all mistakes: each names the setting, its value, the expectation and, if needed,
+    /// the remedy.
     pub fn build(self, limits: &Limits) -> Result<Scene, SceneError> {
         let Self(mut file) = self;
         let name = file.title.clone().unwrap_or_default();
@@ -209,7 +210,7 @@ impl SceneBuilder {
     }
 }
 
-/// Makes a run of a scene that has more than a model: its own time step, integrator, kernel or colour, or a model of your
+/// Builds a run with more settings than a model: its own time step, integrator, kernel or colour, or a model of your
 /// own.
 ///
 /// ```
@@ -229,7 +230,7 @@ impl SceneBuilder {
 pub struct RunBuilder(RunFile);
 
 impl RunBuilder {
-    /// A run of a model.
+    /// A run with a model.
     pub fn new(model: impl Into<ModelParameters>) -> Self {
         let (name, model) = (String::new(), model.into());
         Self(RunFile {
@@ -244,9 +245,9 @@ impl RunBuilder {
         })
     }
 
-    /// A run of a model of your own. The scene then has no digest.
+    /// A run with a model of your own. The scene then has no digest.
     pub fn own(model: Arc<dyn ElasticModel>) -> Self {
-        // Its stiffness is checked like that of any other.
+        // Its stiffness is checked like those of other models.
         let Self(run) = Self::new(shape_based::Parameters::new(model.stiffness()));
         Self(RunFile { own: Some(model), ..run })
     }
@@ -254,15 +255,16 @@ impl RunBuilder {
     setters! {
         /// Time step ΔT of this run (s).
         step(seconds: f64) 0.step = Some(StepFile::Seconds(seconds));
-        /// So many steps of this run in the shortest period T = 2π√(m/k) of all runs.
+        /// The number of steps of this run in the shortest period T = 2π√(m/k) of all runs.
         steps_per_cycle(steps: f64) 0.step = Some(StepFile::Named(NamedStep::Divided(steps)));
-        /// The error allowed in each step of this run, for an integrator that finds its own, as a share of the size of the body.
+        /// The error allowed in each step of this run, for an integrator that chooses its steps, as a share of the size
+        /// of the body.
         tolerance(share: f64) 0.tolerance = Some(share);
-        /// How positions and velocities of this run move from one step to the next.
+        /// The integrator of this run.
         integrator(integrator: Integrator) 0.integrator = Some(integrator);
-        /// How a step of this run is computed, instead of in the fastest way that its model has.
+        /// The code that computes a step of this run, instead of the fastest for its model.
         kernel(kernel: Kernel) 0.kernel = Some(kernel);
-        /// The colour of its lines. It must stand out from the background and from elements that are turned over.
+        /// The colour of the run's lines. It must differ enough from the background and from turned-over elements.
         colour(colour: Colour) 0.colour = Some(TypedColour(colour));
     }
 }
@@ -273,7 +275,7 @@ impl<M: Into<ModelParameters>> From<M> for RunBuilder {
     }
 }
 
-/// Some nodes of a body, as they start.
+/// Some nodes of a body, at their initial positions.
 #[derive(Clone, Debug)]
 pub struct NodeSet(NodesFile);
 
@@ -283,13 +285,13 @@ impl NodeSet {
         Self(NodesFile::List(nodes.into()))
     }
 
-    /// Those in a ball with a middle and a radius (m).
+    /// The nodes in a ball with a centre and a radius (m).
     pub fn ball(middle: impl Into<Coordinates>, radius: f64) -> Self {
         let (of, within) = (Some(middle.into()), Some(radius));
         Self(NodesFile::Region(RegionFile { of, within, low: None, high: None }))
     }
 
-    /// Those in a box along the axes, with its lowest and highest corner (m).
+    /// The nodes in an axis-aligned box, with its lowest and highest corner (m).
     pub fn cuboid(low: impl Into<Coordinates>, high: impl Into<Coordinates>) -> Self {
         let (low, high) = (Some(low.into()), Some(high.into()));
         Self(NodesFile::Region(RegionFile { of: None, within: None, low, high }))
