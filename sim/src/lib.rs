@@ -44,6 +44,7 @@ pub use integrate::Integrator;
 /// Measurements of the processor for benchmarks.
 #[doc(hidden)]
 pub use kernel::floor;
+pub use lanes::vectors;
 pub use lists::IndexLists;
 pub use motion::{Ease, Key, Motion, Offset, Pose};
 pub use snapshot::{Diagnostics, Divergence, Frame, LastFit, Placement, RunFrame, Snapshot, Status};

@@ -3,11 +3,10 @@
 use super::console;
 use super::failure::{Failure, Status, warn_of_figure};
 use super::interrupt;
-use super::options::{DeviceOptions, PrintOptions, ThreadOptions, number_in, size};
+use super::options::{DeviceOptions, PrintOptions, ThemeOption, ThreadOptions, number_in, size};
 use super::record;
 use super::still::{Drawn, Format, NO_ADAPTER, Still, replaceable};
 use crate::gpu::Gpu;
-use crate::look::Theme;
 use crate::output::{AtomicFile, FolderLock, OutputError, Tags, folder_of, is_folder, read_tags};
 use crate::picture::compose_figure;
 use crate::reading::setting::Setting;
@@ -17,7 +16,7 @@ use crate::scene::figure::{Content, Figure, NAMES};
 use crate::scene::{Limits, Scene, SceneError};
 use crate::sim::diagnostics::{Chosen, Reach};
 use crate::sim::snapshot::{self, RunFrame, Snapshot};
-use clap::{Args, ValueEnum, ValueHint};
+use clap::{Args, ValueHint};
 use serde_json::{Value, json};
 use std::collections::VecDeque;
 use std::panic::resume_unwind;
@@ -81,13 +80,6 @@ pub(super) struct FigureCommand {
     threads: ThreadOptions,
     #[command(flatten)]
     printing: PrintOptions,
-}
-
-/// A theme by name.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum ThemeOption {
-    Light,
-    Dark,
 }
 
 impl FigureCommand {
@@ -166,10 +158,7 @@ impl FigureCommand {
             bail!("{}: {width}×{height} is too small; expected at least {LEAST_SIDE} pixels a side", figure.name);
         }
         if let Some(theme) = self.theme {
-            figure.set_theme(match theme {
-                ThemeOption::Light => Theme::Light,
-                ThemeOption::Dark => Theme::Dark,
-            });
+            figure.set_theme(theme.theme());
         }
         Ok(())
     }

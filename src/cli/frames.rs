@@ -1,11 +1,48 @@
 //! `--frames`: which frames are wanted.
 
 use crate::output::Shard;
+use crate::reading::words::short;
 use std::str::FromStr;
 
 /// Frames as typed: `5`, `0-119`, every third of them as `0-119x3`, or several of these as `5,9,40-60`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct FrameRanges(Vec<Span>);
+
+/// `--at`: moments (s), such as `2s`, `500ms` or `2`, or several of these as `0.5,1`.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Moments(Vec<f64>);
+
+impl FromStr for Moments {
+    type Err = String;
+
+    fn from_str(typed: &str) -> Result<Self, String> {
+        let moment = |part: &str| {
+            let (number, unit) = match part.strip_suffix("ms") {
+                Some(number) => (number, 1e-3),
+                None => (part.strip_suffix('s').unwrap_or(part), 1.0),
+            };
+            let seconds = number.trim().parse::<f64>().ok().map(|number| number * unit);
+            let seconds = seconds.filter(|seconds| seconds.is_finite() && *seconds >= 0.0);
+            seconds.ok_or_else(|| format!("`{part}` is not a time; expected one such as 2s, 500ms or 2"))
+        };
+        typed.split(',').map(|part| moment(part.trim())).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+impl Moments {
+    /// The nearest frame to each moment, of a scene that ends with frame `last`, at a rate (1/s).
+    pub(super) fn nearest(&self, last: u64, rate: f64) -> Result<Vec<(f64, u64)>, String> {
+        let nearest = |&time: &f64| {
+            let frame = (time * rate).round();
+            // A moment up to half a frame after the last one has that.
+            let is_there = frame <= last as f64;
+            is_there.then_some((time, frame as u64)).ok_or_else(|| {
+                format!("there is no frame at {} s; the last one is at {} s", short(time), short(last as f64 / rate))
+            })
+        };
+        self.0.iter().map(nearest).collect()
+    }
+}
 
 /// From `first` to `last`, ends included, in steps of `stride` ≥ 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -143,6 +180,19 @@ mod tests {
         ] {
             let error = typed.parse::<Shard>().unwrap_err();
             assert!(error.contains(message), "{typed}: {error}");
+        }
+    }
+
+    #[test]
+    fn moments_have_the_nearest_frames() {
+        let nearest = |typed: &str| typed.parse::<Moments>().and_then(|moments| moments.nearest(180, 60.0));
+        let frames = |typed: &str| nearest(typed).unwrap().into_iter().map(|(_, frame)| frame).collect::<Vec<_>>();
+        assert_eq!(frames("2s"), [120]);
+        assert_eq!(frames("2, 500ms,0.51 s,0"), [120, 30, 31, 0]);
+        assert_eq!(frames("3.008"), [180]);
+        assert_eq!(nearest("9s").unwrap_err(), "there is no frame at 9 s; the last one is at 3 s");
+        for typed in ["", "s", "2m", "-1", "nan", "1s2", "1,,2"] {
+            assert!(nearest(typed).unwrap_err().contains("expected one such as 2s, 500ms or 2"), "{typed}");
         }
     }
 

@@ -5,7 +5,13 @@ use super::failure::Failure;
 use super::frames::FrameRanges;
 #[cfg(feature = "render")]
 use crate::gpu::{AdapterChoice, Gpu};
+#[cfg(feature = "render")]
+use crate::look::Theme;
 use crate::reading::setting::Setting;
+#[cfg(feature = "render")]
+use crate::sim::words::typed;
+#[cfg(feature = "render")]
+use clap::ValueEnum;
 use clap::{Args, ValueHint};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
@@ -135,6 +141,31 @@ impl DeviceOptions {
             bail!("{width}×{height} is too large: {adapter} draws up to {longest} pixels a side");
         }
         Ok(gpu)
+    }
+}
+
+/// A theme by name.
+#[cfg(feature = "render")]
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum ThemeOption {
+    Light,
+    Dark,
+}
+
+#[cfg(feature = "render")]
+impl ThemeOption {
+    /// The colours.
+    pub(super) fn theme(self) -> Theme {
+        match self {
+            Self::Light => Theme::Light,
+            Self::Dark => Theme::Dark,
+        }
+    }
+
+    /// The same as a value of a scene.
+    pub(super) fn setting(self) -> Setting {
+        let name = typed(&self.theme());
+        format!("view.theme={name}").parse().expect("a key and a value")
     }
 }
 

@@ -3,11 +3,12 @@
 use super::console;
 use super::failure::{Failure, Status, missing};
 use super::film::{Films, Shared, replaceable};
+use super::frames::Moments;
 use super::interrupt;
-use super::options::{DeviceOptions, RunOptions, SceneOptions, size};
+use super::options::{DeviceOptions, RunOptions, SceneOptions, ThemeOption, size};
 use super::record::{self, Studio};
 use super::results::Pictures;
-use super::scenes::Wish;
+use super::scenes::{Wish, nearest};
 use super::still::{
     Format as FileFormat, NO_ADAPTER, Still, check_type, replaceable as replaceable_still, source_of, too_small,
 };
@@ -20,6 +21,7 @@ use crate::output::{
     AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Shard, Spent, StoredStates, Summary, Tags,
     Tap, Texts, Timings, folder_of, frame_file_name, is_drawn, read_tags,
 };
+use crate::reading::words::short;
 use crate::render::RenderError;
 use crate::runner::history::History;
 use crate::scene::Scene;
@@ -39,7 +41,7 @@ Examples:
   localshape render scenes/fig4b.toml --only Mass-spring --frames 30 -o one
   localshape render scenes/fig4b.toml --resume             after an interruption: goes on from there
   localshape render scenes/fig4b.toml --set run[0].model.stiffness=1e5 -o stiff    with another value in the scene
-  localshape render scenes/fig4b.toml --frames 30 -o frame.pdf   one frame for print, with text that can be searched
+  localshape render scenes/fig4b.toml --at 0.5s -o frame.pdf     one frame for print, with text that can be searched
 
 With --shard, many processes draw a scene into one folder: docs/clusters.md has a script for them.
 
@@ -66,6 +68,14 @@ pub(super) struct Render {
     /// Width and height of the frames (px) [default: that of the scene]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
+
+    /// The colours: light for papers, dark for talks [default: those of the scene]
+    #[arg(long, value_name = "THEME")]
+    theme: Option<ThemeOption>,
+
+    /// Moments to make in place of frames, such as 2s, 500ms or 0.5,1: the nearest frame to each
+    #[arg(long, value_name = "TIME", conflicts_with = "frames", allow_hyphen_values = true)]
+    at: Option<Moments>,
 
     #[command(flatten)]
     device: DeviceOptions,
@@ -94,8 +104,10 @@ pub(super) struct Render {
 }
 
 impl Render {
-    pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
+    pub(super) fn run(mut self, words: &[OsString]) -> Result<Status, Failure> {
         self.options.out.as_deref().map_or(Ok(()), FileFormat::check_name)?;
+        // A key of the scene, so that frames of two themes are those of two scenes.
+        self.scenes.set.extend(self.theme.map(ThemeOption::setting));
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
         scenes.iter_mut().for_each(|scene| self.resize(scene));
         scenes.iter().try_for_each(|scene| self.check(scene))?;
@@ -107,7 +119,7 @@ impl Render {
             bail!("{} has the states of one scene; render the scenes one at a time", file.display());
         }
         let from_states = self.from_states.is_some();
-        let wish = Wish { pictures: !self.no_frames, shard: self.shard, from_states };
+        let wish = Wish { pictures: !self.no_frames, shard: self.shard, from_states, at: self.at.as_ref() };
         let mut jobs = self.options.jobs(scenes, wish, words)?;
         jobs.iter().try_for_each(|job| check_ghost(&job.scene, &job.runs))?;
         if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {
@@ -116,6 +128,7 @@ impl Render {
         }
         // Opened when all else is known to be right, and before the first folder is touched.
         let gpu = self.device.open(jobs.iter().map(|job| job.scene.view.size))?;
+        jobs.iter().try_for_each(|job| self.tell_moments(&job.scene))?;
         let threads = self.options.threads.count();
         let shared = (!films.is_empty()).then(|| Shared {
             films,
@@ -147,6 +160,14 @@ impl Render {
         }
     }
 
+    /// Prints which frames the moments that the user wants have.
+    fn tell_moments(&self, scene: &Scene) -> Result<(), Failure> {
+        let Some(at) = self.at.as_ref().filter(|_| self.options.printing.prints_text()) else { return Ok(()) };
+        let line =
+            |(time, frame)| format!("{} s: frame {frame}, at {} s\n", short(time), short(scene.frame_time(frame)));
+        nearest(at, scene)?.into_iter().map(line).try_for_each(|line| console::print(&line))
+    }
+
     /// Whether a scene can be drawn as it is wanted.
     fn check(&self, scene: &Scene) -> Result<(), Failure> {
         too_small(scene, &self.options.runs(scene)?).map_or(Ok(()), |message| Err(Failure::usage(message)))
@@ -163,15 +184,18 @@ impl Render {
             let others = "--states, --from-states, --shard, --resume, --animate or --json";
             bail!("{name} gets one frame and nothing else; with {others} name a folder");
         }
-        let (runs, frames) = (self.options.runs(scene)?, self.options.frames(scene)?);
+        let (runs, frames) = (self.options.runs(scene)?, self.options.frames(scene, self.at.as_ref())?);
         check_ghost(scene, &runs)?;
         let &[frame] = &frames[..] else {
             let count = frames.len();
-            bail!("{name} is a file for one frame, but {count} are asked for; choose one, such as --frames 30");
+            bail!(
+                "{name} is a file for one frame, but {count} are asked for; choose one, such as --frames 30 or --at 0.5s"
+            );
         };
         if !self.options.overwrite {
             replaceable_still(path, format)?;
         }
+        self.tell_moments(scene)?;
         let gpu = format.needs_device([scene]).then(|| self.device.open([scene.view.size])).transpose()?;
         let folder = folder_of(path);
         std::fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;

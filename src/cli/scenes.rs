@@ -1,7 +1,7 @@
 //! From scene files as typed to scenes that can be run.
 
 use super::failure::{Failure, Status, complain, warn, with_causes};
-use super::frames::FrameRanges;
+use super::frames::{FrameRanges, Moments};
 use super::options::{RunOptions, SceneOptions};
 use crate::output::shell;
 use crate::output::{Access, Folder, OutputError, Plan, Shard, StoredStates, Whose};
@@ -79,18 +79,20 @@ pub(super) struct Job {
 
 /// What the commands that run scenes do differently.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Wish {
+pub(super) struct Wish<'a> {
     /// Whether frames are drawn and kept.
     pub(super) pictures: bool,
     /// The share of the frames, if it is not all.
     pub(super) shard: Option<Shard>,
     /// Whether states are read, so that no checkpoint is needed.
     pub(super) from_states: bool,
+    /// The moments whose frames are wanted, if they are chosen so.
+    pub(super) at: Option<&'a Moments>,
 }
 
 impl RunOptions {
     /// What is to be done for each scene by the command of these `words`.
-    pub(super) fn jobs(&self, scenes: Vec<Scene>, wish: Wish, words: &[OsString]) -> Result<Vec<Job>, Failure> {
+    pub(super) fn jobs(&self, scenes: Vec<Scene>, wish: Wish<'_>, words: &[OsString]) -> Result<Vec<Job>, Failure> {
         let several = scenes.len() > 1;
         let mut folders: HashMap<PathBuf, String> = HashMap::new();
         let mut jobs = Vec::new();
@@ -110,10 +112,10 @@ impl RunOptions {
     }
 
     /// What is to be done for one scene in a folder.
-    fn job(&self, scene: Scene, path: &Path, wish: Wish, words: &[OsString]) -> Result<Job, Failure> {
-        let Wish { pictures, shard, from_states } = wish;
+    fn job(&self, scene: Scene, path: &Path, wish: Wish<'_>, words: &[OsString]) -> Result<Job, Failure> {
+        let Wish { pictures, shard, from_states, at } = wish;
         let runs = self.runs(&scene)?;
-        let mut frames = self.frames(&scene)?;
+        let mut frames = self.frames(&scene, at)?;
         let all = frames.len();
         if let Some(shard) = shard {
             frames = shard.select(&frames).map_err(|message| Failure::usage(format!("--shard: {message}")))?;
@@ -131,11 +133,24 @@ impl RunOptions {
         runs_of(&self.only, scene)
     }
 
-    pub(super) fn frames(&self, scene: &Scene) -> Result<Vec<u64>, Failure> {
+    /// The frames that are wanted of a scene, in rising order.
+    pub(super) fn frames(&self, scene: &Scene, at: Option<&Moments>) -> Result<Vec<u64>, Failure> {
+        if let Some(at) = at {
+            let mut frames: Vec<_> = nearest(at, scene)?.into_iter().map(|(_, frame)| frame).collect();
+            frames.sort_unstable();
+            frames.dedup();
+            return Ok(frames);
+        }
         let last = scene.last_frame();
         let ranges = self.frames.clone().unwrap_or_else(|| FrameRanges::all(last));
         ranges.select(last).map_err(|message| Failure::usage(format!("frames of “{}”: {message}", scene.title)))
     }
+}
+
+/// The nearest frame of a scene to each moment (s).
+pub(super) fn nearest(at: &Moments, scene: &Scene) -> Result<Vec<(f64, u64)>, Failure> {
+    let found = at.nearest(scene.last_frame(), scene.frames_per_second);
+    found.map_err(|message| Failure::usage(format!("--at: in “{}” {message}", scene.title)))
 }
 
 /// The numbers of a scene's runs with the names of `--only`, or of all of them.

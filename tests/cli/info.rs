@@ -22,6 +22,27 @@ fn information_works_without_any_driver() {
     }
 }
 
+/// The one answer is what the kernels take, and not what the compiler was allowed to.
+#[test]
+fn the_vectors_are_those_of_the_kernels() {
+    let expected = match () {
+        #[cfg(target_arch = "x86_64")]
+        () if std::is_x86_feature_detected!("avx512f") && std::is_x86_feature_detected!("fma") => ("AVX-512", 512),
+        #[cfg(target_arch = "x86_64")]
+        () if std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma") => ("AVX2", 256),
+        #[cfg(target_arch = "aarch64")]
+        () => ("NEON", 128),
+        #[cfg(not(target_arch = "aarch64"))]
+        () => return,
+    };
+    let place = Place::new();
+    let told = place.run("info --json").good().json()["vectors"].clone();
+    assert_eq!(told, serde_json::json!({ "instructions": expected.0, "bits": expected.1 }));
+    let text = place.run("info").good().out;
+    assert!(text.contains(&format!("  vectors     {}, {} bits\n", expected.0, expected.1)), "{text}");
+    assert!(!text.contains("sse2"), "{text}");
+}
+
 #[test]
 fn the_schema_is_one_document() {
     let document = Place::new().run("schema").good().json();

@@ -87,6 +87,38 @@ fn frames_for_print_say_their_resolution_and_refuse_small_type() {
     assert!(!place.path("output/tiny").exists());
 }
 
+/// A theme is a value of the scene, so that frames of two are never mixed.
+#[test]
+fn another_theme_is_told_and_drawn() {
+    let Some(place) = place_to_draw() else { return };
+    place.run("render small.toml --frames 3 -o light").good();
+    place.run("render small.toml --frames 3 --theme dark -o dark").good();
+    place.run("render small.toml --frames 3 --set view.theme=dark -o set").good();
+    let frame = |folder: &str| std::fs::read(place.path(folder).join("frame_00003.png")).unwrap();
+    assert!(frame("dark") == frame("set") && frame("dark") != frame("light"));
+    assert_eq!(place.json("dark/run.json")["set"], serde_json::json!(["view.theme=dark"]));
+    place.run("render small.toml --frames 4 --theme dark -o light").bad(2, &["the results of another version"]);
+    place.run("render small.toml --theme blue").bad(2, &["--theme", "light, dark"]);
+}
+
+#[test]
+fn moments_have_the_frames_nearest_to_them() {
+    let Some(place) = place_to_draw() else { return };
+    let ran = place.run("render small.toml --at 0.1s,18ms -o some").good();
+    assert!(ran.out.starts_with("0.1 s: frame 6, at 0.1 s\n0.018 s: frame 1, at 0.01667 s\nTwo cubes\n"), "{ran:?}");
+    assert_eq!(place.names("some"), ["diagnostics.csv", "frame_00001.png", "frame_00006.png", "run.json"]);
+    let ran = place.run("render small.toml --at 0.05 -o one.png").good();
+    assert_eq!(ran.out, "0.05 s: frame 3, at 0.05 s\none.png  96×64\n");
+    assert_eq!(tags(&place.path("one.png")).frame(), Some(3));
+    place
+        .run("render small.toml --at 2s")
+        .bad(2, &["--at: in “Two cubes” there is no frame at 2 s; the last one is at 0.1 s"]);
+    place.run("render small.toml --at soon").bad(2, &["`soon` is not a time; expected one such as 2s, 500ms or 2"]);
+    place.run("render small.toml --at -1").bad(2, &["`-1` is not a time"]);
+    place.run("render small.toml --at 1 --frames 1").bad(2, &["--at", "--frames"]);
+    place.run("render small.toml --at 0,0.05 -o one.png").bad(2, &["2 are asked for", "--at 0.5s"]);
+}
+
 /// A folder whose frames differ in size or runs would not be a sequence.
 #[test]
 fn frames_of_another_size_or_with_other_runs_are_refused_unless_told() {

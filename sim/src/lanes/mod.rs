@@ -255,6 +255,21 @@ impl Set {
     }
 }
 
+/// The vector instructions with which the fast kernels step on this processor: their name, and their width (bits).
+pub fn vectors() -> (&'static str, usize) {
+    let set = Set::best();
+    let name = match set.0 {
+        Kind::Portable => "portable",
+        #[cfg(target_arch = "x86_64")]
+        Kind::Avx2 => "AVX2",
+        #[cfg(target_arch = "x86_64")]
+        Kind::Avx512 => "AVX-512",
+        #[cfg(target_arch = "aarch64")]
+        Kind::Neon => "NEON",
+    };
+    (name, 64 * set.lanes())
+}
+
 /// Operators that are one operation per lane.
 macro_rules! operators {
     ($vector:ty, $($trait:ident $name:ident ($a:ident, $b:ident) $body:expr;)*; -$c:ident $neg:expr) => {
