@@ -216,10 +216,9 @@ pub(crate) struct CameraFile {
     /// and moved nodes that are at any time within 1.25 body sizes of where the body starts and stands.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) distance: Option<f64>,
-    /// Whether the camera follows the centre of each run's body. All panels and frames then have one scale, at which the body
-    /// takes about 60 % of its panel's width at its widest moment. Where all runs stay in view at that scale, the camera
-    /// stands still; otherwise a small overview in each panel shows the body, the path of its centre and the floor, with the
-    /// same axes in all panels. The whole scene is simulated before the first frame is drawn. A camera with a `target` or a
+    /// Whether the camera follows the centre of mass of each run's body. All panels and frames then have one scale, at which
+    /// the body takes about 60 % of its panel's width at its widest moment. Where all runs stay in view at that scale, the
+    /// camera stands still. The whole scene is simulated before the first frame is drawn. A camera with a `target` or a
     /// `distance` stands still.
     pub(crate) follow: bool,
 }

@@ -1,13 +1,13 @@
 //! What pictures look like: view, colours, fonts, colour scales and cameras. A scene has a [`View`], resolved here from its
 //! `[view]` table and from the body, models and surroundings that it shows. Nothing here draws.
 
+mod camera_box;
 mod compared;
 mod contrast;
 pub(crate) mod file;
 pub(crate) mod font;
 mod framing;
 mod palette;
-mod place;
 pub(crate) mod print;
 pub(crate) mod ramp;
 mod reach;
@@ -19,10 +19,10 @@ pub(crate) mod typed;
 mod view;
 
 pub use crate::colour::Colour;
+pub(crate) use camera_box::CameraBox;
 pub(crate) use contrast::check_runs;
 pub(crate) use palette::Palette;
 pub use palette::Theme;
-pub(crate) use place::Place;
 pub use print::Print;
 pub(crate) use ramp::SHADES;
 pub(crate) use resolve::{colour, resolve};

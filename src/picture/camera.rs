@@ -87,15 +87,6 @@ impl Lens {
         }
     }
 
-    /// The point (m) in the middle of a panel at the distance of the point looked at, where a metre is so many pixels; and
-    /// how much of the world the panel shows there, across and along (m).
-    pub(crate) fn shown(&self, [left, top, width, height]: [f64; 4], pixels: f64) -> (DVec3, [f64; 2]) {
-        let off = [left + 0.5 * width - self.centre[0], top + 0.5 * height - self.centre[1]].map(|off| off / pixels);
-        let distance = if self.orthographic { 1.0 } else { self.focal / pixels };
-        let target = self.eye + distance * self.forward;
-        (target + off[0] * self.right - off[1] * self.up, [width / pixels, height / pixels])
-    }
-
     /// The pixel of a point, and its distance along the view (m); `None` for points not in front of the camera.
     pub(crate) fn project(&self, point: DVec3) -> Option<([f64; 2], f64)> {
         let from_eye = point - self.eye;

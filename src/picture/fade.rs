@@ -1,13 +1,11 @@
-//! Lines fade where they leave their room, and where they come to an overview in it: nothing is cut off hard.
+//! Lines fade where they leave their room: nothing is cut off hard.
 
 use super::layout::Rectangle;
 use super::plane::sides;
 use glam::DVec2;
 
-/// Over what distance lines fade at the sides of their room and around an overview (px in the reference picture), and
-/// in how many steps.
+/// Over what distance lines fade at the sides of their room (px in the reference picture), and in how many steps.
 pub(super) const FADING: f64 = 28.0;
-const AROUND: f64 = 14.0;
 const STEPS: f64 = 8.0;
 /// No piece of a line is cut shorter than this (px).
 const PIECE: f64 = 1.0;
@@ -18,16 +16,12 @@ pub(super) struct Fade {
     /// The left, upper, right and lower side of the room, and over what distance lines fade from each (px).
     sides: [f64; 4],
     distances: [f64; 4],
-    /// The sides of an overview, which covers lines, and over what distance they fade from it (px).
-    overview: Option<[f64; 4]>,
-    around: f64,
 }
 
 impl Fade {
-    /// In a room and around an overview in it (px: left, top, width and height), where a pixel of the reference picture
-    /// has `unit` pixels.
-    pub(super) fn new(room: Rectangle, distances: [f64; 4], overview: Option<[f64; 4]>, unit: f64) -> Self {
-        Self { sides: sides(room.map(f64::from)), distances, overview: overview.map(sides), around: AROUND * unit }
+    /// In a room (px), over distances from its left, upper, right and lower side (px).
+    pub(super) fn new(room: Rectangle, distances: [f64; 4]) -> Self {
+        Self { sides: sides(room.map(f64::from)), distances }
     }
 
     /// The opacity of a line at a place (px), in steps.
@@ -36,22 +30,17 @@ impl Fade {
         let inside = [at.x - left, at.y - top, right - at.x, bottom - at.y];
         let shares = inside.into_iter().zip(self.distances).filter(|(_, distance)| *distance > 0.0);
         let share = shares.map(|(inside, distance)| inside / distance).fold(1.0, f64::min);
-        let outside = self.overview.map_or(f64::INFINITY, |[left, top, right, bottom]| {
-            let off = DVec2::new((left - at.x).max(at.x - right), (top - at.y).max(at.y - bottom));
-            off.max(DVec2::ZERO).length() / self.around
-        });
-        if outside <= 0.0 { 0.0 } else { ((share.min(outside).max(0.0) * STEPS).floor() + 1.0).min(STEPS) / STEPS }
+        ((share.max(0.0) * STEPS).floor() + 1.0).min(STEPS) / STEPS
     }
 
-    /// A line, parted so that it fades, with the opacity of each part; without what an overview covers.
+    /// A line, parted so that it fades, with the opacity of each part.
     pub(super) fn parts(&self, line: &[[f64; 2]]) -> Vec<(Vec<[f64; 2]>, f64)> {
-        let around = self.overview.map_or(f64::INFINITY, |_| self.around);
-        let shortest = self.distances.into_iter().filter(|&distance| distance > 0.0).fold(around, f64::min);
+        let shortest = self.distances.into_iter().filter(|&distance| distance > 0.0).fold(f64::INFINITY, f64::min);
         let mut parts: Vec<(Vec<[f64; 2]>, f64)> = Vec::new();
         for two in line.windows(2) {
             let [from, to] = [two[0], two[1]].map(DVec2::from);
             // Pieces as short as a step where it may fade.
-            let fades = self.opacity(from).min(self.opacity(to)) < 1.0 || self.may_cross_overview(from, to);
+            let fades = self.opacity(from).min(self.opacity(to)) < 1.0;
             let piece = (shortest / STEPS).max(PIECE);
             let count = if fades { (from.distance(to) / piece).ceil().max(1.0) as u32 } else { 1 };
             for at in 0..count {
@@ -63,15 +52,7 @@ impl Fade {
                 }
             }
         }
-        parts.retain(|(_, alpha)| *alpha > 0.0);
         parts
-    }
-
-    /// Whether a piece of a line may come near the overview.
-    fn may_cross_overview(&self, from: DVec2, to: DVec2) -> bool {
-        let (low, high) = (from.min(to) - self.around, from.max(to) + self.around);
-        self.overview
-            .is_some_and(|[left, top, right, bottom]| low.x < right && high.x > left && low.y < bottom && high.y > top)
     }
 }
 
@@ -108,7 +89,7 @@ mod tests {
     #[test]
     fn lines_fade_where_they_leave() {
         let line = [[5.0, 0.0], [5.0, 100.0]];
-        let fade = |distances| Fade::new([0, 0, 10, 200], distances, None, 1.0);
+        let fade = |distances| Fade::new([0, 0, 10, 200], distances);
         let parts = fade([0.0, 40.0, 0.0, 40.0]).parts(&line);
         // They join without a gap, and become steadily more opaque.
         assert_eq!(parts.len(), STEPS as usize);
@@ -117,18 +98,8 @@ mod tests {
         assert_eq!(fade([0.0; 4]).parts(&line), [(line.to_vec(), 1.0)]);
         // At the left and right, too.
         let across = [[0.0, 50.0], [100.0, 50.0]];
-        let parts = Fade::new([0, 0, 100, 100], [40.0; 4], None, 1.0).parts(&across);
+        let parts = Fade::new([0, 0, 100, 100], [40.0; 4]).parts(&across);
         assert_eq!((parts.len(), parts[0].1, parts[7].1, parts[14].1), (15, 0.125, 1.0, 0.125));
-    }
-
-    #[test]
-    fn lines_do_not_cross_an_overview() {
-        let fade = Fade::new([0, 0, 200, 200], [0.0; 4], Some([80.0, 80.0, 40.0, 40.0]), 1.0);
-        let parts = fade.parts(&[[0.0, 100.0], [200.0, 100.0]]);
-        assert!(parts.len() > 10 && [&parts[0], &parts[parts.len() - 1]].iter().all(|part| part.1 == 1.0));
-        let inside = |at: &[f64; 2]| (82.0..118.0).contains(&at[0]);
-        assert!(parts.iter().flat_map(|(points, _)| points).all(|at| !inside(at)), "{parts:?}");
-        assert_eq!(fade.parts(&[[0.0, 50.0], [200.0, 50.0]]).len(), 1);
     }
 
     #[test]

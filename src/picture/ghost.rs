@@ -38,8 +38,6 @@ pub(super) struct Ghost<'a> {
     pub(super) bars: &'a [[u32; 2]],
     /// Nothing is drawn outside of it.
     pub(super) room: Rectangle,
-    /// Where an overview covers it (px: left, top, width and height).
-    pub(super) overview: Option<[f64; 4]>,
 }
 
 impl Ghost<'_> {
@@ -97,7 +95,7 @@ impl Ghost<'_> {
         let [left, top, right, bottom] = sides(self.room.map(f64::from));
         let [low, high] = self.bounds();
         let over = [left - low.x, top - low.y, high.x - right, high.y - bottom];
-        Fade::new(self.room, over.map(|over| over.clamp(0.0, FADING * scale.unit)), self.overview, scale.unit)
+        Fade::new(self.room, over.map(|over| over.clamp(0.0, FADING * scale.unit)))
     }
 
     /// The corners of the box around all nodes before the camera (px).
@@ -336,7 +334,7 @@ mod tests {
 
     fn outline(lens: &Lens, position: &[DVec3], triangles: &[[u32; 3]], room: Rectangle) -> Vec<Vec<DVec2>> {
         let nodes: Vec<u32> = (0..position.len() as u32).collect();
-        Ghost { lens, position, nodes: &nodes, triangles, bars: &[], room, overview: None }.outline()
+        Ghost { lens, position, nodes: &nodes, triangles, bars: &[], room }.outline()
     }
 
     /// A cube with outward triangles.
@@ -367,15 +365,8 @@ mod tests {
         let (mut position, triangles) = cube();
         position.iter_mut().for_each(|at| at.y += 20.0);
         let nodes: Vec<u32> = (0..8).collect();
-        let ghost = Ghost {
-            lens: &lens,
-            position: &position,
-            nodes: &nodes,
-            triangles: &triangles,
-            bars: &[],
-            room: ROOM,
-            overview: None,
-        };
+        let ghost =
+            Ghost { lens: &lens, position: &position, nodes: &nodes, triangles: &triangles, bars: &[], room: ROOM };
         let mut curves = Vec::new();
         ghost.draw(Scale::REFERENCE, [0; 3], [255; 3], &mut curves);
         // A shaft and a head, each with its halo, at the upper border.
@@ -386,35 +377,29 @@ mod tests {
     }
 
     #[test]
-    fn a_ghost_fades_where_it_leaves_and_around_an_overview() {
+    fn a_ghost_fades_where_it_leaves() {
         let lens = lens(Dimension::Space);
         let (mut position, triangles) = cube();
         position.iter_mut().for_each(|at| at.x += 0.3);
         let nodes: Vec<u32> = (0..8).collect();
-        let drawn = |room: Rectangle, overview| {
+        let drawn = |room: Rectangle| {
             let (lens, position, nodes, triangles) = (&lens, &position, &nodes, &triangles);
-            let ghost = Ghost { lens, position, nodes, triangles, bars: &[], room, overview };
+            let ghost = Ghost { lens, position, nodes, triangles, bars: &[], room };
             let mut curves = Vec::new();
             ghost.draw(Scale::REFERENCE, [0; 3], [255; 3], &mut curves);
             curves.retain(|curve| curve.colour == [0; 3]);
             curves
         };
-        let whole = drawn(ROOM, None);
+        let whole = drawn(ROOM);
         assert!(whole.len() == 1 && !whole[0].dash.is_empty() && whole[0].alpha == 1.0);
         let xs = || whole[0].points.iter().map(|at| at[0]);
         let middle = xs().fold(0.0, |sum: f32, x| sum + x) / xs().count() as f32;
         // A room that ends within it: each dash for itself, and fainter towards the side.
-        let cut = drawn([0, 0, middle as u32 + 30, 640], None);
+        let cut = drawn([0, 0, middle as u32 + 30, 640]);
         let right = |curve: &Curve| curve.points.iter().fold(0.0, |most: f32, at| most.max(at[0]));
         let last = cut.iter().max_by(|a, b| right(a).total_cmp(&right(b))).unwrap();
         assert!(last.dash.is_empty() && last.alpha < 0.2, "{last:?}");
         assert!(cut.iter().any(|curve| curve.alpha == 1.0));
-        // Nothing of it lies in an overview.
-        let at = whole[0].points[0].map(f64::from);
-        let overview = [at[0] - 20.0, at[1] - 20.0, 40.0, 40.0];
-        let inside = |[x, y]: &[f32; 2]| (f64::from(*x) - at[0]).abs() < 14.0 && (f64::from(*y) - at[1]).abs() < 14.0;
-        assert!(whole[0].points.iter().any(inside));
-        assert!(!drawn(ROOM, Some(overview)).iter().flat_map(|curve| &curve.points).any(inside));
     }
 
     #[test]

@@ -27,7 +27,6 @@ mod ghost;
 mod grip;
 mod layout;
 mod legend;
-mod locator;
 mod members;
 mod narrow;
 mod number;

@@ -31,8 +31,6 @@ pub(super) struct Pointers<'a> {
     pub(super) lens: &'a Lens,
     /// Where there may be arrows.
     pub(super) room: Rectangle,
-    /// Where an overview lies (px: left, top, width and height): arrows fade out beside it instead of going under it.
-    pub(super) overview: Option<[f64; 4]>,
     pub(super) scale: Scale,
     pub(super) palette: &'a Palette,
 }
@@ -64,24 +62,7 @@ impl Pointers<'_> {
         let ends = [near, near + length * far];
         let ends = if arriving { [ends[1], ends[0]] } else { ends };
         let grown = (length / (SHORTEST * unit) - 1.0) / FADING;
-        let beside = self.beside_overview(ends);
-        marks.extend(
-            arrow(ends, unit, self.palette.pointer, self.palette.background).faded(grown.min(inside).min(beside)),
-        );
-    }
-
-    /// How opaque an arrow between two pixels may be beside the overview.
-    fn beside_overview(&self, [from, to]: [DVec2; 2]) -> f64 {
-        /// Places along an arrow that are looked at, besides its start.
-        const PLACES: u32 = 8;
-        let Some([left, top, width, height]) = self.overview else { return 1.0 };
-        let (low, high) = (DVec2::new(left, top), DVec2::new(left + width, top + height));
-        let off = (0..=PLACES).map(|at| {
-            let at = from.lerp(to, f64::from(at) / f64::from(PLACES));
-            at.distance(at.clamp(low, high))
-        });
-        let half = 0.5 * HEIGHT * self.scale.line();
-        off.fold(f64::INFINITY, f64::min) / half - 1.0
+        marks.extend(arrow(ends, unit, self.palette.pointer, self.palette.background).faded(grown.min(inside)));
     }
 
     /// How opaque an arrow may be that begins at a point, which fades near the sides of its room, and how far it can go in a
@@ -97,26 +78,5 @@ impl Pointers<'_> {
             (room - height) / step.abs()
         });
         (inside, least(rooms))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::look::{Theme, View};
-    use crate::picture::Framing;
-    use crate::sim::body::Dimension;
-
-    #[test]
-    fn arrows_fade_out_before_an_overview() {
-        let view = View::default();
-        let lens = Lens::new(&view, &Framing::still(&view.camera), Dimension::Plane, [0.0, 0.0, 400.0, 400.0], 1.0);
-        let palette = Palette::of(Theme::Light);
-        let (room, overview) = ([0, 0, 400, 400], Some([300.0, 0.0, 100.0, 80.0]));
-        let pointers = Pointers { lens: &lens, room, overview, scale: Scale::REFERENCE, palette: &palette };
-        let opacity = |x: f64| pointers.beside_overview([[x, 40.0], [x + 50.0, 40.0]].map(DVec2::from));
-        let all: Vec<_> = (150..300).map(|x| opacity(f64::from(x))).collect();
-        assert!(all[0] > 1.0 && all[149] < 0.0, "{all:?}");
-        assert!(all.windows(2).all(|two| two[0] >= two[1] && two[0] - two[1] < 0.2), "{all:?}");
     }
 }

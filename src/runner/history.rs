@@ -2,7 +2,7 @@
 //! for cameras that follow them and for the drawn size of plates and walls. They depend on the scene only and not on the
 //! requested frames.
 
-use crate::look::Place;
+use crate::look::CameraBox;
 use crate::scene::Scene;
 use crate::sim::contact::{self, Shape};
 use crate::sim::snapshot::{Diagnostics, Divergence};
@@ -39,8 +39,8 @@ pub struct TimeSeries {
     pub diagnostics: Vec<Diagnostics>,
     /// For each point of the body that leaves a path ([`crate::look::View::paths`]), where it was at each of these times (m).
     pub paths: Vec<Vec<DVec3>>,
-    /// Times (s) and places of the body at each of them, if the scene's camera follows it.
-    pub(crate) places: Vec<(f64, Place)>,
+    /// The boxes around the body at these times, if the scene's camera follows it.
+    pub(crate) boxes: Vec<CameraBox>,
     /// Where its nodes have come near plates and walls.
     pub(crate) reach: Reach,
     /// Where the run diverged, if it did.
@@ -50,8 +50,8 @@ pub struct TimeSeries {
 impl TimeSeries {
     /// An empty time series of a run.
     pub(crate) fn new(run: usize) -> Self {
-        let (times, diagnostics, paths, places, reach) = Default::default();
-        Self { run, times, diagnostics, paths, places, reach, divergence: None }
+        let (times, diagnostics, paths, boxes, reach) = Default::default();
+        Self { run, times, diagnostics, paths, boxes, reach, divergence: None }
     }
 
     /// Whether it is one of the same run and the same quantities as an empty one.
@@ -68,8 +68,7 @@ impl TimeSeries {
         self.times.push(time);
         self.diagnostics.push(diagnostics);
         if scene.view.camera.follow {
-            let place = Place::new(&scene.view, scene.body.dimension, position);
-            self.places.extend(place.map(|place| (time, place)));
+            self.boxes.extend(CameraBox::new(&scene.view, &scene.body, position));
         }
         self.reach.add(scene, time, position);
     }

@@ -55,7 +55,6 @@ impl Draft<'_> {
             triangles: &skin.triangles,
             bars: &bars,
             room,
-            overview: self.overview,
         };
         ghost.draw(self.scale, colour, self.composer.palette.background, curves);
     }

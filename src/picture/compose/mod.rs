@@ -19,7 +19,6 @@ use super::caption::{self, Writer};
 use super::ears::{Ears, bare_elements};
 use super::event::Event;
 use super::layout::{self, Layout, Rectangle, Scale};
-use super::locator::Locator;
 use super::number;
 use super::shadow;
 use super::shell::Shell;
@@ -86,8 +85,6 @@ pub struct Composer<'a> {
     traced: Vec<TimeSeries>,
     /// How the camera follows, if it does.
     tracking: Option<Tracking>,
-    /// The overview of a camera that follows, once the time series are set.
-    locator: Option<Locator>,
     /// Where nodes have come near plates and walls, once the time series are set.
     reach: Reach,
     /// How the panels of the first frame are arranged, and those of all others of the same runs.
@@ -154,7 +151,6 @@ impl<'a> Composer<'a> {
             timeline: None,
             traced: Vec::new(),
             tracking: scene.view.camera.follow.then(|| Tracking::new(scene, &History::default())).flatten(),
-            locator: None,
             reach: Reach::default(),
             arranged: OnceLock::new(),
         }
@@ -166,7 +162,6 @@ impl<'a> Composer<'a> {
         let scene = self.scene;
         self.arranged = OnceLock::new();
         self.tracking = scene.view.camera.follow.then(|| Tracking::new(scene, history)).flatten();
-        self.locator = self.tracking.as_ref().and_then(|tracking| Locator::new(scene, tracking));
         self.reach = Reach::default();
         history.series.iter().for_each(|series| self.reach.merge(&series.reach));
         self.traced = if scene.view.paths.is_empty() { Vec::new() } else { history.series.clone() };
@@ -232,14 +227,10 @@ impl<'a> Composer<'a> {
         let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::with_capacity(runs.len()));
         let mut curves = Vec::new();
         for ((&panel, run), framing) in layout.panels.iter().zip(&frame.runs).zip(&framings) {
-            let mut draft = Draft::new(self, panel, run, framing, scale);
-            draft.overview = shot.as_ref().and_then(|shot| self.overview(panel, shot, scale));
+            let draft = Draft::new(self, panel, run, framing, scale);
             draft.ghost(&frame.runs, draft.between_words(), &mut curves);
             draft.paths(&self.traced, draft.between_words(), &mut curves);
             panels.push(draft.panel(&mut under, &mut marks));
-            if let Some((shot, tracking)) = shot.as_ref().zip(self.tracking.as_ref()) {
-                self.locate(&draft, shot, tracking, &mut writer);
-            }
         }
         marks.extend(hairlines);
         let Writer { marks: above, curves: in_front, mut words, .. } = writer;

@@ -53,8 +53,6 @@ pub(super) struct Draft<'a> {
     pub(super) shades: Option<Shades>,
     /// Its places at the nodes, if anything but surfaces shows them.
     pub(super) of_nodes: Vec<f32>,
-    /// Where an overview lies over it (px: left, top, width and height).
-    pub(super) overview: Option<[f64; 4]>,
     /// Length of an element's edge at the body's distance (px).
     pub(super) element: f64,
     /// Whether the body lies in the plane.
@@ -117,7 +115,6 @@ impl<'a> Draft<'a> {
             position,
             shades,
             of_nodes,
-            overview: None,
             element: lens.focal * view.side / if flat { 1.0 } else { framing.distance },
             flat,
             diverged,
@@ -328,7 +325,7 @@ impl<'a> Draft<'a> {
 
     /// Draws the arrows of what moves, in a room.
     fn pointers(&self, room: Rectangle) -> Pointers<'_> {
-        Pointers { lens: &self.lens, room, overview: self.overview, scale: self.scale, palette: &self.composer.palette }
+        Pointers { lens: &self.lens, room, scale: self.scale, palette: &self.composer.palette }
     }
 }
 

@@ -64,7 +64,7 @@ impl Draft<'_> {
             let pieces = lines.iter().flat_map(|line| parted(simplified(line, EXACT)));
             // Where there are no words they go on to the border.
             let fading = if self.clear == self.viewport { 0.0 } else { FADING * self.scale.unit };
-            let fade = Fade::new(room, [fading; 4], self.overview, self.scale.unit);
+            let fade = Fade::new(room, [fading; 4]);
             let pieces: Vec<_> = pieces.flat_map(|piece| fade.parts(&piece)).collect();
             let last = self.lens.project(now).map(|(pixel, _)| pixel).filter(|&pixel| holds(room, pixel.into()));
             for (more, colour, alpha) in [(HALO, halo, HALO_ALPHA), (0.0, colour, 1.0)] {

@@ -3,12 +3,12 @@
 use super::{Composer, cut};
 use crate::look::{Ghost, Labels, LineStyle, Palette, View};
 use crate::picture::caption::{self, Heading, Writer};
+use crate::picture::event;
 use crate::picture::layout::{self, Layout, Scale, Wanted, Written};
 use crate::picture::legend::Legend;
 use crate::picture::series;
 use crate::picture::text::{Fonts, Weight};
 use crate::picture::wrap::{balanced, wrapped};
-use crate::picture::{event, locator};
 use crate::scene::Scene;
 
 /// Titles and captions are never longer than this (lines).
@@ -203,10 +203,6 @@ impl<'a> Words<'a> {
             tell(!explained, "panels do not say all that may happen in the chart");
             tell(explained && !with_times, "panels do not say when all of it happens");
         }
-        tell(
-            view.camera.follow && !locator::fits(view, *panel, layout.scale),
-            "overviews of cameras that move may be left out",
-        );
         tell(has(|labels| labels.model), "panels do not describe the models");
         tell(has(|labels| labels.count || labels.number), "panels have no numbers");
         tell(has(|labels| labels.name), "panels have no names");
