@@ -127,7 +127,6 @@ impl Legend {
         let middle = top + 0.5 * (BAR * unit).round();
         let mut left = margin;
         if let Some((metres, [length, size])) = arrow {
-            // However thick lines are, the arrow stays inside the key and clear of the text above.
             left = self.arrow(writer, [left, middle], &metres, [length, size]) + APART * unit;
         }
         let taken_by_bar = if bar.is_some() { (BAR_ROOM + APART) * unit } else { 0.0 };
