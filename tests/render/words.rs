@@ -177,7 +177,6 @@ fn everything_is_written_where_there_is_room() {
         "shape error",
         "100 mm",
         "strain",
-        "spring strain",
         "0.25",
     ];
     for words in expected {
