@@ -1,4 +1,4 @@
-//! Damaged files of every kind are refused or read, and never end the program. `fuzz/` looks for more of them.
+//! Sound files of every kind are read. Damaged ones are refused or read, and never end the program. `fuzz/` looks for more.
 
 use localshape::internals::untrusted::{READERS, SCENE, checkpoint_of_scene};
 use std::fs;
@@ -66,7 +66,7 @@ fn damaged(seed: &[u8], noise: &mut Noise) -> Vec<u8> {
     bytes
 }
 
-/// Sound files of a reader, as `fuzz/seed` collects them, too.
+/// Sound files of a reader, which `fuzz/seed` collects, too.
 fn seeds(name: &str) -> Vec<Vec<u8>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let files = |folder: &str, ending: &str| -> Vec<Vec<u8>> {
@@ -78,29 +78,38 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
         paths.iter().map(|path| fs::read(path).expect("a file")).collect()
     };
     match name {
-        "scene" => [files("scenes", "toml"), files("scenes/elements", "toml")].concat(),
-        "figure" => files("figures", "toml"),
+        "scene" => with_whole_paths([files("scenes", "toml"), files("scenes/elements", "toml")].concat()),
+        "figure" => with_whole_paths(files("figures", "toml")),
         "body" => files("tests/cli", "npz"),
-        "states" => vec![states()],
+        "font" => files("assets/fonts", "otf"),
+        "states" => vec![simulated("states.npz")],
+        "summary" => vec![simulated("run.json")],
         "checkpoint" => vec![checkpoint_of_scene()],
         "state" => vec![localshape::sim::State::at_rest(vec![glam::DVec3::ONE; 3]).to_bytes()],
-        "picture" => {
-            let tags: Vec<(&'static str, String)> = vec![("version", "0.1.0".to_owned())];
-            vec![localshape::internals::encode([3, 2], &[7; 18], &tags, localshape::internals::Compression::Fast)]
-        }
+        "picture" => files("tests/golden/scenes/wheel", "png"),
         "golden" => files("tests/golden/scenes/wheel", "toml"),
         _ => panic!("{name} has no seeds"),
     }
 }
 
-/// `states.npz` of the scene of these tests.
-fn states() -> Vec<u8> {
+/// Scenes and figures that name bodies and scenes by whole paths, to be read from any folder.
+fn with_whole_paths(texts: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").display().to_string();
+    let whole = |text: Vec<u8>| {
+        let text = String::from_utf8(text).expect("UTF-8").replace("../scenes", &scenes);
+        text.replace("file = \"", &format!("file = \"{scenes}/")).into_bytes()
+    };
+    texts.into_iter().map(whole).collect()
+}
+
+/// A file with results of the scene of these tests.
+fn simulated(name: &str) -> Vec<u8> {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("scene.toml"), SCENE).expect("a file");
     let mut command = Command::new(env!("CARGO_BIN_EXE_localshape"));
     let made = command.current_dir(folder.path()).args("simulate scene.toml --states -q -o out".split(' ')).status();
     assert!(made.expect("the program").success());
-    fs::read(folder.path().join("out/states.npz")).expect("states")
+    fs::read(folder.path().join("out").join(name)).expect("results")
 }
 
 #[test]
@@ -108,6 +117,9 @@ fn no_damage_ends_the_program() {
     for reader in &READERS {
         let (seeds, mut noise) = (seeds(reader.name), Noise(7));
         assert!(!seeds.is_empty(), "{}", reader.name);
+        for (at, seed) in seeds.iter().enumerate() {
+            assert!((reader.read)(seed), "{}: the sound file {at} is refused", reader.name);
+        }
         if let Some(corpus) = std::env::var_os("LOCALSHAPE_SEEDS") {
             let path = |at: usize| Path::new(&corpus).join(reader.name).join(format!("seed-{at}"));
             seeds.iter().enumerate().for_each(|(at, seed)| fs::write(path(at), seed).expect("a folder for the corpus"));

@@ -1,10 +1,10 @@
-//! Every reader of files by its name, called with any bytes: what is fuzzed (`fuzz/`), and tested with damaged files.
+//! Every reader of files by name, to be fuzzed (`fuzz/`) and tested with damaged files.
 //!
-//! Whatever it is given, a reader returns a mistake or a meaning. It never panics, and takes no more time and memory than
-//! limits and the length of the file allow.
+//! A reader accepts or refuses any bytes. It never panics, and takes no more time and memory than limits and the length
+//! of the file allow.
 
 use crate::golden::{Pixels, is_record};
-use crate::output::StoredStates;
+use crate::output::{Access, Folder, Plan, StoredStates, Whose};
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene};
@@ -13,35 +13,37 @@ use crate::sim::state::State;
 use std::fs;
 use std::path::Path;
 
-/// A reader, its name and the ending of its files.
+/// A reader of files.
 pub struct Reader {
-    /// Its name, which is that of its fuzz target.
+    /// Its name, and the name of its fuzz target.
     pub name: &'static str,
-    /// Reads a file with these bytes.
-    pub read: fn(&[u8]),
+    /// Reads a file with these bytes. Returns true if the file is accepted.
+    pub read: fn(&[u8]) -> bool,
 }
 
 /// All readers.
-pub const READERS: [Reader; 8] = [
+pub const READERS: [Reader; 10] = [
     Reader { name: "scene", read: scene },
     Reader { name: "figure", read: figure },
     Reader { name: "body", read: body },
+    Reader { name: "font", read: font },
     Reader { name: "states", read: states },
     Reader { name: "checkpoint", read: checkpoint },
-    Reader { name: "state", read: |bytes| drop(State::from_bytes(bytes)) },
-    Reader { name: "picture", read: |bytes| drop(Pixels::from_bytes(bytes)) },
-    Reader { name: "golden", read: golden },
+    Reader { name: "state", read: |bytes| State::from_bytes(bytes).is_some() },
+    Reader { name: "summary", read: summary },
+    Reader { name: "picture", read: |bytes| Pixels::from_bytes(bytes).is_ok() },
+    Reader { name: "golden", read: |bytes| std::str::from_utf8(bytes).is_ok_and(is_record) },
 ];
 
 /// Reads a file by the reader of this name.
 ///
 /// # Panics
-/// If there is none.
+/// There is no such reader.
 pub fn read(name: &str, bytes: &[u8]) {
     (READERS.iter().find(|reader| reader.name == name).expect("a reader").read)(bytes);
 }
 
-/// What is read within milliseconds.
+/// Scenes that are read within milliseconds.
 const LIMITS: Limits = Limits { nodes: 1000, corners: 8000, springs: 20_000, file: 1 << 20 };
 
 /// The scene to which states, checkpoints and bodies of tests belong.
@@ -58,16 +60,14 @@ pub const SCENE: &str = "
     model = { kind = 'mass-spring', stiffness = 1e4 }
 ";
 
-/// A scene is read and takes its first steps.
-fn scene(bytes: &[u8]) {
-    if let Ok(text) = std::str::from_utf8(bytes) {
-        begin(Scene::parse(text, "fuzz.toml", &LIMITS));
-    }
+/// Reads a scene and takes its first steps.
+fn scene(bytes: &[u8]) -> bool {
+    std::str::from_utf8(bytes).is_ok_and(|text| begin(Scene::parse(text, "fuzz.toml", &LIMITS)))
 }
 
-/// The first steps, and the first picture, of a scene.
-fn begin<E>(scene: Result<Scene, E>) {
-    let Ok(scene) = scene else { return };
+/// Takes the first steps of a scene, and composes its first picture. Returns true if there is a scene.
+fn begin<E>(scene: Result<Scene, E>) -> bool {
+    let Ok(scene) = scene else { return false };
     let frame = Runner::new(&scene, &(0..scene.runs.len()).collect::<Vec<_>>()).frame(0);
     #[cfg(feature = "render")]
     crate::picture::compose(&scene, &frame);
@@ -77,52 +77,65 @@ fn begin<E>(scene: Result<Scene, E>) {
         world.advance(3);
         world.snapshot();
     }
+    true
 }
 
-fn figure(bytes: &[u8]) {
-    in_folder("figure.toml", bytes, |path| drop(Figure::load(path, &LIMITS)));
+fn figure(bytes: &[u8]) -> bool {
+    in_folder("figure.toml", bytes, |path| Figure::load(path, &LIMITS).is_ok())
 }
 
-/// A NumPy archive as the body of a scene.
-fn body(bytes: &[u8]) {
-    in_folder("body.npz", bytes, |path| {
-        let text = SCENE.replace("body.lattice = { cells = [1, 1, 1], side = 0.1 }", "body.file = 'body.npz'");
-        let scene = path.with_file_name("scene.toml");
-        fs::write(&scene, text).expect("a file");
-        begin(Scene::load(&scene, &LIMITS));
-    });
+/// Reads a NumPy archive as the body of a scene.
+fn body(bytes: &[u8]) -> bool {
+    beside(
+        "body.npz",
+        bytes,
+        &SCENE.replace("body.lattice = { cells = [1, 1, 1], side = 0.1 }", "body = { file = 'body.npz', lowest = 0 }"),
+    )
 }
 
-/// States of [`SCENE`], of which the first frame is read.
-fn states(bytes: &[u8]) {
+/// Reads the font of a scene, and writes with it.
+fn font(bytes: &[u8]) -> bool {
+    beside("font.ttf", bytes, &format!("view.font.regular = 'font.ttf'\n{SCENE}"))
+}
+
+/// Reads the states of [`SCENE`] up to its first frame.
+fn states(bytes: &[u8]) -> bool {
     in_folder("states.npz", bytes, |path| {
         let scene = Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound");
-        let Ok(stored) = StoredStates::open(path, &scene, &[0, 1], &[0]) else { return };
-        let Ok(mut frames) = Frames::stored(Runner::new(&scene, &[0, 1]), &[0], stored) else { return };
-        while let Ok(Next::TimeSeries(_)) = frames.next(1) {}
-    });
+        let Ok(stored) = StoredStates::open(path, &scene, &[0, 1], &[0]) else { return false };
+        let Ok(mut frames) = Frames::stored(Runner::new(&scene, &[0, 1]), &[0], stored) else { return false };
+        loop {
+            match frames.next(1) {
+                Ok(Next::TimeSeries(_)) => {}
+                next => return matches!(next, Ok(Next::Frame(_))),
+            }
+        }
+    })
 }
 
-/// How far [`SCENE`] was simulated, without the digest that would refuse every damage.
-fn checkpoint(bytes: &[u8]) {
-    let Ok(progress) = postcard::from_bytes::<Progress>(bytes) else { return };
+/// Continues [`SCENE`] from a checkpoint, without the digest that would refuse every damage.
+fn checkpoint(bytes: &[u8]) -> bool {
+    let Ok(progress) = postcard::from_bytes::<Progress>(bytes) else { return false };
     let scene = Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound");
     let runner = Runner::new(&scene, &[0, 1]).with_time_series(Diagnostic::ALL);
     let mut frames = Frames::new(runner, &[2, 4], None);
-    if frames.resume(progress).is_ok() {
-        for _ in 0..100 {
-            if !matches!(frames.next(10), Ok(Next::Working | Next::Frame(_))) {
-                return;
-            }
+    let is_sound = frames.resume(progress).is_ok();
+    for _ in 0..100 {
+        if !is_sound || !matches!(frames.next(10), Ok(Next::Working | Next::Frame(_))) {
+            break;
         }
     }
+    is_sound
 }
 
-/// The record of a golden.
-fn golden(bytes: &[u8]) {
-    if let Ok(text) = std::str::from_utf8(bytes) {
-        is_record(text);
-    }
+/// Reads `run.json` of a folder with results of [`SCENE`].
+fn summary(bytes: &[u8]) -> bool {
+    in_folder("run.json", bytes, |path| {
+        let scene = Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound");
+        let plan = Plan { runs: vec!["shape".to_owned()], frames: vec![0], states: false, size: None };
+        let folder = path.parent().expect("a folder");
+        Folder::inspect(folder, Whose::of(&scene), plan, Access::default()).is_ok()
+    })
 }
 
 /// A checkpoint for that reader.
@@ -135,10 +148,19 @@ pub fn checkpoint_of_scene() -> Vec<u8> {
     postcard::to_allocvec(&progress).expect("plain data")
 }
 
+/// Reads a scene with a file of these bytes beside it.
+fn beside(name: &str, bytes: &[u8], scene: &str) -> bool {
+    in_folder(name, bytes, |path| {
+        let file = path.with_file_name("scene.toml");
+        fs::write(&file, scene).expect("a file");
+        begin(Scene::load(&file, &LIMITS))
+    })
+}
+
 /// Calls `read` with a file of these bytes, in a folder of its own.
-fn in_folder(name: &str, bytes: &[u8], read: impl FnOnce(&Path)) {
+fn in_folder(name: &str, bytes: &[u8], read: impl FnOnce(&Path) -> bool) -> bool {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join(name);
     fs::write(&path, bytes).expect("a file");
-    read(&path);
+    read(&path)
 }

@@ -39,19 +39,21 @@ fn scenes() -> Vec<String> {
     [shipped("fig4b.toml"), EXPLICIT.to_owned()].into_iter().chain(made).collect()
 }
 
-/// Reads a text, and checks that reported positions are in it.
-fn read(text: &str) {
+/// Reads a text, and checks that reported positions are in it. Returns true if it is a scene.
+fn read(text: &str) -> bool {
     match Scene::parse(text, "mutated.toml", &SMALL) {
         Ok(scene) => {
             let mut coordinates = scene.initial.position.iter().chain(&scene.initial.velocity);
             assert!(coordinates.all(|vector| vector.is_finite()) && scene.body.len() <= 5000);
             assert!(scene.runs.iter().all(|run| run.step > 0.0 && run.step.is_finite()));
             assert!(!scene.summary().to_string().is_empty());
+            true
         }
         Err(error) => {
             let lines = text.split('\n').count();
             assert!(error.mistakes().iter().all(|mistake| (1..=lines).contains(&mistake.line) && mistake.column > 0));
             assert!(!error.to_string().is_empty());
+            false
         }
     }
 }
@@ -60,6 +62,7 @@ fn read(text: &str) {
 fn mutated_bytes() {
     let mut numbers = Numbers(0x2545_f491_4f6c_dd1d);
     for scene in scenes() {
+        assert!(read(&scene), "{scene}");
         for _ in 0..3000 {
             let mut bytes = scene.clone().into_bytes();
             for _ in 0..=numbers.below(3) {
@@ -105,6 +108,7 @@ fn swapped_values() {
         "\"\\u0000\"",
     ];
     for scene in scenes() {
+        assert!(read(&scene), "{scene}");
         for (at, _) in scene.match_indices(" = ") {
             let (before, after) = scene.split_at(at + 3);
             // Up to the end of the value, of its table or of its line, in this order.
