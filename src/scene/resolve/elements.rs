@@ -139,65 +139,66 @@ struct Disorder {
 }
 
 impl Disorder {
-    /// Reports each element, or all in one message if all elements have the same mistake, which the program that wrote
-    /// them probably made.
+    /// Reports each kind of mistake in one message.
     fn report(self, lists: &Lists, report: &mut Report<'_>) {
-        let source = &lists.source;
-        match self.common(lists) {
-            Some((message, help)) => source.report(report, "elements", &[], message, help),
-            None => {
-                for (at, wrong, kind) in self.found {
-                    // There may be millions.
-                    if !report.only_counted() {
-                        let (message, help) = in_words(lists, at, wrong, kind);
-                        source.report(report, "elements", &[at], message, help);
-                    }
+        for wrong in [Wrong::Flat, Wrong::Around, Wrong::Turned] {
+            let found: Vec<_> = self.found.iter().filter(|one| one.1 == wrong).map(|one| (one.0, one.2)).collect();
+            let (at, (message, help)) = match found[..] {
+                [] => continue,
+                [(at, kind)] => (vec![at], in_words(lists, at, wrong, kind)),
+                [(first, _), ..] => {
+                    let is_all = found.len() == self.ordered;
+                    (if is_all { vec![] } else { vec![first] }, in_common(lists, wrong, &found, is_all))
                 }
-            }
+            };
+            lists.source.report(report, "elements", &at, message, help);
         }
     }
+}
 
-    /// The message and help for all elements, if there are several with the same mistake.
-    fn common(&self, lists: &Lists) -> Option<(String, String)> {
-        let &(_, wrong, _) = self.found.first()?;
-        if self.ordered < 2 || self.found.len() < self.ordered || self.found.iter().any(|one| one.1 != wrong) {
-            return None;
+/// What is wrong with several elements, given by number and kind, and what helps.
+fn in_common(lists: &Lists, wrong: Wrong, found: &[(usize, ElementKind)], is_all: bool) -> (String, Option<String>) {
+    /// Elements that are named.
+    const NAMED: usize = 5;
+    let (what, help) = match (wrong, lists.dimension) {
+        (Wrong::Flat, Dimension::Plane) => ("have no area: their nodes are on lines, or their sides cross", None),
+        (Wrong::Turned, Dimension::Plane) => {
+            ("are clockwise; expected counter-clockwise", Some("list the nodes of each backwards".to_owned()))
         }
-        let (what, help) = match (wrong, lists.dimension) {
-            // A polygon without area has none in any order.
-            (Wrong::Flat, Dimension::Plane) => return None,
-            (Wrong::Turned, Dimension::Plane) => {
-                ("are clockwise; expected counter-clockwise", "list the nodes of each backwards".to_owned())
-            }
-            (Wrong::Flat, Dimension::Space) => {
-                ("have no volume: their nodes are in planes, or not in their order", CONVEX.to_owned())
-            }
-            (Wrong::Around, _) => (
-                "list their corners around their sides, as VTK, Gmsh and Abaqus do; expected x fastest, then y, then z",
-                format!("reorder those of each: {AROUND:?} of what they are now; or {CONVEX}"),
-            ),
-            (Wrong::Turned, Dimension::Space) => {
-                let mut orders: Vec<String> = Vec::new();
-                for &(_, _, kind) in &self.found {
-                    let (name, nodes) = match kind {
-                        ElementKind::Tetrahedron => ("tetrahedra", 4),
-                        ElementKind::Pyramid => ("pyramids", 5),
-                        ElementKind::Wedge => ("wedges", 6),
-                        _ => ("hexahedra", 8),
-                    };
-                    let order = format!("{name} as {:?}", mended(kind, &Vec::from_iter(0..nodes)).1);
-                    if !orders.contains(&order) {
-                        orders.push(order);
-                    }
+        (Wrong::Flat, Dimension::Space) => {
+            ("have no volume: their nodes are in planes, or not in their order", Some(CONVEX.to_owned()))
+        }
+        (Wrong::Around, _) => (
+            "list their corners around their sides, as VTK, Gmsh and Abaqus do; expected x fastest, then y, then z",
+            Some(format!("reorder those of each: {AROUND:?} of what they are now; or {CONVEX}")),
+        ),
+        (Wrong::Turned, Dimension::Space) => {
+            let mut orders: Vec<String> = Vec::new();
+            for &(_, kind) in found {
+                let (name, nodes) = match kind {
+                    ElementKind::Tetrahedron => ("tetrahedra", 4),
+                    ElementKind::Pyramid => ("pyramids", 5),
+                    ElementKind::Wedge => ("wedges", 6),
+                    _ => ("hexahedra", 8),
+                };
+                let order = format!("{name} as {:?}", mended(kind, &Vec::from_iter(0..nodes)).1);
+                if !orders.contains(&order) {
+                    orders.push(order);
                 }
-                let orders = list(&orders, "and", str::to_owned);
-                let help = format!("{CONVEX}, or reorder those of each: {orders} of what they are now");
-                ("are turned inside out at rest", help)
             }
-        };
-        let (count, name) = (count(self.ordered as u128), lists.source.name("elements", &[]));
-        Some((format!("all {count} elements of `{name}` {what}"), help))
+            let orders = list(&orders, "and", str::to_owned);
+            let help = format!("{CONVEX}, or reorder those of each: {orders} of what they are now");
+            ("are turned inside out at rest", Some(help))
+        }
+    };
+    let (number, name) = (count(found.len() as u128), lists.source.name("elements", &[]));
+    if is_all {
+        return (format!("all {number} elements of `{name}` {what}"), help);
     }
+    let mut named: Vec<String> = found.iter().take(NAMED).map(|(at, _)| at.to_string()).collect();
+    named.extend((found.len() > NAMED).then(|| format!("{} more", count((found.len() - NAMED) as u128))));
+    let (named, all) = (list(&named, "and", str::to_owned), count(lists.elements.len() as u128));
+    (format!("{number} of {all} elements of `{name}` {what}: {named}"), help)
 }
 
 /// The mistake of one element, and the help.
