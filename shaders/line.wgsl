@@ -31,8 +31,9 @@ const OBSTACLE_CONTOUR = 9u;
 const KIND_BITS = 4u;
 const STRENGTH_BITS = 8u;
 
-// Opacities of hidden edges: of elements that are not inverted, and of turned-over ones.
-const HIDDEN_ALPHA = 0.16;
+// Opacities of hidden edges: of elements that are not inverted, and of turned-over ones. The last digits of the first keep the
+// bytes of earlier pictures.
+const HIDDEN_ALPHA = 0.16000003;
 const ALARM_HIDDEN_ALPHA = 0.62;
 // Opacities of lines that are seen.
 const EDGE_ALPHA = 0.80;
