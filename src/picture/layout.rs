@@ -115,10 +115,6 @@ impl Layout {
             0 => 0,
             lines => rows(around.of_type(TITLE + (lines - 1) as f64 * TITLE_LINE)),
         };
-        let caption_height = |lines: usize| match lines {
-            0 => 0,
-            lines => rows(around.of_type((lines - 1) as f64 * CAPTION_LINE + ABOVE_CAPTION) + BELOW_CAPTION),
-        };
         // Panels keep at least half of the picture: of the rest, first the title gets room, then the clock, then the keys, then
         // the caption.
         let most = size[1] / 2;
@@ -136,6 +132,13 @@ impl Layout {
         let spared = (reach - margin).max(0.0).ceil() as u32;
         let title = (top + spared).min(most.max(top));
         let legend = if title + legend <= most { legend } else { 0 };
+        // So does the caption below them, by less than half of it.
+        let reach = ASCENT * around.caption() - ABOVE_CAPTION * around.type_unit();
+        let spared = if legend > 0 { 0 } else { (reach - 0.5 * margin).max(0.0).ceil() as u32 };
+        let caption_height = |lines: usize| match lines {
+            0 => 0,
+            lines => rows(around.of_type((lines - 1) as f64 * CAPTION_LINE + ABOVE_CAPTION) + BELOW_CAPTION) + spared,
+        };
         let fits = |lines: &usize| title + legend + caption_height(*lines) <= most;
         let caption_lines = (0..=caption_lines).rev().find(fits).unwrap_or(0);
         let caption = caption_height(caption_lines);
@@ -172,7 +175,7 @@ impl Layout {
             has_legend: legend > 0,
             caption_lines,
             legend: title + height,
-            caption: f64::from(title + height + legend) + ABOVE_CAPTION * around.type_unit(),
+            caption: f64::from(title + height + legend + spared) + ABOVE_CAPTION * around.type_unit(),
         }
     }
 
