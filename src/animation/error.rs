@@ -31,7 +31,7 @@ pub enum AnimationError {
     /// A program that the format needs is missing.
     #[error(
         "there is no `ffmpeg` on this machine, which {0} files are made with. Install it (apt install ffmpeg; brew install \
-         ffmpeg; winget install ffmpeg), or choose a file that is made without it: .gif, .apng, .y4m, or .png for a sheet"
+         ffmpeg; winget install ffmpeg), or choose a file that is made without it: .gif or .apng"
     )]
     NoFfmpeg(&'static str),
     /// That program failed.

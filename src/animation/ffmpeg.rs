@@ -2,6 +2,7 @@
 
 use super::order::in_order;
 use super::{Animation, AnimationError, Format, Image, Written};
+use crate::colour::Colour;
 use crate::output::AtomicFile;
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, ErrorKind, Write};
@@ -41,15 +42,8 @@ pub(super) fn write(animation: &Animation<'_>, format: Format, file: &AtomicFile
     let ticks = timeline.ticks(rate_each, 1);
     // H.264 and VP9 have one colour sample for four pixels, so sides are made even by extending the background.
     let even @ [width, height] = animation.reel.size().map(|side| side.next_multiple_of(2));
-    let ground = animation.reel.image(ticks[0].0)?.corner();
-    let padded = |image: Image| {
-        if image.size == even {
-            return image;
-        }
-        let mut padded = Image::plain(even, ground);
-        padded.paste(&image, [0, 0]);
-        padded
-    };
+    let first = animation.reel.image(ticks[0].0)?;
+    let ground = [first.pixels[0], first.pixels[1], first.pixels[2]];
     let mut command = Command::new("ffmpeg");
     command.args(["-hide_banner", "-loglevel", "error", "-xerror", "-nostdin", "-y"]);
     command.args(["-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", &format!("{width}x{height}")]);
@@ -85,10 +79,10 @@ pub(super) fn write(animation: &Animation<'_>, format: Format, file: &AtomicFile
         in_order(
             ticks.len(),
             animation.threads.min(READERS),
-            |at| animation.reel.image(ticks[at].0).map(padded),
-            |at, image| {
+            |at| animation.reel.image(ticks[at].0).map(|image| padded(image, even, ground)),
+            |at, pixels| {
                 for _ in 0..ticks[at].1 {
-                    film.write(process, &image.pixels)?;
+                    film.write(process, &pixels)?;
                     pictures += 1;
                 }
                 animation.report((at + 1) as f64 / ticks.len() as f64)
@@ -97,6 +91,18 @@ pub(super) fn write(animation: &Animation<'_>, format: Format, file: &AtomicFile
         film.ended(process)
     })?;
     Ok(Written { pictures, duration: pictures as f64 / rate_each, size: even })
+}
+
+/// The pixels of a picture with its sides extended by a colour.
+fn padded(image: Image, [width, height]: [u32; 2], colour: Colour) -> Vec<u8> {
+    if image.size == [width, height] {
+        return image.pixels;
+    }
+    let more = colour.repeat((width - image.size[0]) as usize);
+    let rows = image.pixels.chunks_exact(3 * image.size[0] as usize);
+    let mut pixels: Vec<u8> = rows.flat_map(|row| row.iter().chain(&more)).copied().collect();
+    pixels.extend(colour.iter().cycle().take(3 * (width * (height - image.size[1])) as usize));
+    pixels
 }
 
 /// Starts the process.

@@ -10,26 +10,16 @@ pub enum Format {
     Apng,
     /// GIF with one palette of 255 colours.
     Gif,
-    /// YUV4MPEG2: uncompressed, as input of other programs.
-    Y4m,
     /// MP4 with H.264, encoded by `ffmpeg`.
     Mp4,
     /// WebM with VP9, encoded by `ffmpeg`.
     WebM,
-    /// A still picture with frames side by side.
-    Sheet,
 }
 
 impl Format {
     /// All extensions with their formats.
-    const ENDINGS: [(&str, Self); 6] = [
-        ("gif", Self::Gif),
-        ("apng", Self::Apng),
-        ("mp4", Self::Mp4),
-        ("webm", Self::WebM),
-        ("y4m", Self::Y4m),
-        ("png", Self::Sheet),
-    ];
+    const ENDINGS: [(&str, Self); 4] =
+        [("gif", Self::Gif), ("apng", Self::Apng), ("mp4", Self::Mp4), ("webm", Self::WebM)];
 
     /// The format of a file name.
     ///
@@ -41,8 +31,8 @@ impl Format {
         known.map(|(_, format)| *format).ok_or_else(|| {
             let found = if ending.is_empty() { "no ending".to_owned() } else { format!("the ending .{ending}") };
             format!(
-                "{} has {found}; the ending says what to make: .gif, .apng, .mp4 or .webm (both need ffmpeg), .y4m, \
-                 or .png for a sheet of still pictures",
+                "{} has {found}; the ending says what to make: .gif, .apng, .mp4 or .webm (both need ffmpeg); moments side \
+                 by side are a figure (localshape figure)",
                 path.display()
             )
         })
@@ -67,9 +57,8 @@ mod tests {
     #[test]
     fn endings_choose() {
         assert_eq!(Format::of(Path::new("a/b.GIF")), Ok(Format::Gif));
-        assert_eq!(Format::of(Path::new("sheet.png")), Ok(Format::Sheet));
         let unknown = Format::of(Path::new("film.avi")).unwrap_err();
-        for ending in [".gif", ".apng", ".mp4", ".webm", ".y4m", ".png", "the ending .avi"] {
+        for ending in [".gif", ".apng", ".mp4", ".webm", "the ending .avi"] {
             assert!(unknown.contains(ending), "{unknown}");
         }
         assert!(Format::of(Path::new("film")).unwrap_err().contains("no ending"));

@@ -13,19 +13,15 @@ mod gif;
 mod order;
 mod palette;
 mod resize;
-mod sheet;
 mod spool;
 mod timeline;
-mod y4m;
 
 pub use error::AnimationError;
 pub use format::Format;
 pub(crate) use resize::resized;
-pub use sheet::Sheet;
 pub(crate) use spool::Spool;
 pub use timeline::{Shot, Timeline};
 
-use crate::colour::Colour;
 use crate::golden::Pixels;
 use crate::output::AtomicFile;
 use std::io::{BufWriter, Write};
@@ -40,38 +36,9 @@ pub struct Image {
     pub pixels: Vec<u8>,
 }
 
-impl Image {
-    /// A picture of one colour.
-    pub(crate) fn plain([width, height]: [u32; 2], colour: Colour) -> Self {
-        Self { size: [width, height], pixels: colour.repeat(width as usize * height as usize) }
-    }
-
-    /// The colour of the top left corner.
-    pub(crate) fn corner(&self) -> Colour {
-        [self.pixels[0], self.pixels[1], self.pixels[2]]
-    }
-
-    /// Copies another picture, which must fit, into this one, with its top left corner at `x`, `y` (px).
-    pub(crate) fn paste(&mut self, other: &Self, [x, y]: [u32; 2]) {
-        let row = 3 * other.size[0] as usize;
-        for (line, source) in other.pixels.chunks_exact(row).enumerate() {
-            let start = 3 * ((y as usize + line) * self.size[0] as usize + x as usize);
-            self.pixels[start..start + row].copy_from_slice(source);
-        }
-    }
-}
-
-/// Transparent pixels are blended with white.
 impl From<Pixels> for Image {
     fn from(picture: Pixels) -> Self {
-        let over = |byte: u8, opacity: u8| {
-            let [byte, opacity] = [byte, opacity].map(u32::from);
-            ((byte * opacity + 255 * (255 - opacity) + 127) / 255) as u8
-        };
-        let opaque = |pixel: &[u8]| [0, 1, 2].map(|channel| over(pixel[channel], pixel[3]));
-        let Pixels { size, channels, bytes, .. } = picture;
-        let pixels = if channels == 4 { bytes.chunks_exact(4).flat_map(opaque).collect() } else { bytes };
-        Self { size, pixels }
+        Self { size: picture.size, pixels: picture.bytes }
     }
 }
 
@@ -92,8 +59,6 @@ pub struct Animation<'a> {
     pub timeline: &'a Timeline,
     /// How many times it is played; 0 for ever. Only APNG and GIF can store this.
     pub plays: u16,
-    /// The layout of frames on a still picture.
-    pub sheet: &'a Sheet,
     /// Metadata of the file, if the format has a place for it.
     pub comment: &'a str,
     /// Threads to work with, at least one.
@@ -109,9 +74,9 @@ pub struct Animation<'a> {
 pub struct Written {
     /// Number of pictures in the file. Formats with a fixed rate repeat some; others omit frames that would be too short.
     pub pictures: usize,
-    /// Duration of one play (s); 0 for a still picture.
+    /// Duration of one play (s).
     pub duration: f64,
-    /// Width and height (px). Films have even sides; a sheet has a size of its own.
+    /// Width and height (px). Films have even sides.
     pub size: [u32; 2],
 }
 
@@ -131,24 +96,8 @@ impl Animation<'_> {
             Format::Mp4 | Format::WebM => ffmpeg::write(self, format, &file)?,
             Format::Apng => buffered(&mut file, |out| apng::write(self, out))?,
             Format::Gif => buffered(&mut file, |out| gif::write(self, out))?,
-            Format::Y4m => buffered(&mut file, |out| y4m::write(self, out))?,
-            Format::Sheet => {
-                let (bytes, written) = self.sheet.encode(self)?;
-                file.append(&bytes)?;
-                written
-            }
         };
         file.commit()?;
-        Ok(written)
-    }
-
-    /// Writes y4m, for a pipe to another program.
-    ///
-    /// # Errors
-    /// As [`Self::write`].
-    pub fn write_y4m(&self, mut out: impl Write) -> Result<Written, AnimationError> {
-        let written = y4m::write(self, &mut out)?;
-        out.flush().map_err(AnimationError::Out)?;
         Ok(written)
     }
 

@@ -19,9 +19,9 @@ static ENCODED: LazyLock<Vec<u8>> =
 ///
 /// # Panics
 /// If a side is zero.
-pub(crate) fn resized(image: &Image, size: [u32; 2]) -> Image {
+pub(crate) fn resized(image: Image, size: [u32; 2]) -> Image {
     if image.size == size {
-        return image.clone();
+        return image;
     }
     let [[from, rows], [width, height]] = [image.size, size];
     let light: Vec<u16> = image.pixels.iter().map(|&byte| LINEAR[usize::from(byte)]).collect();
@@ -36,10 +36,11 @@ mod tests {
 
     #[test]
     fn light_is_kept() {
-        assert_eq!(resized(&Image::plain([40, 30], [200, 7, 90]), [13, 11]), Image::plain([13, 11], [200, 7, 90]));
+        let plain = |size: [u32; 2]| Image { size, pixels: [200, 7, 90].repeat((size[0] * size[1]) as usize) };
+        assert_eq!(resized(plain([40, 30]), [13, 11]), plain([13, 11]));
         // A chequerboard of black and white has half the light.
         let pixels = (0..64 * 64).flat_map(|at| [if (at + at / 64) % 2 == 0 { 255 } else { 0 }; 3]).collect();
-        let small = resized(&Image { size: [64, 64], pixels }, [8, 8]);
+        let small = resized(Image { size: [64, 64], pixels }, [8, 8]);
         let middle = small.pixels[3 * (4 * 8 + 4)];
         assert!((186..=190).contains(&middle), "{middle}");
     }

@@ -101,33 +101,11 @@ impl Timeline {
         if self.rate.is_some() { self.clone() } else { self.at_most(MOST_RATE) }
     }
 
-    /// At most so many shots, evenly spaced, including the first and the last: stills for a sheet.
-    pub fn stills(mut self, most: usize) -> Self {
-        let last = self.shots.len().saturating_sub(1);
-        if last >= most {
-            let gaps = most - 1;
-            self.shots = (0..most).map(|at| self.shots[(at * last + gaps / 2) / gaps]).collect();
-        }
-        self
-    }
-
     /// With the last frame longer by `time` (s).
     pub fn holding(mut self, time: f64) -> Self {
         if let Some(last) = self.shots.last_mut() {
             last.duration += time;
         }
-        self
-    }
-
-    /// Forwards and backwards. Neither the last frame nor the first is shown twice in a row when it repeats.
-    pub fn there_and_back(mut self) -> Self {
-        let inner = 1..self.shots.len().saturating_sub(1).max(1);
-        let back: Vec<_> = self.shots[inner.start.min(self.shots.len())..inner.end.min(self.shots.len())]
-            .iter()
-            .rev()
-            .copied()
-            .collect();
-        self.shots.extend(back);
         self
     }
 
@@ -238,16 +216,11 @@ mod tests {
     }
 
     #[test]
-    fn there_back_held_and_sampled() {
+    fn held_and_sampled() {
         let frames = |timeline: &Timeline| timeline.shots().iter().map(|shot| shot.frame).collect::<Vec<_>>();
-        assert_eq!(frames(&even(4, 10.0).there_and_back()), [0, 1, 2, 3, 2, 1]);
-        assert_eq!(frames(&even(2, 10.0).there_and_back()), [0, 1]);
-        assert_eq!(frames(&even(1, 10.0).there_and_back()), [0]);
         let held = even(3, 10.0).holding(1.0);
         assert!((held.duration() - 1.3).abs() < 1e-12);
         assert_eq!(held.ticks(10.0, 1), [(0, 1), (1, 1), (2, 11)]);
-        assert_eq!(frames(&even(8, 60.0).stills(4)), [0, 2, 5, 7]);
-        assert_eq!(even(8, 60.0).stills(8), even(8, 60.0));
         assert_eq!(frames(&even(8, 60.0).at_rate(30.0)), [0, 2, 4, 6]);
         assert_eq!(frames(&even(9, 60.0).at_rate(10.0)), [0, 6]);
         assert_eq!(frames(&even(9, 60.0).at_most(50.0)), [0, 2, 4, 6, 8]);

@@ -2,7 +2,7 @@
 
 use super::failure::{Failure, Status, with_causes};
 use super::interrupt;
-use crate::animation::{Animation, AnimationError, Format, Sheet, Spool, Timeline, Written};
+use crate::animation::{Animation, AnimationError, Format, Spool, Timeline, Written};
 use crate::golden::PictureError;
 use crate::output::frame_files;
 use crate::scene::Scene;
@@ -21,17 +21,16 @@ pub(super) const MARK: &str = "made by localshape ";
 pub(super) fn summary(path: &Path, frames: usize, written: &Written) -> String {
     let bytes = path.metadata().map_or(0, |found| found.len());
     let (path, Written { pictures, duration, size: [width, height] }) = (path.display(), *written);
-    let time = if duration > 0.0 { format!(" in {duration:.2} s") } else { String::new() };
     let made = if pictures == 1 { "1 picture".to_owned() } else { format!("{pictures} pictures") };
     let of = if pictures == frames { String::new() } else { format!(" of {frames} frames") };
-    format!("{path}  {width}×{height}, {made}{of}{time}, {}\n", DecimalBytes(bytes))
+    format!("{path}  {width}×{height}, {made}{of} in {duration:.2} s, {}\n", DecimalBytes(bytes))
 }
 
 /// The comment of an animation.
-pub(super) fn comment(words: &[OsString], scenes: &[String]) -> String {
+pub(super) fn comment(words: &[OsString], scene: &str) -> String {
     let command: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
     let version = env!("CARGO_PKG_VERSION");
-    format!("{MARK}{version}; scene {}; command: {}", scenes.join(", "), command.join(" "))
+    format!("{MARK}{version}; scene {scene}; command: {}", command.join(" "))
 }
 
 /// Refuses to replace files that this program did not make.
@@ -56,13 +55,11 @@ pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
 /// the comment.
 fn is_ours(beginning: &[u8]) -> bool {
     /// Where the bytes that all files of a kind begin with are, these bytes, and what stands before a comment.
-    const KINDS: [(usize, &[u8], &[u8]); 8] = [
+    const KINDS: [(usize, &[u8], &[u8]); 6] = [
         (0, b"GIF89a", b"\x21\xfe"),
         (0, b"\x89PNG\r\n\x1a\n", b"iTXtComment\0"),
-        (0, b"\x89PNG\r\n\x1a\n", b"localshape:comment\0"),
         (0, b"<svg ", b"<metadata>\n"),
         (0, b"%PDF-", b"/Producer ("),
-        (0, b"YUV4MPEG2 ", b" X"),
         (4, b"ftyp", b"data\0\0\0\x01"),
         (0, b"\x1a\x45\xdf\xa3", b"\x44\x87"),
     ];
@@ -70,13 +67,12 @@ fn is_ours(beginning: &[u8]) -> bool {
     const BETWEEN: usize = 8;
     let after = |at: usize| beginning.get(at..).unwrap_or_default();
     KINDS.iter().any(|&(at, magic, before)| {
-        let mark = if magic == b"YUV4MPEG2 " { MARK.replace(' ', "_") } else { MARK.to_owned() };
-        let is_mark = |at: &usize| after(at + mark.len()).first().is_some_and(u8::is_ascii_digit);
+        let is_mark = |at: &usize| after(at + MARK.len()).first().is_some_and(u8::is_ascii_digit);
         let is_comment = |at: usize| {
             let head = &beginning[at.saturating_sub(before.len() + BETWEEN)..at];
             head.windows(before.len()).any(|part| part == before)
         };
-        let places = beginning.windows(mark.len()).enumerate().filter(|(_, part)| *part == mark.as_bytes());
+        let places = beginning.windows(MARK.len()).enumerate().filter(|(_, part)| *part == MARK.as_bytes());
         after(at).starts_with(magic) && places.map(|(at, _)| at).filter(is_mark).any(is_comment)
     })
 }
@@ -87,11 +83,8 @@ impl From<AnimationError> for Failure {
             AnimationError::File(error) => error.into(),
             AnimationError::Picture { source: PictureError::Read(_), .. }
             | AnimationError::Ffmpeg { .. }
-            | AnimationError::Full(_) => Self::files(with_causes(&error)),
-            AnimationError::Out(source) if source.kind() == std::io::ErrorKind::BrokenPipe => {
-                Self::files("cannot write to standard output: the reader ended before the animation")
-            }
-            AnimationError::Out(source) => Self::files(format!("cannot write to standard output: {source}")),
+            | AnimationError::Full(_)
+            | AnimationError::Out(_) => Self::files(with_causes(&error)),
             AnimationError::Stopped => Self::silent(Status::Interrupted),
             error => Self::usage(with_causes(&error)),
         }
@@ -105,8 +98,6 @@ pub(super) struct Shared {
     pub(super) threads: usize,
     /// The run whose times those of frames are.
     pub(super) run: Option<usize>,
-    /// Frames on a sheet, at most: all those that the user has chosen, if they were.
-    pub(super) stills: usize,
 }
 
 /// Animations on their way, on threads of their own.
@@ -136,20 +127,16 @@ impl<'a> Films<'a> {
             None => scene.frame_time(frame),
         };
         let moments: Vec<_> = frames.iter().map(|&frame| (frame, time(frame))).collect();
-        let comment = comment(&shared.words, std::slice::from_ref(&scene.digest));
+        let comment = comment(&shared.words, &scene.digest);
         let threads = shared.films.iter().map(|(format, path)| {
             let (spool, moments, comment) = (Arc::clone(&spool), moments.clone(), comment.clone());
-            let (format, path, threads, stills) = (*format, path.clone(), shared.threads, shared.stills);
+            let (format, path, threads) = (*format, path.clone(), shared.threads);
             let name = path.clone();
             let thread = std::thread::spawn(move || {
-                let sheet = Sheet { times: moments.iter().map(|(_, time)| *time).collect(), ..Sheet::default() };
-                let timeline = Timeline::of(&moments);
-                let timeline = if format == Format::Sheet { timeline.stills(stills) } else { timeline };
                 Animation {
                     reel: spool.as_ref(),
-                    timeline: &timeline,
+                    timeline: &Timeline::of(&moments),
                     plays: 0,
-                    sheet: &sheet,
                     comment: &comment,
                     threads,
                     progress: &|_| {},

@@ -12,7 +12,7 @@ use super::scenes::{Wish, nearest};
 use super::still::{
     Format as FileFormat, NO_ADAPTER, Still, check_type, replaceable as replaceable_still, source_of, too_small,
 };
-use crate::animation::{Format, Sheet, Spool};
+use crate::animation::{Format, Spool};
 use crate::artist::{Artist, Begun, compose_frame};
 use crate::gpu::{Gpu, GpuError};
 use crate::look::Ghost;
@@ -80,7 +80,7 @@ pub(super) struct Render {
     #[command(flatten)]
     device: DeviceOptions,
 
-    /// Also make an animation or a contact sheet of the frames. The extension of FILE chooses the format, as with
+    /// Also make an animation of the frames. The extension of FILE chooses the format, as with
     /// `localshape animate`, which has more options. Can be repeated
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     animate: Vec<PathBuf>,
@@ -135,7 +135,6 @@ impl Render {
             words: words.to_vec(),
             threads,
             run: jobs.first().and_then(|job| job.runs.first().copied()),
-            stills: if self.options.frames.is_some() { usize::MAX } else { Sheet::FRAMES },
         });
         let device = self.studio(gpu, shared);
         let result = record::run_all(jobs, &self.options, &self.scenes.set, words, self.timings, Some(&device));

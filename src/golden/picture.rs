@@ -1,4 +1,4 @@
-//! Reads pictures for comparison: 8-bit red, green and blue, with or without alpha, and nothing else.
+//! Reads pictures for comparison: 8-bit red, green and blue, and nothing else.
 
 use crate::output::Tags;
 use std::fs::File;
@@ -59,9 +59,7 @@ pub enum PictureError {
 pub struct Pixels {
     /// Width and height (px).
     pub size: [u32; 2],
-    /// Bytes of each pixel: three, or four with opacities.
-    pub channels: usize,
-    /// Row after row from the top left.
+    /// Three bytes for each pixel, row after row from the top left.
     pub bytes: Vec<u8>,
     /// Its metadata, if it has any.
     pub label: Option<Tags>,
@@ -90,9 +88,9 @@ impl Pixels {
             return Err(PictureError::Size(width, height));
         }
         let mut reader = decoder.read_info().map_err(broken)?;
-        let channels = channels(reader.info()).map_err(PictureError::Kind)?;
+        check(reader.info()).map_err(PictureError::Kind)?;
         let label = Tags::of(reader.info()).map_err(PictureError::Label)?;
-        let row = width as usize * channels;
+        let row = 3 * width as usize;
         let mut bytes = vec![0; row * height as usize];
         for row in bytes.chunks_exact_mut(row) {
             let read = reader.read_row(row).map_err(broken)?;
@@ -102,7 +100,7 @@ impl Pixels {
         if Tags::of(reader.info()).map_err(PictureError::Label)? != label {
             return Err(PictureError::Late);
         }
-        Ok(Self { size: [width, height], channels, bytes, label })
+        Ok(Self { size: [width, height], bytes, label })
     }
 }
 
@@ -158,8 +156,8 @@ fn broken(error: png::DecodingError) -> PictureError {
     }
 }
 
-/// Bytes of each pixel; a message for pixel formats that are not compared.
-fn channels(info: &png::Info<'_>) -> Result<usize, String> {
+/// A message for pixel formats that are not compared.
+fn check(info: &png::Info<'_>) -> Result<(), String> {
     if info.bit_depth != png::BitDepth::Eight {
         return Err(format!("has {} bits a channel", info.bit_depth as u8));
     }
@@ -167,8 +165,8 @@ fn channels(info: &png::Info<'_>) -> Result<usize, String> {
         _ if info.interlaced => "is interlaced",
         _ if info.animation_control.is_some() => "is an animation",
         png::ColorType::Rgb if info.trns.is_some() => "calls one colour transparent",
-        png::ColorType::Rgb => return Ok(3),
-        png::ColorType::Rgba => return Ok(4),
+        png::ColorType::Rgb => return Ok(()),
+        png::ColorType::Rgba => "has opacities",
         png::ColorType::Indexed => "has a palette",
         png::ColorType::Grayscale | png::ColorType::GrayscaleAlpha => "is grey",
     };

@@ -32,7 +32,7 @@ pub(crate) struct Distance {
 }
 
 impl Distance {
-    /// The distance of two pictures; `None` if their sizes or channels are not alike.
+    /// The distance of two pictures; `None` if their sizes are not alike.
     pub(super) fn new(expected: &Pixels, actual: &Pixels) -> Option<Self> {
         let all = u64::from(expected.size[0]) * u64::from(expected.size[1]);
         let allowed = PARTS.map(|part| ((part * all as f64) as u64).max(AT_LEAST));
@@ -54,31 +54,30 @@ impl Distance {
 }
 
 /// Calls `each` for every pixel that is not equal, with its index and by how much its worst channel lies outside the range of
-/// the pixels around its place in the other picture; `None` if sizes or channels are not alike.
+/// the pixels around its place in the other picture; `None` if their sizes are not alike.
 pub(super) fn differences(expected: &Pixels, actual: &Pixels, mut each: impl FnMut(usize, u8)) -> Option<()> {
-    if (expected.size, expected.channels) != (actual.size, actual.channels) {
+    if expected.size != actual.size {
         return None;
     }
-    let row = expected.size[0] as usize * expected.channels;
-    let rows = expected.bytes.chunks_exact(row).zip(actual.bytes.chunks_exact(row)).enumerate();
-    for (y, (before, after)) in rows.filter(|(_, (before, after))| before != after) {
-        let pixels = before.chunks_exact(expected.channels).zip(after.chunks_exact(expected.channels)).enumerate();
-        for (x, (before, after)) in pixels.filter(|(_, (before, after))| before != after) {
+    let width = expected.size[0] as usize;
+    let [before, after] = [expected, actual].map(|picture| picture.bytes.as_chunks::<3>().0.chunks_exact(width));
+    for (y, (before, after)) in before.zip(after).enumerate().filter(|(_, (before, after))| before != after) {
+        for (x, (before, after)) in before.iter().zip(after).enumerate().filter(|(_, (before, after))| before != after)
+        {
             let difference = outside(before, actual, [x, y]).max(outside(after, expected, [x, y]));
-            each(y * expected.size[0] as usize + x, difference);
+            each(y * width + x, difference);
         }
     }
     Some(())
 }
 
 /// By how much the worst channel of a pixel lies outside the range of the nine pixels around a place in a picture.
-fn outside(pixel: &[u8], picture: &Pixels, [x, y]: [usize; 2]) -> u8 {
+fn outside(pixel: &[u8; 3], picture: &Pixels, [x, y]: [usize; 2]) -> u8 {
     let [width, height] = picture.size.map(|side| side as usize);
     let near = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
-    let mut range: [[u8; 2]; 4] = [[u8::MAX, 0]; 4];
-    for start in near(y, height).flat_map(|y| near(x, width).map(move |x| y * width + x)) {
-        let around = &picture.bytes[start * picture.channels..][..picture.channels];
-        for ([low, high], &byte) in range.iter_mut().zip(around) {
+    let mut range = [[u8::MAX, 0]; 3];
+    for at in near(y, height).flat_map(|y| near(x, width).map(move |x| y * width + x)) {
+        for ([low, high], &byte) in range.iter_mut().zip(&picture.bytes.as_chunks::<3>().0[at]) {
             (*low, *high) = ((*low).min(byte), (*high).max(byte));
         }
     }
@@ -110,7 +109,7 @@ mod tests {
         let is_dark = |at: usize| (100..300).contains(&(at % width)) && (50..250).contains(&(at / width));
         let mut pixels: Vec<[u8; 3]> = (0..width * height).map(|at| [if is_dark(at) { 50 } else { 200 }; 3]).collect();
         change(&mut pixels);
-        Pixels { size: SIZE.map(|side| side as u32), channels: 3, bytes: pixels.concat(), label: None }
+        Pixels { size: SIZE.map(|side| side as u32), bytes: pixels.concat(), label: None }
     }
 
     fn distance(change: impl FnOnce(&mut [[u8; 3]])) -> Distance {
@@ -144,7 +143,7 @@ mod tests {
         assert!(!moved(2).is_allowed() && moved(2).differing[1] >= 400);
         let line = distance(|pixels| pixels[20 * width..20 * width + 40].fill([120; 3]));
         assert_eq!((line.is_allowed(), line.differing), (false, [40, 40]));
-        let single = Pixels { size: [1, 1], channels: 3, bytes: vec![7; 3], label: None };
+        let single = Pixels { size: [1, 1], bytes: vec![7; 3], label: None };
         let other = Pixels { bytes: vec![9; 3], ..single.clone() };
         assert_eq!(Distance::new(&single, &other).expect("of one size").largest, 2);
         assert_eq!(Distance::new(&single, &picture(|_| ())), None);

@@ -70,7 +70,7 @@ pub(crate) struct Compared {
     pub(crate) verdict: Verdict,
     /// The runs whose states differ.
     pub(crate) runs: Vec<String>,
-    /// How far apart the pictures are; `None` if their sizes or channels are not alike, or one is missing.
+    /// How far apart the pictures are; `None` if their sizes are not alike, or one is missing.
     pub(crate) distance: Option<Distance>,
     /// What is wrong besides.
     pub(crate) note: Option<String>,
@@ -120,11 +120,10 @@ fn compare(expected: &Pixels, actual: &Pixels) -> (Verdict, Vec<String>, Option<
         Some(distance) if distance.is_allowed() => Some(Verdict::WithinTolerance),
         _ => None,
     };
-    let size = (expected.size != actual.size).then(|| {
+    let note = (expected.size != actual.size).then(|| {
         let [[a, b], [c, d]] = [expected.size, actual.size];
         format!("{c}×{d} pixels instead of {a}×{b}")
     });
-    let note = size.or_else(|| distance.is_none().then(|| "only one of them has opacities".to_owned()));
     let (Some(before), Some(after)) = (&expected.label, &actual.label) else {
         return (alike.unwrap_or(Verdict::NoState), Vec::new(), distance, note);
     };
@@ -185,7 +184,7 @@ mod tests {
             version: "0".into(),
             adapter: "any".into(),
         };
-        Pixels { size: [40, 30], channels: 3, bytes, label: Some(tags) }
+        Pixels { size: [40, 30], bytes, label: Some(tags) }
     }
 
     fn told(expected: &Pixels, actual: &Pixels) -> (Verdict, String) {

@@ -1,7 +1,7 @@
 //! `animate`: the files as read by other decoders, and messages about frames that do not fit.
 
 use crate::support::{Place, Ran, SMALL, SMALL_FRAMES, frame_file, frame_tags, has_ffmpeg, lasting, python, run};
-use localshape::animation::{Animation, AnimationError, Format, Image, Reel, Sheet, Timeline};
+use localshape::animation::{Animation, AnimationError, Format, Image, Reel, Timeline};
 use localshape::internals::{Shown, Tags};
 use std::path::Path;
 use std::process::Command;
@@ -35,7 +35,7 @@ fn with_frames() -> Place {
 }
 
 /// The frames of an APNG as displayed, each with its delay (s), and the number of plays.
-fn decode_apng(path: &Path) -> (Vec<(Vec<u8>, f64)>, u32) {
+pub(crate) fn decode_apng(path: &Path) -> (Vec<(Vec<u8>, f64)>, u32) {
     let file = std::io::BufReader::new(std::fs::File::open(path).expect("a file"));
     let mut reader = png::Decoder::new(file).read_info().expect("a picture");
     let control = *reader.info().animation_control().expect("an animation");
@@ -144,22 +144,6 @@ fn nothing_flickers_where_nothing_moves() {
     assert!(frames.iter().all(|(shown, _)| shown[below..] == frames[0].0[below..]));
 }
 
-#[test]
-fn y4m_goes_to_a_file_or_a_pipe() {
-    let place = with_frames();
-    place.run("animate in -o out.y4m --frames 0-3").good();
-    let bytes = std::fs::read(place.path("out.y4m")).unwrap();
-    let end = bytes.iter().position(|&byte| byte == b'\n').unwrap();
-    let header = String::from_utf8(bytes[..end].to_vec()).unwrap();
-    assert!(header.starts_with("YUV4MPEG2 W64 H48 F30:1 Ip C444 XCOLORRANGE=LIMITED Xmade_by_localshape_"), "{header}");
-    let frame = 6 + 3 * 64 * 48;
-    assert_eq!(bytes.len() - end - 1, 4 * frame);
-    assert!(bytes[end + 1..].chunks_exact(frame).all(|part| part.starts_with(b"FRAME\n")));
-    let piped = place.command(["animate", "in", "-o", "-", "--frames", "0-3"]).output().expect("the program starts");
-    assert!(piped.status.success() && piped.stderr.is_empty(), "{piped:?}");
-    assert_eq!(piped.stdout[piped.stdout.len() - 4 * frame..], bytes[end + 1..]);
-}
-
 /// Frames without files.
 struct Drawn;
 
@@ -178,7 +162,7 @@ impl Reel for Drawn {
 fn any_number_of_threads_makes_the_same_bytes() {
     let place = Place::new();
     let moments: Vec<_> = (0..COUNT).map(|number| (number, number as f64 / 30.0)).collect();
-    let mut endings = vec!["gif", "apng", "y4m", "png"];
+    let mut endings = vec!["gif", "apng"];
     if has_ffmpeg() {
         endings.extend(["mp4", "webm"]);
     }
@@ -189,7 +173,6 @@ fn any_number_of_threads_makes_the_same_bytes() {
                 reel: &Drawn,
                 timeline: &Timeline::of(&moments),
                 plays: 0,
-                sheet: &Sheet { times: moments.iter().map(|(_, time)| *time).collect(), ..Sheet::default() },
                 comment: "made by a test",
                 threads,
                 progress: &|_| {},
@@ -231,20 +214,6 @@ fn rendering_makes_animations_meanwhile() {
     assert!(place.names(".").iter().all(|name| !name.starts_with("d.")));
 }
 
-#[test]
-fn rendering_makes_sheets_meanwhile() {
-    let Some(place) = crate::render::place_to_draw() else { return };
-    place.write("long.toml", &lasting("0.3"));
-    let ran = place.run("render long.toml --animate a.png").good();
-    assert!(ran.out.contains("a.png  1920×1080, 12 pictures of 19 frames, "), "{}", ran.out);
-    let ran = place.run("animate output/long -o b.png").good();
-    assert!(ran.out.contains("b.png  1920×1080, 12 pictures of 19 frames, "), "{}", ran.out);
-    let pixels = |name: &str| localshape::internals::Pixels::read(&place.path(name)).unwrap().bytes;
-    assert!(pixels("a.png") == pixels("b.png"), "the same frames with the same times");
-    let ran = place.run("render long.toml --animate c.png --frames 0-13 --no-frames -o c").good();
-    assert!(ran.out.contains("c.png  1920×1080, 14 pictures, "), "all that were chosen: {}", ran.out);
-}
-
 /// Existing frames are kept, and the command that makes an animation of them is reported.
 #[cfg(unix)]
 #[test]
@@ -272,7 +241,7 @@ fn an_interrupted_rendering_makes_no_animation() {
 }
 
 #[test]
-fn speed_rate_pauses_and_ways() {
+fn speed_rate_and_pauses() {
     let place = with_frames();
     let times = |arguments: &str| {
         place.run(&format!("animate in -o out.apng {arguments}")).good();
@@ -287,74 +256,36 @@ fn speed_rate_pauses_and_ways() {
         times("--frames 0-3 --hold-last 1.5 --loop 1"),
         (vec![(0, 0.0333), (1, 0.0333), (2, 0.0333), (3, 1.5333)], 1)
     );
-    assert_eq!(
-        times("--frames 0-3 --speed 3 --boomerang").0.iter().map(|shot| shot.0).collect::<Vec<_>>(),
-        [0, 1, 2, 3, 2, 1]
-    );
     assert_eq!(times("--frames 0-8 --fps 10").0, [(0, 0.1), (3, 0.1), (6, 0.1)]);
     assert_eq!(times("--frames 1,2,8").0, [(1, 0.0333), (2, 0.2), (8, 0.2)]);
 }
 
+/// However long a frame is held, in formats whose delays have 16 bits.
 #[test]
-fn folders_stand_side_by_side_and_may_be_scaled() {
+fn a_long_hold_keeps_its_duration() {
     let place = with_frames();
-    let size = |arguments: &str| {
-        place.run(&format!("animate {arguments} -o out.apng --frames 0-1")).good();
-        let (frames, _) = decode_apng(&place.path("out.apng"));
-        frames[1].0.clone()
-    };
-    let one = pixels(1, SIZE);
-    let beside = size("in in");
-    let row = 3 * 64;
-    assert!(
-        beside
-            .chunks_exact(2 * row)
-            .zip(one.chunks_exact(row))
-            .all(|(two, one)| two[..row] == *one && two[row..] == *one)
-    );
-    let stacked = size("in in --stack");
-    assert!(stacked[..one.len()] == one && stacked[one.len()..] == one);
-    let small = size("in --width 32");
+    let ran = place.run("animate in -o out.gif --frames 0-3 --hold-last 700").good();
+    assert!(ran.out.contains("4 pictures in 700.13 s"), "{}", ran.out);
+    let (frames, _) = decode_gif(&place.path("out.gif"));
+    assert_eq!(frames.iter().map(|(_, delay)| u64::from(*delay)).sum::<u64>(), 70_013);
+    assert!(frames[3..].iter().all(|(shown, _)| *shown == frames[3].0));
+    place.run("animate in -o out.apng --frames 0-3 --hold-last 700").good();
+    let (frames, _) = decode_apng(&place.path("out.apng"));
+    let duration = frames.iter().map(|(_, delay)| delay).sum::<f64>();
+    assert!((duration - 700.0 - 4.0 / 30.0).abs() < 1e-3, "{duration}");
+}
+
+#[test]
+fn frames_may_be_scaled() {
+    let place = with_frames();
+    place.run("animate in --width 32 -o out.apng --frames 0-1").good();
+    let small = &decode_apng(&place.path("out.apng")).0[1].0;
     assert_eq!(small.len(), 3 * 32 * 24);
     // Far from the square there is a vertical colour gradient.
     let below = &small[3 * 32 * 20..3 * 32 * 20 + 3];
     assert!(below[0].abs_diff(250 - 40) <= 2 && below[2] == 240, "{below:?}");
-}
-
-/// Each scene once, in the order of the folders.
-#[test]
-fn the_comment_names_every_scene_once() {
-    let place = with_frames();
-    let other = "99".repeat(32);
-    put(&place, "other", 0, &frame_file(SIZE, &pixels(0, SIZE), &Tags { scenes: vec![other.clone()], ..tags(0) }));
-    place.run("animate in other in -o out.apng --frames 0").good();
-    let bytes = std::fs::read(place.path("out.apng")).unwrap();
-    let scenes = format!("; scene {}, {other}; command: ", "5c".repeat(32));
-    assert!(String::from_utf8_lossy(&bytes).contains(&scenes));
-}
-
-#[test]
-fn a_sheet_shows_frames_with_their_times() {
-    let place = with_frames();
-    let ran = place.run("animate in -o out.png --frames 0-11x3 --size 300x200").good();
-    assert!(ran.out.starts_with("out.png  300×200, 4 pictures, "), "{}", ran.out);
-    let file = std::io::BufReader::new(std::fs::File::open(place.path("out.png")).unwrap());
-    let mut reader = png::Decoder::new(file).read_info().unwrap();
-    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
-    reader.next_frame(&mut bytes).unwrap();
-    let info = reader.info();
-    assert!(info.animation_control.is_none() && (info.width, info.height) == (300, 200));
-    let ground = &bytes[..3];
-    let squares = bytes.chunks_exact(3).filter(|pixel| *pixel == [230, 90, 20]).count();
-    assert_eq!(squares, 4 * 80, "four frames at their own size");
-    assert!(
-        bytes.chunks_exact(3).any(|pixel| pixel.iter().zip(ground).all(|(byte, ground)| *byte < ground / 2)),
-        "words"
-    );
-    let ran = place.run("animate in -o many.png --size 60x40 --frames 0-11");
-    ran.bad(2, &["12 frames are too many for a sheet of 60×40", "--frames"]);
-    let ran = place.run("animate in -o one.png --size 30x20 --frames 3");
-    ran.bad(2, &["a frame has no room on a sheet of 30×20; choose a larger --size"]);
+    place.write("tall/frame_00000.png", &frame_file([16, 480], &[9; 3 * 16 * 480], &tags(0)));
+    bad(&place, "tall --width 1000 -o out.gif", &["1000×30000 pixels", "at most 16384 a side"]);
 }
 
 /// A folder with a script as `ffmpeg`, and the command that uses it.
@@ -423,7 +354,7 @@ fn an_ffmpeg_that_is_missing_or_fails_is_told() {
     let place = with_frames();
     let mut without = place.command(["animate", "in", "-o", "out.mp4"]);
     without.env("PATH", place.path("in"));
-    run(&mut without).bad(2, &["no `ffmpeg`", ".mp4", "apt install ffmpeg", ".gif, .apng"]);
+    run(&mut without).bad(2, &["no `ffmpeg`", ".mp4", "apt install ffmpeg", ".gif or .apng"]);
     for script in [
         "head -c 10000 > /dev/null; for n in 1 2 3 4 5 6 7; do echo \"complaint $n\" >&2; done; exit 3",
         "cat > /dev/null; for last; do :; done; echo begun > \"$last\"; for n in 3 4 5 6 7; do echo \"complaint $n\" >&2; done; exit 3",
@@ -464,35 +395,6 @@ fn an_interrupted_film_leaves_nothing() {
     }
 }
 
-/// If standard output blocks, a second Ctrl-C, or the end of the reader, ends the program.
-#[cfg(unix)]
-#[test]
-fn a_pipe_that_is_full_is_left() {
-    use crate::interrupt::{set_signals, signal};
-    use crate::support::Running;
-    use std::time::Duration;
-    for is_read in [false, true] {
-        let place = with_frames();
-        let (mut reader, writer) = std::io::pipe().unwrap();
-        let mut command = place.command(["animate", "in", "-o", "-", "--hold-last", "60"]);
-        set_signals(&mut command, &[]);
-        let mut running = Running::start_into(&mut command, writer);
-        // It has written more than fits into a pipe.
-        std::io::Read::read_exact(&mut reader, &mut [0; 9]).unwrap();
-        std::thread::sleep(Duration::from_millis(500));
-        signal(&running, &["INT"]);
-        std::thread::sleep(Duration::from_millis(1100));
-        assert!(running.is_running());
-        if is_read {
-            drop(reader);
-        } else {
-            signal(&running, &["INT"]);
-        }
-        let ran = running.wait();
-        assert_eq!((ran.status, ran.err.as_str()), (Some(130), ""), "{ran:?}");
-    }
-}
-
 /// The real `ffmpeg`, if it exists: the film has the right pictures at the right times.
 #[test]
 fn films_and_all_else_are_read_by_other_programs() {
@@ -505,9 +407,7 @@ fn films_and_all_else_are_read_by_other_programs() {
         put(&place, "odd", number, &frame_file([63, 47], &pixels(number, [63, 47]), &tags(number)));
         odd.push(pixels(number, [63, 47]));
     }
-    for (file, size) in
-        [("a.mp4", [64, 48]), ("a.webm", [64, 48]), ("a.y4m", [63, 47]), ("a.gif", [63, 47]), ("a.apng", [63, 47])]
-    {
+    for (file, size) in [("a.mp4", [64, 48]), ("a.webm", [64, 48]), ("a.gif", [63, 47]), ("a.apng", [63, 47])] {
         let ran = place.run(&format!("animate odd -o {file}")).good();
         assert!(ran.out.starts_with(&format!("{file}  {}×{}, 12 pictures in 0.40 s", size[0], size[1])), "{}", ran.out);
         // It is recognised as our own file, and replaced.
@@ -618,15 +518,9 @@ fn frames_that_are_no_sequence_are_told() {
     bad(&place, "foreign -o out.gif", &["foreign/frame_00002.png is damaged, or is not a frame"]);
     let whole = frame_file(SIZE, &pixels(2, SIZE), &tags(2));
     with("cut", &whole[..whole.len() - 40]);
-    for out in ["out.gif", "out.apng", "out.y4m"] {
+    for out in ["out.gif", "out.apng"] {
         bad(&place, &format!("cut -o {out}"), &["cut/frame_00002.png: this PNG picture is damaged or cut short"]);
     }
-    bad(&place, "in gap -o out.gif --frames 0-1,4", &["gap"]);
-    bad(&place, "in gap -o out.gif", &["gap has a gap"]);
-    bad(&place, "in cut -o out.gif", &["frame 4 is in only one of in and cut"]);
-    let later = Tags { shows: Shown::Frame { frame: 3, time: 0.3 }, ..tags(3) };
-    put(&place, "later", 3, &frame_file(SIZE, &pixels(3, SIZE), &later));
-    bad(&place, "in later -o out.gif --frames 3", &["frame 3 is at 0.1010 s in in and at 0.3000 s in later"]);
     assert!(
         place.names(".").iter().all(|name| !name.starts_with("out") && !name.starts_with('.')),
         "nothing half-written"
@@ -638,19 +532,10 @@ fn wrong_options_are_told() {
     let place = with_frames();
     for (arguments, words) in [
         ("in -o out.avi", [".avi", ".gif, .apng, .mp4 or .webm"]),
-        ("in -o out", ["no ending", ".y4m"]),
-        ("in -o out.gif --size 100x100", ["--size is for sheets", "--width"]),
+        ("in -o out", ["no ending", ".gif"]),
+        ("in -o out.png", [".png", "localshape figure"]),
         ("in -o in", ["no ending", ".gif"]),
-        ("in -o out.png --width 100", ["--width is for animations", "--size"]),
-        ("in -o out.png --speed 2", ["--speed is for animations", "--frames"]),
-        ("in -o out.png --fps 2", ["--fps is for animations", "--frames"]),
-        ("in -o out.png --hold-last 2", ["--hold-last is for animations", "--frames"]),
-        ("in -o out.png --boomerang", ["--boomerang is for animations", "--frames"]),
-        ("in -o out.png --loop 2", ["--loop is for .gif and .apng", "the player"]),
-        ("in -o out.y4m --loop 2", ["--loop is for .gif and .apng", "the player"]),
         ("in -o out.mp4 --loop 0", ["--loop is for .gif and .apng", "the player"]),
-        ("in -o out.gif --stack", ["--stack", "more than one"]),
-        ("in -o - --json", ["--json", "standard output is for the pictures"]),
     ] {
         bad(&place, arguments, &words);
     }
@@ -672,11 +557,9 @@ fn wrong_options_are_told() {
         ("mine.gif", "made by localshape 0.1.0"),
         ("mine.gif", "GIF89a, not made by localshape 0.1.0 but by hand, with a long text"),
         ("mine.gif", "GIF89a..!\u{fe}.made by localshape by hand"),
-        ("mine.y4m", "YUV4MPEG2 W8 H8 F1:1\nXmade_by_localshape_tools"),
         ("mine.apng", "\u{89}PNG\r\n\u{1a}\n....tEXtNote\0made by localshape 0.1.0"),
         ("mine.mp4", "....ftypisom. It was not made by localshape 0.1.0"),
         ("mine.webm", "made by localshape 0.1.0"),
-        ("mine.png", "iTXtComment\0made by localshape 0.1.0"),
     ] {
         // Each letter one byte.
         let bytes: Vec<u8> = text.chars().map(|letter| letter as u8).collect();
@@ -684,24 +567,13 @@ fn wrong_options_are_told() {
         bad(&place, &format!("in -o {name}"), &[&format!("{name} exists and was not made"), "--overwrite"]);
         assert!(std::fs::read(place.path(name)).unwrap() == bytes);
     }
-    for name in ["mine.gif", "mine.apng", "mine.y4m", "mine.png"] {
+    for name in ["mine.gif", "mine.apng"] {
         place.run(&format!("animate in -o {name} --overwrite")).good();
         place.run(&format!("animate in -o {name}")).good();
     }
     std::fs::create_dir(place.path("folder.gif")).unwrap();
     bad(&place, "in -o folder.gif", &["folder.gif is not a file"]);
     place.run("animate in -o absent/out.gif").bad(4, &["cannot write absent/out.gif"]);
-}
-
-#[cfg(unix)]
-#[test]
-fn a_reader_that_ends_early_is_told() {
-    let place = with_frames();
-    let program = env!("CARGO_BIN_EXE_localshape");
-    let script = format!("{{ '{program}' animate in -o - --hold-last 60; echo $? > status; }} | head -c 100 > head");
-    let ran = run(Command::new("bash").args(["-c", &script]).current_dir(place.path(".")));
-    assert!(ran.err.contains("error: cannot write to standard output: the reader ended"), "{ran:?}");
-    assert_eq!(place.read("status"), "4\n");
 }
 
 #[test]

@@ -94,12 +94,12 @@ fn resuming_draws_again_what_is_not_the_same() {
 #[test]
 fn an_animation_of_resumed_frames_is_the_same() {
     let Some(place) = place_to_draw() else { return };
-    place.run("render small.toml --animate whole.y4m").good();
+    place.run("render small.toml --animate whole.apng").good();
     std::fs::remove_file(place.path("output/small/frame_00002.png")).unwrap();
-    place.run("render small.toml --resume --animate resumed.y4m").good();
+    place.run("render small.toml --resume --animate resumed.apng").good();
     assert_eq!(drawn_and_kept(&place, "output/small"), [1, 6]);
-    let bytes = |name: &str| std::fs::read(place.path(name)).unwrap();
-    assert!(bytes("whole.y4m") == bytes("resumed.y4m"));
+    let shown = |name: &str| crate::animate::decode_apng(&place.path(name));
+    assert!(shown("whole.apng") == shown("resumed.apng"));
     place.run("render small.toml --resume --animate no.gif --no-frames").bad(2, &["--resume", "--no-frames"]);
     place.run("render small.toml --resume --frames 1 -o one.png").bad(2, &["one.png gets one frame", "--resume"]);
 }

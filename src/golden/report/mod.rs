@@ -93,15 +93,15 @@ fn pair(picture: &Compared, sources: &[Option<Source>; 2]) -> PicturePair {
     PicturePair { name, words, passes, files: [expected, difference, actual] }
 }
 
-/// The differences of two pictures over a faint copy of the expected one, as a PNG file; `None` if their sizes or channels
-/// are not alike.
+/// The differences of two pictures over a faint copy of the expected one, as a PNG file; `None` if their sizes are not
+/// alike.
 fn difference(expected: &Pixels, actual: &Pixels) -> Option<Vec<u8>> {
     let faint = |pixel: &[u8]| {
         let [red, green, blue] = [0, 1, 2].map(|at| u32::from(pixel[at]));
         let grey = (red * 54 + green * 183 + blue * 19) / 256;
         [(255 - (255 - grey) / 5) as u8; 3]
     };
-    let mut bytes: Vec<u8> = expected.bytes.chunks_exact(expected.channels).flat_map(faint).collect();
+    let mut bytes: Vec<u8> = expected.bytes.chunks_exact(3).flat_map(faint).collect();
     differences(expected, actual, |at, difference| {
         let colour = COLOURS[usize::from(difference <= STRONG) + usize::from(difference <= FAINT)];
         bytes[3 * at..3 * at + 3].copy_from_slice(&colour);
