@@ -137,18 +137,6 @@ mod tests {
         FolderLock::check(&path.join("absent")).unwrap();
     }
 
-    #[test]
-    fn work_of_others_is_left_alone() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path();
-        let leftover = path.join(".localshape-abc123.partial");
-        std::fs::write(&leftover, "").unwrap();
-        drop(FolderLock::beside_others(path));
-        assert!(leftover.exists());
-        drop(FolderLock::alone(path).unwrap());
-        assert!(!leftover.exists());
-    }
-
     /// Otherwise another process could remove its files as leftovers.
     #[test]
     fn nobody_is_left_without_a_lock_who_comes_while_another_tidies_up() {

@@ -58,7 +58,7 @@ fn pictures_do_not_simulate() {
 
 #[test]
 fn only_gpu_and_render_name_wgpu() {
-    for room in ["colour", "reading", "look", "scene", "picture", "vector", "output", "cli", "table", "study"] {
+    for room in ["colour", "reading", "look", "scene", "runner", "picture", "vector", "output", "golden", "animation", "cli"] {
         assert_eq!(offenders(room, &["wgpu"]), [""; 0]);
     }
 }
@@ -85,7 +85,7 @@ fn nothing_flows_back() {
     assert_eq!(offenders("picture", &["crate::gpu", "crate::render", "crate::output", "crate::cli"]), [""; 0]);
     assert_eq!(offenders("render", &["crate::sim", "crate::scene", "crate::output", "crate::cli"]), [""; 0]);
     assert_eq!(offenders("gpu", &["crate::sim", "crate::scene", "crate::picture", "crate::render"]), [""; 0]);
-    assert_eq!(offenders("output", &["crate::cli", "crate::table"]), [""; 0]);
+    assert_eq!(offenders("output", &["crate::cli"]), [""; 0]);
     // Of `output` it uses the encoder of PNG only, of `reading` what escapes words.
     assert_eq!(rooms_named_by("vector"), BTreeSet::from(["colour", "output", "picture", "reading"].map(str::to_owned)));
     // It is given pictures; of `picture` it uses fonts only.
@@ -95,11 +95,6 @@ fn nothing_flows_back() {
         let outside = ["crate::picture", "crate::gpu", "crate::render", "crate::output", "crate::cli"];
         assert_eq!(offenders(&format!("runner/{file}"), &outside), [""; 0]);
     }
-    assert_eq!(offenders("table", &["std::fs"]), [""; 0]);
-    // Of `output` it uses clocks and the formatting of numbers only.
-    assert_eq!(rooms_named_by("table"), BTreeSet::from(["output", "scene", "sim"].map(str::to_owned)));
-    assert_eq!(offenders("study", &["std::fs"]), [""; 0]);
-    assert_eq!(rooms_named_by("study"), BTreeSet::from(["output", "scene", "sim", "table"].map(str::to_owned)));
 }
 
 /// The simulation does not depend on pictures: bodies, motions, obstacles, grips and steps, as read and resolved.

@@ -120,10 +120,11 @@ fn tells_what_finds_no_room() {
     assert!(ran.err.starts_with(told) && ran.err.contains("panels do not describe the models"), "{}", ran.err);
     let document = place.run("check large.toml --json").good().json();
     assert!(document["scenes"][0]["no_room"].as_array().is_some_and(|told| told.len() > 1), "{document}");
-    place.write("roomy.toml", &SMALL.replace("size = [96, 64]", "size = [1280, 720]\nstrip = 'energy'"));
+    let view = "size = [1280, 720]\ntext_scale = 1.4\nstrip = 'energy'";
+    place.write("roomy.toml", &SMALL.replace("size = [96, 64]", view));
     assert_eq!(place.run("check roomy.toml").good().err, "");
-    let told = "warning: roomy.toml: not everything has room in 360×640: ";
-    assert!(place.run("check roomy.toml --size 360x640").err.starts_with(told));
+    let told = "warning: roomy.toml: not everything has room in 400×300: ";
+    assert!(place.run("check roomy.toml --size 400x300").err.starts_with(told));
 }
 
 /// The example of `docs/bodies.md` makes the documented body: a stored archive of it, and a new one if there is NumPy.
