@@ -58,7 +58,9 @@ fn pictures_do_not_simulate() {
 
 #[test]
 fn only_gpu_and_render_name_wgpu() {
-    for room in ["colour", "reading", "look", "scene", "runner", "picture", "vector", "output", "golden", "animation", "cli"] {
+    for room in
+        ["colour", "reading", "look", "scene", "runner", "picture", "vector", "output", "golden", "animation", "cli"]
+    {
         assert_eq!(offenders(room, &["wgpu"]), [""; 0]);
     }
 }
