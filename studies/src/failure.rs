@@ -20,29 +20,31 @@ impl From<Status> for ExitCode {
     }
 }
 
-/// Why a study ended early: the message for the user.
+/// Why a study ended early: the status, and the message for the user.
 #[derive(Debug)]
-pub(crate) enum Failure {
-    /// Wrong usage, or mistakes in a scene.
-    Usage(String),
-    /// There is no usable graphics adapter.
-    #[cfg(feature = "render")]
-    Adapter(String),
-    /// Reading or writing failed.
-    Files(String),
-}
+pub(crate) struct Failure(Status, String);
 
 impl Failure {
+    /// Wrong usage, or mistakes in a scene.
+    pub(crate) fn usage(message: impl Into<String>) -> Self {
+        Self(Status::Usage, message.into())
+    }
+
+    /// There is no usable graphics adapter.
+    #[cfg(feature = "render")]
+    pub(crate) fn adapter(message: impl Into<String>) -> Self {
+        Self(Status::Adapter, message.into())
+    }
+
+    /// Reading or writing failed.
+    pub(crate) fn files(message: impl Into<String>) -> Self {
+        Self(Status::Files, message.into())
+    }
+
     /// Prints the message and returns the exit status.
     pub(crate) fn report(self) -> Status {
-        let (status, message) = match self {
-            Self::Usage(message) => (Status::Usage, message),
-            #[cfg(feature = "render")]
-            Self::Adapter(message) => (Status::Adapter, message),
-            Self::Files(message) => (Status::Files, message),
-        };
         // If printing fails there is nowhere to report it.
-        let _ = writeln!(std::io::stderr(), "error: {message}");
-        status
+        let _ = writeln!(std::io::stderr(), "error: {}", self.1);
+        self.0
     }
 }

@@ -25,7 +25,7 @@ impl Folder {
     pub(crate) fn new(path: PathBuf, name: &'static str, command: &str, overwrite: bool) -> Result<Self, Failure> {
         if let Some(file) = path.ancestors().find(|path| path.is_file()) {
             let file = file.display();
-            return Err(Failure::Files(format!("{file} is a file, not a folder; choose another folder with -o")));
+            return Err(Failure::files(format!("{file} is a file, not a folder; choose another folder with -o")));
         }
         let probe = hidden(&path, name);
         fs::create_dir_all(&path)
@@ -35,7 +35,7 @@ impl Folder {
         let folder = Self { mark: format!("<!-- {command} -->"), path, name };
         let refused = |what: String| {
             let path = folder.path.display();
-            Err(Failure::Usage(format!(
+            Err(Failure::usage(format!(
                 "{path} holds {what}; choose another folder with -o, or replace with --overwrite"
             )))
         };
@@ -103,7 +103,7 @@ fn hidden(folder: &Path, name: &str) -> PathBuf {
 }
 
 fn cannot_write(path: &Path, error: &io::Error) -> Failure {
-    Failure::Files(format!("cannot write {}: {error}", path.display()))
+    Failure::files(format!("cannot write {}: {error}", path.display()))
 }
 
 /// What a study has found so far, in a file with a line for each finding. After an interruption the same command goes on from there.
@@ -162,43 +162,5 @@ impl Notes {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn folder(path: &Path, command: &str) -> Result<Folder, Failure> {
-        Folder::new(path.to_owned(), "study", command, false)
-    }
-
-    #[test]
-    fn findings_are_found_again() {
-        let place = tempfile::tempdir().expect("a folder");
-        let notes = |digest: &str| folder(place.path(), "study 1").expect("it is ours").notes(digest);
-        let made = notes("ab");
-        assert!(!made.are_kept() && made.known("a 0.2").is_none());
-        for (key, found) in [("a 0.2", "9"), ("a 0.4", "9"), ("b 0.8", "diverged")] {
-            made.add(key, found);
-        }
-        // As if the program was killed while it wrote.
-        let path = place.path().join("study.unfinished");
-        let text = fs::read_to_string(&path).expect("findings");
-        fs::write(&path, &text[..text.len() - 3]).expect("to cut it");
-        let again = notes("ab");
-        assert_eq!(["a 0.2", "a 0.4", "b 0.8"].map(|key| again.known(key)), [Some("9"), Some("9"), None]);
-        again.add("b 0.8", "diverged");
-        let all = notes("ab");
-        assert_eq!(["a 0.2", "a 0.4", "b 0.8"].map(|key| all.known(key)), [Some("9"), Some("9"), Some("diverged")]);
-        assert!(folder(place.path(), "study 2").is_err(), "of another command");
-        assert!(notes("cd").known("a 0.2").is_none(), "of an edited scene");
-        // Whatever the file holds, what is left of it can be read, and nothing ends the program.
-        let whole = fs::read(&path).expect("findings");
-        for at in 0..whole.len() {
-            fs::write(&path, &whole[..at]).expect("to cut it");
-            Notes::new(path.clone(), all.head.clone());
-            let damaged: Vec<_> = whole.iter().enumerate().map(|(i, b)| if i == at { b ^ 0x95 } else { *b }).collect();
-            fs::write(&path, damaged).expect("to damage it");
-            Notes::new(path.clone(), all.head.clone());
-        }
-        all.remove();
-        assert!(!path.exists());
-    }
-}
+#[path = "../tests/inside/folder.rs"]
+mod tests;

@@ -7,7 +7,6 @@
 mod failure;
 mod folder;
 mod methods;
-mod model;
 #[cfg(feature = "render")]
 mod page;
 mod progress;
@@ -17,7 +16,6 @@ mod ratio;
 #[path = "../tests/inside/reading.rs"]
 mod reading;
 mod rotation;
-mod solver;
 mod spread;
 mod stability;
 mod stress;
@@ -33,7 +31,7 @@ use localshape::{Limits, Scene};
 use ratio::Ratio;
 use rotation::Rotation;
 use stability::{Protocol, Stability};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use stress::Stress;
 use study::{Options, Study};
@@ -135,19 +133,16 @@ impl OfScene {
     }
 
     fn load(&self) -> Result<Option<Scene>, Failure> {
-        self.scene.as_deref().map(load).transpose()
+        let Some(path) = &self.scene else { return Ok(None) };
+        let scene = Scene::load(path, &Limits::default()).map_err(|error| Failure::usage(error.to_string()))?;
+        if scene.duration == 0.0 {
+            let path = path.display();
+            return Err(Failure::usage(format!(
+                "{path}: `time.duration` is 0: nothing moves, and there is nothing to measure; make it longer"
+            )));
+        }
+        Ok(Some(scene))
     }
-}
-
-fn load(path: &Path) -> Result<Scene, Failure> {
-    let scene = Scene::load(path, &Limits::default()).map_err(|error| Failure::Usage(error.to_string()))?;
-    if scene.duration == 0.0 {
-        let path = path.display();
-        return Err(Failure::Usage(format!(
-            "{path}: `time.duration` is 0: nothing moves, and there is nothing to measure; make it longer"
-        )));
-    }
-    Ok(scene)
 }
 
 /// Options of studies with the same results for any number of threads.
@@ -184,7 +179,7 @@ impl Name {
                     threads: threads.count(),
                 };
                 if study.work() == 0 {
-                    return Err(Failure::Usage(format!(
+                    return Err(Failure::usage(format!(
                         "all runs of “{}” find their own steps: there is nothing to map; give one another integrator",
                         study.scene.title
                     )));
@@ -203,7 +198,7 @@ fn subjects(scene: &Scene, only: &[String]) -> Result<Vec<Subject>, Failure> {
     if let Some(unknown) = only.iter().find(|name| scene.runs.iter().all(|run| run.name != **name)) {
         let names: Vec<_> = scene.runs.iter().map(|run| format!("“{}”", run.name)).collect();
         let names = names.join(", ");
-        return Err(Failure::Usage(format!(
+        return Err(Failure::usage(format!(
             "--only {unknown}: “{}” has no run of this name; its runs are {names}",
             scene.title
         )));

@@ -65,15 +65,17 @@ impl Study for Ratio {
     }
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
-        Some(measure(self, watch)?.findings())
+        let ratios = measure(self, watch)?;
+        Some(Findings::new(ratios.text(), [("ratio", ratios.table())]))
     }
 }
 
 /// The shape model and one arrangement of springs on one block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Comparison {
-    /// Cubes along each side.
+    /// Cubes along each side, and in the block.
     pub(crate) side: u32,
+    pub(crate) cubes: u64,
     /// The arrangement of springs.
     pub(crate) springs: Springs,
     /// The number of springs.
@@ -116,6 +118,7 @@ pub(crate) fn measure(protocol: &Ratio, watch: &Watch<'_>) -> Option<Ratios> {
         for ((&springs, times), run) in SPRINGS.iter().zip(others).zip(&scene.runs[1..]) {
             comparisons.push(Comparison {
                 side,
+                cubes,
                 springs,
                 count: run.model.springs().len(),
                 shape: Spread::of(shape.iter().copied()),
@@ -151,15 +154,6 @@ fn block(side: u32) -> Scene {
 }
 
 impl Ratios {
-    fn findings(&self) -> Findings {
-        Findings {
-            text: self.text(),
-            tables: vec![("ratio", self.table())],
-            #[cfg(feature = "render")]
-            pages: Vec::new(),
-        }
-    }
-
     /// The table for people.
     fn text(&self) -> String {
         let Ratio { threads, rounds, .. } = self.protocol;
@@ -177,7 +171,7 @@ impl Ratios {
             std::env::consts::OS,
         );
         let row = |one: &Comparison| {
-            let per_cube = one.per_cube();
+            let per_cube = one.count as f64 / one.cubes as f64;
             let Spread { lower, median, upper, .. } = one.ratio;
             [
                 ("cubes", format!("{}³", one.side).into()),
@@ -198,7 +192,7 @@ impl Ratios {
     fn table(&self) -> Table {
         let row = |one: &Comparison| {
             [
-                ("cubes", one.cubes().into()),
+                ("cubes", one.cubes.into()),
                 ("springs", typed(&one.springs).into()),
                 ("spring_count", one.count.into()),
                 ("threads", self.protocol.threads.into()),
@@ -218,16 +212,6 @@ impl Ratios {
             ]
         };
         Table::of(self.comparisons.iter().map(row))
-    }
-}
-
-impl Comparison {
-    fn cubes(&self) -> u64 {
-        u64::from(self.side) * u64::from(self.side) * u64::from(self.side)
-    }
-
-    fn per_cube(&self) -> f64 {
-        self.count as f64 / self.cubes() as f64
     }
 }
 

@@ -48,7 +48,19 @@ pub(crate) struct Findings {
     pub(crate) tables: Vec<(&'static str, Table)>,
     /// With the names of their SVG and PNG files, without extensions.
     #[cfg(feature = "render")]
-    pub(crate) pages: Vec<(&'static str, Box<dyn crate::page::Page>)>,
+    pub(crate) pages: Vec<(&'static str, crate::page::Page)>,
+}
+
+impl Findings {
+    /// Without pages.
+    pub(crate) fn new(text: String, tables: impl Into<Vec<(&'static str, Table)>>) -> Self {
+        Self {
+            text,
+            tables: tables.into(),
+            #[cfg(feature = "render")]
+            pages: Vec::new(),
+        }
+    }
 }
 
 /// Options of all studies.
@@ -83,9 +95,9 @@ pub(crate) fn make(study: &dyn Study, options: &Options) -> Result<Status, Failu
     let folder = Folder::new(path, name, &command, options.overwrite)?;
     // What cannot be drawn is said before it is measured.
     #[cfg(feature = "render")]
-    let gpu = localshape::Gpu::new(&options.adapter).map_err(|error| Failure::Adapter(error.to_string()))?;
+    let gpu = localshape::Gpu::new(&options.adapter).map_err(|error| Failure::adapter(error.to_string()))?;
     let pool = ThreadPoolBuilder::new().num_threads(study.threads()).build();
-    let pool = pool.map_err(|error| Failure::Files(format!("cannot start threads: {error}")))?;
+    let pool = pool.map_err(|error| Failure::files(format!("cannot start threads: {error}")))?;
     let notes = folder.notes(study.digest());
     let found =
         progress::shown(name, study.work(), options.quiet, |watch| pool.install(|| study.measure(watch, &notes)));
@@ -101,7 +113,7 @@ pub(crate) fn make(study: &dyn Study, options: &Options) -> Result<Status, Failu
     files.extend(tables.iter().map(|(name, table)| (format!("{name}.csv"), table.csv().into_bytes())));
     #[cfg(feature = "render")]
     for (name, page) in found.iter().flat_map(|found| &found.pages) {
-        let [svg, png] = crate::page::files(page.as_ref(), &gpu)?;
+        let [svg, png] = page.files(&gpu)?;
         files.extend([(format!("{name}.svg"), svg), (format!("{name}.png"), png)]);
     }
     folder.write(&files)?;
@@ -123,7 +135,7 @@ fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::Files(format!("cannot write to standard output: {error}")))
+            Err(Failure::files(format!("cannot write to standard output: {error}")))
         }
         _ => Ok(()),
     }

@@ -39,40 +39,23 @@ impl Cell {
     }
 }
 
-impl From<f64> for Cell {
-    fn from(number: f64) -> Self {
-        Self::Number(number)
-    }
+macro_rules! cells {
+    ($($from:ty: $value:ident => $cell:expr),*) => {
+        $(impl From<$from> for Cell {
+            fn from($value: $from) -> Self {
+                $cell
+            }
+        })*
+    };
 }
 
-impl From<u64> for Cell {
-    fn from(count: u64) -> Self {
-        Self::Count(count)
-    }
-}
-
-impl From<u32> for Cell {
-    fn from(count: u32) -> Self {
-        Self::Count(count.into())
-    }
-}
-
-impl From<usize> for Cell {
-    fn from(count: usize) -> Self {
-        Self::Count(count as u64)
-    }
-}
-
-impl From<&str> for Cell {
-    fn from(text: &str) -> Self {
-        Self::Text(text.to_owned())
-    }
-}
-
-impl From<String> for Cell {
-    fn from(text: String) -> Self {
-        Self::Text(text)
-    }
+cells! {
+    f64: number => Self::Number(number),
+    u64: count => Self::Count(count),
+    u32: count => Self::Count(count.into()),
+    usize: count => Self::Count(count as u64),
+    &str: text => Self::Text(text.to_owned()),
+    String: text => Self::Text(text)
 }
 
 impl<T: Into<Self>> From<Option<T>> for Cell {
@@ -144,52 +127,6 @@ pub(crate) fn typed(choice: &impl Serialize) -> String {
     serde_json::to_value(choice).ok().and_then(|name| name.as_str().map(String::from)).unwrap_or_default()
 }
 
-/// The columns that `docs/files.md` documents for a CSV file.
 #[cfg(test)]
-pub(crate) fn documented(file: &str) -> Vec<&'static str> {
-    let page = include_str!("../../docs/files.md");
-    let section = page.split("\n## ").find(|section| section.starts_with(&format!("`{file}`"))).expect("its section");
-    let cells = section.lines().filter_map(|line| line.strip_prefix("| `")?.split(" | ").next());
-    cells.flat_map(|cell| cell.split(", ")).map(|name| name.trim_matches('`')).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn all_forms_can_be_read_again() {
-        let table = Table::of([[("name", "a, \"b\"".into()), ("|w|", Cell::Given(1.5)), ("none", Cell::Empty)]]);
-        assert_eq!(table.csv(), "name,|w|,none\n\"a, \"\"b\"\"\",1.5,\n");
-        assert_eq!(table.markdown(1), "| name | \\|w\\| | none |\n| --- | ---: | ---: |\n| a, \"b\" | 1.5 |  |\n");
-        assert_eq!(table.json(), json!([{ "name": "a, \"b\"", "|w|": 1.5, "none": null }]));
-    }
-
-    #[test]
-    fn results_survive_reading() {
-        for number in [0.1, -1.0 / 3.0, 5e-324, f64::MAX, 0.0] {
-            let text = Cell::from(number).text();
-            assert_eq!(text.parse::<f64>().unwrap().to_bits(), number.to_bits(), "{text}");
-        }
-        assert_eq!(Cell::from(f64::NAN).text(), "nan");
-    }
-
-    #[test]
-    fn figures_have_three_digits() {
-        let cases = [
-            (0.0, "0"),
-            (4.525_54, "4.53"),
-            (30.875_97, "30.9"),
-            (9.999, "10.0"),
-            (0.001_234_5, "0.00123"),
-            (0.000_999_9, "0.00100"),
-            (4.93e-4, "4.93e-4"),
-            (123_456.0, "123456"),
-            (-0.02, "-0.0200"),
-            (f64::INFINITY, "inf"),
-        ];
-        for (number, text) in cases {
-            assert_eq!(figure(number), text);
-        }
-    }
-}
+#[path = "../tests/inside/table.rs"]
+mod tests;

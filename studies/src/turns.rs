@@ -34,15 +34,14 @@ pub(crate) fn kind_of_time() -> &'static str {
     if processor_time().is_some() { "processor" } else { "wall" }
 }
 
-/// The processor time of this thread (s).
-#[cfg(unix)]
+/// The processor time of this thread (s), where the system provides it.
 fn processor_time() -> Option<f64> {
-    let rustix::time::Timespec { tv_sec, tv_nsec } = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-    Some(tv_sec as f64 + 1e-9 * tv_nsec as f64)
-}
-
-#[cfg(not(unix))]
-fn processor_time() -> Option<f64> {
+    #[cfg(unix)]
+    {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+        Some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
+    }
+    #[cfg(not(unix))]
     None
 }
 

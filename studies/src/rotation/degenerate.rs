@@ -1,38 +1,27 @@
 //! What solvers make of elements whose rotation is hardly determined or not at all.
 
-use super::method::Method;
 use super::reference::angle;
 use super::sample::Sample;
+use super::solver::Solver;
 use crate::random::Random;
 use glam::{DMat3, DQuat, DVec3};
 use localshape::sim::rotation::davenport1968::optimum;
 
-/// A class of elements: cubes that are deformed, and the rotation from which solvers start.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Class {
-    /// What it is.
-    pub(crate) name: &'static str,
-    /// The stretches along the axes.
-    stretch: DVec3,
-    /// The angle of the half turn or less from the last rotation to that of the deformation (rad); `None` for any.
-    turn: Option<f64>,
-}
+/// A class of elements, which are cubes that are deformed: its name, the stretches along the axes, and the angle of the half turn or
+/// less from the last rotation to that of the deformation (rad); `None` for any.
+type Class = (&'static str, DVec3, Option<f64>);
 
 /// The classes.
 pub(crate) const CLASSES: [Class; 8] = [
-    class("at a point", DVec3::ZERO, None),
-    class("on a line", DVec3::X, None),
-    class("in a plane", DVec3::new(1.0, 1.0, 0.0), None),
-    class("mirrored", DVec3::new(1.0, 1.0, -1.0), None),
-    class("point inversion", DVec3::new(-1.0, -1.0, -1.0), None),
-    class("rigid, turned by 90°", DVec3::ONE, Some(0.5 * std::f64::consts::PI)),
-    class("rigid, turned by 180°", DVec3::ONE, Some(std::f64::consts::PI)),
-    class("1e-90 times as large", DVec3::new(1e-90, 0.8e-90, 0.5e-90), None),
+    ("at a point", DVec3::ZERO, None),
+    ("on a line", DVec3::X, None),
+    ("in a plane", DVec3::new(1.0, 1.0, 0.0), None),
+    ("mirrored", DVec3::new(1.0, 1.0, -1.0), None),
+    ("point inversion", DVec3::NEG_ONE, None),
+    ("rigid, turned by 90°", DVec3::ONE, Some(0.5 * std::f64::consts::PI)),
+    ("rigid, turned by 180°", DVec3::ONE, Some(std::f64::consts::PI)),
+    ("1e-90 times as large", DVec3::new(1e-90, 0.8e-90, 0.5e-90), None),
 ];
-
-const fn class(name: &'static str, stretch: DVec3, turn: Option<f64>) -> Class {
-    Class { name, stretch, turn }
-}
 
 /// What a solver made of the elements of a class, at worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -66,13 +55,13 @@ const NEAR: f64 = 1e-6;
 const ELEMENTS: usize = 200;
 
 /// Elements of a class.
-pub(super) fn elements(class: &Class) -> Vec<Sample> {
+fn elements(&(_, stretch, turn_back): &Class) -> Vec<Sample> {
     let mut random = Random(5);
     let one = || {
         let (axes, turn) = (DMat3::from_quat(random.rotation()), random.rotation());
-        let deformation = axes * DMat3::from_diagonal(class.stretch) * axes.transpose();
+        let deformation = axes * DMat3::from_diagonal(stretch) * axes.transpose();
         let at_rest = (DMat3::from_quat(turn) * deformation).transpose();
-        let last = match class.turn {
+        let last = match turn_back {
             Some(angle) => {
                 let (sine, cosine) = libm::sincos(0.5 * angle);
                 let axis = random.direction() * sine;
@@ -85,13 +74,13 @@ pub(super) fn elements(class: &Class) -> Vec<Sample> {
     std::iter::repeat_with(one).take(ELEMENTS).collect()
 }
 
-/// What a method makes of a class.
-pub(super) fn outcome(method: &Method, class: &Class) -> Outcome {
-    elements(class).iter().map(|sample| outcome_of(method, sample)).max().expect("some elements")
+/// What a solver makes of a class.
+pub(super) fn outcome(solver: &Solver, class: &Class) -> Outcome {
+    elements(class).iter().map(|sample| outcome_of(solver, sample)).max().expect("some elements")
 }
 
-fn outcome_of(method: &Method, sample: &Sample) -> Outcome {
-    let (found, sought) = (method.rotation(sample), optimum(sample.at_rest, sample.last));
+fn outcome_of(solver: &Solver, sample: &Sample) -> Outcome {
+    let (found, sought) = (solver.rotation(sample), optimum(sample.at_rest, sample.last));
     if !found.is_finite() || (found.length_squared() - 1.0).abs() > 1e-12 {
         return Outcome::NotANumber;
     }

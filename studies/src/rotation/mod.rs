@@ -1,16 +1,19 @@
 //! The solvers of rotations: the angle error of each against its time for each element, for elements turned by more or
 //! less since the last rotation and strained up to inversion, and what each makes of degenerate elements.
 //!
-//! All methods are plain code in double precision, called for one element after the other, as the reference code of the
+//! All solvers are plain code in double precision, called for one element after the other, as the reference code of the
 //! simulation does. They take turns, in an order that is rotated, and each time is the median of its turns: other load of
 //! the machine affects all alike. Processor time is measured, or wall time if the system does not provide it.
 
+mod closed_form;
 mod degenerate;
-mod method;
+mod mueller;
+mod newton;
 #[cfg(feature = "render")]
 mod page;
 mod reference;
 mod sample;
+mod solver;
 #[cfg(test)]
 #[path = "../../tests/inside/rotation.rs"]
 mod solver_tests;
@@ -22,8 +25,8 @@ use crate::study::{Findings, Study, Watch};
 use crate::turns::{Clock, take_turns};
 use degenerate::{CLASSES, Outcome};
 use glam::DQuat;
-use method::Method;
 use sample::{Kind, Sample};
+use solver::Solver;
 use std::hint::black_box;
 
 /// The number of passes of iterations on degenerate elements: what has not converged by then stalls.
@@ -38,9 +41,9 @@ pub(crate) struct Rotation {
     pub(crate) increments: Vec<f64>,
     /// The number of elements of each kind.
     pub(crate) elements: usize,
-    /// How often each method goes through them in a turn.
+    /// How often each solver goes through them in a turn.
     pub(crate) repeats: u32,
-    /// The number of turns of each method.
+    /// The number of turns of each solver.
     pub(crate) rounds: u32,
 }
 
@@ -70,24 +73,28 @@ impl Study for Rotation {
     }
 
     fn work(&self) -> u64 {
-        self.kinds().len() as u64 * u64::from(self.rounds) * method::all().len() as u64
+        self.kinds().len() as u64 * u64::from(self.rounds) * solver::all().len() as u64
     }
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
-        Some(measure(self, watch)?.findings())
+        let results = measure(self, watch)?;
+        Some(Findings {
+            #[cfg(feature = "render")]
+            pages: vec![("rotation", results.page())],
+            ..Findings::new(results.text(), [("rotation", results.table())])
+        })
     }
 }
 
-/// One method on one kind of elements.
+/// One solver on one kind of elements.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Measured {
-    /// The number of the method.
-    method: usize,
+    /// The number of the solver.
+    solver: usize,
     /// The elements.
     kind: Kind,
     /// The median and the greatest error (rad); infinite if any result is not a number.
     pub(crate) median: f64,
-    /// The greatest error (rad).
     pub(crate) worst: f64,
     /// Time for each element (ns).
     pub(crate) time: Spread,
@@ -96,39 +103,42 @@ pub(crate) struct Measured {
 }
 
 /// What was found on one machine.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Results {
     protocol: Rotation,
-    methods: Vec<Method>,
+    solvers: Vec<Solver>,
     measured: Vec<Measured>,
     /// What each solver makes of each class, after [`MANY`] passes.
-    outcomes: Vec<(Method, [Outcome; CLASSES.len()])>,
+    outcomes: Vec<(&'static str, [Outcome; CLASSES.len()])>,
 }
 
-/// Measures all methods; `None` if `watch`, which is called after each turn, stops the measurement.
+/// Measures all solvers; `None` if `watch`, which is called after each turn, stops the measurement.
 pub(crate) fn measure(protocol: &Rotation, watch: &Watch<'_>) -> Option<Results> {
-    let methods = method::all();
+    let mut solvers = solver::all();
     let mut measured = Vec::new();
     for kind in protocol.kinds() {
         let (elements, sought): (Vec<_>, Vec<_>) = sample::samples(kind, protocol.elements).into_iter().unzip();
         let turn = |number: usize| {
-            let (method, clock) = (black_box(&methods[number]), Clock::start());
+            let (work, clock) = (black_box(&solvers[number]).work(), Clock::start());
             for _ in 0..protocol.repeats {
-                elements.iter().for_each(|element| method.work(black_box(element)));
+                elements.iter().for_each(|element| work(black_box(element)));
             }
             clock.seconds() * 1e9 / (f64::from(protocol.repeats) * elements.len() as f64)
         };
         // The first turns warm caches and are not counted.
-        let _ = (0..methods.len()).map(turn).sum::<f64>();
-        let times = take_turns(methods.len(), protocol.rounds, watch, turn)?;
-        for (number, (method, times)) in methods.iter().zip(times).enumerate() {
-            let mut errors: Vec<_> =
-                elements.iter().zip(&sought).map(|(one, &sought)| error(method, one, sought)).collect();
+        let _ = (0..solvers.len()).map(turn).sum::<f64>();
+        let times = take_turns(solvers.len(), protocol.rounds, watch, turn)?;
+        for (number, (solver, times)) in solvers.iter().zip(times).enumerate() {
+            let error = |(element, &sought): (&Sample, &DQuat)| {
+                let found = solver.rotation(element);
+                if found.is_finite() { reference::angle(found, sought) } else { f64::INFINITY }
+            };
+            let mut errors: Vec<_> = elements.iter().zip(&sought).map(error).collect();
             errors.sort_by(f64::total_cmp);
-            let globals: Option<Vec<bool>> = elements.iter().map(|one| method.is_global(one)).collect();
+            let globals: Option<Vec<bool>> = elements.iter().map(|one| solver.is_global(one)).collect();
             let share = |all: Vec<bool>| all.iter().filter(|&&one| one).count() as f64 / all.len() as f64;
             measured.push(Measured {
-                method: number,
+                solver: number,
                 kind,
                 median: errors[errors.len() / 2],
                 worst: errors[errors.len() - 1],
@@ -137,25 +147,9 @@ pub(crate) fn measure(protocol: &Rotation, watch: &Watch<'_>) -> Option<Results>
             });
         }
     }
-    let mut solvers: Vec<_> = methods.iter().map(|method| method.with_passes(MANY)).collect();
-    solvers.dedup();
-    let outcomes = solvers.into_iter().map(|solver| {
-        let outcomes = CLASSES.map(|class| degenerate::outcome(&solver, &class));
-        (solver, outcomes)
-    });
-    let outcomes = outcomes.collect();
-    Some(Results { protocol: protocol.clone(), methods, measured, outcomes })
-}
-
-/// The angle error of a method (rad).
-fn error(method: &Method, element: &Sample, sought: DQuat) -> f64 {
-    let found = method.rotation(element);
-    if found.is_finite() { reference::angle(found, sought) } else { f64::INFINITY }
-}
-
-impl Results {
-    /// A method on elements with any stretches and any last rotation.
-    fn cold(&self, method: usize) -> Option<&Measured> {
-        self.measured.iter().find(|one| one.method == method && one.kind == Kind::Cold)
-    }
+    let all = solvers.clone();
+    solvers.dedup_by_key(|solver| solver.name);
+    let of_class = |solver: &Solver| CLASSES.map(|class| degenerate::outcome(&solver.with_passes(MANY), &class));
+    let outcomes = solvers.iter().map(|solver| (solver.name, of_class(solver))).collect();
+    Some(Results { protocol: protocol.clone(), solvers: all, measured, outcomes })
 }

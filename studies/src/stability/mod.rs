@@ -10,7 +10,6 @@ mod text;
 
 use crate::folder::Notes;
 use crate::study::{Findings, Study, Watch};
-use crate::table::typed;
 use localshape::scene::Run;
 use localshape::sim::stability::Stability as Limit;
 use localshape::sim::{Diagnostic, Status};
@@ -51,7 +50,12 @@ impl Study for Stability {
     fn measure(&self, watch: &Watch<'_>, notes: &Notes) -> Option<Findings> {
         let known = |cell: &Cell| Outcome::read(notes.known(&cell.key())?);
         let done = |cell: &Cell| notes.add(&cell.key(), &cell.outcome.note());
-        Some(measure(self.protocol.clone(), &self.scene, &known, &done, watch)?.findings())
+        let results = measure(self.protocol.clone(), &self.scene, &known, &done, watch)?;
+        Some(Findings {
+            #[cfg(feature = "render")]
+            pages: vec![("stability", results.page())],
+            ..Findings::new(results.text(), [("stability", results.table())])
+        })
     }
 }
 
@@ -186,24 +190,13 @@ impl Grid {
 }
 
 /// What was found.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Results {
     pub(crate) protocol: Protocol,
-    pub(crate) told: Told,
+    pub(crate) scene: Scene,
     pub(crate) grids: Vec<Grid>,
     /// In the order of grids, speeds, stiffnesses and shares.
     pub(crate) cells: Vec<Cell>,
-}
-
-/// What is told of the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Told {
-    pub(crate) title: String,
-    pub(crate) duration: f64,
-    /// Name, model and integrator of each run.
-    pub(crate) runs: Vec<[String; 3]>,
-    /// Runs that are not studied, and why.
-    pub(crate) skipped: Vec<String>,
 }
 
 /// Simulates all cells with the rayon thread pool of the caller, except those for which `known` has an outcome, and calls `done` with
@@ -215,10 +208,9 @@ pub(crate) fn measure(
     done: &(dyn Fn(&Cell) + Sync),
     watch: &Watch<'_>,
 ) -> Option<Results> {
-    let (studied, skipped): (Vec<_>, Vec<_>) =
-        (0..scene.runs.len()).partition(|&run| scene.runs[run].tolerance.is_none());
+    let studied = (0..scene.runs.len()).filter(|&run| scene.runs[run].tolerance.is_none());
     let each = |run: usize| protocol.dampings.iter().filter_map(move |&damping| Grid::new(scene, run, damping));
-    let grids: Vec<Grid> = studied.into_iter().flat_map(each).collect();
+    let grids: Vec<Grid> = studied.flat_map(each).collect();
     let mut cells = Vec::new();
     for grid in &grids {
         for (&speed, &stiffness) in
@@ -235,40 +227,29 @@ pub(crate) fn measure(
             }));
         }
     }
-    let stiffness_of = |cell: &Cell| {
-        let grid = grids.iter().find(|grid| grid.run == cell.run).expect("the cells are those of grids");
-        cell.rate / grid.rate
-    };
     cells.par_iter_mut().with_max_len(1).try_for_each(|cell| {
         let found = known(cell);
         cell.outcome = match found {
             Some(outcome) => outcome,
-            None => outcome(scene, cell, stiffness_of(cell), watch)?,
+            None => outcome(scene, cell, watch)?,
         };
         if found.is_none() {
             done(cell);
         }
         watch(1).then_some(())
     })?;
-    let words = |run: &Run| [run.name.clone(), run.model.describe_fully(&scene.body), typed(&run.integrator)];
-    let skipped = skipped.into_iter().map(|run| scene.runs[run].name.clone()).collect();
-    let told = Told {
-        title: scene.title.clone(),
-        duration: scene.duration,
-        runs: scene.runs.iter().map(words).collect(),
-        skipped,
-    };
-    Some(Results { protocol, told, grids, cells })
+    Some(Results { protocol, scene: scene.clone(), grids, cells })
 }
 
 /// Simulates a cell, until it diverges; `None` if `watch` stops it.
-fn outcome(scene: &Scene, cell: &Cell, stiffness: f64, watch: &Watch<'_>) -> Option<Outcome> {
+fn outcome(scene: &Scene, cell: &Cell, watch: &Watch<'_>) -> Option<Outcome> {
     /// Steps between two looks.
     const STRETCH: u64 = 4096;
     let mut scene = scene.clone();
     scene.gravity *= cell.speed * cell.speed;
     scene.initial.velocity.iter_mut().for_each(|velocity| *velocity *= cell.speed);
     let run = &mut scene.runs[cell.run];
+    let stiffness = cell.rate * scene.body.lightest() / run.model.stiffness();
     run.model = run.model.scaled(stiffness, stiffness.sqrt() * cell.damping).expect("grids are of models that can be");
     run.step = cell.step;
     let mut world = scene.world(cell.run);
@@ -303,12 +284,12 @@ impl Results {
 
     /// The name of a map, its impacts and damping where the protocol has several, and the model.
     pub(crate) fn words(&self, grid: &Grid, speed: f64) -> [String; 3] {
-        let [name, model, _] = &self.told.runs[grid.run];
+        let Run { name, model, .. } = &self.scene.runs[grid.run];
         let Protocol { speeds, dampings, .. } = &self.protocol;
         let speed = (speeds.len() > 1).then(|| format!("impacts {} × as fast", short(speed)));
         let damping = (dampings.len() > 1).then(|| format!("{} × the damping", short(grid.damping)));
         let conditions: Vec<_> = speed.into_iter().chain(damping).collect();
-        [name.clone(), conditions.join(", "), model.clone()]
+        [name.clone(), conditions.join(", "), model.describe_fully(&self.scene.body)]
     }
 
     /// The largest share up to which every step, with every stiffness, has one of these outcomes; 0 for none.

@@ -2,10 +2,10 @@
 
 use super::text::short;
 use super::{Cell, Grid, Outcome, Results};
-use crate::page::{Map, Maps, Tile};
+use crate::page::{Map, Page, Parts, Tile};
 
 impl Results {
-    pub(super) fn page(&self) -> Maps {
+    pub(super) fn page(&self) -> Page {
         /// Shares at which steps are written.
         const TICKS: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
         let map = |(grid, speed): (&Grid, f64)| {
@@ -37,14 +37,14 @@ impl Results {
                 ],
             }
         };
-        Maps {
-            title: format!("Stability: {}", self.told.title),
+        Page {
+            title: format!("Stability: {}", self.scene.title),
             caption: vec![
                 "Each cell is a run. The stiffness changes with the same damping ratio; the limit is predicted before the run, at rest."
                     .to_owned(),
             ],
-            maps: self.maps().map(map).collect(),
             columns: self.protocol.speeds.len().clamp(2, 3),
+            parts: Parts::Maps(self.maps().map(map).collect()),
         }
     }
 }

@@ -1,8 +1,7 @@
 //! The results as text and as a table, and the notes of cells.
 
 use super::{Cell, Grid, Outcome, Results};
-use crate::study::Findings;
-use crate::table::Table;
+use crate::table::{Table, typed};
 
 impl Outcome {
     /// In words, as in tables.
@@ -22,18 +21,7 @@ impl Outcome {
             Self::Diverged => None,
         }
     }
-}
 
-impl Cell {
-    /// What distinguishes a cell from the others of its study.
-    pub(super) fn key(&self) -> String {
-        let numbers =
-            [self.rate, self.speed, self.damping, self.share, self.step].map(|number| number.to_bits().to_string());
-        format!("{} {}", self.run, numbers.join(" "))
-    }
-}
-
-impl Outcome {
     /// In a note.
     pub(super) fn note(self) -> String {
         self.turned_over().map_or_else(|| "diverged".to_owned(), |count| count.to_string())
@@ -49,24 +37,23 @@ impl Outcome {
     }
 }
 
-impl Results {
-    pub(super) fn findings(&self) -> Findings {
-        Findings {
-            text: self.text(),
-            tables: vec![("stability", self.table())],
-            #[cfg(feature = "render")]
-            pages: vec![("stability", Box::new(self.page()))],
-        }
+impl Cell {
+    /// What distinguishes a cell from the others of its study.
+    pub(super) fn key(&self) -> String {
+        let Self { run, rate, speed, damping, share, step, .. } = self;
+        format!("{run} {rate:e} {speed:e} {damping:e} {share:e} {step:e}")
     }
+}
 
+impl Results {
     /// The results for people.
-    fn text(&self) -> String {
+    pub(super) fn text(&self) -> String {
         let mut text = format!(
             "# Stability: what becomes of each run\n\n\
             {}; {} s. The stiffness is multiplied by {} to {}, with the same damping ratio. Steps are shares of the largest one that is \
             predicted to be stable at rest; of a run that has none, of T/π. `whole`: no element is turned over at the end.\n\n",
-            self.told.title,
-            self.told.duration,
+            self.scene.title,
+            self.scene.duration,
             short(self.protocol.stiffnesses.first().copied().unwrap_or(1.0)),
             short(self.protocol.stiffnesses.last().copied().unwrap_or(1.0)),
         );
@@ -85,8 +72,8 @@ impl Results {
             ]
         };
         text += &Table::of(self.maps().map(row)).markdown(2);
-        for name in &self.told.skipped {
-            text += &format!("\n{name} finds its own steps and is left out.\n");
+        for run in self.scene.runs.iter().filter(|run| run.tolerance.is_some()) {
+            text += &format!("\n{} finds its own steps and is left out.\n", run.name);
         }
         text
     }
@@ -94,12 +81,12 @@ impl Results {
     /// All cells, with all digits.
     pub(super) fn table(&self) -> Table {
         let row = |cell: &Cell| {
-            let [name, _, integrator] = &self.told.runs[cell.run];
+            let run = &self.scene.runs[cell.run];
             let grid = self.grids.iter().find(|grid| grid.run == cell.run && grid.damping == cell.damping);
             let has_limit = grid.is_some_and(|grid| grid.limit.is_some());
             [
-                ("run", name.as_str().into()),
-                ("integrator", integrator.as_str().into()),
+                ("run", run.name.as_str().into()),
+                ("integrator", typed(&run.integrator).into()),
                 ("stiffness_over_mass", cell.rate.into()),
                 ("speed", cell.speed.into()),
                 ("damping", cell.damping.into()),

@@ -44,51 +44,39 @@ impl Study for Stress {
     }
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
-        Some(measure(self.steps, watch)?.findings())
+        let results = measure(self.steps, watch)?;
+        Some(Findings::new(results.text(), [("stress", results.table())]))
     }
 }
-
-/// The models that are compared.
-pub(crate) const MODELS: [Model; 4] = [Model::Shape, Model::Printed, Model::EdgesFaceDiagonals, Model::All];
 
 /// A model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Model {
-    /// Shape-based with the default rotations.
-    Shape,
-    /// Shape-based with two passes of Eq. (15), as the paper advises.
-    Printed,
-    /// Springs on edges and both diagonals of faces.
-    EdgesFaceDiagonals,
-    /// Springs between all nodes of each element.
-    All,
+    /// Shape-based, with a solver of rotations.
+    Shape(RotationReading),
+    Springs(Springs),
 }
 
-impl Model {
-    /// Its name in tables.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Shape => "shape-based",
-            Self::Printed => "shape-based, Eq. (15) twice",
-            Self::EdgesFaceDiagonals => "springs, edges and face diagonals",
-            Self::All => "springs, all pairs of an element",
-        }
-    }
+/// The models that are compared, with their names in tables; the first is the default.
+pub(crate) const MODELS: [(&str, Model); 4] = [
+    ("shape-based", Model::Shape(RotationReading::Robust)),
+    ("shape-based, Eq. (15) twice", Model::Shape(RotationReading::Arctangent)),
+    ("springs, edges and face diagonals", Model::Springs(Springs::EdgesFaceDiagonals)),
+    ("springs, all pairs of an element", Model::Springs(Springs::All)),
+];
 
+impl Model {
     fn prepare(self, body: &Body, stiffness: f64, damping: f64) -> Box<dyn ElasticModel> {
-        let shape = |rotation| ShapeBased {
-            stiffness,
-            damping,
-            passes: 2,
-            rotation,
-            damping_of: DampingReading::RelativeMotion,
-        };
-        let springs = |named| MassSpring { stiffness, damping, springs: body.topology().springs(named).into() };
         match self {
-            Self::Shape => Box::new(shape(RotationReading::Robust)),
-            Self::Printed => Box::new(shape(RotationReading::Arctangent)),
-            Self::EdgesFaceDiagonals => Box::new(springs(Springs::EdgesFaceDiagonals)),
-            Self::All => Box::new(springs(Springs::All)),
+            Self::Shape(rotation) => {
+                let damping_of = DampingReading::RelativeMotion;
+                // Two passes, as the paper advises.
+                Box::new(ShapeBased { stiffness, damping, passes: 2, rotation, damping_of })
+            }
+            Self::Springs(named) => {
+                let springs = body.topology().springs(named).into();
+                Box::new(MassSpring { stiffness, damping, springs })
+            }
         }
     }
 }
@@ -154,7 +142,7 @@ const MOST_CREEP: f64 = 1e-3;
 /// Makes all trials on the thread pool of the caller; `None` if `watch` stops it.
 pub(crate) fn measure(steps: u64, watch: &Watch<'_>) -> Option<Results> {
     let trials = trials(steps);
-    let pairs: Vec<_> = trials.iter().flat_map(|trial| MODELS.map(|model| (trial, model))).collect();
+    let pairs: Vec<_> = trials.iter().flat_map(|trial| MODELS.map(|(_, model)| (trial, model))).collect();
     let outcomes: Option<Vec<_>> = pairs
         .par_iter()
         .map(|(trial, model)| {
@@ -200,8 +188,8 @@ impl Row {
         }
         demand(one.creep.is_nan() || one.creep <= MOST_CREEP, format!("crept by {:.1e}", one.creep));
         // No model may give numbers that are none.
-        for (model, outcome) in MODELS.iter().zip(&self.outcomes) {
-            demand(outcome.is_finite, format!("{} is not finite", model.name()));
+        for ((model, _), outcome) in MODELS.iter().zip(&self.outcomes) {
+            demand(outcome.is_finite, format!("{model} is not finite"));
         }
         broken
     }

@@ -1,22 +1,12 @@
 //! The results as text and as a table.
 
 use super::{MODELS, Outcome, Promise, Results, Row};
-use crate::study::Findings;
 use crate::table::{Cell, Table};
 
 /// The shape error of a body that counts as restored.
 const RESTORED: f64 = 1e-3;
 
 impl Results {
-    pub(super) fn findings(&self) -> Findings {
-        Findings {
-            text: self.text(),
-            tables: vec![("stress", self.table())],
-            #[cfg(feature = "render")]
-            pages: Vec::new(),
-        }
-    }
-
     /// The results for people.
     pub(super) fn text(&self) -> String {
         let mut text = String::from(
@@ -30,7 +20,7 @@ impl Results {
         for group in self.rows.chunk_by(|one, other| one.group == other.group) {
             let row = |row: &Row| {
                 let [one, two, three, four] = [0, 1, 2, 3].map(|model| row.words(&row.outcomes[model]).into());
-                let [a, b, c, d] = MODELS.map(|model| model.name());
+                let [a, b, c, d] = MODELS.map(|(name, _)| name);
                 [(group[0].group, row.name.as_str().into()), (a, one), (b, two), (c, three), (d, four)]
             };
             text += &format!("\n{}", Table::of(group.iter().map(row)).markdown(5));
@@ -48,14 +38,16 @@ impl Results {
 
     /// All numbers, with all digits.
     pub(super) fn table(&self) -> Table {
-        let rows =
-            self.rows.iter().flat_map(|row| row.outcomes.iter().zip(MODELS).map(move |(one, model)| (row, one, model)));
+        let rows = self
+            .rows
+            .iter()
+            .flat_map(|row| row.outcomes.iter().zip(MODELS).map(move |(one, (model, _))| (row, one, model)));
         let number = |value: f64| if value.is_nan() { Cell::Empty } else { value.into() };
         Table::of(rows.map(|(row, one, model)| {
             [
                 ("group", row.group.into()),
                 ("trial", row.name.as_str().into()),
-                ("model", model.name().into()),
+                ("model", model.into()),
                 ("steps", row.steps.into()),
                 ("elements", row.elements.into()),
                 ("diverged_s", one.diverged.into()),

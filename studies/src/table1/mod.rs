@@ -12,8 +12,6 @@ mod printed;
 mod text;
 
 use crate::folder::Notes;
-use crate::model::ShapeBy;
-use crate::solver::Solver;
 use crate::spread::Spread;
 use crate::study::{Findings, Study, Watch};
 use glam::{DVec3, DVec4, Vec4Swizzles};
@@ -26,8 +24,8 @@ use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::sync::Arc;
 
-/// The paper's solver, then more accurate ones.
-pub(crate) const SOLVERS: [Solver; 3] = [Solver::PRINTED, Solver::Symmetric, Solver::DEFAULT];
+/// The paper's solver, then the exact one, by their names in scenes.
+pub(crate) const SOLVERS: [&str; 2] = ["arctangent", "robust"];
 
 /// The study.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,14 +67,22 @@ impl Study for Table1 {
     }
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
-        Some(measure(self, watch)?.findings())
+        let results = measure(self, watch)?;
+        Some(Findings {
+            #[cfg(feature = "render")]
+            pages: vec![("table1", results.page())],
+            ..Findings::new(
+                results.text(),
+                [("table1", results.summary_table()), ("table1-orientations", results.start_table())],
+            )
+        })
     }
 }
 
 /// One solver in one row at one k/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Case {
-    pub(crate) solver: Solver,
+    pub(crate) solver: &'static str,
     pub(crate) row: Row,
     /// Index of its k/m in [`STIFFNESSES`].
     pub(crate) stiffness: usize,
@@ -100,12 +106,12 @@ impl Case {
 
     /// Number of passes, each of which solves Eq. (15); `None` for solvers without passes.
     pub(crate) fn passes(&self) -> Option<u32> {
-        self.solver.has_passes().then_some(self.row.passes)
+        self.printed().map(|_| self.row.passes)
     }
 
     /// Unique among all cases.
     fn name(&self) -> String {
-        format!("{} {} {:e}", self.solver.name(), self.row.name, self.stiffness_over_mass())
+        format!("{} {} {:e}", self.solver, self.row.name, self.stiffness_over_mass())
     }
 }
 
@@ -116,7 +122,7 @@ impl Table1 {
         let mut cases = Vec::new();
         for solver in SOLVERS {
             for stiffness in (0..STIFFNESSES.len()).filter(wanted) {
-                let rows = ROWS.into_iter().filter(|row| solver.has_passes() || row.passes == 1);
+                let rows = ROWS.into_iter().filter(|row| solver == SOLVERS[0] || row.passes == 1);
                 cases.extend(rows.map(|row| Case { solver, row, stiffness }));
             }
         }
@@ -237,14 +243,10 @@ fn start(orientation: &Orientation, cases: &[Case]) -> Scene {
         "
     );
     for case in cases {
-        let (name, stiffness) = (case.name(), case.stiffness_over_mass());
-        let rotation = match case.solver {
-            Solver::Scene(_) => case.solver.name(),
-            _ => Solver::PRINTED.name(),
-        };
+        let (name, rotation, stiffness) = (case.name(), case.solver, case.stiffness_over_mass());
         let passes = case.passes().map_or(String::new(), |passes| format!(", passes = {passes}"));
         // Chaotic motion would give other numbers with other round-off; without passes α is round-off itself.
-        let kernel = if case.solver.has_passes() { "reference" } else { "fast" };
+        let kernel = if case.passes().is_some() { "reference" } else { "fast" };
         text += &format!(
             "[[run]]
             name = '{name}'
@@ -255,15 +257,8 @@ fn start(orientation: &Orientation, cases: &[Case]) -> Scene {
             case.step()
         );
     }
-    let scene = Scene::parse(&text, "table1", &Limits::default());
-    let mut scene = scene.unwrap_or_else(|error| panic!("a scene without mistakes: {error}"));
-    for (run, case) in scene.runs.iter_mut().zip(cases) {
-        if !matches!(case.solver, Solver::Scene(_)) {
-            let (stiffness, passes) = (case.stiffness_over_mass(), case.row.passes);
-            run.model = Arc::new(ShapeBy { stiffness, damping: 0.0, solver: case.solver, passes });
-        }
-    }
-    scene
+    Scene::parse(&text, "table1", &Limits::default())
+        .unwrap_or_else(|error| panic!("a scene without mistakes: {error}"))
 }
 
 /// The cubes of several starts as one body.

@@ -1,45 +1,50 @@
-//! Table 1 as a figure: our range on logarithmic axes, the paper's number as a ring.
+//! Table 1 as plots over k/m: of each row our median between the least and the greatest of all starts, and the paper's number.
 
+use super::printed::{Printed, ROWS};
 use super::{Results, Summary};
-use crate::page::{Ranges, RangesRow, power_of_ten};
+use crate::page::{Line, Page, Parts, Plot};
 use crate::spread::Spread;
 
 impl Results {
-    pub(super) fn page(&self) -> Ranges {
+    pub(super) fn page(&self) -> Page {
         let summaries = self.summaries();
-        let ours: Vec<_> = summaries.iter().filter_map(|one| Some((one, one.case.printed()?))).collect();
-        let same = |(one, _): &&(&Summary, _), (other, _): &&(&Summary, _)| one.case.stiffness == other.case.stiffness;
-        let groups = ours.chunk_by(|one, other| same(&one, &other)).map(|group| {
-            let power = group[0].0.case.stiffness_over_mass().log10().round() as i32;
-            let rows = group.iter().map(|(summary, printed)| {
-                let Summary { case, mean, maximum, .. } = summary;
-                let passes = match case.row.passes {
-                    1 => "1 pass".to_owned(),
-                    passes => format!("{passes} passes"),
+        let plot = |name: &str, ours: fn(&Summary) -> Spread, paper: fn(Printed) -> Option<f64>| {
+            let curves = ROWS.iter().enumerate().flat_map(|(family, row)| {
+                let of_row = summaries.iter().filter(|one| one.case.row.name == row.name);
+                let printed: Vec<_> = of_row.filter_map(|one| Some((one, one.case.printed()?))).collect();
+                let line = |name: String, is_strong, value: &dyn Fn(&Summary, Printed) -> Option<f64>| {
+                    let point = |&(one, printed): &(&Summary, Printed)| {
+                        Some([one.case.stiffness_over_mass(), value(one, printed)?])
+                    };
+                    Line { name, family, is_strong, points: printed.iter().filter_map(point).collect() }
                 };
-                let range = |spread: &Spread| [spread.least, spread.median, spread.most];
-                RangesRow {
-                    letter: case.row.name,
-                    words: format!("{passes}, ΔT {} ms", (case.step() * 1e6).round() / 1e3),
-                    numbers: vec![(range(mean), printed.mean), (range(maximum), printed.maximum)],
-                }
+                [
+                    line(String::new(), false, &|one, _| Some(ours(one).least)),
+                    line(String::new(), false, &|one, _| Some(ours(one).most)),
+                    line(format!("{}, paper", row.name), false, &|_, printed| paper(printed)),
+                    line(row.name.to_owned(), true, &|one, _| Some(ours(one).median)),
+                ]
             });
-            (format!("k/m = {} s⁻²", power_of_ten(power)), rows.collect())
-        });
+            let axes = ["k/m (1/s²)", "α (rad/s²)"].map(str::to_owned);
+            Plot { name: name.to_owned(), axes, curves: curves.collect(), slopes: None }
+        };
         let starts = self.protocol.orientations;
-        let plural = if starts == 1 { "" } else { "s" };
-        Ranges {
+        Page {
             title: "Table 1: errors of the rotations from Eq. (15)".to_owned(),
             caption: vec![
                 format!(
-                    "α of Eq. (18) in the {} s after the first contact, of a free falling cube.",
-                    self.protocol.duration
+                    "α of Eq. (18) in the {} s after the first contact, of a free falling cube. Thick: median over {starts} start{}, \
+                     between the least and the greatest.",
+                    self.protocol.duration,
+                    if starts == 1 { "" } else { "s" },
                 ),
-                "Without a ring: too small for the paper to measure.".to_owned(),
+                "The paper's numbers are of one start; those that it could not measure are left out.".to_owned(),
             ],
-            key: [format!("here: range and median over {starts} start{plural}"), "paper: one start".to_owned()],
-            axes: vec!["mean of α (rad/s²)".to_owned(), "greatest α (rad/s²)".to_owned()],
-            groups: groups.collect(),
+            columns: 2,
+            parts: Parts::Plots(vec![
+                plot("Mean of α", |one| one.mean, |printed| printed.mean),
+                plot("Greatest α", |one| one.maximum, |printed| printed.maximum),
+            ]),
         }
     }
 }

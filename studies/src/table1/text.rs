@@ -2,21 +2,10 @@
 
 use super::printed::as_printed;
 use super::{Case, Orientation, Results, Statistics, Summary, Table1};
-use crate::solver::Solver;
 use crate::spread::Spread;
-use crate::study::Findings;
 use crate::table::{Cell, Table, figure};
 
 impl Results {
-    pub(super) fn findings(&self) -> Findings {
-        Findings {
-            text: self.text(),
-            tables: vec![("table1", self.summary_table()), ("table1-orientations", self.start_table())],
-            #[cfg(feature = "render")]
-            pages: vec![("table1", Box::new(self.page()))],
-        }
-    }
-
     /// The results for people.
     pub(super) fn text(&self) -> String {
         let Table1 { orientations, duration, .. } = self.protocol;
@@ -55,10 +44,9 @@ impl Results {
             ]
         });
         text += &Table::of(ours).markdown(2);
-        text += "\n## Better solvers on the same starts\n\n";
+        text += "\n## Exact rotations (`robust`) on the same starts\n\n";
         let others = others.into_iter().map(|&Summary { case, mean, deviation, maximum, .. }| {
             [
-                ("solver", words(case.solver).into()),
                 ("k/m", format!("{:e}", case.stiffness_over_mass()).into()),
                 ("row", case.row.name.into()),
                 ("passes", case.passes().map_or("–".into(), Cell::from)),
@@ -68,7 +56,7 @@ impl Results {
                 ("max", range(maximum).into()),
             ]
         });
-        text += &Table::of(others).markdown(3);
+        text += &Table::of(others).markdown(2);
         let diverged: usize = summaries.iter().map(|summary| summary.diverged).sum();
         if diverged > 0 {
             text += &format!(
@@ -84,7 +72,7 @@ impl Results {
         let row = |Summary { case, mean, deviation, maximum, diverged }: Summary| {
             let printed = case.printed();
             [
-                ("solver", case.solver.name().into()),
+                ("solver", case.solver.into()),
                 ("row", case.row.name.into()),
                 ("stiffness_over_mass", case.stiffness_over_mass().into()),
                 ("passes", case.passes().into()),
@@ -111,7 +99,7 @@ impl Results {
         let row = |case: &Case, number: usize, start: &Statistics| {
             let Orientation { axis, angle } = self.orientations[number];
             [
-                ("solver", case.solver.name().into()),
+                ("solver", case.solver.into()),
                 ("row", case.row.name.into()),
                 ("stiffness_over_mass", case.stiffness_over_mass().into()),
                 ("passes", case.passes().into()),
@@ -133,14 +121,5 @@ impl Results {
             statistics.enumerate().map(move |(number, start)| row(case, number, start))
         });
         Table::of(rows)
-    }
-}
-
-/// What a solver is.
-fn words(solver: Solver) -> &'static str {
-    match solver {
-        Solver::Symmetric => "Eq. (15) with the symmetric part of its matrix",
-        Solver::PRINTED => "Eq. (15)",
-        _ => "exact rotation",
     }
 }

@@ -2,25 +2,28 @@
 
 use super::Subject;
 use super::count::Counting;
-use crate::methods::{BLANES_MOAN, FOREST_RUTH, QuinlanTremaine};
+use crate::methods::{BLANES_MOAN, FOREST_RUTH, KAHAN_LI};
+use crate::table::typed;
 use glam::DVec3;
-use localshape::sim::integrate::{self, ByComposition};
+use localshape::sim::integrate::{ByComposition, Composition};
 use localshape::sim::model::ElasticModel;
-use localshape::sim::world::{Stepping, Surroundings};
-use localshape::sim::{Integrator, Kernel, Status, World};
+use localshape::sim::model::shape_based::{RotationReading, ShapeBased};
+use localshape::sim::{Dimension, Integrator, Kernel, Status, World};
 use std::sync::Arc;
 
-/// An integrator.
+/// What is compared: an integrator, and the solver of rotations where it is not the default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Method {
-    /// One of scenes.
+    /// An integrator of scenes.
     Scene(Integrator),
+    /// Velocity Verlet with a reading of the paper for rotations.
+    Reading(RotationReading),
     /// Forest–Ruth: of fourth order and symplectic, with three evaluations a step.
     ForestRuth,
     /// The Runge–Kutta–Nyström method of Blanes and Moan: of sixth order and symplectic, with 14 evaluations a step.
     BlanesMoan,
-    /// A symmetric multistep method of eighth order, with one evaluation a step.
-    QuinlanTremaine,
+    /// Kahan–Li: of eighth order and symplectic, with 17 evaluations a step.
+    KahanLi,
 }
 
 impl Method {
@@ -28,48 +31,53 @@ impl Method {
     pub(crate) const DEFAULT: Self = Self::Scene(Integrator::SemiImplicitEuler);
     pub(crate) const VERLET: Self = Self::Scene(Integrator::VelocityVerlet);
     pub(crate) const PEFRL: Self = Self::Scene(Integrator::Pefrl);
-    pub(crate) const RUNGE_KUTTA: Self = Self::Scene(Integrator::RungeKutta);
     pub(crate) const DORMAND_PRINCE: Self = Self::Scene(Integrator::DormandPrince);
 
     /// All of them.
-    pub(crate) const ALL: [Self; 10] = [
+    pub(crate) const ALL: [Self; 13] = [
         Self::DEFAULT,
         Self::Scene(Integrator::ExplicitEuler),
         Self::Scene(Integrator::BackwardEuler),
         Self::VERLET,
+        Self::Reading(RotationReading::Arctangent),
+        Self::Reading(RotationReading::VectorLength),
+        Self::Reading(RotationReading::LinearUpdate),
         Self::ForestRuth,
-        Self::RUNGE_KUTTA,
+        Self::Scene(Integrator::RungeKutta),
         Self::PEFRL,
         Self::BlanesMoan,
+        Self::KahanLi,
         Self::DORMAND_PRINCE,
-        Self::QuinlanTremaine,
     ];
 
-    /// Its name; that in scenes, if it has one.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::ForestRuth => "forest-ruth",
-            Self::BlanesMoan => "blanes-moan",
-            Self::QuinlanTremaine => "quinlan-tremaine",
-            Self::Scene(Integrator::SemiImplicitEuler) => "semi-implicit-euler",
-            Self::Scene(Integrator::ExplicitEuler) => "explicit-euler",
-            Self::Scene(Integrator::BackwardEuler) => "backward-euler",
-            Self::Scene(Integrator::VelocityVerlet) => "velocity-verlet",
-            Self::Scene(Integrator::Pefrl) => "pefrl",
-            Self::Scene(Integrator::RungeKutta) => "runge-kutta",
-            Self::Scene(_) => "dormand-prince",
-        }
+    /// The integrator, and the solver of rotations that is not the default, by their names; those in scenes, if they have one.
+    pub(crate) fn names(self) -> [String; 2] {
+        let (integrator, rotation) = match self {
+            Self::Scene(integrator) => (typed(&integrator), String::new()),
+            Self::Reading(rotation) => (typed(&Integrator::VelocityVerlet), typed(&rotation)),
+            Self::ForestRuth => ("forest-ruth".to_owned(), String::new()),
+            Self::BlanesMoan => ("blanes-moan".to_owned(), String::new()),
+            Self::KahanLi => ("kahan-li".to_owned(), String::new()),
+        };
+        [integrator, rotation]
+    }
+
+    /// Both names.
+    pub(crate) fn name(self) -> String {
+        let [integrator, rotation] = self.names();
+        if rotation.is_empty() { integrator } else { format!("{integrator}, {rotation}") }
     }
 
     /// The evaluations of the forces in a step, or about that.
     fn evaluations(self) -> f64 {
         match self {
-            Self::ForestRuth => 3.0,
-            Self::BlanesMoan => 14.0,
             Self::Scene(Integrator::Pefrl | Integrator::RungeKutta) => 4.0,
             Self::Scene(Integrator::DormandPrince) => 6.0,
             Self::Scene(Integrator::BackwardEuler) => 40.0,
-            Self::QuinlanTremaine | Self::Scene(_) => 1.0,
+            Self::Scene(_) | Self::Reading(_) => 1.0,
+            Self::ForestRuth => 3.0,
+            Self::BlanesMoan => 14.0,
+            Self::KahanLi => 17.0,
         }
     }
 
@@ -78,14 +86,39 @@ impl Method {
         self == Self::DORMAND_PRINCE
     }
 
+    /// The integrator of scenes that needs of forces what this one needs, and the composition of others.
+    fn integrator(self) -> (Integrator, Option<Composition>) {
+        match self {
+            Self::Scene(integrator) => (integrator, None),
+            Self::Reading(_) => (Integrator::VelocityVerlet, None),
+            Self::ForestRuth => (Integrator::Pefrl, Some(FOREST_RUTH)),
+            Self::BlanesMoan => (Integrator::Pefrl, Some(BLANES_MOAN)),
+            Self::KahanLi => (Integrator::Pefrl, Some(KAHAN_LI)),
+        }
+    }
+
+    /// The model of a run, with the rotations of this method; `None` where there is no choice of them.
+    pub(crate) fn model(self, subject: &Subject) -> Option<Arc<dyn ElasticModel>> {
+        let model = &subject.scene.runs[subject.run].model;
+        let has_choice = subject.scene.body.dimension == Dimension::Space;
+        let with = |rotation| -> Option<Arc<dyn ElasticModel>> {
+            Some(Arc::new(ShapeBased { rotation, ..model.shape_based().filter(|_| has_choice)?.clone() }))
+        };
+        match self {
+            Self::Reading(rotation) => with(rotation),
+            _ => with(RotationReading::Robust).or_else(|| Some(Arc::clone(model))),
+        }
+    }
+
     /// Why it cannot advance a model; `None` if it can.
     pub(crate) fn refusal(self, subject: &Subject, model: &dyn ElasticModel) -> Option<&'static str> {
-        let integrator = match self {
-            Self::Scene(integrator) => integrator,
-            // What they need of forces is what this one needs.
-            Self::ForestRuth | Self::BlanesMoan | Self::QuinlanTremaine => Integrator::Pefrl,
-        };
-        integrator.refusal(|| model.prepare(&subject.scene.body))
+        self.integrator().0.refusal(|| model.prepare(&subject.scene.body))
+    }
+
+    /// Whether it has vectorised steps for a model.
+    pub(crate) fn is_fast(self, model: &dyn ElasticModel) -> bool {
+        let (integrator, composition) = self.integrator();
+        composition.is_none() && Kernel::of(model, integrator) == Kernel::Fast
     }
 }
 
@@ -131,22 +164,16 @@ impl Way {
     }
 
     /// The run of a scene at its start, with another model.
-    pub(super) fn world(self, subject: &Subject, model: &dyn ElasticModel) -> World {
-        let scene = &subject.scene;
-        let around =
-            Surroundings { gravity: scene.gravity, obstacles: scene.obstacles.clone(), grips: scene.grips.clone() };
-        let (integrator, own): (_, Option<Box<dyn integrate::Method>>) = match self.method {
-            Method::Scene(integrator) => (integrator, None),
-            Method::ForestRuth => (Integrator::default(), Some(Box::new(ByComposition::new(FOREST_RUTH)))),
-            Method::BlanesMoan => (Integrator::default(), Some(Box::new(ByComposition::new(BLANES_MOAN)))),
-            Method::QuinlanTremaine => (Integrator::default(), Some(Box::new(QuinlanTremaine::new()))),
-        };
-        let kernel = if own.is_some() { Kernel::Reference } else { Kernel::of(model, integrator) };
-        let step = scene.duration / self.steps as f64;
-        let stepping = Stepping { integrator, step, tolerance: self.tolerance, kernel };
-        let mut world = World::new(&scene.body, scene.initial.clone(), model, around, stepping);
-        if let Some(method) = own {
-            world.set_method(method);
+    pub(super) fn world(self, subject: &Subject, model: Arc<dyn ElasticModel>) -> World {
+        let mut scene = subject.scene.clone();
+        let (integrator, composition) = self.method.integrator();
+        let run = &mut scene.runs[subject.run];
+        run.kernel = if self.method.is_fast(model.as_ref()) { Kernel::Fast } else { Kernel::Reference };
+        run.step = scene.duration / self.steps as f64;
+        (run.integrator, run.tolerance, run.model) = (integrator, Some(self.tolerance), model);
+        let mut world = scene.world(subject.run);
+        if let Some(composition) = composition {
+            world.set_method(Box::new(ByComposition::new(composition)));
         }
         world
     }
@@ -161,7 +188,7 @@ impl Way {
         mut look: impl FnMut(usize, &[DVec3]),
     ) -> (End, u64) {
         let counting = Counting::new(Arc::clone(model), (Self::PATIENCE * most) as u64);
-        let mut world = self.world(subject, &counting);
+        let mut world = self.world(subject, Arc::new(counting.clone()));
         let looks = self.steps.min(MOMENTS as u64);
         for number in 1..=looks as usize {
             world.advance(self.steps / looks);
@@ -176,39 +203,5 @@ impl Way {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use localshape::{Limits, Scene};
-
-    /// A body that rests on a floor: nodes rebound again and again, and an adaptive method takes ever shorter substeps.
-    #[test]
-    fn a_run_that_takes_far_too_many_evaluations_is_given_up() {
-        let rests = "
-            gravity = [0, -9.8, 0]
-            time.duration = 0.5
-            body = { lattice = { cells = [1, 1, 1], side = 0.1 }, lowest = 0 }
-            obstacle = [{ kind = 'floor', restitution = 0.5 }]
-            run = [{ name = 'cube', model = { kind = 'shape-based', stiffness = 1e4, damping_ratio = 0.1 } }]
-        ";
-        let scene = Scene::parse(rests, "one.toml", &Limits::default()).unwrap();
-        let subject = Subject { name: "one".to_owned(), scene, run: 0 };
-        let models = subject.models();
-        let way = Way::new(Method::DORMAND_PRINCE, 1e3, 1e-9);
-        let (end, evaluations) = way.run(&subject, &models[0].1, 1e3, |_, _| ());
-        assert!(end == End::GivenUp && (16_000..17_000).contains(&evaluations), "{evaluations}");
-    }
-
-    #[test]
-    fn all_runs_have_their_states_at_the_same_moments() {
-        let numbers = |steps: u64| {
-            let way = Way { steps, ..Way::new(Method::DEFAULT, 1.0, 1.0) };
-            let mut numbers = Vec::new();
-            let subject = &super::super::usual()[1];
-            way.run(subject, &subject.models()[0].1, f64::INFINITY, |number, _| numbers.push(number));
-            numbers
-        };
-        assert_eq!(numbers(4096), (0..MOMENTS).collect::<Vec<_>>());
-        assert_eq!(numbers(Way::new(Method::DEFAULT, 4096.0, 1.0).finer().steps), (0..MOMENTS).collect::<Vec<_>>());
-        assert_eq!(numbers(64), (0..MOMENTS).skip(1).step_by(2).collect::<Vec<_>>());
-    }
-}
+#[path = "../../tests/inside/work_precision_method.rs"]
+mod tests;

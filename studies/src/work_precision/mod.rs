@@ -1,5 +1,5 @@
 //! The integrators: the error of positions over the whole time against evaluations of the forces and time, for steps and tolerances
-//! over decades, and with each solver of rotations.
+//! over decades, and that of the paper's readings of rotations.
 //!
 //! The error of a run is the largest at any of a set of moments that all runs have in common. The reference is computed by two
 //! different methods with small steps; how far apart they are at most is its own error, and no error below it is told. Evaluations
@@ -17,16 +17,12 @@ mod text;
 pub(crate) use scenes::usual;
 
 use crate::folder::Notes;
-use crate::model::ShapeBy;
-use crate::solver::Solver;
 use crate::spread::Spread;
 use crate::study::{Findings, Study, Watch};
 use crate::turns::{Clock, take_turns};
 use count::Counting;
 use localshape::Scene;
 use localshape::sim::model::ElasticModel;
-use localshape::sim::model::shape_based::ShapeBased;
-use localshape::sim::{Dimension, Kernel};
 use method::{End, Method, Way};
 use reference::{farthest, larger, reference};
 use std::sync::Arc;
@@ -73,36 +69,21 @@ impl Study for WorkPrecision {
     }
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
-        Some(measure(self.effort, &self.subjects, watch)?.findings())
+        let results = measure(self.effort, &self.subjects, watch)?;
+        Some(Findings {
+            #[cfg(feature = "render")]
+            pages: vec![("work-precision", results.page())],
+            ..Findings::new(results.text(), [("work-precision", results.table())])
+        })
     }
 }
 
 fn work(effort: Effort, subject: &Subject) -> u64 {
-    let steps: usize = (0..subject.models().len()).map(|number| Series::of(number).count).sum();
-    (Method::ALL.len() * steps) as u64 * u64::from(effort.rounds + 1)
+    (subject.methods().len() * STEPS) as u64 * u64::from(effort.rounds + 1)
 }
 
-/// The steps that are tried with each integrator, each a part of the one before.
-#[derive(Clone, Copy)]
-struct Series {
-    /// Their number.
-    count: usize,
-    /// That part is the inverse of this; tolerances fall by factors of `10^(ratio/2)`.
-    ratio: u32,
-    /// The evaluations of the finest run, as a share of the most that are allowed.
-    share: f64,
-}
-
-impl Series {
-    /// For the model with this number: all steps for the first, a quarter of the work for those that differ in their rotations
-    /// alone.
-    fn of(number: usize) -> Self {
-        match number {
-            0 => Self { count: 11, ratio: 2, share: 1.0 },
-            _ => Self { count: 5, ratio: 4, share: 0.25 },
-        }
-    }
-}
+/// The number of steps that are tried with each method, each half of the one before; tolerances fall by factors of ten.
+const STEPS: usize = 11;
 
 /// A run of a scene.
 pub(crate) struct Subject {
@@ -113,42 +94,18 @@ pub(crate) struct Subject {
     pub(crate) run: usize,
 }
 
-/// A model, and the solver of its rotations if there is a choice.
-type Choice = (Option<Solver>, Arc<dyn ElasticModel>);
-
 impl Subject {
-    /// The model with each solver of rotations; the model itself where there is no choice.
-    fn models(&self) -> Vec<Choice> {
-        let own = &self.scene.runs[self.run].model;
-        let with = |shape: &ShapeBased, solver| -> Arc<dyn ElasticModel> {
-            match solver {
-                Solver::Scene(rotation) => Arc::new(ShapeBased { rotation, ..shape.clone() }),
-                _ => {
-                    let ShapeBased { stiffness, damping, passes, .. } = *shape;
-                    Arc::new(ShapeBy { stiffness, damping, solver, passes })
-                }
-            }
-        };
-        match own.shape_based() {
-            Some(shape) if self.scene.body.dimension == Dimension::Space => {
-                Solver::ALL.map(|solver| (Some(solver), with(shape, solver))).into()
-            }
-            _ => vec![(None, Arc::clone(own))],
-        }
-    }
-
-    /// The methods that can advance a model.
-    fn accepted(&self, model: &dyn ElasticModel) -> Vec<Method> {
-        Method::ALL.into_iter().filter(|one| one.refusal(self, model).is_none()).collect()
+    /// The methods that can advance the run, with their models.
+    fn methods(&self) -> Vec<(Method, Arc<dyn ElasticModel>)> {
+        let all = Method::ALL.into_iter().filter_map(|one| Some((one, one.model(self)?)));
+        all.filter(|(one, model)| one.refusal(self, model.as_ref()).is_none()).collect()
     }
 }
 
-/// One integrator with one step or tolerance.
+/// One method with one step or tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Measured {
     pub(crate) way: Way,
-    /// The solver of rotations, where there is a choice.
-    pub(crate) solver: Option<Solver>,
     /// Time step (s), or the tolerance of an adaptive method.
     pub(crate) step: f64,
     /// Evaluations of the forces of the whole body, those of the start included.
@@ -204,11 +161,10 @@ pub(crate) fn measure(effort: Effort, subjects: &[Subject], watch: &Watch<'_>) -
 /// Measures one run.
 fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Comparison> {
     let Subject { name, scene, .. } = subject;
-    let models = subject.models();
-    let (_, usual) = &models[0];
-    let affordable = effort.seconds / seconds_per_evaluation(subject, usual);
-    let most = f64::from(effort.evaluations).min(affordable).max(1024.0);
-    let why = |one: Method| Some((one, one.refusal(subject, usual.as_ref())?));
+    let (methods, size) = (subject.methods(), scene.body.extent());
+    let usual = Method::DEFAULT.model(subject).expect("a model of scenes");
+    let most = f64::from(effort.evaluations).min(effort.seconds / seconds_per_evaluation(subject, &usual)).max(1024.0);
+    let why = |one: Method| Some((one, one.refusal(subject, one.model(subject)?.as_ref())?));
     let mut found = Comparison {
         name: name.clone(),
         words: usual.describe_fully(&scene.body),
@@ -218,61 +174,52 @@ fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Compa
         measured: Vec::new(),
         refused: Method::ALL.into_iter().filter_map(why).collect(),
     };
-    let (exact, reference) = match reference(subject, usual, &subject.accepted(usual.as_ref()), most) {
+    let (exact, reference) = match reference(subject, &methods, most) {
         Ok(found) => found,
         Err(why) => {
             found.reference = Err(why);
             return watch(work(effort, subject)).then_some(found);
         }
     };
-    let error_of_reference = reference.error;
+    let own_error = reference.error;
     found.reference = Ok(reference);
     let mut timed = Vec::new();
-    for (number, (solver, model)) in models.iter().enumerate() {
-        let Series { count, ratio, share } = Series::of(number);
-        let most = share * most;
-        for method in subject.accepted(model.as_ref()) {
-            for at in 0..count {
-                let coarser = f64::from(ratio.pow((count - 1 - at) as u32));
-                let way = Way::new(method, most / coarser, libm::pow(10.0, -1.0 - (at as u32 * ratio / 2) as f64));
-                let mut error = 0.0;
-                let (end, evaluations) = way.run(subject, model, most, |moment, positions| {
-                    error = larger(error, farthest(positions, &exact[moment]) / scene.body.extent());
-                });
-                if !watch(1) {
-                    return None;
-                }
-                // What is as good as the reference says nothing about the method.
-                if end == End::Reached && error < error_of_reference {
-                    break;
-                }
-                let is_fast = match method {
-                    Method::Scene(integrator) => Kernel::of(model.as_ref(), integrator) == Kernel::Fast,
-                    _ => false,
-                };
-                if end == End::Reached {
-                    timed.push((found.measured.len(), way, model));
-                }
-                found.measured.push(Measured {
-                    way,
-                    solver: *solver,
-                    step: if method.is_adaptive() { way.tolerance } else { scene.duration / way.steps as f64 },
-                    evaluations,
-                    error: (end == End::Reached).then_some(error),
-                    end,
-                    time: Spread::of([]),
-                    is_fast,
-                });
-                if evaluations as f64 > 1.5 * most {
-                    break;
-                }
+    for (method, model) in &methods {
+        for at in 0..STEPS {
+            let tolerance = libm::pow(10.0, -1.0 - at as f64);
+            let way = Way::new(*method, most / f64::from(1 << (STEPS - 1 - at)), tolerance);
+            let mut error = 0.0;
+            let (end, evaluations) = way.run(subject, model, most, |moment, positions| {
+                error = larger(error, farthest(positions, &exact[moment]) / size);
+            });
+            if !watch(1) {
+                return None;
+            }
+            // What is as good as the reference says nothing about the method.
+            if end == End::Reached && error < own_error {
+                break;
+            }
+            if end == End::Reached {
+                timed.push((found.measured.len(), way, model));
+            }
+            found.measured.push(Measured {
+                way,
+                step: if method.is_adaptive() { tolerance } else { scene.duration / way.steps as f64 },
+                evaluations,
+                error: (end == End::Reached).then_some(error),
+                end,
+                time: Spread::of([]),
+                is_fast: method.is_fast(model.as_ref()),
+            });
+            if evaluations as f64 > 1.5 * most {
+                break;
             }
         }
     }
     // What counted evaluations has warmed caches.
     let times = take_turns(timed.len(), effort.rounds, watch, |turn| {
         let (_, way, model) = &timed[turn];
-        let mut world = way.world(subject, model.as_ref());
+        let mut world = way.world(subject, Arc::clone(model));
         let clock = Clock::start();
         world.advance(way.steps);
         clock.seconds()
@@ -284,7 +231,7 @@ fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Compa
 /// The time of an evaluation by the reference code (s), about.
 fn seconds_per_evaluation(subject: &Subject, model: &Arc<dyn ElasticModel>) -> f64 {
     let way = Way { steps: 1 << 20, ..Way::new(Method::DEFAULT, 1.0, reference::TOLERANCE) };
-    let mut world = way.world(subject, &Counting::new(Arc::clone(model), u64::MAX));
+    let mut world = way.world(subject, Arc::new(Counting::new(Arc::clone(model), u64::MAX)));
     world.advance(1);
     let clock = Clock::start();
     world.advance(100);
@@ -307,27 +254,15 @@ impl Comparison {
         Method::ALL.into_iter().filter(|&one| self.of(one).next().is_some())
     }
 
-    /// The solvers of rotations that were measured; none where there is no choice.
-    pub(crate) fn solvers(&self) -> impl Iterator<Item = Solver> {
-        let is_measured = |wanted: &Solver| self.measured.iter().any(|one| one.solver == Some(*wanted));
-        Solver::ALL.into_iter().filter(is_measured)
-    }
-
-    /// The measurements of a method, with the default for rotations.
+    /// The measurements of a method.
     pub(crate) fn of(&self, method: Method) -> impl Iterator<Item = &Measured> {
-        self.with(method, Solver::DEFAULT)
-    }
-
-    /// The measurements of a method with a solver of rotations; where there is no choice, with what the model has.
-    pub(crate) fn with(&self, method: Method, solver: Solver) -> impl Iterator<Item = &Measured> {
-        let is_of = move |one: &&Measured| one.way.method == method && one.solver.is_none_or(|own| own == solver);
-        self.measured.iter().filter(is_of)
+        self.measured.iter().filter(move |one| one.way.method == method)
     }
 
     /// What an error costs, interpolated on logarithmic axes between the coarsest run from which on no error is larger and the one
     /// before; `None` if there is none.
-    pub(crate) fn cost(&self, method: Method, solver: Solver, error: f64) -> Option<Cost> {
-        let runs: Vec<_> = self.with(method, solver).filter_map(|one| Some((one, one.error?))).collect();
+    pub(crate) fn cost(&self, method: Method, error: f64) -> Option<Cost> {
+        let runs: Vec<_> = self.of(method).filter_map(|one| Some((one, one.error?))).collect();
         let larger = runs.iter().rposition(|&(_, own)| own > error);
         let &(fine, low) = runs.get(larger.map_or(0, |at| at + 1))?;
         let cost = |share: f64, coarse: &Measured| {

@@ -3,6 +3,7 @@
 use super::method::{End, MOMENTS, Method, Way};
 use super::{Reference, Subject};
 use glam::DVec3;
+use localshape::sim::Integrator;
 use localshape::sim::model::ElasticModel;
 use std::sync::Arc;
 
@@ -17,18 +18,18 @@ pub(super) type Course = Vec<Vec<DVec3>>;
 /// A course by two different methods; why there is none otherwise. `most` is the number of evaluations of the finest run.
 pub(super) fn reference(
     subject: &Subject,
-    model: &Arc<dyn ElasticModel>,
-    accepted: &[Method],
+    accepted: &[(Method, Arc<dyn ElasticModel>)],
     most: f64,
 ) -> Result<(Course, Reference), String> {
     // With obstacles only the adaptive method is of high order, and of the others that with the smallest steps is best.
     let best: &[Method] = if subject.scene.obstacles.is_empty() {
-        &[Method::BlanesMoan, Method::QuinlanTremaine, Method::DORMAND_PRINCE, Method::RUNGE_KUTTA]
+        &[Method::BlanesMoan, Method::KahanLi, Method::DORMAND_PRINCE, Method::Scene(Integrator::RungeKutta)]
     } else {
         &[Method::DORMAND_PRINCE]
     };
-    let methods = best.iter().chain(&[Method::VERLET, Method::DEFAULT]).filter(|one| accepted.contains(one));
-    let mut courses = methods.filter_map(|&method| Some((method, finest(subject, model, method, most)?)));
+    let best = best.iter().chain(&[Method::VERLET, Method::DEFAULT]);
+    let methods = best.filter_map(|one| accepted.iter().find(|(method, _)| method == one));
+    let mut courses = methods.filter_map(|(method, model)| Some((*method, finest(subject, model, *method, most)?)));
     let mut next = || courses.next().unwrap_or((Method::DEFAULT, None));
     let ((first, one), (second, other)) = (next(), next());
     let (Some(one), Some(other)) = (one, other) else {

@@ -2,32 +2,19 @@
 
 use super::method::{End, MOMENTS, Method};
 use super::{Comparison, Cost, Measured, Results};
-use crate::solver::Solver;
-use crate::study::Findings;
 use crate::table::{Cell, Table};
 use crate::turns::{kind_of_time, machine};
 
 /// The errors for which a method is recommended.
 const WANTED: [f64; 7] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9];
-/// The error for which solvers of rotations are compared.
-const SOLVERS_FOR: f64 = 1e-2;
 
 impl Results {
-    pub(super) fn findings(&self) -> Findings {
-        Findings {
-            text: self.text(),
-            tables: vec![("work-precision", self.table())],
-            #[cfg(feature = "render")]
-            pages: self.pages(),
-        }
-    }
-
     /// The results for people.
     pub(super) fn text(&self) -> String {
         let mut text = format!(
             "# Integrators: error against work\n\n\
             Errors are the greatest distances of nodes from the reference at any of {MOMENTS} moments, as shares of the body's size; \
-            a run of fewer steps is compared after each of them. Rotations are those of `robust`, if nothing else is said. \
+            a run of fewer steps is compared after each of them. Rotations are those of `robust`, if no reading is named. \
             Evaluations of the forces include those of the start. Times are {} time of one thread on {}: medians of {} turn{} in \
             which all runs take turns. Other machines give other times.\n",
             kind_of_time(),
@@ -43,11 +30,11 @@ impl Results {
     pub(super) fn table(&self) -> Table {
         let rows = self.comparisons.iter().flat_map(|one| one.measured.iter().map(move |run| (one, run)));
         let row = |(comparison, run): (&Comparison, &Measured)| {
-            let is_adaptive = run.way.method.is_adaptive();
+            let (is_adaptive, [integrator, rotation]) = (run.way.method.is_adaptive(), run.way.method.names());
             [
                 ("scene", comparison.name.as_str().into()),
-                ("integrator", run.way.method.name().into()),
-                ("rotation", run.solver.map(Solver::name).into()),
+                ("integrator", integrator.into()),
+                ("rotation", rotation.into()),
                 ("kernel", if run.is_fast { "fast" } else { "reference" }.into()),
                 ("step_s", if is_adaptive { Cell::Empty } else { run.step.into() }),
                 ("tolerance", if is_adaptive { run.step.into() } else { Cell::Empty }),
@@ -80,14 +67,6 @@ impl Comparison {
                 text += &self.recommendations().markdown(1);
                 text += "\n### Orders, and the least errors\n\n";
                 text += &self.orders().markdown(1);
-                if self.solvers().next().is_some() {
-                    text += &format!(
-                        "\n### Solvers of rotations\n\nTime (ms) for an error of {SOLVERS_FOR:e}, and the least error \
-                         with any of these integrators. Solvers with a fixed number of passes give forces that depend on the \
-                         evaluation before, which methods of several evaluations a step cannot use.\n\n",
-                    );
-                    text += &self.rotations().markdown(1);
-                }
             }
             Err(why) => text += &format!("\n\n{why}.\n"),
         }
@@ -102,7 +81,7 @@ impl Comparison {
         let own = self.reference.as_ref().map_or(f64::INFINITY, |reference| reference.error);
         let wanted = WANTED.into_iter().filter(|&error| error > own);
         let rows = wanted.filter_map(|error| {
-            let cost = |method| self.cost(method, Solver::DEFAULT, error);
+            let cost = |method| self.cost(method, error);
             let costs: Vec<_> = self.methods().filter_map(cost).collect();
             let least = |of: fn(&Cost) -> f64| costs.iter().min_by(|one, other| of(one).total_cmp(&of(other)));
             let (fewest, fastest) = (least(|one| one.evaluations)?, least(|one| one.time)?);
@@ -122,21 +101,6 @@ impl Comparison {
         Table::of(rows)
     }
 
-    /// A row for each solver of rotations.
-    fn rotations(&self) -> Table {
-        let methods = [Method::DEFAULT, Method::VERLET, Method::PEFRL, Method::RUNGE_KUTTA];
-        let row = |solver: Solver| {
-            let times = methods.map(|method| {
-                let time = self.cost(method, solver, SOLVERS_FOR).map(|cost| short(1e3 * cost.time));
-                (method.name(), or_dash(time))
-            });
-            let least = least(methods.iter().flat_map(|&one| self.with(one, solver)));
-            let [one, two, three, four] = times;
-            [("solver", solver.name().into()), one, two, three, four, ("least error", least)]
-        };
-        Table::of(self.solvers().map(row))
-    }
-
     /// The step or the tolerance in words.
     fn step(&self, method: Method, step: f64) -> String {
         if method.is_adaptive() { format!("tolerance {step:.0e}") } else { format!("T/{}", short(self.cycle / step)) }
@@ -144,12 +108,13 @@ impl Comparison {
 
     fn orders(&self) -> Table {
         let row = |method: Method| {
+            let least = self.of(method).filter_map(|run| run.error).min_by(f64::total_cmp);
             let step = |run: Option<&Measured>| or_dash(run.map(|run| self.step(method, run.step)));
             [
                 ("integrator", method.name().into()),
                 ("order", or_dash(self.order(method).map(|order| format!("{order:.2}")))),
                 ("largest step that does not diverge", step(self.of(method).find(|run| run.error.is_some()))),
-                ("least error", least(self.of(method))),
+                ("least error", or_dash(least.map(|error| format!("{error:.0e}")))),
                 ("given up", step(self.of(method).find(|run| run.end == End::GivenUp))),
             ]
         };
@@ -165,12 +130,6 @@ impl End {
             Self::GivenUp => "given up",
         }
     }
-}
-
-/// The least error of some runs.
-fn least<'a>(runs: impl Iterator<Item = &'a Measured>) -> Cell {
-    let least = runs.filter_map(|run| run.error).min_by(f64::total_cmp);
-    or_dash(least.map(|error| format!("{error:.0e}")))
 }
 
 fn or_dash(text: Option<String>) -> Cell {

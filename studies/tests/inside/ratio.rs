@@ -1,8 +1,7 @@
 //! The ratio of computation times.
 
 use super::*;
-use crate::reading::{markdown_rows, numbers, records, same};
-use crate::table::documented;
+use crate::reading::{documented, markdown_rows, numbers, records, same};
 use localshape::sim::Status;
 
 fn quick(threads: usize) -> Ratio {

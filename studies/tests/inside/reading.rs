@@ -1,4 +1,4 @@
-//! Tables are read again.
+//! Tables are read again, and compared with the document of their columns.
 
 use std::collections::BTreeMap;
 
@@ -29,4 +29,12 @@ pub(crate) fn same(shown: &[f64], exact: &[&str]) -> bool {
     let exact: Vec<f64> = exact.iter().map(|text| text.parse().expect("a number")).collect();
     let near = |(shown, exact): (&f64, &f64)| (shown - exact).abs() <= 0.00501 * exact.abs();
     shown.len() == exact.len() && shown.iter().zip(&exact).all(near)
+}
+
+/// The columns that `docs/files.md` documents for a CSV file.
+pub(crate) fn documented(file: &str) -> Vec<&'static str> {
+    let page = include_str!("../../../docs/files.md");
+    let section = page.split("\n## ").find(|section| section.starts_with(&format!("`{file}`"))).expect("its section");
+    let cells = section.lines().filter_map(|line| line.strip_prefix("| `")?.split(" | ").next());
+    cells.flat_map(|cell| cell.split(", ")).map(|name| name.trim_matches('`')).collect()
 }

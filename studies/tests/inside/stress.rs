@@ -1,7 +1,7 @@
 //! The stress suite in its fast form: what must hold of every trial.
 
 use super::{MODELS, measure};
-use crate::table::documented;
+use crate::reading::documented;
 
 /// All trials with every model, with 20 000 steps instead of a million for bodies that rest or spin.
 #[test]

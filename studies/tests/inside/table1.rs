@@ -1,8 +1,7 @@
 //! Table 1: its rows as printed, and at one k/m properties of them that hold on any machine.
 
 use super::*;
-use crate::reading::{markdown_rows, numbers, records, same};
-use crate::table::documented;
+use crate::reading::{documented, markdown_rows, numbers, records, same};
 use localshape::sim::World;
 
 /// Some starts at the smallest k/m. The paper's 10 s, as rebounds add energy at ΔT = T/10, and errors grow with it.
@@ -19,7 +18,7 @@ fn each_row_is_as_far_from_the_others_as_in_the_paper() {
     let summaries = table.summaries();
     let of = |solver: usize, row: &str| -> Summary {
         let found = summaries.iter().find(|one| one.case.solver == SOLVERS[solver] && one.case.row.name == row);
-        *found.unwrap_or_else(|| panic!("no row {row} of {}", SOLVERS[solver].name()))
+        *found.unwrap_or_else(|| panic!("no row {row} of {}", SOLVERS[solver]))
     };
     let [a, b, c, d] = ROWS.map(|row| of(0, row.name));
     // The ranges found by an independent implementation.
@@ -28,18 +27,15 @@ fn each_row_is_as_far_from_the_others_as_in_the_paper() {
     assert!((4e-5..3e-3).contains(&c.mean.median), "{c:?}");
     assert!(c.maximum.median < 1e-2 * a.maximum.median, "{c:?}");
     assert!(d.maximum.median < 1e-6, "{d:?}");
-    // More accurate solvers: the symmetric matrix by one pass, the exact rotation to round-off.
-    assert!(of(1, "A").mean.median < 0.3 * a.mean.median);
-    assert!(of(1, "C").mean.median < 1e-2 * c.mean.median);
-    assert!(of(2, "A").maximum.most < 1e-10);
+    assert!(of(1, "A").maximum.most < 1e-10, "the exact rotation to round-off");
     assert!(summaries.iter().all(|summary| summary.diverged == 0));
 
     let (cells, rows) = (markdown_rows(&table.text()), records(&table.summary_table().csv()));
-    assert_eq!((cells.len(), rows.len()), (10, 10));
+    assert_eq!((cells.len(), rows.len()), (6, 6));
     let ranges = ["mean_median", "mean_least", "mean_most", "deviation_median", "maximum_median"];
     for (cells, row) in cells.iter().zip(&rows) {
         // The paper's own solver comes first, with the paper's numbers beside ours.
-        let [mean, deviation, maximum] = if cells.len() == 10 { [5, 7, 9] } else { [5, 6, 7] }.map(|at| &cells[at]);
+        let [mean, deviation, maximum] = if cells.len() == 10 { [5, 7, 9] } else { [4, 5, 6] }.map(|at| &cells[at]);
         let shown = [numbers(mean), numbers(deviation), numbers(maximum)].concat();
         let all: Vec<_> =
             ranges.iter().chain(&["maximum_least", "maximum_most"]).map(|head| row[*head].as_str()).collect();
@@ -68,8 +64,7 @@ fn rebounds_feed_energy_where_a_cycle_has_ten_steps() {
             run = [{{ name = 'exact', kernel = 'reference', model = {{ kind = 'shape-based', stiffness = 1e4 }} }}]",
             axis.x, axis.y, axis.z
         );
-        let mut scene = Scene::parse(&text, "energy", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-        scene.runs[0].model = Arc::new(ShapeBy { stiffness: 1e4, damping: 0.0, solver: Solver::Davenport, passes: 0 });
+        let scene = Scene::parse(&text, "energy", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
         let energy = |world: &World| world.diagnostics().energy;
         let mut world = scene.world(0);
         let before = energy(&world);
@@ -79,8 +74,8 @@ fn rebounds_feed_energy_where_a_cycle_has_ten_steps() {
     };
     let of_fifteen = |step: f64| Spread::of((0..15).map(|number| gained(number, step)));
     let (tenth, hundredth) = (of_fifteen(0.006), of_fifteen(0.0006));
-    assert!((tenth.least - 1.08).abs() < 0.01 && (tenth.most - 6.19).abs() < 0.01, "{tenth:?}");
-    assert!((tenth.median - 2.53).abs() < 0.01, "{tenth:?}");
+    assert!((tenth.least - 1.22).abs() < 0.01 && (tenth.most - 4.64).abs() < 0.01, "{tenth:?}");
+    assert!((tenth.median - 2.33).abs() < 0.01, "{tenth:?}");
     assert!(hundredth.least > 0.9 && hundredth.most < 1.1, "{hundredth:?}");
 }
 
@@ -123,7 +118,7 @@ fn orientations_are_evenly_spread() {
 #[test]
 fn rows_are_those_printed() {
     let cases = Table1::new(51, 1).cases();
-    assert_eq!(cases.len(), 12 + 12 + 6);
+    assert_eq!(cases.len(), 12 + 6);
     assert_eq!(cases.iter().filter(|case| case.printed().is_some()).count(), 12);
     // "ΔT is fixed at 1/10 of the cycle of elastic oscillation", in row B at 1/100.
     for case in cases {

@@ -2,6 +2,7 @@
 
 use super::*;
 use localshape::Limits;
+use localshape::sim::model::shape_based::RotationReading;
 
 const QUICK: Effort = Effort { evaluations: 4096, seconds: 10.0, rounds: 1 };
 
@@ -48,7 +49,7 @@ fn errors_fall_with_evaluations_and_the_reference_knows_its_own() {
     assert!(found.reference.as_ref().is_ok_and(|reference| reference.error < 1e-9), "{:?}", found.reference);
     assert!(found.refused.is_empty());
     assert_eq!(found.methods().count(), Method::ALL.len());
-    let cost = |method| found.cost(method, Solver::DEFAULT, 1e-5).expect("it is reached").evaluations;
+    let cost = |method| found.cost(method, 1e-5).expect("it is reached").evaluations;
     let [euler, pefrl] = [Method::DEFAULT, Method::PEFRL].map(cost);
     assert!(euler > 5.0 * pefrl, "{euler} {pefrl}");
     let orders = [(Method::VERLET, 2.0), (Method::PEFRL, 4.0), (Method::ForestRuth, 4.0)];
@@ -56,20 +57,12 @@ fn errors_fall_with_evaluations_and_the_reference_knows_its_own() {
         let own = found.order(method).expect("it has one");
         assert!((own - order).abs() < 0.3, "{method:?}: {own}");
     }
-    // Each solver with all methods, or with those of one evaluation a step if it has passes.
-    assert_eq!(found.solvers().count(), Solver::ALL.len());
-    for solver in Solver::ALL {
-        let count = Method::ALL.iter().filter(|&&one| found.with(one, solver).next().is_some()).count();
-        assert_eq!(count, if solver.has_passes() { 3 } else { Method::ALL.len() }, "{solver:?}");
-    }
-    let least = |solver| {
-        let errors = found.with(Method::VERLET, solver).filter_map(|one| one.error);
-        errors.fold(f64::INFINITY, f64::min)
-    };
-    let [exact, printed, linear] = [Solver::Davenport, Solver::PRINTED, Solver::LINEAR].map(least);
+    let least = |method| found.of(method).filter_map(|one| one.error).fold(f64::INFINITY, f64::min);
+    let readings = [RotationReading::Arctangent, RotationReading::LinearUpdate].map(|one| least(Method::Reading(one)));
+    let (exact, [printed, linear]) = (least(Method::VERLET), readings);
     assert!(printed < 2.0 * exact && linear > 100.0 * exact, "{exact:e} {printed:e} {linear:e}");
     assert_eq!(results.table().rows.len(), found.measured.len());
-    assert_eq!(results.table().heads, crate::table::documented("work-precision.csv"));
+    assert_eq!(results.table().heads, crate::reading::documented("work-precision.csv"));
     assert!(measure(QUICK, &subjects(FREE), &|_| false).is_none());
 }
 
@@ -77,12 +70,11 @@ fn errors_fall_with_evaluations_and_the_reference_knows_its_own() {
 #[test]
 fn an_error_is_the_largest_over_the_whole_time() {
     let subject = &subjects(DAMPED)[0];
-    let (_, model) = &subject.models()[0];
-    let methods = subject.accepted(model.as_ref());
-    let (exact, _) = reference(subject, model, &methods, 65_536.0).expect("there is one");
+    let (methods, model) = (subject.methods(), Method::VERLET.model(subject).expect("its own"));
+    let (exact, _) = reference(subject, &methods, 65_536.0).expect("there is one");
     let way = Way::new(Method::VERLET, 512.0, 1.0);
     let (mut last, mut largest, size) = (0.0, 0.0, subject.scene.body.extent());
-    way.run(subject, model, 1e6, |moment, positions| {
+    way.run(subject, &model, 1e6, |moment, positions| {
         last = farthest(positions, &exact[moment]) / size;
         largest = larger(largest, last);
     });
@@ -101,14 +93,13 @@ fn no_error_is_below_that_of_the_reference() {
     let own = found.reference.as_ref().expect("there is one").error;
     assert!(found.measured.iter().all(|one| one.error.is_none_or(|error| error >= own)), "{found:#?}");
     let tried = |method| found.of(method).count();
-    assert!(Method::ALL.into_iter().any(|one| tried(one) > 0 && tried(one) < Series::of(0).count), "one is cut short");
+    assert!(Method::ALL.into_iter().any(|one| tried(one) > 0 && tried(one) < STEPS), "one is cut short");
 }
 
 /// A comparison with one method and these errors, with steps that are halved.
 fn with_errors(method: Method, errors: &[f64]) -> Comparison {
     let measured = errors.iter().enumerate().map(|(at, &error)| Measured {
         way: Way::new(method, 1.0, 1.0),
-        solver: None,
         step: 0.5f64.powi(at as i32),
         evaluations: 1 << at,
         error: Some(error),
@@ -141,7 +132,7 @@ fn orders_are_told_only_where_errors_show_one() {
 #[test]
 fn a_cost_is_that_from_which_on_errors_are_small() {
     let found = with_errors(Method::VERLET, &[1e-1, 1e-4, 1e-2, 1e-5]);
-    let cost = |error| found.cost(Method::VERLET, Solver::DEFAULT, error).map(|cost| cost.step);
+    let cost = |error| found.cost(Method::VERLET, error).map(|cost| cost.step);
     assert_eq!(cost(1e-5), Some(0.125));
     assert!((0.125..0.25).contains(&cost(1e-3).expect("it is reached")));
     assert_eq!((cost(0.5), cost(1e-6)), (Some(1.0), None));
@@ -149,8 +140,12 @@ fn a_cost_is_that_from_which_on_errors_are_small() {
 
 #[test]
 fn the_scenes_that_are_measured_by_default_have_no_mistakes() {
-    let has_solvers: Vec<_> = usual().iter().map(|subject| subject.models().len() > 1).collect();
-    assert_eq!(has_solvers, [true, true, false], "the last one is in the plane");
+    let has_readings = |subject: &Subject| subject.methods().iter().any(|(one, _)| matches!(one, Method::Reading(_)));
+    assert_eq!(
+        usual().iter().map(has_readings).collect::<Vec<_>>(),
+        [true, true, false],
+        "the last one is in the plane"
+    );
 }
 
 #[test]
@@ -158,7 +153,7 @@ fn methods_that_cannot_advance_a_run_are_named_with_the_reason() {
     let results = measure(QUICK, &subjects(&FREE.replace("1e4 }", "1e4, damping = 1 }")), &|_| true);
     let results = results.expect("it is never stopped");
     let refused: Vec<_> = results.comparisons[0].refused.iter().map(|(one, _)| one.name()).collect();
-    assert_eq!(refused, ["forest-ruth", "pefrl", "blanes-moan", "quinlan-tremaine"]);
+    assert_eq!(refused, ["forest-ruth", "pefrl", "blanes-moan", "kahan-li"]);
     assert!(results.text().contains("pefrl has substeps backwards in time"));
 }
 

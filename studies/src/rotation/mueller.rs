@@ -14,11 +14,11 @@ const LEAST: f64 = 1e-9;
 
 /// The rotation after a number of passes.
 pub(super) fn relax(at_rest: DMat3, last: DQuat, passes: u32) -> DQuat {
-    let least = LEAST * super::size(at_rest);
+    let least = LEAST * at_rest.to_cols_array().iter().map(|entry| entry.abs()).sum::<f64>();
     let mut rotation = last;
     for _ in 0..passes {
         let a = DMat3::from_quat(rotation) * at_rest;
-        let divisor = super::trace(a).abs() + least;
+        let divisor = (a.x_axis.x + a.y_axis.y + a.z_axis.z).abs() + least;
         let w = -torque(a) / divisor;
         // All corners at a point, or no numbers at all.
         if !w.is_finite() {

@@ -1,9 +1,4 @@
-//! Integrators of high order that scenes do not have, through the traits for methods of one's own. They need forces that depend on
-//! positions alone.
-
-mod quinlan_tremaine;
-
-pub(crate) use quinlan_tremaine::QuinlanTremaine;
+//! Symplectic integrators of high order that scenes do not have. They need forces that depend on positions alone.
 
 use localshape::sim::integrate::Composition;
 
@@ -37,8 +32,8 @@ pub(crate) const BLANES_MOAN: Composition = Composition {
 };
 
 /// W. Kahan, R.-C. Li, Mathematics of Computation 66, 1089 (1997), table 1: s17odr8a, of order 8, as a composition of steps
-/// of drift, kick and drift. It starts the multistep method.
-const KAHAN_LI: Composition = Composition {
+/// of drift, kick and drift.
+pub(crate) const KAHAN_LI: Composition = Composition {
     drifts: &[
         0.5 * GAMMA[0],
         0.5 * (GAMMA[0] + GAMMA[1]),
@@ -65,20 +60,5 @@ const GAMMA: [f64; 9] = [
 ];
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Drifts and kicks add up to one step each.
-    #[test]
-    fn shares_add_up_to_the_step() {
-        for Composition { drifts, kicks } in [FOREST_RUTH, BLANES_MOAN, KAHAN_LI] {
-            let is_even = drifts.len() > kicks.len();
-            let sum = |shares: &[f64], has_middle: bool| {
-                let middle = if has_middle { shares[shares.len() - 1] } else { 0.0 };
-                2.0 * shares.iter().sum::<f64>() - middle
-            };
-            let [drift, kick] = [sum(drifts, is_even), sum(kicks, !is_even)];
-            assert!((drift - 1.0).abs() < 1e-14 && (kick - 1.0).abs() < 1e-14, "{drift} {kick}");
-        }
-    }
-}
+#[path = "../tests/inside/methods.rs"]
+mod tests;

@@ -27,7 +27,7 @@ pub(super) fn rotation(at_rest: DMat3, last: DQuat) -> DQuat {
 }
 
 fn regular(at_rest: DMat3) -> Option<DQuat> {
-    let size = super::size(at_rest);
+    let size = at_rest.to_cols_array().iter().map(|entry| entry.abs()).sum::<f64>();
     if !(size > 0.0 && size.is_finite()) {
         return None;
     }

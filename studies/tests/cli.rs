@@ -1,0 +1,285 @@
+//! The program as its users meet it: files, messages and exit statuses.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// Two cubes on a floor with two runs; quick.
+const SMALL: &str = r#"
+title = "Two cubes"
+gravity = [0, -9.8, 0]
+[time]
+duration = 0.1
+step = "T/50"
+[body]
+lattice = { cells = [2, 1, 1], side = 0.1 }
+lowest = 0.0
+velocity = [0, -2, 0]
+[[run]]
+name = "Local shape"
+model = { kind = "shape-based", stiffness = 1e4, damping_ratio = 0.1 }
+[[run]]
+name = "Mass-spring"
+model = { kind = "mass-spring", stiffness = 1e4, damping_ratio = 0.1, springs = "edges+one-diagonal" }
+[[obstacle]]
+kind = "floor"
+restitution = 0.5
+friction = 0.3
+"#;
+
+/// A folder of its own to run the program in.
+struct Place(TempDir);
+
+impl Place {
+    fn new() -> Self {
+        let place = Self(tempfile::tempdir().expect("a folder for the test"));
+        place.write("small.toml", SMALL);
+        place
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn write(&self, name: &str, contents: &str) {
+        let path = self.path(name);
+        fs::create_dir_all(path.parent().expect("below the place")).expect("a folder");
+        fs::write(path, contents).expect("a file");
+    }
+
+    fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    /// The names in a folder, including hidden ones, sorted.
+    fn names(&self, folder: &str) -> Vec<String> {
+        let entries = fs::read_dir(self.path(folder)).unwrap_or_else(|error| panic!("{folder}: {error}"));
+        let name = |entry: std::io::Result<fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
+        let mut names: Vec<_> = entries.map(name).collect();
+        names.sort();
+        names
+    }
+
+    fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_localshape-study"));
+        command.current_dir(self.0.path()).args(arguments.split(' ')).stdin(Stdio::null());
+        command
+    }
+
+    fn output(&self, arguments: &str) -> Output {
+        self.command(arguments).output().expect("the program runs")
+    }
+
+    /// Runs it to its end, and returns what it printed.
+    #[track_caller]
+    fn good(&self, arguments: &str) -> String {
+        let output = self.output(arguments);
+        assert!(output.status.success(), "{arguments}: {output:?}");
+        String::from_utf8(output.stdout).expect("a text")
+    }
+
+    /// Runs it to its failure with a status and a message that has these words.
+    #[track_caller]
+    fn bad(&self, arguments: &str, status: i32, words: &[&str]) {
+        let output = self.output(arguments);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(status), "{arguments}: {message}");
+        assert!(words.iter().all(|word| message.contains(word)), "{arguments}: {message}");
+        assert!(output.stdout.is_empty(), "{output:?}");
+    }
+}
+
+/// Whether plots can be drawn here; with `LOCALSHAPE_REQUIRE_GPU` a missing adapter is a failure.
+fn can_study() -> bool {
+    #[cfg(feature = "render")]
+    if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none() && localshape::gpu::adapters().0.is_empty() {
+        eprintln!("skipped: there is no graphics adapter");
+        return false;
+    }
+    true
+}
+
+/// The names with those of plots.
+fn with_plots(names: &[&str], plots: &[&str]) -> Vec<String> {
+    let plots = plots.iter().filter(|_| cfg!(feature = "render"));
+    let plots = plots.flat_map(|plot| ["svg", "png"].map(|ending| format!("{plot}.{ending}")));
+    let mut names: Vec<_> = names.iter().map(|name| (*name).to_owned()).chain(plots).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn help_and_version_are_results() {
+    let place = Place::new();
+    let help = place.good("--help");
+    for word in
+        ["rotation", "work-precision", "stability", "stress", "table1", "ratio", "Exit status:", "130", "Examples:"]
+    {
+        assert!(help.contains(word), "{word}");
+    }
+    assert_eq!(place.good("--version"), format!("localshape-study {}\n", env!("CARGO_PKG_VERSION")));
+    for study in ["rotation", "work-precision", "stability", "stress", "table1", "ratio"] {
+        place.good(&format!("{study} --help"));
+    }
+}
+
+#[test]
+fn wrong_words() {
+    let place = Place::new();
+    place.bad("rotations", 2, &["rotations", "'rotation'"]);
+    place.bad("rotation --json --quiet", 2, &["--json", "--quiet"]);
+    place.bad("work-precision --only a", 2, &["--only", "<SCENE>"]);
+    place.bad("work-precision small.toml --only nobody", 2, &["--only", "nobody", "“Mass-spring”"]);
+    place.bad("work-precision smal.toml", 2, &["smal.toml"]);
+    place.bad("tabel1", 2, &["tabel1", "'table1'"]);
+    place.bad("table1 --orientations 0", 2, &["--orientations", "1..=10000"]);
+    place.bad("ratio --threads 0", 2, &["--threads"]);
+    place.write("still.toml", &SMALL.replace("duration = 0.1", "duration = 0"));
+    place.bad("stability still.toml", 2, &["`time.duration` is 0"]);
+    place.write("wrong.toml", &SMALL.replace("shape-based", "shape-baste"));
+    place.bad("stability wrong.toml", 2, &["wrong.toml:", "shape-baste", "shape-based"]);
+    let adaptive =
+        SMALL.replace("[[run]]\n", "[[run]]\nintegrator = \"dormand-prince\"\n").replace("step = \"T/50\"\n", "");
+    place.write("adaptive.toml", &adaptive);
+    place.bad("stability adaptive.toml", 2, &["find their own steps: there is nothing to map"]);
+    assert_eq!(place.names("."), ["adaptive.toml", "small.toml", "still.toml", "wrong.toml"]);
+}
+
+#[test]
+fn maps_the_stability_of_a_scene() {
+    if !can_study() {
+        return;
+    }
+    let place = Place::new();
+    let command = "stability small.toml -o maps";
+    let out = place.good(command);
+    assert!(out.starts_with("<!-- localshape-study stability small.toml -->\n"), "{out}");
+    assert!(out.starts_with(&place.read("maps/stability.md")) && out.contains("In maps: stability.md, stability.csv"));
+    let table = place.read("maps/stability.csv");
+    // Two runs, thirteen stiffnesses and twelve steps.
+    assert_eq!(table.lines().count(), 1 + 2 * 13 * 12);
+    let diverged = table.lines().filter(|line| line.contains(",diverged,"));
+    let shares: Vec<f64> = diverged.map(|line| line.split(',').nth(6).unwrap().parse().unwrap()).collect();
+    assert!(!shares.is_empty() && shares.iter().all(|&share| share > 1.0), "{shares:?}");
+    assert_eq!(place.names("maps"), with_plots(&["stability.csv", "stability.md"], &["stability"]));
+    place.good(&format!("{command} --threads 1"));
+    assert_eq!(place.read("maps/stability.csv"), table, "for any number of threads");
+    place.bad(&format!("{command} --full"), 2, &["maps", "stability small.toml"]);
+    // What another command has made until it was interrupted is not lost.
+    let notes = "<!-- localshape-study stability other.toml -->\n0.1.0 ab\n";
+    place.write("begun/stability.unfinished", notes);
+    place.bad("stability small.toml -o begun", 2, &["`localshape-study stability other.toml`", "--overwrite"]);
+    assert_eq!(place.read("begun/stability.unfinished"), notes);
+}
+
+/// One start of Table 1: a second or two.
+#[test]
+fn table1_is_the_same_for_any_number_of_threads() {
+    if !can_study() {
+        return;
+    }
+    let place = Place::new();
+    let out = place.good("table1 --orientations 1 --threads 1");
+    assert_eq!(place.good("table1 --orientations 1 --threads 2 -o two --quiet"), "");
+    let files = with_plots(&["table1-orientations.csv", "table1.csv", "table1.md"], &["table1"]);
+    for folder in ["output/study-table1", "two"] {
+        assert_eq!(place.names(folder), files);
+    }
+    for file in &files {
+        let bytes = |folder: &str| fs::read(place.path(folder).join(file)).expect("a file");
+        assert!(bytes("output/study-table1") == bytes("two"), "{file}");
+    }
+    assert!(out.starts_with(&place.read("two/table1.md")));
+    let records = |file: &str| -> Vec<csv::StringRecord> {
+        let text = place.read(file);
+        csv::Reader::from_reader(text.as_bytes()).records().map(|row| row.expect("a whole row")).collect()
+    };
+    let (summary, courses) = (records("two/table1.csv"), records("two/table1-orientations.csv"));
+    assert_eq!((summary.len(), courses.len()), (18, 18));
+    // Mean, deviation and maximum of the one start are those of the medians.
+    for (summary, course) in summary.iter().zip(&courses) {
+        assert_eq!([&summary[9], &summary[12], &summary[13]], [&course[11], &course[12], &course[13]]);
+        assert_eq!(&course[14], "ok");
+        let (evaluations, step) = (course[10].parse::<f64>().unwrap(), course[4].parse::<f64>().unwrap());
+        assert!((evaluations * step - 10.0).abs() <= step, "ten seconds");
+    }
+}
+
+#[test]
+fn files_of_others_and_of_another_choice_are_refused_unless_told() {
+    if !can_study() {
+        return;
+    }
+    let place = Place::new();
+    place.write("out/table1.csv", "mine");
+    let words = ["out holds table1.csv", "not written by localshape-study", "--overwrite"];
+    place.bad("table1 -o out", 2, &words);
+    place.write("other/table1.md", "mine");
+    place.bad("table1 -o other --orientations 1", 2, &["table1.md", "not written by localshape-study"]);
+    place.good("table1 -o out --orientations 1 --overwrite");
+    let before = place.read("out/table1.csv");
+    place.bad("table1 -o out", 2, &["out holds", "table1 --orientations 1`", "--overwrite"]);
+    assert_eq!(place.read("out/table1.csv"), before);
+    let document = place.good("table1 -o out --orientations 1 --json");
+    let document: serde_json::Value = serde_json::from_str(&document).expect("one document");
+    assert_eq!(place.read("out/table1.csv"), before);
+    assert_eq!((document["study"].as_str(), document["folder"].as_str()), (Some("table1"), Some("out")));
+    assert_eq!(document["files"].as_array().unwrap().len(), place.names("out").len());
+    let first = &document["tables"]["table1"][0];
+    assert_eq!(first["paper_mean"], 4.52554);
+    assert!(first["mean_median"].as_f64().unwrap() > 0.1);
+}
+
+#[test]
+fn folders_that_cannot_be_written_to_are_told_before_anything_is_measured() {
+    let place = Place::new();
+    place.write("taken", "a file");
+    for folder in ["taken", "taken/below"] {
+        let message = "error: taken is a file, not a folder; choose another folder with -o\n";
+        place.bad(&format!("ratio -o {folder}"), 4, &[message]);
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        place.write("locked/notes.txt", "mine");
+        fs::set_permissions(place.path("locked"), PermissionsExt::from_mode(0o555)).unwrap();
+        if fs::write(place.path("locked/probe"), "").is_ok() {
+            return eprintln!("skipped: this user may write anywhere; the test needs one who may not");
+        }
+        place.bad("ratio -o locked", 4, &["cannot write locked", "ermission denied"]);
+        assert_eq!(place.names("locked"), ["notes.txt"]);
+        fs::set_permissions(place.path("locked"), PermissionsExt::from_mode(0o755)).unwrap();
+    }
+}
+
+/// Nothing is written of an interrupted measurement, and how far it was is told without a terminal.
+#[cfg(unix)]
+#[test]
+fn interrupted() {
+    if !can_study() {
+        return;
+    }
+    let place = Place::new();
+    for (signal, study) in [("INT", "table1 --orientations 10000"), ("TERM", "ratio")] {
+        let folder = format!("out-{signal}");
+        let mut command = place.command(&format!("{study} -o {folder}"));
+        let mut running = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
+        // The first line tells that the measurement has begun.
+        let mut lines = std::io::BufReader::new(running.stderr.take().expect("a pipe"));
+        let mut line = String::new();
+        std::io::BufRead::read_line(&mut lines, &mut line).expect("a line");
+        assert!(line.ends_with(" % after 0 s\n"), "{line}");
+        assert!(Command::new("kill").args(["-s", signal, &running.id().to_string()]).status().unwrap().success());
+        let begun = Instant::now();
+        while running.try_wait().unwrap().is_none() {
+            assert!(begun.elapsed() < Duration::from_secs(300), "it goes on");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let output = running.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{output:?}");
+        assert!(output.stdout.starts_with(b"interrupted; "), "{output:?}");
+        assert_eq!(place.names(&folder), [""; 0]);
+    }
+}
