@@ -6,8 +6,9 @@ use localshape::scene::{
     BodyBuilder, Cells, Lattice, Limits, MotionPath, NodeSet, ObstacleBuilder, Rotation, RunBuilder, Scene,
     SceneBuilder, Start, StartShape, Swing,
 };
-use localshape::sim::model::{mass_spring, shape_based};
-use localshape::sim::{Diagnostic, Ease, Field, Integrator, Kernel, Springs};
+use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch, Share, mass_spring, shape_based};
+use localshape::sim::{Body, Diagnostic, Ease, Field, Integrator, Kernel, Nodes, Springs};
+use std::sync::Arc;
 
 fn springs(stiffness: f64) -> mass_spring::Parameters {
     mass_spring::Parameters::new(stiffness)
@@ -296,4 +297,75 @@ fn warnings_name_the_setting() {
     let warnings = scene.build(&Limits::default()).unwrap().warnings;
     assert_eq!(warnings.len(), 1);
     assert_eq!((warnings[0].line, warnings[0].place.as_str()), (0, "time.frames_per_second"));
+}
+
+/// A model that exerts no forces and says what a test wants of itself.
+#[derive(Clone, Debug)]
+struct Idle {
+    stiffness: f64,
+    springs: Vec<[u32; 2]>,
+    /// Whether it reports a residual of rotations.
+    turns: bool,
+}
+
+impl ElasticModel for Idle {
+    fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    fn describe(&self, _: &Body) -> String {
+        "idle".to_owned()
+    }
+
+    fn springs(&self) -> &[[u32; 2]] {
+        &self.springs
+    }
+
+    fn prepare(&self, _: &Arc<Body>) -> Box<dyn ForceModel> {
+        Box::new(self.clone())
+    }
+}
+
+impl ForceModel for Idle {
+    fn add_forces(&self, _: Nodes<'_>, _: &[f64], _: &mut [f64], _: &mut Scratch, _: &mut [DVec3]) {}
+
+    fn is_damped(&self) -> bool {
+        false
+    }
+
+    fn report(&self, _: Nodes<'_>, _: &[f64], _: &mut Share<'_>) -> Report {
+        let residuals = if self.turns { vec![(Report::ROTATION, 0.0)] } else { Vec::new() };
+        Report { energy: None, residuals }
+    }
+}
+
+/// It is checked by what it says of itself, and not as if it were a model of this crate.
+#[test]
+fn models_of_the_caller_are_checked_by_their_own_words() {
+    let idle = |stiffness| Idle { stiffness, springs: Vec::new(), turns: false };
+    let scene =
+        |model: Idle| Scene::builder("own", BodyBuilder::polygon(3, 1.0)).run("One", RunBuilder::own(Arc::new(model)));
+    let built = scene(idle(100.0)).build(&Limits::default()).unwrap();
+    assert_eq!((built.digest.as_str(), built.runs[0].model.stiffness()), ("", 100.0));
+    let refused = |scene: SceneBuilder, limits: &Limits, expected: &str| {
+        let message = scene.build(limits).unwrap_err().to_string();
+        assert!(message.starts_with("own: ") && message.contains(expected), "{message}");
+    };
+    let limits = Limits::default();
+    for stiffness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let expected = format!(
+            "`run[0].model.stiffness`: the stiffness of the model is {stiffness}; expected a number greater than 0"
+        );
+        refused(scene(idle(stiffness)), &limits, &expected);
+    }
+    let springs = |springs: &[[u32; 2]]| Idle { springs: springs.to_vec(), ..idle(1.0) };
+    let expected = "`run[0].model.springs`: spring 1 of the model joins the nodes 2 and 3; the body has nodes 0 to 2";
+    refused(scene(springs(&[[0, 1], [2, 3]])), &limits, expected);
+    let few = Limits { springs: 1, ..limits };
+    scene(springs(&[[0, 1]])).build(&few).unwrap();
+    refused(scene(springs(&[[0, 1], [1, 2]])), &few, "3 nodes, one element and up to 2 springs");
+    // With springs and rotations, or with neither.
+    let strip = |model: Idle| scene(model).strip(Diagnostic::Residual);
+    strip(Idle { turns: true, ..springs(&[[0, 1]]) }).build(&limits).unwrap();
+    refused(strip(idle(1.0)), &limits, "`view.strip` is \"residual\", which no run has; models without rotations");
 }

@@ -2,7 +2,7 @@
 
 use super::error::SceneError;
 use super::limits::Limits;
-use super::resolve::{self, Parts, Unwritten};
+use super::resolve::Parts;
 use super::schema::SCHEMA;
 use super::structure::Checked;
 use super::{Scene, structure};
@@ -37,7 +37,7 @@ impl Scene {
         let text = text_of(path, limits, FIGURE)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let name = path.display().to_string();
-        let scene = Self::read(Document { text: &text, name: &name, settings }, folder, limits, Unwritten::default())?;
+        let scene = Self::read(Document { text: &text, name: &name, settings }, folder, limits)?;
         Ok(Self { file: path.canonicalize().ok(), ..scene })
     }
 
@@ -65,25 +65,14 @@ impl Scene {
     /// # Ok::<(), localshape::scene::SceneError>(())
     /// ```
     pub fn parse(text: &str, name: &str, limits: &Limits) -> Result<Self, SceneError> {
-        Self::read(Document { text, name, settings: &[] }, Path::new(""), limits, Unwritten::default())
+        Self::read(Document { text, name, settings: &[] }, Path::new(""), limits)
     }
 
     /// Reads a scene from a text; a body's own file and fonts are searched in `folder`.
-    pub(super) fn read(
-        document: Document<'_>,
-        folder: &Path,
-        limits: &Limits,
-        unwritten: Unwritten,
-    ) -> Result<Self, SceneError> {
-        let name = document.name;
+    pub(super) fn read(document: Document<'_>, folder: &Path, limits: &Limits) -> Result<Self, SceneError> {
+        let name = stem(Path::new(document.name)).unwrap_or_else(|| "scene".into());
         checked(document, &SCHEMA, FIGURE, |checked, report| {
-            let mut parts = Parts::new(&checked, folder, limits, report);
-            parts.put_back(unwritten, report);
-            let has_digest = report.total() == 0 && !parts.has_own_models();
-            let digest = if has_digest { parts.digest() } else { String::new() };
-            let name_of_scene = stem(Path::new(name)).unwrap_or_else(|| "scene".into());
-            let scene = resolve::resolve(parts, &name_of_scene, &digest, limits, report);
-            Ok(scene.map(|scene| Self { warnings: report.warnings(), ..scene }))
+            Ok(Parts::new(&checked, folder, limits, report).scene(&name, limits, report))
         })
     }
 }

@@ -43,7 +43,7 @@ use crate::sim::body::{Body, Dimension};
 use crate::sim::contact::{self, Obstacle, Shape};
 use crate::sim::grip::Grip;
 use crate::sim::integrate::Integrator;
-use crate::sim::model::ElasticModel;
+use crate::sim::model::{ElasticModel, Report};
 #[cfg(feature = "render")]
 use crate::sim::motion::Motion;
 use crate::sim::snapshot::Diagnostic;
@@ -145,14 +145,20 @@ impl Scene {
     /// it.
     pub(crate) fn lacks(&self, diagnostic: Diagnostic) -> Option<&'static str> {
         let has = |has: &dyn Fn(&dyn ElasticModel) -> bool| self.runs.iter().any(|run| has(&*run.model));
+        // Only the forces of a model tell, which are computed for that.
+        let has_residual = |model: &dyn ElasticModel| {
+            let (forces, memory) = (model.prepare(&self.body), model.start(&self.body, &self.initial.position));
+            let report = forces.report(self.initial.nodes(), &memory, &mut |_, _, _| ());
+            report.residual(Report::ROTATION).is_some()
+        };
         let (exists, why) = match diagnostic {
             Diagnostic::GlobalRotations => (
                 has(&|model| model.shape_based().is_some_and(|model| model.counts_global(&self.body))),
                 "only shape-based models in space count them; plot another diagnostic, such as \"turned_over\"",
             ),
             Diagnostic::Residual => (
-                has(&|model| model.springs().is_empty()),
-                "mass-spring models have no rotations; plot another diagnostic, such as \"turned_over\"",
+                has(&has_residual),
+                "models without rotations, such as springs, have none; plot another diagnostic, such as \"turned_over\"",
             ),
             _ => return None,
         };

@@ -22,6 +22,14 @@ pub fn schema() -> Value {
 /// The schema, made once.
 pub(super) static SCHEMA: LazyLock<Value> = LazyLock::new(|| schema_of::<SceneFile>("Scene file of localshape"));
 
+/// The same for scenes made in code, whose runs may have models of the caller's own.
+pub(super) static SCHEMA_OF_CODE: LazyLock<Value> = LazyLock::new(|| {
+    let mut schema = schema();
+    let required = schema["properties"]["run"]["items"]["required"].as_array_mut();
+    required.expect("keys that a run needs").retain(|key| key != "model");
+    schema
+});
+
 /// The schema of a file's type.
 pub(super) fn schema_of<T: JsonSchema>(title: &str) -> Value {
     let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);

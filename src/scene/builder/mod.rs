@@ -20,25 +20,30 @@ pub use obstacle::ObstacleBuilder;
 
 use super::error::SceneError;
 use super::file::{
-    Coordinates, GrabFile, HoldFile, MotionPath, NodesFile, RegionFile, RunFile, SceneFile, StepFile, TimeFile,
+    BodyFile, Coordinates, GrabFile, HoldFile, ModelFile, MotionPath, NodesFile, RegionFile, RunFile, SceneFile,
+    StepFile, TimeFile,
 };
-use super::load::Document;
-use super::resolve::Unwritten;
+use super::resolve::Parts;
+use super::resolve::lists::check_unwritten;
+use super::schema::SCHEMA_OF_CODE;
 use super::step::NamedStep;
-use super::{Limits, Scene};
+use super::{Limits, Scene, structure};
 use crate::look::file::{ColourFile, ViewFile};
 use crate::look::print::SizeFile;
 use crate::look::typed::TypedColour;
 use crate::look::{Colour, ColourMap, Theme};
-use crate::reading::Mistakes;
+use crate::reading::report::Report;
+use crate::reading::source::Source;
+use crate::reading::{Mistake, Mistakes};
 use crate::sim::diagnostics::Diagnostic;
 use crate::sim::field::Field;
 use crate::sim::integrate::Integrator;
-use crate::sim::model::{ElasticModel, ModelParameters, shape_based};
+use crate::sim::model::{ElasticModel, ModelParameters};
 use crate::sim::world::Kernel;
 use std::ops::RangeBounds;
-use std::path::Path;
 use std::sync::Arc;
+use toml::Spanned;
+use toml::de::DeValue;
 
 /// Builds a [`Scene`] in code; see [`Scene::builder`]. Defaults are those of scene files.
 #[derive(Clone, Debug)]
@@ -187,27 +192,62 @@ impl SceneBuilder {
     pub fn build(self, limits: &Limits) -> Result<Scene, SceneError> {
         let Self(mut file) = self;
         let name = file.title.clone().unwrap_or_default();
-        let lists = file.body.nodes.is_some().then(|| file.body.take_lists());
-        let models = file.run.iter().map(|run| run.own.clone()).collect();
-        let text = toml::to_string(&file).expect("numbers, texts and lists of them can be written");
-        let scene = Scene::read(
-            Document { text: &text, name: &name, settings: &[] },
-            Path::new(""),
-            limits,
-            Unwritten { lists, models },
-        );
-        match scene {
-            Ok(scene) => {
-                let warnings = scene.warnings.into_iter().map(|warning| warning.without_text()).collect();
-                Ok(Scene { name, warnings, ..scene })
+        // Long lists are checked where they are.
+        let mut lists = if file.body.nodes.is_some() { file.body.take_lists() } else { BodyFile::default() };
+        let values = toml::Value::try_from(&file).expect("numbers, texts, and lists and tables of them");
+        let digits = digits(&values);
+        let tree = tree(values, &mut digits.iter());
+        let DeValue::Table(root) = tree.into_inner() else { unreachable!("a scene is a table") };
+        let source = Source::new("");
+        let mut report = Report::new(&source, &root);
+        let checked = structure::check(&SCHEMA_OF_CODE, &root, &mut report);
+        let before = report.total();
+        if lists.nodes.is_some() {
+            file.body.swap_lists(&mut lists);
+            check_unwritten(&file.body, &mut report);
+        }
+        let is_flawed = report.total() > before;
+        match Parts::of(file, &checked, is_flawed).scene(&name, limits, &mut report) {
+            Some(scene) if report.total() == 0 => {
+                let warnings = scene.warnings.into_iter().map(Mistake::without_text).collect();
+                Ok(Scene { warnings, ..scene })
             }
-            Err(SceneError::Mistakes(Mistakes { file, found, total })) => {
-                let found = found.into_iter().map(|mistake| mistake.without_text()).collect();
+            _ => {
+                let Mistakes { file, found, total } = report.finish(&name);
+                let found = found.into_iter().map(Mistake::without_text).collect();
                 Err(SceneError::Mistakes(Mistakes { file, found, total }))
             }
-            Err(other) => Err(other),
         }
     }
+}
+
+/// The digits of all numbers in a description, in order.
+fn digits(value: &toml::Value) -> Vec<String> {
+    match value {
+        toml::Value::Integer(_) | toml::Value::Float(_) => vec![value.to_string()],
+        toml::Value::Array(entries) => entries.iter().flat_map(digits).collect(),
+        toml::Value::Table(table) => table.iter().flat_map(|(_, value)| digits(value)).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// A description as the tree that files are read into, which refers to digits. Its values have no places.
+fn tree<'t>(value: toml::Value, digits: &mut impl Iterator<Item = &'t String>) -> Spanned<DeValue<'t>> {
+    let inner = match value {
+        toml::Value::String(text) => DeValue::String(text.into()),
+        toml::Value::Boolean(truth) => DeValue::Boolean(truth),
+        toml::Value::Datetime(date) => DeValue::Datetime(date),
+        toml::Value::Integer(_) | toml::Value::Float(_) => {
+            let digits = digits.next().expect("those of each number");
+            DeValue::parse(digits).expect("a number").into_inner()
+        }
+        toml::Value::Array(entries) => DeValue::Array(entries.into_iter().map(|entry| tree(entry, digits)).collect()),
+        toml::Value::Table(table) => {
+            let entry = |(key, value): (String, toml::Value)| (Spanned::new(0..0, key.into()), tree(value, digits));
+            DeValue::Table(table.into_iter().map(entry).collect())
+        }
+    };
+    Spanned::new(0..0, inner)
 }
 
 /// Builds a run with more settings than a model: its own time step, integrator, kernel or colour, or a model of your
@@ -232,24 +272,17 @@ pub struct RunBuilder(RunFile);
 impl RunBuilder {
     /// A run with a model.
     pub fn new(model: impl Into<ModelParameters>) -> Self {
-        let (name, model) = (String::new(), model.into());
-        Self(RunFile {
-            name,
-            model,
-            step: None,
-            tolerance: None,
-            integrator: None,
-            kernel: None,
-            colour: None,
-            own: None,
-        })
+        Self::of(ModelFile::Typed(model.into()))
     }
 
     /// A run with a model of your own. The scene then has no digest.
     pub fn own(model: Arc<dyn ElasticModel>) -> Self {
-        // Its stiffness is checked like those of other models.
-        let Self(run) = Self::new(shape_based::Parameters::new(model.stiffness()));
-        Self(RunFile { own: Some(model), ..run })
+        Self::of(ModelFile::Own(model))
+    }
+
+    fn of(model: ModelFile) -> Self {
+        let (name, step, tolerance, integrator, kernel, colour) = Default::default();
+        Self(RunFile { name, model, step, tolerance, integrator, kernel, colour })
     }
 
     setters! {

@@ -11,7 +11,6 @@ use super::Scene;
 use super::error::SceneError;
 use super::limits::Limits;
 use super::load::{self, Document, stem};
-use super::resolve::Unwritten;
 use super::schema::schema_of;
 use crate::look::{Print, Style, Theme};
 use crate::reading::setting::Setting;
@@ -131,7 +130,7 @@ impl Figure {
         let scene = |path: &Path| {
             let text = built_in::text(path).expect("figures name scenes that come with the program");
             let document = Document { text, name: &path.display().to_string(), settings };
-            Scene::read(document, Path::new(""), &Limits::default(), Unwritten::default())
+            Scene::read(document, Path::new(""), &Limits::default())
         };
         Some(Self::read(text, &path.display().to_string(), Path::new("figures"), &scene))
     }

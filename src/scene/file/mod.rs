@@ -15,14 +15,17 @@ pub use motion::{MotionPath, Swing};
 pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};
 
 use super::step::NamedStep;
+use super::structure::LARGEST;
 use crate::look::file::ViewFile;
 use crate::look::typed::TypedColour;
 pub use crate::reading::coordinates::Coordinates;
+use crate::sim::body::Body;
 use crate::sim::integrate::Integrator;
-use crate::sim::model::{ElasticModel, ModelParameters};
+use crate::sim::model::{ElasticModel, Misfit, ModelParameters};
 use crate::sim::world::Kernel;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A scene: one body, one world, and several runs with one elastic model each.
@@ -114,7 +117,9 @@ pub(in crate::scene) struct RunFile {
     #[schemars(length(min = 1, max = 80))]
     pub(in crate::scene) name: String,
     /// The elastic model and its parameters.
-    pub(in crate::scene) model: ModelParameters,
+    #[serde(skip_serializing_if = "ModelFile::is_own")]
+    #[schemars(with = "ModelParameters")]
+    pub(in crate::scene) model: ModelFile,
     /// Time step of this run, with the T of `[time]`. `"auto"` uses the prediction of this run alone. Default: that of
     /// `[time]`.
     pub(in crate::scene) step: Option<StepFile>,
@@ -131,8 +136,68 @@ pub(in crate::scene) struct RunFile {
     /// elements at least 20 (CIEDE2000), also with colour blindness. Several runs may share a colour, because dashes
     /// always differ. Default: a colour for each of the first eight runs that differs from all others.
     pub(in crate::scene) colour: Option<TypedColour>,
-    /// A model of the caller's own, instead of `model`, in scenes made in code.
+}
+
+/// The elastic model of a run.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(untagged, from = "ModelParameters")]
+pub(in crate::scene) enum ModelFile {
+    /// A model of this crate.
+    Typed(ModelParameters),
+    /// A model of the caller's own, in a scene made in code.
     #[serde(skip)]
-    #[schemars(skip)]
-    pub(in crate::scene) own: Option<Arc<dyn ElasticModel>>,
+    Own(Arc<dyn ElasticModel>),
+}
+
+impl From<ModelParameters> for ModelFile {
+    fn from(parameters: ModelParameters) -> Self {
+        Self::Typed(parameters)
+    }
+}
+
+impl ModelFile {
+    /// Whether it is a model of the caller's own.
+    pub(in crate::scene) fn is_own(&self) -> bool {
+        matches!(self, Self::Own(_))
+    }
+
+    /// The most springs that it has on a body with so many elements of each number of nodes and so many listed springs.
+    pub(in crate::scene) fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {
+        match self {
+            Self::Typed(parameters) => parameters.most_springs(elements, listed),
+            Self::Own(model) => model.springs().len() as u128,
+        }
+    }
+
+    /// The model for a body. `springs` are those that the scene lists for it.
+    pub(in crate::scene) fn resolve(
+        &self,
+        body: &Body,
+        springs: Option<&[[u32; 2]]>,
+    ) -> Result<Arc<dyn ElasticModel>, Misfit> {
+        match self {
+            Self::Typed(parameters) => parameters.resolve(body, springs),
+            Self::Own(model) => check_own(&**model, body).map(|()| Arc::clone(model)),
+        }
+    }
+}
+
+/// Checks what a model of the caller's own says of itself.
+fn check_own(model: &dyn ElasticModel, body: &Body) -> Result<(), Misfit> {
+    let misfit = |key, message: String| Err(Misfit { key, message });
+    let (stiffness, nodes) = (model.stiffness(), body.len());
+    if !(stiffness > 0.0 && stiffness <= LARGEST) {
+        let message =
+            format!("the stiffness of the model is {stiffness}; expected a number greater than 0, up to {LARGEST:e}");
+        return misfit("stiffness", message);
+    }
+    match model.springs().iter().position(|spring| spring.iter().any(|&node| node as usize >= nodes)) {
+        Some(at) => {
+            let [a, b] = model.springs()[at];
+            let message =
+                format!("spring {at} of the model joins the nodes {a} and {b}; the body has nodes 0 to {}", nodes - 1);
+            misfit("springs", message)
+        }
+        None => Ok(()),
+    }
 }

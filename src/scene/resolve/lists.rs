@@ -187,7 +187,7 @@ fn beyond(number: f64) -> Option<String> {
 }
 
 /// Reports numbers out of range and lists that are too short in lists made in code, as the schema does in files.
-pub(super) fn check_unwritten(file: &BodyFile, report: &mut Report<'_>) {
+pub(in crate::scene) fn check_unwritten(file: &BodyFile, report: &mut Report<'_>) {
     let mut say = |key: &str, at: &[usize], message: String| {
         ListSource::Scene.report(report, key, at, format!("`{}` {message}", ListSource::Scene.name(key, at)), None);
     };

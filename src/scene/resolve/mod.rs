@@ -4,13 +4,13 @@
 mod body;
 mod elements;
 mod grips;
-mod lists;
+pub(super) mod lists;
 mod motion;
 mod obstacles;
 mod runs;
 
 use super::digest::{FileDigests, digest};
-use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, TimeFile};
+use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, SceneFile, TimeFile};
 use super::generate::Generator;
 use super::limits::Limits;
 use super::structure::Checked;
@@ -22,7 +22,6 @@ use crate::reading::report::{Report, Way, way};
 use crate::reading::words::{count, quoted, short};
 use crate::sim::contact::Obstacle;
 use crate::sim::grip::Grip;
-use crate::sim::model::ElasticModel;
 use crate::sim::words::typed;
 use body::ResolvedBody;
 use glam::DVec3;
@@ -96,26 +95,42 @@ impl Parts {
         }
     }
 
-    /// Puts back the parts of a scene made in code that its text leaves out.
-    pub(super) fn put_back(&mut self, unwritten: Unwritten, report: &mut Report<'_>) {
-        if let (Some(body), Some(mut lists)) = (&mut self.body, unwritten.lists) {
-            body.swap_lists(&mut lists);
-            let before = report.total();
-            lists::check_unwritten(body, report);
-            self.flawed.extend((report.total() > before).then(|| "body".to_owned()));
+    /// The parts of a scene made in code without those that have mistakes. Its long lists were checked apart, and `flawed` says
+    /// whether a mistake was found in them.
+    pub(super) fn of(file: SceneFile, checked: &Checked, flawed: bool) -> Self {
+        fn entries<T>(entries: Vec<T>, key: &str, checked: &Checked) -> Vec<Option<T>> {
+            let is_sound = |at: usize| !checked.valid.get(key).is_some_and(|valid| valid[at].is_null());
+            entries.into_iter().enumerate().map(|(at, entry)| Some(entry).filter(|_| is_sound(at))).collect()
         }
-        for (run, model) in self.runs.iter_mut().zip(unwritten.models) {
-            run.iter_mut().for_each(|run| run.own = model.clone());
+        let is_sound = |key: &str| !checked.flawed.contains(key);
+        let lists = if flawed { BTreeSet::from(["body".to_owned()]) } else { BTreeSet::new() };
+        Self {
+            title: file.title,
+            gravity: file.gravity.filter(|_| is_sound("gravity")),
+            time: Some(file.time).filter(|_| is_sound("time")),
+            body: Some(file.body).filter(|_| is_sound("body")),
+            beside: None,
+            flawed: &checked.flawed | &lists,
+            runs: entries(file.run, "run", checked),
+            obstacles: entries(file.obstacle, "obstacle", checked),
+            holds: entries(file.hold, "hold", checked),
+            grabs: entries(file.grab, "grab", checked),
+            view: Some(file.view).filter(|_| is_sound("view")),
+            font: Some(FontFiles::default()),
         }
     }
 
-    /// Whether a run has a model that no text describes.
-    pub(super) fn has_own_models(&self) -> bool {
-        self.runs.iter().flatten().any(|run| run.own.is_some())
+    /// The scene, or `None` after any mistake.
+    pub(super) fn scene(mut self, name: &str, limits: &Limits, report: &mut Report<'_>) -> Option<Scene> {
+        let has_own_models = self.runs.iter().flatten().any(|run| run.model.is_own());
+        let has_digest = report.total() == 0 && !has_own_models;
+        let digest = if has_digest { self.digest() } else { String::new() };
+        let scene = resolve(self, name, &digest, limits, report)?;
+        Some(Scene { warnings: report.warnings(), ..scene })
     }
 
     /// The digest of the scene's meaning, if there are no mistakes.
-    pub(super) fn digest(&mut self) -> String {
+    fn digest(&mut self) -> String {
         let [regular, semi_bold] = match &self.font {
             Some(font) => [&font.regular, &font.semi_bold].map(|font| font.as_ref().map(|bytes| font::digest(bytes))),
             None => [None, None],
@@ -127,14 +142,6 @@ impl Parts {
         self.body.iter_mut().for_each(|body| body.swap_lists(&mut lists));
         digest
     }
-}
-
-/// The parts of a scene made in code that its text leaves out: long lists, and models without names.
-#[derive(Debug, Default)]
-pub(super) struct Unwritten {
-    pub(super) lists: Option<BodyFile>,
-    /// The models, one for each run.
-    pub(super) models: Vec<Option<Arc<dyn ElasticModel>>>,
 }
 
 fn part<T: DeserializeOwned>(file: &Map<String, Json>, key: &str, report: &mut Report<'_>) -> Option<T> {
@@ -175,13 +182,7 @@ struct Physics {
 }
 
 /// The scene, or `None` after any mistake: first the physics, then the view.
-pub(super) fn resolve(
-    mut parts: Parts,
-    name: &str,
-    digest: &str,
-    limits: &Limits,
-    report: &mut Report<'_>,
-) -> Option<Scene> {
+fn resolve(mut parts: Parts, name: &str, digest: &str, limits: &Limits, report: &mut Report<'_>) -> Option<Scene> {
     let beside = parts.beside.take();
     let physics = physics(&parts, beside, limits, report);
     let view = view(&parts, &physics, report);

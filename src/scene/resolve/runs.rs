@@ -30,8 +30,7 @@ pub(super) fn resolve(
         .zip(typed)
         .map(|(at, run)| {
             let run = run.as_ref()?;
-            let typed = || run.model.resolve(&body.body, body.springs.as_deref());
-            let model = run.own.clone().map_or_else(typed, Ok);
+            let model = run.model.resolve(&body.body, body.springs.as_deref());
             let path = |key| way!["run", at, "model", key];
             model.map_err(|misfit| report.at(&path(misfit.key), misfit.message, None)).ok()
         })
