@@ -18,66 +18,65 @@ pub(crate) struct ViewFile {
     pub(crate) size: SizeFile,
     /// The colours.
     pub(crate) theme: Theme,
-    /// The background. If the theme's text cannot be read on it, the other theme is used. Default: the theme's.
+    /// The background. The other theme is used if this one's text cannot be read on it. Default: the theme's.
     pub(crate) background: Option<TypedColour>,
-    /// Colours that replace those of the theme, and shades derived from them, such as `{ body = "steelblue" }`. Default: the
-    /// theme's.
+    /// Colours of the body, such as `{ body = "steelblue" }`, from which shades are derived. Default: the theme's.
     pub(crate) colours: ColoursFile,
     /// The font files, such as `{ regular = "NotoSansCJK.ttc" }`. Default: the built-in font, which has Latin and Greek letters.
     pub(crate) font: Option<FontFile>,
-    /// Scale of all text, or in pictures for print the size of most text, such as `{ pt = 7 }`. Long titles are wrapped;
-    /// `localshape check` says what else finds no room and is shortened or left out. No text is smaller than a fiftieth of the
-    /// height of a wide picture, times this scale if that is below 1; pictures for print with type below 5 pt are refused.
+    /// Scale of all text, or in pictures for print the size of most text, such as `{ pt = 7 }`. Long titles are
+    /// wrapped. `localshape check` lists other words without room, which are shortened or left out. The smallest text
+    /// is a fiftieth of the height of a wide picture, or smaller with a scale below 1. Type below 5 pt is refused in
+    /// pictures for print.
     pub(crate) text_scale: TextScaleFile,
-    /// The words below the time, which say since when it counts. Default: `after release`; in scenes with `hold` or `grab`
-    /// `after the start`.
+    /// The words below the time. Default: `after release`; in scenes with `hold` or `grab` `after the start`.
     #[schemars(length(max = 80))]
     pub(crate) clock: Option<String>,
-    /// Arrangement of the panels, or their number in a row. Default: as many in a row as make bodies largest.
+    /// Arrangement of the panels, or their number in a row. Default: the number that makes bodies largest.
     pub(crate) panels: Option<PanelsFile>,
-    /// What is drawn of the body. Without `surfaces`, lines are drawn instead: springs if they are shown and the model
-    /// has any, else the edges of the elements; edges of turned-over elements stand out in either case. Default: surfaces,
-    /// and in the plane nodes, too, unless there are more than 150.
+    /// The drawn parts of the body. Without `surfaces` lines are drawn: springs if they are shown and exist, else the
+    /// edges of elements. Edges of turned-over elements always stand out. Default: surfaces; in the plane also nodes,
+    /// unless the body has more than 150.
     #[schemars(length(min = 1))]
     pub(crate) show: Option<Vec<ShowFile>>,
-    /// A scalar field that colours the body, such as `{ by = "strain" }`: its surfaces, or its lines and nodes if surfaces are
-    /// not shown. Springs without surfaces have a strain of their own, the change of length over the length at rest; it has a
-    /// sign if the range begins below zero, such as `{ by = "strain", range = [-0.3, 0.3], map = "violet-green" }`. All panels
-    /// share one colour bar, drawn below them. Default: none.
+    /// A scalar field that colours the surfaces of the body, such as `{ by = "strain" }`, or its lines and nodes
+    /// without surfaces. All panels share one colour bar, drawn below them. Springs without surfaces have a strain of
+    /// their own, the change of length over the length at rest. It has a sign if the range begins below zero, such as
+    /// `{ by = "strain", range = [-0.3, 0.3], map = "violet-green" }`. Default: none.
     pub(crate) colour: Option<ColourFile>,
-    /// Scale of the arrows of displacements. Each begins where the best-fitting rigid placement has its node; at 1 it ends
-    /// at the node.
+    /// Scale of the arrows of displacements. At 1 an arrow ends at its node.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) arrow_scale: f64,
     /// A title above all panels, wrapped at the width of the picture. Default: none.
     #[schemars(length(max = 200))]
     pub(crate) title: String,
-    /// A caption below all panels, wrapped at the width of the picture; `\n` begins a new line. Panels keep at least half of
-    /// the picture: a longer caption is cut off with an ellipsis. Default: none.
+    /// A caption below all panels, wrapped at the width of the picture. `\n` begins a new line. Panels keep at least
+    /// half of the picture: longer captions are cut off with an ellipsis. Default: none.
     #[schemars(length(max = 2000), extend("format" = "lines"))]
     pub(crate) caption: String,
-    /// What is written in panels and below them.
+    /// The words and signs in panels and below them.
     #[schemars(with = "Vec<Label>")]
     pub(crate) labels: Labels,
     /// A diagnostic plotted over the whole time of the scene in one chart below all panels, with the current time
-    /// marked. The whole scene is simulated before the first frame is drawn. Names are written at the ends of curves as
-    /// far as there is room, or the letters of their panels where there is none; numbered flags, also in the panels,
-    /// say when elements first turn over and when their count settles, or the extreme value; and where nearly
-    /// everything happens early, that part of the time has a larger scale. Default: none.
+    /// marked. Curves end with their names, or with the letters of their panels where names have no room. Numbered
+    /// flags mark the moments when elements first turn over and when their count settles, or the extreme value. Where
+    /// nearly everything happens early, that time has a larger scale. The whole scene is simulated before the first
+    /// frame is drawn. Default: none.
     pub(crate) strip: Option<Diagnostic>,
-    /// A dashed outline over each body: `"rest"` for the rest shape in its best rigid fit, or the name of a run for its body at the
-    /// same moment, in the colour of that run. All runs then have the time step of that one. Default: none.
+    /// A dashed outline over each body: `"rest"` for the rest shape in its best rigid fit, or the name of a run for its
+    /// body at the same moment, in the colour of that run. All runs then have that run's time step. Default: none.
     #[schemars(length(min = 1, max = 80))]
     pub(crate) ghost: Option<String>,
-    /// Points of the body whose paths are drawn up to the present moment, in the colours of runs: `"centre"` for the centre of mass,
-    /// and nodes, counted from 0, such as `["centre", 26]`. The whole scene is simulated before the first frame is drawn. Default: none.
+    /// Points whose paths up to the present moment are drawn in the colours of runs: `"centre"` for the centre of mass,
+    /// and nodes, counted from 0, such as `["centre", 26]`. The whole scene is simulated before the first frame is
+    /// drawn. Default: none.
     #[schemars(length(min = 1, max = 64))]
     pub(crate) paths: Option<Vec<PathFile>>,
     /// Whether bodies and obstacles cast shadows on the floor.
     pub(crate) shadow: bool,
-    /// How floors are drawn. In the plane they never have a grid.
+    /// The drawing of floors. In the plane they have no grid.
     pub(crate) floor: FloorStyle,
-    /// Which lines are drawn on surfaces.
+    /// The lines on surfaces.
     pub(crate) edges: EdgesFile,
     /// The camera. Default: one that shows the body and what comes near it.
     pub(crate) camera: CameraFile,
@@ -111,13 +110,13 @@ impl Default for ViewFile {
     }
 }
 
-/// A point of the body that leaves a path.
+/// A point with a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum PathFile {
     /// A node, counted from 0.
     Node(u32),
-    /// A point that is no node.
+    /// Another point.
     Point(PathPointFile),
 }
 
@@ -129,24 +128,24 @@ pub(crate) enum PathPointFile {
     Centre,
 }
 
-/// Which lines are drawn on surfaces.
+/// The lines on surfaces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum EdgesFile {
-    /// The outline and all edges; hidden ones faintly.
+    /// The outline and all edges, hidden ones faintly.
     #[default]
     All,
     /// The outline and visible edges.
     Visible,
-    /// Only the outline. Edges of turned-over elements are always drawn.
+    /// The outline, and edges of turned-over elements.
     Outline,
 }
 
-/// How panels are arranged.
+/// The arrangement of panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum PanelsFile {
-    /// So many in a row.
+    /// Their number in a row.
     Columns(#[schemars(range(min = 1, max = 64))] u32),
     /// In one direction.
     Along(ArrangementFile),
@@ -170,10 +169,10 @@ pub(crate) enum ShowFile {
     Surfaces,
     /// The nodes, as discs.
     Nodes,
-    /// The springs of mass-spring models, as lines; faint where surfaces hide them.
+    /// The springs of mass-spring models, as lines, faint behind surfaces.
     Springs,
-    /// An arrow to each node from its place in the best-fitting rigid placement of the rest shape. Only for nodes on the
-    /// surface, in space only for those that face the viewer, and for at most 500.
+    /// An arrow to each node from its place in the best-fitting rigid placement of the rest shape. Only for nodes on
+    /// the surface that face the viewer, and for at most 500.
     Displacements,
 }
 
@@ -183,10 +182,9 @@ pub(crate) enum ShowFile {
 pub(crate) struct ColourFile {
     /// The field.
     pub(crate) by: Field,
-    /// The values at both ends of the colour bar, in the field's unit. Values beyond have the colours of the ends, and the
-    /// bar then ends in a point. Default: from zero to an estimate for the scene: a
-    /// strain of 0.5, a displacement of half an element's edge, the speed of a fall through the scene or at the start,
-    /// the energy of an element with a strain of 0.5.
+    /// The values at both ends of the colour bar, in the field's unit. Larger and smaller values have the colours of
+    /// the ends. Default: from zero to an estimate for the scene: a strain of 0.5, a displacement of half an element's
+    /// edge, the speed of a fall through the scene or at the start, the energy of an element with a strain of 0.5.
     pub(crate) range: Option<[f64; 2]>,
     /// The colour map.
     #[serde(default)]
@@ -197,29 +195,29 @@ pub(crate) struct ColourFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct CameraFile {
-    /// Azimuth to the right, from looking along −z (rad). Default: 0.541, which is 31°. Not in the plane.
+    /// Azimuth to the right, from looking along −z (rad), in space. Default: 0.541, which is 31°.
     pub(crate) azimuth: Option<f64>,
-    /// Elevation above the horizon (rad), less than a quarter turn (1.57) either way, so that the camera does not look along
-    /// its up-axis. Default: 0.297, which is 17°; under a plate that faces down 0.227, which is 13°. Not in the plane.
+    /// Elevation above the horizon (rad), in space. Default: 0.297, which is 17°; under a plate that faces down 0.227,
+    /// which is 13°.
     #[schemars(extend("exclusiveMinimum" = -1.57, "exclusiveMaximum" = 1.57))]
     pub(crate) elevation: Option<f64>,
     /// Vertical field of view (rad). Default: 0.349, which is 20°.
     #[schemars(range(min = 0.001, max = 3.0))]
     pub(crate) field_of_view: Option<f64>,
-    /// The point looked at (m) by a camera that stands still. Default: the centre of the body as it would stand on the first
-    /// floor below it, or where it starts if there is none. If `distance` is not given either, the target is chosen so that
-    /// plates, spheres, capsules, boxes and moved nodes near the body are in the picture, too.
+    /// The point (m) that a fixed camera looks at. Default: the centre of the body where it would stand on the first
+    /// floor below it, or where it starts. Without a `distance` the target also brings plates, spheres, capsules, boxes
+    /// and moved nodes near the body into the picture.
     pub(crate) target: Option<Coordinates>,
-    /// Distance (m) of a camera that stands still from its target; in the plane, `distance` and `field_of_view` together give
-    /// the scale. Default: 8.5 times the longest side of the bounding box at the start, and more if the body starts higher
-    /// than that shows. If `target` is not given either, the picture also shows all parts of plates, spheres, capsules, boxes
-    /// and moved nodes that are at any time within 1.25 body sizes of where the body starts and stands.
+    /// Distance of a fixed camera from its target (m). In the plane it gives the scale together with `field_of_view`.
+    /// Default: 8.5 times the longest side of the bounding box at the start, and more if the body starts higher than
+    /// that shows. Without a `target` the picture also shows all parts of plates, spheres, capsules, boxes and moved
+    /// nodes that come within 1.25 body sizes of the body's start or stand.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) distance: Option<f64>,
-    /// Whether the camera follows the centre of mass of each run's body. All panels and frames then have one scale, at which
-    /// the body takes about 60 % of its panel's width at its widest moment. Where all runs stay in view at that scale, the
-    /// camera stands still. The whole scene is simulated before the first frame is drawn. A camera with a `target` or a
-    /// `distance` stands still.
+    /// Whether the camera follows the centre of mass of each run's body. All panels and frames then have one scale, at
+    /// which the body takes about 60 % of its panel's width at its widest moment. The camera stands still where that
+    /// keeps all runs in view, and if it has a `target` or a `distance`. The whole scene is simulated before the first
+    /// frame is drawn.
     pub(crate) follow: bool,
 }
 

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::str::FromStr;
 
-/// What a colour may be, for messages.
+/// The expected colours, for messages.
 const EXPECTED: &str = "; expected digits such as \"#93a5ba\" or a name of CSS such as \"steelblue\"";
 
 /// An opaque colour. It is written back as digits, so that a name and its digits mean the same.
@@ -16,7 +16,7 @@ const EXPECTED: &str = "; expected digits such as \"#93a5ba\" or a name of CSS s
 pub(crate) struct TypedColour(pub(crate) Colour);
 
 impl TypedColour {
-    /// Why a text is no colour, as words that go on after it, and what to do if more can be said; `None` if it is one.
+    /// The continuation of a message about a text that is no colour, and the help; `None` for a colour.
     pub(crate) fn mistake(text: &str) -> Option<(String, Option<String>)> {
         let digits = |text: &str| format!("write \"#{}\"", text.trim());
         Some(match parse(text).err()? {
@@ -55,17 +55,17 @@ impl From<TypedColour> for String {
     }
 }
 
-/// Colours that replace those of the theme. Each is hexadecimal, `"#rgb"` or `"#rrggbb"`, or a CSS name such as
-/// `"steelblue"`; all are opaque.
+/// Colours of the body. Each is hexadecimal, `"#rgb"` or `"#rrggbb"`, or a CSS name such as `"steelblue"`. All are
+/// opaque.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct ColoursFile {
-    /// Elements that are not turned over, before shading. The fill of elements in the plane and the squares of the tally
-    /// follow, and edges that would be invisible on it become lighter. Its difference from `turned_over` must be at least 20
-    /// (CIEDE2000), also with colour blindness.
+    /// The colour of elements that are not turned over, before shading. The fill of elements in the plane and the
+    /// squares of the tally follow it; edges that would be invisible on it become lighter. Its difference from
+    /// `turned_over` must be at least 20 (CIEDE2000), also with colour blindness.
     pub(crate) body: Option<TypedColour>,
-    /// Turned-over elements, before shading, and their edges where no surfaces are shown. Their hatching, signs and text
-    /// follow.
+    /// The colour of turned-over elements, before shading. Their edges without surfaces, hatching, signs and text
+    /// follow it.
     pub(crate) turned_over: Option<TypedColour>,
 }
 
@@ -73,11 +73,11 @@ pub(crate) struct ColoursFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FontFile {
-    /// The font of all text, TrueType or OpenType (.ttf, .otf, .ttc), beside the scene file. It must have digits and Latin
-    /// letters; letters that it lacks come from the built-in font. Text is drawn left to right with one glyph for each
-    /// character, without shaping or kerning: right for Latin, Greek, Cyrillic, Chinese, Japanese and Korean. Scripts that
-    /// need shaping or run from right to left, such as Arabic, Hebrew and Devanagari, are not supported, nor are letters
-    /// followed by combining marks.
+    /// The font of all text, TrueType or OpenType (.ttf, .otf, .ttc), beside the scene file. It must have digits and
+    /// Latin letters; other letters that it lacks come from the built-in font. Text is drawn from left to right, one
+    /// glyph for each character, without shaping or kerning. So Latin, Greek, Cyrillic, Chinese, Japanese and Korean
+    /// are supported; Arabic, Hebrew, Devanagari and other scripts that need shaping or run from right to left, and
+    /// combining marks, are not.
     #[schemars(length(min = 1))]
     pub(crate) regular: String,
     /// The font of names and counts. Default: that of `regular`.

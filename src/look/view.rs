@@ -1,4 +1,4 @@
-//! How a scene is looked at, resolved.
+//! The view of a scene, resolved.
 
 use super::palette::{Palette, Theme};
 use super::print::Print;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::Arc;
 
-/// How a scene is drawn. Plain data, kept also by builds that cannot draw, so that every scene can be checked.
+/// The drawing of a scene. Plain data, kept also in builds without the renderer, so that every scene can be checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Width and height of the picture (px).
@@ -20,51 +20,51 @@ pub struct View {
     pub print: Option<Print>,
     /// Colours and type.
     pub look: Style,
-    /// From where; the same for all panels.
+    /// The camera of all panels.
     pub camera: Camera,
-    /// What the clock counts from, shown under the time, such as `after first contact`.
+    /// The words below the time, such as `after first contact`.
     pub clock: String,
-    /// How many panels stand beside each other before a new row begins; `None` for as many as make bodies largest.
+    /// The number of panels in a row; `None` for the number that makes bodies largest.
     pub columns: Option<usize>,
-    /// What is drawn of the body.
+    /// The drawn parts of the body.
     pub visible: Visible,
-    /// The field that colours its surface, if any.
+    /// The field that colours the body.
     pub colour: Option<ColourScale>,
-    /// How many times longer than the displacements their arrows are drawn.
+    /// The length of arrows over the displacement that they show.
     pub arrow_scale: f64,
     /// Length of an element's edge, the unit of the floor's grid and of soft distances in light and shadow (m).
     pub side: f64,
-    /// Whether that is the side of a lattice's cells, which the floor's grid then repeats, or only the mean of many edges.
+    /// Whether this length is the side of a lattice's cells, which the floor's grid then repeats, or a mean of edges.
     pub has_cells: bool,
     /// A title above all panels; empty for none.
     pub title: String,
     /// A caption below all panels; empty for none.
     pub caption: String,
-    /// What is written in panels and below them.
+    /// The words and signs in panels and below them.
     pub labels: Labels,
-    /// The diagnostic of all runs that is drawn over time below the panels.
+    /// The diagnostic of all runs in a chart below the panels.
     pub strip: Option<Diagnostic>,
-    /// What is outlined over each body, if anything.
+    /// The outline over each body.
     pub ghost: Option<Ghost>,
-    /// What leaves a path behind it.
+    /// The points with paths.
     pub paths: Vec<Traced>,
-    /// Whether there are shadows.
+    /// Whether bodies and obstacles cast shadows.
     pub shadow: bool,
-    /// How floors are drawn.
+    /// The drawing of floors.
     pub floor: FloorStyle,
-    /// Whether edges in front, and edges behind the body, are drawn.
+    /// Whether edges before the body, and behind it, are drawn.
     pub edges: [bool; 2],
 }
 
 impl View {
-    /// Whether frames show something of the whole course of the scene besides the chart.
+    /// Whether frames show something of the course of the scene besides the chart.
     pub(crate) fn looks_ahead(&self) -> bool {
         !self.paths.is_empty()
     }
 }
 
 impl Default for View {
-    /// What a scene shows that says nothing about it, from a metre before the origin.
+    /// The view of a scene without settings, from a metre before the origin.
     fn default() -> Self {
         Self {
             size: [1280, 720],
@@ -100,7 +100,7 @@ impl Default for View {
     }
 }
 
-/// What is written in panels and below them.
+/// The words and signs in panels and below them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "Vec<Label>", into = "Vec<Label>")]
 pub struct Labels {
@@ -112,11 +112,11 @@ pub struct Labels {
     pub model: bool,
     /// The time, in one panel for all.
     pub clock: bool,
-    /// How many elements have turned over.
+    /// The number of turned-over elements.
     pub count: bool,
     /// One number that measures the deformation.
     pub number: bool,
-    /// A bar that says how long a round length is.
+    /// A bar of a round length.
     pub scale_bar: bool,
     /// Keys of colours and arrows.
     pub legend: bool,
@@ -135,13 +135,13 @@ impl Labels {
         legend: false,
     };
 
-    /// Whether there are words in panels.
+    /// Whether panels have words.
     pub(crate) fn are_in_panels(&self) -> bool {
         let Self { letters, name, model, clock, count, number, scale_bar: _, legend: _ } = *self;
         [letters, name, model, clock, count, number].contains(&true)
     }
 
-    /// Each of them with its word.
+    /// All labels with their words.
     fn words(&mut self) -> [(Label, &mut bool); 8] {
         [
             (Label::Letters, &mut self.letters),
@@ -157,7 +157,7 @@ impl Labels {
 }
 
 impl Default for Labels {
-    /// All but letters.
+    /// All labels except letters.
     fn default() -> Self {
         Self {
             letters: false,
@@ -186,7 +186,7 @@ impl From<Labels> for Vec<Label> {
     }
 }
 
-/// A word for something that is written.
+/// The name of a label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Label {
@@ -204,24 +204,24 @@ pub(crate) enum Label {
     Number,
     /// A scale bar (m), in the first panel; in space it holds at the distance of the camera's target.
     ScaleBar,
-    /// What colours and arrows mean, if there are any and room for it, below all panels.
+    /// The meaning of colours and arrows, below all panels, if there is room.
     Legend,
 }
 
-/// How floors are drawn.
+/// The drawing of floors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FloorStyle {
-    /// In space with a grid, which has the cells of a lattice, or few cells for other bodies.
+    /// With a grid in space, of the cells of a lattice, or of few cells for other bodies.
     #[default]
     Grid,
     /// Without a grid.
     Plain,
-    /// Not drawn, except for the shadows on it.
+    /// Only the shadows on it.
     None,
 }
 
-/// What is drawn of a body.
+/// The drawn parts of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Visible {
     /// The faces of the elements, with their edges.
@@ -230,55 +230,55 @@ pub struct Visible {
     pub nodes: bool,
     /// The springs of models that have them, as lines.
     pub springs: bool,
-    /// An arrow to each node from where the best rigid placement of the rest shape has it.
+    /// An arrow to each node from its place in the best rigid placement of the rest shape.
     pub displacements: bool,
 }
 
 impl Visible {
-    /// What a scene that says nothing about it shows of a body of a number of nodes: its surfaces, and in the plane the
-    /// nodes, too, unless they are many.
+    /// The drawn parts of a body with a number of nodes by default: surfaces, and in the plane also nodes, unless they
+    /// are many.
     pub(crate) fn usual(dimension: Dimension, nodes: usize) -> Self {
         const MANY_NODES: usize = 150;
         Self { surfaces: true, nodes: dimension == Dimension::Plane && nodes <= MANY_NODES, ..Self::default() }
     }
 }
 
-/// The colours of a scalar field. They do not depend on the motion, so that any frame can be drawn by itself.
+/// The colours of a scalar field. They do not depend on the motion, so that any frame can be drawn alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {
     /// The field.
     pub field: Field,
     /// The values at the two ends of the scale, in the field's unit.
     pub range: [f64; 2],
-    /// Its colours.
+    /// The colours.
     pub map: ColourMap,
 }
 
 impl ColourScale {
-    /// The value of a spring that has changed its length by a share of that at rest.
+    /// The value of a spring with a relative change of length.
     pub(crate) fn of_spring(&self, strain: f64) -> f64 {
         if self.range[0] < 0.0 { strain } else { strain.abs() }
     }
 }
 
-/// Named scales of colours.
+/// Named colour maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ColourMap {
-    /// From pale mint through teal to indigo: far from the vermilion of turned-over elements, and edges are visible on all of
-    /// it. Large values are dark in the light theme and light in the dark one.
+    /// From pale mint through teal to indigo: far from the vermilion of turned-over elements, with visible edges
+    /// everywhere. Large values are dark in the light theme and light in the dark one.
     #[default]
     MintIndigo,
     /// From dark violet through teal to yellow (matplotlib), in either theme.
     Viridis,
     /// From dark blue to yellow, the same with colour blindness (Nuñez, Anderton, Renslow 2018), in either theme.
     Cividis,
-    /// From purple through crimson to pale yellow, in either theme: matplotlib's without its black end. Its orange is similar to the colour of
-    /// turned-over elements; `colours.turned_over` can change that.
+    /// From purple through crimson to pale yellow, in either theme: matplotlib's without its black end. Its orange
+    /// resembles turned-over elements; `colours.turned_over` can change that.
     Magma,
     /// From light to dark grey in the light theme, from dark to light in the dark one.
     Greys,
-    /// From violet through grey to green, for lines: values near the middle recede, but are visible on any background.
+    /// From violet through grey to green, for lines: values near the middle recede, but stay visible.
     VioletGreen,
     /// From purple through white to green (ColorBrewer PRGn), in either theme: diverging, for values of both signs.
     PurpleGreen,
@@ -293,37 +293,36 @@ pub struct Style {
     pub(crate) palette: Palette,
     /// The font.
     pub font: FontFiles,
-    /// How many times larger than usual type is.
+    /// The scale of type.
     pub text_scale: f64,
 }
 
 impl Style {
-    /// What pictures of a theme look like where a scene says nothing else.
+    /// The style of a theme without settings.
     pub fn of(theme: Theme) -> Self {
         Self { theme, palette: Palette::of(theme), font: FontFiles::default(), text_scale: 1.0 }
     }
 }
 
-/// The fonts that a scene brings with it, as the bytes of their files, which have been found to be fonts. Where there
-/// is none the built-in font serves.
+/// The fonts of a scene, as the bytes of checked files. The built-in font takes the place of missing ones.
 #[derive(Clone, Default, PartialEq, Eq)]
 pub struct FontFiles {
-    /// For everything that explains.
+    /// The font of all text.
     pub regular: Option<Arc<[u8]>>,
-    /// For names and counts; the regular one serves if there is no other.
+    /// The font of names and counts; the regular one by default.
     pub semi_bold: Option<Arc<[u8]>>,
 }
 
 impl fmt::Debug for FontFiles {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Their lengths instead of millions of bytes.
+        // Lengths instead of millions of bytes.
         let bytes = |font: &Option<Arc<[u8]>>| font.as_ref().map(|font| font.len());
         let [regular, semi_bold] = [bytes(&self.regular), bytes(&self.semi_bold)];
         f.debug_struct("FontFiles").field("regular", &regular).field("semi_bold", &semi_bold).finish()
     }
 }
 
-/// What is outlined over each body.
+/// The outline over each body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ghost {
     /// The rest shape, in its best rigid fit.
@@ -332,7 +331,7 @@ pub enum Ghost {
     Run(usize),
 }
 
-/// A point of a body whose path is drawn.
+/// A point of a body with a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Traced {
     /// The centre of mass.
@@ -342,7 +341,7 @@ pub enum Traced {
 }
 
 impl Traced {
-    /// Where it is on a body with its nodes at given positions (m).
+    /// Its place on a body with nodes at given positions (m).
     pub(crate) fn of(self, body: &Body, position: &[DVec3]) -> DVec3 {
         match self {
             Self::Centre => {
@@ -357,9 +356,9 @@ impl Traced {
 /// A perspective camera that looks at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// Turn to the right around the vertical, from looking along −z (rad).
+    /// Azimuth to the right, from looking along −z (rad).
     pub azimuth: f64,
-    /// Height above the horizon (rad), less than a quarter turn either way.
+    /// Elevation above the horizon (rad), less than a quarter turn either way.
     pub elevation: f64,
     /// Vertical field of view (rad).
     pub field_of_view: f64,
@@ -367,26 +366,25 @@ pub struct Camera {
     pub target: DVec3,
     /// Distance from it (m).
     pub distance: f64,
-    /// How much higher the body starts than it would stand, where target and distance were chosen to show both (m).
+    /// The height of the body's start above its stand, where target and distance were chosen to show both (m).
     pub rise: f64,
-    /// Whether it follows the centre of each run's body from a distance of its own instead, at which the body fills its
-    /// panel at its widest moment.
+    /// Whether the camera follows the centre of each run's body, from a distance at which the body fills its panel at
+    /// its widest moment.
     pub follow: bool,
-    /// If it follows, points of obstacles and moved nodes that are at any time near where the body starts and stands (m). It
-    /// shows them, too, where it can stand still.
+    /// Points of obstacles and moved nodes that come near the body's start or stand (m). A following camera shows them,
+    /// too, where it can stand still.
     pub(crate) near: Vec<DVec3>,
 }
 
 impl Camera {
-    /// Where it stands if it does not follow (m).
+    /// The place of a fixed camera (m).
     pub(crate) fn eye(&self) -> DVec3 {
         let [_, _, towards] = axes(self.azimuth, self.elevation);
         self.target + self.distance * towards
     }
 }
 
-/// The unit vectors to the right of a camera, up, and towards it from the point looked at, by its azimuth and elevation
-/// (rad).
+/// The unit vectors of a camera with an azimuth and elevation (rad): right, up, and from its target to it.
 pub(crate) fn axes(azimuth: f64, elevation: f64) -> [DVec3; 3] {
     let [(across, along), (rise, level)] = [azimuth, elevation].map(libm::sincos);
     let towards = DVec3::new(across * level, rise, along * level);
