@@ -1,9 +1,9 @@
-//! A scene made in code, simulated and drawn: `cargo run --release --example from_code` writes `cubes.png`.
+//! A scene made in code, simulated and drawn: `cargo run --release --example from_code` writes into `cubes/`.
 
-use localshape::picture::compose;
 use localshape::sim::model::{mass_spring, shape_based};
 use localshape::{
-    AdapterChoice, BodyBuilder, Gpu, Lattice, Limits, ObstacleBuilder, Renderer, Rotation, Runner, Scene,
+    AdapterChoice, BodyBuilder, FrameFolder, Gpu, Lattice, Limits, ObstacleBuilder, Renderer, Rotation, Runner, Scene,
+    compose,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -20,6 +20,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let frame = Runner::new(&scene, &[0, 1]).frame(30);
     let gpu = Gpu::new(&AdapterChoice::Auto)?;
     let image = Renderer::new(&gpu, scene.view.size)?.draw(&compose(&scene, &frame))?;
-    image.save("cubes.png")?;
+    // `frame_00030.png` and a row of `diagnostics.csv` for each run.
+    let mut folder = FrameFolder::create("cubes", &scene)?;
+    folder.write_picture(&frame, &image, &gpu)?;
+    folder.write_diagnostics(&frame)?;
+    folder.finish()?;
     Ok(())
 }

@@ -8,15 +8,15 @@
 //!
 #![cfg_attr(feature = "render", doc = "```")]
 #![cfg_attr(not(feature = "render"), doc = "```ignore")]
-//! use localshape::picture::compose;
 //! use localshape::sim::model::{mass_spring, shape_based};
 //! use localshape::{
-//!     AdapterChoice, BodyBuilder, Gpu, Lattice, Limits, ObstacleBuilder, Renderer, Rotation, Runner, Scene,
+//!     AdapterChoice, BodyBuilder, FrameFolder, Gpu, Lattice, Limits, ObstacleBuilder, Renderer, Rotation, Runner, Scene,
+//!     compose,
 //! };
 //!
 //! fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! #     if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none() && localshape::gpu::adapters().0.is_empty() { return Ok(()) }
-//! #     let folder = tempfile::tempdir()?;
+//! #     let place = tempfile::tempdir()?;
 //!     // 27 cubes of 10 cm, tilted and dropped; any mesh will do: `BodyBuilder::arrays(nodes, elements)`.
 //!     let cubes = BodyBuilder::lattice(Lattice::new([3, 3, 3], 0.1));
 //!     let mut scene = Scene::builder("cubes", cubes.rotation(Rotation::about([1.0, 0.0, 1.0], 0.4)).lowest(0.2))
@@ -30,9 +30,13 @@
 //!     let frame = Runner::new(&scene, &[0, 1]).frame(30);
 //!     let gpu = Gpu::new(&AdapterChoice::Auto)?;
 //!     let image = Renderer::new(&gpu, scene.view.size)?.draw(&compose(&scene, &frame))?;
+//!     // `frame_00030.png` and a row of `diagnostics.csv` for each run.
 //! #     let _ = r#"
-//!     image.save("cubes.png")?;
-//! #     "#; image.save(folder.path().join("cubes.png"))?;
+//!     let mut folder = FrameFolder::create("cubes", &scene)?;
+//! #     "#; let mut folder = FrameFolder::create(place.path(), &scene)?;
+//!     folder.write_picture(&frame, &image, &gpu)?;
+//!     folder.write_diagnostics(&frame)?;
+//!     folder.finish()?;
 //!     Ok(())
 //! }
 //! ```
@@ -77,6 +81,7 @@ extern crate self as localshape;
 
 #[cfg(feature = "render")]
 pub use gpu::{AdapterChoice, Gpu};
+pub use output::FrameFolder;
 #[cfg(feature = "render")]
 pub use render::Renderer;
 pub use runner::Runner;
@@ -86,8 +91,6 @@ pub use scene::{
 
 #[cfg(feature = "render")]
 pub mod animation;
-#[cfg(feature = "render")]
-mod artist;
 mod cli;
 mod colour;
 pub mod golden;
@@ -108,6 +111,17 @@ pub mod runner;
 pub mod scene;
 #[cfg(feature = "render")]
 pub mod vector;
+
+/// Composes a frame of a scene, as the program does.
+///
+/// Pictures may show the course of the scene: a camera that follows takes its scale from it, and charts and paths show it.
+/// The runs of the frame are then simulated over the whole scene. For many frames, a [`Composer`](picture::Composer) with
+/// [`History::for_pictures`](runner::History::for_pictures) does that only once.
+#[cfg(feature = "render")]
+pub fn compose(scene: &Scene, frame: &sim::Frame) -> picture::Picture {
+    let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
+    picture::Composer::new(scene, &runner::History::for_pictures(scene, &runs)).compose(frame)
+}
 
 // Tests of what is inside, as large as other crates.
 #[cfg(test)]

@@ -101,20 +101,20 @@ pub(super) struct Shared {
 }
 
 /// Animations on their way, on threads of their own.
-pub(super) struct Films<'a> {
+pub(super) struct Films {
     pub(super) spool: Arc<Spool>,
     frames: usize,
     /// Where frames are kept, if they are.
     kept: Option<PathBuf>,
     threads: Vec<(PathBuf, JoinHandle<Result<Written, AnimationError>>)>,
-    made: &'a Mutex<Vec<String>>,
+    made: Arc<Mutex<Vec<String>>>,
 }
 
-impl<'a> Films<'a> {
+impl Films {
     /// Begins the animations of some frames of a scene, which are also in the folder `kept`, if they are kept.
     pub(super) fn start(
         shared: &Shared,
-        made: &'a Mutex<Vec<String>>,
+        made: Arc<Mutex<Vec<String>>>,
         spool: Spool,
         kept: Option<PathBuf>,
         scene: &Scene,
@@ -179,7 +179,7 @@ impl<'a> Films<'a> {
 }
 
 /// Ends the sequence in any case, so that no reader blocks.
-impl Drop for Films<'_> {
+impl Drop for Films {
     fn drop(&mut self) {
         self.spool.end();
     }

@@ -16,6 +16,8 @@ mod compare;
 mod completions;
 mod console;
 #[cfg(feature = "render")]
+mod drawing;
+#[cfg(feature = "render")]
 mod driver;
 mod failure;
 #[cfg(feature = "render")]

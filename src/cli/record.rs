@@ -25,22 +25,17 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// What makes pictures of scenes.
-pub(super) trait Studio {
-    /// Begins the pictures of some frames of a scene, in a folder.
-    fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure>;
-    /// The graphics adapter that draws, as in summaries.
-    fn adapter(&self) -> String;
-}
+/// Begins the pictures of some frames of a scene, in a folder.
+pub(super) type Begin<'d> = dyn for<'s> Fn(&'s Scene, &Path, &[u64]) -> Result<Box<dyn Pictures + 's>, Failure> + 'd;
 
-/// Runs all scenes, one after the other, and reports on each.
+/// Runs all scenes, one after the other, and reports on each. Pictures are made by an adapter, by name, if any are.
 pub(super) fn run_all(
     jobs: Vec<Job>,
     options: &RunOptions,
     settings: &[Setting],
     words: &[OsString],
     timings: bool,
-    studio: Option<&dyn Studio>,
+    pictures: Option<(&str, &Begin<'_>)>,
 ) -> Result<Status, Failure> {
     interrupt::listen();
     let pool = pool(options.threads.count())?;
@@ -61,11 +56,11 @@ pub(super) fn run_all(
         }
         let mut summary = Summary::new(&job.scene, &job.runs, job.frames.len(), &command);
         summary.set = settings.iter().map(|setting| setting.text().to_owned()).collect();
-        summary.adapter = studio.map(Studio::adapter);
+        summary.adapter = pictures.map(|(adapter, _)| adapter.to_owned());
         // Frames that are not kept count as simulated only.
         summary.frames.size = job.folder.contents().0.size;
         summary.frames.written = summary.frames.size.map(|_| 0);
-        result = record(job, &mut summary, &pool, options, studio);
+        result = record(job, &mut summary, &pool, options, pictures.map(|(_, begin)| begin));
         if options.printing.json {
             let mut document = json!({ "folder": path.to_string_lossy() });
             merge(&mut document, serde_json::to_value(&summary).expect("plain data"));
@@ -73,7 +68,7 @@ pub(super) fn run_all(
         } else if !options.printing.quiet && result.is_ok() {
             console::print(&format!("{blank}{}", report::report(&summary, &path, timings)))?;
             // Frames that are not kept cannot be gone on with.
-            if summary.outcome == Outcome::Interrupted && (studio.is_none() || summary.frames.size.is_some()) {
+            if summary.outcome == Outcome::Interrupted && (pictures.is_none() || summary.frames.size.is_some()) {
                 console::print(&format!("to go on: {}\n", with_option(words, "--resume")))?;
             }
         }
@@ -94,7 +89,7 @@ fn record(
     summary: &mut Summary,
     pool: &ThreadPool,
     options: &RunOptions,
-    studio: Option<&dyn Studio>,
+    begin_pictures: Option<&Begin<'_>>,
 ) -> Result<(), Failure> {
     let Job { scene, runs, frames, all, folder, stored } = job;
     let begin = || -> Result<_, Failure> {
@@ -103,7 +98,7 @@ fn record(
             (first.outcome, first.frames.asked) = (Outcome::Shards, all);
         }
         let folder = folder.prepare(&first)?;
-        let pictures = studio.map(|studio| studio.begin(&scene, folder.path(), &frames)).transpose()?;
+        let pictures = begin_pictures.map(|begin| begin(&scene, folder.path(), &frames)).transpose()?;
         Ok((folder, pictures))
     };
     let result = begin().and_then(|(mut folder, pictures)| {

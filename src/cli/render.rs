@@ -1,36 +1,27 @@
 //! `render`: frames, diagnostics and a summary.
 
 use super::console;
+use super::drawing::{Device, Drawing};
 use super::failure::{Failure, Status, missing};
-use super::film::{Films, Shared, replaceable};
+use super::film::{Shared, replaceable};
 use super::frames::Moments;
 use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, ThemeOption, size};
-use super::record::{self, Studio};
-use super::results::Pictures;
+use super::record::{self, Begin};
 use super::scenes::{Wish, nearest};
-use super::still::{
-    Format as FileFormat, NO_ADAPTER, Still, check_type, replaceable as replaceable_still, source_of, too_small,
-};
-use crate::animation::{Format, Spool};
-use crate::artist::{Artist, Begun, compose_frame};
-use crate::gpu::{Gpu, GpuError};
+use super::still::{Format as FileFormat, NO_ADAPTER, Still, replaceable as replaceable_still, source_of, too_small};
+use crate::animation::Format;
+use crate::gpu::Gpu;
 use crate::look::Ghost;
 use crate::output::shell;
-use crate::output::{
-    AtomicFile, Clock, FolderLock, FrameWriter, OutputError, PixelFrame, Shard, Spent, StoredStates, Summary, Tags,
-    Tap, Texts, Timings, folder_of, frame_file_name, is_drawn, read_tags,
-};
+use crate::output::{AtomicFile, FolderLock, OutputError, Shard, StoredStates, Tags, folder_of};
+use crate::picture::Composer;
 use crate::reading::words::short;
-use crate::render::RenderError;
-use crate::runner::history::History;
 use crate::scene::Scene;
-use crate::sim::diagnostics::Diagnostic;
-use crate::sim::snapshot::Frame;
 use clap::{Args, ValueHint};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, PoisonError};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -136,20 +127,23 @@ impl Render {
             threads,
             run: jobs.first().and_then(|job| job.runs.first().copied()),
         });
-        let device = self.studio(gpu, shared);
-        let result = record::run_all(jobs, &self.options, &self.scenes.set, words, self.timings, Some(&device));
+        let adapter = gpu.description().to_string();
+        let device = self.device(gpu, shared);
+        let begin: &Begin<'_> = &|scene, folder, frames| Ok(Box::new(Drawing::begin(&device, scene, folder, frames)?));
+        let pictures = Some((&*adapter, begin));
+        let result = record::run_all(jobs, &self.options, &self.scenes.set, words, self.timings, pictures);
         if self.options.printing.prints_text() {
-            let made = device.made.into_inner().unwrap_or_else(PoisonError::into_inner);
+            let made = device.made.lock().unwrap_or_else(PoisonError::into_inner);
             made.iter().try_for_each(|line| console::print(line))?;
         }
         result
     }
 
-    /// What draws all scenes.
-    fn studio(&self, gpu: Gpu, shared: Option<Shared>) -> Device {
+    /// What all scenes are drawn with.
+    fn device(&self, gpu: Gpu, shared: Option<Shared>) -> Device {
         let writers = self.options.threads.count().min(MOST_WRITERS);
         let (keep, resume, shard) = (!self.no_frames, self.options.resume, self.shard);
-        Device { gpu, writers, keep, resume, shard, shared, made: Mutex::default() }
+        Device { gpu, writers, keep, resume, shard, shared, made: Arc::default() }
     }
 
     /// Gives a scene the size that the user wants.
@@ -205,7 +199,7 @@ impl Render {
         let Some((frame, history)) = record::one_frame(scene, &runs, frame, &pool, &self.options, folder)? else {
             return Ok(Status::Interrupted);
         };
-        let picture = compose_frame(scene, &frame, history.as_ref());
+        let picture = Composer::new(scene, &history.unwrap_or_default()).compose(&frame);
         let adapter = gpu.as_ref().map_or(NO_ADAPTER.to_owned(), |gpu| gpu.description().to_string());
         let tags = Tags::of_frame(scene, &frame, &adapter).texts();
         let source = source_of(scene);
@@ -249,22 +243,6 @@ impl Render {
     }
 }
 
-/// What all scenes are drawn with.
-struct Device {
-    gpu: Gpu,
-    writers: usize,
-    /// Whether frames stay.
-    keep: bool,
-    /// Whether frames that are there already are kept.
-    resume: bool,
-    /// The share of the frames, if it is not all.
-    shard: Option<Shard>,
-    /// What animations are made of, if any are.
-    shared: Option<Shared>,
-    /// Lines to print about animations at the end.
-    made: Mutex<Vec<String>>,
-}
-
 /// Whether the run is there that pictures outline over others.
 fn check_ghost(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
     match scene.view.ghost {
@@ -276,179 +254,3 @@ fn check_ghost(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
         _ => Ok(()),
     }
 }
-
-impl Studio for Device {
-    fn adapter(&self) -> String {
-        self.gpu.description().to_string()
-    }
-
-    fn begin<'s>(&'s self, scene: &'s Scene, folder: &Path, frames: &[u64]) -> Result<Box<dyn Pictures + 's>, Failure> {
-        let films = match &self.shared {
-            Some(shared) => {
-                let (spool, kept) = (Spool::new(folder, scene.view.size)?, self.keep.then(|| folder.to_owned()));
-                Some(Films::start(shared, &self.made, spool, kept, scene, frames))
-            }
-            None => None,
-        };
-        let tap = films.as_ref().map(|films| -> Tap {
-            let (spool, frames) = (Arc::clone(&films.spool), frames.to_vec());
-            // Animations count the frames that there are.
-            Arc::new(move |frame, bytes| frames.binary_search(&frame).map_or(Ok(()), |at| spool.put(at, bytes)))
-        });
-        Ok(Box::new(Drawing {
-            scene,
-            artist: Artist::new(&self.gpu, scene)?,
-            begun: None,
-            drawn_before: self.resume.then(|| folder.to_owned()),
-            kept: 0,
-            writer: FrameWriter::new(self.keep.then_some(folder), self.shard, self.writers, tap.clone()),
-            tap,
-            films,
-            keep: self.keep,
-            adapter: self.gpu.description().to_string(),
-            compose: Spent::default(),
-            draw: Spent::default(),
-            cut: Vec::new(),
-        }))
-    }
-}
-
-/// The pictures of one scene.
-struct Drawing<'a> {
-    scene: &'a Scene,
-    artist: Artist<'a>,
-    /// The frame that is being drawn while the next one is simulated and composed, and its text chunks.
-    begun: Option<(u64, Texts, Begun)>,
-    /// The folder with frames that were drawn before and are kept if they are the same.
-    drawn_before: Option<PathBuf>,
-    /// The number of these.
-    kept: usize,
-    writer: FrameWriter,
-    /// What gets all frames besides the folder.
-    tap: Option<Tap>,
-    films: Option<Films<'a>>,
-    /// Whether frames stay.
-    keep: bool,
-    adapter: String,
-    compose: Spent,
-    draw: Spent,
-    /// Runs and frames in which their bodies leave their panels.
-    cut: Vec<(usize, u64)>,
-}
-
-impl Drawing<'_> {
-    /// Waits for the frame that is being drawn, and sees to it that it is written.
-    fn hand_on(&mut self) -> Result<(), Failure> {
-        let Some((frame, texts, begun)) = self.begun.take() else { return Ok(()) };
-        let clock = Clock::thread();
-        let pixels = self.artist.finish(begun).map_err(|error| stopped(self.keep, error))?;
-        self.draw += clock.spent();
-        let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
-        Ok(self.writer.write(PixelFrame { size, dpi, pixels, frame, texts })?)
-    }
-
-    /// What is wrong with a frame that was drawn before, and what to do, in words.
-    fn wrong(&self, frame: u64, path: &Path) -> Result<String, Failure> {
-        let name = frame_file_name(frame);
-        if !path.is_file() {
-            return Ok(format!("{name}, which is missing; restore it"));
-        }
-        let own = &self.adapter;
-        Ok(match read_tags(path)? {
-            Some((_, tags)) if tags.adapter != *own => {
-                format!("{name}, which {} has drawn, and this is {own}; choose that with --adapter", tags.adapter)
-            }
-            _ => format!("{name}, which has been replaced since; restore it"),
-        })
-    }
-
-    /// Passes on a frame that was drawn before.
-    fn pass(&self, frame: u64, path: &Path) -> Result<(), Failure> {
-        let pass = |tap: &Tap| tap(frame, &std::fs::read(path).map_err(OutputError::reading(path))?);
-        Ok(self.tap.as_ref().map_or(Ok(()), pass)?)
-    }
-}
-
-/// Why drawing stopped on the way, where frames are kept or not.
-fn stopped(keep: bool, error: RenderError) -> Failure {
-    let is_lost = matches!(error, RenderError::Gpu(GpuError::Lost(_)));
-    let failure = Failure::from(error);
-    if keep && is_lost { failure.advise("with --resume it keeps the frames that were drawn") } else { failure }
-}
-
-impl Pictures for Drawing<'_> {
-    fn time_series(&self) -> Option<&[Diagnostic]> {
-        self.scene.time_series()
-    }
-
-    fn take_history(&mut self, history: &History) {
-        self.artist.set_history(history);
-    }
-
-    fn draw(&mut self, frame: &Frame) -> Result<(), Failure> {
-        let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
-        let texts = Tags::of_frame(self.scene, frame, &self.adapter).texts();
-        if let Some(folder) = &self.drawn_before {
-            let path = folder.join(frame_file_name(frame.index));
-            if is_drawn(&path, size, &texts, dpi)? {
-                self.kept += 1;
-                return self.pass(frame.index, &path);
-            }
-        }
-        let clock = Clock::thread();
-        let composed = self.artist.compose(frame);
-        self.compose += clock.spent();
-        let cut = frame.runs.iter().zip(composed.cut()).filter(|(_, is_cut)| *is_cut);
-        self.cut.extend(cut.map(|(run, _)| (run.run, frame.index)));
-        check_type(self.scene.view.print.as_ref(), composed.picture(), &source_of(self.scene))?;
-        self.hand_on()?;
-        let clock = Clock::thread();
-        let begun = self.artist.begin(composed).map_err(|error| stopped(self.keep, error))?;
-        self.draw += clock.spent();
-        self.begun = Some((frame.index, texts, begun));
-        Ok(())
-    }
-
-    fn flush(&mut self) -> Result<(), Failure> {
-        self.hand_on()?;
-        Ok(self.writer.flush()?)
-    }
-
-    fn keep(&mut self, frames: &[u64]) -> Result<Option<String>, Failure> {
-        let Some(folder) = self.drawn_before.clone() else { return Ok(None) };
-        let path = |frame: u64| folder.join(frame_file_name(frame));
-        let (size, dpi) = (self.scene.view.size, self.scene.view.print.as_ref().map(|print| print.dpi));
-        for &frame in frames {
-            let texts = [
-                ("scene", self.scene.digest.clone()),
-                ("frame", frame.to_string()),
-                ("version", env!("CARGO_PKG_VERSION").to_owned()),
-                ("adapter", self.adapter.clone()),
-            ];
-            if !is_drawn(&path(frame), size, &texts, dpi)? {
-                return Ok(Some(self.wrong(frame, &path(frame))?));
-            }
-        }
-        self.kept += frames.len();
-        frames.iter().try_for_each(|&frame| self.pass(frame, &path(frame)))?;
-        Ok(None)
-    }
-
-    fn finish(mut self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure> {
-        let last = self.hand_on();
-        let (written, encode, result) = self.writer.finish();
-        let filmed = self.films.map_or(Ok(()), |films| films.finish());
-        summary.frames.written = self.keep.then_some(written);
-        summary.frames.kept = self.kept;
-        summary.frames.repeated = self.artist.repeated();
-        for run in &mut summary.runs {
-            let of_run = self.cut.iter().filter(|(at, _)| self.scene.runs[*at].name == run.name);
-            run.cut = of_run.map(|(_, frame)| *frame).collect();
-        }
-        (times.compose, times.draw, times.encode) = (Some(self.compose), Some(self.draw), Some(encode));
-        last.and(result.map_err(Failure::from)).and(filmed)
-    }
-}
-
-#[cfg(test)]
-mod tests;

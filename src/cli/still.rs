@@ -2,12 +2,13 @@
 
 use super::failure::Failure;
 use super::film;
-use crate::artist::{compose_frame, draw_bodies, draw_picture};
 use crate::gpu::Gpu;
 use crate::look::Print;
 use crate::output::{Compression, encode_print, read_tags};
-use crate::picture::{Picture, type_left_out};
+use crate::picture::{Composer, Picture, type_left_out};
+use crate::render::{RenderError, Renderer};
 use crate::runner::Runner;
+use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::body::Dimension;
 use crate::vector::{self, Page};
@@ -79,7 +80,7 @@ fn smallest_type(picture: &Picture) -> f32 {
 pub(super) fn too_small(scene: &Scene, runs: &[usize]) -> Option<String> {
     let print = scene.view.print.as_ref()?;
     let mut runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
-    let first = compose_frame(scene, &runner.frame(0), None);
+    let first = Composer::new(scene, &History::default()).compose(&runner.frame(0));
     let smallest = type_left_out(scene).unwrap_or(f64::INFINITY).min(smallest_type(&first).into());
     print.too_small(smallest, &source_of(scene))
 }
@@ -109,12 +110,12 @@ impl Still<'_> {
         check_type(self.print, picture, self.source)?;
         match format {
             Format::Png => {
-                let pixels = draw_picture(gpu.expect("a device for pixels"), picture)?;
+                let pixels = draw(gpu, picture)?;
                 let dpi = self.print.map(|print| print.dpi);
                 Ok(Drawn::Pixels { size: picture.size, pixels, tags: self.tags.to_vec(), dpi })
             }
             Format::Vector(format) => {
-                let bodies = draw_bodies(gpu, picture)?;
+                let bodies = vector::bodies(picture).map(|lit| draw(gpu, &lit)).transpose()?;
                 let page = Page {
                     picture,
                     bodies: bodies.as_deref(),
@@ -127,6 +128,11 @@ impl Still<'_> {
             }
         }
     }
+}
+
+/// The pixels of a picture: red, green and blue of each, in rows from the top left.
+fn draw(gpu: Option<&Gpu>, picture: &Picture) -> Result<Vec<u8>, RenderError> {
+    Ok(Renderer::new(gpu.expect("a device for pixels"), picture.size)?.draw(picture)?.into_raw())
 }
 
 /// One picture that is drawn.

@@ -4,10 +4,11 @@ use super::keys;
 use super::record::{Record, frames_with_digests, frames_with_positions};
 use super::states::{State, States};
 use super::{Drawn, Golden};
-use crate::artist::{Artist, FigureError, draw_figure as draw_figure_on};
 use crate::gpu::{AdapterChoice, Gpu, InitError};
 use crate::output::{Compression, Tags, encode, frame_file_name, state_digest};
-use crate::render::RenderError;
+use crate::picture::{Composer, compose_figure};
+use crate::render::{RenderError, Renderer};
+use crate::runner::history::History;
 use crate::runner::moments::Taking;
 use crate::runner::{Frames, Next, Runner};
 use crate::scene::figure::Figure;
@@ -105,11 +106,11 @@ fn draw_scene(
     let size = size(scene.view.size, golden);
     scene.view.size = size;
     let runs: Vec<usize> = (0..scene.runs.len()).collect();
-    let mut artist = gpu.map(|gpu| Artist::new(gpu, &scene)).transpose()?;
+    let mut renderer = gpu.map(|gpu| Renderer::new(gpu, size)).transpose()?;
     let adapter = gpu.map_or_else(String::new, |gpu| gpu.description().to_string());
     let (mut states, mut files, mut stopped) = (States::default(), BTreeMap::new(), BTreeMap::new());
     // Charts, paths and cameras need the whole time series, which is simulated before the first frame is drawn.
-    let wanted = scene.time_series().filter(|_| artist.is_some());
+    let wanted = scene.time_series().filter(|_| renderer.is_some());
     let runner = Runner::new(&scene, &runs);
     let runner = match wanted {
         Some(wanted) => runner.with_time_series(wanted),
@@ -118,6 +119,7 @@ fn draw_scene(
     let frames: Vec<u64> = frames_with_digests(last, runs.len(), &drawn).into_iter().collect();
     let waiting = wanted.map(|_| tempfile::tempfile()).transpose()?;
     let mut frames = Frames::new(runner, &frames, waiting);
+    let (mut course, mut composer) = (History::default(), None);
     loop {
         if !go_on() {
             return Ok(None);
@@ -125,7 +127,7 @@ fn draw_scene(
         let frame = match frames.next(SLICE)? {
             Next::Working => continue,
             Next::TimeSeries(history) => {
-                artist.iter_mut().for_each(|artist| artist.set_history(&history));
+                course = history;
                 continue;
             }
             Next::Frame(frame) => frame,
@@ -141,10 +143,9 @@ fn draw_scene(
                 stopped.entry(run.run).or_insert_with(words);
             }
         }
-        if let (Some(artist), true) = (&mut artist, drawn.contains(&index)) {
-            let composed = artist.compose(&frame);
-            let begun = artist.begin(composed)?;
-            let pixels = artist.finish(begun)?;
+        if let (Some(renderer), true) = (&mut renderer, drawn.contains(&index)) {
+            let composer = composer.get_or_insert_with(|| Composer::new(&scene, &course));
+            let pixels = renderer.draw(&composer.compose(&frame))?.into_raw();
             let texts = Tags::of_frame(&scene, &frame, &adapter).texts();
             files.insert(frame_file_name(index), encode(size, &pixels, &texts, Compression::High));
         }
@@ -174,13 +175,10 @@ fn draw_figure(
     }
     let mut files = BTreeMap::new();
     if let Some(gpu) = gpu {
-        let image = draw_figure_on(gpu, &figure, &moments).map_err(|error| match error {
-            FigureError::Render(error) => DrawError::Render(error),
-            FigureError::NoRoom(error) => {
-                let [width, height] = figure.size;
-                DrawError::NoRoom(format!("{}: at {width}×{height} {error}", figure.name))
-            }
-        })?;
+        let [width, height] = figure.size;
+        let no_room = |error| DrawError::NoRoom(format!("{}: at {width}×{height} {error}", figure.name));
+        let picture = compose_figure(&figure, &moments).map_err(no_room)?;
+        let image = Renderer::new(gpu, figure.size)?.draw(&picture)?;
         let texts = Tags::of_figure(&figure, &moments, &gpu.description().to_string()).texts();
         files.insert(picture_file(&figure), encode(figure.size, image.as_raw(), &texts, Compression::High));
     }

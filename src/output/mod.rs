@@ -10,6 +10,7 @@ mod diagnostics;
 mod digest;
 mod error;
 mod folder;
+mod frame_folder;
 mod frames;
 mod lock;
 mod png;
@@ -26,6 +27,7 @@ pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub(crate) use digest::state_digest;
 pub(crate) use error::{OutputError, is_folder, read_file};
 pub(crate) use folder::{Access, Claimed, FRAME_FILES, Folder, Shard, Whose, frame_file_name, frame_files};
+pub use frame_folder::FrameFolder;
 #[cfg(feature = "render")]
 pub(crate) use frames::Tap;
 pub(crate) use frames::{FrameWriter, PixelFrame};

@@ -276,14 +276,25 @@ impl Scene {
 }
 
 impl History {
-    /// Simulates runs of a scene from start to end: what charts and cameras that follow need, see [`Composer::set_history`].
-    ///
-    /// [`Composer::set_history`]: crate::picture::Composer::set_history
+    /// Simulates runs of a scene from start to end, with all diagnostics.
     ///
     /// # Panics
     /// If the scene has no such run.
     pub fn new(scene: &Scene, runs: &[usize]) -> Self {
-        let mut runner = Runner::new(scene, runs).without_pictures().with_time_series(Diagnostic::ALL);
+        Self::with(scene, runs, Diagnostic::ALL)
+    }
+
+    /// Simulates runs of a scene from start to end, with what pictures of them show: charts, paths, cameras that follow, and
+    /// the size of plates and walls. Empty, without a simulation, where pictures show nothing of that.
+    ///
+    /// # Panics
+    /// If the scene has no such run.
+    pub fn for_pictures(scene: &Scene, runs: &[usize]) -> Self {
+        scene.time_series().map_or_else(Self::default, |wanted| Self::with(scene, runs, wanted))
+    }
+
+    fn with(scene: &Scene, runs: &[usize], wanted: &[Diagnostic]) -> Self {
+        let mut runner = Runner::new(scene, runs).without_pictures().with_time_series(wanted);
         runner.advance_towards(scene.moment(scene.last_frame()), u64::MAX);
         runner.take_history()
     }

@@ -2,6 +2,7 @@
 
 use crate::support::{Place, SMALL, SMALL_FRAMES, lasting, run as run_command, skip};
 use localshape::internals::{Shown, Tags, read_tags};
+use localshape::{AdapterChoice, FrameFolder, Gpu, Limits, Renderer, Runner, Scene, compose};
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -36,6 +37,29 @@ fn pixels(path: &Path) -> ([u32; 2], Vec<u8>) {
     let info = reader.next_frame(&mut bytes).expect("a whole picture");
     assert_eq!((info.color_type, info.bit_depth), (png::ColorType::Rgb, png::BitDepth::Eight));
     ([info.width, info.height], bytes)
+}
+
+/// A camera that follows, a chart and a plate depend on the course of the whole scene.
+#[test]
+fn the_library_writes_the_same_files_as_the_program() {
+    let Some(place) = place_to_draw() else { return };
+    let text = include_str!("../../scenes/fig4b.toml").replace("duration = 3.0", "duration = 0.5");
+    place.write("drop.toml", &text.replace("size = [1280, 840]", "size = [320, 210]"));
+    place.run("render drop.toml --frames 20").good();
+
+    let scene = Scene::load(&place.path("drop.toml"), &Limits::default()).expect("a scene");
+    let frame = Runner::new(&scene, &[0, 1]).frame(20);
+    let gpu = Gpu::new(&AdapterChoice::Auto).expect("an adapter");
+    let mut renderer = Renderer::new(&gpu, scene.view.size).expect("a device");
+    let image = renderer.draw(&compose(&scene, &frame)).expect("a device");
+    let mut folder = FrameFolder::create(place.path("library"), &scene).expect("a folder");
+    folder.write_diagnostics(&frame).expect("a file");
+    folder.write_picture(&frame, &image, &gpu).expect("a file");
+    folder.finish().expect("a file");
+    for file in ["frame_00020.png", "diagnostics.csv"] {
+        let [own, programs] = ["library", "output/drop"].map(|folder| std::fs::read(place.path(folder).join(file)));
+        assert!(own.expect("a file") == programs.expect("a file"), "{file}");
+    }
 }
 
 #[test]

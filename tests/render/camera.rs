@@ -1,6 +1,7 @@
 //! Cameras that follow, over the whole course of all shipped scenes, by the numbers in their pictures: no device needed.
 
-use localshape::picture::{Composer, Panel, Picture, compose};
+use super::compose;
+use localshape::picture::{Composer, Panel, Picture};
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
@@ -33,8 +34,7 @@ fn asks_for_one_scale(path: &Path) -> bool {
 /// A composer that knows the whole course, and every so many frames of the scene.
 fn film(scene: &Scene, every: u64) -> Vec<(u64, Picture)> {
     let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let mut composer = Composer::new(scene);
-    composer.set_history(&History::new(scene, &runs));
+    let composer = Composer::new(scene, &History::new(scene, &runs));
     let mut runner = Runner::new(scene, &runs);
     let frames = (0..=scene.last_frame()).filter(|frame| frame % every == 0);
     frames.map(|frame| (frame, composer.compose(&runner.frame(frame)))).collect()
@@ -105,8 +105,7 @@ fn every_shipped_scene_fills_its_panels_and_cuts_nothing_off() {
 fn a_frame_drawn_alone_is_that_of_its_sequence() {
     let scene = load(&shipped().into_iter().find(|path| path.ends_with("mixed.toml")).expect("a scene"));
     for (frame, picture) in film(&scene, 50) {
-        let mut composer = Composer::new(&scene);
-        composer.set_history(&History::new(&scene, &[0, 1]));
+        let composer = Composer::new(&scene, &History::new(&scene, &[0, 1]));
         assert_eq!(composer.compose(&Runner::new(&scene, &[0, 1]).frame(frame)), picture, "{frame}");
     }
 }

@@ -1,6 +1,6 @@
 //! Ghosts and paths of bodies.
 
-use super::fig4b;
+use super::{fig4b, unknown};
 use localshape::look::{Ghost, Style, Theme, Traced};
 use localshape::picture::{Composer, Curve, Panel, Picture};
 use localshape::runner::Runner;
@@ -33,7 +33,7 @@ fn a_ghost_has_the_colour_of_its_run_and_is_not_in_its_own_panel() {
             (Ghost::Rest, palette.second_text, vec![0, 1]),
         ] {
             scene.view.ghost = Some(ghost);
-            let picture = Composer::new(&scene).compose(&frame);
+            let picture = unknown(&scene).compose(&frame);
             let found = outlines(&picture, colour);
             assert!(!found.is_empty());
             let of = |curve: &Curve| picture.panels.iter().position(|panel| inside(panel.viewport, curve.points[0]));
@@ -53,7 +53,7 @@ fn a_ghost_has_the_colour_of_its_run_and_is_not_in_its_own_panel() {
         }
     }
     scene.view.ghost = None;
-    assert!(Composer::new(&scene).compose(&frame).curves.is_empty());
+    assert!(unknown(&scene).compose(&frame).curves.is_empty());
 }
 
 /// Without its run there is no ghost, and nothing else changes.
@@ -62,7 +62,7 @@ fn a_frame_without_the_run_of_the_ghost_has_none() {
     let (mut scene, frame) = fig4b(4);
     scene.view.ghost = Some(Ghost::Run(0));
     let alone = Frame { runs: vec![frame.runs[1].clone()], ..frame };
-    let picture = Composer::new(&scene).compose(&alone);
+    let picture = unknown(&scene).compose(&alone);
     assert!(picture.curves.iter().all(|curve| curve.points.len() == 2), "the sample of the key alone");
 }
 
@@ -102,8 +102,7 @@ fn paths_end_where_bodies_are_and_begin_where_they_started() {
     let mut runner = Runner::new(&scene, &[0, 1]);
     let frames = [0, 3, 9].map(|index| runner.frame(index));
     let history = History::new(&scene, &[0, 1]);
-    let mut composer = Composer::new(&scene);
-    composer.set_history(&history);
+    let composer = Composer::new(&scene, &history);
     let mut longest = 0;
     for frame in &frames {
         let picture = composer.compose(frame);
@@ -135,13 +134,12 @@ fn paths_end_where_bodies_are_and_begin_where_they_started() {
             longest = longest.max(lines.iter().map(|line| line.points.len()).max().unwrap_or(0));
         }
         assert!(picture.words.iter().any(|run| run.text.starts_with("paths: centre")));
-        let mut alone = Composer::new(&scene);
-        alone.set_history(&history);
+        let alone = Composer::new(&scene, &history);
         assert_eq!(alone.compose(frame), picture);
     }
     assert!(longest > 10, "{longest}");
     // Without the time series there are none.
-    assert_eq!(Composer::new(&scene).compose(&frames[1]).curves.len(), 0);
+    assert_eq!(unknown(&scene).compose(&frames[1]).curves.len(), 0);
 }
 
 #[test]
@@ -173,7 +171,7 @@ fn bodies_of_bars_have_ghosts() {
     let mut scene = Scene::parse(text, "chain.toml", &Limits::default()).expect("the shipped scene is sound");
     scene.view.ghost = Some(Ghost::Rest);
     let frame = Runner::new(&scene, &[0]).frame(0);
-    let picture = Composer::new(&scene).compose(&frame);
+    let picture = unknown(&scene).compose(&frame);
     let is_ghost = |curve: &&Curve| curve.colour == picture.palette.second_text && curve.dash.len() == 2;
     // Eight bars, as far as they are in the panel, the weight at their end, and the sample of the key.
     let count = picture.curves.iter().filter(is_ghost).count();
@@ -195,6 +193,6 @@ fn what_finds_no_room_is_known() {
     assert!(told.iter().any(|text| text == "the scale bar is left out"), "{told:?}");
     let title =
         |picture: &Picture| picture.words.iter().filter(|run| run.size > 28.0).map(|run| run.text.clone()).collect();
-    let lines: Vec<String> = title(&Composer::new(&scene).compose(&Runner::new(&scene, &[0, 1]).frame(0)));
+    let lines: Vec<String> = title(&unknown(&scene).compose(&Runner::new(&scene, &[0, 1]).frame(0)));
     assert!(lines.last().is_some_and(|line| line.ends_with('…')), "{lines:?}");
 }

@@ -1,9 +1,9 @@
 //! Fields, springs, nodes, arrows and the arrangement of panels, tested by the numbers in the picture.
 
-use super::{fig4b, gpu, parse, renderer};
+use super::{compose, fig4b, gpu, parse, renderer};
 use localshape::colour::{Vision, difference, oklab};
 use localshape::look::{ColourMap, ColourScale, Style, Theme, Visible};
-use localshape::picture::{Mark, MarkShape, Mesh, Picture, SHADES, Second, compose};
+use localshape::picture::{Mark, MarkShape, Mesh, Picture, SHADES, Second};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
 use localshape::sim::field::Field;

@@ -1,8 +1,8 @@
 //! Antialiasing of everything, text included: pictures compared with themselves, drawn four times larger and averaged.
 
-use super::{draw, fig4b, frame, gpu, linear};
+use super::{compose, draw, fig4b, frame, gpu, linear};
 use image::RgbImage;
-use localshape::picture::{MarkShape, Picture, compose};
+use localshape::picture::{MarkShape, Picture};
 use localshape::scene::{Limits, Scene};
 
 /// The scale of the reference pictures.

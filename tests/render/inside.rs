@@ -1,9 +1,9 @@
 //! The inside of a body, and what is behind it.
 
-use super::{draw, fig4b, gpu, parse, renderer};
+use super::{compose, draw, fig4b, gpu, parse, renderer};
 use glam::Vec3;
 use image::RgbImage;
-use localshape::picture::{LineKind, compose};
+use localshape::picture::LineKind;
 use localshape::runner::Runner;
 use localshape::scene::Scene;
 use localshape::sim::snapshot::Frame;

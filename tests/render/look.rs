@@ -1,10 +1,10 @@
 //! Pictures with their own fonts, colours and sizes.
 
-use super::{fig4b, gpu, parse, renderer};
+use super::{compose, fig4b, gpu, parse, renderer};
 use glam::DVec3;
 use image::RgbImage;
 use localshape::look::FontFiles;
-use localshape::picture::{Line, LineKind, Mesh, Obstacles, Picture, Weight, compose};
+use localshape::picture::{Line, LineKind, Mesh, Obstacles, Picture, Weight};
 use localshape::runner::Runner;
 
 const SIZE: [u32; 2] = [640, 360];

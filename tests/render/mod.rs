@@ -22,9 +22,10 @@ mod work;
 
 use image::RgbImage;
 use localshape::gpu::{AdapterChoice, Gpu};
-use localshape::picture::{Picture, TextRun};
+use localshape::picture::{Composer, Picture, TextRun};
 use localshape::render::Renderer;
 use localshape::runner::Runner;
+use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
 use localshape::sim::snapshot::Frame;
 use std::sync::LazyLock;
@@ -69,6 +70,16 @@ fn parse(text: &str) -> Scene {
 /// A frame of all runs of a scene.
 fn frame(scene: &Scene, index: u64) -> Frame {
     Runner::new(scene, &all(scene)).frame(index)
+}
+
+/// The picture of a frame, as if nothing were known of the course of its scene.
+fn compose(scene: &Scene, frame: &Frame) -> Picture {
+    unknown(scene).compose(frame)
+}
+
+/// A composer of frames, as if nothing were known of the course of their scene.
+fn unknown(scene: &Scene) -> Composer<'_> {
+    Composer::new(scene, &History::default())
 }
 
 /// All runs of a scene.

@@ -1,10 +1,9 @@
 //! Obstacles and grips in the composed picture; only one test needs a device.
 
-use super::{fig4b, frame, gpu, parse, renderer};
+use super::{compose, fig4b, frame, gpu, parse, renderer, unknown};
 use glam::{DVec3, Vec3};
 use localshape::picture::{
-    Composer, LineKind, MOST_OCCLUDERS, Mark, MarkShape, Mesh, Obstacles, Occluder, Panel, Picture, compose,
-    compose_figure,
+    LineKind, MOST_OCCLUDERS, Mark, MarkShape, Mesh, Obstacles, Occluder, Panel, Picture, compose_figure,
 };
 use localshape::render::Renderer;
 use localshape::runner::moments::Moments;
@@ -344,7 +343,7 @@ fn following_the_body_lets_the_grid_scroll_below() {
     let text = "velocity = [3, 0, 0]";
     let body = CUBE.replace("lowest = 0.1", &format!("lowest = 0.1, {text}"));
     let body = following(&[WORLD, &body, FLOOR].concat());
-    let composer = Composer::new(&body);
+    let composer = unknown(&body);
     let eye = |picture: &Picture| picture.panels[0].sight.eye;
     // Any frame by itself, and in any order.
     let [late, early] = [25, 0].map(|index| composer.compose(&frame(&body, index)));

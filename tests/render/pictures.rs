@@ -1,9 +1,8 @@
 //! Images from the device.
 
-use super::{draw, fig4b, gpu, renderer};
+use super::{compose, draw, fig4b, gpu, renderer};
 use image::RgbImage;
 use localshape::look::{Style, Theme};
-use localshape::picture::compose;
 use localshape::render::{RenderError, Renderer};
 use localshape::scene::Scene;
 use localshape::sim::snapshot::{Divergence, Status};

@@ -1,9 +1,9 @@
 //! The contents of pictures, tested by their numbers: no device needed.
 
-use super::{fig4b, frame, parse};
+use super::{compose, fig4b, frame, parse, unknown};
 use localshape::colour::contrast;
 use localshape::look::{ColourMap, ColourScale, Palette, Theme};
-use localshape::picture::{Composer, LineKind, Mark, MarkShape, Mesh, Picture, TextRun, Weight, compose};
+use localshape::picture::{Composer, LineKind, Mark, MarkShape, Mesh, Picture, TextRun, Weight};
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
@@ -130,7 +130,7 @@ fn words_keep_inside_their_panels_and_apart() {
 #[test]
 fn words_do_not_move_from_frame_to_frame() {
     let (scene, _) = fig4b(0);
-    let composer = Composer::new(&scene);
+    let composer = unknown(&scene);
     let mut runner = Runner::new(&scene, &[0, 1]);
     let mut ends = Vec::new();
     for index in [0, 3, 7, 40] {
@@ -408,8 +408,7 @@ fn a_sign_that_would_hide_its_element_stands_beside_the_body() {
         .replace("[view]", "[view]\ncamera = { target = [0, 0.75], distance = 13.5 }");
     let scene = Scene::parse(&text, "fig4a.toml", &Limits::default()).expect("the shipped scene is sound");
     let mut runner = Runner::new(&scene, &[1]);
-    let mut composer = Composer::new(&scene);
-    composer.set_history(&History::new(&scene, &[1]));
+    let composer = Composer::new(&scene, &History::new(&scene, &[1]));
     for index in [89, 120, 300] {
         let frame = runner.frame(index);
         assert_eq!(frame.runs[0].snapshot.diagnostics.turned_over, 1, "this run is known for it");
@@ -472,7 +471,7 @@ fn shipped(text: &str) -> Scene {
 #[test]
 fn a_run_that_diverged_is_grey_and_stands_still_as_it_fitted_last() {
     let scene = shipped(include_str!("../../scenes/explicit-euler.toml"));
-    let composer = Composer::new(&scene);
+    let composer = unknown(&scene);
     let mut runner = Runner::new(&scene, &[0, 1, 2]);
     let [before, growing, first, last] = [10, 57, 90, 119].map(|index| composer.compose(&runner.frame(index)));
     let greyed = |picture: &Picture| picture.panels.iter().map(|panel| panel.greyed).collect::<Vec<_>>();
@@ -489,7 +488,7 @@ fn a_run_that_diverged_is_grey_and_stands_still_as_it_fitted_last() {
     let when = when.replace("diverged", "diverges");
     // Alone it has the scale bar, which measures what is shown.
     let alone = Runner::new(&scene, &[2]).frame(119);
-    let picture = Composer::new(&scene).compose(&alone);
+    let picture = unknown(&scene).compose(&alone);
     let shown = &alone.runs[0].last_fit.as_ref().expect("it diverged").snapshot.position;
     let sight = &picture.panels[0].sight;
     let across = glam::Vec3::new(sight.clip.x_axis.x, sight.clip.y_axis.x, sight.clip.z_axis.x).normalize();

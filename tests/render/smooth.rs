@@ -1,8 +1,8 @@
 //! Antialiased borders without flicker: a slight motion changes pixels slightly.
 
-use super::{all, draw, fig4b, gpu, linear, parse, renderer};
+use super::{all, compose, draw, fig4b, gpu, linear, parse, renderer, unknown};
 use image::RgbImage;
-use localshape::picture::{Composer, LineKind, Mark, MarkShape, Picture, Second, Stroke, compose};
+use localshape::picture::{LineKind, Mark, MarkShape, Picture, Second, Stroke};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
 use localshape::sim::snapshot::Frame;
@@ -156,7 +156,7 @@ fn what_turns_slowly_changes_slowly() {
     for body in bodies {
         for show in shows {
             let scene = scene(&[WORLD, SPRINGS, body, TURNING, show, camera]);
-            let composer = Composer::new(&scene);
+            let composer = unknown(&scene);
             let mut renderer = renderer(gpu, scene.view.size);
             let images: Vec<_> = frames(&scene, 0..12)
                 .iter()

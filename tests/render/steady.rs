@@ -1,9 +1,8 @@
 //! No flicker: if everything moves by a twentieth of a pixel per frame, no pixel jumps, and none oscillates.
 
-use super::{all, gpu, linear, parse, renderer};
+use super::{all, gpu, linear, parse, renderer, unknown};
 use image::RgbImage;
 use localshape::gpu::Gpu;
-use localshape::picture::Composer;
 use localshape::render::Renderer;
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
@@ -85,7 +84,7 @@ impl Camera {
     }
 
     fn shot(&mut self, scene: &Scene, frame: &Frame) -> RgbImage {
-        let mut picture = Composer::new(scene).compose(frame);
+        let mut picture = unknown(scene).compose(frame);
         picture.words.clear();
         self.0.draw(&picture).expect("the device works")
     }
@@ -109,7 +108,7 @@ fn around(gpu: &Gpu, scene: &mut Scene, frame: &Frame) -> Vec<RgbImage> {
 
 /// The greatest motion of a node between two frames (px).
 fn way(scene: &Scene, from: &Frame, to: &Frame) -> f64 {
-    let pixels = f64::from(Composer::new(scene).compose(from).panels[0].sight.element) / scene.view.side;
+    let pixels = f64::from(unknown(scene).compose(from).panels[0].sight.element) / scene.view.side;
     let nodes = |frame: &Frame| frame.runs.iter().flat_map(|run| run.snapshot.position.clone()).collect::<Vec<_>>();
     nodes(from).iter().zip(nodes(to)).map(|(one, other)| one.distance(other)).fold(0.0, f64::max) * pixels
 }

@@ -1,6 +1,6 @@
 //! Diagnostics over time below the panels.
 
-use super::{assert_words_are_clear, fig4b, gpu, parse, renderer};
+use super::{assert_words_are_clear, fig4b, gpu, parse, renderer, unknown};
 use localshape::look::{Style, Theme};
 use localshape::picture::{Composer, Curve, Mark, MarkShape, Picture, TextRun, Weight};
 use localshape::runner::Runner;
@@ -26,8 +26,7 @@ fn compose(scene: &Scene, frame: &Frame) -> Picture {
 /// Pictures of frames by one composer that has the scene's time series.
 fn pictures<const N: usize>(scene: &Scene, frames: &[Frame; N]) -> [Picture; N] {
     let runs: Vec<_> = frames[0].runs.iter().map(|run| run.run).collect();
-    let mut composer = Composer::new(scene);
-    composer.set_history(&History::new(scene, &runs));
+    let composer = Composer::new(scene, &History::new(scene, &runs));
     frames.each_ref().map(|frame| composer.compose(frame))
 }
 
@@ -162,8 +161,7 @@ fn flags_are_those_that_panels_explain() {
     for size in [[1280, 720], [500, 720], [300, 720], [1280, 260]] {
         scene.view.size = size;
         scene.view.columns = Some(2);
-        let mut composer = Composer::new(&scene);
-        composer.set_history(&History::new(&scene, &[0, 1]));
+        let composer = Composer::new(&scene, &History::new(&scene, &[0, 1]));
         let picture = composer.compose(&Runner::new(&scene, &[0, 1]).frame(0));
         let is_number = |word: &&TextRun| ["1", "2"].contains(&&*word.text) && word.weight == Weight::SemiBold;
         let explained = |word: &&TextRun| word.text.starts_with("first turned") || word.text.starts_with("settles");
@@ -183,8 +181,7 @@ fn what_chatters_is_a_band() {
     for (at, diagnostics) in history.series[1].diagnostics.iter_mut().enumerate() {
         diagnostics.turned_over = 5 + 4 * (at % 2);
     }
-    let mut composer = Composer::new(&scene);
-    composer.set_history(&history);
+    let composer = Composer::new(&scene, &history);
     let picture = composer.compose(&frame);
     let drawn: usize = series(&picture).iter().map(|curve| curve.points.len()).sum();
     assert!(drawn < 40, "{drawn} points of curves");
@@ -229,7 +226,7 @@ fn a_frame_composed_alone_has_the_same_strips() {
     let picture = compose(&scene, &alone);
     assert!(picture.curves.len() == 3 && series(&picture)[0].dash.is_empty() && circles(&picture).len() == 1);
     // Without the time series of the scene no strip is drawn.
-    assert!(Composer::new(&scene).compose(&frames[1]).curves.is_empty());
+    assert!(unknown(&scene).compose(&frames[1]).curves.is_empty());
 }
 
 #[test]
@@ -251,8 +248,7 @@ fn any_size_has_room_for_strips_or_none() {
         for columns in [1, 2] {
             scene.view.size = size;
             scene.view.columns = Some(columns);
-            let mut composer = Composer::new(&scene);
-            composer.set_history(&history);
+            let composer = Composer::new(&scene, &history);
             let picture = composer.compose(&frame);
             assert!(any.is_none_or(|any| any != picture.curves.is_empty()), "{size:?} {columns}");
             for run in &picture.words {

@@ -1,11 +1,11 @@
 //! Pictures as SVG and PDF: text stays text in fonts that are embedded, what is flat is made of paths, and what is lit is an
 //! image.
 
-use super::{fig4b, frame, parse};
+use super::{compose, fig4b, frame, parse};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use localshape::look::Theme;
-use localshape::picture::{Picture, compose, compose_figure};
+use localshape::picture::{Picture, compose_figure};
 use localshape::runner::moments::Moments;
 use localshape::scene::figure::Figure;
 use localshape::vector::{Format, Page, bodies, write};

@@ -1,8 +1,8 @@
 //! Positions of texts: nowhere overlapping, and the same in every frame.
 
-use super::{all, assert_words_are_clear, fig4b, frame, parse};
+use super::{all, assert_words_are_clear, compose, fig4b, frame, parse, unknown};
 use localshape::look::Labels;
-use localshape::picture::{Composer, Mark, MarkShape, Picture, compose};
+use localshape::picture::{Composer, Mark, MarkShape, Picture};
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::Scene;
@@ -89,7 +89,7 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_size_of_type() {
     let shown = "show = ['springs', 'displacements']\n";
     let mut arrows = 0;
     let sizes = [[640, 360], [1280, 720], [700, 1200], [1600, 400], [150, 150]];
-    for (number, text_scale) in [0.5, 1.0, 3.0, 1.5].into_iter().enumerate() {
+    for (number, text_scale) in [(0, 0.5), (1, 1.0), (2, 1.5), (4, 3.0)] {
         // In low panels, strips with type of three times the size have no room for two rows.
         for strip in ["", "strip = 'shape_error'"].into_iter().filter(|strip| strip.is_empty() || text_scale < 3.0) {
             for (at, view) in
@@ -152,7 +152,7 @@ fn the_scale_bar_stays_when_its_run_blows_up() {
     let text = ALL.replace("name = 'Local shape'", "name = 'Local'");
     let text = text.replacen("stiffness = 1e4 }", "stiffness = 1e4 }\nintegrator = 'explicit-euler'", 1);
     let scene = parse(&text.replace("step = 0.005", "step = 0.02"));
-    let (composer, mut runner) = (Composer::new(&scene), Runner::new(&scene, &[0]));
+    let (composer, mut runner) = (unknown(&scene), Runner::new(&scene, &[0]));
     let bar = |picture: &Picture| picture.words.iter().find(|word| word.text.ends_with("00 mm")).map(|word| word.span);
     let frames = [0, scene.last_frame()].map(|frame| composer.compose(&runner.frame(frame)));
     assert!(frames[1].words.iter().any(|word| word.text.starts_with("diverged")), "it blows up");
@@ -193,8 +193,7 @@ fn no_type_is_smaller_than_the_least() {
     for (size, columns) in [([1280, 720], 3), ([1600, 1000], 3), ([1920, 1080], 1), ([1280, 720], 2)] {
         let mut scene = parse(&ALL.replace("[view]", "[view]\nshow = ['springs', 'displacements']"));
         (scene.view.size, scene.view.columns) = (size, Some(columns));
-        let mut composer = Composer::new(&scene);
-        composer.set_history(&History::new(&scene, &[0, 1, 2]));
+        let composer = Composer::new(&scene, &History::new(&scene, &[0, 1, 2]));
         let picture = composer.compose(&Runner::new(&scene, &[0, 1, 2]).frame(3));
         let width = size[0] as f32 / if columns == 1 { 540.0 } else { 1080.0 };
         let least = 14.0 * width.min(size[1] as f32 / 720.0) - 0.01;
@@ -232,7 +231,7 @@ fn words_stay_where_they_are() {
         super::plain().replace("camera.follow = false", "")
     }] {
         let scene = parse(&text);
-        let (composer, mut runner) = (Composer::new(&scene), Runner::new(&scene, &all(&scene)));
+        let (composer, mut runner) = (unknown(&scene), Runner::new(&scene, &all(&scene)));
         let first = composer.compose(&runner.frame(0));
         for frame in 1..=scene.last_frame().min(60) {
             let picture = composer.compose(&runner.frame(frame));
@@ -254,8 +253,7 @@ fn letters_of_panels_stand_for_names_without_room_beside_a_chart() {
     for (size, expected) in [("[500, 900]", 2), ("[3000, 1688]", 1)] {
         let text = ALL.replace(" that nobody would read to its end", "");
         let scene = parse(&format!("{}\nsize = {size}\n", text.replace("spring_colour = {}", "")));
-        let mut composer = Composer::new(&scene);
-        composer.set_history(&History::new(&scene, &all(&scene)));
+        let composer = Composer::new(&scene, &History::new(&scene, &all(&scene)));
         let picture = composer.compose(&Runner::new(&scene, &all(&scene)).frame(0));
         let count = |text: &str| picture.words.iter().filter(|word| word.text == text).count();
         assert_eq!(["a", "b", "c"].map(count), [expected; 3], "{size}");

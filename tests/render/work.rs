@@ -1,11 +1,9 @@
 //! What the device is told to do: nothing that a picture does not need, and nothing twice.
 
-use super::{draw, fig4b, gpu, parse, plain, renderer};
-use localshape::artist::Artist;
+use super::{compose, draw, fig4b, gpu, renderer};
 use localshape::gpu::{AdapterChoice, Gpu, GpuError, Work};
-use localshape::picture::{Picture, compose};
+use localshape::picture::Picture;
 use localshape::render::RenderError;
-use localshape::runner::Runner;
 use std::collections::BTreeSet;
 
 /// A device whose work no other test adds to.
@@ -121,29 +119,6 @@ fn only_what_changed_is_uploaded() {
     let (work, shaded) = work_for(&picture);
     assert!(matches!(uploads(&work)[..], [("shades", _)]), "{:?}", uploads(&work));
     assert_eq!(shaded, draw(&gpu, &picture), "as drawn alone");
-}
-
-#[test]
-fn a_frame_like_the_last_one_is_not_drawn() {
-    let Some(gpu) = own_gpu("a_frame_like_the_last_one_is_not_drawn") else { return };
-    let mut scene = parse(&plain());
-    scene.view.size = [320, 180];
-    let runs: Vec<_> = (0..scene.runs.len()).collect();
-    let mut artist = Artist::new(&gpu, &scene).expect("the device works");
-    let mut work_for = |index: u64| {
-        let composed = artist.compose(&Runner::new(&scene, &runs).frame(index));
-        gpu.take_work();
-        let begun = artist.begin(composed).expect("the device works");
-        let pixels = artist.finish(begun).expect("the device works");
-        (gpu.take_work(), pixels)
-    };
-    let (work, first) = work_for(3);
-    assert_eq!(pictures(&work), 1);
-    let (work, again) = work_for(3);
-    assert_eq!(work, [], "neither drawn nor uploaded");
-    assert_eq!(first, again);
-    let (work, other) = work_for(4);
-    assert!(pictures(&work) == 1 && other != first);
 }
 
 #[test]

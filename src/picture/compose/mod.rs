@@ -36,7 +36,7 @@ use crate::runner::history::{History, Reach, TimeSeries};
 use crate::scene::Scene;
 use crate::sim::body::{Body, Dimension, bounds};
 use crate::sim::snapshot::{Frame, Snapshot, Status};
-pub(crate) use figure::{NoRoom, compose_figure};
+pub(crate) use figure::compose_figure;
 use glam::DVec3;
 use panel::Draft;
 use std::sync::OnceLock;
@@ -79,13 +79,13 @@ pub struct Composer<'a> {
     start_box: [DVec3; 2],
     /// The unit of soft distances (sides).
     soft: f64,
-    /// The chart below the panels, once the time series are set.
+    /// The chart below the panels, if the time series are known.
     timeline: Option<Timeline>,
     /// The paths of all runs, likewise.
     traced: Vec<TimeSeries>,
     /// How the camera follows, if it does.
     tracking: Option<Tracking>,
-    /// Where nodes have come near plates and walls, once the time series are set.
+    /// Where nodes have come near plates and walls, if the time series are known.
     reach: Reach,
     /// How the panels of the first frame are arranged, and those of all others of the same runs.
     arranged: OnceLock<Arranged>,
@@ -101,21 +101,12 @@ struct Arranged {
     shot: Option<Shot>,
 }
 
-/// Composes a single frame of a scene. For many frames, a [`Composer`] does what they share only once.
-///
-/// The time series of the scene are not known ([`Composer::set_history`]): the place of a chart stays empty, and a camera that
-/// follows takes its scale from the start.
-pub fn compose(scene: &Scene, frame: &Frame) -> Picture {
-    Composer::new(scene).compose(frame)
-}
-
 impl<'a> Composer<'a> {
-    /// Prepares to compose frames of a scene.
+    /// Prepares to compose frames of a scene, by the time series of all runs that frames show ([`History::for_pictures`]).
     ///
-    /// A scene with a chart ([`crate::look::View::strip`]), paths or a camera that follows
-    /// ([`crate::look::Camera::follow`]) needs [`Composer::set_history`], too; without it their places stay empty, and the
-    /// camera's scale is that of the start.
-    pub fn new(scene: &'a Scene) -> Self {
+    /// Charts and paths show the time series; a camera that follows takes its scale from them, and plates and walls their
+    /// size. With an empty history the places of charts and paths stay empty, and all scales are those of the start.
+    pub fn new(scene: &'a Scene, history: &History) -> Self {
         let body = &*scene.body;
         let areas = match body.dimension {
             Dimension::Plane => body.elements.iter().map(|nodes| area(nodes, &body.rest)).collect(),
@@ -130,7 +121,9 @@ impl<'a> Composer<'a> {
         let bare = bare_elements(body);
         let visible = scene.view.visible;
         let map = scene.view.colour.map(|scale| scale.map);
-        Self {
+        let mut reach = Reach::default();
+        history.series.iter().for_each(|series| reach.merge(&series.reach));
+        let mut composer = Self {
             scene,
             ramp: map.map_or_else(Vec::new, |map| ramp(map, scene.view.look.theme)),
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
@@ -149,23 +142,19 @@ impl<'a> Composer<'a> {
             start_box: bounds(&scene.initial.position).into(),
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
             timeline: None,
-            traced: Vec::new(),
-            tracking: scene.view.camera.follow.then(|| Tracking::new(scene, &History::default())).flatten(),
-            reach: Reach::default(),
+            traced: if scene.view.paths.is_empty() { Vec::new() } else { history.series.clone() },
+            tracking: scene.view.camera.follow.then(|| Tracking::new(scene, history)).flatten(),
+            reach,
             arranged: OnceLock::new(),
-        }
+        };
+        composer.timeline = composer.chart(history);
+        composer
     }
 
-    /// Sets the time series: those of all runs to be shown, over the whole scene. The chart and paths show them,
-    /// a camera that follows takes its path and its scale from them, and plates and walls their size.
-    pub fn set_history(&mut self, history: &History) {
+    /// The chart below the panels, if the scene has one and its time series are known.
+    fn chart(&self, history: &History) -> Option<Timeline> {
         let scene = self.scene;
-        self.arranged = OnceLock::new();
-        self.tracking = scene.view.camera.follow.then(|| Tracking::new(scene, history)).flatten();
-        self.reach = Reach::default();
-        history.series.iter().for_each(|series| self.reach.merge(&series.reach));
-        self.traced = if scene.view.paths.is_empty() { Vec::new() } else { history.series.clone() };
-        let Some(diagnostic) = scene.view.strip else { return };
+        let diagnostic = scene.view.strip.filter(|_| !history.series.is_empty())?;
         let runs: Vec<_> = history.series.iter().map(|series| series.run).collect();
         let layout = self.words().around(&runs, self.columns(&runs)).layout;
         let writer = self.writer(layout.around);
@@ -174,8 +163,7 @@ impl<'a> Composer<'a> {
         let [has_events, have_letters] = written.map_or([false; 2], |written| [written.events, written.labels.letters]);
         let (panel, in_panel) = (panel.filter(|_| has_events), self.writer(layout.scale));
         let explained = |events: &[&Event]| panel.map_or(0, |panel| in_panel.explained(panel, events));
-        let timeline = Timeline::new(diagnostic, history, scene, writer, (layout.chart, have_letters), explained);
-        self.timeline = Some(timeline);
+        Some(Timeline::new(diagnostic, history, scene, writer, (layout.chart, have_letters), explained))
     }
 
     /// The words of its pictures.

@@ -9,6 +9,7 @@ use crate::picture::legend::Legend;
 use crate::picture::series;
 use crate::picture::text::{Fonts, Weight};
 use crate::picture::wrap::{balanced, wrapped};
+use crate::runner::history::History;
 use crate::scene::Scene;
 
 /// Titles and captions are never longer than this (lines).
@@ -224,7 +225,7 @@ impl<'a> Words<'a> {
 
 /// What finds no room in the pictures of a scene.
 pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
-    let composer = Composer::new(scene);
+    let composer = Composer::new(scene, &History::default());
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let words = composer.words();
     let left_out = |columns: usize| {

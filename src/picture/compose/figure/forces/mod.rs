@@ -13,6 +13,7 @@ use crate::picture::chart::filled;
 use crate::picture::compose::Composer;
 use crate::picture::layout::Scale;
 use crate::picture::text::{Fonts, Weight};
+use crate::runner::history::History;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::{Figure, Forces};
@@ -40,7 +41,7 @@ const UNDER_TITLE: f64 = 20.0;
 /// Composes a diagram.
 pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Result<Picture, NoRoom> {
     let scenes: Vec<Scene> = forces.scenes.iter().map(|scene| bare(scene, figure)).collect();
-    let composers: Vec<_> = scenes.iter().map(Composer::new).collect();
+    let composers: Vec<_> = scenes.iter().map(|scene| Composer::new(scene, &History::default())).collect();
     let fonts = Fonts::new(&figure.look.font);
     let palette = figure.look.palette;
     let runs = scenes[0].runs.len();

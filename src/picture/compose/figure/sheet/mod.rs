@@ -30,6 +30,7 @@ use crate::picture::legend::Legend;
 use crate::picture::narrow::narrow;
 use crate::picture::text::Fonts;
 use crate::picture::{Colour, Curve, Framing, Picture};
+use crate::runner::history::History;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::{Figure, Sheet};
@@ -85,8 +86,12 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let scenes: Vec<_> = scenes.iter().enumerate().map(|(at, scene)| seen(scene, at, sheet, &framings)).collect();
     let traced = |scene: usize| moments.histories.get(scene).map_or_else(Vec::new, |history| history.series.clone());
     let composers = scenes.iter().zip(reaches).zip(tallies).enumerate();
-    let composer =
-        |(at, ((scene, reach), tally))| Composer { reach, tally, traced: traced(at), ..Composer::new(scene) };
+    let composer = |(at, ((scene, reach), tally))| Composer {
+        reach,
+        tally,
+        traced: traced(at),
+        ..Composer::new(scene, &History::default())
+    };
     let composers: Vec<_> = composers.map(composer).collect();
     let mut below = Vec::new();
     for (row, cells) in moments.cells.iter().enumerate() {
