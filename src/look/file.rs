@@ -195,10 +195,10 @@ pub(crate) struct ColourFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct CameraFile {
-    /// Azimuth to the right, from looking along −z (rad), in space. Default: 0.541, which is 31°.
+    /// Azimuth to the right, from looking along −z (rad). Only in space. Default: 0.541, which is 31°.
     pub(crate) azimuth: Option<f64>,
-    /// Elevation above the horizon (rad), in space. Default: 0.297, which is 17°; under a plate that faces down 0.227,
-    /// which is 13°.
+    /// Elevation above the horizon (rad), below a quarter turn (1.57), so that the camera does not look along its
+    /// up-axis. Only in space. Default: 0.297, which is 17°; under a plate that faces down 0.227, which is 13°.
     #[schemars(extend("exclusiveMinimum" = -1.57, "exclusiveMaximum" = 1.57))]
     pub(crate) elevation: Option<f64>,
     /// Vertical field of view (rad). Default: 0.349, which is 20°.
