@@ -61,7 +61,7 @@ pub(super) struct FigureCommand {
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
 
-    /// Give a key of the figures' scenes another value for this command, such as view.size or run[0].model.stiffness=1e4: the key
+    /// Give a key of the figures' scenes another value for this command, such as run[0].model.stiffness=1e4: the key
     /// as messages write it, the value as in a scene file, where a word needs no quotation marks. Can be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Setting>,

@@ -92,6 +92,9 @@ fn of_file(path: &Path) -> Vec<Key> {
     keys
 }
 
+/// The keys of scenes and figures that name files beside them: of a body, of fonts, of a scene.
+const FILES: [&str; 4] = ["file", "regular", "semi_bold", "scene"];
+
 fn add(keys: &mut Vec<Key>, folder: &Path, path: String, value: Value) {
     let is_table = |value: &Value| matches!(value, Value::Table(_));
     match value {
@@ -102,7 +105,8 @@ fn add(keys: &mut Vec<Key>, folder: &Path, path: String, value: Value) {
             items.into_iter().enumerate().for_each(|(at, item)| add(keys, folder, format!("{path}[{at}]"), item));
         }
         value => {
-            let beside = value.as_str().and_then(|name| std::fs::read(folder.join(name)).ok());
+            let is_file = FILES.contains(&path.rsplit('.').next().unwrap_or_default());
+            let beside = value.as_str().filter(|_| is_file).and_then(|name| std::fs::read(folder.join(name)).ok());
             let text = written(&value);
             let value = match beside {
                 // A file beside the scene, such as that of a body.

@@ -45,7 +45,8 @@ impl FromStr for Setting {
                 let close = if rest.starts_with('"') { "\"]" } else { "]" };
                 let length = rest.find(close).ok_or(EXPECTED)?;
                 let inside = rest[..length].trim_start_matches('"');
-                let part = inside.parse().map_or_else(|_| Part::Named(inside.to_owned()), Part::Index);
+                let index = inside.parse().ok().filter(|_| close == "]");
+                let part = index.map_or_else(|| Part::Named(inside.to_owned()), Part::Index);
                 let end = at + 1 + length + close.len();
                 parts.push((part, at..end));
                 at = end;

@@ -20,6 +20,10 @@ const fn value(key: &'static str, value: &'static str, instead: &'static str) ->
     Gone { key, value: Some(value), instead }
 }
 
+/// For what is now a word in the list of labels, which replaces the usual list.
+const ALL_LABELS: &str = "write `labels = [\"letters\", \"name\", \"model\", \"clock\", \"count\", \"number\", \"scale-bar\", \
+                          \"legend\"]` without the words for what is not shown";
+
 #[rustfmt::skip]
 const GONE: &[Gone] = &[
     key("time.sleep", "remove it"),
@@ -42,16 +46,16 @@ const GONE: &[Gone] = &[
     key("view.explode", "remove it"),
     key("view.hatch", "remove it; turned-over elements are always hatched"),
     key("view.inset", "remove it"),
-    key("view.legend", "leave `\"legend\"` in `view.labels`, or take it out"),
-    key("view.letters", "write `\"letters\"` in `view.labels`"),
+    key("view.legend", ALL_LABELS),
+    key("view.letters", ALL_LABELS),
     key("view.line_scale", "remove it"),
     key("view.margin", "remove it"),
     key("view.light", "remove it"),
     key("view.opacity", "remove it; elements that are turned over show through the others"),
     key("view.outline", "remove it; outlines are always drawn"),
     key("view.points", "remove it"),
-    key("view.scale_bar", "leave `\"scale-bar\"` in `view.labels`, or take it out"),
-    key("view.spring_colour", "write `colour = { by = \"strain\", range = [-0.3, 0.3], map = \"violet-green\" }`"),
+    key("view.scale_bar", ALL_LABELS),
+    key("view.spring_colour", "write `colour = { by = \"strain\", range = [-0.3, 0.3], map = \"violet-green\" }`, and `show` without `\"surfaces\"`"),
 ];
 
 /// What to write instead of a key that is gone, or of one of its values.

@@ -252,7 +252,7 @@ fn words_stay_where_they_are() {
 fn letters_of_panels_stand_for_names_without_room_beside_a_chart() {
     for (size, expected) in [("[500, 900]", 2), ("[3000, 1688]", 1)] {
         let text = ALL.replace(" that nobody would read to its end", "");
-        let scene = parse(&format!("{}\nsize = {size}\n", text.replace("spring_colour = {}", "")));
+        let scene = parse(&format!("{}\nsize = {size}\n", text));
         let composer = Composer::new(&scene, &History::new(&scene, &all(&scene)));
         let picture = composer.compose(&Runner::new(&scene, &all(&scene)).frame(0));
         let count = |text: &str| picture.words.iter().filter(|word| word.text == text).count();

@@ -1,4 +1,4 @@
-//! How the panels of a frame are seen: their arrangement, their cameras and their overviews.
+//! How the panels of a frame are seen: their arrangement and their cameras.
 
 use super::Composer;
 use crate::look::Traced;
