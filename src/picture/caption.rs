@@ -236,8 +236,9 @@ impl Writer<'_> {
         self.right(&time, Weight::Regular, around.title(), palette.text, right, baseline);
     }
 
-    /// Tally and count, lower left. Returns where they end at the widest (px).
-    pub(super) fn count(&mut self, panel: Rectangle, tally: &Tally, snapshot: &Snapshot) -> f64 {
+    /// Tally and count, lower left; the tally takes at most a share of the panel's width. Returns where they end at the widest
+    /// (px).
+    pub(super) fn count(&mut self, panel: Rectangle, (tally, share): (&Tally, f64), snapshot: &Snapshot) -> f64 {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         if !Scale::legible(caption) || snapshot.turned_over.is_empty() {
@@ -256,7 +257,7 @@ impl Writer<'_> {
             [turned_over, flat],
             self.palette,
             self.scale,
-            0.36 * room.width(),
+            share * room.width(),
             [room.left, bottom],
             &mut self.marks,
         );

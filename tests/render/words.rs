@@ -102,7 +102,7 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_size_of_type() {
                     parse(&format!("{}\n{strip}\n{shown}text_scale = {text_scale}\n{view}\n", text.join("\n")));
                 scene.view.labels.legend = !view.contains("no legend");
                 // Any two of type, view and size once at least.
-                for size in [sizes[(number + at) % 5], sizes[(number + at + 2) % 5]] {
+                for size in [0, 1, 2, 3].map(|next| sizes[(number + at + next) % 5]) {
                     scene.view.size = size;
                     let picture = compose(&scene, &Runner::new(&scene, &[0, 1, 2]).frame(3));
                     let place = format!("{size:?} at {text_scale} with {strip} {view}");
@@ -158,6 +158,31 @@ fn the_scale_bar_stays_when_its_run_blows_up() {
     assert!(frames[1].words.iter().any(|word| word.text.starts_with("diverged")), "it blows up");
     assert!(bar(&frames[0]).is_some());
     assert_eq!(bar(&frames[0]), bar(&frames[1]));
+}
+
+/// Tallies of many elements become shorter rather than that a scale bar is left out.
+#[test]
+fn the_scale_bar_finds_room_beside_shorter_tallies() {
+    let run = |name: &str| format!("{{ name = '{name}', model = {{ kind = 'shape-based', stiffness = 2e3 }} }}");
+    let scene = |runs: &[&str]| {
+        let runs: Vec<_> = runs.iter().map(|name| run(name)).collect();
+        parse(&format!(
+            "time.duration = 0.1
+            body.lattice = {{ cells = [12, 3, 3], side = 0.05 }}
+            run = [{}]
+            [view]
+            labels = ['name', 'count', 'number', 'scale-bar']",
+            runs.join(", ")
+        ))
+    };
+    let drawn = |scene: &Scene| {
+        let picture = compose(scene, &Runner::new(scene, &all(scene)).frame(0));
+        let has_bar = picture.words.iter().any(|word| word.text.ends_with("0 mm") && !word.text.starts_with('0'));
+        let tally = |mark: &&Mark| mark.colour == picture.palette.tally;
+        (has_bar, picture.marks.iter().find(tally).expect("a tally").rectangle[2])
+    };
+    let [(one, usual), (three, shorter)] = [&["One"][..], &["One", "Two", "Three"]].map(|runs| drawn(&scene(runs)));
+    assert!(one && three && shorter < 0.8 * usual, "{usual} {shorter}");
 }
 
 #[test]

@@ -18,7 +18,7 @@ use super::camera::Lens;
 use super::caption::{self, Writer};
 use super::ears::{Ears, bare_elements};
 use super::event::Event;
-use super::layout::{self, Layout, Rectangle, Scale};
+use super::layout::{self, Rectangle, Scale};
 use super::number;
 use super::shadow;
 use super::shell::Shell;
@@ -99,6 +99,8 @@ struct Arranged {
     around: Around,
     /// How a camera that follows sees the bodies.
     shot: Option<Shot>,
+    /// The part of panels' widths that tallies take.
+    tally: f64,
 }
 
 impl<'a> Composer<'a> {
@@ -190,8 +192,8 @@ impl<'a> Composer<'a> {
                 &others
             }
         };
-        let Arranged { columns, around, shot, .. } = arranged;
-        let (columns, Around { layout, title, caption, legend, clock }) = (*columns, around);
+        let Arranged { around, shot, .. } = arranged;
+        let Around { layout, title, caption, legend, clock } = around;
         let scale = layout.scale;
         let places = layout.panels.iter().zip(&frame.runs);
         let framings = places.map(|(&panel, run)| self.framing(shot.as_ref(), run, (panel, scale)));
@@ -199,8 +201,7 @@ impl<'a> Composer<'a> {
         let mut writer = self.writer(scale);
         writer.hairlines(layout);
         let hairlines = std::mem::take(&mut writer.marks);
-        let with_clock = *clock == Clock::InPanel;
-        self.write(frame, layout, columns, framings.first(), with_clock, &mut writer);
+        self.write(frame, arranged, framings.first(), &mut writer);
         self.timeline.iter().for_each(|timeline| timeline.draw(&mut writer, frame));
         writer.title(layout.around, title);
         if let &Clock::Above(Some(baseline)) = clock {
@@ -238,20 +239,15 @@ impl<'a> Composer<'a> {
         let around = self.words().around(runs, columns);
         let (layout, scale) = (&around.layout, around.layout.scale);
         let shot = layout.panels.first().and_then(|&panel| self.shot(panel, scale));
-        Arranged { runs: runs.to_vec(), columns, around, shot }
+        let (tally, _) = self.beside_tally(layout, shot.as_ref());
+        Arranged { runs: runs.to_vec(), columns, around, shot, tally }
     }
 
     /// Writes the words of all panels.
-    fn write(
-        &self,
-        frame: &Frame,
-        layout: &Layout,
-        columns: usize,
-        framing: Option<&Framing>,
-        with_clock: bool,
-        writer: &mut Writer<'_>,
-    ) {
+    fn write(&self, frame: &Frame, arranged: &Arranged, framing: Option<&Framing>, writer: &mut Writer<'_>) {
         let view = &self.scene.view;
+        let &Arranged { columns, ref around, tally, .. } = arranged;
+        let (layout, with_clock) = (&around.layout, around.clock == Clock::InPanel);
         let words = self.words();
         let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
         let names = words.names(&runs);
@@ -276,7 +272,7 @@ impl<'a> Composer<'a> {
             let to = f64::from(viewport[0] + viewport[2]) - margin;
             if labels.count {
                 let before = (writer.marks.len(), writer.words.len());
-                from = writer.count(viewport, &self.tally, run.shown());
+                from = writer.count(viewport, (&self.tally, tally), run.shown());
                 // The state that is shown of a run that diverges does not say how many have turned over since; its room stays.
                 if run.shown().status != Status::Ok {
                     writer.marks.truncate(before.0);

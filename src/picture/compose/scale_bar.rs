@@ -2,13 +2,16 @@
 
 use super::Composer;
 use crate::picture::caption::{self, Writer};
-use crate::picture::layout::{self, Rectangle, Scale};
+use crate::picture::layout::{self, Layout, Rectangle, Scale};
+use crate::picture::tracking::Shot;
 use crate::picture::{Framing, number};
 use crate::sim::snapshot::{RunFrame, Snapshot};
 
 /// The scale bar is at most and at least this long (px in the reference picture).
 const LONGEST: f64 = 120.0;
 const LEAST: f64 = 20.0;
+/// The parts of a panel's width that tallies may take: the first one that leaves room for a scale bar.
+const TALLY_SHARES: [f64; 4] = [0.36, 0.28, 0.20, 0.12];
 
 impl Composer<'_> {
     /// Draws the scale bar of a panel between two places (px), if there is room; returns where it ends (px).
@@ -30,11 +33,20 @@ impl Composer<'_> {
         })
     }
 
-    /// Whether the scale bar of some runs in columns has no room at the start.
-    pub(super) fn lacks_bar(&self, runs: &[usize], columns: usize) -> bool {
+    /// The part of panels' widths that tallies take, and whether the scale bar has room beside one: less than usual where it
+    /// would have none.
+    pub(super) fn beside_tally(&self, layout: &Layout, shot: Option<&Shot>) -> (f64, bool) {
+        let fits = |&share: &f64| self.fits_bar(layout, shot, share);
+        match TALLY_SHARES.iter().find(|share| fits(share)) {
+            Some(&share) => (share, true),
+            None => (TALLY_SHARES[0], false),
+        }
+    }
+
+    /// Whether the scale bar has room beside a tally that takes a part of its panel's width.
+    fn fits_bar(&self, layout: &Layout, shot: Option<&Shot>, share: f64) -> bool {
         let (view, body) = (&self.scene.view, &*self.scene.body);
-        let layout = self.words().around(runs, columns).layout;
-        let Some(&panel) = layout.panels.first().filter(|_| view.labels.scale_bar) else { return false };
+        let Some(&panel) = layout.panels.first() else { return false };
         let layout::Written { labels, .. } = layout::written(view, f64::from(panel[3]), layout.scale.unit);
         let snapshot = Snapshot {
             position: self.scene.initial.position.clone(),
@@ -47,12 +59,18 @@ impl Composer<'_> {
         let margin = writer.scale.margin();
         let [mut from, mut to] = [f64::from(panel[0]) + margin, f64::from(panel[0] + panel[2]) - margin];
         if labels.count {
-            from = writer.count(panel, &self.tally, &start.snapshot);
+            from = writer.count(panel, (&self.tally, share), &start.snapshot);
         }
         to = to.min(writer.left_of_numbers(panel, &caption::number(self.extent, &start.snapshot, area)));
-        let shot = self.shot(panel, layout.scale);
-        let framing = self.framing(shot.as_ref(), &start, (panel, layout.scale));
-        !labels.scale_bar || self.draw_bar(panel, &framing, [from, to], &mut writer).is_none()
+        let framing = self.framing(shot, &start, (panel, layout.scale));
+        labels.scale_bar && self.draw_bar(panel, &framing, [from, to], &mut writer).is_some()
+    }
+
+    /// Whether the scale bar of some runs in columns has no room, as far as the start tells.
+    pub(super) fn lacks_bar(&self, runs: &[usize], columns: usize) -> bool {
+        let layout = self.words().around(runs, columns).layout;
+        let shot = layout.panels.first().and_then(|&panel| self.shot(panel, layout.scale));
+        self.scene.view.labels.scale_bar && !layout.panels.is_empty() && !self.beside_tally(&layout, shot.as_ref()).1
     }
 
     /// What a scale bar in a room (px) stands for (m), and how long it is (px).

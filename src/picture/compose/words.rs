@@ -228,22 +228,22 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
     let composer = Composer::new(scene, &History::default());
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let words = composer.words();
-    let left_out = |columns: usize| {
-        let bar = composer.lacks_bar(&runs, columns).then(|| "the scale bar is left out".to_owned());
-        words.left_out(&runs, columns).into_iter().chain(bar).collect::<Vec<_>>()
-    };
     // Nobody expects words in a thumbnail.
     if !Scale::legible(Layout::around(&scene.view).small()) {
         return Vec::new();
     }
     let columns = composer.columns(&runs);
-    let mut told = left_out(columns);
-    if scene.view.columns.is_none() {
-        // How panels stand follows from the course of the scene, too: between what the start suggests and side by side.
-        for columns in columns + 1..=runs.len() {
-            let there = left_out(columns);
-            told.retain(|one| there.contains(one));
-        }
+    // How panels stand follows from the course of the scene, too: between what the start suggests and side by side.
+    let last = if scene.view.columns.is_none() { runs.len().max(columns) } else { columns };
+    let mut told = words.left_out(&runs, columns);
+    for columns in columns + 1..=last {
+        let there = words.left_out(&runs, columns);
+        told.retain(|one| there.contains(one));
+    }
+    let lacks_bar: Vec<_> = (columns..=last).map(|columns| composer.lacks_bar(&runs, columns)).collect();
+    if lacks_bar.contains(&true) {
+        let may = if lacks_bar.contains(&false) { "may be" } else { "is" };
+        told.push(format!("the scale bar {may} left out"));
     }
     told
 }
