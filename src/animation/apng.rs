@@ -1,6 +1,6 @@
 //! Animated PNG: lossless; only the pixels that differ from the previous frame are stored.
 
-use super::order::{Kept, in_order};
+use super::order::in_order;
 use super::timeline::fraction;
 use super::{Animation, AnimationError, Image, Written, changed};
 use crate::output::packed;
@@ -28,11 +28,11 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     let control = [shots.len() as u32, u32::from(animation.plays)].map(u32::to_be_bytes).concat();
     writer.write_chunk(ANIMATION_CONTROL, &control).map_err(failed)?;
 
-    let images = Kept::new(animation.threads, |frame| animation.reel.image(frame));
     let patch = |at: usize| {
-        let image = images.get(shots[at].frame)?;
-        let before = at.checked_sub(1).map(|before| images.get(shots[before].frame)).transpose()?;
-        Ok(Patch::new(&image, before.as_deref()))
+        let image = animation.reel.image(shots[at].frame)?;
+        // Read again: a thread has every second frame or fewer, and reading takes a fraction of the time of compressing.
+        let before = at.checked_sub(1).map(|before| animation.reel.image(shots[before].frame)).transpose()?;
+        Ok(Patch::new(&image, before.as_ref()))
     };
     let mut sequence = 0_u32;
     in_order(shots.len(), animation.threads, patch, |at, patch| {

@@ -2,7 +2,7 @@
 //! that differs from the previous one is stored.
 
 use super::order::in_order;
-use super::palette::{Counts, Numbers, Palette};
+use super::palette::Counts;
 use super::{Animation, AnimationError, Written, changed};
 use gif::{AnyExtension, DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use std::io::{self, Write};
@@ -51,7 +51,7 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     let numbers = |at: usize| Ok(palette.numbers(&animation.reel.image(ticks[at].0)?));
     let mut shown: Option<Vec<u8>> = None;
     in_order(ticks.len(), animation.threads, numbers, |at, numbers| {
-        let mut frame = frame(size, &palette, numbers, &mut shown);
+        let mut frame = frame(size, numbers, &mut shown);
         // A duration longer than the greatest delay is divided into several frames.
         let mut left = ticks[at].1;
         while left > 0 {
@@ -66,24 +66,19 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
     Ok(Written { pictures: ticks.len(), duration, size })
 }
 
-/// The compressed part of a picture that differs from what is shown. A pixel keeps the shown colour if that is as good.
-fn frame(size: [u32; 2], palette: &Palette, numbers: Numbers, shown: &mut Option<Vec<u8>>) -> Frame<'static> {
-    let (place, buffer) = match shown {
-        None => ([0, 0, size[0], size[1]], shown.insert(numbers.best).clone()),
+/// The compressed part of a picture that differs from what is shown.
+fn frame(size: [u32; 2], numbers: Vec<u8>, shown: &mut Option<Vec<u8>>) -> Frame<'static> {
+    let (place, buffer) = match shown.take() {
+        None => ([0, 0, size[0], size[1]], numbers.clone()),
         Some(shown) => {
-            let mut new = vec![SAME; shown.len()];
-            for (at, shown) in shown.iter_mut().enumerate() {
-                if !palette.may_stay(&numbers, at, *shown) {
-                    new[at] = numbers.best[at];
-                    *shown = new[at];
-                }
-            }
-            let place @ [left, top, width, height] = changed(size, |at| new[at] != SAME);
-            let start = |y: u32| (y * size[0] + left) as usize;
-            let rows = (top..top + height).map(|y| &new[start(y)..start(y) + width as usize]);
-            (place, rows.flatten().copied().collect())
+            let place @ [left, top, width, height] = changed(size, |at| numbers[at] != shown[at]);
+            let places =
+                (top..top + height).flat_map(|y| (left..left + width).map(move |x| (y * size[0] + x) as usize));
+            let number = |at: usize| if numbers[at] == shown[at] { SAME } else { numbers[at] };
+            (place, places.map(number).collect())
         }
     };
+    *shown = Some(numbers);
     let is_first = place[2..] == size && buffer.iter().all(|&number| number != SAME);
     let [left, top, width, height] = place.map(|number| number as u16);
     let mut frame = Frame {

@@ -1,9 +1,7 @@
 //! Parallel work whose results are consumed in order, computed a few ahead.
 
 use super::AnimationError;
-use std::collections::VecDeque;
 use std::sync::mpsc::sync_channel;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Number of results for each thread that may wait.
 const AHEAD: usize = 2;
@@ -46,46 +44,6 @@ pub(super) fn in_order<T: Send>(
     })
 }
 
-/// A cache of computed values, which keeps the newest ones.
-pub(super) struct Kept<T, F> {
-    make: F,
-    most: usize,
-    places: Mutex<VecDeque<(usize, Place<T>)>>,
-}
-
-/// A value, once it is computed.
-type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
-
-impl<T, F: Fn(usize) -> Result<T, AnimationError>> Kept<T, F> {
-    /// A cache for this number of threads.
-    pub(super) fn new(threads: usize, make: F) -> Self {
-        Self { make, most: 2 * threads.clamp(1, MOST) + 2, places: Mutex::new(VecDeque::new()) }
-    }
-
-    /// A value. If another thread is computing it, waits for the result.
-    pub(super) fn get(&self, key: usize) -> Result<Arc<T>, AnimationError> {
-        let place = self.place(key);
-        let mut made = place.lock().unwrap_or_else(PoisonError::into_inner);
-        match &*made {
-            Some(made) => Ok(Arc::clone(made)),
-            None => Ok(Arc::clone(made.insert(Arc::new((self.make)(key)?)))),
-        }
-    }
-
-    fn place(&self, key: usize) -> Place<T> {
-        let mut places: MutexGuard<'_, VecDeque<_>> = self.places.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, place)) = places.iter().find(|(known, _)| *known == key) {
-            return Arc::clone(place);
-        }
-        if places.len() == self.most {
-            places.pop_front();
-        }
-        let place = Place::default();
-        places.push_back((key, Arc::clone(&place)));
-        place
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -121,18 +79,5 @@ mod tests {
         assert_eq!(taken, 7);
         assert!(in_order(100, 2, |_| Ok(()), |at, ()| if at < 5 { Ok(()) } else { Err(wrong()) }).is_err());
         in_order(0, 2, |_| Ok(()), |_, ()| Ok(())).unwrap();
-    }
-
-    #[test]
-    fn things_are_made_once() {
-        let made = AtomicUsize::new(0);
-        let kept = Kept::new(1, |key| {
-            made.fetch_add(1, Ordering::SeqCst);
-            Ok(key)
-        });
-        for key in 1..50 {
-            assert_eq!((*kept.get(key - 1).unwrap(), *kept.get(key).unwrap()), (key - 1, key));
-        }
-        assert_eq!(made.load(Ordering::SeqCst), 50);
     }
 }

@@ -18,10 +18,6 @@ const ROUNDS: usize = 6;
 const POWER: f64 = 0.4;
 /// Colours nearer than this in Oklab look the same side by side, and are not dithered.
 const NEAR: f64 = 0.012;
-/// A shown colour is kept if the new one is nearer than this in Oklab.
-const STAY: f64 = 0.015;
-/// Length of a run of pixels of the same colour that counts as background.
-const GROUND: u64 = 48;
 /// Weight of the difference of the two colours of a mixture, as it makes the dither pattern visible.
 const GRAIN: f64 = 0.15;
 /// Number of steps of a mixture.
@@ -34,43 +30,30 @@ fn cell(pixel: [u8; 3]) -> usize {
 
 /// The number of pixels of each colour.
 pub(super) struct Counts {
-    /// For each cell the number of pixels, the sums of their channels, and the number of those in a background.
-    cells: Vec<[u64; 5]>,
+    /// For each cell the number of pixels and the sums of their channels.
+    cells: Vec<[u64; 4]>,
 }
 
 impl Counts {
     pub(super) fn new() -> Self {
-        Self { cells: vec![[0; 5]; CELLS] }
+        Self { cells: vec![[0; 4]; CELLS] }
     }
 
     /// The cells of a picture that are not empty.
-    pub(super) fn of(image: &Image) -> Vec<(u32, [u64; 5])> {
+    pub(super) fn of(image: &Image) -> Vec<(u32, [u64; 4])> {
         let mut cells = Self::new().cells;
-        let mut pixels = image.pixels.chunks_exact(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]);
-        let Some(mut last) = pixels.next() else { return Vec::new() };
-        let mut run = 1_u64;
-        let mut count = |pixel: [u8; 3], run: u64| {
-            let sums = &mut cells[cell(pixel)];
-            sums[0] += run;
-            (0..3).for_each(|channel| sums[channel + 1] += run * u64::from(pixel[channel]));
-            sums[4] += if run >= GROUND { run } else { 0 };
-        };
-        for pixel in pixels {
-            if pixel == last {
-                run += 1;
-            } else {
-                count(last, run);
-                (last, run) = (pixel, 1);
-            }
+        for &pixel in image.pixels.as_chunks::<3>().0 {
+            let [count, sums @ ..] = &mut cells[cell(pixel)];
+            *count += 1;
+            sums.iter_mut().zip(pixel).for_each(|(sum, byte)| *sum += u64::from(byte));
         }
-        count(last, run);
         let filled = cells.iter().enumerate().filter(|(_, sums)| sums[0] > 0);
         filled.map(|(at, sums)| (at as u32, *sums)).collect()
     }
 
-    pub(super) fn add(&mut self, more: &[(u32, [u64; 5])]) {
+    pub(super) fn add(&mut self, more: &[(u32, [u64; 4])]) {
         for (at, sums) in more {
-            (0..5).for_each(|number| self.cells[*at as usize][number] += sums[number]);
+            (0..4).for_each(|number| self.cells[*at as usize][number] += sums[number]);
         }
     }
 
@@ -78,33 +61,16 @@ impl Counts {
     pub(super) fn palette(&self) -> Palette {
         let filled = self.cells.iter().enumerate().filter(|(_, sums)| sums[0] > 0);
         let cells: Vec<Cell> = filled
-            .map(|(at, &[count, r, g, b, even])| {
+            .map(|(at, &[count, r, g, b])| {
                 let mean = [r, g, b].map(|sum| ((2 * sum + count) / (2 * count)) as u8);
-                Cell {
-                    at,
-                    mean,
-                    lab: oklab(mean),
-                    count,
-                    is_ground: 2 * even > count,
-                    weight: libm::pow(count as f64, POWER),
-                }
+                Cell { at, mean, lab: oklab(mean), count, weight: libm::pow(count as f64, POWER) }
             })
             .collect();
         let colours = chosen(&cells);
         let labs: Vec<Oklab> = colours.iter().map(|&colour| oklab(colour)).collect();
         let mut mixtures = vec![Mixture::default(); CELLS];
-        let mut near = Vec::with_capacity(cells.len());
-        for (row, cell) in (0..).zip(&cells) {
-            mixtures[cell.at] = Mixture { row, ..Mixture::of(cell.lab, &labs) };
-            let mut bits = [0; 4];
-            for (number, &other) in labs.iter().enumerate() {
-                if !cell.is_ground && square(cell.lab, other) < STAY * STAY {
-                    bits[number / 64] |= 1_u64 << (number % 64);
-                }
-            }
-            near.push(bits);
-        }
-        Palette { colours, mixtures, near }
+        cells.iter().for_each(|cell| mixtures[cell.at] = Mixture::of(cell.lab, &labs));
+        Palette { colours, mixtures }
     }
 }
 
@@ -114,8 +80,6 @@ struct Cell {
     mean: Colour,
     lab: Oklab,
     count: u64,
-    /// Whether most of its pixels are in a background, where remains of the previous frame would be visible.
-    is_ground: bool,
     weight: f64,
 }
 
@@ -212,8 +176,6 @@ struct Mixture {
     other: u8,
     /// How many of 64 pixels have the second colour.
     share: u8,
-    /// The row of [`Palette`]'s table of near colours.
-    row: u32,
 }
 
 impl Mixture {
@@ -239,7 +201,7 @@ impl Mixture {
             }
         }
         let (_, other, share) = best;
-        Self { one: one as u8, other: other as u8, share: (share * LEVELS).round() as u8, row: 0 }
+        Self { one: one as u8, other: other as u8, share: (share * LEVELS).round() as u8 }
     }
 }
 
@@ -269,40 +231,21 @@ const ORDER: [[u8; 8]; 8] = {
 pub(super) struct Palette {
     pub(super) colours: Vec<Colour>,
     mixtures: Vec<Mixture>,
-    /// For each cell that is not empty, a bit for each near colour of the palette.
-    near: Vec<[u64; 4]>,
-}
-
-/// A picture as indices into the palette.
-pub(super) struct Numbers {
-    /// The index for each pixel.
-    pub(super) best: Vec<u8>,
-    /// For each pixel the row of the palette's table of near colours.
-    rows: Vec<u32>,
 }
 
 impl Palette {
-    /// Whether a pixel may keep the colour that is shown.
-    pub(super) fn may_stay(&self, numbers: &Numbers, at: usize, shown: u8) -> bool {
-        shown == numbers.best[at]
-            || self.near[numbers.rows[at] as usize][usize::from(shown / 64)] >> (shown % 64) & 1 == 1
-    }
-
     /// A picture as indices into the palette. In a mixture the position of a pixel decides its colour, so the dither
     /// pattern does not move.
-    pub(super) fn numbers(&self, image: &Image) -> Numbers {
-        let width = image.size[0] as usize;
-        let all = image.pixels.len() / 3;
-        let (mut best, mut rows) = (Vec::with_capacity(all), Vec::with_capacity(all));
-        for (y, line) in image.pixels.chunks_exact(3 * width).enumerate() {
-            let order = &ORDER[y % 8];
-            for (x, pixel) in line.chunks_exact(3).enumerate() {
-                let Mixture { one, other, share, row } = self.mixtures[cell([pixel[0], pixel[1], pixel[2]])];
-                best.push(if order[x % 8] < share { other } else { one });
-                rows.push(row);
-            }
-        }
-        Numbers { best, rows }
+    pub(super) fn numbers(&self, image: &Image) -> Vec<u8> {
+        let rows = image.pixels.as_chunks::<3>().0.chunks_exact(image.size[0] as usize);
+        let number = |order: &[u8; 8], x: usize, pixel: [u8; 3]| {
+            let Mixture { one, other, share } = self.mixtures[cell(pixel)];
+            if order[x % 8] < share { other } else { one }
+        };
+        let row = |(y, row): (usize, &[[u8; 3]])| -> Vec<u8> {
+            row.iter().enumerate().map(|(x, &pixel)| number(&ORDER[y % 8], x, pixel)).collect()
+        };
+        rows.enumerate().flat_map(row).collect()
     }
 }
 
@@ -329,7 +272,7 @@ mod tests {
         let image = Image { size: [3, 1], pixels: vec![252, 252, 250, 20, 30, 40, 252, 252, 250] };
         let palette = palette(&image);
         let numbers = palette.numbers(&image);
-        let back: Vec<u8> = numbers.best.iter().flat_map(|&number| palette.colours[usize::from(number)]).collect();
+        let back: Vec<u8> = numbers.iter().flat_map(|&number| palette.colours[usize::from(number)]).collect();
         assert_eq!(back, image.pixels);
     }
 
@@ -343,11 +286,11 @@ mod tests {
         assert!(palette.colours.len() <= MOST);
         let numbers = palette.numbers(&image);
         let mut sum = 0.0;
-        for (pixel, &number) in image.pixels.chunks_exact(3).zip(&numbers.best) {
+        for (pixel, &number) in image.pixels.chunks_exact(3).zip(&numbers) {
             let [one, other] = [[pixel[0], pixel[1], pixel[2]], palette.colours[usize::from(number)]].map(oklab);
             sum += one.distance(other);
         }
-        let mean = sum / numbers.best.len() as f64;
+        let mean = sum / numbers.len() as f64;
         assert!(mean < 0.03, "{mean}");
     }
 }

@@ -4,38 +4,30 @@ use super::folder::Source;
 use super::picture::{PictureError, Pixels};
 use super::tolerance::Distance;
 use crate::output::Tags;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::borrow::Cow;
 use std::error::Error;
 use std::fmt;
 use std::sync::Arc;
 
 /// The verdict on two pictures, from the best to the worst.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Verdict {
     /// All pixels and states are equal.
-    #[serde(rename = "identical")]
     Identical,
     /// The states are equal; pixels differ within the tolerance.
-    #[serde(rename = "within tolerance")]
     WithinTolerance,
     /// Pixels differ by more than the tolerance, and one of the pictures does not record its state.
-    #[serde(rename = "no state recorded")]
     NoState,
     /// The states are equal; pixels differ by more than the tolerance.
-    #[serde(rename = "drawn differently")]
     DrawnDifferently,
     /// The expected picture does not exist.
-    #[serde(rename = "extra")]
     Extra,
     /// The actual picture does not exist.
-    #[serde(rename = "missing")]
     Missing,
     /// Positions or velocities differ.
-    #[serde(rename = "state moved")]
     StateMoved,
     /// One of the files cannot be compared as a picture.
-    #[serde(rename = "unreadable")]
     Unreadable,
 }
 
@@ -57,6 +49,12 @@ impl Verdict {
             Self::StateMoved => "state moved",
             Self::Unreadable => "unreadable",
         }
+    }
+}
+
+impl Serialize for Verdict {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.words())
     }
 }
 
