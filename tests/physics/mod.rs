@@ -2,25 +2,11 @@
 
 mod asked;
 mod checkpoints;
-mod closed_forms;
-mod conformance;
-mod contact;
-mod degenerate_starts;
-#[allow(unreachable_pub, reason = "documentation shows it, too")]
-mod example_model;
 mod fig4a;
 mod fig4b;
 mod fig4c;
-mod figures;
 mod free_form;
-mod grips;
-mod integrators;
-mod masses;
-mod readings;
-mod rest;
 mod restore;
-mod runaway;
+mod shipped;
 mod stability;
-mod state;
 mod support;
-mod threads;

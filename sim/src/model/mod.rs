@@ -181,7 +181,7 @@ pub enum Known<'a> {
 /// # Example
 /// A complete model: a rod with the energy `k/(8 L²) (|p|² − L²)²` between any two nodes of an element.
 /// ```
-#[doc = include_str!("../../../tests/physics/example_model.rs")]
+#[doc = include_str!("../../tests/physics/example_model.rs")]
 /// use localshape_sim::body::{Dimension, Solids};
 /// use localshape_sim::integrate::Integrator;
 /// use localshape_sim::world::{Stepping, Surroundings};

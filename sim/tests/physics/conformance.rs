@@ -4,11 +4,12 @@
 use super::example_model::Rods;
 use super::support::{Noise, Remembering, body, forces, lattice, mass_spring, shape_based};
 use glam::DVec3;
-use localshape::sim::body::{Body, Dimension, ElementKind, IndexLists, Solids};
-use localshape::sim::model::ElasticModel;
-use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
-use localshape::sim::state::State;
-use localshape::sim::topology::Springs;
+use localshape_sim::body::{Body, Dimension, ElementKind, IndexLists, Solids};
+use localshape_sim::integrate::Integrator;
+use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use localshape_sim::model::{ElasticModel, ModelParameters};
+use localshape_sim::state::State;
+use localshape_sim::topology::Springs;
 use std::sync::Arc;
 
 const STIFFNESS: f64 = 1e4;
@@ -299,7 +300,7 @@ fn a_node_sums_its_forces_in_the_order_of_the_elements() {
     let spring = mass_spring(&whole, STIFFNESS, 7.0, Springs::EdgesOneDiagonal);
     let elements: Vec<Vec<u32>> = whole.elements.iter().map(<[u32]>::to_vec).collect();
     let springs: Vec<Vec<u32>> = spring.springs.iter().map(|ends| ends.to_vec()).collect();
-    let pair = localshape::sim::model::mass_spring::MassSpring { springs: [[0, 1]].into(), ..spring.clone() };
+    let pair = localshape_sim::model::mass_spring::MassSpring { springs: [[0, 1]].into(), ..spring.clone() };
     for (model, parts, alone) in
         [(&shape as &dyn ElasticModel, elements, &shape as &dyn ElasticModel), (&spring, springs, &pair)]
     {
@@ -420,30 +421,28 @@ fn the_order_of_nodes_and_elements_does_not_matter() {
     }
 }
 
-/// Fails if a model of the scene format is missing in this suite.
+/// The names of the choices of a type, or of the property of one of its variants.
+fn names(schema: &serde_json::Value) -> Vec<String> {
+    let text = schema.to_string();
+    let consts = text.split("\"const\":\"").skip(1).filter_map(|rest| rest.split('"').next().map(String::from));
+    consts.collect()
+}
+
+/// Fails if a model is missing in this suite.
 #[test]
-fn every_model_of_the_scene_format_is_in_the_suite() {
-    let schema = localshape::scene::schema();
-    let variants = schema["properties"]["run"]["items"]["properties"]["model"]["oneOf"].as_array();
-    let named: Vec<_> =
-        variants.expect("models to choose from").iter().map(|model| &model["properties"]["kind"]["const"]).collect();
+fn every_model_is_in_the_suite() {
+    let schema = schemars::schema_for!(ModelParameters).to_value();
+    let variants = schema["oneOf"].as_array().expect("models to choose from");
+    let named: Vec<_> = variants.iter().map(|model| &model["properties"]["kind"]["const"]).collect();
     assert_eq!(named, ["shape-based", "mass-spring"], "add the model to `cases`, then here");
 }
 
-/// The same for the readings of a model, the named springs and the integrators: a new one fails here until the suites
-/// include it.
+/// A new reading of a model, named topology or integrator fails here until the suites include it.
 #[test]
-fn every_choice_of_the_scene_format_is_in_the_suites() {
-    let schema = localshape::scene::schema();
-    let run = &schema["properties"]["run"]["items"]["properties"];
-    let names = |key: &serde_json::Value| {
-        let text = key.to_string();
-        let consts = text.split("\"const\":\"").skip(1).filter_map(|rest| rest.split('"').next().map(String::from));
-        consts.collect::<Vec<_>>()
-    };
-    let model = |kind: usize, key: &str| names(&run["model"]["oneOf"][kind]["properties"][key]);
+fn every_choice_is_in_the_suites() {
+    let of = |schema: schemars::Schema| names(&schema.to_value());
     assert_eq!(
-        model(0, "rotation"),
+        of(schemars::schema_for!(RotationReading)),
         [
             "arctangent",
             "vector-length",
@@ -458,13 +457,13 @@ fn every_choice_of_the_scene_format_is_in_the_suites() {
             "robust"
         ]
     );
-    assert_eq!(model(0, "damping_of"), ["relative-motion", "deformation"]);
+    assert_eq!(of(schemars::schema_for!(DampingReading)), ["relative-motion", "deformation"]);
     assert_eq!(
-        model(1, "springs"),
+        of(schemars::schema_for!(Springs)),
         ["edges", "edges+one-diagonal", "edges+face-diagonals", "edges+body-diagonals", "all"]
     );
     assert_eq!(
-        names(&run["integrator"]),
+        of(schemars::schema_for!(Integrator)),
         [
             "semi-implicit-euler",
             "explicit-euler",

@@ -2,17 +2,15 @@
 
 use super::support::{Noise, lattice, shape_based};
 use glam::{DQuat, DVec3};
-use localshape::scene::{Limits, Scene};
-use localshape::sim::body::{Body, Dimension, Solids};
-use localshape::sim::grip::Grip;
-use localshape::sim::integrate::Integrator;
-use localshape::sim::model::shape_based::ShapeBased;
-use localshape::sim::model::{ModelParameters, Report};
-use localshape::sim::motion::{Ease, Key, Motion, Offset};
-use localshape::sim::rotation::{linearised, moment, torque};
-use localshape::sim::snapshot::Status;
-use localshape::sim::state::State;
-use localshape::sim::world::{Stepping, Surroundings, World};
+use localshape_sim::body::{Body, Dimension, Solids};
+use localshape_sim::grip::Grip;
+use localshape_sim::integrate::Integrator;
+use localshape_sim::model::shape_based::ShapeBased;
+use localshape_sim::model::{ModelParameters, Report};
+use localshape_sim::motion::{Ease, Key, Motion, Offset};
+use localshape_sim::rotation::{linearised, moment, torque};
+use localshape_sim::state::State;
+use localshape_sim::world::{Stepping, Surroundings, World};
 use std::sync::Arc;
 
 /// A cube with its nodes moved a little and masses from 1 to 8 kg.
@@ -68,7 +66,7 @@ fn the_residual_is_the_torque_over_the_moment_of_inertia() {
     // The rotation of the forces in the first step, which starts from the exact one.
     let solve = |a| linearised::rotation_by_arctangent(linearised::solve(a));
     let at_rest = |world: &World| moment(&rest, centred(&world.state().position));
-    let exact = localshape::sim::rotation::davenport1968::optimum(at_rest(&world), DQuat::IDENTITY);
+    let exact = localshape_sim::rotation::davenport1968::optimum(at_rest(&world), DQuat::IDENTITY);
     let first = linearised::iterate(at_rest(&world), exact, 1, solve).rotation;
     world.advance(1);
     let second = linearised::iterate(at_rest(&world), first, 1, solve).rotation;
@@ -90,31 +88,5 @@ fn a_damping_ratio_is_about_the_lightest_node() {
         let text = format!("{model:?}");
         assert!(text.contains(&format!("damping: {damping:?}")), "{text}");
         assert!(model.describe(&body).contains("ζ = 0.3"), "{}", model.describe(&body));
-    }
-}
-
-/// A step and a damping ratio that are stable together stay so if a node is ten thousand times lighter than the others.
-#[test]
-fn the_default_step_serves_any_contrast_of_masses() {
-    for lightest in ["1", "0.01", "0.0001"] {
-        let text = format!(
-            "[time]
-            duration = 1
-            frames_per_second = 100
-            [body]
-            nodes = [[0,0,0],[1,0,0],[0,1,0],[1,1,0],[0,0,1],[1,0,1],[0,1,1],[1,1,1]]
-            elements = [[0,1,2,3,4,5,6,7]]
-            masses = [{lightest},1,1,1,1,1,1,1]
-            spin = {{ axis = [1, 2, 3], rate = 0.001 }}
-            [[run]]
-            name = 'a'
-            model = {{ kind = 'shape-based', stiffness = 100.0, damping_ratio = 0.1 }}"
-        );
-        let scene = Scene::parse(&text, "contrast.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-        let mut world = scene.world(0);
-        world.advance((1.0 / scene.runs[0].step) as u64);
-        assert_eq!(world.status(), Status::Ok);
-        let fastest = world.state().velocity.iter().map(|v| v.length()).fold(0.0, f64::max);
-        assert!(fastest < 2e-3, "{lightest} kg: {fastest}");
     }
 }

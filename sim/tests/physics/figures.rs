@@ -3,10 +3,10 @@
 
 use super::support::{body, forces, shape_based};
 use glam::DVec3;
-use localshape::sim::body::Dimension;
-use localshape::sim::model::ElasticModel;
-use localshape::sim::model::mass_spring::MassSpring;
-use localshape::sim::state::State;
+use localshape_sim::body::Dimension;
+use localshape_sim::model::ElasticModel;
+use localshape_sim::model::mass_spring::MassSpring;
+use localshape_sim::state::State;
 
 fn at(points: &[[f64; 2]]) -> Vec<[f64; 3]> {
     points.iter().map(|&[x, y]| [x, y, 0.0]).collect()

@@ -3,15 +3,15 @@
 use super::conformance::{bodies, cases};
 use super::support::{Noise, body, floor, free, lattice, mass_spring, shape_based, stepped};
 use glam::DVec3;
-use localshape::sim::body::{Body, Dimension, Solids};
-use localshape::sim::grip::Grip;
-use localshape::sim::integrate::Integrator;
-use localshape::sim::model::shape_based::{RotationReading, ShapeBased};
-use localshape::sim::model::{ElasticModel, Report};
-use localshape::sim::motion::{Ease, Key, Motion, Offset};
-use localshape::sim::state::State;
-use localshape::sim::topology::Springs;
-use localshape::sim::world::{Kernel, Stepping, Surroundings, World};
+use localshape_sim::body::{Body, Dimension, Solids};
+use localshape_sim::grip::Grip;
+use localshape_sim::integrate::Integrator;
+use localshape_sim::model::shape_based::{RotationReading, ShapeBased};
+use localshape_sim::model::{ElasticModel, Report};
+use localshape_sim::motion::{Ease, Key, Motion, Offset};
+use localshape_sim::state::State;
+use localshape_sim::topology::Springs;
+use localshape_sim::world::{Kernel, Stepping, Surroundings, World};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 

@@ -2,10 +2,10 @@
 
 use super::support::{Noise, Remembering, floor, free, lattice, mass_spring, shape_based, world};
 use glam::DVec3;
-use localshape::sim::body::{Body, Dimension, IndexLists, Solids};
-use localshape::sim::state::State;
-use localshape::sim::topology::Springs;
-use localshape::sim::world::Surroundings;
+use localshape_sim::body::{Body, Dimension, IndexLists, Solids};
+use localshape_sim::state::State;
+use localshape_sim::topology::Springs;
+use localshape_sim::world::Surroundings;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ fn a_body_falls_as_the_sum_of_its_steps() {
     let (body, step, g) = (lattice(2, 0.1), 1e-3, 9.8);
     let around = Surroundings { gravity: DVec3::new(0.0, -g, 0.0), ..Surroundings::default() };
     for model in [
-        &shape_based(1e4, 20.0) as &dyn localshape::sim::model::ElasticModel,
+        &shape_based(1e4, 20.0) as &dyn localshape_sim::model::ElasticModel,
         &mass_spring(&body, 1e4, 20.0, Springs::All),
     ] {
         let mut world = world(&body, State::at_rest(body.rest.clone()), model, step, around.clone());
@@ -100,8 +100,8 @@ fn momentum_and_angular_momentum_stay_to_round_off() {
     let step = TAU / 100.0 / 50.0;
     let spring = mass_spring(&body, 1e4, 0.0, Springs::EdgesOneDiagonal);
     // After the paper's two passes a small torque remains; angular momentum is conserved only with exact rotations.
-    let shape = localshape::sim::model::shape_based::ShapeBased { passes: 6, ..shape_based(1e4, 0.0) };
-    for model in [&shape as &dyn localshape::sim::model::ElasticModel, &spring] {
+    let shape = localshape_sim::model::shape_based::ShapeBased { passes: 6, ..shape_based(1e4, 0.0) };
+    for model in [&shape as &dyn localshape_sim::model::ElasticModel, &spring] {
         let mut world = free(&body, start.clone(), model, step);
         let before = world.snapshot().diagnostics;
         world.advance(1000);
@@ -120,9 +120,9 @@ fn momentum_and_angular_momentum_stay_to_round_off() {
 fn the_highest_frequencies_are_those_of_an_independent_implementation() {
     let body = lattice(3, 0.1);
     let k = 1e4;
-    let spring = |named| Box::new(mass_spring(&body, k, 0.0, named)) as Box<dyn localshape::sim::model::ElasticModel>;
+    let spring = |named| Box::new(mass_spring(&body, k, 0.0, named)) as Box<dyn localshape_sim::model::ElasticModel>;
     let cases = [
-        (Box::new(localshape::sim::model::shape_based::ShapeBased { passes: 4, ..shape_based(k, 0.0) }) as _, 2.7585),
+        (Box::new(localshape_sim::model::shape_based::ShapeBased { passes: 4, ..shape_based(k, 0.0) }) as _, 2.7585),
         (spring(Springs::EdgesFaceDiagonals), 3.099),
         (spring(Springs::EdgesOneDiagonal), 3.087),
         (spring(Springs::EdgesBodyDiagonals), 2.686),
@@ -158,7 +158,7 @@ fn the_error_of_semi_implicit_euler_falls_with_the_step() {
     });
     let start = State::at_rest(twisted.collect());
     // Enough passes for exact rotations, so that the step is the only error.
-    let model = localshape::sim::model::shape_based::ShapeBased { passes: 6, ..shape_based(1e4, 0.0) };
+    let model = localshape_sim::model::shape_based::ShapeBased { passes: 6, ..shape_based(1e4, 0.0) };
     let end = |steps: u32| {
         let mut world = free(&body, start.clone(), &model, 0.2 / f64::from(steps));
         world.advance(steps.into());
@@ -178,7 +178,7 @@ fn the_error_of_semi_implicit_euler_falls_with_the_step() {
 fn a_step_is_stable_up_to_two_over_the_highest_frequency() {
     let body = lattice(3, 0.1);
     let stiffness = 1e4;
-    let model = localshape::sim::model::shape_based::ShapeBased { passes: 4, ..shape_based(stiffness, 0.0) };
+    let model = localshape_sim::model::shape_based::ShapeBased { passes: 4, ..shape_based(stiffness, 0.0) };
     let growth = |part_of_limit: f64| {
         let step = part_of_limit * 2.0 / (2.7585 * f64::sqrt(stiffness));
         let mut noise = Noise(4);

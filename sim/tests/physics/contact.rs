@@ -2,9 +2,8 @@
 
 use super::support::Noise;
 use glam::{DQuat, DVec3};
-use localshape::scene::{Limits, Scene};
-use localshape::sim::contact::{Motion, Obstacle, Shape};
-use localshape::sim::motion::{Ease, Key, Offset};
+use localshape_sim::contact::{Motion, Obstacle, Shape};
+use localshape_sim::motion::{Ease, Key, Offset};
 
 const STEP: f64 = 1e-3;
 
@@ -219,48 +218,6 @@ fn a_rebound_of_a_node_that_accelerates_has_the_energy_of_the_impact() {
             let energy = 0.5 * velocity.y * velocity.y + g * position.y;
             let expected = 0.5 * (restitution * impact).powi(2);
             assert!((energy - expected).abs() < 1e-14, "{restitution} {share}: {energy} {expected}");
-        }
-    }
-}
-
-/// A block of three layers of nodes rests on a slope with `tan α < μ`. With the paper's rule it creeps by `3 g sin α ΔT`; with the
-/// friction of the path it stays.
-#[test]
-fn friction_of_the_path_ends_creep() {
-    let creep = |rule: &str, integrator: &str, e: f64| {
-        let text = format!(
-            "gravity = [0, -9.8, 0]
-            time = {{ duration = 4, step = 0.001, integrator = '{integrator}' }}
-            body = {{ lattice = {{ cells = [2, 2, 2], side = 0.1 }}, offset = [0, 0.03, 0], rotation = {{ axis = [0, 0, 1], angle = -0.1 }} }}
-            run = [{{ name = 'a', model = {{ kind = 'shape-based', stiffness = 1e4, damping_ratio = 0.3 }} }}]
-            [[obstacle]]
-            kind = 'floor'
-            normal = [0.09983341664682815, 0.9950041652780258, 0]
-            restitution = {e}
-            friction = 1
-            {rule}"
-        );
-        let scene = Scene::parse(&text, "slope", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-        let down = DVec3::new(0.9950041652780258, -0.09983341664682815, 0.0);
-        let mut world = scene.world(0);
-        let mut place = || {
-            world.advance(1500);
-            world.state().position.iter().map(|at| at.dot(down)).sum::<f64>() / world.state().position.len() as f64
-        };
-        place();
-        let before = place();
-        (place() - before) / 1.5
-    };
-    let paper = 3.0 * 9.8 * 0.09983341664682815 * 0.001;
-    for (integrator, part) in [("semi-implicit-euler", 1.0), ("velocity-verlet", 0.5)] {
-        let own = creep("", integrator, 0.0) / paper;
-        assert!((own / part - 1.0).abs() < 0.01, "{integrator}: {own}");
-        // From about 0.4 on, semi-implicit Euler leaves nodes in the air for whole steps.
-        let restitutions: &[f64] =
-            if integrator == "velocity-verlet" { &[0.0, 0.3, 0.6, 0.8] } else { &[0.0, 0.2, 0.3] };
-        for &e in restitutions {
-            let own = creep("friction_of = 'path'", integrator, e) / paper;
-            assert!(own.abs() < 1e-3, "{integrator}, e = {e}: {own}");
         }
     }
 }

@@ -2,11 +2,11 @@
 
 use super::support::{Noise, body, free, lattice, mass_spring, shape_based};
 use glam::DVec3;
-use localshape::sim::body::Dimension;
-use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
-use localshape::sim::snapshot::Status;
-use localshape::sim::state::State;
-use localshape::sim::topology::Springs;
+use localshape_sim::body::Dimension;
+use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use localshape_sim::snapshot::Status;
+use localshape_sim::state::State;
+use localshape_sim::topology::Springs;
 use std::f64::consts::TAU;
 
 /// Corners of the unit cube moved by `map`, with a slight disorder: perfect symmetry would be an unstable equilibrium.
@@ -16,7 +16,7 @@ fn start(map: impl Fn(DVec3) -> DVec3, disorder: f64) -> State {
     State::at_rest(body.rest.iter().map(|&rest| map(rest - DVec3::splat(0.5)) + noise.vector() * disorder).collect())
 }
 
-fn after_long(model: &dyn localshape::sim::model::ElasticModel, start: State) -> localshape::sim::Snapshot {
+fn after_long(model: &dyn localshape_sim::model::ElasticModel, start: State) -> localshape_sim::Snapshot {
     let mut world = free(&lattice(1, 1.0), start, model, TAU / 100.0 / 50.0);
     world.advance(5000);
     world.snapshot()

@@ -1,0 +1,19 @@
+//! The physics compared with the paper and with closed forms.
+
+mod closed_forms;
+mod conformance;
+mod contact;
+mod degenerate_starts;
+#[allow(unreachable_pub, reason = "documentation shows it, too")]
+mod example_model;
+mod figures;
+mod grips;
+mod integrators;
+mod masses;
+mod own_method;
+mod readings;
+mod rest;
+mod runaway;
+mod state;
+mod support;
+mod threads;
