@@ -99,7 +99,7 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
         .run("One", shape_based::Parameters { damping_ratio: Some(0.1), ..shape(1e4) })
         .run("Two", mass_spring::Parameters { springs: Some(Springs::All), ..springs(1e3) })
         .run("Three", RunBuilder::new(shape(1e4)).step(1e-3).kernel(Kernel::Reference).colour([0, 114, 178]))
-        .run("Four", RunBuilder::new(springs(1e3)).steps_per_cycle(200.0).integrator(Integrator::BlanesMoan))
+        .run("Four", RunBuilder::new(springs(1e3)).steps_per_cycle(200.0).integrator(Integrator::Pefrl))
         .obstacle(ObstacleBuilder::floor(-1.0).restitution(0.5).friction(0.3))
         .obstacle(ObstacleBuilder::wall([-1.0, 0.0, 0.0], -3.0))
         .obstacle(ObstacleBuilder::plate([0.0, 3.0, 0.0], [0.0, -1.0, 0.0]).path(path(-0.5).ease(Ease::Linear)))
@@ -132,7 +132,7 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
             { name = 'Three', model = { kind = 'shape-based', stiffness = 1e4 }, step = 1e-3, kernel = 'reference',
                 colour = '#0072b2' },
             { name = 'Four', model = { kind = 'mass-spring', stiffness = 1e3 }, step = 'T/200',
-                integrator = 'blanes-moan' },
+                integrator = 'pefrl' },
         ]
         hold = [{ nodes = [0, 1] }, { nodes = { of = [0.1, 1.2, 0.1], within = 0.01 }, from = 0.25, until = 0.5 }]
         view = { size = [640, 360], theme = 'dark', colour.by = 'strain', strip = 'energy',

@@ -85,9 +85,7 @@ const HELD: &str = "body = { lattice = { cells = [3, 1, 1], side = 0.1 } }\nhold
 fn runs_stay_just_below_and_depart_just_above() {
     let shape = "kind = 'shape-based', stiffness = 100";
     let springs = "kind = 'mass-spring', springs = 'all', stiffness = 100";
-    let undamped =
-        ["semi-implicit-euler", "velocity-verlet", "pefrl", "forest-ruth", "runge-kutta", "quinlan-tremaine"];
-    let undamped = undamped.map(|one| (one, ""));
+    let undamped = ["semi-implicit-euler", "velocity-verlet", "pefrl", "runge-kutta"].map(|one| (one, ""));
     let damped = [
         ("semi-implicit-euler", ", damping_ratio = 0.2"),
         ("semi-implicit-euler", ", damping_ratio = 1.5"),
@@ -117,18 +115,6 @@ fn runs_stay_just_below_and_depart_just_above() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-}
-
-/// The first unstable steps of Blanes–Moan are few, and what grows there grows slowly.
-#[test]
-fn blanes_moan_is_unstable_in_a_narrow_band() {
-    let scene = scene(
-        "body = { lattice = { cells = [1, 1, 1], side = 0.1 } }
-        run = [{ name = 'a', integrator = 'blanes-moan', model = { kind = 'shape-based', stiffness = 100 } }]",
-    );
-    let Stability { largest, .. } = predicted(&scene);
-    assert!(stays(&scene, 0.9999 * largest, 20_000));
-    assert!(!stays(&scene, 1.0002 * largest, 20_000));
 }
 
 #[test]

@@ -16,69 +16,12 @@ pub struct Composition {
     pub kicks: &'static [f64],
 }
 
-/// E. Forest, R. Ruth, Physica D 43, 105 (1990), with `θ = 1/(2 − ∛2)`.
-pub(crate) const FOREST_RUTH: Composition =
-    Composition { drifts: &[0.5 * THETA, 0.5 - 0.5 * THETA], kicks: &[THETA, 1.0 - 2.0 * THETA] };
-const THETA: f64 = 1.351_207_191_959_657_8;
-
 /// I. Omelyan, I. Mryglod, R. Folk, Computer Physics Communications 146, 188 (2002), Eq. (20): ξ, λ and χ.
 pub(crate) const PEFRL: Composition =
     Composition { drifts: &[XI, CHI, 1.0 - 2.0 * (CHI + XI)], kicks: &[0.5 - LAMBDA, LAMBDA] };
 const XI: f64 = 0.178_617_895_844_809_1;
 const LAMBDA: f64 = -0.212_341_831_062_605_4;
 const CHI: f64 = -0.066_264_582_669_818_5;
-
-/// S. Blanes, P. Moan, Journal of Computational and Applied Mathematics 142, 313 (2002), table 3: SRKN14a, of order 6.
-pub(crate) const BLANES_MOAN: Composition = Composition {
-    drifts: &[
-        0.037_859_319_840_611_6,
-        0.102_635_633_102_435,
-        -0.025_867_888_266_558_7,
-        0.314_241_403_071_447,
-        -0.130_144_459_517_415,
-        0.106_417_700_369_543,
-        -0.008_794_243_128_510_58,
-        // The sum of all shares is 1.
-        0.207_305_069_056_895_36,
-    ],
-    kicks: &[
-        0.091_719_152_624_461_65,
-        0.183_983_170_005_006,
-        -0.056_534_365_832_888_27,
-        0.004_914_688_774_712_854,
-        0.143_761_127_168_358,
-        0.328_567_693_746_804,
-        -0.196_411_466_486_454_23,
-    ],
-};
-
-/// W. Kahan, R.-C. Li, Mathematics of Computation 66, 1089 (1997), table 1: s17odr8a, of order 8, as a composition of steps
-/// of drift, kick and drift. It starts the method of [`quinlan_tremaine`](super::quinlan_tremaine).
-pub(crate) const KAHAN_LI: Composition = Composition {
-    drifts: &[
-        0.5 * GAMMA[0],
-        0.5 * (GAMMA[0] + GAMMA[1]),
-        0.5 * (GAMMA[1] + GAMMA[2]),
-        0.5 * (GAMMA[2] + GAMMA[3]),
-        0.5 * (GAMMA[3] + GAMMA[4]),
-        0.5 * (GAMMA[4] + GAMMA[5]),
-        0.5 * (GAMMA[5] + GAMMA[6]),
-        0.5 * (GAMMA[6] + GAMMA[7]),
-        0.5 * (GAMMA[7] + GAMMA[8]),
-    ],
-    kicks: &GAMMA,
-};
-const GAMMA: [f64; 9] = [
-    0.130_202_483_088_890_08,
-    0.561_162_981_775_108_4,
-    -0.389_474_962_644_847_3,
-    0.158_841_906_555_155_6,
-    -0.395_903_894_133_237_6,
-    0.184_539_640_978_315_7,
-    0.258_374_387_686_322_04,
-    0.295_011_723_609_310_3,
-    -0.605_508_533_830_034_5,
-];
 
 impl Composition {
     /// The number of kicks in each step, which is that of evaluations of the forces.
@@ -155,12 +98,10 @@ mod tests {
     /// Drifts and kicks add up to one step each.
     #[test]
     fn shares_add_up_to_the_step() {
-        for method in [FOREST_RUTH, PEFRL, BLANES_MOAN, KAHAN_LI] {
-            let count = method.evaluations();
-            let drift: f64 = (0..=count).map(|at| method.drift(at)).sum();
-            let kick: f64 = (0..count).map(|at| method.kick(at)).sum();
-            assert!((drift - 1.0).abs() < 1e-14 && (kick - 1.0).abs() < 1e-14, "{drift} {kick}");
-            assert_eq!((method.drifts.len(), method.kicks.len()), (count / 2 + 1, count.div_ceil(2)));
-        }
+        let count = PEFRL.evaluations();
+        let drift: f64 = (0..=count).map(|at| PEFRL.drift(at)).sum();
+        let kick: f64 = (0..count).map(|at| PEFRL.kick(at)).sum();
+        assert!((drift - 1.0).abs() < 1e-14 && (kick - 1.0).abs() < 1e-14, "{drift} {kick}");
+        assert_eq!((PEFRL.drifts.len(), PEFRL.kicks.len()), (count / 2 + 1, count.div_ceil(2)));
     }
 }

@@ -6,7 +6,6 @@ mod backward_euler;
 pub(crate) mod composition;
 mod dormand_prince;
 mod explicit_euler;
-pub(crate) mod quinlan_tremaine;
 mod runge_kutta;
 mod semi_implicit_euler;
 mod velocity_verlet;
@@ -16,7 +15,6 @@ pub use self::composition::{ByComposition, Composition};
 use self::backward_euler::BackwardEuler;
 use self::dormand_prince::DormandPrince;
 use self::explicit_euler::ExplicitEuler;
-use self::quinlan_tremaine::QuinlanTremaine;
 use self::runge_kutta::RungeKutta;
 use self::semi_implicit_euler::SemiImplicitEuler;
 use self::velocity_verlet::VelocityVerlet;
@@ -44,21 +42,12 @@ pub enum Integrator {
     /// Velocity Verlet: of second order, and symplectic without damping and rebounds. It evaluates the forces once in
     /// each step, and twice with damping.
     VelocityVerlet,
-    /// Position-extended Forest–Ruth-like method: of fourth order and symplectic, with four evaluations a step and an
-    /// error about 30 times smaller than that of `forest-ruth` for the same number of evaluations. Without damping only.
-    Pefrl,
-    /// Forest–Ruth: of fourth order and symplectic, with three evaluations a step. Without damping only.
-    ForestRuth,
-    /// Blanes–Moan, the Runge–Kutta–Nyström method with 14 evaluations a step: of sixth order and symplectic. Without
+    /// Position-extended Forest–Ruth-like method: of fourth order and symplectic, with four evaluations a step. Without
     /// damping only.
-    BlanesMoan,
+    Pefrl,
     /// The classical Runge–Kutta method: of fourth order, with four evaluations a step, also with damping. Not
     /// symplectic: in long runs its energy drifts.
     RungeKutta,
-    /// Quinlan–Tremaine: a symmetric multistep method of eighth order with one evaluation a step. Of all methods it needs the
-    /// fewest evaluations for errors below 1e-4 in free motion. Its first seven steps, and the seven after each step in which a
-    /// node rebounds, are taken by a method of 18 evaluations: not for bodies that rest on something. Without damping only.
-    QuinlanTremaine,
     /// Dormand–Prince: of fifth order, also with damping, with six evaluations in each substep. It finds its own substeps, from
     /// a `tolerance` that takes the place of `step`, between the times of frames, and the moment of each rebound. Not
     /// symplectic. Not for bodies that rest on something: there nodes rebound again and again, and substeps are no longer than
@@ -90,10 +79,6 @@ impl Integrator {
                  evaluation before; use `rotation = \"robust\"` without `passes`, or \"velocity-verlet\"",
             ),
             Self::RungeKutta | Self::DormandPrince | Self::BackwardEuler => None,
-            Self::QuinlanTremaine if forces.is_damped() => Some(
-                "needs forces that depend on positions alone, and damping depends on velocities; use \"runge-kutta\" or \
-                 \"velocity-verlet\", or take the damping out",
-            ),
             _ if forces.is_damped() => Some(
                 "has substeps backwards in time, in which damping would feed energy in; use \"runge-kutta\" or \
                  \"velocity-verlet\", or take the damping out",
@@ -314,10 +299,7 @@ impl Integrator {
             Self::ExplicitEuler => Box::<ExplicitEuler>::default(),
             Self::VelocityVerlet => Box::<VelocityVerlet>::default(),
             Self::Pefrl => Box::new(ByComposition::new(composition::PEFRL)),
-            Self::ForestRuth => Box::new(ByComposition::new(composition::FOREST_RUTH)),
-            Self::BlanesMoan => Box::new(ByComposition::new(composition::BLANES_MOAN)),
             Self::RungeKutta => Box::<RungeKutta>::default(),
-            Self::QuinlanTremaine => Box::new(QuinlanTremaine::new()),
             Self::DormandPrince => Box::new(DormandPrince::new(scales, tolerance)),
             Self::BackwardEuler => Box::new(BackwardEuler::new(scales)),
         }

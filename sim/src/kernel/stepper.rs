@@ -35,12 +35,7 @@ impl Scheme {
             Integrator::ExplicitEuler => Some(Self::ExplicitEuler),
             Integrator::VelocityVerlet => Some(Self::VelocityVerlet),
             Integrator::Pefrl => Some(Self::Composition(composition::PEFRL)),
-            Integrator::ForestRuth => Some(Self::Composition(composition::FOREST_RUTH)),
-            Integrator::BlanesMoan => Some(Self::Composition(composition::BLANES_MOAN)),
-            Integrator::RungeKutta
-            | Integrator::QuinlanTremaine
-            | Integrator::DormandPrince
-            | Integrator::BackwardEuler => None,
+            Integrator::RungeKutta | Integrator::DormandPrince | Integrator::BackwardEuler => None,
         }
     }
 }

@@ -138,12 +138,7 @@ impl ElasticModel for ShapeBased {
             RotationReading::Arctangent => "",
             RotationReading::VectorLength => ", θ = |w|",
             RotationReading::LinearUpdate => ", Eq. (16)",
-            RotationReading::Symmetric => ", symmetric Eq. (15)",
-            RotationReading::Cayley => ", Cayley",
-            RotationReading::Quintic => ", quintic",
-            RotationReading::Mueller => ", Müller 2016",
-            RotationReading::Kugelstadt => ", Kugelstadt 2018",
-            RotationReading::ClosedForm | RotationReading::Davenport | RotationReading::Robust => ", exact rotations",
+            RotationReading::Robust => ", exact rotations",
         });
         text
     }

@@ -11,32 +11,6 @@ pub fn solve(a: DMat3) -> DVec3 {
     cramer(columns(a), -torque(a))
 }
 
-/// Eq. (15) with the symmetric part of its matrix, `H w = Σ R × r` with `H = tr(A) I − (A + Aᵀ)/2`.
-///
-/// The matrix is the Hessian of the element's energy, so this is Newton's method: with the angle of
-/// [`rotation_by_arctangent`] it converges cubically, with the printed matrix quadratically. Not in the paper.
-/// [`is_well_posed`] tests this matrix, too.
-pub(crate) fn solve_symmetric(a: DMat3) -> DVec3 {
-    cramer(columns((a + a.transpose()) * 0.5), -torque(a))
-}
-
-/// The increment of fifth order, a quaternion that is not normalised: with `v₀ = (2H)⁻¹ g` and `g = Σ R × r`, the vector
-/// part is `v = v₀ − (g·v₀) (2H)⁻¹ v₀` for a scalar part of 1. Its first term is [`rotation_by_cayley`].
-///
-/// It is Davenport's eigenvalue problem to the next order: [`robust`](super::robust) has one more term.
-pub(crate) fn quintic(a: DMat3) -> DQuat {
-    let hessian = columns(a + a.transpose());
-    let g = -torque(a);
-    let first = cramer(hessian, g);
-    let v = first - cramer(hessian, first) * g.dot(first);
-    DQuat::from_xyzw(v.x, v.y, v.z, 1.0)
-}
-
-/// The determinant of the symmetric matrix.
-pub(crate) fn symmetric_determinant(a: DMat3) -> f64 {
-    determinant((a + a.transpose()) * 0.5)
-}
-
 /// The solution of three equations by Cramer's rule, as three triple products.
 fn cramer([c0, c1, c2]: [DVec3; 3], right: DVec3) -> DVec3 {
     let c12 = c1.cross(c2);
@@ -75,12 +49,6 @@ pub fn rotation_by_length(w: DVec3) -> DQuat {
     let (sine, cosine) = libm::sincos(0.5 * angle);
     let axis = w * (sine / angle);
     DQuat::from_xyzw(axis.x, axis.y, axis.z, cosine)
-}
-
-/// The rotation with axis `u = w/|w|` and angle `θ = 2 atan(|w|/2)`, whose matrix is Cayley's transform of `[w]×/2`. It
-/// needs no root. It is not normalised.
-pub(crate) fn rotation_by_cayley(w: DVec3) -> DQuat {
-    DQuat::from_xyzw(w.x, w.y, w.z, 2.0)
 }
 
 /// The least value of the leading minors of the Hessian that counts as positive, relative to the size of `A`.
@@ -182,24 +150,6 @@ mod tests {
             let error =
                 angle_error(turned, iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_length(solve(a))).rotation);
             assert!((error / expected - 1.0).abs() < 0.05, "{passes}: {error:e}");
-        }
-    }
-
-    #[test]
-    fn the_symmetric_matrix_has_the_errors_of_an_independent_implementation() {
-        let rest = corners(1.0, 0.7, 0.4);
-        for (degrees, independent) in [(10f64, &[4.1e-4, 4e-12][..]), (40.0, &[0.033, 1.9e-6])] {
-            let turned = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), degrees.to_radians());
-            let a = moment(&rest, rest.iter().map(|&r| turned * r));
-            for (passes, expected) in (1..).zip(independent) {
-                let error = angle_error(
-                    turned,
-                    iterate(a, DQuat::IDENTITY, passes, |a| rotation_by_arctangent(solve_symmetric(a))).rotation,
-                );
-                // The independent values are for another axis; each pass raises a factor to its third power.
-                let factor = 2f64.powi(3i32.pow(passes - 1));
-                assert!((expected / factor..expected * factor).contains(&error), "{degrees}°, {passes}: {error:e}");
-            }
         }
     }
 

@@ -9,18 +9,15 @@
 //! | `w` | `θ u`, axis times angle (rad) |
 //!
 //! Rotating the equilibrium shape by `L` turns `A` into `L A`, so the corners are read only once for any number of
-//! passes. Except for two methods, for comparison, no function here uses a sine, a cosine or an arctangent: square
+//! passes. Except for [`rotation_by_length`], for comparison, no function here uses a sine, a cosine or an arctangent: square
 //! roots and divisions are rounded identically on every machine.
 //!
-//! All methods in space are behind [`RotationReading::follow`]. `localshape study rotation` measures their errors and
+//! All methods in space are behind [`RotationReading::follow`]. The program `localshape-study rotation` measures their errors and
 //! their cost; `docs/accuracy.md` has the results, and why [`robust`](mod@robust) is the default.
 
-pub(crate) mod closed_form;
 pub mod davenport1968;
-pub(crate) mod kugelstadt2018;
 pub mod linear_update;
 pub mod linearised;
-pub(crate) mod mueller2016;
 pub(crate) mod planar;
 mod reading;
 pub mod robust;

@@ -1,14 +1,12 @@
 //! The methods that compute the rotation of an element in space, behind one interface.
 
-use super::linearised::{
-    iterate, quintic, rotation_by_arctangent, rotation_by_cayley, rotation_by_length, solve, solve_symmetric,
-};
-use super::{Followed, closed_form, davenport1968, kugelstadt2018, linear_update, mueller2016, robust};
+use super::linearised::{iterate, rotation_by_arctangent, rotation_by_length, solve};
+use super::{Followed, davenport1968, linear_update, robust};
 use glam::{DMat3, DQuat};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How the rotation of an element is computed: three readings of the paper's Eqs. (15) and (16), and other methods.
+/// How the rotation of an element is computed: three readings of the paper's Eqs. (15) and (16), and the optimum.
 /// `docs/accuracy.md` compares their errors and their cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -22,24 +20,8 @@ pub enum RotationReading {
     VectorLength,
     /// Eq. (16) as printed, `R + w × R`. The result is not a rotation: a spinning body grows.
     LinearUpdate,
-    /// Like `arctangent`, with the symmetric part of the matrix of Eq. (15). It converges cubically instead of
-    /// quadratically. Not in the paper.
-    Symmetric,
-    /// Like `symmetric`, with the angle `2 atan(|w|/2)`, which needs no root. Not in the paper.
-    Cayley,
-    /// Like `cayley`, with one more term: it converges with fifth order. Not in the paper.
-    Quintic,
-    /// The relaxation of Müller et al. 2016, which converges linearly and needs many passes. For comparison.
-    Mueller,
-    /// The analytic polar decomposition of Kugelstadt et al. 2018, which converges cubically. For comparison.
-    Kugelstadt,
-    /// The optimal rotation in closed form, without the last one. Not in the paper.
-    ClosedForm,
-    /// The optimal rotation as an eigenvector of Davenport's matrix, computed without the last rotation. It is right for
-    /// every input, and slow. Not in the paper.
-    Davenport,
     /// The optimal rotation, to round-off, at every evaluation: steps of higher order from the last rotation where they
-    /// are certain to lead to it, else `davenport`. Faster than two passes of Eq. (15), and its residual α is
+    /// are certain to lead to it, else the eigenvector of Davenport's matrix. Faster than two passes of Eq. (15), and its residual α is
     /// round-off. Not in the paper. The default.
     #[default]
     Robust,
@@ -48,7 +30,7 @@ pub enum RotationReading {
 impl RotationReading {
     /// Whether it is an iteration with a fixed number of passes, so that the result depends on the last rotation.
     pub fn has_passes(self) -> bool {
-        !matches!(self, Self::ClosedForm | Self::Davenport | Self::Robust)
+        self != Self::Robust
     }
 
     /// The rotation of an element from its last one, for `at_rest` = `Σ R0 rᵀ` (m²); methods without passes ignore their
@@ -61,13 +43,6 @@ impl RotationReading {
                 let matrix = linear_update::update(at_rest, DMat3::from_quat(last), passes);
                 davenport1968::optimum(matrix.transpose(), last).into()
             }
-            Self::Symmetric => iterate(at_rest, last, passes, |a| rotation_by_arctangent(solve_symmetric(a))),
-            Self::Cayley => iterate(at_rest, last, passes, |a| rotation_by_cayley(solve_symmetric(a))),
-            Self::Quintic => iterate(at_rest, last, passes, quintic),
-            Self::Mueller => mueller2016::iterate(at_rest, last, passes).into(),
-            Self::Kugelstadt => kugelstadt2018::iterate(at_rest, last, passes).into(),
-            Self::ClosedForm => closed_form::optimum(at_rest, last),
-            Self::Davenport => Followed::global(at_rest, last),
             Self::Robust => robust::follow(at_rest, last),
         }
     }

@@ -6,15 +6,10 @@
 use crate::integrate::Integrator;
 use crate::mode::Mode;
 
-/// `ωΔT` up to which an undamped oscillation is stable. [`tests`] compute these numbers from the coefficients of the methods.
+/// `ωΔT` up to which an undamped oscillation is stable with PEFRL. [`tests`] compute it from the coefficients of the method.
 ///
-/// The trace of the matrix of a step leaves [−2, 2] there. For Blanes–Moan it returns at 3.1421 and leaves for good at 6.15; in
-/// between oscillations grow by 6e-4 a step.
-const FOREST_RUTH: f64 = 1.5734;
+/// The trace of the matrix of a step leaves [−2, 2] there.
 const PEFRL: f64 = 2.9894;
-const BLANES_MOAN: f64 = 3.1408;
-/// Two roots of the characteristic polynomial leave the unit circle.
-const QUINLAN_TREMAINE: f64 = 0.7181;
 
 impl Mode {
     /// The largest stable step (s): 0 if none is stable, infinite if all are.
@@ -23,7 +18,6 @@ impl Mode {
         if a <= 0.0 && c <= 0.0 {
             return f64::INFINITY;
         }
-        let undamped = |limit: f64| limit / a.sqrt();
         match integrator {
             // The matrix of a step has the determinant 1 − cΔT and the trace 2 − aΔT² − cΔT: `aΔT² + 2cΔT < 4`.
             Integrator::SemiImplicitEuler => 4.0 / (c + (c * c + 4.0 * a).sqrt()),
@@ -36,10 +30,7 @@ impl Mode {
                 let discriminant = c * c - 4.0 * a;
                 if discriminant < 0.0 { c / a } else { 4.0 / (c + discriminant.sqrt()) }
             }
-            Integrator::ForestRuth => undamped(FOREST_RUTH),
-            Integrator::Pefrl => undamped(PEFRL),
-            Integrator::BlanesMoan => undamped(BLANES_MOAN),
-            Integrator::QuinlanTremaine => undamped(QUINLAN_TREMAINE),
+            Integrator::Pefrl => PEFRL / a.sqrt(),
             Integrator::RungeKutta => self.largest_runge_kutta_step(),
             Integrator::BackwardEuler | Integrator::DormandPrince => f64::INFINITY,
         }
@@ -108,11 +99,11 @@ impl Mode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrate::composition::{BLANES_MOAN as BM, Composition, FOREST_RUTH as FR, PEFRL as OMF};
-    use crate::integrate::quinlan_tremaine;
+    use crate::integrate::composition;
 
-    /// Half the trace of the matrix of a step at `ωΔT`.
-    fn half_trace(method: &Composition, phase: f64) -> f64 {
+    /// Half the trace of the matrix of a step of PEFRL at `ωΔT`.
+    fn half_trace(phase: f64) -> f64 {
+        let method = composition::PEFRL;
         let mut columns = [[1.0, 0.0], [0.0, 1.0]];
         for [x, v] in &mut columns {
             for at in 0..=method.evaluations() {
@@ -126,35 +117,11 @@ mod tests {
     }
 
     #[test]
-    fn limits_of_compositions_follow_from_their_coefficients() {
-        for (method, limit) in [(&FR, FOREST_RUTH), (&OMF, PEFRL), (&BM, BLANES_MOAN)] {
-            let is_stable = |phase: f64| half_trace(method, phase).abs() <= 1.0;
-            let steps = (limit * 1e4) as u32;
-            assert!((1..=steps).all(|at| is_stable(f64::from(at) * 1e-4)), "{limit}");
-            assert!(!is_stable(limit + 3e-4), "{limit}");
-        }
-    }
-
-    /// The polynomial is the same from both ends, so that μ is on the unit circle where `y = μ + 1/μ` is real and within
-    /// [−2, 2]: four such roots are counted by their changes of sign.
-    #[test]
-    fn the_limit_of_the_multistep_method_follows_from_its_coefficients() {
-        let roots = |phase: f64| {
-            let coefficients = quinlan_tremaine::characteristic(phase * phase);
-            let value = |y: f64| {
-                // `μʲ + μ⁻ʲ` by recurrence.
-                let mut powers = [2.0, y, 0.0, 0.0, 0.0];
-                for at in 2..5 {
-                    powers[at] = y * powers[at - 1] - powers[at - 2];
-                }
-                coefficients[4] + (0..4).map(|at| coefficients[at] * powers[4 - at]).sum::<f64>()
-            };
-            let values: Vec<_> = (0..=20_000).map(|at| value(-2.0 + f64::from(at) * 2e-4)).collect();
-            values.windows(2).filter(|pair| (pair[0] > 0.0) != (pair[1] > 0.0)).count()
-        };
-        assert!((50..=718).all(|at| roots(f64::from(at) * 1e-3) == 4));
-        assert_eq!(roots(QUINLAN_TREMAINE), 4);
-        assert_ne!(roots(QUINLAN_TREMAINE + 3e-4), 4);
+    fn the_limit_of_pefrl_follows_from_its_coefficients() {
+        let is_stable = |phase: f64| half_trace(phase).abs() <= 1.0;
+        let steps = (PEFRL * 1e4) as u32;
+        assert!((1..=steps).all(|at| is_stable(f64::from(at) * 1e-4)));
+        assert!(!is_stable(PEFRL + 3e-4));
     }
 
     /// The largest factor by which one step of an integrator of one evaluation lengthens a vector, in the long run.

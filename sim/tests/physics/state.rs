@@ -11,13 +11,12 @@ use localshape_sim::state::State;
 use localshape_sim::topology::Springs;
 use localshape_sim::world::{Kernel, Moment, Stepping, Surroundings, World};
 
-const ALL: [Integrator; 8] = [
+const ALL: [Integrator; 7] = [
     Integrator::SemiImplicitEuler,
     Integrator::ExplicitEuler,
     Integrator::VelocityVerlet,
     Integrator::Pefrl,
     Integrator::RungeKutta,
-    Integrator::QuinlanTremaine,
     Integrator::DormandPrince,
     Integrator::BackwardEuler,
 ];

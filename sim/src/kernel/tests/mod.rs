@@ -176,8 +176,8 @@ fn general(body: &Body, start: &Whole, rotation: Rotation, damping: f64, scheme:
 pub(super) fn shape_based(rotation: Rotation, damping: f64) -> ShapeBased {
     let (rotation, passes) = match rotation {
         Rotation::Arctangent { passes } => (RotationReading::Arctangent, passes),
-        // An independent method.
-        Rotation::Optimum => (RotationReading::Davenport, 1),
+        // In scalar code, which `rotation` tests against Davenport's method.
+        Rotation::Optimum => (RotationReading::Robust, 1),
     };
     ShapeBased { stiffness: STIFFNESS, damping, passes, rotation, damping_of: DampingReading::RelativeMotion }
 }
@@ -195,9 +195,7 @@ pub(super) fn stepped_by_reference(
         Scheme::SemiImplicitEuler => Integrator::SemiImplicitEuler,
         Scheme::ExplicitEuler => Integrator::ExplicitEuler,
         Scheme::VelocityVerlet => Integrator::VelocityVerlet,
-        Scheme::Composition(_) if scheme == PEFRL => Integrator::Pefrl,
-        Scheme::Composition(_) if scheme == FOREST_RUTH => Integrator::ForestRuth,
-        Scheme::Composition(_) => Integrator::BlanesMoan,
+        Scheme::Composition(_) => Integrator::Pefrl,
     };
     World::new(
         body,
@@ -235,5 +233,3 @@ fn distance(a: &State, b: &State) -> f64 {
 pub(super) const TWICE: Rotation = Rotation::Arctangent { passes: 2 };
 const SEMI: Scheme = Scheme::SemiImplicitEuler;
 pub(super) const PEFRL: Scheme = Scheme::Composition(composition::PEFRL);
-const FOREST_RUTH: Scheme = Scheme::Composition(composition::FOREST_RUTH);
-const BLANES_MOAN: Scheme = Scheme::Composition(composition::BLANES_MOAN);
