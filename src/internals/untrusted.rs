@@ -4,7 +4,7 @@
 //! of the file allow.
 
 use crate::golden::{Pixels, is_record};
-use crate::output::{Access, Folder, Plan, StoredStates, Whose};
+use crate::output::{Access, Folder, Plan, StoredStates, Whose, read_tags};
 use crate::runner::history::History;
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::figure::Figure;
@@ -32,7 +32,7 @@ pub const READERS: [Reader; 10] = [
     Reader { name: "checkpoint", read: checkpoint },
     Reader { name: "state", read: |bytes| State::from_bytes(bytes).is_some() },
     Reader { name: "summary", read: summary },
-    Reader { name: "picture", read: |bytes| Pixels::from_bytes(bytes).is_ok() },
+    Reader { name: "picture", read: picture },
     Reader { name: "golden", read: |bytes| std::str::from_utf8(bytes).is_ok_and(is_record) },
 ];
 
@@ -137,6 +137,11 @@ fn summary(bytes: &[u8]) -> bool {
         let folder = path.parent().expect("a folder");
         Folder::inspect(folder, Whose::of(&scene), plan, Access::default()).is_ok()
     })
+}
+
+/// Reads the metadata and the pixels of a picture.
+fn picture(bytes: &[u8]) -> bool {
+    in_folder("picture.png", bytes, |path| read_tags(path).is_ok_and(|_| Pixels::from_bytes(bytes).is_ok()))
 }
 
 /// A checkpoint for that reader.
