@@ -363,7 +363,7 @@ fn models_of_the_caller_are_checked_by_their_own_words() {
     refused(scene(springs(&[[0, 1], [2, 3]])), &limits, expected);
     let few = Limits { springs: 1, ..limits };
     scene(springs(&[[0, 1]])).build(&few).unwrap();
-    refused(scene(springs(&[[0, 1], [1, 2]])), &few, "3 nodes, one element and up to 2 springs");
+    refused(scene(springs(&[[0, 1], [1, 2]])), &few, "3 nodes, 1 element and up to 2 springs");
     // With springs and rotations, or with neither.
     let strip = |model: Idle| scene(model).strip(Diagnostic::Residual);
     strip(Idle { turns: true, ..springs(&[[0, 1]]) }).build(&limits).unwrap();
