@@ -13,13 +13,11 @@ mod gif;
 mod order;
 mod palette;
 mod resize;
-mod spool;
 mod timeline;
 
 pub use error::AnimationError;
 pub use format::Format;
 pub(crate) use resize::resized;
-pub(crate) use spool::Spool;
 pub use timeline::{Shot, Timeline};
 
 use crate::golden::Pixels;
@@ -47,7 +45,7 @@ pub trait Reel: Sync {
     /// Width and height of every frame (px).
     fn size(&self) -> [u32; 2];
 
-    /// A frame by its number, from 0. May block until it exists.
+    /// A frame by its number, from 0.
     fn image(&self, frame: usize) -> Result<Image, AnimationError>;
 }
 

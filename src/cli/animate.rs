@@ -82,7 +82,8 @@ impl Animate {
         if !self.overwrite {
             replaceable(&self.out)?;
         }
-        let reel = Folder::open(&self.folder, self.frames.as_ref(), self.width)?;
+        let reel =
+            Folder::open(&self.folder, |last| self.frames.as_ref().map(|frames| frames.select(last)), self.width)?;
         let mut timeline = Timeline::of(&reel.moments);
         if let Some(times) = self.speed {
             timeline = timeline.faster(times);
@@ -129,6 +130,22 @@ impl Animate {
     }
 }
 
+/// Makes an animation of frames in a folder, with a comment.
+pub(super) fn make(
+    (format, path): &(Format, PathBuf),
+    folder: &Path,
+    frames: &[u64],
+    comment: &str,
+    threads: usize,
+) -> Result<Written, Failure> {
+    let reel = Folder::open(folder, |_| Some(Ok(frames.to_vec())), None)?;
+    let timeline = Timeline::of(&reel.moments);
+    let go_on = &|| !interrupt::requested();
+    let animation =
+        Animation { reel: &reel, timeline: &timeline, plays: 0, comment, threads, progress: &|_| {}, go_on };
+    Ok(animation.write(*format, path)?)
+}
+
 /// The frames of a folder.
 struct Folder {
     /// Number and time (s) of each frame.
@@ -162,8 +179,13 @@ impl Reel for Folder {
 }
 
 impl Folder {
-    /// Reads what the frames of a folder say about themselves. They are scaled to a width (px), if one is asked for.
-    fn open(path: &Path, asked: Option<&FrameRanges>, width: Option<u32>) -> Result<Self, Failure> {
+    /// Reads what frames of a folder say about themselves: those that are asked for, up to the last one there, or all. They are
+    /// scaled to a width (px), if one is asked for.
+    fn open(
+        path: &Path,
+        asked: impl FnOnce(u64) -> Option<Result<Vec<u64>, String>>,
+        width: Option<u32>,
+    ) -> Result<Self, Failure> {
         let name = path.display();
         match path.metadata() {
             Ok(found) if found.is_dir() => {}
@@ -181,9 +203,8 @@ impl Folder {
                 frame_file_name(0)
             );
         };
-        if let Some(asked) = asked {
-            let wanted =
-                asked.select(last).map_err(|message| Failure::usage(format!("frames of {name}: {message}")))?;
+        if let Some(wanted) = asked(last) {
+            let wanted = wanted.map_err(|message| Failure::usage(format!("frames of {name}: {message}")))?;
             if let Some(missing) =
                 wanted.iter().find(|number| files.binary_search_by_key(number, |(number, _)| number).is_err())
             {

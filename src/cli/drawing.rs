@@ -1,14 +1,15 @@
 //! The pictures of a scene as `render` makes them: composed, drawn while the next frame is simulated, and written.
 
 use super::failure::Failure;
-use super::film::{Films, Shared};
+use super::film::{comment, summary as line_of};
 use super::results::Pictures;
 use super::still::{check_type, source_of};
-use crate::animation::Spool;
+use super::{animate, interrupt};
+use crate::animation::Format;
 use crate::gpu::{Gpu, GpuError, Pending};
 use crate::output::{
-    Clock, FrameWriter, OutputError, PixelFrame, Shard, Spent, Summary, Tags, Tap, Texts, Timings, frame_file_name,
-    is_drawn, read_tags,
+    Clock, FrameWriter, PixelFrame, Shard, Spent, Summary, Tags, Texts, Timings, frame_file_name, is_drawn, read_tags,
+    temporary_folder,
 };
 use crate::picture::{Composer, Picture};
 use crate::render::{RenderError, Renderer};
@@ -16,25 +17,29 @@ use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::diagnostics::Diagnostic;
 use crate::sim::snapshot::{Frame, RunFrame, Snapshot};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
+use tempfile::TempDir;
 
 /// What all scenes are drawn with.
 pub(super) struct Device {
     pub(super) gpu: Gpu,
-    /// The most threads that write frames.
-    pub(super) writers: usize,
+    /// Threads that compress.
+    pub(super) threads: usize,
     /// Whether frames stay.
     pub(super) keep: bool,
     /// Whether frames that are there already are kept.
     pub(super) resume: bool,
     /// The share of the frames, if it is not all.
     pub(super) shard: Option<Shard>,
-    /// What animations are made of, if any are.
-    pub(super) shared: Option<Shared>,
-    /// Lines to print about animations at the end.
-    pub(super) made: Arc<Mutex<Vec<String>>>,
+    /// Animations of the frames, and the command that makes them.
+    pub(super) films: Vec<(Format, PathBuf)>,
+    pub(super) words: Vec<OsString>,
 }
+
+/// Threads that write frames, at most: a few keep up with any device.
+const MOST_WRITERS: usize = 4;
 
 /// The pictures of one scene.
 pub(super) struct Drawing<'a> {
@@ -57,11 +62,12 @@ pub(super) struct Drawing<'a> {
     /// The number of these.
     kept: usize,
     writer: FrameWriter,
-    /// What gets all frames besides the folder.
-    tap: Option<Tap>,
-    films: Option<Films>,
-    /// Whether frames stay.
-    keep: bool,
+    device: Arc<Device>,
+    /// The frames that are asked for, and their folder.
+    frames: Vec<u64>,
+    folder: PathBuf,
+    /// That folder, if frames do not stay.
+    temporary: Option<TempDir>,
     adapter: String,
     compose_time: Spent,
     draw_time: Spent,
@@ -85,19 +91,15 @@ enum Pixels {
 
 impl<'a> Drawing<'a> {
     /// Begins the pictures of some frames of a scene, in a folder.
-    pub(super) fn begin(device: &Device, scene: &'a Scene, folder: &Path, frames: &[u64]) -> Result<Self, Failure> {
-        let films = match &device.shared {
-            Some(shared) => {
-                let (spool, kept) = (Spool::new(folder, scene.view.size)?, device.keep.then(|| folder.to_owned()));
-                Some(Films::start(shared, Arc::clone(&device.made), spool, kept, scene, frames))
-            }
-            None => None,
-        };
-        let tap = films.as_ref().map(|films| -> Tap {
-            let (spool, frames) = (Arc::clone(&films.spool), frames.to_vec());
-            // Animations count the frames that there are.
-            Arc::new(move |frame, bytes| frames.binary_search(&frame).map_or(Ok(()), |at| spool.put(at, bytes)))
-        });
+    pub(super) fn begin(
+        device: &Arc<Device>,
+        scene: &'a Scene,
+        folder: &Path,
+        frames: &[u64],
+    ) -> Result<Self, Failure> {
+        let temporary = (!device.keep).then(|| temporary_folder(folder)).transpose()?;
+        let folder = temporary.as_ref().map_or(folder, TempDir::path);
+        let writers = device.threads.min(MOST_WRITERS);
         Ok(Self {
             scene,
             history: History::default(),
@@ -109,10 +111,11 @@ impl<'a> Drawing<'a> {
             repeated: 0,
             drawn_before: device.resume.then(|| folder.to_owned()),
             kept: 0,
-            writer: FrameWriter::new(device.keep.then_some(folder), device.shard, device.writers, tap.clone()),
-            tap,
-            films,
-            keep: device.keep,
+            writer: FrameWriter::new(folder, device.shard, writers),
+            device: Arc::clone(device),
+            frames: frames.to_vec(),
+            folder: folder.to_owned(),
+            temporary,
             adapter: device.gpu.description().to_string(),
             compose_time: Spent::default(),
             draw_time: Spent::default(),
@@ -150,7 +153,7 @@ impl<'a> Drawing<'a> {
         let clock = Clock::thread();
         let pixels = match pixels {
             Pixels::Pending(pending) => {
-                Arc::new(self.renderer.collect(pending).map_err(|error| stopped(self.keep, error))?)
+                Arc::new(self.renderer.collect(pending).map_err(|error| stopped(self.device.keep, error))?)
             }
             Pixels::Drawn(pixels) => pixels,
         };
@@ -175,10 +178,27 @@ impl<'a> Drawing<'a> {
         })
     }
 
-    /// Passes on a frame that was drawn before.
-    fn pass(&self, frame: u64, path: &Path) -> Result<(), Failure> {
-        let pass = |tap: &Tap| tap(frame, &std::fs::read(path).map_err(OutputError::reading(path))?);
-        Ok(self.tap.as_ref().map_or(Ok(()), pass)?)
+    /// Makes the animations, if all frames are there, and returns a line on each.
+    fn animate(&self, are_there: bool) -> Result<Vec<String>, Failure> {
+        let Device { films, words, threads, .. } = &*self.device;
+        let comment = comment(words, &self.scene.digest);
+        let line = |film: &(Format, PathBuf)| {
+            if are_there && !interrupt::requested() {
+                match animate::make(film, &self.folder, &self.frames, &comment, *threads) {
+                    Err(_) if interrupt::requested() => {}
+                    made => return Ok(line_of(&film.1, self.frames.len(), &made?)),
+                }
+            }
+            let path = film.1.display();
+            let (why, of) =
+                if are_there { ("it was interrupted", "") } else { ("frames are missing", " from the others") };
+            let how = match self.temporary {
+                Some(_) => String::new(),
+                None => format!("; to make it{of}: localshape animate {} -o {path}", self.folder.display()),
+            };
+            Ok(format!("{path}  not made, because {why}{how}\n"))
+        };
+        films.iter().map(line).collect()
     }
 }
 
@@ -205,7 +225,7 @@ impl Pictures for Drawing<'_> {
             let path = folder.join(frame_file_name(frame.index));
             if is_drawn(&path, size, &texts, dpi)? {
                 self.kept += 1;
-                return self.pass(frame.index, &path);
+                return Ok(());
             }
         }
         let clock = Clock::thread();
@@ -216,7 +236,7 @@ impl Pictures for Drawing<'_> {
         check_type(self.scene.view.print.as_ref(), &picture, &source_of(self.scene))?;
         self.hand_on()?;
         let clock = Clock::thread();
-        let pixels = self.submit(&picture).map_err(|error| stopped(self.keep, error))?;
+        let pixels = self.submit(&picture).map_err(|error| stopped(self.device.keep, error))?;
         self.draw_time += clock.spent();
         self.begun = Some(Begun { frame: frame.index, texts, picture, pixels });
         Ok(())
@@ -243,15 +263,15 @@ impl Pictures for Drawing<'_> {
             }
         }
         self.kept += frames.len();
-        frames.iter().try_for_each(|&frame| self.pass(frame, &path(frame)))?;
         Ok(None)
     }
 
     fn finish(mut self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure> {
         let last = self.hand_on();
         let (written, encode, result) = self.writer.finish();
-        let filmed = self.films.map_or(Ok(()), |films| films.finish());
-        summary.frames.written = self.keep.then_some(written);
+        let drawn = last.and(result.map_err(Failure::from));
+        let filmed = self.animate(drawn.is_ok() && written + self.kept == self.frames.len());
+        summary.frames.written = self.device.keep.then_some(written);
         summary.frames.kept = self.kept;
         summary.frames.repeated = self.repeated;
         for run in &mut summary.runs {
@@ -259,7 +279,8 @@ impl Pictures for Drawing<'_> {
             run.cut = of_run.map(|(_, frame)| *frame).collect();
         }
         (times.compose, times.draw, times.encode) = (Some(self.compose_time), Some(self.draw_time), Some(encode));
-        last.and(result.map_err(Failure::from)).and(filmed)
+        summary.films = filmed?;
+        drawn
     }
 }
 

@@ -1,18 +1,13 @@
-//! Animation files: made beside frames, messages about them, and which may be replaced.
+//! Animation files: messages about them, and which may be replaced.
 
 use super::failure::{Failure, Status, with_causes};
-use super::interrupt;
-use crate::animation::{Animation, AnimationError, Format, Spool, Timeline, Written};
+use crate::animation::{AnimationError, Written};
 use crate::golden::PictureError;
-use crate::output::frame_files;
-use crate::scene::Scene;
 use indicatif::DecimalBytes;
 use std::ffi::OsString;
 use std::fs::File;
 use std::io::Read;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::JoinHandle;
+use std::path::Path;
 
 /// Beginning of each comment, by which files of this program are recognised.
 pub(super) const MARK: &str = "made by localshape ";
@@ -88,99 +83,5 @@ impl From<AnimationError> for Failure {
             AnimationError::Stopped => Self::silent(Status::Interrupted),
             error => Self::usage(with_causes(&error)),
         }
-    }
-}
-
-/// What animations of one scene share.
-pub(super) struct Shared {
-    pub(super) films: Vec<(Format, PathBuf)>,
-    pub(super) words: Vec<OsString>,
-    pub(super) threads: usize,
-    /// The run whose times those of frames are.
-    pub(super) run: Option<usize>,
-}
-
-/// Animations on their way, on threads of their own.
-pub(super) struct Films {
-    pub(super) spool: Arc<Spool>,
-    frames: usize,
-    /// Where frames are kept, if they are.
-    kept: Option<PathBuf>,
-    threads: Vec<(PathBuf, JoinHandle<Result<Written, AnimationError>>)>,
-    made: Arc<Mutex<Vec<String>>>,
-}
-
-impl Films {
-    /// Begins the animations of some frames of a scene, which are also in the folder `kept`, if they are kept.
-    pub(super) fn start(
-        shared: &Shared,
-        made: Arc<Mutex<Vec<String>>>,
-        spool: Spool,
-        kept: Option<PathBuf>,
-        scene: &Scene,
-        frames: &[u64],
-    ) -> Self {
-        let spool = Arc::new(spool);
-        // As the frames themselves say it: at the end of a step.
-        let time = |frame: u64| match shared.run {
-            Some(run) => scene.frame_step(run, frame) as f64 * scene.runs[run].step,
-            None => scene.frame_time(frame),
-        };
-        let moments: Vec<_> = frames.iter().map(|&frame| (frame, time(frame))).collect();
-        let comment = comment(&shared.words, &scene.digest);
-        let threads = shared.films.iter().map(|(format, path)| {
-            let (spool, moments, comment) = (Arc::clone(&spool), moments.clone(), comment.clone());
-            let (format, path, threads) = (*format, path.clone(), shared.threads);
-            let name = path.clone();
-            let thread = std::thread::spawn(move || {
-                Animation {
-                    reel: spool.as_ref(),
-                    timeline: &Timeline::of(&moments),
-                    plays: 0,
-                    comment: &comment,
-                    threads,
-                    progress: &|_| {},
-                    go_on: &|| !interrupt::requested(),
-                }
-                .write(format, &path)
-            });
-            (name, thread)
-        });
-        let threads = threads.collect();
-        Self { spool, frames: frames.len(), kept, threads, made }
-    }
-
-    /// Waits for all. If frames are missing there is no animation; the message then says how to make one of the others.
-    pub(super) fn finish(mut self) -> Result<(), Failure> {
-        self.spool.end();
-        let mut result = Ok(());
-        for (path, thread) in self.threads.drain(..) {
-            match thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)) {
-                Ok(written) => {
-                    let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-                    made.push(summary(&path, self.frames, &written));
-                }
-                // Whatever stopped it reports the reason.
-                Err(AnimationError::Stopped) => {
-                    let kept =
-                        self.kept.as_ref().filter(|folder| frame_files(folder).is_ok_and(|files| !files.is_empty()));
-                    let path = path.display();
-                    let how = kept.map_or(String::new(), |folder| {
-                        format!("; to make it from the others: localshape animate {} -o {path}", folder.display())
-                    });
-                    let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-                    made.push(format!("{path}  not made, because frames are missing{how}\n"));
-                }
-                Err(error) => result = result.and(Err(error.into())),
-            }
-        }
-        result
-    }
-}
-
-/// Ends the sequence in any case, so that no reader blocks.
-impl Drop for Films {
-    fn drop(&mut self) {
-        self.spool.end();
     }
 }

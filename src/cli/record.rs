@@ -80,7 +80,7 @@ pub(super) fn run_all(
     // Finished scenes are reported before the failure.
     let printed = if options.printing.json { console::print_json(&json!({ "scenes": documents })) } else { Ok(()) };
     result.and(printed)?;
-    Ok(if interrupted { Status::Interrupted } else { Status::Done })
+    Ok(if interrupted || interrupt::requested() { Status::Interrupted } else { Status::Done })
 }
 
 /// Runs one scene. However it ends, the summary says so.

@@ -3,7 +3,7 @@
 use super::console;
 use super::drawing::{Device, Drawing};
 use super::failure::{Failure, Status, missing};
-use super::film::{Shared, replaceable};
+use super::film::replaceable;
 use super::frames::Moments;
 use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, ThemeOption, size};
@@ -11,7 +11,6 @@ use super::record::{self, Begin};
 use super::scenes::{Wish, nearest};
 use super::still::{Format as FileFormat, NO_ADAPTER, Still, replaceable as replaceable_still, source_of, too_small};
 use crate::animation::Format;
-use crate::gpu::Gpu;
 use crate::look::Ghost;
 use crate::output::shell;
 use crate::output::{AtomicFile, FolderLock, OutputError, Shard, StoredStates, Tags, folder_of};
@@ -21,7 +20,7 @@ use crate::scene::Scene;
 use clap::{Args, ValueHint};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -43,9 +42,6 @@ A folder belongs to one scene: results of another one are replaced only with --o
 results of another version of that file are replaced.
 
 Without a GPU, pictures are drawn by a software driver; `localshape info` names it.";
-
-/// Threads that write frames, at most: a few keep up with any device.
-const MOST_WRITERS: usize = 4;
 
 /// Simulate scenes and draw them as frames
 #[derive(Args, Debug)]
@@ -120,30 +116,19 @@ impl Render {
         // Opened when all else is known to be right, and before the first folder is touched.
         let gpu = self.device.open(jobs.iter().map(|job| job.scene.view.size))?;
         jobs.iter().try_for_each(|job| self.tell_moments(&job.scene))?;
-        let threads = self.options.threads.count();
-        let shared = (!films.is_empty()).then(|| Shared {
+        let adapter = gpu.description().to_string();
+        let device = Arc::new(Device {
+            gpu,
+            threads: self.options.threads.count(),
+            keep: !self.no_frames,
+            resume: self.options.resume,
+            shard: self.shard,
             films,
             words: words.to_vec(),
-            threads,
-            run: jobs.first().and_then(|job| job.runs.first().copied()),
         });
-        let adapter = gpu.description().to_string();
-        let device = self.device(gpu, shared);
         let begin: &Begin<'_> = &|scene, folder, frames| Ok(Box::new(Drawing::begin(&device, scene, folder, frames)?));
         let pictures = Some((&*adapter, begin));
-        let result = record::run_all(jobs, &self.options, &self.scenes.set, words, self.timings, pictures);
-        if self.options.printing.prints_text() {
-            let made = device.made.lock().unwrap_or_else(PoisonError::into_inner);
-            made.iter().try_for_each(|line| console::print(line))?;
-        }
-        result
-    }
-
-    /// What all scenes are drawn with.
-    fn device(&self, gpu: Gpu, shared: Option<Shared>) -> Device {
-        let writers = self.options.threads.count().min(MOST_WRITERS);
-        let (keep, resume, shard) = (!self.no_frames, self.options.resume, self.shard);
-        Device { gpu, writers, keep, resume, shard, shared, made: Arc::default() }
+        record::run_all(jobs, &self.options, &self.scenes.set, words, self.timings, pictures)
     }
 
     /// Gives a scene the size that the user wants.

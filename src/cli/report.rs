@@ -20,7 +20,7 @@ pub(super) fn report(summary: &Summary, folder: &Path, timings: bool) -> String 
     if timings {
         text += &all_times(summary);
     }
-    text
+    text + &summary.films.concat()
 }
 
 fn made(summary: &Summary, folder: &Path) -> String {

@@ -5,6 +5,8 @@ use std::fs::{self, File};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
+#[cfg(feature = "render")]
+use tempfile::TempDir;
 
 const PREFIX: &str = ".localshape-";
 const SHARDS: &str = ".localshape-shard-";
@@ -108,6 +110,16 @@ pub(crate) fn open_growing(path: &Path, length: u64) -> io::Result<File> {
     Ok(file)
 }
 
+/// Makes a folder with a hidden name in a folder, which is removed with all that is in it when this is dropped.
+///
+/// # Errors
+/// If it cannot be made.
+#[cfg(feature = "render")]
+pub(crate) fn temporary_folder(folder: &Path) -> Result<TempDir, OutputError> {
+    let made = tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).tempdir_in(folder);
+    made.map_err(OutputError::writing(folder))
+}
+
 /// Makes new names in a folder survive a power failure, where the system can do so.
 pub(super) fn sync_folder(folder: &Path) {
     // Some systems cannot open folders; their names are durable at once, or cannot be made so.
@@ -124,8 +136,14 @@ pub(super) fn remove_leftovers(folder: &Path, shard: Option<Shard>) -> Result<()
         let entry = entry.map_err(OutputError::reading(folder))?;
         let is_meant = |name: &str| name.starts_with(&prefix(shard)) && (shard.is_some() || !name.starts_with(SHARDS));
         let hidden = |name: &str| is_meant(name) && name.ends_with(SUFFIX);
-        if entry.file_name().to_str().is_some_and(hidden) && entry.file_type().is_ok_and(|found| found.is_file()) {
-            remove(&entry.path())?;
+        if entry.file_name().to_str().is_some_and(hidden) {
+            match entry.file_type() {
+                Ok(found) if found.is_dir() => {
+                    fs::remove_dir_all(entry.path()).map_err(OutputError::writing(folder))?
+                }
+                Ok(found) if found.is_file() => remove(&entry.path())?,
+                _ => {}
+            }
         }
     }
     Ok(())
@@ -170,13 +188,16 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let leftover = folder.path().join(".localshape-abc123.partial");
         let other = folder.path().join(".localshape-notes");
+        let frames = folder.path().join(".localshape-def456.partial");
+        fs::create_dir(&frames).unwrap();
+        fs::write(frames.join("frame_00000.png"), "").unwrap();
         fs::write(&leftover, "").unwrap();
         fs::write(&other, "").unwrap();
         let shards = [1, 11].map(|number| Shard { number, of: 12 });
         let of_shards = shards.map(|shard| folder.path().join(format!("{}x{SUFFIX}", prefix(Some(shard)))));
         of_shards.iter().for_each(|path| fs::write(path, "").unwrap());
         remove_leftovers(folder.path(), None).unwrap();
-        assert!(!leftover.exists() && other.exists() && of_shards.iter().all(|path| path.exists()));
+        assert!(!leftover.exists() && !frames.exists() && other.exists() && of_shards.iter().all(|path| path.exists()));
         remove_leftovers(folder.path(), Some(shards[0])).unwrap();
         assert_eq!(of_shards.map(|path| path.exists()), [false, true]);
     }

@@ -22,9 +22,6 @@ pub(crate) struct PixelFrame {
     pub texts: Texts,
 }
 
-/// A second consumer of the frame files besides the disk: it gets their numbers and bytes, in any order.
-pub(crate) type Tap = Arc<dyn Fn(u64, &[u8]) -> Result<(), OutputError> + Send + Sync>;
-
 /// The pixels of a frame, and its file, whose compressed pixels serve further frames with the same ones.
 type Last = Mutex<(Weak<Vec<u8>>, Arc<Vec<u8>>)>;
 
@@ -34,9 +31,8 @@ pub(crate) struct FrameWriter {
     queue: Option<SyncSender<PixelFrame>>,
     frames: Arc<Mutex<Option<Receiver<PixelFrame>>>>,
     last: Arc<Last>,
-    folder: Option<PathBuf>,
+    folder: PathBuf,
     shard: Option<Shard>,
-    tap: Option<Tap>,
     /// Greatest number of threads.
     most: usize,
     threads: Vec<JoinHandle<Written>>,
@@ -52,20 +48,18 @@ struct Written {
 }
 
 impl FrameWriter {
-    /// A writer with up to `most` threads (at least one) that write to `folder`, which exists, and pass each file with
-    /// the number of its frame to `tap`; without a folder they only pass it. The frames may be a `shard` of all.
-    pub(crate) fn new(folder: Option<&Path>, shard: Option<Shard>, most: usize, tap: Option<Tap>) -> Self {
+    /// A writer with up to `most` threads (at least one) that write to `folder`, which exists. The frames may be a `shard` of
+    /// all.
+    pub(crate) fn new(folder: &Path, shard: Option<Shard>, most: usize) -> Self {
         // The channel has no buffer: a frame is passed to a free thread, or `write` blocks until one is free.
         let (queue, frames) = sync_channel(0);
         let frames = Arc::new(Mutex::new(Some(frames)));
-        let folder = folder.map(Path::to_owned);
         Self {
             queue: Some(queue),
             frames,
             last: Arc::default(),
-            folder,
+            folder: folder.to_owned(),
             shard,
-            tap,
             most: most.max(1),
             threads: Vec::new(),
             written: Written::default(),
@@ -84,9 +78,9 @@ impl FrameWriter {
         };
         // A thread costs buffers of its own, so another one starts only when none is free.
         if self.threads.len() < self.most {
-            let (folder, frames, tap) = (self.folder.clone(), Arc::clone(&self.frames), self.tap.clone());
+            let (folder, frames) = (self.folder.clone(), Arc::clone(&self.frames));
             let (last, shard) = (Arc::clone(&self.last), self.shard);
-            let work = move || write_frames(folder.as_deref(), shard, &frames, tap.as_ref(), &last);
+            let work = move || write_frames(&folder, shard, &frames, &last);
             self.threads.push(std::thread::spawn(work));
         }
         if queue.send(frame).is_ok() { Ok(()) } else { self.wait() }
@@ -107,7 +101,7 @@ impl FrameWriter {
     ///
     /// # Errors
     /// If one could not be written and [`Self::write`] did not report it.
-    pub(crate) fn finish(mut self) -> (usize, Spent, Result<(), OutputError>) {
+    pub(crate) fn finish(&mut self) -> (usize, Spent, Result<(), OutputError>) {
         let result = self.wait();
         (self.written.frames, self.written.spent, result)
     }
@@ -140,10 +134,9 @@ fn compressed(frame: &PixelFrame, last: &Last) -> Arc<Vec<u8>> {
 
 /// Writes frames until there are no more or one fails. After a failure the channel is closed, so that no sender blocks.
 fn write_frames(
-    folder: Option<&Path>,
+    folder: &Path,
     shard: Option<Shard>,
     queue: &Mutex<Option<Receiver<PixelFrame>>>,
-    tap: Option<&Tap>,
     last: &Last,
 ) -> Written {
     let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
@@ -152,13 +145,10 @@ fn write_frames(
         let Some(frame) = lock().as_ref().and_then(|frames| frames.recv().ok()) else { return written };
         let clock = Clock::thread();
         let bytes = compressed(&frame, last);
-        let index = frame.frame;
-        let write = |folder: &Path| write_whole_for(&folder.join(frame_file_name(index)), &bytes, shard);
-        let kept = folder.map_or(Ok(()), write);
-        let result = kept.and_then(|()| tap.map_or(Ok(()), |tap| tap(index, &bytes)));
+        let result = write_whole_for(&folder.join(frame_file_name(frame.frame)), &bytes, shard);
         written.spent += clock.spent();
         match result {
-            Ok(()) => written.frames += usize::from(folder.is_some()),
+            Ok(()) => written.frames += 1,
             Err(failure) => {
                 written.failure = Some(failure);
                 *lock() = None;
@@ -179,7 +169,7 @@ mod tests {
     #[test]
     fn all_frames_are_written() {
         let folder = tempfile::tempdir().unwrap();
-        let mut writer = FrameWriter::new(Some(folder.path()), None, 3, None);
+        let mut writer = FrameWriter::new(folder.path(), None, 3);
         (0..20).for_each(|index| writer.write(frame(index)).unwrap());
         let (count, spent, result) = writer.finish();
         result.unwrap();
@@ -191,7 +181,7 @@ mod tests {
     #[test]
     fn a_failure_is_told_and_nobody_waits() {
         let folder = tempfile::tempdir().unwrap();
-        let mut writer = FrameWriter::new(Some(&folder.path().join("absent")), None, 2, None);
+        let mut writer = FrameWriter::new(&folder.path().join("absent"), None, 2);
         let failure = (0..100).find_map(|index| writer.write(frame(index)).err()).expect("it fails before the end");
         assert!(failure.to_string().contains("frame_"));
         let (count, _, result) = writer.finish();

@@ -21,6 +21,8 @@ mod stored;
 mod summary;
 mod timing;
 
+#[cfg(feature = "render")]
+pub(crate) use atomic::temporary_folder;
 pub(crate) use atomic::{AtomicFile, folder_of, open_growing, write_whole};
 pub(crate) use checkpoint::{Checkpoint, Plan, waiting_states};
 pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
@@ -28,8 +30,6 @@ pub(crate) use digest::state_digest;
 pub(crate) use error::{OutputError, is_folder, read_file};
 pub(crate) use folder::{Access, Claimed, FRAME_FILES, Folder, Shard, Whose, frame_file_name, frame_files};
 pub use frame_folder::FrameFolder;
-#[cfg(feature = "render")]
-pub(crate) use frames::Tap;
 pub(crate) use frames::{FrameWriter, PixelFrame};
 pub(crate) use lock::FolderLock;
 #[cfg(feature = "render")]

@@ -31,6 +31,9 @@ pub(crate) struct Summary {
     pub adapter: Option<String>,
     /// The requested runs, in the scene's order.
     pub runs: Vec<RunSummary>,
+    /// A line on each animation that was made.
+    #[serde(skip)]
+    pub films: Vec<String>,
     /// How far all runs are simulated, and the time of the last frame (s), if the user stopped it on the way.
     #[serde(skip)]
     pub reached: Option<[f64; 2]>,
@@ -172,6 +175,7 @@ impl Summary {
             files: Vec::new(),
             adapter: None,
             runs: runs.iter().map(run).collect(),
+            films: Vec::new(),
             reached: None,
             times: None,
         }

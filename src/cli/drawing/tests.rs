@@ -7,8 +7,9 @@ use crate::runner::Runner;
 use crate::scene::Limits;
 
 /// What draws into a folder.
-fn device(gpu: &Gpu, resume: bool) -> Device {
-    Device { gpu: gpu.clone(), writers: 2, keep: true, resume, shard: None, shared: None, made: Arc::default() }
+fn device(gpu: &Gpu, resume: bool) -> Arc<Device> {
+    let (films, words) = Default::default();
+    Arc::new(Device { gpu: gpu.clone(), threads: 2, keep: true, resume, shard: None, films, words })
 }
 
 /// The scene of Fig. 4(b), drawn small, and its first frames.
@@ -53,7 +54,7 @@ fn a_lost_device_loses_no_frame_that_was_drawn() {
     let asked: Vec<_> = (0..6).collect();
     let summary = || Summary::new(&scene, &[0, 1], asked.len(), &[]);
     let folders = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
-    let [broken, sound] = [&folders[0], &folders[1]].map(tempfile::TempDir::path);
+    let [broken, sound] = [&folders[0], &folders[1]].map(TempDir::path);
 
     let mut pictures = Drawing::begin(&device(&gpu, false), &scene, broken, &asked).map(Box::new).expect("a device");
     frames[..=DRAWN].iter().for_each(|frame| pictures.draw(frame).expect("a device"));
