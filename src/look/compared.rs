@@ -1,6 +1,6 @@
 //! Resolves what stands over and beside bodies: ghosts and paths.
 
-use super::file::{PathFile, PathPointFile, ViewFile};
+use super::file::{PathFile, PathPointFile};
 use super::subject::Subject;
 use super::view::{Ghost, Traced};
 use crate::reading::report::{Report, Way};
@@ -10,8 +10,7 @@ use crate::reading::words::{list, nearest, quoted, short};
 const REST: &str = "rest";
 
 /// What is outlined over each body; `None` also after a mistake.
-pub(super) fn ghost(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<Ghost> {
-    let name = typed.ghost.as_deref()?;
+pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<Ghost> {
     let path = [Way::Key("view"), Way::Key("ghost")];
     let run = scene.runs.iter().position(|(known, _)| *known == name);
     match run {
@@ -33,8 +32,7 @@ pub(super) fn ghost(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'
 }
 
 /// What leaves a path; empty also after a mistake.
-pub(super) fn paths(typed: &ViewFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Vec<Traced> {
-    let Some(paths) = &typed.paths else { return Vec::new() };
+pub(super) fn paths(paths: &[PathFile], scene: &Subject<'_>, report: &mut Report<'_>) -> Vec<Traced> {
     if let Some(at) = (1..paths.len()).find(|&at| paths[..at].contains(&paths[at])) {
         let path = [Way::Key("view"), Way::Key("paths"), Way::Index(at)];
         report.at(&path, "this path is asked for a second time".to_owned(), "remove it".to_owned());

@@ -1,25 +1,13 @@
-//! Resolves the look of a scene, and checks the contrast and the difference of colours.
+//! Checks the contrast and the difference of colours.
 
-use super::file::ViewFile;
 use super::palette::Palette;
-use super::typed::ColoursFile;
-use super::view::{FontFiles, Style};
+use super::view::Colours;
 use crate::colour::{Colour, LINE_CONTRAST, Vision, contrast, difference, readable, written};
 use crate::reading::report::{Report, Way};
 use std::fmt;
 
 /// The least difference of turned-over elements from others, for any colour vision (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
-
-/// The look with type of a scale, or `None` if there is a mistake in it.
-pub(crate) fn resolve(typed: &ViewFile, font: FontFiles, text_scale: f64, report: &mut Report<'_>) -> Option<Style> {
-    let background = typed.background.map(|colour| colour.0);
-    let theme = Palette::theme_on(background, typed.theme);
-    let palette = Palette::with(theme, background, &typed.colours);
-    let known = report.total();
-    check_alarm(&typed.colours, &palette, report);
-    (report.total() == known).then_some(Style { theme, palette, font, text_scale })
-}
 
 fn way(role: &str) -> [Way<'_>; 3] {
     [Way::Key("view"), Way::Key("colours"), Way::Key(role)]
@@ -59,7 +47,7 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
 }
 
 /// Checks the difference of turned-over elements from others.
-fn check_alarm(typed: &ColoursFile, palette: &Palette, report: &mut Report<'_>) {
+pub(super) fn check_alarm(typed: &Colours, palette: &Palette, report: &mut Report<'_>) {
     let (key, other) = match (typed.turned_over, typed.body) {
         (Some(_), _) => ("turned_over", "the body's"),
         (None, Some(_)) => ("body", "that of turned-over elements,"),

@@ -1,114 +1,10 @@
-//! The view as typed.
+//! Values of a view as typed, which the scene completes.
 
-use super::palette::Theme;
-use super::print::{SizeFile, TextScaleFile};
-use super::typed::{ColoursFile, FontFile, TypedColour};
-use super::view::{ColourMap, FloorStyle, Label, Labels};
+use super::view::ColourMap;
 use crate::reading::coordinates::Coordinates;
 use crate::sim::field::Field;
-use crate::sim::snapshot::Diagnostic;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-/// How a scene is drawn.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct ViewFile {
-    /// Width and height of the picture (px), or for print, such as `{ mm = [180, 101] }`.
-    pub(crate) size: SizeFile,
-    /// The colours.
-    pub(crate) theme: Theme,
-    /// The background. The other theme is used if this one's text cannot be read on it. Default: the theme's.
-    pub(crate) background: Option<TypedColour>,
-    /// Colours of the body, such as `{ body = "steelblue" }`, from which shades are derived. Default: the theme's.
-    pub(crate) colours: ColoursFile,
-    /// The font files, such as `{ regular = "NotoSansCJK.ttc" }`. Default: the built-in font, which has Latin and Greek letters.
-    pub(crate) font: Option<FontFile>,
-    /// Scale of all text, or in pictures for print the size of most text, such as `{ pt = 7 }`. Long titles are
-    /// wrapped. `localshape check` lists other words without room, which are shortened or left out. The smallest text
-    /// is a fiftieth of the height of a wide picture, or smaller with a scale below 1. Type below 5 pt is refused in
-    /// pictures for print.
-    pub(crate) text_scale: TextScaleFile,
-    /// The words below the time. Default: `after release`; in scenes with `hold` or `grab` `after the start`.
-    #[schemars(length(max = 80))]
-    pub(crate) clock: Option<String>,
-    /// Arrangement of the panels, or their number in a row. Default: the number that makes bodies largest.
-    pub(crate) panels: Option<PanelsFile>,
-    /// The drawn parts of the body. Without `surfaces` lines are drawn: springs if they are shown and exist, else the
-    /// edges of elements. Edges of turned-over elements always stand out. Default: surfaces; in the plane also nodes,
-    /// unless the body has more than 150.
-    #[schemars(length(min = 1))]
-    pub(crate) show: Option<Vec<ShowFile>>,
-    /// A scalar field that colours the surfaces of the body, such as `{ by = "strain" }`, or its lines and nodes
-    /// without surfaces. All panels share one colour bar, drawn below them. Springs without surfaces have a strain of
-    /// their own, the change of length over the length at rest. It has a sign if the range begins below zero, such as
-    /// `{ by = "strain", range = [-0.3, 0.3], map = "violet-green" }`. Default: none.
-    pub(crate) colour: Option<ColourFile>,
-    /// Scale of the arrows of displacements. At 1 an arrow ends at its node.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub(crate) arrow_scale: f64,
-    /// A title above all panels, wrapped at the width of the picture. Default: none.
-    #[schemars(length(max = 200))]
-    pub(crate) title: String,
-    /// A caption below all panels, wrapped at the width of the picture. `\n` begins a new line. Panels keep at least
-    /// half of the picture: longer captions are cut off with an ellipsis. Default: none.
-    #[schemars(length(max = 2000), extend("format" = "lines"))]
-    pub(crate) caption: String,
-    /// The words and signs in panels and below them.
-    #[schemars(with = "Vec<Label>")]
-    pub(crate) labels: Labels,
-    /// A diagnostic plotted over the whole time of the scene in one chart below all panels, with the current time
-    /// marked. Curves end with their names, or with the letters of their panels where names have no room. Numbered
-    /// flags mark the moments when elements first turn over and when their count settles, or the extreme value. Where
-    /// nearly everything happens early, that time has a larger scale. The whole scene is simulated before the first
-    /// frame is drawn. Default: none.
-    pub(crate) strip: Option<Diagnostic>,
-    /// A dashed outline over each body: `"rest"` for the rest shape in its best rigid fit, or the name of a run for its
-    /// body at the same moment, in the colour of that run. All runs then have that run's time step. Default: none.
-    #[schemars(length(min = 1, max = 80))]
-    pub(crate) ghost: Option<String>,
-    /// Points whose paths up to the present moment are drawn in the colours of runs: `"centre"` for the centre of mass,
-    /// and nodes, counted from 0, such as `["centre", 26]`. The whole scene is simulated before the first frame is
-    /// drawn. Default: none.
-    #[schemars(length(min = 1, max = 64))]
-    pub(crate) paths: Option<Vec<PathFile>>,
-    /// Whether bodies and obstacles cast shadows on the floor.
-    pub(crate) shadow: bool,
-    /// The drawing of floors. In the plane they have no grid.
-    pub(crate) floor: FloorStyle,
-    /// The lines on surfaces.
-    pub(crate) edges: EdgesFile,
-    /// The camera. Default: one that shows the body and what comes near it.
-    pub(crate) camera: CameraFile,
-}
-
-impl Default for ViewFile {
-    fn default() -> Self {
-        Self {
-            size: SizeFile::Pixels([1280, 720]),
-            theme: Theme::default(),
-            background: None,
-            colours: ColoursFile::default(),
-            font: None,
-            text_scale: TextScaleFile::Times(1.0),
-            clock: None,
-            panels: None,
-            show: None,
-            colour: None,
-            arrow_scale: 1.0,
-            title: String::new(),
-            caption: String::new(),
-            labels: Labels::default(),
-            strip: None,
-            ghost: None,
-            paths: None,
-            shadow: true,
-            floor: FloorStyle::default(),
-            edges: EdgesFile::default(),
-            camera: CameraFile::default(),
-        }
-    }
-}
 
 /// A point with a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -126,19 +22,6 @@ pub(crate) enum PathFile {
 pub(crate) enum PathPointFile {
     /// The centre of mass.
     Centre,
-}
-
-/// The lines on surfaces.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum EdgesFile {
-    /// The outline and all edges, hidden ones faintly.
-    #[default]
-    All,
-    /// The outline and visible edges.
-    Visible,
-    /// The outline, and edges of turned-over elements.
-    Outline,
 }
 
 /// The arrangement of panels.

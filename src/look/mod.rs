@@ -25,9 +25,12 @@ pub(crate) use palette::Palette;
 pub use palette::Theme;
 pub use print::Print;
 pub(crate) use ramp::SHADES;
-pub(crate) use resolve::{colour, resolve};
+pub(crate) use resolve::{TypedView, colour};
 pub(crate) use run_lines::LineStyle;
 pub(crate) use subject::Subject;
 #[cfg(feature = "render")]
 pub(crate) use view::axes;
-pub use view::{Camera, ColourMap, ColourScale, FloorStyle, FontFiles, Ghost, Labels, Style, Traced, View, Visible};
+pub use view::{
+    Camera, ColourMap, ColourScale, Colours, EdgeStyle, FloorStyle, FontFiles, Ghost, Labels, Style, Traced, View,
+    Visible,
+};

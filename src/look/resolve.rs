@@ -1,107 +1,129 @@
-//! Resolves a `[view]` table for the body, the runs and the surroundings that it shows.
+//! Reads a `[view]` table into the view of the body, the runs and the surroundings that it shows.
 
 use super::compared;
 use super::contrast;
-use super::file::{ArrangementFile, ColourFile, EdgesFile, PanelsFile, ShowFile, ViewFile};
+use super::file::{ArrangementFile, CameraFile, ColourFile, PanelsFile, ShowFile};
 use super::framing;
-use super::print::{TextScaleFile, unit};
+use super::palette::Palette;
+use super::print::{SizeFile, TextScaleFile, unit};
 use super::subject::Subject;
-use super::view::{ColourScale, FontFiles, View, Visible};
+use super::typed::TypedColour;
+use super::view::{Camera, ColourScale, FontFiles, View, Visible};
 use crate::reading::coordinates::vector;
-use crate::reading::report::{Report, Way};
+use crate::reading::report::{Report, Way, way};
 use crate::sim::body::Dimension;
 use crate::sim::inside::is_inside;
 use crate::sim::words::rounded;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value as Json};
 
 /// The shortest side of a picture (px).
 const LEAST_SIDE: u32 = 16;
 
-/// The view, or `None` if there is a mistake in it.
-pub(crate) fn resolve(
-    typed: &ViewFile,
-    scene: &Subject<'_>,
-    font: Option<FontFiles>,
-    report: &mut Report<'_>,
-) -> Option<View> {
-    let body = scene.body;
-    let panels = scene.models.len();
-    let dimension = body.dimension;
-    let camera = |key| [Way::Key("view"), Way::Key("camera"), Way::Key(key)];
-    let given = [("azimuth", typed.camera.azimuth), ("elevation", typed.camera.elevation)];
+/// A `[view]` table as typed, of the right structure.
+pub(crate) type TypedView = Map<String, Json>;
+
+/// A value as typed, if it is.
+fn get<T: DeserializeOwned>(typed: &TypedView, key: &str, report: &mut Report<'_>) -> Option<T> {
+    let read = T::deserialize(typed.get(key)?);
+    // The structure of the value is right, so an error is unexpected.
+    read.map_err(|error| report.at(&way!["view", key], error.to_string(), None)).ok()
+}
+
+/// Puts a value in its place, if it is typed.
+fn set<T: DeserializeOwned>(place: &mut T, typed: &TypedView, key: &str, report: &mut Report<'_>) {
+    if let Some(value) = get(typed, key, report) {
+        *place = value;
+    }
+}
+
+impl View {
+    /// The view of a scene: what is typed, in its place, and what the scene makes of the rest. `None` after a mistake.
+    pub(crate) fn read(
+        typed: &TypedView,
+        scene: &Subject<'_>,
+        font: FontFiles,
+        report: &mut Report<'_>,
+    ) -> Option<Self> {
+        let (body, panels, known) = (scene.body, scene.models.len(), report.total());
+        let mut view = Self { side: scene.side, has_cells: scene.has_cells, ..Self::default() };
+        view.camera = camera(&get(typed, "camera", report).unwrap_or_default(), scene, report)?;
+        let size = get(typed, "size", report).unwrap_or(SizeFile::Pixels(view.size));
+        (view.size, view.print) = size.resolve(LEAST_SIDE, &way!["view", "size"], report)?;
+        view.columns = get(typed, "panels", report).map(|arranged| match arranged {
+            PanelsFile::Columns(columns) => columns as usize,
+            PanelsFile::Along(ArrangementFile::Row) => panels.max(1),
+            PanelsFile::Along(ArrangementFile::Column) => 1,
+        });
+        if let Some(typed) = get::<ColourFile>(typed, "colour", report) {
+            let way = way!["view", "colour", "range"];
+            view.colour = Some(colour(&typed, std::slice::from_ref(scene), &way, report)?);
+        }
+        view.visible = match get::<Vec<ShowFile>>(typed, "show", report) {
+            Some(shown) => Visible {
+                surfaces: shown.contains(&ShowFile::Surfaces),
+                nodes: shown.contains(&ShowFile::Nodes),
+                springs: shown.contains(&ShowFile::Springs),
+                displacements: shown.contains(&ShowFile::Displacements),
+            },
+            None => Visible::usual(body.dimension, body.len()),
+        };
+        let text_scale = get(typed, "text_scale", report).unwrap_or(TextScaleFile::Times(view.look.text_scale));
+        let usual = view.columns.unwrap_or(panels.clamp(1, 3));
+        if let TextScaleFile::Points(_) = text_scale {
+            // Type in points holds for one arrangement.
+            view.columns = Some(usual);
+        }
+        let panel = [view.size[0] / usual as u32, view.size[1] / panels.div_ceil(usual).max(1) as u32];
+        let unit = unit(view.size, panel);
+        view.look.text_scale = text_scale.resolve(view.print.as_ref(), unit, &way!["view", "text_scale"], report)?;
+        view.look.background = get::<TypedColour>(typed, "background", report).map(|colour| colour.0);
+        set(&mut view.look.theme, typed, "theme", report);
+        view.look.theme = Palette::theme_on(view.look.background, view.look.theme);
+        set(&mut view.look.colours, typed, "colours", report);
+        contrast::check_alarm(&view.look.colours, &view.look.palette(), report);
+        view.look.font = font;
+        view.clock = get(typed, "clock", report).unwrap_or_else(|| {
+            if scene.grips.is_empty() { "after release".to_owned() } else { "after the start".to_owned() }
+        });
+        let ghost: Option<String> = get(typed, "ghost", report);
+        view.ghost = ghost.and_then(|name| compared::ghost(&name, scene, report));
+        let paths: Vec<_> = get(typed, "paths", report).unwrap_or_default();
+        view.paths = compared::paths(&paths, scene, report);
+        set(&mut view.title, typed, "title", report);
+        set(&mut view.caption, typed, "caption", report);
+        [&mut view.title, &mut view.caption].into_iter().for_each(|text| *text = text.trim().to_owned());
+        view.strip = get(typed, "strip", report);
+        set(&mut view.arrow_scale, typed, "arrow_scale", report);
+        set(&mut view.labels, typed, "labels", report);
+        set(&mut view.shadow, typed, "shadow", report);
+        set(&mut view.floor, typed, "floor", report);
+        set(&mut view.edges, typed, "edges", report);
+        (report.total() == known).then_some(view)
+    }
+}
+
+/// The camera of a view, or `None` after a mistake in its target.
+fn camera(typed: &CameraFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<Camera> {
+    let dimension = scene.body.dimension;
+    let given = [("azimuth", typed.azimuth), ("elevation", typed.elevation)];
     for (key, _) in given.iter().filter(|(_, value)| dimension == Dimension::Plane && value.is_some()) {
         let message = format!("`view.camera.{key}` is given, but a body in the plane is seen from the front");
-        report.at_key(&camera(key), message, format!("take `{key}` out"));
+        report.at_key(&way!["view", "camera", *key], message, format!("take `{key}` out"));
     }
-    let target = match &typed.camera.target {
-        Some(target) => Some(vector(target, dimension, &camera("target"), report)?),
+    let target = match &typed.target {
+        Some(target) => Some(vector(target, dimension, &way!["view", "camera", "target"], report)?),
         None => None,
     };
-    let chosen = framing::camera(&typed.camera, target, scene);
-    if dimension == Dimension::Space && !chosen.follow && is_inside(chosen.eye(), body, &scene.initial.position) {
+    let chosen = framing::camera(typed, target, scene);
+    let start = &scene.initial.position;
+    if dimension == Dimension::Space && !chosen.follow && is_inside(chosen.eye(), scene.body, start) {
         let [x, y, z] = chosen.eye().to_array().map(|length| rounded(length, 3));
         let message = format!("the camera is at [{x}, {y}, {z}], inside the body at its start");
         let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
-        report.at(&[Way::Key("view"), Way::Key("camera")], message, help);
+        report.at(&way!["view", "camera"], message, help);
     }
-    let (size, print) = typed.size.resolve(LEAST_SIDE, &[Way::Key("view"), Way::Key("size")], report)?;
-    let columns = typed.panels.map(|arranged| match arranged {
-        PanelsFile::Columns(columns) => columns as usize,
-        PanelsFile::Along(ArrangementFile::Row) => panels.max(1),
-        PanelsFile::Along(ArrangementFile::Column) => 1,
-    });
-    let colour = match &typed.colour {
-        Some(typed) => {
-            let way = [Way::Key("view"), Way::Key("colour"), Way::Key("range")];
-            Some(colour(typed, std::slice::from_ref(scene), &way, report)?)
-        }
-        None => None,
-    };
-    let visible = match &typed.show {
-        Some(shown) => Visible {
-            surfaces: shown.contains(&ShowFile::Surfaces),
-            nodes: shown.contains(&ShowFile::Nodes),
-            springs: shown.contains(&ShowFile::Springs),
-            displacements: shown.contains(&ShowFile::Displacements),
-        },
-        None => Visible::usual(dimension, body.len()),
-    };
-    let usual = columns.unwrap_or(panels.clamp(1, 3));
-    // Type in points holds for one arrangement.
-    let columns = columns.or(matches!(typed.text_scale, TextScaleFile::Points(_)).then_some(usual));
-    let panel = [size[0] / usual as u32, size[1] / panels.div_ceil(usual).max(1) as u32];
-    let way = [Way::Key("view"), Way::Key("text_scale")];
-    let text_scale = typed.text_scale.resolve(print.as_ref(), unit(size, panel), &way, report)?;
-    let look = contrast::resolve(typed, font.unwrap_or_default(), text_scale, report)?;
-    let (ghost, paths) = (compared::ghost(typed, scene, report), compared::paths(typed, scene, report));
-    Some(View {
-        size,
-        print,
-        look,
-        camera: chosen,
-        clock: typed
-            .clock
-            .clone()
-            .unwrap_or_else(|| if scene.grips.is_empty() { "after release".into() } else { "after the start".into() }),
-        columns,
-        visible,
-        colour,
-        arrow_scale: typed.arrow_scale,
-        side: scene.side,
-        has_cells: scene.has_cells,
-        title: typed.title.trim().to_owned(),
-        caption: typed.caption.trim().to_owned(),
-        labels: typed.labels,
-        strip: typed.strip,
-        ghost,
-        paths,
-        shadow: typed.shadow,
-        floor: typed.floor,
-        edges: match typed.edges {
-            EdgesFile::All => [true, true],
-            EdgesFile::Visible => [true, false],
-            EdgesFile::Outline => [false, false],
-        },
-    })
+    Some(chosen)
 }
 
 /// The narrowest range of colours, in parts of its larger end: ticks still differ in a few digits.

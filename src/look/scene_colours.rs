@@ -1,7 +1,7 @@
 //! The colours of a scene: those that it gives replace the theme's, and related colours follow them.
 
 use super::palette::{Palette, Theme};
-use super::typed::{ColoursFile, TypedColour};
+use super::view::Colours;
 use crate::colour::{
     Colour, LEAST_CONTRAST, LINE_CONTRAST, Oklab, best_of, contrast, from_oklab, mixed, oklab, readable,
 };
@@ -22,7 +22,7 @@ impl Palette {
     }
 
     /// The colours of a theme with those that a scene gives, and with related colours that follow these.
-    pub(crate) fn with(theme: Theme, background: Option<Colour>, given: &ColoursFile) -> Self {
+    pub(crate) fn with(theme: Theme, background: Option<Colour>, given: &Colours) -> Self {
         let theme = Self::of(theme);
         let mut own = theme;
         if let Some(ground) = background {
@@ -36,14 +36,14 @@ impl Palette {
                 own.set_secondary_colours(&theme);
             }
         }
-        if let Some(TypedColour(body)) = given.body {
+        if let Some(body) = given.body {
             own.sound = body;
             own.sound_flat = like(body, theme.sound, theme.sound_flat);
             own.tally = like(body, theme.sound, theme.tally);
             own.edge = readable(own.edge, body, LINE_CONTRAST);
             own.spring_on_body = readable(own.spring_on_body, body, LINE_CONTRAST);
         }
-        if let Some(TypedColour(alarm)) = given.turned_over {
+        if let Some(alarm) = given.turned_over {
             own.alarm = alarm;
             own.alarm_line = hatch(alarm, &theme);
             own.alarm_text = alarm;
@@ -102,8 +102,8 @@ fn share(from: Colour, to: Colour, colour: Colour) -> f64 {
 mod tests {
     use super::*;
 
-    fn typed(text: &str) -> Option<TypedColour> {
-        Some(text.parse().unwrap_or_else(|error| panic!("{text}: {error}")))
+    fn typed(text: &str) -> Option<Colour> {
+        Some(crate::colour::parse(text).unwrap_or_else(|error| panic!("{text}: {error:?}")))
     }
 
     /// Each colour of words with each colour of their ground.
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn what_is_not_given_follows() {
-        let given = ColoursFile { body: typed("#8fbc8f"), turned_over: typed("#7b2d8b") };
+        let given = Colours { body: typed("#8fbc8f"), turned_over: typed("#7b2d8b") };
         for theme in [Theme::Light, Theme::Dark] {
             let (own, of_theme) = (Palette::with(theme, None, &given), Palette::of(theme));
             assert_eq!((own.sound, own.alarm), ([0x8f, 0xbc, 0x8f], [0x7b, 0x2d, 0x8b]));
@@ -147,13 +147,13 @@ mod tests {
                 (of_theme.background, of_theme.text, of_theme.grid, of_theme.outline, of_theme.second_text)
             );
         }
-        assert_eq!(Palette::with(Theme::Dark, None, &ColoursFile::default()), Palette::of(Theme::Dark));
-        assert_eq!(Palette::with(Theme::Light, None, &ColoursFile::default()), Palette::of(Theme::Light));
+        assert_eq!(Palette::with(Theme::Dark, None, &Colours::default()), Palette::of(Theme::Dark));
+        assert_eq!(Palette::with(Theme::Light, None, &Colours::default()), Palette::of(Theme::Light));
     }
 
     #[test]
     fn a_dark_body_gets_light_edges_and_a_dark_alarm_a_light_hatch() {
-        let given = ColoursFile { body: typed("#202830"), turned_over: typed("#603000") };
+        let given = Colours { body: typed("#202830"), turned_over: typed("#603000") };
         let own = Palette::with(Theme::Light, None, &given);
         assert!(oklab(own.edge).0[0] > oklab(own.sound).0[0] && contrast(own.edge, own.sound) >= LINE_CONTRAST);
         assert!(oklab(own.alarm_line).0[0] > oklab(own.alarm).0[0] + 0.2);
@@ -167,7 +167,7 @@ mod tests {
                     let ground = [red, green, blue];
                     for theme in [Theme::Light, Theme::Dark] {
                         let theme = Palette::theme_on(Some(ground), theme);
-                        let own = Palette::with(theme, Some(ground), &ColoursFile::default());
+                        let own = Palette::with(theme, Some(ground), &Colours::default());
                         for text in [own.text, own.second_text, own.alarm_text] {
                             assert!(contrast(text, ground) >= LEAST_CONTRAST, "{text:x?} on {ground:x?}");
                         }

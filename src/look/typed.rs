@@ -1,10 +1,9 @@
-//! Colours, type and lines as typed.
+//! Colours and fonts as typed.
 
 use crate::colour::{Colour, UnknownColour, names, parse, written};
 use crate::reading::words::{nearest, quoted};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::str::FromStr;
 
 /// The expected colours, for messages.
 const EXPECTED: &str = "; expected digits such as \"#93a5ba\" or a name of CSS such as \"steelblue\"";
@@ -16,16 +15,18 @@ const EXPECTED: &str = "; expected digits such as \"#93a5ba\" or a name of CSS s
 pub(crate) struct TypedColour(pub(crate) Colour);
 
 impl TypedColour {
-    /// The continuation of a message about a text that is no colour, and the help; `None` for a colour.
-    pub(crate) fn mistake(text: &str) -> Option<(String, Option<String>)> {
-        let digits = |text: &str| format!("write \"#{}\"", text.trim());
-        Some(match parse(text).err()? {
+    /// Reads a colour.
+    ///
+    /// # Errors
+    /// The continuation of a message about a text that is no colour, and the help.
+    pub(crate) fn read(text: &str) -> Result<Self, (String, Option<String>)> {
+        parse(text).map(Self).map_err(|why| match why {
             UnknownColour::Unknown => {
                 let known: Vec<_> = names().collect();
                 let near = nearest(text.trim(), &known).map(|name| format!("did you mean {}?", quoted(name)));
                 (EXPECTED.to_owned(), near)
             }
-            UnknownColour::WithoutHash => (EXPECTED.to_owned(), Some(digits(text))),
+            UnknownColour::WithoutHash => (EXPECTED.to_owned(), Some(format!("write \"#{}\"", text.trim()))),
             UnknownColour::Digits => ("; expected three or six digits, such as \"#93a5ba\"".to_owned(), None),
             UnknownColour::Transparent => {
                 (", which something shows through; expected an opaque colour".to_owned(), None)
@@ -34,18 +35,10 @@ impl TypedColour {
     }
 }
 
-impl FromStr for TypedColour {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        parse(text).map(Self).map_err(|_| format!("this is no colour{EXPECTED}"))
-    }
-}
-
 impl TryFrom<String> for TypedColour {
     type Error = String;
     fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
+        Self::read(&text).map_err(|(wrong, _)| format!("{} is {wrong}", quoted(&text)))
     }
 }
 
@@ -53,20 +46,6 @@ impl From<TypedColour> for String {
     fn from(colour: TypedColour) -> Self {
         written(colour.0)
     }
-}
-
-/// Colours of the body. Each is hexadecimal, `"#rgb"` or `"#rrggbb"`, or a CSS name such as `"steelblue"`. All are
-/// opaque.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct ColoursFile {
-    /// The colour of elements that are not turned over, before shading. The fill of elements in the plane and the
-    /// squares of the tally follow it; edges that would be invisible on it become lighter. Its difference from
-    /// `turned_over` must be at least 20 (CIEDE2000), also with colour blindness.
-    pub(crate) body: Option<TypedColour>,
-    /// The colour of turned-over elements, before shading. Their edges without surfaces, hatching, signs and text
-    /// follow it.
-    pub(crate) turned_over: Option<TypedColour>,
 }
 
 /// Font files, TrueType or OpenType (.ttf, .otf, .ttc), beside the scene file.
@@ -91,7 +70,7 @@ mod tests {
 
     #[test]
     fn mistakes_say_what_is_near() {
-        let told = |text: &str| TypedColour::mistake(text).map(|(message, help)| format!("{message} {help:?}"));
+        let told = |text: &str| TypedColour::read(text).err().map(|(message, help)| format!("{message} {help:?}"));
         assert_eq!(told("#abc"), None);
         assert!(told("steelblu").unwrap().contains("did you mean \\\"steelblue\\\"?"));
         assert!(told("93a5ba").unwrap().contains("write \\\"#93a5ba\\\""));
@@ -102,7 +81,7 @@ mod tests {
     #[test]
     fn a_name_and_its_digits_are_written_alike() {
         for text in ["steelblue", "#4682b4", "rgb(70, 130, 180)"] {
-            assert_eq!(serde_json::to_string(&text.parse::<TypedColour>().unwrap()).unwrap(), "\"#4682b4\"");
+            assert_eq!(serde_json::to_string(&TypedColour::read(text).unwrap()).unwrap(), "\"#4682b4\"");
         }
     }
 }

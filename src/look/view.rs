@@ -1,59 +1,108 @@
-//! The view of a scene, resolved.
+//! The view of a scene.
 
+use super::file::{CameraFile, ColourFile, PanelsFile, PathFile, ShowFile};
 use super::palette::{Palette, Theme};
-use super::print::Print;
+use super::print::{Print, SizeFile, TextScaleFile};
+use super::typed::{FontFile, TypedColour};
+use crate::colour::Colour;
 use crate::sim::body::{Body, Dimension};
 use crate::sim::field::Field;
 use crate::sim::snapshot::Diagnostic;
 use glam::DVec3;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::sync::Arc;
 
 /// The drawing of a scene. Plain data, kept also in builds without the renderer, so that every scene can be checked.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// The `[view]` table of a scene file has these keys; [`View::read`] puts its values in their places, and what it leaves
+/// open follows from the scene.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(default)]
+#[schemars(deny_unknown_fields, rename = "ViewFile")]
 pub struct View {
-    /// Width and height of the picture (px).
+    /// Width and height of the picture (px), or for print, such as `{ mm = [180, 101] }`.
+    #[schemars(with = "SizeFile")]
     pub size: [u32; 2],
     /// The size in print, if it was given.
+    #[serde(skip)]
     pub print: Option<Print>,
     /// Colours and type.
+    #[serde(flatten)]
     pub look: Style,
-    /// The camera of all panels.
-    pub camera: Camera,
-    /// The words below the time, such as `after first contact`.
+    /// The words below the time. Default: `after release`; in scenes with `hold` or `grab` `after the start`.
+    #[serde(serialize_with = "open")]
+    #[schemars(length(max = 80))]
     pub clock: String,
-    /// The number of panels in a row; `None` for the number that makes bodies largest.
+    /// Arrangement of the panels, or their number in a row. Default: the number that makes bodies largest.
+    #[serde(rename = "panels", serialize_with = "open")]
+    #[schemars(with = "PanelsFile")]
     pub columns: Option<usize>,
-    /// The drawn parts of the body.
+    /// The drawn parts of the body. Without `surfaces` lines are drawn: springs if they are shown and exist, else the
+    /// edges of elements. Edges of turned-over elements always stand out. Default: surfaces; in the plane also nodes,
+    /// unless the body has more than 150.
+    #[serde(rename = "show", serialize_with = "open")]
+    #[schemars(with = "Vec<ShowFile>", length(min = 1))]
     pub visible: Visible,
-    /// The field that colours the body.
+    /// A scalar field that colours the surfaces of the body, such as `{ by = "strain" }`, or its lines and nodes
+    /// without surfaces. All panels share one colour bar, drawn below them. Springs without surfaces have a strain of
+    /// their own, the change of length over the length at rest. It has a sign if the range begins below zero, such as
+    /// `{ by = "strain", range = [-0.3, 0.3], map = "violet-green" }`. Default: none.
+    #[serde(serialize_with = "open")]
+    #[schemars(with = "ColourFile")]
     pub colour: Option<ColourScale>,
-    /// The length of arrows over the displacement that they show.
+    /// Scale of the arrows of displacements. At 1 an arrow ends at its node.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub arrow_scale: f64,
     /// Length of an element's edge, the unit of the floor's grid and of soft distances in light and shadow (m).
+    #[serde(skip)]
     pub side: f64,
     /// Whether this length is the side of a lattice's cells, which the floor's grid then repeats, or a mean of edges.
+    #[serde(skip)]
     pub has_cells: bool,
-    /// A title above all panels; empty for none.
+    /// A title above all panels, wrapped at the width of the picture. Default: none.
+    #[schemars(length(max = 200))]
     pub title: String,
-    /// A caption below all panels; empty for none.
+    /// A caption below all panels, wrapped at the width of the picture. `\n` begins a new line. Panels keep at least
+    /// half of the picture: longer captions are cut off with an ellipsis. Default: none.
+    #[schemars(length(max = 2000), extend("format" = "lines"))]
     pub caption: String,
     /// The words and signs in panels and below them.
+    #[schemars(with = "Vec<Label>")]
     pub labels: Labels,
-    /// The diagnostic of all runs in a chart below the panels.
+    /// A diagnostic plotted over the whole time of the scene in one chart below all panels, with the current time
+    /// marked. Curves end with their names, or with the letters of their panels where names have no room. Numbered
+    /// flags mark the moments when elements first turn over and when their count settles, or the extreme value. Where
+    /// nearly everything happens early, that time has a larger scale. The whole scene is simulated before the first
+    /// frame is drawn. Default: none.
     pub strip: Option<Diagnostic>,
-    /// The outline over each body.
+    /// A dashed outline over each body: `"rest"` for the rest shape in its best rigid fit, or the name of a run for its
+    /// body at the same moment, in the colour of that run. All runs then have that run's time step. Default: none.
+    #[serde(serialize_with = "open")]
+    #[schemars(with = "String", length(min = 1, max = 80))]
     pub ghost: Option<Ghost>,
-    /// The points with paths.
+    /// Points whose paths up to the present moment are drawn in the colours of runs: `"centre"` for the centre of mass,
+    /// and nodes, counted from 0, such as `["centre", 26]`. The whole scene is simulated before the first frame is
+    /// drawn. Default: none.
+    #[serde(serialize_with = "open")]
+    #[schemars(with = "Vec<PathFile>", length(min = 1, max = 64))]
     pub paths: Vec<Traced>,
-    /// Whether bodies and obstacles cast shadows.
+    /// Whether bodies and obstacles cast shadows on the floor.
     pub shadow: bool,
-    /// The drawing of floors.
+    /// The drawing of floors. In the plane they have no grid.
     pub floor: FloorStyle,
-    /// Whether edges before the body, and behind it, are drawn.
-    pub edges: [bool; 2],
+    /// The lines on surfaces.
+    pub edges: EdgeStyle,
+    /// The camera. Default: one that shows the body and what comes near it.
+    #[serde(serialize_with = "open")]
+    #[schemars(with = "CameraFile")]
+    pub camera: Camera,
+}
+
+/// For the schema, which has no default for what follows from the scene.
+fn open<T, S: Serializer>(_: &T, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_none()
 }
 
 impl View {
@@ -95,7 +144,7 @@ impl Default for View {
             paths: Vec::new(),
             shadow: true,
             floor: FloorStyle::default(),
-            edges: [true; 2],
+            edges: EdgeStyle::default(),
         }
     }
 }
@@ -208,6 +257,26 @@ pub(crate) enum Label {
     Legend,
 }
 
+/// The lines on surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum EdgeStyle {
+    /// The outline and all edges, hidden ones faintly.
+    #[default]
+    All,
+    /// The outline and visible edges.
+    Visible,
+    /// The outline, and edges of turned-over elements.
+    Outline,
+}
+
+impl EdgeStyle {
+    /// Whether edges before the body, and behind it, are drawn.
+    pub(crate) fn are_drawn(self) -> [bool; 2] {
+        [self != Self::Outline, self == Self::All]
+    }
+}
+
 /// The drawing of floors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -285,23 +354,69 @@ pub enum ColourMap {
 }
 
 /// The appearance of a picture apart from its content: colours and type.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(default)]
 pub struct Style {
-    /// The theme of the colours: the requested one, unless its text would be illegible on the background.
+    /// The colours.
     pub theme: Theme,
-    /// All colours.
-    pub(crate) palette: Palette,
-    /// The font.
+    /// The background. The other theme is used if this one's text cannot be read on it. Default: the theme's.
+    #[schemars(with = "Option<TypedColour>")]
+    pub background: Option<Colour>,
+    /// Colours of the body, such as `{ body = "steelblue" }`, from which shades are derived. Default: the theme's.
+    #[serde(serialize_with = "open")]
+    pub colours: Colours,
+    /// The font files, such as `{ regular = "NotoSansCJK.ttc" }`. Default: the built-in font, which has Latin and Greek
+    /// letters.
+    #[serde(serialize_with = "open")]
+    #[schemars(with = "FontFile")]
     pub font: FontFiles,
-    /// The scale of type.
+    /// Scale of all text, or in pictures for print the size of most text, such as `{ pt = 7 }`. Long titles are
+    /// wrapped. `localshape check` lists other words without room, which are shortened or left out. The smallest text
+    /// is a fiftieth of the height of a wide picture, or smaller with a scale below 1. Type below 5 pt is refused in
+    /// pictures for print.
+    #[schemars(with = "TextScaleFile")]
     pub text_scale: f64,
 }
 
 impl Style {
     /// The style of a theme without settings.
     pub fn of(theme: Theme) -> Self {
-        Self { theme, palette: Palette::of(theme), font: FontFiles::default(), text_scale: 1.0 }
+        let (background, colours, font) = Default::default();
+        Self { theme, background, colours, font, text_scale: 1.0 }
     }
+
+    /// All colours of a picture.
+    pub(crate) fn palette(&self) -> Palette {
+        Palette::with(self.theme, self.background, &self.colours)
+    }
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self::of(Theme::default())
+    }
+}
+
+/// Colours of the body. Each is hexadecimal, `"#rgb"` or `"#rrggbb"`, or a CSS name such as `"steelblue"`. All are
+/// opaque.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Colours {
+    /// The colour of elements that are not turned over, before shading. The fill of elements in the plane and the
+    /// squares of the tally follow it; edges that would be invisible on it become lighter. Its difference from
+    /// `turned_over` must be at least 20 (CIEDE2000), also with colour blindness.
+    #[serde(deserialize_with = "typed")]
+    #[schemars(with = "Option<TypedColour>")]
+    pub body: Option<Colour>,
+    /// The colour of turned-over elements, before shading. Their edges without surfaces, hatching, signs and text
+    /// follow it.
+    #[serde(deserialize_with = "typed")]
+    #[schemars(with = "Option<TypedColour>")]
+    pub turned_over: Option<Colour>,
+}
+
+fn typed<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Colour>, D::Error> {
+    Ok(Option::<TypedColour>::deserialize(deserializer)?.map(|typed| typed.0))
 }
 
 /// The fonts of a scene, as the bytes of checked files. The built-in font takes the place of missing ones.

@@ -39,7 +39,7 @@ impl Diagram {
         let style = Style::of(Theme::Light);
         let (ramp, panels, under, marks, curves, words) = Default::default();
         let fonts = Fonts::new(&style.font);
-        Self { picture: Picture { size, palette: style.palette, fonts, ramp, panels, under, marks, curves, words } }
+        Self { picture: Picture { size, palette: style.palette(), fonts, ramp, panels, under, marks, curves, words } }
     }
 
     /// Adds a filled rectangle: left, top, width and height.

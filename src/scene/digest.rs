@@ -2,7 +2,8 @@
 
 use super::file::{BodyFile, Coordinates, Positive};
 use super::schema::{SCHEMA, variants, without_nulls};
-use serde::Serialize;
+use crate::look::print::SizeFile;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -36,8 +37,19 @@ pub(super) fn digest(typed: &impl Serialize, lists: &BodyFile, files: FileDigest
     if let Some(regular) = files.regular {
         value["view"]["font"] = json!({ "regular": regular, "semi_bold": files.semi_bold });
     }
+    if let Ok(size) = SizeFile::deserialize(&value["view"]["size"]) {
+        value["view"]["size"] = json!(size);
+    }
     without_nulls(&mut value);
     without_defaults(&mut value, &SCHEMA);
+    // Tables in which only defaults were typed.
+    let is_empty = |value: &Value| *value == json!({});
+    if let Some(Value::Object(view)) = value.get_mut("view") {
+        view.retain(|_, value| !is_empty(value));
+    }
+    if value.get("view").is_some_and(is_empty) {
+        value.as_object_mut().map(|scene| scene.remove("view"));
+    }
     value.sort_all_objects();
     let mut body = table(&value["body"]);
     body.extend(listed(lists));

@@ -182,7 +182,7 @@ impl Scene {
     /// Gives the runs their places.
     fn place_runs(&mut self) {
         let chosen: Vec<_> = self.runs.iter().map(|run| run.colour).collect();
-        let places = self.view.look.palette.places(&chosen);
+        let places = self.view.look.palette().places(&chosen);
         self.runs.iter_mut().zip(places).for_each(|(run, place)| run.place = place);
     }
 

@@ -26,7 +26,7 @@ fn a_ghost_has_the_colour_of_its_run_and_is_not_in_its_own_panel() {
     let (mut scene, frame) = fig4b(4);
     for theme in [Theme::Light, Theme::Dark] {
         scene.view.look = Style::of(theme);
-        let palette = scene.view.look.palette;
+        let palette = scene.view.look.palette();
         for (ghost, colour, panels) in [
             (Ghost::Run(0), scene.runs[0].line(&palette).colour, vec![1]),
             (Ghost::Run(1), scene.runs[1].line(&palette).colour, vec![0]),

@@ -2,7 +2,7 @@
 
 use super::{compose, fig4b, gpu, parse, renderer};
 use localshape::colour::{Vision, difference, oklab};
-use localshape::look::{ColourMap, ColourScale, Style, Theme, Visible};
+use localshape::look::{ColourMap, ColourScale, EdgeStyle, Style, Theme, Visible};
 use localshape::picture::{Mark, MarkShape, Mesh, Picture, SHADES, Second};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
@@ -406,7 +406,7 @@ fn light_keeps_the_colours_of_the_key() {
     let Some(gpu) = gpu("light_keeps_the_colours_of_the_key") else { return };
     let (mut scene, mut frame) = with_field(Field::Speed, [0.0, 1.0], 4);
     let view = &mut scene.view;
-    (view.size, view.edges) = ([200, 160], [false; 2]);
+    (view.size, view.edges) = ([200, 160], EdgeStyle::Outline);
     frame.runs.truncate(1);
     let mut renderer = localshape::render::Renderer::new(gpu, scene.view.size).expect("a size that can be drawn");
     let maps = [MintIndigo, Viridis, Cividis, Magma, Greys, VioletGreen, PurpleGreen];

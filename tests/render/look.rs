@@ -3,7 +3,7 @@
 use super::{compose, fig4b, gpu, parse, renderer};
 use glam::DVec3;
 use image::RgbImage;
-use localshape::look::FontFiles;
+use localshape::look::{EdgeStyle, FontFiles};
 use localshape::picture::{Line, LineKind, Mesh, Obstacles, Picture, Weight};
 use localshape::runner::Runner;
 
@@ -50,7 +50,7 @@ fn without_edges_outlines_and_turned_over_elements_stay() {
         [LineKind::Contour, LineKind::AlarmContour, LineKind::Edge, LineKind::AlarmEdge].map(count)
     };
     let usual = kinds(&compose(&scene, &frame));
-    scene.view.edges = [false; 2];
+    scene.view.edges = EdgeStyle::Outline;
     assert!(usual.iter().all(|&count| count > 0), "{usual:?}");
     assert_eq!(kinds(&compose(&scene, &frame)), [usual[0], usual[1], 0, usual[3]]);
 }
@@ -101,7 +101,7 @@ fn turned_over_elements_are_hatched() {
             let frame = Runner::new(&scene, &[1]).frame(scene.last_frame());
             assert!(frame.runs[0].snapshot.turned_over.contains(&true));
             let mut renderer = renderer(gpu, scene.view.size);
-            let alarm = scene.view.look.palette.alarm;
+            let alarm = scene.view.look.palette().alarm;
             let picture = compose(&scene, &frame);
             let mut draw = |picture: &Picture| renderer.draw(picture).expect("the device works");
             let inside = inside(&draw(&turned_over_alone(&picture)), picture.palette.background);

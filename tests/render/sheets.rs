@@ -371,7 +371,7 @@ fn runs_of_one_name_have_one_line_in_all_scenes_of_a_figure() {
         second.runs.iter().map(|run| run.name.as_str()).collect::<Vec<_>>(),
         ["k = 1500", "k = 1000", "k = 2000"]
     );
-    let palette = &figure.look.palette;
+    let palette = &figure.look.palette();
     // Runs that the first scene does not have get lines of their own.
     let text = "[sheet]\n[[sheet.column]]\nscene = 'others.toml'\ntime = 0\n[[sheet.column]]\nscene = 'alike.toml'\ntime = 0\n\
                 [[sheet.row]]\nrun = 'k = 1000'\n[[sheet.row]]\nrun = 'k = 1500'\n";

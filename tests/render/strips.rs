@@ -447,7 +447,7 @@ fn one_chart_names_the_curves_of_many_runs() {
 #[test]
 fn what_stands_for_more_than_eight_runs_differs_in_colour_or_dashes() {
     let scene = parse(&alike(64, "light"));
-    each_differs(&scene.runs.iter().map(|run| run.line(&scene.view.look.palette)).collect::<Vec<_>>());
+    each_differs(&scene.runs.iter().map(|run| run.line(&scene.view.look.palette())).collect::<Vec<_>>());
 }
 
 /// What is drawn otherwise than as a curve is explained, and samples look like their curves.

@@ -27,7 +27,7 @@ fn a_scene_that_says_nothing_has_the_look_of_its_theme() {
 
 #[test]
 fn colours_are_taken_as_typed() {
-    let Palette { sound, alarm, .. } = look("colours = { body = 'DarkSeaGreen', turned_over = '#82f' }").palette;
+    let Palette { sound, alarm, .. } = look("colours = { body = 'DarkSeaGreen', turned_over = '#82f' }").palette();
     assert_eq!((sound, alarm), ([143, 188, 143], [0x88, 0x22, 0xff]));
 }
 
@@ -46,7 +46,7 @@ fn runs_have_their_places_colours_or_their_own() {
     for theme in ["light", "dark"] {
         let scene =
             good(&of_runs(&format!("theme = '{theme}'"), &["", "colour = 'royalblue'", "", "colour = '#4169e1'"]));
-        let palette = scene.view.look.palette;
+        let palette = scene.view.look.palette();
         let lines: Vec<_> = scene.runs.iter().map(|run| run.line(&palette)).collect();
         let own = [65, 105, 225];
         // On a light background the first colour resembles royal blue and is replaced by the second, which is free.
@@ -61,7 +61,7 @@ fn runs_have_their_places_colours_or_their_own() {
     // Each line has enough contrast with the background.
     let scene = good(&of_runs("background = '#808080'", &[""; 8]));
     for run in &scene.runs {
-        let line = run.line(&scene.view.look.palette);
+        let line = run.line(&scene.view.look.palette());
         assert!(contrast(line.colour, [0x80; 3]) >= 3.0, "{line:?}");
     }
     let digest = |said: &str| good(&of_runs("", &[said])).digest;
@@ -72,7 +72,7 @@ fn runs_have_their_places_colours_or_their_own() {
 /// The least difference of the colours of a scene's runs, for any colour vision, except of runs with the same chosen
 /// colour.
 fn least_apart(scene: &Scene) -> f64 {
-    let colours: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette).colour).collect();
+    let colours: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette()).colour).collect();
     let pairs = (0..colours.len()).flat_map(|at| (0..at).map(move |other| [at, other]));
     let seen = pairs.flat_map(|two| Vision::ALL.map(|sight| (two.map(|at| colours[at]), sight)));
     seen.map(|([one, other], sight)| difference(one, other, sight)).fold(f64::INFINITY, f64::min)
@@ -91,7 +91,7 @@ fn colours_of_runs_step_aside_for_chosen_ones() {
                 said[at] = &chosen;
                 let scene = good(&of_runs(&view, &said));
                 assert!(least_apart(&scene) >= 15.0, "{chosen} of run {at}: {}", least_apart(&scene));
-                let dashes: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette).dash).collect();
+                let dashes: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette()).dash).collect();
                 assert!((0..8).all(|at| !dashes[..at].contains(&dashes[at])), "{dashes:?}");
             }
         }
@@ -101,7 +101,7 @@ fn colours_of_runs_step_aside_for_chosen_ones() {
     // Where colours are the same, dashes distinguish runs.
     let navy = "colour = 'navy'";
     let scene = good(&of_runs("", &[navy, navy, navy]));
-    let lines: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette).dash).collect();
+    let lines: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette()).dash).collect();
     assert!(lines[0] != lines[1] && lines[1] != lines[2] && lines[0] != lines[2]);
 }
 
@@ -145,8 +145,8 @@ fn a_background_takes_the_theme_whose_text_can_be_read_on_it() {
         ("background = 'ivory'", Theme::Light, [255, 255, 240]),
     ] {
         let look = look(view);
-        assert_eq!((look.theme, look.palette.background), (theme, background), "{view}");
-        for text in [look.palette.text, look.palette.second_text, look.palette.alarm_text] {
+        assert_eq!((look.theme, look.palette().background), (theme, background), "{view}");
+        for text in [look.palette().text, look.palette().second_text, look.palette().alarm_text] {
             assert!(contrast(text, background) >= 4.5, "{view}: {text:x?}");
         }
     }

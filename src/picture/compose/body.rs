@@ -36,7 +36,7 @@ impl Draft<'_> {
             origin: self.origin,
             side: self.side,
             soft: self.composer.soft * self.side,
-            edges: self.scene.view.edges,
+            edges: self.scene.view.edges.are_drawn(),
             element: self.element,
             flat: &self.run.snapshot.flat,
             shades: self.shades.as_ref(),

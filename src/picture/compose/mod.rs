@@ -130,7 +130,7 @@ impl<'a> Composer<'a> {
             ramp: map.map_or_else(Vec::new, |map| ramp(map, scene.view.look.theme)),
             edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
-            palette: scene.view.look.palette,
+            palette: scene.view.look.palette(),
             fonts: Fonts::new(&scene.view.look.font),
             tally,
             descriptions,

@@ -28,10 +28,8 @@ use super::resolve::lists::check_unwritten;
 use super::schema::SCHEMA_OF_CODE;
 use super::step::NamedStep;
 use super::{Limits, Scene, structure};
-use crate::look::file::{ColourFile, ViewFile};
-use crate::look::print::SizeFile;
 use crate::look::typed::TypedColour;
-use crate::look::{Colour, ColourMap, Theme};
+use crate::look::{Colour, Theme, TypedView};
 use crate::reading::report::Report;
 use crate::reading::source::Source;
 use crate::reading::{Mistake, Mistakes};
@@ -40,6 +38,8 @@ use crate::sim::field::Field;
 use crate::sim::integrate::Integrator;
 use crate::sim::model::{ElasticModel, ModelParameters};
 use crate::sim::world::Kernel;
+use serde::Serialize;
+use serde_json::json;
 use std::ops::RangeBounds;
 use std::sync::Arc;
 use toml::Spanned;
@@ -98,7 +98,7 @@ impl Scene {
             obstacle: Vec::new(),
             hold: Vec::new(),
             grab: Vec::new(),
-            view: ViewFile::default(),
+            view: TypedView::default(),
         })
     }
 }
@@ -152,20 +152,35 @@ impl SceneBuilder {
         self
     }
 
-    setters! {
-        /// Width and height of pictures (px).
-        size(size: [u32; 2]) 0.view.size = SizeFile::Pixels(size);
-        /// The colours of pictures.
-        theme(theme: Theme) 0.view.theme = theme;
-        /// A scalar field that colours the body.
-        colour_by(field: Field) 0.view.colour = Some(ColourFile { by: field, range: None, map: ColourMap::default() });
-        /// Plots a diagnostic over time below all panels.
-        strip(diagnostic: Diagnostic) 0.view.strip = Some(diagnostic);
+    /// Width and height of pictures (px).
+    pub fn size(self, size: [u32; 2]) -> Self {
+        self.show("size", size)
+    }
+
+    /// The colours of pictures.
+    pub fn theme(self, theme: Theme) -> Self {
+        self.show("theme", theme)
+    }
+
+    /// A scalar field that colours the body.
+    pub fn colour_by(self, field: Field) -> Self {
+        self.show("colour", json!({ "by": field }))
+    }
+
+    /// Plots a diagnostic over time below all panels.
+    pub fn strip(self, diagnostic: Diagnostic) -> Self {
+        self.show("strip", diagnostic)
     }
 
     /// The direction of the camera: azimuth to the right, and elevation above the horizon (rad).
-    pub fn camera(mut self, azimuth: f64, elevation: f64) -> Self {
-        (self.0.view.camera.azimuth, self.0.view.camera.elevation) = (Some(azimuth), Some(elevation));
+    pub fn camera(self, azimuth: f64, elevation: f64) -> Self {
+        self.show("camera", json!({ "azimuth": azimuth, "elevation": elevation }))
+    }
+
+    /// Sets a key of the view.
+    fn show(mut self, key: &str, value: impl Serialize) -> Self {
+        let value = serde_json::to_value(value).expect("numbers and words");
+        self.0.view.insert(key.to_owned(), value);
         self
     }
 

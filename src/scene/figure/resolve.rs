@@ -362,7 +362,7 @@ fn subject(scene: &Scene) -> Subject<'_> {
 /// Runs of one name have the line of the first scene that has them; runs of different names have different lines.
 fn share_lines(scenes: &mut [Scene]) {
     let Some(first) = scenes.first() else { return };
-    let palette = first.view.look.palette;
+    let palette = first.view.look.palette();
     let (mut numbers, mut chosen) = (HashMap::new(), Vec::new());
     for run in scenes.iter().flat_map(|scene| &scene.runs) {
         numbers.entry(run.name.clone()).or_insert_with(|| {

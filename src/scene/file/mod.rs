@@ -16,8 +16,8 @@ pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};
 
 use super::step::NamedStep;
 use super::structure::LARGEST;
-use crate::look::file::ViewFile;
 use crate::look::typed::TypedColour;
+use crate::look::{TypedView, View};
 pub use crate::reading::coordinates::Coordinates;
 use crate::sim::body::Body;
 use crate::sim::integrate::Integrator;
@@ -55,7 +55,8 @@ pub(in crate::scene) struct SceneFile {
     pub(in crate::scene) grab: Vec<GrabFile>,
     /// How the scene is drawn.
     #[serde(default)]
-    pub(in crate::scene) view: ViewFile,
+    #[schemars(with = "View")]
+    pub(in crate::scene) view: TypedView,
 }
 
 /// A number greater than zero.

@@ -15,8 +15,7 @@ use super::generate::Generator;
 use super::limits::Limits;
 use super::structure::Checked;
 use super::{Run, Scene};
-use crate::look::file::ViewFile;
-use crate::look::{self, FontFiles, View, font};
+use crate::look::{self, FontFiles, TypedView, View, font};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::report::{Report, Way, way};
 use crate::reading::words::{count, quoted, short};
@@ -54,7 +53,7 @@ pub(super) struct Parts {
     holds: Vec<Option<HoldFile>>,
     #[serde(rename = "grab")]
     grabs: Vec<Option<GrabFile>>,
-    view: Option<ViewFile>,
+    view: Option<TypedView>,
     /// The fonts of the view; `None` after a mistake in them.
     #[serde(skip)]
     font: Option<FontFiles>,
@@ -72,11 +71,14 @@ impl Parts {
             }
             body
         });
-        let read = |body: &BodyFile| Lists::read(folder, body.file.as_ref()?, limits, report);
-        let beside = body.as_ref().filter(|body| Generator::of(body).is_none()).and_then(read);
-        let view = if file.contains_key("view") { part(file, "view", report) } else { Some(ViewFile::default()) };
-        let font = match view.as_ref().and_then(|view| view.font.as_ref()) {
-            Some(typed) => font::read(folder, typed, report),
+        let read_lists = |body: &BodyFile| Lists::read(folder, body.file.as_ref()?, limits, report);
+        let beside = body.as_ref().filter(|body| Generator::of(body).is_none()).and_then(read_lists);
+        let view: Option<TypedView> =
+            if file.contains_key("view") { part(file, "view", report) } else { Some(TypedView::default()) };
+        let font = match view.as_ref().and_then(|view| view.get("font")) {
+            Some(typed) => {
+                read(typed, &way!["view", "font"], report).and_then(|typed| font::read(folder, &typed, report))
+            }
             None => Some(FontFiles::default()),
         };
         Self {
@@ -255,9 +257,9 @@ fn view(parts: &Parts, physics: &Physics, report: &mut Report<'_>) -> Option<Vie
         runs: runs.iter().flatten().map(|run| (run.name.as_str(), run.step)).collect(),
         models: runs.iter().flatten().map(|run| &*run.model).collect(),
     };
-    let view = look::resolve(parts.view.as_ref()?, &around, parts.font.clone(), report)?;
+    let view = View::read(parts.view.as_ref()?, &around, parts.font.clone().unwrap_or_default(), report)?;
     let chosen: Vec<_> = parts.runs.iter().map(|run| Some(run.as_ref()?.colour?.0)).collect();
-    look::check_runs(&chosen, &view.look.palette, report);
+    look::check_runs(&chosen, &view.look.palette(), report);
     Some(view)
 }
 

@@ -177,9 +177,14 @@ impl<'p> Walk<'_, '_, 'p> {
                 let message = format!("`{}` is {}; {expected}, or seconds as a number", self.here(), quoted(text));
                 self.mistake(span, message, None);
             }
-        } else if let Some(mistake) = colour_mistake(schema, text) {
-            let (wrong, help) = mistake;
-            self.mistake(span, format!("`{}` is {}{wrong}", self.here(), quoted(text)), help);
+        } else if schema["format"] == "colour" {
+            match TypedColour::read(text) {
+                // A name and its digits mean the same.
+                Ok(colour) => return Json::String(colour.into()),
+                Err((wrong, help)) => {
+                    self.mistake(span, format!("`{}` is {}{wrong}", self.here(), quoted(text)), help);
+                }
+            }
         } else {
             self.lengths(schema, "characters", "character", text.chars().count(), span.clone());
             let may_break = schema["format"] == "lines";
@@ -338,11 +343,6 @@ fn unquoted(text: &str, is_whole: bool) -> Option<String> {
     typed.get_ref().get("number").filter(|one| kind(one.get_ref()))?;
     let comma = if text.contains(',') { ", with a decimal point" } else { "" };
     Some(format!("write {number}: a number without quotation marks{comma}"))
-}
-
-/// The rest of the message, and the help, for a text that is no colour.
-fn colour_mistake(schema: &Json, text: &str) -> Option<(String, Option<String>)> {
-    (schema["format"] == "colour").then(|| TypedColour::mistake(text)).flatten()
 }
 
 /// Whether a value has the type of a schema without alternatives.

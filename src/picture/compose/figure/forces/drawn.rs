@@ -81,7 +81,7 @@ impl<'a> Drawn<'a> {
             triangles: skin.triangles.clone(),
             shades: Vec::new(),
         };
-        Solid { mesh, colour: ghost_colour(&self.figure.look.palette), rim: None, near: Vec::new() }
+        Solid { mesh, colour: ghost_colour(&self.figure.look.palette()), rim: None, near: Vec::new() }
     }
 
     /// The edges of all elements, each once.
@@ -100,7 +100,7 @@ impl<'a> Drawn<'a> {
     }
 
     fn ghost_in_space(&self) -> Vec<Stroke> {
-        let palette = &self.figure.look.palette;
+        let palette = &self.figure.look.palette();
         let edges = self.edges().into_iter().map(|edge| edge.map(|node| self.cell.ghost[node as usize]));
         let strokes = edges.flat_map(|[from, to]| {
             let dashes = self.dashes([from, to].map(|at| self.pixel(at)));
@@ -129,7 +129,7 @@ impl<'a> Drawn<'a> {
                 let middle = ends[0].midpoint(ends[1]);
                 let inside = polygons.iter().any(|polygon| is_inside(polygon, middle));
                 if also_inside || !inside {
-                    let palette = &self.figure.look.palette;
+                    let palette = &self.figure.look.palette();
                     let colour = match also_inside {
                         true if inside => palette.spring_on_body,
                         true => palette.second_text,
@@ -144,7 +144,7 @@ impl<'a> Drawn<'a> {
     /// Everything above the body.
     pub(super) fn draw(&self, forces: &Forces, writer: &mut Writer<'_>, above: &mut Vec<Mark>) {
         let Self { cell, scale, .. } = self;
-        let palette = &self.figure.look.palette;
+        let palette = &self.figure.look.palette();
         let unit = scale.unit;
         let position = &cell.snapshot().position;
         // In the plane all nodes are seen; in space those of elements without faces are, too, and those inside are not.
@@ -240,7 +240,7 @@ impl<'a> Drawn<'a> {
     /// The size of a force at its arrow, and the angle to the one that it is compared with.
     fn number(&self, at: usize, [from, to]: [DVec2; 2], writer: &mut Writer<'_>, labels: &mut Labels, colour: Colour) {
         let Self { cell, scale, .. } = self;
-        let palette = &self.figure.look.palette;
+        let palette = &self.figure.look.palette();
         let size = NUMBERS * scale.type_unit();
         let way = cell.ways[at];
         let number = format!("{:.3}", way.length() / cell.scene.view.side);
@@ -264,7 +264,7 @@ impl<'a> Drawn<'a> {
     /// The centre, and the vectors from there to a node and to its place in the equilibrium shape.
     fn vectors(&self, writer: &mut Writer<'_>, labels: &mut Labels, seen: &[f64]) {
         let Self { cell, scale, .. } = self;
-        let palette = &self.figure.look.palette;
+        let palette = &self.figure.look.palette();
         let unit = scale.unit;
         let position = &cell.snapshot().position;
         let centre = self.pixel(cell.middle());

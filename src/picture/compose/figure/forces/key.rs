@@ -28,7 +28,7 @@ pub(super) struct Key<'a> {
 impl Key<'_> {
     pub(super) fn draw(&self, writer: &mut Writer<'_>, marks: &mut Vec<Mark>) {
         let Self { figure, forces, scene, pixels, scale, .. } = *self;
-        let (palette, unit) = (&figure.look.palette, scale.unit);
+        let (palette, unit) = (&figure.look.palette(), scale.unit);
         let [width, height] = figure.size.map(f64::from);
         let size = scale.caption();
         let baseline = height - scale.margin() - 1.0 * unit;

@@ -43,7 +43,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     let scenes: Vec<Scene> = forces.scenes.iter().map(|scene| bare(scene, figure)).collect();
     let composers: Vec<_> = scenes.iter().map(|scene| Composer::new(scene, &History::default())).collect();
     let fonts = Fonts::new(&figure.look.font);
-    let palette = figure.look.palette;
+    let palette = figure.look.palette();
     let runs = scenes[0].runs.len();
     // Scenes of one run stand beside each other.
     let (columns, rows) = if runs > 1 { (runs, scenes.len()) } else { (scenes.len(), 1) };

@@ -95,7 +95,7 @@ fn points(scene: &Scene, reach: &Reach, run: &RunFrame, ghost: Vec<DVec3>) -> Ve
         origin: DVec3::ZERO,
         side: scene.view.side,
         extent,
-        palette: &scene.view.look.palette,
+        palette: &scene.view.look.palette(),
     };
     let start = bounds(&scene.initial.position).into();
     let position = &snapshot.position;

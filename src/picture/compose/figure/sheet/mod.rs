@@ -49,7 +49,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let unit = print::unit_of_sheet(size);
     let scale = Scale::at(unit).with(&View { look: figure.look.clone(), ..View::default() });
     let fonts = Fonts::new(&figure.look.font);
-    let palette = &figure.look.palette;
+    let palette = &figure.look.palette();
     let mut writer = Writer { palette, fonts: &fonts, scale, marks: Vec::new(), curves: Vec::new(), words: Vec::new() };
     let scenes = plain(figure, sheet);
 
