@@ -251,8 +251,8 @@ diagnostics! { facts:
     /// Total energy (J): kinetic, elastic and gravitational.
     Energy, energy: f64, "total energy", "J", Frames = kinetic + elastic + gravitational;
 
-    /// Number of rotations since the start that took the global solver: of elements that are pressed flat, are turned inside
-    /// out, or have turned far in one step.
+    /// Number of rotations since the start that took the global solver: of elements that are pressed flat, turned
+    /// inside out, or have turned far in one step.
     GlobalRotations, global_rotations: f64, "global rotations", "", Frames = facts.global_rotations;
 }
 

@@ -1,4 +1,4 @@
-//! Scalar fields over a body, by which a picture can be coloured.
+//! Scalar fields over a body, for the colours of pictures.
 
 use super::body::Body;
 use super::crew::Crew;
@@ -20,13 +20,12 @@ pub enum Field {
     Displacement,
     /// Speed of each node (m/s).
     Speed,
-    /// Elastic energy of each node (J). A node has the part of an element's energy that belongs to its own displacement
-    /// from the equilibrium shape, and half of a spring's energy. The sum over all nodes is the elastic energy of the
-    /// body.
+    /// Elastic energy of each node (J): the part of an element's energy for the node's own displacement from the
+    /// equilibrium shape, and half of a spring's energy. The sum over all nodes is the elastic energy of the body.
     ElasticEnergy,
 }
 
-/// Where the values of a field are defined.
+/// The places of the values of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Support {
     /// One for each node.
@@ -36,7 +35,7 @@ pub enum Support {
 }
 
 impl Field {
-    /// Where its values are defined.
+    /// The places of its values.
     pub fn support(self) -> Support {
         match self {
             Self::Strain => Support::Elements,
@@ -64,7 +63,7 @@ impl Field {
         }
     }
 
-    /// What it is, in a few words beside its name in keys.
+    /// Its definition, in a few words beside its name in keys.
     pub fn definition(self) -> &'static str {
         match self {
             Self::Strain => "RMS distance from the rest shape, over its size",

@@ -16,7 +16,7 @@ impl Pose {
     /// No displacement.
     pub const NONE: Self = Self { shift: DVec3::ZERO, rotation: DQuat::IDENTITY };
 
-    /// Where a point (m) of the body is moved to.
+    /// The new place of a point (m) of the body.
     pub fn apply(&self, pivot: DVec3, point: DVec3) -> DVec3 {
         pivot + self.shift + self.rotation * (point - pivot)
     }
@@ -66,7 +66,7 @@ pub struct Key {
     pub offset: Offset,
 }
 
-/// How a path is interpolated between keys.
+/// The interpolation of a path between keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ease {

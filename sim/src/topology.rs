@@ -214,10 +214,10 @@ pub enum Springs {
     /// One spring on each edge.
     #[serde(rename = "edges")]
     Edges,
-    /// Edges and one diagonal of each face, as drawn in Fig. 4(b). On a hexahedron these are the six edges of the
-    /// tetrahedron on corners 0, 3, 5, 6, so that faces between elements have both diagonals; on any other
-    /// quadrilateral the diagonal through the corner with the least coordinates at rest (x, then y, then z), and on a
-    /// face of more corners all diagonals from that corner.
+    /// Edges and one diagonal of each face, as drawn in Fig. 4(b). On a hexahedron the diagonals are the six edges of
+    /// the tetrahedron on corners 0, 3, 5, 6, so that faces between elements have both. On another quadrilateral the
+    /// diagonal starts at the corner with the least coordinates at rest (x, then y, then z). A face of more corners has
+    /// all diagonals from that corner.
     #[serde(rename = "edges+one-diagonal")]
     EdgesOneDiagonal,
     /// Edges and both diagonals of each face.

@@ -18,7 +18,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// How a run is advanced.
+/// The method and step of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stepping {
     /// The integration method.
@@ -27,24 +27,24 @@ pub struct Stepping {
     pub step: f64,
     /// The error that an adaptive method allows in each of its substeps, as a share of the size of the body. Others ignore it.
     pub tolerance: f64,
-    /// Which code computes a step. The reference code is used for a model without vectorised steps
+    /// The code that computes a step. The reference code is used for a model without vectorised steps
     /// ([`ElasticModel::known`]) and for several bodies together.
     pub kernel: Kernel,
 }
 
 impl Stepping {
-    /// With the fastest code.
+    /// A method and step with the fastest code.
     pub fn new(integrator: Integrator, step: f64) -> Self {
         Self { integrator, step, tolerance: Integrator::TOLERANCE, kernel: Kernel::default() }
     }
 }
 
-/// Which code computes a step. The choice changes states by round-off in each step, which chaotic motion amplifies.
+/// The code that computes a step. The choice changes states by round-off in each step, which chaotic motion amplifies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kernel {
     /// Vectorised, with the same bits on every machine and for any number of threads. For mass-spring models, and for
-    /// shape-based models with `rotation = "robust"` or `"arctangent"` that are undamped or have `damping_of =
+    /// shape-based models with `rotation = "robust"` or `"arctangent"`, undamped or with `damping_of =
     /// "relative-motion"`.
     #[default]
     Fast,

@@ -16,12 +16,12 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A rigid obstacle off which nodes bounce.
+/// A rigid obstacle that nodes collide with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
     /// Its shape and position at the start.
     pub shape: Shape,
-    /// How it moves.
+    /// Its motion.
     pub motion: Motion,
     /// The point about which it rotates (m), at the start; it is translated together with the obstacle.
     pub pivot: DVec3,
@@ -29,20 +29,20 @@ pub struct Obstacle {
     pub restitution: f64,
     /// Friction coefficient `μ`, 0 or more.
     pub friction: f64,
-    /// What friction acts on.
+    /// The motion that friction acts on.
     pub friction_of: FrictionOf,
 }
 
-/// What friction acts on.
+/// The motion that friction acts on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrictionOf {
-    /// The velocity after the step, as in the paper. What a node moved in the step remains: a body that rests on a slope creeps
-    /// down with any friction. The default.
+    /// The velocity after the step, as in the paper. The displacement in the step remains: a body that rests on a slope
+    /// creeps down with any friction. The default.
     #[default]
     Velocity,
-    /// The way since the node touched the obstacle, too, by the same factor as the velocity. A body at rest does not creep, with a
-    /// restitution up to 0.3, and with velocity Verlet up to 0.8; above, less than with `velocity`.
+    /// Also the path since the node touched the obstacle, by the same factor as the velocity. A body at rest does not
+    /// creep with a restitution up to 0.3, with velocity Verlet up to 0.8; above, it creeps less than with `velocity`.
     Path,
 }
 

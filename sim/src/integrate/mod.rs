@@ -29,7 +29,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How positions and velocities are advanced by a step.
+/// The integrator, which advances positions and velocities by a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Integrator {
@@ -39,22 +39,24 @@ pub enum Integrator {
     /// Eqs. (2) and (3) as printed, the second with the old velocity. Its energy grows without bound: at ΔT = T/10 an
     /// oscillation grows by 18 % in each step. For comparison only.
     ExplicitEuler,
-    /// Velocity Verlet: of second order, and symplectic without damping and rebounds. It evaluates the forces once in
-    /// each step, and twice with damping.
+    /// Velocity Verlet: of second order, and symplectic without damping and rebounds, with one evaluation of forces a
+    /// step, and two with damping.
     VelocityVerlet,
     /// Position-extended Forest–Ruth-like method: of fourth order and symplectic, with four evaluations a step. Without
     /// damping only.
     Pefrl,
-    /// The classical Runge–Kutta method: of fourth order, with four evaluations a step, also with damping. Not
+    /// The classical Runge–Kutta method: of fourth order, also with damping, with four evaluations a step. Not
     /// symplectic: in long runs its energy drifts.
     RungeKutta,
-    /// Dormand–Prince: of fifth order, also with damping, with six evaluations in each substep. It finds its own substeps, from
-    /// a `tolerance` that takes the place of `step`, between the times of frames, and the moment of each rebound. Not
-    /// symplectic. Not for bodies that rest on something: there nodes rebound again and again, and substeps are no longer than
-    /// about `√(tolerance · size / g)`, 0.1 ms for a body of 0.1 m and a tolerance of 1e-6; use `velocity-verlet`.
+    /// Dormand–Prince: of fifth order, also with damping, with six evaluations in each substep. It chooses substeps
+    /// between the times of frames from a `tolerance`, which takes the place of `step`, and finds the moment of each
+    /// rebound. Not symplectic. Not for bodies that rest on something: their nodes rebound again and again, and
+    /// substeps are at most about `√(tolerance · size / g)`, 0.1 ms for a body of 0.1 m and a tolerance of 1e-6. Use
+    /// `velocity-verlet` for them.
     DormandPrince,
-    /// Backward Euler, implicit: of first order, and stable for any step, also with damping. For stiff bodies whose oscillations
-    /// need not be resolved: it damps those faster than the step. It evaluates the forces some ten to a hundred times a step.
+    /// Backward Euler, implicit: of first order, also with damping, and stable for any step. For stiff bodies whose
+    /// oscillations need not be resolved: it damps oscillations faster than the step. It evaluates the forces some ten
+    /// to a hundred times a step.
     BackwardEuler,
 }
 

@@ -33,7 +33,7 @@ pub struct Parameters {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub damping_ratio: Option<f64>,
-    /// Where the springs are. Default: those that the body lists, else `edges+face-diagonals`.
+    /// The topology of the springs. Default: the springs that the body lists, else `edges+face-diagonals`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub springs: Option<Springs>,
 }

@@ -38,29 +38,28 @@ pub struct Parameters {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub damping_ratio: Option<f64>,
-    /// Number of passes, each of which solves Eq. (15) or takes one step of another iteration, at each evaluation of the
-    /// forces. The first pass starts from the last rotation (paper, section 4). Default: 2, as the paper advises. If `rotation` is not given, it becomes
-    /// `arctangent`.
+    /// Number of passes of Eq. (15) at each evaluation of the forces. The first pass starts from the last rotation
+    /// (paper, section 4). Without a `rotation` it selects `arctangent`. Default: 2, as the paper advises.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 100))]
     pub passes: Option<u32>,
-    /// How the rotation of an element is computed. Default: `robust`; the paper's method is `arctangent`. In the plane
-    /// all use Eq. (9), which is exact.
+    /// The method that computes the rotation of an element. In the plane all use Eq. (9), which is exact. Default:
+    /// `robust`; the paper's method is `arctangent`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<RotationReading>,
-    /// Which velocity the damping of Eq. (4) acts on.
+    /// The velocity that the damping of Eq. (4) acts on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping_of: Option<DampingReading>,
 }
 
-/// Which velocity the damping of Eq. (4) acts on.
+/// The velocity that the damping of Eq. (4) acts on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum DampingReading {
     /// As printed: the velocity of a node relative to the element's mean. It also damps rigid rotation. The default.
     #[default]
     RelativeMotion,
-    /// That velocity minus the best-fitting rigid rotation.
+    /// This relative velocity minus the best-fitting rigid rotation.
     Deformation,
 }
 

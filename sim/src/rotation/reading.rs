@@ -11,18 +11,18 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RotationReading {
-    /// Eq. (15), and a rotation about its solution `w` by the angle `atan |w|`, which is Eq. (9) about that axis;
-    /// rotations are accumulated as quaternions. With two passes the error is 5e-14 rad after an element has rotated by
-    /// 0.01 rad in a step, and 2e-9 rad after 0.1 rad.
+    /// Eq. (15), and a rotation about its solution `w` by the angle `atan |w|`, which is Eq. (9) about that axis.
+    /// Rotations are accumulated as quaternions. With two passes the error is 5e-14 rad after a rotation by 0.01 rad in
+    /// a step, and 2e-9 rad after 0.1 rad.
     Arctangent,
     /// Rotation about `w` by the angle `|w|`, accumulated as quaternions. It overshoots and can make a free body spin
     /// faster and faster.
     VectorLength,
     /// Eq. (16) as printed, `R + w × R`. The result is not a rotation: a spinning body grows.
     LinearUpdate,
-    /// The optimal rotation, to round-off, at every evaluation: steps of higher order from the last rotation where they
-    /// are certain to lead to it, else the eigenvector of Davenport's matrix. Faster than two passes of Eq. (15), and its residual α is
-    /// round-off. Not in the paper. The default.
+    /// The optimal rotation to round-off: steps of higher order from the last rotation where they are certain to lead
+    /// to it, else the eigenvector of Davenport's matrix. Faster than two passes of Eq. (15). Not in the paper. The
+    /// default.
     #[default]
     Robust,
 }
