@@ -99,7 +99,7 @@ impl Compare {
         // The verdict is printed even if the page cannot be written.
         let reported = match &self.report {
             Some(path) => {
-                let page = comparison.report().page();
+                let page = comparison.page().html();
                 let _lock = FolderLock::beside_others(folder_of(path));
                 write_whole(path, page.as_bytes())
             }

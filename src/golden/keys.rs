@@ -78,7 +78,7 @@ pub(super) fn of_figure(path: &Path, figure: &Figure) -> Vec<Key> {
         let name = scene.name.clone();
         of_scene(scene).into_iter().map(move |key| Key { path: format!("{name}: {}", key.path), ..key })
     };
-    of_file(path).into_iter().chain(figure.scenes().iter().flat_map(|scene| of_scene(scene))).collect()
+    of_file(path).into_iter().chain(figure.scenes().iter().flat_map(of_scene)).collect()
 }
 
 /// The keys of a file that was read before.

@@ -10,9 +10,9 @@ mod comparison;
 pub(crate) mod draw;
 mod folder;
 mod keys;
+pub(crate) mod page;
 mod picture;
 mod record;
-pub(crate) mod report;
 mod states;
 #[cfg(feature = "render")]
 mod suite;

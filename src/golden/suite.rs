@@ -124,7 +124,7 @@ impl Suite {
             return Ok(());
         }
         let written =
-            std::fs::create_dir_all(&self.reports).and_then(|()| std::fs::write(&report, comparison.report().page()));
+            std::fs::create_dir_all(&self.reports).and_then(|()| std::fs::write(&report, comparison.page().html()));
         let seen = match written {
             Ok(()) => format!("see {}", report.display()),
             Err(error) => format!("there is no report: {} cannot be written: {error}", report.display()),

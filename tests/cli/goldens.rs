@@ -134,6 +134,11 @@ fn drawing_is_never_taken_for_physics() {
     place.write("small.toml", &(SMALL.to_owned() + "theme = 'dark'\n"));
     let dark = place.run("compare golden small.toml");
     assert!(dark.out.contains("drawn differently") && dark.out.contains("14 states are the same"), "{dark:?}");
+    // Also where the body is lighter by 3 of 255.
+    place.write("small.toml", &(SMALL.to_owned() + "colours = { body = '#96a8bd' }\n"));
+    let lighter = place.run("compare golden small.toml");
+    assert!(lighter.out.contains("drawn differently: 0 pixels differ by more than 16 of 255"), "{lighter:?}");
+    place.write("small.toml", &(SMALL.to_owned() + "theme = 'dark'\n"));
     // So they are accepted without a message about states.
     let accepted = place.run("compare --bless golden small.toml").good();
     assert_eq!(accepted.out.matches("accepted golden/").count(), 4, "{accepted:?}");

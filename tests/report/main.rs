@@ -9,7 +9,7 @@ mod vectors;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use browser::Browser;
-use localshape::internals::{PicturePair, Report};
+use localshape::internals::{Page, PicturePair};
 use serde_json::json;
 
 /// Pictures are so large (px). A square of `INK` lies at the left of the expected ones, at the right of the actual ones.
@@ -53,8 +53,8 @@ fn pair(name: &str, passes: bool) -> PicturePair {
 }
 
 /// Five pictures of which three failed, the worst first.
-fn report() -> Report {
-    Report {
+fn report() -> Page {
+    Page {
         title: "two cubes".into(),
         passes: false,
         verdict: "state moved".into(),
@@ -69,9 +69,9 @@ fn report() -> Report {
 const LOADED: &str = "[...document.images].every((image) => image.complete && image.naturalWidth > 0)";
 
 /// A browser with a page open, or `None` where there is no browser.
-fn browser_with(report: &Report) -> Option<(Browser, String)> {
+fn browser_with(report: &Page) -> Option<(Browser, String)> {
     let mut browser = Browser::start()?;
-    let address = browser.open(&report.page());
+    let address = browser.open(&report.html());
     browser.until("the pictures", LOADED);
     Some((browser, address))
 }
@@ -92,13 +92,13 @@ fn until_seen(browser: &mut Browser, wanted: [bool; 2]) {
 /// Text, style and script stay so small that they can be read.
 #[test]
 fn the_page_is_small() {
-    let lines = include_str!("../../src/golden/report/page.html").lines().count();
+    let lines = include_str!("../../src/golden/page/page.html").lines().count();
     assert!(lines <= 300, "{lines}");
 }
 
 #[test]
 fn a_page_needs_nothing_else_and_shows_everything_without_scripts() {
-    let page = report().page();
+    let page = report().html();
     for outside in ["http:", "https:", "url(", "@import", "//cdn", "<link rel=\"stylesheet"] {
         assert!(!page.contains(outside), "the page has {outside}");
     }
@@ -115,7 +115,7 @@ const HOSTILE: &str =
     "</script><script>window.broken=1</script><!--\u{2028}<img src=x onerror=window.broken=1>{{pictures}}&\"'";
 
 /// A report in which everything that is typed is hostile.
-fn hostile() -> Report {
+fn hostile() -> Page {
     let mut report = report();
     (report.title, report.verdict, report.accept) = (HOSTILE.into(), HOSTILE.into(), Some(HOSTILE.into()));
     (report.findings, report.others) = (vec![HOSTILE.into()], vec![HOSTILE.into()]);
@@ -128,7 +128,7 @@ fn hostile() -> Report {
 
 #[test]
 fn hostile_names_break_out_of_nothing() {
-    let page = hostile().page();
+    let page = hostile().html();
     assert_eq!((page.matches("<script").count(), page.matches("</script>").count()), (1, 1));
     assert_eq!((page.matches("<img src").count(), page.matches("<!--").count()), (0, 0));
 }
@@ -195,13 +195,13 @@ fn anything_fits_any_screen() {
     large.files[2] = Some(png([3000, 96], |_, _| INK));
     odd.findings.push("a_very_long_name_without_a_blank_".repeat(20));
     odd.pictures[0].name = "long".repeat(50);
-    let nothing = Report { pictures: vec![], others: vec![], accept: None, ..report() };
-    let many = Report { others: (0..2000).map(|at| format!("{at}.png: identical")).collect(), ..report() };
+    let nothing = Page { pictures: vec![], others: vec![], accept: None, ..report() };
+    let many = Page { others: (0..2000).map(|at| format!("{at}.png: identical")).collect(), ..report() };
     let Some((mut browser, _)) = browser_with(&odd) else { return };
     for (report, sliders) in [(&odd, 2), (&nothing, 0), (&many, 5)] {
         for width in [320, 390, 800, 2560] {
             browser.resize([width, 844]);
-            browser.open(&report.page());
+            browser.open(&report.html());
             browser.until("the pictures", LOADED);
             let wide = "document.documentElement.scrollWidth - innerWidth";
             assert!(browser.number(wide) <= 0.0, "{} pictures in {width} px", report.pictures.len());
@@ -220,7 +220,7 @@ fn anything_fits_any_screen() {
 fn without_scripts_everything_but_the_slider_is_shown() {
     let Some((mut browser, _)) = browser_with(&report()) else { return };
     browser.order("Emulation.setScriptExecutionDisabled", json!({ "value": true }));
-    browser.open(&report().page());
+    browser.open(&report().html());
     assert_eq!(browser.value("document.querySelectorAll('.slider').length"), 0);
     let told = browser.text("document.body.innerText");
     for words in ["state moved", "040.png", "512 pixels differ by more than 16 of 255"] {

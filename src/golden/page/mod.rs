@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::cmp::Reverse;
 
-const PAGE: &str = include_str!("page.html");
+const TEMPLATE: &str = include_str!("page.html");
 /// So many pictures are on a page; others are only listed.
 const MOST_SHOWN: usize = 24;
 /// The colours of pixels that differ by more than [`STRONG`], by more than [`FAINT`], and by less.
@@ -22,7 +22,7 @@ const COLOURS: [[u8; 3]; 3] = [[213, 40, 0], [230, 159, 0], [150, 196, 232]];
 
 /// The contents of a page.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct Page {
     /// The name of the scene or folder.
     pub title: String,
     /// Whether everything is as expected.
@@ -54,7 +54,7 @@ pub struct PicturePair {
 
 impl Comparison {
     /// The contents of its page.
-    pub(crate) fn report(&self) -> Report {
+    pub(crate) fn page(&self) -> Page {
         let how_bad = |picture: &Compared| {
             let [faint, strong] = picture.distance.map_or([0; 2], |distance| distance.differing);
             (picture.verdict, strong, faint)
@@ -69,7 +69,7 @@ impl Comparison {
             findings.push(self.summary());
         }
         let title = self.sides[1].file_stem().unwrap_or_default();
-        Report {
+        Page {
             title: title.to_string_lossy().into_owned(),
             passes: self.passes(),
             verdict: self.verdict().words().to_owned(),
@@ -109,11 +109,11 @@ fn difference(expected: &Pixels, actual: &Pixels) -> Option<Vec<u8>> {
     Some(encode(expected.size, &bytes, &[], Compression::High))
 }
 
-impl Report {
+impl Page {
     /// The whole HTML document.
-    pub fn page(&self) -> String {
+    pub fn html(&self) -> String {
         // Browsers hash the text between the tags with LF line ends.
-        let page = PAGE.replace("\r\n", "\n");
+        let page = TEMPLATE.replace("\r\n", "\n");
         let [style, script] = ["style", "script"].map(|tag| {
             let rest = page.split(&format!("<{tag}>")).nth(1).expect("the page has one");
             hash(rest.split(&format!("</{tag}>")).next().unwrap_or_default())
