@@ -17,8 +17,8 @@ pub(crate) struct Folder {
 }
 
 impl Folder {
-    /// A folder for what a command makes: a new or an empty one, or one in which the same command has made a study; any with
-    /// `overwrite`.
+    /// A folder for the files of a command. It is new or empty, or the same command has made its study; with `overwrite` any folder will
+    /// do.
     ///
     /// # Errors
     /// A folder that is refused, or cannot be written to.
@@ -80,7 +80,7 @@ impl Folder {
     /// Writes files, each completely or not at all.
     ///
     /// # Errors
-    /// If one cannot be written; those before it are kept.
+    /// A file that cannot be written. The files before it are kept.
     pub(crate) fn write(&self, files: &[(String, Vec<u8>)]) -> Result<(), Failure> {
         for (name, bytes) in files {
             let (part, path) = (hidden(&self.path, name), self.path.join(name));
@@ -90,7 +90,7 @@ impl Folder {
         Ok(())
     }
 
-    /// The notes of this study: those that were kept when it was interrupted, if they have the same digest.
+    /// The notes of this study. An interrupted study with the same digest has left some.
     pub(crate) fn notes(&self, digest: &str) -> Notes {
         let path = self.path.join(format!("{}.unfinished", self.name));
         Notes::new(path, format!("{}\n{} {digest}\n", self.mark, env!("CARGO_PKG_VERSION")))
@@ -106,12 +106,12 @@ fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     Failure::files(format!("cannot write {}: {error}", path.display()))
 }
 
-/// What a study has found so far, in a file with a line for each finding. After an interruption the same command goes on from there.
+/// Notes of a study: a file with a line for each finding so far. After an interruption the same command goes on from there.
 pub(crate) struct Notes {
     path: PathBuf,
-    /// The first lines, which say of which study the findings are.
+    /// The first lines, which name the study.
     head: String,
-    /// What was found before the interruption.
+    /// The findings before the interruption.
     known: HashMap<String, String>,
     /// Opened with the first finding.
     file: Mutex<Option<File>>,
@@ -131,12 +131,12 @@ impl Notes {
         Self { path, head, known, file: Mutex::new(None) }
     }
 
-    /// What was found for a key before the interruption.
+    /// The finding for a key before the interruption.
     pub(crate) fn known(&self, key: &str) -> Option<&str> {
         self.known.get(key).map(String::as_str)
     }
 
-    /// Writes down what was found. A disk without room for notes may have room for the results, so no error is told.
+    /// Writes down a finding. Errors are not told: a disk without room for notes may have room for the results.
     pub(crate) fn add(&self, key: &str, found: &str) {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         let line = |(key, found): (&str, &str)| format!("{key}\t{found};\n");

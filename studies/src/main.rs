@@ -1,4 +1,4 @@
-//! Measurements with `localshape`: the accuracy and the cost of its methods, their limits of stability, what breaks which model, and
+//! Measurements with `localshape`: the accuracy and the cost of its methods, their limits of stability, the robustness of models, and
 //! the tables of the paper. All is made through the public interface of the library.
 //!
 //! A study has a name, a measurement, and findings: text, tables and pages ([`study`]). It does not depend on files or on the
@@ -45,7 +45,7 @@ Examples:
   localshape-study work-precision              integrators in output/study-work-precision/
   localshape-study work-precision scenes/fig4b.toml  on a scene
   localshape-study stability                   the largest stable steps in output/study-stability/
-  localshape-study stress                      what breaks which model in output/study-stress/
+  localshape-study stress                      the robustness of models in output/study-stress/
   localshape-study table1 --orientations 200   Table 1 of the paper, from more starts
   localshape-study ratio --threads 4 -o four   the ratio of computation times on four threads
 
@@ -59,7 +59,7 @@ Exit status:
     4  reading or writing failed
   130  interrupted by Ctrl-C or SIGTERM";
 
-/// Measure what the methods of localshape can do, as tables and plots
+/// Measure the methods of localshape: accuracy, cost, stability, robustness, and the tables of the paper
 #[derive(Debug, Parser)]
 #[command(name = "localshape-study", version, after_help = EXAMPLES)]
 struct Cli {
@@ -70,10 +70,10 @@ struct Cli {
     options: Options,
 }
 
-/// What is studied.
+/// The studies.
 #[derive(Debug, Subcommand)]
 enum Name {
-    /// The solvers of rotations: angle error against time for each element, and what they make of degenerate elements
+    /// The solvers of rotations: angle error against time for each element, and outcomes for degenerate elements
     Rotation,
     /// The integrators: error of the positions against evaluations of the forces and time
     WorkPrecision {
@@ -91,14 +91,14 @@ enum Name {
         #[command(flatten)]
         threads: Threads,
     },
-    /// Falls, impacts, degenerate starts and elements, very long runs: what becomes of each with every model
+    /// Falls, impacts, degenerate starts and elements, very long runs: the outcome of each with every model
     Stress {
         #[command(flatten)]
         threads: Threads,
     },
     /// Table 1 of the paper, the errors of the rotations from Eq. (15), beside ours
     Table1 {
-        /// Number of random orientations, of which the first are always the same
+        /// Number of random orientations; more of them leave the first as they are
         #[arg(long, value_name = "N", default_value_t = Table1::ORIENTATIONS)]
         #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
         orientations: u32,
@@ -193,7 +193,7 @@ impl Name {
     }
 }
 
-/// The runs of a scene, or those with these names.
+/// The runs of a scene with these names; all runs without names.
 fn subjects(scene: &Scene, only: &[String]) -> Result<Vec<Subject>, Failure> {
     if let Some(unknown) = only.iter().find(|name| scene.runs.iter().all(|run| run.name != **name)) {
         let names: Vec<_> = scene.runs.iter().map(|run| format!("“{}”", run.name)).collect();

@@ -1,4 +1,4 @@
-//! Pseudo-random numbers that are the same on every machine.
+//! Pseudo-random numbers, which do not depend on the machine.
 
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
@@ -36,7 +36,7 @@ impl Random {
 /// Lea, Flood 2014) over one after the other.
 pub(crate) fn unit(seed: u32, index: u64, usage: u64) -> f64 {
     let mixed = [u64::from(seed), index, usage].into_iter().fold(0u64, |state, part| mix(state.wrapping_add(part)));
-    // The upper 53 bits are what a double holds.
+    // A double holds 53 bits.
     (mixed >> 11) as f64 / (1u64 << 53) as f64
 }
 

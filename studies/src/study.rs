@@ -1,4 +1,4 @@
-//! What all studies are: a name, a measurement, and what it found as text, tables and pages; and how one is made.
+//! The structure of all studies: a name, a measurement, and findings as text, tables and pages.
 
 use crate::failure::{Failure, Status};
 use crate::folder::{Folder, Notes};
@@ -23,7 +23,7 @@ pub(crate) trait Study: Send + Sync {
         format!("localshape-study {}", self.name())
     }
 
-    /// What notes of an interrupted study depend on, besides the command.
+    /// The digest of everything besides the command on which notes of an interrupted study depend.
     fn digest(&self) -> &str {
         ""
     }
@@ -33,14 +33,14 @@ pub(crate) trait Study: Send + Sync {
         1
     }
 
-    /// The amount of work, which is the sum of what [`Self::measure`] reports.
+    /// The amount of work, which is the sum of all that [`Self::measure`] reports.
     fn work(&self) -> u64;
 
     /// Measures, with the thread pool of the caller (rayon); `None` if `watch` stops it. Notes are kept until the study is made.
     fn measure(&self, watch: &Watch<'_>, notes: &Notes) -> Option<Findings>;
 }
 
-/// What a study found.
+/// The findings of a study.
 pub(crate) struct Findings {
     /// For people, as Markdown.
     pub(crate) text: String,
@@ -88,12 +88,12 @@ pub(crate) struct Options {
     pub(crate) adapter: localshape::AdapterChoice,
 }
 
-/// Makes a study: measures, writes its files, and prints what it found.
+/// Makes a study: measures, writes its files, and prints its text.
 pub(crate) fn make(study: &dyn Study, options: &Options) -> Result<Status, Failure> {
     let (name, command) = (study.name(), study.command());
     let path = options.out.clone().unwrap_or_else(|| format!("output/study-{name}").into());
     let folder = Folder::new(path, name, &command, options.overwrite)?;
-    // What cannot be drawn is said before it is measured.
+    // A missing adapter is told before anything is measured.
     #[cfg(feature = "render")]
     let gpu = localshape::Gpu::new(&options.adapter).map_err(|error| Failure::adapter(error.to_string()))?;
     let pool = ThreadPoolBuilder::new().num_threads(study.threads()).build();

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 /// A cell of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Cell {
-    /// What does not apply.
+    /// A value that does not apply.
     Empty,
     Text(String),
     Count(u64),

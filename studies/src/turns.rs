@@ -46,7 +46,7 @@ fn processor_time() -> Option<f64> {
 }
 
 /// The times of so many turns of each of `count` tasks, which `time` does by their numbers; `None` if `watch`, which is called
-/// after each turn, stops them. The order is rotated, so that no task always follows the same one.
+/// after each turn, stops them. The order is rotated, so that no task always follows one other.
 pub(crate) fn take_turns(
     count: usize,
     rounds: u32,

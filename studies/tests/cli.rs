@@ -72,7 +72,7 @@ impl Place {
         self.command(arguments).output().expect("the program runs")
     }
 
-    /// Runs it to its end, and returns what it printed.
+    /// Runs it to its end, and returns its output.
     #[track_caller]
     fn good(&self, arguments: &str) -> String {
         let output = self.output(arguments);
@@ -101,7 +101,7 @@ fn can_study() -> bool {
     true
 }
 
-/// The names with those of plots.
+/// The names of files with the names of plots.
 fn with_plots(names: &[&str], plots: &[&str]) -> Vec<String> {
     let plots = plots.iter().filter(|_| cfg!(feature = "render"));
     let plots = plots.flat_map(|plot| ["svg", "png"].map(|ending| format!("{plot}.{ending}")));
@@ -167,7 +167,7 @@ fn maps_the_stability_of_a_scene() {
     place.good(&format!("{command} --threads 1"));
     assert_eq!(place.read("maps/stability.csv"), table, "for any number of threads");
     place.bad(&format!("{command} --full"), 2, &["maps", "stability small.toml"]);
-    // What another command has made until it was interrupted is not lost.
+    // The notes of another command that was interrupted are not lost.
     let notes = "<!-- localshape-study stability other.toml -->\n0.1.0 ab\n";
     place.write("begun/stability.unfinished", notes);
     place.bad("stability small.toml -o begun", 2, &["`localshape-study stability other.toml`", "--overwrite"]);
@@ -198,7 +198,7 @@ fn table1_is_the_same_for_any_number_of_threads() {
     };
     let (summary, courses) = (records("two/table1.csv"), records("two/table1-orientations.csv"));
     assert_eq!((summary.len(), courses.len()), (18, 18));
-    // Mean, deviation and maximum of the one start are those of the medians.
+    // Medians over one start are its values.
     for (summary, course) in summary.iter().zip(&courses) {
         assert_eq!([&summary[9], &summary[12], &summary[13]], [&course[11], &course[12], &course[13]]);
         assert_eq!(&course[14], "ok");

@@ -3,7 +3,7 @@
 //! ```text
 //! ■ whole  ■ turned over  ■ diverged
 //! name of a map
-//! what it is of
+//! more about it
 //! share ┌────────────┐ step
 //!   1.0 │■■■■■■■■■■■■│ T/9
 //!       │- - limit - │
@@ -17,23 +17,23 @@ use localshape::picture::{Diagram, TextStyle};
 
 /// One map.
 pub(crate) struct Map {
-    /// What it shows, and a line below that.
+    /// The heading, and a line below it.
     pub(crate) name: [String; 2],
-    /// Where its columns are, rising and logarithmically even.
+    /// The places of its columns, rising and logarithmically even.
     pub(crate) across: Vec<f64>,
-    /// Where its rows are, rising and even.
+    /// The places of its rows, rising and even.
     pub(crate) up: Vec<f64>,
     /// The cells, column by column from below.
     pub(crate) cells: Vec<Tile>,
     /// Heights with numbers at the left and at the right.
     pub(crate) ticks: Vec<(f64, [String; 2])>,
-    /// Heights of lines: where, and what it is called.
+    /// Horizontal lines: their heights and names.
     pub(crate) lines: Vec<(f64, &'static str)>,
     /// The names of its axes: across, at the left and at the right.
     pub(crate) axes: [String; 3],
 }
 
-/// What a cell shows.
+/// The outcome that a cell shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tile {
     Whole,
@@ -48,7 +48,7 @@ const ABOVE: f64 = 72.0;
 pub(super) const ROOM: Room = Room { around: [LEFT, ABOVE, RIGHT, 58.0], shape: 0.5, legend: 40.0 };
 /// The size of a square of the legend (px).
 const SQUARE: f64 = 16.0;
-/// Between cells, widths of hatches and of lines at limits, and from a map to what is written beside it (px).
+/// The gap between cells, the widths of hatches and of lines at limits, and the gap between a map and the words beside it (px).
 const GAP: f64 = 1.0;
 const HATCH: f64 = 1.6;
 const LIMIT: f64 = 2.4;
@@ -60,7 +60,7 @@ const HATCHES: Colour = [0x5a, 0x1f, 0x00];
 const GROUND: Colour = [0xfb, 0xfb, 0xfa];
 const LABEL: TextStyle = TextStyle { size: 14.5, is_bold: true, colour: TEXT, has_halo: true };
 
-/// What each kind of cell means.
+/// Draws the meaning of each kind of cell.
 pub(super) fn legend(diagram: &mut Diagram, top: f64) {
     let mut left = MARGIN;
     for (tile, text) in [
@@ -84,7 +84,7 @@ impl Tile {
             Self::Diverged => SECOND_TEXT,
         };
         diagram.rectangle([left, top, wide, high], colour);
-        // As in pictures of bodies, the hatch tells in grey what the colour does.
+        // As in pictures of bodies, the hatch stands for the colour in grey prints.
         if self == Self::TurnedOver {
             let inset = 0.2 * wide.min(high);
             let ends = [[left + inset, top + high - inset], [left + wide - inset, top + inset]];

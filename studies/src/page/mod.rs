@@ -24,7 +24,7 @@ const TEXT: Colour = [0x1b, 0x23, 0x2e];
 const SECOND_TEXT: Colour = [0x5c, 0x66, 0x72];
 const HAIRLINE: Colour = [0xd8, 0xdc, 0xe1];
 
-/// What is written: the title, names, the caption and legends, numbers and axes.
+/// Styles of text: of the title, of names, of captions and legends, of numbers and axes.
 const TITLE: TextStyle = style(26.0, true, TEXT);
 const NAME: TextStyle = style(16.0, true, TEXT);
 const USUAL: TextStyle = style(16.0, false, SECOND_TEXT);
@@ -36,7 +36,7 @@ const fn style(size: f64, is_bold: bool, colour: Colour) -> TextStyle {
 
 /// How far the middle of small letters lies above their baseline, in parts of the type's size.
 const MIDDLE: f64 = 0.34;
-/// Width of a page in print (mm), and in pixels; what is free at its left and right, and between its parts (px).
+/// Width of a page in print (mm), and in pixels; its margins, and the gap between its parts (px).
 const WIDE_MM: f64 = 180.0;
 const WIDE: f64 = 1280.0;
 const MARGIN: f64 = 40.0;
@@ -56,7 +56,7 @@ pub(crate) struct Page {
     pub(crate) parts: Parts,
 }
 
-/// What is on a page.
+/// The parts of a page.
 pub(crate) enum Parts {
     Plots(Vec<Plot>),
     Maps(Vec<Map>),

@@ -2,25 +2,25 @@
 //!
 //! ```text
 //! name of a plot             name of a plot
-//! 1 ┼  what is upwards       1 ┼  what is upwards
+//! 1 ┼  name of the axis      1 ┼  name of the axis
 //!   ┼  ●━━● one                ┼ ● four
 //!   ┼     ╲━━● two             ┼    ●━━● five
 //!   └──┼────┼─────             └──┼────┼─────
-//!      1   10  to the right       1   10  to the right
+//!      1   10  its name          1   10  its name
 //! ```
 
 use super::{Area, Colour, HAIRLINE, MIDDLE, NAME, Room, SECOND_TEXT, SMALL, power_of_ten, write};
 use localshape::picture::{Diagram, TextStyle};
 
-/// One plot. Plots of a page whose axes have the same name have the same range on it.
+/// One plot. Axes of one name have one range on a page.
 pub(crate) struct Plot {
-    /// What it shows.
+    /// The heading.
     pub(crate) name: String,
     /// The names of its axes, to the right and upwards, with units in parentheses.
     pub(crate) axes: [String; 2],
     /// The curves, in the order in which they are drawn; the last ones are named first.
     pub(crate) curves: Vec<Line>,
-    /// Where lines of known slopes meet, and these slopes: powers of what is to the right. `None` for none.
+    /// The point at which lines of known slopes meet, and their slopes; `None` without such lines.
     pub(crate) slopes: Option<([f64; 2], Vec<f64>)>,
 }
 
@@ -32,11 +32,11 @@ pub(crate) struct Line {
     pub(crate) family: usize,
     /// Whether it is drawn stronger than the others.
     pub(crate) is_strong: bool,
-    /// The points, to the right and upwards. What is not positive and finite is left out.
+    /// The points, to the right and upwards. Points that are not positive and finite are left out.
     pub(crate) points: Vec<[f64; 2]>,
 }
 
-/// What is written at the left of a plot, and above it (px).
+/// The room for numbers at the left of a plot, and for names above it (px).
 const NUMBERS: f64 = 58.0;
 const ABOVE: f64 = 54.0;
 pub(super) const ROOM: Room = Room { around: [NUMBERS, ABOVE, 0.0, 62.0], shape: 0.78, legend: 0.0 };
@@ -199,8 +199,8 @@ impl Frame {
         write(diagram, across, SMALL, 1.0, [right, bottom + 43.0]);
     }
 
-    /// Where the names of lines stand: beside one of their points, each where it covers least. `None` for a line without points or
-    /// name.
+    /// The places of the names of lines. Each name stands beside one of its points, where it covers least. `None` for a line without
+    /// points or name.
     fn names(&self, diagram: &Diagram, lines: &[Drawn]) -> Vec<Option<Area>> {
         let places: Vec<Vec<(Area, f64)>> = lines.iter().map(|line| self.places(diagram, line)).collect();
         let mut chosen: Vec<Option<Area>> = vec![None; lines.len()];
@@ -222,7 +222,7 @@ impl Frame {
         chosen
     }
 
-    /// Where a name can stand: beside, above and below each of its points, and what that costs by itself.
+    /// The places of a name: beside, above and below each of its points, each with its own cost.
     fn places(&self, diagram: &Diagram, line: &Drawn) -> Vec<(Area, f64)> {
         let (wide, high) = (diagram.text_width(&line.name, label(line.colour)), HIGH * SMALL.size);
         let [low, top, far, bottom] = self.area;

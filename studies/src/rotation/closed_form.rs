@@ -9,7 +9,7 @@
 //!
 //! Guarantee: the true optimum from any start. Errors grow with the inverse square of the gap `s₂ ± s₃` of the singular
 //! values; where the divisor, which is the product of the sums of two of them, is too small, the [`optimum`] by
-//! eigenvectors takes over. Cost: some three steps for the root, then matrices and one quaternion, the same for any last rotation.
+//! eigenvectors takes over. Cost: some three steps for the root, then matrices and one quaternion, whatever the last rotation.
 
 use glam::{DMat3, DQuat};
 use localshape::sim::rotation::davenport1968::optimum;

@@ -1,4 +1,4 @@
-//! What solvers make of elements whose rotation is hardly determined or not at all.
+//! Elements whose rotation is hardly determined or not at all, and the outcome of solvers for them.
 
 use super::reference::angle;
 use super::sample::Sample;
@@ -23,7 +23,7 @@ pub(crate) const CLASSES: [Class; 8] = [
     ("1e-90 times as large", DVec3::new(1e-90, 0.8e-90, 0.5e-90), None),
 ];
 
-/// What a solver made of the elements of a class, at worst.
+/// The worst outcome of a solver for the elements of a class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Outcome {
     /// The optimum; where there are several, the one nearest to the last rotation.
@@ -74,7 +74,7 @@ fn elements(&(_, stretch, turn_back): &Class) -> Vec<Sample> {
     std::iter::repeat_with(one).take(ELEMENTS).collect()
 }
 
-/// What a solver makes of a class.
+/// The outcome of a solver for a class.
 pub(super) fn outcome(solver: &Solver, class: &Class) -> Outcome {
     elements(class).iter().map(|sample| outcome_of(solver, sample)).max().expect("some elements")
 }

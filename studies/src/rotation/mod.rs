@@ -1,5 +1,5 @@
 //! The solvers of rotations: the angle error of each against its time for each element, for elements turned by more or
-//! less since the last rotation and strained up to inversion, and what each makes of degenerate elements.
+//! less since the last rotation and strained up to inversion, and the outcome of each for degenerate elements.
 //!
 //! All solvers are plain code in double precision, called for one element after the other, as the reference code of the
 //! simulation does. They take turns, in an order that is rotated, and each time is the median of its turns: other load of
@@ -29,7 +29,7 @@ use sample::{Kind, Sample};
 use solver::Solver;
 use std::hint::black_box;
 
-/// The number of passes of iterations on degenerate elements: what has not converged by then stalls.
+/// The number of passes of iterations on degenerate elements. An iteration that has not converged by then stalls.
 const MANY: u32 = 20;
 
 /// The study.
@@ -102,13 +102,13 @@ pub(crate) struct Measured {
     pub(crate) global: Option<f64>,
 }
 
-/// What was found on one machine.
+/// The findings on one machine.
 #[derive(Clone, Debug)]
 pub(crate) struct Results {
     protocol: Rotation,
     solvers: Vec<Solver>,
     measured: Vec<Measured>,
-    /// What each solver makes of each class, after [`MANY`] passes.
+    /// The outcomes of each solver for each class, after [`MANY`] passes.
     outcomes: Vec<(&'static str, [Outcome; CLASSES.len()])>,
 }
 

@@ -18,7 +18,7 @@ pub(super) fn by_svd(at_rest: DMat3) -> Option<DQuat> {
 
 /// The optimal rotation, rounded once, where the optimum is unique.
 ///
-/// Newton's method from a rotation near it, with the torque in twice the precision: what remains is the rounding of
+/// Newton's method from a rotation near it, with the torque in twice the precision. The remaining error is the rounding of
 /// the quaternion (1e-16), while solvers in plain precision have errors of that divided by the gap of the singular
 /// values.
 pub(super) fn refined(at_rest: DMat3, near: DQuat) -> DQuat {
@@ -65,7 +65,7 @@ fn torque(at_rest: DMat3, q: DQuat) -> DVec3 {
     )
 }
 
-/// The sum of two doubles, the second of which is below the last digit of the first: T. Dekker, "A floating-point
+/// The sum of two doubles. The second is below the last digit of the first: T. Dekker, "A floating-point
 /// technique for extending the available precision", Numer. Math. 18, 1971, p. 224.
 #[derive(Clone, Copy)]
 struct Double(f64, f64);

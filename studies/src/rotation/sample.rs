@@ -1,4 +1,4 @@
-//! The elements that solvers are measured with: random, and the same on every machine.
+//! The random elements that solvers are measured with. They do not depend on the machine.
 
 use super::reference::refined;
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! The solvers that are compared: those of scenes, others, and that of a library. Each is a function of `at_rest` = `Σ R0 rᵀ` (m²),
+//! The solvers that are compared: of scenes, others, and of a library. Each is a function of `at_rest` = `Σ R0 rᵀ` (m²),
 //! where `R0` are the corners at rest and `r` the corners now, relative to their means, of the last rotation, and of a number of passes.
 
 use super::reference::by_svd;
@@ -87,7 +87,7 @@ impl Solver {
         }
     }
 
-    /// The same solver with another number of passes, if it has any.
+    /// This solver with another number of passes, if it has any.
     pub(crate) fn with_passes(&self, passes: u32) -> Self {
         Self { passes: self.passes.map(|_| passes), ..*self }
     }

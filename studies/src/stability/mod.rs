@@ -1,4 +1,4 @@
-//! What becomes of a scene's runs for stiffnesses over decades and steps up to beyond the predicted limit: a map for each run.
+//! Outcomes of a scene's runs for stiffnesses over decades and steps up to beyond the predicted limit: a map for each run.
 //!
 //! The stiffness of a run is multiplied, and its damping so that the damping ratio stays. Then the predicted limit goes with `1/√k`,
 //! and a row of the map is the same share of it for every stiffness. Impacts are made faster by multiplying the initial velocities,
@@ -59,7 +59,7 @@ impl Study for Stability {
     }
 }
 
-/// What is measured.
+/// The range of parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Protocol {
     /// By which the stiffness of all runs is multiplied.
@@ -125,7 +125,7 @@ pub(crate) fn usual() -> Scene {
     Scene::parse(&text, "fall", &Limits::default()).unwrap_or_else(|error| panic!("a scene without mistakes: {error}"))
 }
 
-/// What became of a run.
+/// The outcome of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// No element is turned over at the end.
@@ -153,7 +153,7 @@ pub(crate) struct Cell {
     pub(crate) outcome: Outcome,
 }
 
-/// What is common to the cells of a run with one damping ratio.
+/// The common values of the cells of a run with one damping ratio.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Grid {
     pub(crate) run: usize,
@@ -189,7 +189,7 @@ impl Grid {
     }
 }
 
-/// What was found.
+/// The findings.
 #[derive(Clone, Debug)]
 pub(crate) struct Results {
     pub(crate) protocol: Protocol,
@@ -199,8 +199,8 @@ pub(crate) struct Results {
     pub(crate) cells: Vec<Cell>,
 }
 
-/// Simulates all cells with the rayon thread pool of the caller, except those for which `known` has an outcome, and calls `done` with
-/// each of the others; `None` if `watch` stops it.
+/// Simulates the cells for which `known` has no outcome with the rayon thread pool of the caller, and calls `done` with each; `None` if
+/// `watch` stops it.
 pub(crate) fn measure(
     protocol: Protocol,
     scene: &Scene,

@@ -38,7 +38,7 @@ impl Outcome {
 }
 
 impl Cell {
-    /// What distinguishes a cell from the others of its study.
+    /// The parameters of the cell, which no other cell of the study has.
     pub(super) fn key(&self) -> String {
         let Self { run, rate, speed, damping, share, step, .. } = self;
         format!("{run} {rate:e} {speed:e} {damping:e} {share:e} {step:e}")
@@ -49,7 +49,7 @@ impl Results {
     /// The results for people.
     pub(super) fn text(&self) -> String {
         let mut text = format!(
-            "# Stability: what becomes of each run\n\n\
+            "# Stability: outcomes of each run\n\n\
             {}; {} s. The stiffness is multiplied by {} to {}, with the same damping ratio. Steps are shares of the largest one that is \
             predicted to be stable at rest; of a run that has none, of T/π. `whole`: no element is turned over at the end.\n\n",
             self.scene.title,

@@ -1,4 +1,4 @@
-//! Stress: what becomes of bodies of every model under what is likely to break them, and what must hold.
+//! Stress: bodies of every model under treatments that are likely to break them, and the promises of the shape model.
 //!
 //! Each trial is one body with one treatment, simulated with every model and the same time step, at most half of the shape
 //! model's limit of stability.
@@ -81,18 +81,18 @@ impl Model {
     }
 }
 
-/// What must hold at the end of a trial with the default model, besides numbers that are finite.
+/// The promise of the default model for the end of a trial, besides finite numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Promise {
     /// No element is turned over, and the shape error (see [`Outcome::shape_error`]) is at most this.
     Restored(f64),
-    /// No element is turned over, and all heights are those of the static equilibrium within this part of a side.
+    /// No element is turned over, and all heights equal the static equilibrium within this part of a side.
     Settled(f64),
     /// Nothing is said about the shape: the motion is not damped.
     Bounded,
 }
 
-/// What became of a body.
+/// The outcome for a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Outcome {
     /// The time at which it diverged (s), if it did.
@@ -125,7 +125,7 @@ pub(crate) struct Row {
     pub(crate) outcomes: Vec<Outcome>,
 }
 
-/// What was found; the same on every machine.
+/// The findings, which do not depend on the machine.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Results {
     pub(crate) rows: Vec<Row>,
@@ -163,7 +163,7 @@ pub(crate) fn measure(steps: u64, watch: &Watch<'_>) -> Option<Results> {
 }
 
 impl Row {
-    /// What the default model does not keep of what must hold; empty if all is well.
+    /// The promises that the default model breaks.
     pub(crate) fn broken(&self) -> Vec<String> {
         let one = &self.outcomes[0];
         let mut broken = Vec::new();
@@ -181,7 +181,7 @@ impl Row {
             Promise::Settled(most) => demand(one.unsettled <= most, format!("not settled by {:.1e}", one.unsettled)),
             Promise::Bounded => {}
         }
-        // NaN is what is not measured.
+        // A value that is not measured is NaN.
         demand(one.energy.is_nan() || one.energy <= MOST_ENERGY, format!("energy × {:.2}", one.energy));
         for change in one.momentum {
             demand(change.is_nan() || change <= MOST_CHANGE, format!("momentum changed by {change:.0e}"));
@@ -244,7 +244,7 @@ impl Trial {
         }
     }
 
-    /// The greatest difference of a height from those of the body at rest on its side, as a part of a side. Heights are
+    /// The greatest difference of a height from the body at rest on its side, as a part of a side. Heights are
     /// compared in order, so it does not matter on which side of a cube it lies.
     fn unsettled(&self, model: Model, state: &State) -> f64 {
         let heights = |state: &State| {
@@ -261,13 +261,13 @@ impl Trial {
     }
 }
 
-/// What is watched of a state.
+/// The watched values of a state.
 struct Look {
     energy: f64,
     centre: DVec3,
     /// Momentum, and angular momentum about the centre of mass.
     momenta: [DVec3; 2],
-    /// The same with the sizes of all terms added up.
+    /// The sums of the sizes of all their terms.
     sizes: [f64; 2],
 }
 

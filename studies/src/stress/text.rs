@@ -27,8 +27,8 @@ impl Results {
         }
         let broken: Vec<_> = self.rows.iter().filter(|row| !row.broken().is_empty()).collect();
         text += match broken.is_empty() {
-            true => "\nAll that must hold for the shape model holds.\n",
-            false => "\nWhat must hold for the shape model and does not:\n\n",
+            true => "\nThe shape model keeps all its promises.\n",
+            false => "\nPromises that the shape model breaks:\n\n",
         };
         for row in broken {
             text += &format!("- {}, {}: {}\n", row.group, row.name, row.broken().join("; "));
@@ -64,7 +64,7 @@ impl Results {
 }
 
 impl Row {
-    /// What became of the body, in a few words.
+    /// The outcome in a few words.
     fn words(&self, one: &Outcome) -> String {
         let size = |number: f64| if number < 0.01 { format!("{number:.0e}") } else { format!("{number:.2}") };
         if let Some(time) = one.diverged {

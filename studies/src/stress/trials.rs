@@ -8,7 +8,7 @@ use localshape::sim::world::Surroundings;
 use localshape::sim::{Body, Dimension, Ease, FrictionOf, IndexLists, Key, Motion, Obstacle, Offset, Shape, State};
 use std::sync::Arc;
 
-/// A body and what happens to it.
+/// A body and its treatment.
 pub(super) struct Trial {
     pub(super) group: &'static str,
     pub(super) name: String,
@@ -21,7 +21,7 @@ pub(super) struct Trial {
     /// ΔT (s).
     pub(super) step: f64,
     pub(super) steps: u64,
-    /// The length (m) of which distances are parts.
+    /// The unit of distances (m).
     pub(super) side: f64,
     pub(super) promise: Promise,
     /// Whether no work is done on it from outside.
@@ -123,7 +123,7 @@ fn pressed() -> Trial {
     let key = |time, depth: f64| Key { time, offset: Offset { shift: DVec3::Y * -depth, rotation: DVec3::ZERO } };
     // Oblique, it would touch a corner at the body's height.
     let keys = vec![key(0.0, -0.1 * height), key(0.5, 0.9 * height), key(1.0, -0.1 * height)];
-    // Above the middle of the body, so that the gap is there what it is to be.
+    // Above the middle of the body, where the gap has its nominal width.
     let point = DVec3::new(0.5 * height, height, 0.5 * height);
     let plate = Obstacle {
         shape: Shape::Plate { point, normal },
@@ -194,16 +194,13 @@ fn starts() -> Vec<Trial> {
         let mut random = Random(2);
         let middle = DVec3::splat(1.5 * SIDE);
         // Perfect symmetry would be an equilibrium, though not a stable one.
-        let place = |rest: &DVec3| map(*rest - middle, &mut random) + random_shift(&mut Random(rest.x.to_bits()));
+        let shift = |rest: &DVec3| Random(rest.x.to_bits()).direction() * 1e-3 * SIDE;
+        let place = |rest: &DVec3| map(*rest - middle, &mut random) + shift(rest);
         let position = body.rest.iter().map(place).collect();
         let elastic = Elastic { ratio: 0.2, ..USUAL };
         free("Starts", name.to_owned(), body, State::at_rest(position), elastic, SIDE)
     };
     maps.into_iter().map(start).collect()
-}
-
-fn random_shift(random: &mut Random) -> DVec3 {
-    random.direction() * 1e-3 * SIDE
 }
 
 /// Single elements of unusual shapes, stretched and displaced at random.

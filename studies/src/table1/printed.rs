@@ -26,7 +26,7 @@ pub(crate) const STIFFNESSES: [f64; 3] = [1e4, 1e5, 1e6];
 
 /// The paper's Table 1 as printed.
 pub(crate) const ROWS: [Row; 4] = {
-    /// What the paper says was too small to be measured.
+    /// A value that was too small for the paper to measure.
     const LESS: f64 = 0.0;
     const fn measured(number: f64) -> Option<f64> {
         if number > LESS { Some(number) } else { None }

@@ -11,7 +11,7 @@ use localshape::sim::model::shape_based::{RotationReading, ShapeBased};
 use localshape::sim::{Dimension, Integrator, Kernel, Status, World};
 use std::sync::Arc;
 
-/// What is compared: an integrator, and the solver of rotations where it is not the default.
+/// An integrator, with a solver of rotations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Method {
     /// An integrator of scenes.
@@ -50,7 +50,7 @@ impl Method {
         Self::DORMAND_PRINCE,
     ];
 
-    /// The integrator, and the solver of rotations that is not the default, by their names; those in scenes, if they have one.
+    /// The names of the integrator, and of a solver of rotations that is not the default; as in scenes, if they are known there.
     pub(crate) fn names(self) -> [String; 2] {
         let (integrator, rotation) = match self {
             Self::Scene(integrator) => (typed(&integrator), String::new()),
@@ -86,7 +86,7 @@ impl Method {
         self == Self::DORMAND_PRINCE
     }
 
-    /// The integrator of scenes that needs of forces what this one needs, and the composition of others.
+    /// The integrator of scenes, or one that needs the same of forces together with the composition.
     fn integrator(self) -> (Integrator, Option<Composition>) {
         match self {
             Self::Scene(integrator) => (integrator, None),
@@ -157,7 +157,7 @@ impl Way {
         Self { method, steps, tolerance }
     }
 
-    /// The same with half as many steps again, which is no power of two, and at least those of the moments.
+    /// Half as many steps again, which is no power of two, and at least one and a half for each moment.
     pub(super) fn finer(self) -> Self {
         let steps = if self.method.is_adaptive() { self.steps } else { self.steps.max(2 * MOMENTS as u64) / 2 * 3 };
         Self { steps, ..self }
@@ -178,8 +178,8 @@ impl Way {
         world
     }
 
-    /// Makes the run, calls `look` with the number of each moment at which it has a state and the positions there (m), and returns its
-    /// end and the number of evaluations, of which there should be no more than `most`.
+    /// Makes the run and returns its end and the number of evaluations; `most` should suffice. Calls `look` with the number of each
+    /// moment at which the run has a state, and with the positions there (m).
     pub(super) fn run(
         self,
         subject: &Subject,

@@ -3,7 +3,7 @@
 //!
 //! The error of a run is the largest at any of a set of moments that all runs have in common. The reference is computed by two
 //! different methods with small steps; how far apart they are at most is its own error, and no error below it is told. Evaluations
-//! are counted by running a model that counts them; times are those of the fastest code of each method. The runs take turns, in an
+//! are counted by a model that counts them; times are of the fastest code of each method. The runs take turns, in an
 //! order that is rotated, and each time is the median of its turns.
 
 mod count;
@@ -108,7 +108,7 @@ pub(crate) struct Measured {
     pub(crate) way: Way,
     /// Time step (s), or the tolerance of an adaptive method.
     pub(crate) step: f64,
-    /// Evaluations of the forces of the whole body, those of the start included.
+    /// Evaluations of the forces of the whole body, from the start on.
     pub(crate) evaluations: u64,
     /// The greatest distance of a node from the reference at any moment, as a share of the body's size; `None` if the run diverges or
     /// is given up.
@@ -120,7 +120,7 @@ pub(crate) struct Measured {
     pub(crate) is_fast: bool,
 }
 
-/// What two methods agree on.
+/// The course on which two methods agree.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Reference {
     pub(crate) methods: [Method; 2],
@@ -128,7 +128,7 @@ pub(crate) struct Reference {
     pub(crate) error: f64,
 }
 
-/// What was found for one run.
+/// The findings for one run.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Comparison {
     pub(crate) name: String,
@@ -139,13 +139,13 @@ pub(crate) struct Comparison {
     pub(crate) cycle: f64,
     /// The reference, or why there is none.
     pub(crate) reference: Result<Reference, String>,
-    /// What was measured, solver by solver and method by method, from large steps to small ones.
+    /// The measurements, method by method, from large steps to small ones.
     pub(crate) measured: Vec<Measured>,
     /// Methods that cannot advance it, and why.
     pub(crate) refused: Vec<(Method, &'static str)>,
 }
 
-/// What was found on one machine.
+/// The findings on one machine.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Results {
     pub(crate) effort: Effort,
@@ -195,7 +195,7 @@ fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Compa
             if !watch(1) {
                 return None;
             }
-            // What is as good as the reference says nothing about the method.
+            // An error below that of the reference says nothing about the method.
             if end == End::Reached && error < own_error {
                 break;
             }
@@ -216,7 +216,7 @@ fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Compa
             }
         }
     }
-    // What counted evaluations has warmed caches.
+    // The runs before have warmed caches.
     let times = take_turns(timed.len(), effort.rounds, watch, |turn| {
         let (_, way, model) = &timed[turn];
         let mut world = way.world(subject, Arc::clone(model));
@@ -238,7 +238,7 @@ fn seconds_per_evaluation(subject: &Subject, model: &Arc<dyn ElasticModel>) -> f
     (clock.seconds() / 100.0).max(1e-9)
 }
 
-/// What an error costs with a method.
+/// The cost of an error with a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Cost {
     pub(crate) method: Method,
@@ -259,8 +259,8 @@ impl Comparison {
         self.measured.iter().filter(move |one| one.way.method == method)
     }
 
-    /// What an error costs, interpolated on logarithmic axes between the coarsest run from which on no error is larger and the one
-    /// before; `None` if there is none.
+    /// The cost of an error, interpolated on logarithmic axes. It lies between the coarsest run from which on no error is larger and the
+    /// run before; `None` without such a run.
     pub(crate) fn cost(&self, method: Method, error: f64) -> Option<Cost> {
         let runs: Vec<_> = self.of(method).filter_map(|one| Some((one, one.error?))).collect();
         let larger = runs.iter().rposition(|&(_, own)| own > error);

@@ -19,8 +19,9 @@ impl Results {
                         let error = one.error.filter(|&error| error < 1.0)?;
                         Some([across(one), error])
                     });
-                    let is_strong = method == Method::DEFAULT;
-                    Line { name: method.name(), family: method.family(), is_strong, points: points.collect() }
+                    let name = method.names().into_iter().rfind(|name| !name.is_empty()).unwrap_or_default();
+                    let (family, is_strong) = (method.family(), method == Method::DEFAULT);
+                    Line { name, family, is_strong, points: points.collect() }
                 };
                 let axes = [axis.to_owned(), ERROR.to_owned()];
                 Plot { name: name.to_owned(), axes, curves: comparison.methods().map(line).collect(), slopes }

@@ -26,7 +26,7 @@ fn findings_are_found_again() {
     assert_eq!(["a 0.2", "a 0.4", "b 0.8"].map(|key| all.known(key)), [Some("9"), Some("9"), Some("diverged")]);
     assert!(folder(place.path(), "study 2").is_err(), "of another command");
     assert!(notes("cd").known("a 0.2").is_none(), "of an edited scene");
-    // Whatever the file holds, what is left of it can be read, and nothing ends the program.
+    // The reader takes any bytes.
     let whole = fs::read(&path).expect("findings");
     for at in 0..whole.len() {
         fs::write(&path, &whole[..at]).expect("to cut it");

@@ -1,4 +1,4 @@
-//! What all solvers promise, tested against the reference.
+//! The promises of all solvers, tested against the reference.
 
 use super::reference::{angle, by_svd, refined};
 use super::sample::{Kind, LEAST_GAP, Sample, samples};
@@ -119,7 +119,7 @@ fn no_solver_makes_something_that_is_not_a_number() {
     }
 }
 
-/// What happens to a cube at each row of the table: its corners scaled along the axes and then turned, the eigenvalues of
+/// A cube at each row of the table: its corners scaled along the axes and then turned, the eigenvalues of
 /// the matrix of Eq. (15) over that of a cube at rest, and whether the optimum is unique.
 #[test]
 fn the_degenerate_cases_row_by_row() {

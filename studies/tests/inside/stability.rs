@@ -34,7 +34,7 @@ fn steps_below_the_limit_are_stable_and_steps_above_are_not() {
     assert!(results.cells.iter().all(|cell| cell.run == 0 || cell.outcome != Outcome::Diverged));
 }
 
-/// What is known is not simulated again, and gives the same tables.
+/// Known cells are not simulated again, and give equal tables.
 #[test]
 fn goes_on_where_it_was_interrupted() {
     let (protocol, scene) = small();
@@ -90,7 +90,7 @@ fn the_largest_share_is_below_every_bad_cell() {
     assert_eq!(results.up_to(grid, 1.0, |_| false), 0.0);
 }
 
-/// Impacts that are twice as fast are those after a fall with four times the gravity.
+/// Impacts are twice as fast after a fall with four times the gravity.
 #[test]
 fn faster_impacts_have_more_gravity() {
     let text = |gravity: f64| {

@@ -1,4 +1,4 @@
-//! The stress suite in its fast form: what must hold of every trial.
+//! The stress suite in its fast form: the promises of every trial.
 
 use super::{MODELS, measure};
 use crate::reading::documented;

@@ -49,7 +49,7 @@ fn each_row_is_as_far_from_the_others_as_in_the_paper() {
     }
 }
 
-/// In row A rebounds add energy, and the solver is not the cause: with exact rotations the same happens. With ten times
+/// In row A rebounds add energy, and the solver is not the cause: with exact rotations they do so, too. With ten times
 /// shorter steps, as in row B, they add little, as stated in `docs/paper.md`.
 #[test]
 fn rebounds_feed_energy_where_a_cycle_has_ten_steps() {

@@ -1,4 +1,4 @@
-//! What a comparison of integrators promises.
+//! The promises of a comparison of integrators.
 
 use super::*;
 use localshape::Limits;
