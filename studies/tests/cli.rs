@@ -91,11 +91,17 @@ impl Place {
     }
 }
 
+/// Says that a test is skipped, on standard error itself: `cargo test` holds back what macros print.
+fn skipped(why: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stderr(), "SKIPPED {}: {why}", std::thread::current().name().unwrap_or("a test"));
+}
+
 /// Whether plots can be drawn here; with `LOCALSHAPE_REQUIRE_GPU` a missing adapter is a failure.
 fn can_study() -> bool {
     #[cfg(feature = "render")]
     if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_none() && localshape::gpu::adapters().0.is_empty() {
-        eprintln!("skipped: there is no graphics adapter");
+        skipped("there is no graphics adapter");
         return false;
     }
     true
@@ -246,7 +252,7 @@ fn folders_that_cannot_be_written_to_are_told_before_anything_is_measured() {
         place.write("locked/notes.txt", "mine");
         fs::set_permissions(place.path("locked"), PermissionsExt::from_mode(0o555)).unwrap();
         if fs::write(place.path("locked/probe"), "").is_ok() {
-            return eprintln!("skipped: this user may write anywhere; the test needs one who may not");
+            return skipped("this user may write anywhere; the test needs one who may not");
         }
         place.bad("ratio -o locked", 4, &["cannot write locked", "ermission denied"]);
         assert_eq!(place.names("locked"), ["notes.txt"]);

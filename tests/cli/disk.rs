@@ -1,7 +1,8 @@
 //! A full disk: one message, no partial files, and finished files are kept.
 #![cfg(target_os = "linux")]
 
-use crate::support::{Place, Ran, lasting, run, skip};
+use crate::support::{Place, Ran, lasting, run};
+use localshape::internals::skipped;
 use std::process::Command;
 
 /// Runs the program with its output in `out`, on a temporary disk of `size`, and then `after` in a shell.
@@ -15,14 +16,14 @@ fn on_small_disk(place: &Place, size: &str, arguments: &str, after: &str) -> Opt
     let mut command = Command::new("unshare");
     command.args(["--user", "--map-root-user", "--mount", "sh", "-c", &script]).current_dir(place.path("."));
     if run(Command::new("sh").args(["-c", "unshare --version"])).status != Some(0) {
-        skip("there is no unshare");
+        skipped("there is no unshare");
         return None;
     }
     let mut ran = run(&mut command);
     // A slow machine comes to a checkpoint before.
     ran.err = ran.err.split_inclusive('\n').filter(|line| !line.starts_with("warning: no checkpoint")).collect();
     if ran.status == Some(99) || ran.err.starts_with("unshare:") {
-        skip(&format!("no disk could be made for the test: {}", ran.err));
+        skipped(&format!("no disk could be made for the test: {}", ran.err));
         return None;
     }
     Some(ran)
@@ -79,7 +80,7 @@ fn frames_on_a_full_disk() {
         return;
     };
     if ran.status == Some(3) {
-        return skip("no graphics adapter");
+        return skipped("no graphics adapter");
     }
     let ran = ran.bad(4, &["cannot write out/", "disk is full"]);
     assert!(!ran.err.contains(".localshape-"), "no hidden names: {}", ran.err);

@@ -1,8 +1,9 @@
 //! `compare` with a scene or a figure: drawn, compared with its golden, accepted.
 
-use crate::support::{Place, SMALL, frame_file, lasting, run, skip};
+use crate::support::{Place, SMALL, frame_file, lasting, run};
 use localshape::gpu::{AdapterChoice, Gpu};
 use localshape::internals::Pixels;
+use localshape::internals::skipped;
 
 /// A place with `small.toml`, if there is a graphics adapter.
 fn place() -> Option<Place> {
@@ -10,7 +11,7 @@ fn place() -> Option<Place> {
         Ok(_) => Some(Place::with_small()),
         Err(error) if std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_some() => panic!("{error}"),
         Err(error) => {
-            skip(&error.to_string());
+            skipped(&error.to_string());
             None
         }
     }

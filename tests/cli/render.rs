@@ -1,7 +1,7 @@
 //! `render`: frames and their metadata.
 
-use crate::support::{Place, SMALL, SMALL_FRAMES, lasting, run as run_command, skip};
-use localshape::internals::{Shown, Tags, read_tags};
+use crate::support::{Place, SMALL, SMALL_FRAMES, lasting, run as run_command};
+use localshape::internals::{Shown, Tags, read_tags, skipped};
 use localshape::{AdapterChoice, FrameFolder, Gpu, Limits, Renderer, Runner, Scene, compose};
 use std::path::Path;
 use std::sync::LazyLock;
@@ -15,7 +15,7 @@ pub(crate) fn can_draw() -> bool {
     let is_required = std::env::var_os("LOCALSHAPE_REQUIRE_GPU").is_some_and(|value| value == "1");
     assert!(*FOUND || !is_required, "no graphics adapter");
     if !*FOUND {
-        skip("no graphics adapter");
+        skipped("no graphics adapter");
     }
     *FOUND
 }

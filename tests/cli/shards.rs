@@ -169,7 +169,7 @@ fn gnu_parallel_draws_the_whole() {
     if Command::new("parallel").arg("--version").output().is_err() {
         let missing = "there is no GNU parallel: `apt install parallel`";
         assert!(std::env::var_os("LOCALSHAPE_REQUIRE_PARALLEL").is_none_or(|value| value != "1"), "{missing}");
-        return crate::support::skip(missing);
+        return localshape::internals::skipped(missing);
     }
     place.run("render small.toml -o whole --states").good();
     run(&mut script(&place, documented("localshape simulate").lines().next().expect("a line"))).good();

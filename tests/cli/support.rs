@@ -1,6 +1,6 @@
 //! A folder to run the program in, and its output.
 
-use localshape::internals::{Compression, Shown, Tags, encode};
+use localshape::internals::{Compression, Shown, Tags, encode, skipped};
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -259,11 +259,6 @@ pub(crate) fn documented(file: &str) -> Vec<String> {
     cells.flat_map(|cell| cell.split(", ")).map(|name| name.trim_matches('`').to_owned()).collect()
 }
 
-/// Prints that a test was skipped.
-pub(crate) fn skip(why: &str) {
-    eprintln!("SKIPPED: {why}");
-}
-
 /// Whether there is an `ffmpeg`, with a notice if there is none. With `LOCALSHAPE_REQUIRE_FFMPEG=1` there must be one.
 #[cfg(feature = "render")]
 pub(crate) fn has_ffmpeg() -> bool {
@@ -271,7 +266,7 @@ pub(crate) fn has_ffmpeg() -> bool {
     if !is_there {
         let missing = "there is no ffmpeg: `apt install ffmpeg`";
         assert!(std::env::var_os("LOCALSHAPE_REQUIRE_FFMPEG").is_none_or(|value| value != "1"), "{missing}");
-        skip(missing);
+        skipped(missing);
     }
     is_there
 }
@@ -295,7 +290,7 @@ pub(crate) fn python(package: &str) -> Option<impl Fn(&Path, &str) -> String + u
     let Some(python) = ["python3", "/usr/bin/python3"].into_iter().find(has_package) else {
         let missing = format!("there is no Python with {package}: `apt install python3-{}`", package.to_lowercase());
         assert!(std::env::var_os("LOCALSHAPE_REQUIRE_PYTHON").is_none_or(|value| value != "1"), "{missing}");
-        skip(&missing);
+        skipped(&missing);
         return None;
     };
     Some(move |folder: &Path, script: &str| {

@@ -91,7 +91,7 @@ fn other_adapters() {
     others.dedup();
     if others.is_empty() {
         assert!(std::env::var("LOCALSHAPE_REQUIRE_OTHER_ADAPTER").is_err(), "there is one graphics adapter only");
-        eprintln!("SKIPPED: this machine has one graphics adapter only");
+        localshape::internals::skipped("this machine has one graphics adapter only");
     }
     for name in others {
         for (goldens, ..) in SETS {

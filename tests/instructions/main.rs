@@ -60,7 +60,7 @@ fn a_step_takes_no_more_instructions_than_it_did() {
     let is_there = Command::new("valgrind").arg("--version").stdout(Stdio::null()).status().is_ok();
     if !is_there || !cfg!(target_arch = "x86_64") {
         assert!(std::env::var_os("LOCALSHAPE_REQUIRE_VALGRIND").is_none(), "valgrind is not there");
-        eprintln!("skipped: valgrind is not there");
+        localshape::internals::skipped("valgrind is not there");
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");

@@ -41,7 +41,7 @@ static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| match Gpu::new(&AdapterChoi
 /// The device that all tests share, or `None`, with a message, if a test is skipped.
 fn gpu(test: &str) -> Option<&'static Gpu> {
     if GPU.is_none() {
-        eprintln!("SKIPPED {test}: no graphics adapter");
+        localshape::internals::skipped(&format!("no graphics adapter for {test}"));
     }
     GPU.as_ref()
 }

@@ -51,7 +51,7 @@ impl Browser {
         let Some(program) = program() else {
             let missing = "there is no Chromium: `apt install chromium`, or name one in LOCALSHAPE_BROWSER";
             assert!(std::env::var_os("LOCALSHAPE_REQUIRE_BROWSER").is_none_or(|value| value != "1"), "{missing}");
-            eprintln!("skipped: {missing}");
+            localshape::internals::skipped(missing);
             return None;
         };
         let folder = tempfile::tempdir().expect("a folder for the browser");

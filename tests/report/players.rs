@@ -87,13 +87,13 @@ fn first_and_last_frames_are_shown() {
     if !has_ffmpeg {
         let missing = "there is no ffmpeg: `apt install ffmpeg`";
         assert!(std::env::var_os("LOCALSHAPE_REQUIRE_FFMPEG").is_none_or(|value| value != "1"), "{missing}");
-        eprintln!("skipped: {missing}");
+        localshape::internals::skipped(missing);
         return;
     }
     for (file, kind) in [("film.webm", "video/webm; codecs=vp9"), ("film.mp4", "video/mp4; codecs=avc1.64001f")] {
         let can_play = format!("document.createElement('video').canPlayType({})", json!(kind));
         if browser.text(&can_play).is_empty() {
-            eprintln!("skipped: this Chromium does not play {kind}");
+            localshape::internals::skipped(&format!("this Chromium does not play {kind}"));
             continue;
         }
         animate(folder, file, &[]);

@@ -36,7 +36,7 @@ fn a_browser_shows_the_same_as_the_png_file() {
     // Vectors of flat panels need no device.
     assert!(draw(folder, "fig2.svg"));
     if !draw(folder, "fig2.png") {
-        eprintln!("skipped: no graphics adapter");
+        localshape::internals::skipped("no graphics adapter");
         return;
     }
     let drawn = pixels(&folder.join("fig2.png"));

@@ -327,6 +327,12 @@ fn a_box_that_takes_a_part_of_a_layer_is_told() {
     ] {
         assert_eq!(warnings(whole), [], "{whole}");
     }
+    // Exactly half of the layers are not thin.
+    let six = world.replace("[6, 2, 2]", "[5, 2, 2]");
+    let half = "low = [-1, -1, -1], high = [-0.04, 0.15, 0.05]";
+    assert_eq!(good(&format!("{six}[[hold]]\nnodes = {{ {half} }}")).warnings, []);
+    let less = half.replace("-0.04", "-0.14");
+    assert_eq!(good(&format!("{six}[[hold]]\nnodes = {{ {less} }}")).warnings.len(), 1);
     let plane = "[[grab]]\nnodes = { low = [-0.2, 0.1], high = [0.01, 0.1] }\npath.keys = [{ time = 0 }, { time = 1 }]";
     let told = good(&format!("{PLANE}{plane}")).warnings;
     assert_eq!(told[0].message, "`grab[0].nodes` takes 2 of the 3 nodes of a layer of the body");

@@ -26,7 +26,7 @@ fn fig4b(frames: u64) -> (Scene, Vec<Frame>) {
 #[test]
 fn a_frame_like_the_last_one_is_not_drawn() {
     let Ok(gpu) = Gpu::new(&AdapterChoice::Auto) else {
-        return eprintln!("SKIPPED: no graphics adapter");
+        return crate::internals::skipped("no graphics adapter");
     };
     let (scene, frames) = fig4b(2);
     let folder = tempfile::tempdir().expect("a folder");
@@ -48,7 +48,7 @@ fn a_frame_like_the_last_one_is_not_drawn() {
 fn a_lost_device_loses_no_frame_that_was_drawn() {
     const DRAWN: usize = 3;
     let Ok(gpu) = Gpu::new(&AdapterChoice::Auto) else {
-        return eprintln!("SKIPPED: no graphics adapter");
+        return crate::internals::skipped("no graphics adapter");
     };
     let (scene, frames) = fig4b(6);
     let asked: Vec<_> = (0..6).collect();
