@@ -180,8 +180,9 @@ impl Frame {
             diagram.rectangle([left, (y - 0.5 * THIN).round(), right - left, THIN], HAIRLINE);
             write(diagram, &power_of_ten(power), SMALL, 1.0, [left - GAP, y + MIDDLE * SMALL.size]);
         }
-        // On a short axis twos and fives, too.
-        let digits: &[f64] = if high - low < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        // Numbers far from 1 are powers of ten, on the whole axis. On a short axis there are twos and fives, too.
+        let is_plain = low > -3.5 && high < 4.5;
+        let digits: &[f64] = if is_plain && high - low < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let all = (low as i32 - 1..=high as i32 + 1).flat_map(|power| digits.iter().map(move |&digit| (power, digit)));
         for (power, digit) in all {
             let at = f64::from(power) + libm::log10(digit);
@@ -190,10 +191,8 @@ impl Frame {
             }
             let x = self.pixel([at, rows[0]])[0];
             diagram.rectangle([(x - 0.5 * THIN).round(), top, THIN, bottom - top], HAIRLINE);
-            let text = match power {
-                -3..=4 => format!("{}", libm::round(digit * libm::exp10(f64::from(power)) * 1e6) / 1e6),
-                _ => power_of_ten(power),
-            };
+            let number = libm::round(digit * libm::exp10(f64::from(power)) * 1e6) / 1e6;
+            let text = if is_plain { number.to_string() } else { power_of_ten(power) };
             write(diagram, &text, SMALL, 0.5, [x, bottom + 22.0]);
         }
         write(diagram, across, SMALL, 1.0, [right, bottom + 43.0]);
