@@ -1,12 +1,12 @@
 //! Two sides beside each other: pictures, folders of pictures, or a scene and its golden.
 
-use super::ComparisonError;
-use super::folder::{Drawn, Golden, Pictures, Source, pictures_in};
-use super::keys::{self, ChangedKey};
+use super::error::ComparisonError;
+use super::keys::ChangedKey;
 use super::record::RECORD_FILE;
+use super::source::{Pictures, Source, pictures_in};
 use super::states::{Moved, State, States, moved};
 use super::verdict::{Compared, Verdict};
-use crate::output::{Shown, Tags, shell};
+use crate::output::{Shown, Tags};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -40,7 +40,7 @@ pub(crate) struct Comparison {
     pub(super) sides: [PathBuf; 2],
     /// The command that makes or renews the golden.
     #[serde(skip)]
-    command: Option<String>,
+    pub(super) command: Option<String>,
 }
 
 impl Comparison {
@@ -89,47 +89,7 @@ impl Comparison {
         Ok(comparison)
     }
 
-    /// Compares what was drawn of a scene or figure with its golden.
-    pub(crate) fn of_golden(golden: &Golden, drawn: &Drawn) -> Self {
-        let pictures = drawn.pictures.clone().map(|actual| paired(golden.pictures.clone(), actual));
-        let sides = [golden.folder.clone(), drawn.origin.clone()];
-        let mut comparison = Self::of_pairs(pictures.unwrap_or_default(), sides);
-        let typed = [&golden.folder, &drawn.origin].map(|path| typed(path));
-        comparison.command = Some(format!("localshape compare --bless {}", typed.join(" ")));
-        comparison.notes = drawn.notes.clone();
-        if drawn.pictures.is_none() {
-            comparison.notes.push("no graphics adapter: states were compared, pictures were not".to_owned());
-        }
-        let Some(record) = &golden.record else {
-            comparison.golden_is_missing = true;
-            return comparison;
-        };
-        let [before, after] = [record, &drawn.record];
-        comparison.moved = moved(&before.states, &after.states);
-        comparison.keys = keys::changed(&before.keys, &after.keys);
-        let runs = before.states.runs.iter().filter_map(|run| Some((run, after.states.run(&run.name)?)));
-        let both = |(one, other): (&super::states::Run, &super::states::Run)| {
-            one.states.keys().filter(|frame| other.states.contains_key(frame)).count()
-        };
-        comparison.states = Some(runs.map(both).sum());
-        if before.subject != after.subject {
-            comparison.notes.push(format!("the golden is of {}, and this is {}", before.subject, after.subject));
-        }
-        if let (Some(recorded), Some(end)) = (before.states.last(), after.states.last()) {
-            comparison.ends_early = (end < recorded).then_some([recorded, end]);
-            let told = match end.cmp(&recorded) {
-                std::cmp::Ordering::Less => Some(["continues to", "ends with"]),
-                std::cmp::Ordering::Equal => None,
-                std::cmp::Ordering::Greater => Some(["ends with", "continues to"]),
-            };
-            let told =
-                told.map(|[one, other]| format!("the golden {one} frame {recorded}, the scene {other} frame {end}"));
-            comparison.notes.extend(told);
-        }
-        comparison
-    }
-
-    fn of_pairs(pairs: Vec<(String, [Option<Source>; 2])>, sides: [PathBuf; 2]) -> Self {
+    pub(super) fn of_pairs(pairs: Vec<(String, [Option<Source>; 2])>, sides: [PathBuf; 2]) -> Self {
         let read = |(name, sources): &(String, [Option<Source>; 2])| Compared::read(name.clone(), sources);
         let pictures = match &pairs[..] {
             // Starting threads takes a tenth of the time of a pair.
@@ -188,19 +148,14 @@ impl Comparison {
 
     /// What was found, line by line, besides the verdicts on single pictures.
     pub(super) fn findings(&self) -> Vec<String> {
-        let mut told: Vec<String> = Vec::new();
-        if self.golden_is_missing {
-            told.push(format!("the golden {} is missing", self.sides[0].display()));
-        }
-        told.extend(self.moved.iter().map(|moved| format!("state moved: {moved}")));
-        told.extend(self.keys.iter().map(|key| format!("changed: {key}")));
-        told.extend(self.notes.iter().cloned());
-        told
+        let moved = self.moved.iter().map(|moved| format!("state moved: {moved}"));
+        let keys = self.keys.iter().map(|key| format!("changed: {key}"));
+        moved.chain(keys).chain(self.notes.iter().cloned()).collect()
     }
 }
 
 /// Pictures of two folders by name.
-fn paired(expected: Pictures, actual: Pictures) -> Vec<(String, [Option<Source>; 2])> {
+pub(super) fn paired(expected: Pictures, actual: Pictures) -> Vec<(String, [Option<Source>; 2])> {
     let mut pairs: BTreeMap<String, [Option<Source>; 2]> = BTreeMap::new();
     for (side, pictures) in [expected, actual].into_iter().enumerate() {
         for (name, source) in pictures {
@@ -221,14 +176,6 @@ fn states_of(tags: &[&Tags]) -> States {
         }
     }
     states
-}
-
-/// A path, quoted for the command line.
-fn typed(path: &Path) -> String {
-    let path = path.to_string_lossy();
-    // Prefixed so that a name which begins with - is not taken for an option.
-    let path = if path.starts_with('-') { format!("./{path}").into() } else { path };
-    shell::word(&path)
 }
 
 impl fmt::Display for Comparison {

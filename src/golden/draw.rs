@@ -1,9 +1,9 @@
 //! A scene or figure, simulated and drawn to be compared with its golden, or to become one.
 
-use super::keys;
+use super::folder::{Drawn, Golden};
 use super::record::{Record, frames_with_digests, frames_with_positions};
+use super::said;
 use super::states::{State, States};
-use super::{Drawn, Golden};
 use crate::gpu::{AdapterChoice, Gpu, InitError};
 use crate::output::{Compression, Tags, encode, frame_file_name, state_digest};
 use crate::picture::{Composer, compose_figure};
@@ -78,10 +78,7 @@ pub(crate) fn draw(
 ) -> Result<Option<Drawn>, DrawError> {
     let drawn = match subject {
         Subject::Scene(scene) => draw_scene(scene, golden, pictures, gpu, go_on)?,
-        Subject::Figure(figure) => draw_figure(figure, golden, gpu, go_on)?.map(|mut drawn| {
-            drawn.record.keys = keys::of_figure(path, figure);
-            drawn
-        }),
+        Subject::Figure(figure) => draw_figure(path, figure, golden, gpu, go_on)?,
     };
     Ok(drawn.map(|mut drawn| {
         drawn.origin = path.to_owned();
@@ -150,11 +147,12 @@ fn draw_scene(
             files.insert(frame_file_name(index), encode(size, &pixels, &texts, Compression::High));
         }
     }
-    let record = Record { subject: String::new(), size, frames: drawn, keys: keys::of_scene(&scene), states };
+    let record = Record { subject: String::new(), size, frames: drawn, keys: said::of_scene(&scene), states };
     Ok(Some(Drawn::new(record, files, gpu.is_some(), stopped.into_values().collect())))
 }
 
 fn draw_figure(
+    path: &Path,
     figure: &Figure,
     golden: &Golden,
     gpu: Option<&Gpu>,
@@ -180,14 +178,11 @@ fn draw_figure(
         let picture = compose_figure(&figure, &moments).map_err(no_room)?;
         let image = Renderer::new(gpu, figure.size)?.draw(&picture)?;
         let texts = Tags::of_figure(&figure, &moments, &gpu.description().to_string()).texts();
-        files.insert(picture_file(&figure), encode(figure.size, image.as_raw(), &texts, Compression::High));
+        files.insert(format!("{}.png", figure.name), encode(figure.size, image.as_raw(), &texts, Compression::High));
     }
-    let record = Record { size: figure.size, frames: [0].into(), states, ..Record::default() };
+    let keys = said::of_figure(path, &figure);
+    let record = Record { subject: String::new(), size: figure.size, frames: [0].into(), keys, states };
     Ok(Some(Drawn::new(record, files, gpu.is_some(), Vec::new())))
-}
-
-fn picture_file(figure: &Figure) -> String {
-    format!("{}.png", figure.name)
 }
 
 /// Adds the state of a snapshot, with its positions on request.

@@ -1,59 +1,11 @@
 //! A golden in its folder, and what is there instead.
 
-use super::picture::{PictureError, Pixels, file};
+use super::error::ComparisonError;
 use super::record::{RECORD_FILE, Record};
-use super::{Comparison, ComparisonError};
-use crate::output::{AtomicFile, FolderLock, OutputError, Tags, read_file, read_tags};
-use std::borrow::Cow;
+use super::source::{Pictures, Source, pictures_in};
+use crate::output::{Tags, read_tags};
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-
-/// Where a picture is.
-#[derive(Clone, Debug)]
-pub(super) enum Source {
-    File(PathBuf),
-    /// The bytes of a PNG file.
-    Memory(Vec<u8>),
-}
-
-impl Source {
-    pub(super) fn pixels(&self) -> Result<Pixels, PictureError> {
-        Pixels::from_bytes(&self.bytes()?)
-    }
-
-    /// The bytes of the file.
-    pub(super) fn bytes(&self) -> Result<Cow<'_, [u8]>, PictureError> {
-        match self {
-            Self::File(path) => file(path).map(Cow::Owned),
-            Self::Memory(bytes) => Ok(Cow::Borrowed(bytes)),
-        }
-    }
-}
-
-/// The pictures of a side by name.
-pub(super) type Pictures = BTreeMap<String, Source>;
-
-/// The PNG files in a folder.
-pub(super) fn pictures_in(folder: &Path) -> Result<Pictures, ComparisonError> {
-    let failed = |source| ComparisonError::Read { path: folder.into(), source };
-    let mut pictures = Pictures::new();
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        let Some(name) = path.file_name() else { continue };
-        if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
-            continue;
-        }
-        let Some(name) = name.to_str().map(str::to_owned) else {
-            let source = std::io::Error::new(ErrorKind::InvalidData, "its name is not UTF-8; rename it");
-            return Err(ComparisonError::Read { path, source });
-        };
-        if !name.starts_with('.') {
-            pictures.insert(name, Source::File(path));
-        }
-    }
-    Ok(pictures)
-}
 
 /// A golden, or the folder in which one can be made.
 #[derive(Clone, Debug)]
@@ -157,56 +109,4 @@ impl Drawn {
         let pictures = files.into_iter().map(|(name, bytes)| (name, Source::Memory(bytes))).collect();
         Self { origin: PathBuf::new(), record, pictures: is_drawn.then_some(pictures), notes }
     }
-}
-
-impl Comparison {
-    /// Makes the golden, or replaces in it what is not as it was, and returns what was done, line by line. Pictures within the
-    /// tolerance are kept. All files are written under hidden names before the first one is renamed.
-    ///
-    /// # Errors
-    /// If there are no pictures, or a file cannot be written.
-    pub(crate) fn accept(&self, golden: &Golden, drawn: &Drawn) -> Result<Vec<String>, AcceptError> {
-        let pictures = drawn.pictures.as_ref().ok_or(AcceptError::Undrawn)?;
-        let folder = &golden.folder;
-        std::fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
-        let _lock = FolderLock::beside_others(folder);
-        let mut staged = Vec::new();
-        let mut write = |path: &Path, bytes: &[u8]| -> Result<(), OutputError> {
-            let mut file = AtomicFile::create(path)?;
-            file.append(bytes)?;
-            staged.push(file);
-            Ok(())
-        };
-        let mut gone = Vec::new();
-        for picture in self.pictures.iter().filter(|picture| !picture.verdict.passes()) {
-            let path = folder.join(&picture.name);
-            match pictures.get(&picture.name).map(Source::bytes) {
-                Some(bytes) => write(&path, &bytes.expect("in memory"))?,
-                None => gone.push(path),
-            }
-        }
-        let (path, text) = (folder.join(RECORD_FILE), drawn.record.text());
-        if read_file(&path).ok().flatten().as_deref() != Some(text.as_bytes()) {
-            write(&path, text.as_bytes())?;
-        }
-        let mut told: Vec<String> = self.moved.iter().map(|moved| format!("accepted: state moved: {moved}")).collect();
-        for file in staged {
-            told.push(format!("accepted {}", file.path().display()));
-            file.commit()?;
-        }
-        for path in gone {
-            std::fs::remove_file(&path).map_err(OutputError::writing(&path))?;
-            told.push(format!("removed {}", path.display()));
-        }
-        Ok(told)
-    }
-}
-
-/// Why nothing was accepted.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum AcceptError {
-    #[error("nothing was accepted: without a graphics adapter there are no pictures")]
-    Undrawn,
-    #[error(transparent)]
-    Write(#[from] OutputError),
 }

@@ -5,45 +5,37 @@
 //!
 //! `Suite` tests scenes against goldens in `cargo test` (with the feature `render`).
 
+#[cfg(feature = "render")]
+mod accept;
 mod comparison;
 #[cfg(feature = "render")]
 pub(crate) mod draw;
+mod error;
+#[cfg(feature = "render")]
 mod folder;
 mod keys;
 pub(crate) mod page;
 mod picture;
 mod record;
+#[cfg(feature = "render")]
+mod said;
+mod source;
 mod states;
 #[cfg(feature = "render")]
 mod suite;
 mod tolerance;
 mod verdict;
 
+#[cfg(feature = "render")]
+pub(crate) use accept::AcceptError;
 pub(crate) use comparison::Comparison;
-pub(crate) use folder::{AcceptError, Drawn, Golden};
+pub(crate) use error::ComparisonError;
+#[cfg(feature = "render")]
+pub(crate) use folder::Golden;
+#[cfg(feature = "render")]
 pub(crate) use picture::PictureError;
 #[doc(hidden)]
 pub use picture::Pixels;
 pub(crate) use record::is_record;
 #[cfg(feature = "render")]
 pub use suite::Suite;
-
-use std::io;
-use std::path::PathBuf;
-
-/// Why no comparison can be made.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum ComparisonError {
-    #[error("{} does not exist; expected a picture or a folder of pictures", path.display())]
-    Absent { path: PathBuf },
-    #[error("cannot read {}", path.display())]
-    Read { path: PathBuf, source: io::Error },
-    #[error("{} is a folder and {} is a file; expected two pictures or two folders of pictures", folder.display(), file.display())]
-    Unlike { folder: PathBuf, file: PathBuf },
-    #[error("neither {} nor {} has a PNG picture", expected.display(), actual.display())]
-    Empty { expected: PathBuf, actual: PathBuf },
-    #[error("{} is a golden, which is compared with its scene: localshape compare {} SCENE", path.display(), path.display())]
-    Golden { path: PathBuf },
-    #[error("{} {what}", path.display())]
-    NoGolden { path: PathBuf, what: String },
-}

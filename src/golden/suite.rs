@@ -1,7 +1,8 @@
 //! Goldens in `cargo test`.
 
+use super::comparison::Comparison;
 use super::draw::{PICTURES, Subject, draw, usual_gpu};
-use super::{Comparison, Golden};
+use super::folder::Golden;
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::scene::Limits;
 use std::collections::BTreeSet;

@@ -1,7 +1,7 @@
 //! Verdicts on two pictures: whether the simulation or the drawing changed.
 
-use super::folder::Source;
 use super::picture::{PictureError, Pixels};
+use super::source::Source;
 use super::tolerance::Distance;
 use crate::output::Tags;
 use serde::{Serialize, Serializer};

@@ -1,9 +1,9 @@
 //! A comparison as one HTML file, which works offline: every picture beside the expected one, the worst first. The file
 //! `page.html` has its text, style and script; what was found is plain HTML, so that it can be read without scripts.
 
-use super::Comparison;
-use super::folder::Source;
+use super::comparison::Comparison;
 use super::picture::Pixels;
+use super::source::Source;
 use super::tolerance::{FAINT, STRONG, differences};
 use super::verdict::Compared;
 use crate::output::{Compression, encode};

@@ -1,0 +1,118 @@
+//! What a scene does beside its golden, and accepting it as what is expected.
+
+use super::comparison::{Comparison, paired};
+use super::folder::{Drawn, Golden};
+use super::keys;
+use super::record::RECORD_FILE;
+use super::source::Source;
+use super::states::{Run, moved};
+use crate::output::{AtomicFile, FolderLock, OutputError, read_file, shell};
+use std::path::Path;
+
+impl Comparison {
+    /// Compares what was drawn of a scene or figure with its golden.
+    pub(crate) fn of_golden(golden: &Golden, drawn: &Drawn) -> Self {
+        let pictures = drawn.pictures.clone().map(|actual| paired(golden.pictures.clone(), actual));
+        let sides = [golden.folder.clone(), drawn.origin.clone()];
+        let mut comparison = Self::of_pairs(pictures.unwrap_or_default(), sides);
+        let typed = [&golden.folder, &drawn.origin].map(|path| typed(path));
+        comparison.command = Some(format!("localshape compare --bless {}", typed.join(" ")));
+        comparison.notes = drawn.notes.clone();
+        if drawn.pictures.is_none() {
+            comparison.notes.push("no graphics adapter: states were compared, pictures were not".to_owned());
+        }
+        let Some(record) = &golden.record else {
+            comparison.golden_is_missing = true;
+            let folder = golden.folder.display();
+            comparison.notes.insert(
+                0,
+                match &golden.damage {
+                    None => format!("the golden {folder} is missing"),
+                    Some(what) => format!("{folder}/{RECORD_FILE} cannot be read: {what}"),
+                },
+            );
+            return comparison;
+        };
+        let [before, after] = [record, &drawn.record];
+        comparison.moved = moved(&before.states, &after.states);
+        comparison.keys = keys::changed(&before.keys, &after.keys);
+        let runs = before.states.runs.iter().filter_map(|run| Some((run, after.states.run(&run.name)?)));
+        let both =
+            |(one, other): (&Run, &Run)| one.states.keys().filter(|frame| other.states.contains_key(frame)).count();
+        comparison.states = Some(runs.map(both).sum());
+        if before.subject != after.subject {
+            comparison.notes.push(format!("the golden is of {}, and this is {}", before.subject, after.subject));
+        }
+        if let (Some(recorded), Some(end)) = (before.states.last(), after.states.last()) {
+            comparison.ends_early = (end < recorded).then_some([recorded, end]);
+            if end < recorded {
+                comparison
+                    .notes
+                    .push(format!("the golden continues to frame {recorded}, the scene ends with frame {end}"));
+            } else if end > recorded {
+                comparison
+                    .notes
+                    .push(format!("the golden ends with frame {recorded}, the scene continues to frame {end}"));
+            }
+        }
+        comparison
+    }
+
+    /// Makes the golden, or replaces in it what is not as it was, and returns what was done, line by line. Pictures within the
+    /// tolerance are kept. All files are written under hidden names before the first one is renamed.
+    ///
+    /// # Errors
+    /// If there are no pictures, or a file cannot be written.
+    pub(crate) fn accept(&self, golden: &Golden, drawn: &Drawn) -> Result<Vec<String>, AcceptError> {
+        let pictures = drawn.pictures.as_ref().ok_or(AcceptError::Undrawn)?;
+        let folder = &golden.folder;
+        std::fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
+        let _lock = FolderLock::beside_others(folder);
+        let mut staged = Vec::new();
+        let mut write = |path: &Path, bytes: &[u8]| -> Result<(), OutputError> {
+            let mut file = AtomicFile::create(path)?;
+            file.append(bytes)?;
+            staged.push(file);
+            Ok(())
+        };
+        let mut gone = Vec::new();
+        for picture in self.pictures.iter().filter(|picture| !picture.verdict.passes()) {
+            let path = folder.join(&picture.name);
+            match pictures.get(&picture.name).map(Source::bytes) {
+                Some(bytes) => write(&path, &bytes.expect("in memory"))?,
+                None => gone.push(path),
+            }
+        }
+        let (path, text) = (folder.join(RECORD_FILE), drawn.record.text());
+        if read_file(&path).ok().flatten().as_deref() != Some(text.as_bytes()) {
+            write(&path, text.as_bytes())?;
+        }
+        let mut told: Vec<String> = self.moved.iter().map(|moved| format!("accepted: state moved: {moved}")).collect();
+        for file in staged {
+            told.push(format!("accepted {}", file.path().display()));
+            file.commit()?;
+        }
+        for path in gone {
+            std::fs::remove_file(&path).map_err(OutputError::writing(&path))?;
+            told.push(format!("removed {}", path.display()));
+        }
+        Ok(told)
+    }
+}
+
+/// A path, quoted for the command line.
+fn typed(path: &Path) -> String {
+    let path = path.to_string_lossy();
+    // Prefixed so that a name which begins with - is not taken for an option.
+    let path = if path.starts_with('-') { format!("./{path}").into() } else { path };
+    shell::word(&path)
+}
+
+/// Why nothing was accepted.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum AcceptError {
+    #[error("nothing was accepted: without a graphics adapter there are no pictures")]
+    Undrawn,
+    #[error(transparent)]
+    Write(#[from] OutputError),
+}

@@ -1,0 +1,55 @@
+//! Pictures of one side: files, or drawn for a comparison.
+
+use super::error::ComparisonError;
+use super::picture::{PictureError, Pixels, file};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// Where a picture is.
+#[derive(Clone, Debug)]
+pub(super) enum Source {
+    File(PathBuf),
+    /// The bytes of a PNG file that was drawn.
+    #[cfg_attr(not(feature = "render"), allow(dead_code, reason = "nothing is drawn"))]
+    Memory(Vec<u8>),
+}
+
+impl Source {
+    pub(super) fn pixels(&self) -> Result<Pixels, PictureError> {
+        Pixels::from_bytes(&self.bytes()?)
+    }
+
+    /// The bytes of the file.
+    pub(super) fn bytes(&self) -> Result<Cow<'_, [u8]>, PictureError> {
+        match self {
+            Self::File(path) => file(path).map(Cow::Owned),
+            Self::Memory(bytes) => Ok(Cow::Borrowed(bytes)),
+        }
+    }
+}
+
+/// The pictures of a side by name.
+pub(super) type Pictures = BTreeMap<String, Source>;
+
+/// The PNG files in a folder.
+pub(super) fn pictures_in(folder: &Path) -> Result<Pictures, ComparisonError> {
+    let failed = |source| ComparisonError::Read { path: folder.into(), source };
+    let mut pictures = Pictures::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let Some(name) = path.file_name() else { continue };
+        if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+            continue;
+        }
+        let Some(name) = name.to_str().map(str::to_owned) else {
+            let source = std::io::Error::new(ErrorKind::InvalidData, "its name is not UTF-8; rename it");
+            return Err(ComparisonError::Read { path, source });
+        };
+        if !name.starts_with('.') {
+            pictures.insert(name, Source::File(path));
+        }
+    }
+    Ok(pictures)
+}
