@@ -1,9 +1,12 @@
 //! Rebound and friction against closed forms, at obstacles of every shape, still and moving.
 
-use super::support::Noise;
+use super::support::{Noise, lattice, shape_based};
 use glam::{DQuat, DVec3};
 use localshape_sim::contact::{Motion, Obstacle, Shape};
+use localshape_sim::integrate::Integrator;
 use localshape_sim::motion::{Ease, Key, Offset};
+use localshape_sim::state::State;
+use localshape_sim::world::{Kernel, Stepping, Surroundings, World};
 
 const STEP: f64 = 1e-3;
 
@@ -65,6 +68,36 @@ fn a_turning_table_carries_a_node_at_the_speed_of_the_place_where_it_stands() {
     // The chord of the last step instead of the tangent: rotated by half a step.
     let chord = DQuat::from_rotation_y(-4.0 * STEP / 2.0) * DVec3::new(4.0 * 0.2, 0.0, -4.0 * 0.5);
     assert!((velocity - chord).length() < 1e-5, "{velocity} {chord}");
+}
+
+/// A floor that has turned has turned its normal, for nodes, for pictures and for kernels.
+#[test]
+fn a_turning_floor_turns_its_normal() {
+    let tilt = 0.4;
+    let tilting = Obstacle { pivot: DVec3::X, ..obstacle(floor(), 0.0, 0.0, steady(DVec3::ZERO, DVec3::Z * tilt)) };
+    let normal = DVec3::new(-tilt.sin(), tilt.cos(), 0.0);
+    let (found, height) = tilting.floor(1.0).expect("a floor");
+    assert!((found - normal).length() < 1e-14 && (height - normal.x).abs() < 1e-14, "{found} {height}");
+    // It is pushed out, and keeps its speed along the surface.
+    let inside = DVec3::X + DVec3::new(tilt.cos(), tilt.sin(), 0.0) - normal * 0.01;
+    let (mut position, mut velocity) = (inside, DVec3::Z - normal);
+    tilting.at(1.0, 1e-9).rebound(&mut position, &mut velocity, DVec3::ZERO);
+    assert!((position - inside - normal * 0.01).length() < 1e-12, "{position}");
+    assert!((velocity - DVec3::Z - normal * tilt).length() < 1e-6, "{velocity}");
+    let body = lattice(2, 0.1);
+    let start = State::at_rest(body.rest.iter().map(|&at| at + DVec3::new(1.2, 0.01, 0.0)).collect());
+    let ends = [Kernel::Fast, Kernel::Reference].map(|kernel| {
+        let gravity = DVec3::Y * -9.8;
+        let around = Surroundings { gravity, obstacles: vec![tilting.clone()], ..Surroundings::default() };
+        let stepping = Stepping { kernel, ..Stepping::new(Integrator::SemiImplicitEuler, STEP) };
+        let mut world = World::new(&body, start.clone(), &shape_based(1e4, 20.0), around, stepping);
+        world.advance(300);
+        let state = world.state().position.clone();
+        let (normal, height) = tilting.floor(0.3).expect("a floor");
+        assert!(state.iter().all(|at| at.dot(normal) > height - 1e-3), "{kernel:?}: a node has sunk in");
+        state
+    });
+    assert!(ends[0].iter().zip(&ends[1]).all(|(fast, plain)| fast.distance(*plain) < 1e-9));
 }
 
 #[test]

@@ -6,6 +6,7 @@ use glam::DVec3;
 use localshape_sim::body::{Body, Dimension, Solids};
 use localshape_sim::grip::Grip;
 use localshape_sim::integrate::Integrator;
+use localshape_sim::model::mass_spring::MassSpring;
 use localshape_sim::model::shape_based::{RotationReading, ShapeBased};
 use localshape_sim::model::{ElasticModel, Report};
 use localshape_sim::motion::{Ease, Key, Motion, Offset};
@@ -215,6 +216,70 @@ fn the_adaptive_method_keeps_its_tolerance() {
             assert!(off < bound, "damping {damping}, {height:?}, tolerance {tolerance:e}: {off:e}");
         }
     }
+}
+
+/// Two nodes that a spring joins, whose stiffness (N/m) and damping (N s/m) are given; 1 kg each unless `heavy`, with which the second
+/// one hardly moves.
+fn pair(rest: [DVec3; 2], heavy: bool, stiffness: f64, damping: f64) -> (Arc<Body>, MassSpring) {
+    let elements = [&[0, 1][..]].into_iter().collect();
+    let mass = vec![1.0, if heavy { 1e12 } else { 1.0 }];
+    let body = Arc::new(Body::new(Dimension::Space, rest.to_vec(), mass, elements, Solids::Ordered, None));
+    (body, MassSpring { stiffness, damping, springs: [[0, 1]].into() })
+}
+
+/// Nodes that bounce without loss keep their energy with a coarse tolerance, too: the acceleration of a rebound is that of its substep.
+#[test]
+fn rebounds_of_the_adaptive_method_keep_the_energy() {
+    let (body, model) = pair([DVec3::ZERO, DVec3::X], false, 1e-9, 0.0);
+    let start = State::at_rest(body.rest.iter().map(|&at| at + DVec3::Y * 0.01).collect());
+    let around = Surroundings { gravity: DVec3::Y * -9.8, obstacles: vec![floor(1.0, 0.0)], ..Surroundings::default() };
+    let stepping = Stepping { tolerance: 1e-3, ..Stepping::new(Integrator::DormandPrince, 0.2) };
+    let mut world = World::new(&body, start, &model, around, stepping);
+    for _ in 0..10 {
+        world.advance(1);
+        let State { position, velocity, .. } = world.state();
+        let energy = 0.5 * velocity[0].length_squared() + 9.8 * position[0].y;
+        assert!((energy / 0.098 - 1.0).abs() < 1e-9, "{energy}");
+    }
+}
+
+/// A damped oscillation that is interrupted by rebounds, against its closed form between them.
+#[test]
+fn rebounds_of_the_adaptive_method_have_its_tolerance() {
+    let (rate, decay, restitution, middle) = (20.0_f64, 3.0_f64, 0.8, 0.05);
+    let (body, model) = pair([DVec3::Y * middle, DVec3::Y], true, rate * rate, 2.0 * decay);
+    let start = State::new(body.rest.clone(), vec![DVec3::Y * -4.0, DVec3::ZERO]);
+    let around = Surroundings { obstacles: vec![floor(restitution, 0.0)], ..Surroundings::default() };
+    let stepping = Stepping { tolerance: 1e-9, ..Stepping::new(Integrator::DormandPrince, 0.01) };
+    let mut world = World::new(&body, start, &model, around, stepping);
+    // Height above the middle and speed after a time.
+    let slow = (rate * rate - decay * decay).sqrt();
+    let free = |[at, speed]: [f64; 2], time: f64| {
+        let (sine, cosine) = (slow * time).sin_cos();
+        let other = (speed + decay * at) / slow;
+        let [out, turned] = [at * cosine + other * sine, other * cosine - at * sine];
+        [out, slow * turned - decay * out].map(|one| one * (-decay * time).exp())
+    };
+    let (mut from, mut now, mut bounces) = (0.0, [0.0, -4.0], 0);
+    for step in 1..=40 {
+        let end = 0.01 * f64::from(step);
+        while free(now, end - from)[0] < -middle {
+            let (mut above, mut below) = (0.0, end - from);
+            for _ in 0..60 {
+                let time = 0.5 * (above + below);
+                if free(now, time)[0] < -middle { below = time } else { above = time }
+            }
+            from += above;
+            now = [-middle, -restitution * free(now, above)[1]];
+            bounces += 1;
+        }
+        world.advance(1);
+        let [out, speed] = free(now, end - from);
+        let state = world.state();
+        let off = (state.position[0].y - middle - out).abs().max((state.velocity[0].y - speed).abs() / rate);
+        assert!(off < 5.0 * 1e-9, "step {step}: {off:e} after {bounces} rebounds");
+    }
+    assert!(bounces >= 2, "{bounces}");
 }
 
 /// Backward Euler is of first order, and stable for any step: where a deformed body is free with steps of many

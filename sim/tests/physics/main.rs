@@ -14,6 +14,7 @@ mod own_method;
 mod readings;
 mod rest;
 mod runaway;
+mod stability;
 mod state;
 mod support;
 mod threads;

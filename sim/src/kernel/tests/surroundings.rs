@@ -73,6 +73,28 @@ fn a_runaway_leaves_the_state_before_its_step() {
     assert!(kernel.advance(5, FREE).is_err() && kernel.0.steps() == 0);
 }
 
+/// A node that contact makes too fast is found at the end of the step, which velocity Verlet computes in the next pass, by the limit
+/// of that step.
+#[test]
+fn the_end_of_a_step_has_the_limit_of_that_step() {
+    let body = pieces([4, 3, 4], &[4, 8], 15);
+    let start = start(&body, 5);
+    let start = (start.clone(), rotations(&body, &start));
+    for damping in [0.0, 10.0] {
+        let mut kernel = general(&body, &start, TWICE, damping, Scheme::VelocityVerlet, Set::best());
+        let everywhere = Bound::HalfSpace { normal: DVec3::Y, height: f64::INFINITY };
+        let around = Around {
+            bounds: &[everywhere],
+            row: &|_| 0..1,
+            resolve: &|step, _, velocity, _| velocity.x = if step == 7 { 50.0 } else { velocity.x },
+            speed_limit: &|step| if step == 7 { 40.0 } else { 1000.0 },
+            ..FREE
+        };
+        assert!(kernel.advance(30, around).is_err(), "{damping}");
+        assert_eq!(kernel.0.steps(), 7, "{damping}");
+    }
+}
+
 /// Grips that become active and inactive, and moving obstacles, with every scheme and kernel: a lattice, any elements,
 /// springs in families and others.
 #[test]
