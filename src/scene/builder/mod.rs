@@ -68,7 +68,7 @@ impl Scene {
     /// # Ok::<(), localshape::scene::SceneError>(())
     /// ```
     ///
-    /// All mistakes are found when the scene is built, and named as in a scene file:
+    /// All mistakes are found when the scene is built, and named as in a scene file. Wrong values come before wrong references:
     ///
     /// ```
     /// # use localshape::scene::{BodyBuilder, Limits, Scene};
@@ -78,8 +78,8 @@ impl Scene {
     /// let error = scene.build(&Limits::default()).unwrap_err();
     /// assert_eq!(error.mistakes().len(), 2);
     /// assert!(error.to_string().starts_with(
-    ///     "triangle: `body.elements[0][2]`: there is no node 3; the body has nodes 0 to 2; nodes are counted from 0\n\
-    ///      triangle: `run[0].model.stiffness` is -1.0; expected a number greater than 0"
+    ///     "triangle: `run[0].model.stiffness` is -1.0; expected a number greater than 0\n\
+    ///      triangle: `body.elements[0][2]`: there is no node 3; the body has nodes 0 to 2; nodes are counted from 0"
     /// ));
     /// ```
     pub fn builder(name: impl Into<String>, body: BodyBuilder) -> SceneBuilder {
