@@ -65,6 +65,10 @@ impl Place {
     fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_localshape-study"));
         command.current_dir(self.0.path()).args(arguments.split(' ')).stdin(Stdio::null());
+        // Independent of the user's settings.
+        for name in ["CLICOLOR", "CLICOLOR_FORCE", "NO_COLOR", "COLUMNS"] {
+            command.env_remove(name);
+        }
         command
     }
 
