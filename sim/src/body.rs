@@ -1,12 +1,9 @@
 //! The [`Body`]: nodes, masses and elements at rest.
 
-pub use super::element::{Dimension, ElementKind, Solids};
-use super::element::{around, kind};
-use super::hull::Hulls;
-pub use super::hull::bounds;
-pub use super::lists::IndexLists;
-pub use super::topology::Faces;
-use super::topology::{Elements, assign_faces};
+use super::element::{Dimension, ElementKind, Solids, around, kind};
+use super::hull::{Hulls, bounds};
+use super::lists::IndexLists;
+use super::topology::{Elements, Faces, assign_faces};
 use glam::DVec3;
 
 /// A deformable body at rest. It is immutable, and all runs of a scene share it.

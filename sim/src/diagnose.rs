@@ -1,9 +1,11 @@
 //! The quantities from which diagnostics are computed: volumes of elements, and the best rigid placement.
 
-use super::body::{Body, ElementKind};
+use super::body::Body;
+
 use super::crew::Crew;
 use super::diagnostics::{Facts, Lazy};
 use super::element;
+use super::element::ElementKind;
 use super::gather::Group;
 use super::lanes::{Lanes, Set, Work, each};
 use super::model::Report;
@@ -283,9 +285,8 @@ fn mean(points: &[DVec3]) -> DVec3 {
 mod tests {
     use super::super::diagnostics::{Diagnostic, Diagnostics, is_flat, is_turned_over};
     use super::*;
-    use crate::body::Dimension;
-    use crate::body::IndexLists;
-    use crate::body::Solids;
+    use crate::element::{Dimension, Solids};
+    use crate::lists::IndexLists;
     use crate::state::State;
     use glam::DQuat;
 

@@ -1,7 +1,9 @@
 //! The interface of whatever advances a state: the reference code with its integrators, and the vectorised kernels.
 
-use super::body::{Body, bounds};
+use super::body::Body;
+
 use super::crew::Crew;
+use super::hull::bounds;
 use super::model::{Report, Share};
 use super::part::Part;
 use super::state::{Nodes, State};

@@ -97,8 +97,7 @@ impl Field {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Dimension;
-    use crate::body::Solids;
+    use crate::element::{Dimension, Solids};
     use crate::state::State;
     use glam::{DQuat, DVec3};
 

@@ -1,7 +1,6 @@
 //! A [`Snapshot`] of a run: what drawing, diagnostics and files read of a simulation.
 
-pub use super::diagnostics::Diagnostic;
-pub use super::diagnostics::Diagnostics;
+use super::diagnostics::Diagnostics;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 

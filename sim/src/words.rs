@@ -1,6 +1,8 @@
 //! Names of the parts of a body, of choices and of units, and rounding of numbers, for captions and messages.
 
-use super::body::{Body, ElementKind};
+use super::body::Body;
+
+use super::element::ElementKind;
 use glam::DVec3;
 use serde::Serialize;
 
@@ -100,8 +102,7 @@ pub fn rounded(value: f64, digits: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Dimension;
-    use crate::body::Solids;
+    use crate::element::{Dimension, Solids};
 
     fn body(dimension: Dimension, rest: &[[f64; 3]], elements: &[&[u32]]) -> Body {
         let rest: Vec<_> = rest.iter().copied().map(DVec3::from_array).collect();

@@ -14,8 +14,7 @@ use crate::reading::words::nearest;
 use crate::runner::moments::{Forces, Moments, Taking};
 use crate::scene::figure::{Content, Figure, NAMES};
 use crate::scene::{Limits, Scene, SceneError};
-use crate::sim::diagnostics::{Chosen, Reach};
-use crate::sim::snapshot::{self, RunFrame, Snapshot};
+use crate::sim::{self, Chosen, Reach, RunFrame, Snapshot};
 use clap::{Args, ValueHint};
 use serde_json::{Value, json};
 use std::collections::VecDeque;
@@ -324,8 +323,8 @@ fn numbers(figure: &Figure, moments: &Moments) -> Value {
                 let RunFrame { snapshot: Snapshot { time, diagnostics, status, .. }, .. } = &moments.cells[row][column];
                 let number = sheet.number.map(|number| number.of(diagnostics)).filter(|number| number.is_finite());
                 let diverged = match status {
-                    snapshot::Status::Diverged(divergence) => Some(divergence.time),
-                    snapshot::Status::Ok => None,
+                    sim::Status::Diverged(divergence) => Some(divergence.time),
+                    sim::Status::Ok => None,
                 };
                 let mut cell = json!({
                     "diverged_at": diverged,

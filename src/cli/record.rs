@@ -14,9 +14,7 @@ use crate::runner::cause::Cause;
 use crate::runner::history::History;
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::Scene;
-use crate::sim::body::Body;
-use crate::sim::snapshot::{self, Frame};
-use crate::sim::state::State;
+use crate::sim::{self, Body, Frame, State};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Value, json};
 use std::error::Error;
@@ -274,12 +272,12 @@ impl<'a> Recording<'a> {
         let runs = self.summary.runs.iter_mut().zip(&self.runs).zip(&mut self.sound);
         for (((summary, &run), sound), state) in runs.zip(states) {
             match state.status {
-                snapshot::Status::Ok => sound.clone_from(state),
-                snapshot::Status::Diverged(divergence) if sound.status == snapshot::Status::Ok => {
+                sim::Status::Ok => sound.clone_from(state),
+                sim::Status::Diverged(divergence) if sound.status == sim::Status::Ok => {
                     summary.cause = Cause::find(self.scene, run, sound, divergence, rayon::current_num_threads());
                     sound.clone_from(state);
                 }
-                snapshot::Status::Diverged(_) => {}
+                sim::Status::Diverged(_) => {}
             }
         }
     }
@@ -356,7 +354,7 @@ impl<'a> Recording<'a> {
         self.sound = simulation.frames.states().cloned().collect();
         // Runs that diverged on the way from the last frame to the checkpoint.
         for ((summary, &run), sound) in self.summary.runs.iter().zip(&self.runs).zip(&mut self.sound) {
-            if simulation.read_from.is_none() && sound.status != snapshot::Status::Ok && summary.cause.is_none() {
+            if simulation.read_from.is_none() && sound.status != sim::Status::Ok && summary.cause.is_none() {
                 *sound = self.scene.world(run).state().clone();
             }
         }

@@ -4,8 +4,7 @@ use super::failure::{Failure, note, with_causes};
 use crate::output::{Checkpoint, Claimed, DiagnosticsWriter, OutputError, StatesWriter, Summary, Timings};
 use crate::runner::history::History;
 use crate::runner::{Frames, Next};
-use crate::sim::diagnostics::Diagnostic;
-use crate::sim::snapshot::Frame;
+use crate::sim::{Diagnostic, Frame};
 use std::time::{Duration, Instant};
 
 /// What turns frames into pictures, for one scene.

@@ -10,7 +10,7 @@ use crate::render::{RenderError, Renderer};
 use crate::runner::Runner;
 use crate::runner::history::History;
 use crate::scene::Scene;
-use crate::sim::body::Dimension;
+use crate::sim::Dimension;
 use crate::vector::{self, Page};
 use std::path::Path;
 

@@ -13,8 +13,7 @@ use crate::runner::moments::Taking;
 use crate::runner::{Frames, Next, Runner};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene, SceneError, is_figure_file};
-use crate::sim::diagnostics::Reach;
-use crate::sim::snapshot::{Divergence, Snapshot, Status};
+use crate::sim::{Divergence, Reach, Snapshot, Status};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 

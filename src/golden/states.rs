@@ -1,6 +1,5 @@
 //! Known states, exact or rounded, and how those of two sides differ.
 
-use crate::sim::apart::distances;
 use crate::sim::words::quantity;
 use glam::DVec3;
 use serde::Serialize;
@@ -162,7 +161,7 @@ fn displacement(frame: u64, sides: [&States; 2], positions: [&[DVec3]; 2]) -> Op
     let nodes: Vec<usize> = nodes.filter(|node| node / other < positions[1].len()).collect();
     let [before, after] =
         [0, 1].map(|at| -> Vec<DVec3> { nodes.iter().map(|node| positions[at][node / sides[at].every]).collect() });
-    let farthest = nodes.iter().copied().zip(distances(&before, &after));
+    let farthest = nodes.iter().copied().zip(before.iter().zip(&after).map(|(before, after)| before.distance(*after)));
     let (node, distance) = farthest.reduce(|one, other| if other.1 > one.1 { other } else { one })?;
     // Rounding moves each coordinate by half a quantum at most.
     let precision = 0.5 * 3_f64.sqrt() * (sides[0].quantum + sides[1].quantum);

@@ -9,8 +9,7 @@ use crate::runner::history::History;
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene};
-use crate::sim::diagnostics::Diagnostic;
-use crate::sim::state::State;
+use crate::sim::{Diagnostic, State};
 use std::fs;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! The box around a body, along the axes of a camera.
 
 use super::view::{Traced, View, axes};
-use crate::sim::body::{Body, Dimension};
+use crate::sim::{Body, Dimension};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 

@@ -2,7 +2,7 @@
 
 use super::view::ColourMap;
 use crate::reading::coordinates::Coordinates;
-use crate::sim::field::Field;
+use crate::sim::Field;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

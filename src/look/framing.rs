@@ -4,8 +4,8 @@ use super::file::CameraFile;
 use super::reach;
 use super::subject::Subject;
 use super::view::{Camera, axes};
-use crate::sim::body::{Dimension, bounds};
-use crate::sim::contact::{self, Obstacle, Shape};
+use crate::sim::geometry::{self, bounds};
+use crate::sim::{Dimension, Obstacle, Shape};
 use glam::{DVec2, DVec3};
 
 /// Azimuth, elevation and field of view that show a cube's three sides well and with little perspective (rad).
@@ -76,7 +76,7 @@ fn size(scene: &Subject<'_>) -> f64 {
 fn standing(start: &[DVec3], obstacles: &[Obstacle]) -> DVec3 {
     let (low, high) = bounds(start);
     let middle = (low + high) / 2.0;
-    let Some((normal, height)) = contact::ground(obstacles, 0.0) else { return middle };
+    let Some((normal, height)) = geometry::ground(obstacles, 0.0) else { return middle };
     let ground = (height - normal.x * middle.x - normal.z * middle.z) / normal.y;
     DVec3::new(middle.x, ground + (high.y - low.y) / 2.0, middle.z)
 }

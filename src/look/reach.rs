@@ -1,9 +1,8 @@
 //! The obstacles and grips that come near the body at any time of a scene, so that the camera can show them.
 
 use super::subject::Subject;
-use crate::sim::body::{Dimension, bounds};
-use crate::sim::contact::{Motion, Obstacle, Shape};
-use crate::sim::grip::Grip;
+use crate::sim::geometry::bounds;
+use crate::sim::{Dimension, Grip, Motion, Obstacle, Shape};
 use glam::DVec3;
 
 /// What is farther from the body than this (body sizes) does not affect the camera, so that bodies stay large.

@@ -1,11 +1,10 @@
 //! The subject of a view: a body, its runs and what is around it.
 
-use crate::sim::body::{Body, bounds};
-use crate::sim::contact::{self, Obstacle};
-use crate::sim::field::Field;
-use crate::sim::grip::Grip;
+use crate::sim::Body;
+
+use crate::sim::geometry::{self, bounds};
 use crate::sim::model::ElasticModel;
-use crate::sim::state::State;
+use crate::sim::{Field, Grip, Obstacle, State};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -44,7 +43,7 @@ impl Subject<'_> {
             Field::Speed => {
                 let start = self.initial.velocity.iter().fold(0.0, |most: f64, v| most.max(v.length()));
                 let (_, high) = bounds(&self.initial.position);
-                let drop = contact::ground(self.obstacles, 0.0).map_or(0.0, |(_, ground)| (high.y - ground).max(0.0));
+                let drop = geometry::ground(self.obstacles, 0.0).map_or(0.0, |(_, ground)| (high.y - ground).max(0.0));
                 let fall = (2.0 * self.gravity.length() * drop).sqrt();
                 let pushed = self.obstacles.iter().map(|obstacle| obstacle.motion.greatest_speed(side));
                 let fastest = pushed.fold((start * start + fall * fall).sqrt(), f64::max);

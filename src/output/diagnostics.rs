@@ -3,8 +3,7 @@
 use super::atomic::open_growing;
 use super::{OutputError, exact, rows_as_csv};
 use crate::scene::Scene;
-use crate::sim::diagnostics::{Diagnostic, Value};
-use crate::sim::snapshot::{Frame, RunFrame, Snapshot, Status};
+use crate::sim::{Diagnostic, Frame, RunFrame, Snapshot, Status, Value};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::{self, File};

@@ -1,6 +1,6 @@
 //! Digests by which states are compared bit for bit.
 
-use crate::sim::snapshot::Snapshot;
+use crate::sim::Snapshot;
 use sha2::{Digest, Sha256};
 
 /// SHA-256 over all positions (m) and then all velocities (m/s) of a run's nodes, as little-endian double precision

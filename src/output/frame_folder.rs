@@ -2,7 +2,7 @@
 
 use super::{DiagnosticsWriter, OutputError};
 use crate::scene::Scene;
-use crate::sim::snapshot::Frame;
+use crate::sim::Frame;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};

@@ -4,7 +4,7 @@ use super::{OutputError, exact, state_digest};
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::Figure;
-use crate::sim::snapshot::{Frame, RunFrame};
+use crate::sim::{Frame, RunFrame};
 pub use png::Compression;
 use std::fs::File;
 use std::io::BufReader;

@@ -3,8 +3,7 @@
 use super::{OutputError, Timings, state_digest, write_whole};
 use crate::runner::cause::Cause;
 use crate::scene::Scene;
-use crate::sim::diagnostics::{Chosen, Reach};
-use crate::sim::snapshot::{Frame, Status};
+use crate::sim::{Chosen, Frame, Reach, Status};
 use serde::Serialize;
 use std::path::{Component, Path, PathBuf};
 

@@ -7,7 +7,7 @@ use super::order::farthest_first;
 use super::plane::{clipped, from_side, sides};
 use super::{Mark, MarkShape};
 use crate::colour::Colour;
-use crate::sim::snapshot::Placement;
+use crate::sim::Placement;
 use glam::{DVec2, DVec3};
 
 /// The widths of an arrow's halo and of its head with it, in parts of the head's own width. The shader has them, too.

@@ -3,7 +3,7 @@
 use super::layout;
 use super::narrow::narrow_row;
 use crate::look::{Camera, View, axes};
-use crate::sim::body::Dimension;
+use crate::sim::Dimension;
 use glam::{DVec3, DVec4, Mat4};
 
 /// How far below the middle of the room between the text the point looked at is, in parts of that room's height: bodies

@@ -6,7 +6,7 @@ use super::text::{Fonts, TextRun, Weight};
 use super::{Curve, Mark, MarkShape, number};
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette};
-use crate::sim::snapshot::{Divergence, RunFrame, Snapshot, Status};
+use crate::sim::{Divergence, RunFrame, Snapshot, Status};
 
 /// The text in place of a number for a run that diverged.
 const DIVERGED: &str = "diverged";

@@ -1,6 +1,6 @@
 //! Triangulation of polygons that are not convex, by ear clipping.
 
-use crate::sim::body::Body;
+use crate::sim::Body;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 

@@ -3,7 +3,7 @@
 use super::number;
 use super::series::Series;
 use crate::scene::Scene;
-use crate::sim::snapshot::Diagnostic;
+use crate::sim::Diagnostic;
 
 /// The most events of a picture: their numbers have one digit.
 const MOST: usize = 9;

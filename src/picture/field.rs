@@ -3,8 +3,7 @@
 use super::narrow::narrow;
 use crate::colour::Colour;
 use crate::look::ColourScale;
-use crate::sim::body::Body;
-use crate::sim::field::Support;
+use crate::sim::{Body, Support};
 
 /// The place of a value that is not a number: such parts keep the body's own colour.
 pub(super) const NOWHERE: f32 = -1.0;
@@ -88,9 +87,7 @@ pub(super) fn colour(ramp: &[Colour], place: f32) -> Colour {
 mod tests {
     use super::*;
     use crate::look::ColourMap;
-    use crate::sim::body::Solids;
-    use crate::sim::body::{Dimension, IndexLists};
-    use crate::sim::field::Field;
+    use crate::sim::{Dimension, Field, IndexLists, Solids};
     use glam::DVec3;
 
     fn body() -> Body {

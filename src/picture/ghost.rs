@@ -312,7 +312,7 @@ mod tests {
     use super::*;
     use crate::look::View;
     use crate::picture::Framing;
-    use crate::sim::body::Dimension;
+    use crate::sim::Dimension;
 
     const ROOM: Rectangle = [0, 0, 640, 640];
 

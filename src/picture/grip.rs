@@ -5,8 +5,7 @@ use super::pointer::{Going, Pointers};
 use super::skin::Skin;
 use super::{Mark, MarkShape};
 use crate::look::Palette;
-use crate::sim::grip::Grip;
-use crate::sim::motion::Motion;
+use crate::sim::{Grip, Motion};
 use glam::DVec3;
 
 /// Half the width of a pin, and of the ring around a node that is dragged (px in the reference picture), in space and

@@ -445,7 +445,7 @@ mod tests {
             let view = View {
                 size,
                 title: "Title".to_owned(),
-                strip: Some(crate::sim::snapshot::Diagnostic::TurnedOver),
+                strip: Some(crate::sim::Diagnostic::TurnedOver),
                 ..View::default()
             };
             let wanted = Wanted { title_lines: 1, clock: true, legend: 40 * size[1] / 720, caption_lines: 2 };

@@ -1,7 +1,7 @@
 //! Numbers as text: few digits, a suitable unit, a true minus sign.
 
 use super::text::THIN_SPACE;
-use crate::sim::snapshot::Diagnostic;
+use crate::sim::Diagnostic;
 use crate::sim::words::{prefix as prefix_of, rounded};
 
 /// A time (s): milliseconds below a second, then seconds with two or one decimals.

@@ -10,8 +10,7 @@ use super::tracking::NEARER;
 use super::{Mark, MarkShape};
 use crate::colour::Colour;
 use crate::look::Palette;
-use crate::sim::body::Body;
-use crate::sim::contact::Obstacle;
+use crate::sim::{Body, Obstacle};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 

@@ -9,8 +9,7 @@ use crate::colour::mixed;
 use crate::look::{LineStyle, Palette};
 use crate::runner::history::TimeSeries;
 use crate::scene::Scene;
-use crate::sim::body::Dimension;
-use crate::sim::snapshot::Diagnostic;
+use crate::sim::{Diagnostic, Dimension};
 
 /// Widths of a curve and of a cross, and the arms of a cross (px in the reference picture).
 pub(super) const OWN: f64 = 2.2;

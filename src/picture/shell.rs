@@ -1,6 +1,6 @@
 //! The faces that bound a set of elements, without going through all faces.
 
-use crate::sim::body::Body;
+use crate::sim::Body;
 
 /// The faces sorted once for all frames.
 #[derive(Debug, Default)]
@@ -91,7 +91,7 @@ impl Shell {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::body::{Dimension, IndexLists, Solids};
+    use crate::sim::{Dimension, IndexLists, Solids};
     use glam::DVec3;
 
     /// All faces gone through, each by itself.

@@ -2,7 +2,7 @@
 
 use super::camera::Lens;
 use super::ears::Ears;
-use crate::sim::body::Body;
+use crate::sim::Body;
 use glam::DVec3;
 
 /// Marks on faces fade between this cosine towards the viewer and zero.

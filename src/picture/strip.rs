@@ -12,7 +12,7 @@ use super::text::{Fonts, Weight};
 use crate::look::Palette;
 use crate::runner::history::History;
 use crate::scene::Scene;
-use crate::sim::snapshot::Diagnostic;
+use crate::sim::Diagnostic;
 use crate::sim::words::elements;
 
 /// Size of the unit's type, and from the name to the unit (px in the reference picture).

@@ -8,8 +8,8 @@ use super::field::Shades;
 use super::narrow::{narrow, narrow_point};
 use super::shell::Side;
 use super::{Line, LineKind, Mesh, Vertex};
-use crate::sim::body::Body;
-use crate::sim::element::{around, ordered};
+use crate::sim::Body;
+use crate::sim::geometry::{around, ordered};
 use glam::DVec3;
 use std::collections::HashMap;
 

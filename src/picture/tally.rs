@@ -4,7 +4,7 @@
 use super::layout::Scale;
 use super::{Mark, MarkShape};
 use crate::look::Palette;
-use crate::sim::body::Body;
+use crate::sim::Body;
 use glam::DVec3;
 
 /// Bodies of more elements get a bar instead of squares.

@@ -13,7 +13,7 @@ use super::text::TextRun;
 use super::{Colour, Curve, Mark};
 use crate::runner::history::History;
 use crate::scene::Scene;
-use crate::sim::snapshot::{Diagnostic, Frame, Status};
+use crate::sim::{Diagnostic, Frame, Status};
 
 /// From the top of the room to the middle of the rings, and to the chart (px in the reference picture).
 const RINGS: f64 = 11.0;

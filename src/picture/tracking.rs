@@ -9,7 +9,7 @@ use super::layout::{self, Rectangle, Scale};
 use crate::look::{CameraBox, axes};
 use crate::runner::history::{History, TimeSeries};
 use crate::scene::Scene;
-use crate::sim::body::Dimension;
+use crate::sim::Dimension;
 use glam::{DVec2, DVec3};
 
 /// The part of a panel's width that the widest moment takes.

@@ -6,7 +6,7 @@ use super::order::farthest_first;
 use super::{Bead, Second, Stroke};
 use crate::colour::{Colour, mixed};
 use crate::look::{ColourScale, Palette};
-use crate::sim::body::Body;
+use crate::sim::Body;
 use glam::DVec3;
 
 /// Width of springs, of edges, of edges of turned-over elements and of elements without faces that a field colours (px

@@ -1,7 +1,7 @@
 //! Points and vectors as typed.
 
 use super::report::{Report, Way, written};
-use crate::sim::body::Dimension;
+use crate::sim::Dimension;
 use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -2,14 +2,9 @@
 
 use super::last_fit::fits;
 use crate::scene::{Run, Scene};
-use crate::sim::body::bounds;
-use crate::sim::crew::Crew;
-use crate::sim::integrate::Integrator;
-use crate::sim::motion::Pose;
-use crate::sim::snapshot::{Divergence, Status};
-use crate::sim::state::State;
+use crate::sim::geometry::bounds;
 use crate::sim::words::quantity;
-use crate::sim::world::World;
+use crate::sim::{Crew, Divergence, Integrator, Pose, State, Status, World};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 

@@ -3,8 +3,7 @@
 
 use super::last_fit::Fitting;
 use super::{History, Runner, Running};
-use crate::sim::snapshot::Frame;
-use crate::sim::state::State;
+use crate::sim::{Frame, State};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
@@ -366,7 +365,7 @@ mod tests {
     #[test]
     fn progress_that_cannot_be_is_refused() {
         use crate::scene::{Limits, Scene};
-        use crate::sim::snapshot::{Divergence, Status};
+        use crate::sim::{Divergence, Status};
         let scene = Scene::parse(crate::internals::untrusted::SCENE, "scene.toml", &Limits::default()).unwrap();
         let begun = || Frames::new(Runner::new(&scene, &[0, 1]), &[2, 4], None);
         let resumed = |step, part, element| {

@@ -4,9 +4,8 @@
 
 use crate::look::CameraBox;
 use crate::scene::Scene;
-use crate::sim::contact::{self, Shape};
-use crate::sim::snapshot::{Diagnostics, Divergence};
-use crate::sim::world::{Moment, World};
+use crate::sim::geometry;
+use crate::sim::{Diagnostics, Divergence, Moment, Shape, World};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -87,7 +86,7 @@ impl Reach {
     pub(crate) fn add(&mut self, scene: &Scene, time: f64, position: &[DVec3]) {
         self.0.resize(scene.obstacles.len(), None);
         let near = Self::NEAR * scene.body.extent();
-        let ground = contact::ground(&scene.obstacles, time);
+        let ground = geometry::ground(&scene.obstacles, time);
         for (obstacle, reached) in scene.obstacles.iter().zip(&mut self.0) {
             let (normal, height) = match obstacle.shape {
                 Shape::Plate { point, normal } => (normal, normal.dot(point)),
@@ -154,7 +153,7 @@ mod tests {
     use super::*;
     use crate::runner::Runner;
     use crate::scene::Limits;
-    use crate::sim::diagnostics::Diagnostic;
+    use crate::sim::Diagnostic;
 
     fn scene(duration: &str, rate: &str, step: &str) -> Scene {
         let text = format!(

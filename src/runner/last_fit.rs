@@ -1,10 +1,7 @@
 //! The drawn state of a run that diverged: the last one that is not much wider than the body.
 
 use crate::scene::Scene;
-use crate::sim::crew::Crew;
-use crate::sim::snapshot::{Divergence, LastFit, Status};
-use crate::sim::state::State;
-use crate::sim::world::World;
+use crate::sim::{Crew, Divergence, LastFit, State, Status, World};
 use glam::DVec3;
 
 /// A state fits if its nodes lie within this many times the radius of the body at rest or at the start, whichever is

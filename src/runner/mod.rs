@@ -9,12 +9,7 @@ pub(crate) mod moments;
 
 use crate::look::Traced;
 use crate::scene::Scene;
-use crate::sim::body::Body;
-use crate::sim::crew::Crew;
-use crate::sim::diagnostics::Diagnostic;
-use crate::sim::integrate::Integrator;
-use crate::sim::snapshot::{Frame, RunFrame, Status};
-use crate::sim::world::{Moment, Stepping, Surroundings, World};
+use crate::sim::{Body, Crew, Diagnostic, Frame, Integrator, Moment, RunFrame, Status, Stepping, Surroundings, World};
 pub(crate) use frames::{Frames, Next, Progress, Stored};
 pub use history::{History, TimeSeries};
 use last_fit::{Fitting, Search, fits};

@@ -5,9 +5,7 @@ use crate::runner::Runner;
 use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::scene::figure::{Content, Figure, Sheet};
-use crate::sim::diagnostics::{Diagnostic, Reach};
-use crate::sim::snapshot::{RunFrame, Snapshot};
-use crate::sim::world::Moment;
+use crate::sim::{Diagnostic, Moment, Reach, RunFrame, Snapshot};
 use glam::DVec3;
 use rayon::prelude::*;
 

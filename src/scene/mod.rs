@@ -39,16 +39,12 @@ pub use summary::{RunSummary, SceneSummary};
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette, View};
 use crate::reading::words::{list, nearest};
-use crate::sim::body::{Body, Dimension};
-use crate::sim::contact::{self, Obstacle, Shape};
-use crate::sim::grip::Grip;
-use crate::sim::integrate::Integrator;
-use crate::sim::model::{ElasticModel, Report};
 #[cfg(feature = "render")]
-use crate::sim::motion::Motion;
-use crate::sim::snapshot::Diagnostic;
-use crate::sim::state::State;
-use crate::sim::world::{Kernel, Moment};
+use crate::sim::Motion;
+use crate::sim::geometry;
+use crate::sim::model::{ElasticModel, Report};
+use crate::sim::{Body, Dimension, Grip, Integrator, Obstacle, Shape};
+use crate::sim::{Diagnostic, Kernel, Moment, State};
 use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -116,7 +112,7 @@ impl Scene {
     pub(crate) fn time_series(&self) -> Option<&[Diagnostic]> {
         let view = &self.view;
         let is_flat = self.body.dimension == Dimension::Plane;
-        let ground = contact::ground(&self.obstacles, 0.0);
+        let ground = geometry::ground(&self.obstacles, 0.0);
         let has_size = |one: &Obstacle| match one.shape {
             Shape::Plate { .. } => true,
             Shape::Floor { .. } => one.floor(0.0) != ground,

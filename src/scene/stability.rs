@@ -2,7 +2,7 @@
 
 use super::{RunSummary, Scene};
 use crate::reading::words::{quoted, short};
-use crate::sim::integrate::Integrator;
+use crate::sim::Integrator;
 use crate::sim::stability::Stability;
 
 impl Scene {

@@ -2,12 +2,10 @@
 
 use super::{Scene, stability};
 use crate::reading::words::{count, ends, list, short};
-use crate::sim::body::{Dimension, bounds};
-use crate::sim::contact::{FrictionOf, Motion, Obstacle, Shape};
-use crate::sim::grip::Grip;
+use crate::sim::geometry::bounds;
 use crate::sim::stability::Stability;
 use crate::sim::words::{self, typed};
-use crate::sim::world::Kernel;
+use crate::sim::{Dimension, FrictionOf, Grip, Kernel, Motion, Obstacle, Shape};
 use glam::DVec3;
 use serde::Serialize;
 use std::fmt;

@@ -5,10 +5,8 @@ use localshape::runner::Runner;
 use localshape::runner::moments::Taking;
 use localshape::scene::figure::{Content, Figure};
 use localshape::scene::{Limits, Scene};
-use localshape::sim::body::Body;
-use localshape::sim::diagnostics::{Diagnostic, Diagnostics, Reach};
 use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch, Share};
-use localshape::sim::state::Nodes;
+use localshape::sim::{Body, Diagnostic, Diagnostics, Nodes, Reach};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

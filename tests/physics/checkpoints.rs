@@ -3,7 +3,7 @@
 use localshape::runner::history::History;
 use localshape::runner::{Frames, Next, Progress, Runner};
 use localshape::scene::{Limits, Scene};
-use localshape::sim::diagnostics::Diagnostic;
+use localshape::sim::Diagnostic;
 use std::fs::File;
 
 /// Runs with different steps, the third of which diverges, with a path and forces that act for a while.

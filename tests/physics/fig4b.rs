@@ -1,7 +1,7 @@
 //! Fig. 4(b): 3×3×3 cubes hit the floor with the speed of a fall of 5 m. Uses the shipped scene.
 
 use super::support::{after, shipped};
-use localshape::sim::snapshot::Status;
+use localshape::sim::Status;
 
 #[test]
 fn springs_turn_over_exactly_the_lowest_nine_cubes_and_the_shape_model_none() {

@@ -1,7 +1,7 @@
 //! The paper's concluding claim: free-form bodies of irregular elements keep their shape. Uses the shipped scenes.
 
 use super::support::{after, shipped};
-use localshape::sim::body::ElementKind;
+use localshape::sim::ElementKind;
 
 #[test]
 fn bears_of_irregular_elements_keep_their_shape_where_springs_fold() {

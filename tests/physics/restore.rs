@@ -1,7 +1,7 @@
 //! Starts from which a body of the shape model recovers its shape and one of springs does not: the figure `restore`.
 
 use super::support::{after, shipped};
-use localshape::sim::snapshot::Status;
+use localshape::sim::Status;
 
 #[test]
 fn every_start_comes_back_with_local_shapes_and_none_with_springs() {

@@ -4,8 +4,7 @@ use super::support::{after, shipped};
 use glam::DVec3;
 use localshape::scene::{Limits, Scene};
 use localshape::sim::model::Report;
-use localshape::sim::snapshot::Status;
-use localshape::sim::state::State;
+use localshape::sim::{State, Status};
 use std::path::Path;
 
 /// The shipped scene: with Eq. (16) as printed the body grows, with accumulated rotations it keeps its size.

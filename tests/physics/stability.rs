@@ -2,10 +2,8 @@
 
 use glam::DVec3;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::body::Dimension;
 use localshape::sim::stability::Stability;
-use localshape::sim::state::State;
-use localshape::sim::world::{Stepping, Surroundings, World};
+use localshape::sim::{Dimension, State, Stepping, Surroundings, World};
 
 fn scene(text: &str) -> Scene {
     let text = format!("time.duration = 1\n{text}");

@@ -8,7 +8,7 @@ use localshape::runner::history::History;
 use localshape::runner::moments::Moments;
 use localshape::scene::figure::Figure;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::snapshot::Frame;
+use localshape::sim::Frame;
 
 /// The dashed curves of a colour.
 fn outlines(picture: &Picture, colour: [u8; 3]) -> Vec<&Curve> {

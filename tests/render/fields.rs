@@ -6,8 +6,7 @@ use localshape::look::{ColourMap, ColourScale, EdgeStyle, Style, Theme, Visible}
 use localshape::picture::{Mark, MarkShape, Mesh, Picture, SHADES, Second};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
-use localshape::sim::field::Field;
-use localshape::sim::snapshot::{Divergence, Frame, Status};
+use localshape::sim::{Divergence, Field, Frame, Status};
 
 const NOTHING: Visible = Visible { surfaces: false, nodes: false, springs: false, displacements: false };
 const EVERYTHING: Visible = Visible { surfaces: true, nodes: true, springs: true, displacements: true };

@@ -6,7 +6,7 @@ use image::RgbImage;
 use localshape::picture::LineKind;
 use localshape::runner::Runner;
 use localshape::scene::Scene;
-use localshape::sim::snapshot::Frame;
+use localshape::sim::Frame;
 
 /// The cubes of Fig. 4(b) at their start, with the one in the middle turned over.
 fn middle_turned_over() -> (Scene, Frame) {

@@ -27,7 +27,7 @@ use localshape::render::Renderer;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::snapshot::Frame;
+use localshape::sim::Frame;
 use std::sync::LazyLock;
 
 static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| match Gpu::new(&AdapterChoice::Auto) {

@@ -9,7 +9,7 @@ use localshape::render::Renderer;
 use localshape::runner::moments::Moments;
 use localshape::scene::Scene;
 use localshape::scene::figure::{Content, Figure};
-use localshape::sim::snapshot::{Divergence, Status};
+use localshape::sim::{Divergence, Status};
 use std::collections::HashMap;
 
 const WORLD: &str = "

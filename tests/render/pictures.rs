@@ -5,7 +5,7 @@ use image::RgbImage;
 use localshape::look::{Style, Theme};
 use localshape::render::{RenderError, Renderer};
 use localshape::scene::Scene;
-use localshape::sim::snapshot::{Divergence, Status};
+use localshape::sim::{Divergence, Status};
 
 /// Number of pixels of an image that are clearly vermilion.
 fn vermilion(image: &RgbImage) -> usize {

@@ -7,7 +7,7 @@ use localshape::picture::{Mark, MarkShape, Panel, Picture, TextRun, Weight, comp
 use localshape::runner::moments::Moments;
 use localshape::scene::Limits;
 use localshape::scene::figure::{Content, Figure, Sheet};
-use localshape::sim::snapshot::Status;
+use localshape::sim::Status;
 use std::sync::LazyLock;
 
 const SHEETS: [&str; 4] = ["fig4a", "fig4b", "fig4c", "restore"];

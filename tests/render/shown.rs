@@ -7,8 +7,7 @@ use localshape::picture::{Composer, LineKind, Mark, MarkShape, Mesh, Picture, Te
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::field::Field;
-use localshape::sim::snapshot::{Divergence, Frame, Status};
+use localshape::sim::{Divergence, Field, Frame, Status};
 use std::collections::HashMap;
 
 /// A scene with other cells, runs and view.

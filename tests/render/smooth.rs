@@ -5,7 +5,7 @@ use image::RgbImage;
 use localshape::picture::{LineKind, Mark, MarkShape, Picture, Second, Stroke};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
-use localshape::sim::snapshot::Frame;
+use localshape::sim::Frame;
 use std::collections::HashMap;
 
 const WORLD: &str = "

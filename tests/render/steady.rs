@@ -6,8 +6,7 @@ use localshape::gpu::Gpu;
 use localshape::render::Renderer;
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::body::Dimension;
-use localshape::sim::snapshot::Frame;
+use localshape::sim::{Dimension, Frame};
 
 /// Frames of a film in which the fastest point moves by one pixel, and so past all of a pixel.
 const FRAMES: u64 = 21;

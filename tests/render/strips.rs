@@ -6,7 +6,7 @@ use localshape::picture::{Composer, Curve, Mark, MarkShape, Picture, TextRun, We
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::snapshot::{Diagnostic, Frame, Status};
+use localshape::sim::{Diagnostic, Frame, Status};
 
 /// The scene of Fig. 4(b) with a strip, and some of its frames.
 fn with_strip<const N: usize>(strip: Diagnostic, frames: [u64; N]) -> (Scene, [Frame; N]) {

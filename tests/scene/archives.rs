@@ -3,7 +3,7 @@
 use super::expect;
 use glam::DVec3;
 use localshape::scene::{Limits, Scene, SceneError};
-use localshape::sim::body::ElementKind;
+use localshape::sim::ElementKind;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use zip::write::SimpleFileOptions;

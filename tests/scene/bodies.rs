@@ -4,7 +4,7 @@ use super::{WORLD, bad, good};
 use glam::DVec3;
 use localshape::runner::Runner;
 use localshape::scene::Scene;
-use localshape::sim::body::{Dimension, ElementKind};
+use localshape::sim::{Dimension, ElementKind};
 use std::collections::BTreeMap;
 
 /// A world in which a body falls on a floor, with a run of each model.

@@ -4,8 +4,7 @@ use super::{WORLD, good, shipped};
 use glam::DVec3;
 use localshape::look::Theme;
 use localshape::scene::{Limits, Scene, SceneError};
-use localshape::sim::body::{Dimension, ElementKind};
-use localshape::sim::contact::Shape;
+use localshape::sim::{Dimension, ElementKind, Shape};
 use std::path::Path;
 
 const TRIANGLE: &str = "\

@@ -3,13 +3,12 @@
 mod bound;
 mod shape;
 
-pub use super::motion::{Motion, Pose};
 pub(crate) use bound::{Bound, Floor};
 pub use shape::Contact;
 pub(crate) use shape::ROUND_OFF;
 pub use shape::Shape;
 
-use super::motion::Interval;
+use super::motion::{Interval, Motion, Pose};
 use super::part::Part;
 use super::state::Nodes;
 use glam::DVec3;

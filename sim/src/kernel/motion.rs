@@ -316,8 +316,9 @@ fn reaches<L: Lanes>(bound: &Bound, [x, y, z]: [L; 3]) -> L::Mask {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Motion as Path, Obstacle, Shape};
+    use crate::contact::{Obstacle, Shape};
     use crate::lanes::{Set, Work};
+    use crate::motion::Motion as Path;
 
     struct Bounce<'a>(&'a Floor, [DVec3; MOST], [DVec3; MOST]);
 

@@ -8,8 +8,9 @@
 
 use super::Rotation;
 use super::rotation::{self, Matrix, Solver, axial, matrix, turned_back};
-use crate::body::{Body, Dimension};
+use crate::body::Body;
 use crate::crew::Crew;
+use crate::element::Dimension;
 use crate::gather::Group;
 use crate::lanes::{Lanes, MOST, Set, Work, each};
 use crate::model::{Report, Share};

@@ -3,7 +3,7 @@
 //! Each element or spring is evaluated by one thread, which stores its forces. Then each node adds up its own forces in
 //! a fixed order. So the result has the same bits for 1, 2 or 8 threads.
 
-use crate::body::IndexLists;
+use crate::lists::IndexLists;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;

@@ -206,7 +206,8 @@ fn spring_force(p: DVec3, v: DVec3, l: f64, k: f64, d: f64) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::{Dimension, IndexLists, Solids};
+    use crate::element::{Dimension, Solids};
+    use crate::lists::IndexLists;
 
     #[test]
     fn no_element_has_more_springs_than_are_said_before() {

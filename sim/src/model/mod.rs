@@ -182,10 +182,8 @@ pub enum Known<'a> {
 /// A complete model: a rod with the energy `k/(8 L²) (|p|² − L²)²` between any two nodes of an element.
 /// ```
 #[doc = include_str!("../../tests/physics/example_model.rs")]
-/// use localshape_sim::body::{Dimension, Solids};
-/// use localshape_sim::integrate::Integrator;
-/// use localshape_sim::world::{Stepping, Surroundings};
-/// use localshape_sim::{IndexLists, State, World};
+/// use localshape_sim::{Dimension, Solids};
+/// use localshape_sim::{IndexLists, Integrator, State, Stepping, Surroundings, World};
 ///
 /// let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let elements: IndexLists = [&[0, 1, 2, 3][..]].into_iter().collect();

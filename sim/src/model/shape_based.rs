@@ -10,7 +10,8 @@
 //! internal force.
 
 use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
-use crate::body::{Body, Dimension};
+use crate::body::Body;
+use crate::element::Dimension;
 use crate::mode::Mode;
 pub use crate::rotation::RotationReading;
 use crate::rotation::{self, davenport1968, linear_update, planar};

@@ -28,7 +28,7 @@ pub use linearised::{is_well_posed, iterate, rotation_by_arctangent, rotation_by
 pub use reading::RotationReading;
 pub use robust::follow as robust;
 
-use super::body::Dimension;
+use super::element::Dimension;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 /// A rotation that a method has found, and whether it needed the [global solver](davenport1968).

@@ -8,7 +8,9 @@
 mod lanczos;
 mod limits;
 
-use super::body::{Body, Dimension};
+use super::body::Body;
+
+use super::element::Dimension;
 use super::grip::Grip;
 use super::integrate::Integrator;
 use super::mode::Mode;

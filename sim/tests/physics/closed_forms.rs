@@ -2,10 +2,7 @@
 
 use super::support::{Noise, Remembering, floor, free, lattice, mass_spring, shape_based, world};
 use glam::DVec3;
-use localshape_sim::body::{Body, Dimension, IndexLists, Solids};
-use localshape_sim::state::State;
-use localshape_sim::topology::Springs;
-use localshape_sim::world::Surroundings;
+use localshape_sim::{Body, Dimension, IndexLists, Solids, Springs, State, Surroundings};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 

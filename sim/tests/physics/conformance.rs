@@ -4,12 +4,9 @@
 use super::example_model::Rods;
 use super::support::{Noise, Remembering, body, forces, lattice, mass_spring, shape_based};
 use glam::DVec3;
-use localshape_sim::body::{Body, Dimension, ElementKind, IndexLists, Solids};
-use localshape_sim::integrate::Integrator;
 use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape_sim::model::{ElasticModel, ModelParameters};
-use localshape_sim::state::State;
-use localshape_sim::topology::Springs;
+use localshape_sim::{Body, Dimension, ElementKind, IndexLists, Integrator, Solids, Springs, State};
 use std::sync::Arc;
 
 const STIFFNESS: f64 = 1e4;

@@ -2,11 +2,9 @@
 
 use super::support::{Noise, lattice, shape_based};
 use glam::{DQuat, DVec3};
-use localshape_sim::contact::{Motion, Obstacle, Shape};
-use localshape_sim::integrate::Integrator;
-use localshape_sim::motion::{Ease, Key, Offset};
-use localshape_sim::state::State;
-use localshape_sim::world::{Kernel, Stepping, Surroundings, World};
+use localshape_sim::{
+    Ease, Integrator, Kernel, Key, Motion, Obstacle, Offset, Shape, State, Stepping, Surroundings, World,
+};
 
 const STEP: f64 = 1e-3;
 

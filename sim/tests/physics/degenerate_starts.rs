@@ -2,11 +2,8 @@
 
 use super::support::{Noise, body, free, lattice, mass_spring, shape_based};
 use glam::DVec3;
-use localshape_sim::body::Dimension;
 use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
-use localshape_sim::snapshot::Status;
-use localshape_sim::state::State;
-use localshape_sim::topology::Springs;
+use localshape_sim::{Dimension, Springs, State, Status};
 use std::f64::consts::TAU;
 
 /// Corners of the unit cube moved by `map`, with a slight disorder: perfect symmetry would be an unstable equilibrium.

@@ -3,10 +3,9 @@
 
 use super::support::{body, forces, shape_based};
 use glam::DVec3;
-use localshape_sim::body::Dimension;
 use localshape_sim::model::ElasticModel;
 use localshape_sim::model::mass_spring::MassSpring;
-use localshape_sim::state::State;
+use localshape_sim::{Dimension, State};
 
 fn at(points: &[[f64; 2]]) -> Vec<[f64; 3]> {
     points.iter().map(|&[x, y]| [x, y, 0.0]).collect()

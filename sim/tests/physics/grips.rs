@@ -2,10 +2,7 @@
 
 use super::support::{lattice, shape_based, world};
 use glam::{DQuat, DVec3};
-use localshape_sim::grip::Grip;
-use localshape_sim::motion::{Ease, Key, Motion, Offset};
-use localshape_sim::state::State;
-use localshape_sim::world::Surroundings;
+use localshape_sim::{Ease, Grip, Key, Motion, Offset, State, Surroundings};
 
 const GRAVITY: DVec3 = DVec3::new(0.0, -9.8, 0.0);
 
@@ -85,6 +82,6 @@ fn one_hand_takes_over_from_another_and_may_pull_far() {
     world.advance(100);
     assert_eq!(world.state().position, drawn, "the second hand holds them where the first has left them");
     world.advance(500);
-    assert_eq!(world.status(), localshape_sim::snapshot::Status::Ok);
+    assert_eq!(world.status(), localshape_sim::Status::Ok);
     assert!(world.state().position[1].distance(drawn[1]) > 1.0, "let go, the body comes back");
 }

@@ -3,16 +3,13 @@
 use super::conformance::{bodies, cases};
 use super::support::{Noise, body, floor, free, lattice, mass_spring, shape_based, stepped};
 use glam::DVec3;
-use localshape_sim::body::{Body, Dimension, Solids};
-use localshape_sim::grip::Grip;
-use localshape_sim::integrate::Integrator;
 use localshape_sim::model::mass_spring::MassSpring;
 use localshape_sim::model::shape_based::{RotationReading, ShapeBased};
 use localshape_sim::model::{ElasticModel, Report};
-use localshape_sim::motion::{Ease, Key, Motion, Offset};
-use localshape_sim::state::State;
-use localshape_sim::topology::Springs;
-use localshape_sim::world::{Kernel, Stepping, Surroundings, World};
+use localshape_sim::{
+    Body, Dimension, Ease, Grip, Integrator, Kernel, Key, Motion, Offset, Solids, Springs, State, Stepping,
+    Surroundings, World,
+};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 

@@ -2,15 +2,12 @@
 
 use super::support::{Noise, lattice, shape_based};
 use glam::{DQuat, DVec3};
-use localshape_sim::body::{Body, Dimension, Solids};
-use localshape_sim::grip::Grip;
-use localshape_sim::integrate::Integrator;
 use localshape_sim::model::shape_based::ShapeBased;
 use localshape_sim::model::{ModelParameters, Report};
-use localshape_sim::motion::{Ease, Key, Motion, Offset};
 use localshape_sim::rotation::{linearised, moment, torque};
-use localshape_sim::state::State;
-use localshape_sim::world::{Stepping, Surroundings, World};
+use localshape_sim::{
+    Body, Dimension, Ease, Grip, Integrator, Key, Motion, Offset, Solids, State, Stepping, Surroundings, World,
+};
 use std::sync::Arc;
 
 /// A cube with its nodes moved a little and masses from 1 to 8 kg.

@@ -1,11 +1,9 @@
 //! A method of integration from another crate.
 
 use glam::DVec3;
-use localshape_sim::body::{Body, Dimension, Solids};
-use localshape_sim::integrate::{ByComposition, Composition, Evaluation, Integrator, Method, Runaway, Step};
+use localshape_sim::integrate::{ByComposition, Composition, Evaluation, Method, Runaway, Step};
 use localshape_sim::model::mass_spring::MassSpring;
-use localshape_sim::state::State;
-use localshape_sim::world::{Kernel, Stepping, Surroundings, World};
+use localshape_sim::{Body, Dimension, Integrator, Kernel, Solids, State, Stepping, Surroundings, World};
 use std::sync::Arc;
 
 /// Two nodes with a spring, which is stretched at first.

@@ -2,9 +2,8 @@
 
 use super::support::{free, lattice, shape_based};
 use glam::DVec3;
-use localshape_sim::body::Body;
 use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
-use localshape_sim::state::State;
+use localshape_sim::{Body, State};
 
 fn spinning(body: &Body, spin: DVec3) -> State {
     let centre = body.rest.iter().sum::<DVec3>() / body.len() as f64;

@@ -2,10 +2,8 @@
 
 use super::support::{floor, lattice, shape_based};
 use glam::DVec3;
-use localshape_sim::integrate::Integrator;
 use localshape_sim::model::shape_based::{RotationReading, ShapeBased};
-use localshape_sim::state::State;
-use localshape_sim::world::{Stepping, Surroundings, World};
+use localshape_sim::{Integrator, State, Stepping, Surroundings, World};
 
 const GRAVITY: f64 = 9.8;
 const STEP: f64 = 1e-3;

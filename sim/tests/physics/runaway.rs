@@ -3,13 +3,9 @@
 
 use super::support::{lattice, shape_based};
 use glam::DVec3;
-use localshape_sim::contact::{Obstacle, Shape};
-use localshape_sim::grip::Grip;
-use localshape_sim::integrate::Integrator;
-use localshape_sim::motion::{Ease, Key, Motion, Offset};
-use localshape_sim::snapshot::Status;
-use localshape_sim::state::State;
-use localshape_sim::world::{Stepping, Surroundings, World};
+use localshape_sim::{
+    Ease, Grip, Integrator, Key, Motion, Obstacle, Offset, Shape, State, Status, Stepping, Surroundings, World,
+};
 
 /// The fastest node (m/s) of a cube of 1 cm with a cycle of 2 s, after some seconds.
 fn fastest(around: Surroundings, seconds: f64) -> f64 {

@@ -1,10 +1,8 @@
 //! Predicted limits of steps.
 
 use super::support::{lattice, shape_based};
-use localshape_sim::grip::Grip;
-use localshape_sim::integrate::Integrator;
-use localshape_sim::motion::Motion;
 use localshape_sim::stability::Stability;
+use localshape_sim::{Grip, Integrator, Motion};
 
 /// Nodes that are held all the time vibrate no more; those that are let go, or taken later, do.
 #[test]

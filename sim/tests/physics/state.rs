@@ -3,13 +3,9 @@
 use super::conformance::{bodies, cases};
 use super::support::{Noise, floor, lattice, mass_spring, shape_based};
 use glam::DVec3;
-use localshape_sim::grip::Grip;
-use localshape_sim::integrate::Integrator;
-use localshape_sim::motion::{Motion, Offset};
-use localshape_sim::snapshot::Status;
-use localshape_sim::state::State;
-use localshape_sim::topology::Springs;
-use localshape_sim::world::{Kernel, Moment, Stepping, Surroundings, World};
+use localshape_sim::{
+    Grip, Integrator, Kernel, Moment, Motion, Offset, Springs, State, Status, Stepping, Surroundings, World,
+};
 
 const ALL: [Integrator; 7] = [
     Integrator::SemiImplicitEuler,

@@ -1,15 +1,13 @@
 //! Small bodies and worlds for the tests.
 
 use glam::{DQuat, DVec3};
-use localshape_sim::body::{Body, Dimension, IndexLists, Solids};
-use localshape_sim::contact::{Motion, Obstacle, Shape};
-use localshape_sim::integrate::Integrator;
 use localshape_sim::model::mass_spring::MassSpring;
 use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape_sim::model::{ElasticModel, ForceModel, Report, Scratch};
-use localshape_sim::state::State;
-use localshape_sim::topology::Springs;
-use localshape_sim::world::{Stepping, Surroundings, World};
+use localshape_sim::{
+    Body, Dimension, IndexLists, Integrator, Motion, Obstacle, Shape, Solids, Springs, State, Stepping, Surroundings,
+    World,
+};
 use std::sync::Arc;
 
 /// `cells`³ cubes of a side (m), 1 kg per node, nodes numbered x fastest.

@@ -2,17 +2,12 @@
 
 use super::support::{Noise, floor, lattice, mass_spring, shape_based};
 use glam::DVec3;
-use localshape_sim::body::{Body, Dimension, Solids};
-use localshape_sim::contact::{Motion, Obstacle, Shape};
-use localshape_sim::crew::Crew;
-use localshape_sim::grip::Grip;
-use localshape_sim::integrate::Integrator;
 use localshape_sim::model::ElasticModel;
 use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
-use localshape_sim::motion::Offset;
-use localshape_sim::state::State;
-use localshape_sim::topology::Springs;
-use localshape_sim::world::{Kernel, Stepping, Surroundings, World};
+use localshape_sim::{
+    Body, Crew, Dimension, Grip, Integrator, Kernel, Motion, Obstacle, Offset, Shape, Solids, Springs, State, Stepping,
+    Surroundings, World,
+};
 use std::sync::Arc;
 
 #[test]

@@ -7,7 +7,7 @@ use crate::picture::plane::node_radius;
 use crate::picture::surface::{Lines, SurfaceLines, Surroundings};
 use crate::picture::wire::Wire;
 use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
-use crate::sim::field::Field;
+use crate::sim::Field;
 use glam::DVec3;
 use std::collections::HashSet;
 

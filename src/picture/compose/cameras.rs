@@ -6,7 +6,7 @@ use crate::picture::Framing;
 use crate::picture::layout::{Rectangle, Scale};
 use crate::picture::tracking::Shot;
 use crate::scene::Scene;
-use crate::sim::snapshot::RunFrame;
+use crate::sim::RunFrame;
 
 /// Panels that a scene leaves to be arranged stand in at most so many columns, and in fewer than possible only where that
 /// makes bodies so many times larger.

@@ -7,7 +7,7 @@ use crate::look::Ghost;
 use crate::picture::Curve;
 use crate::picture::ghost;
 use crate::picture::layout::Rectangle;
-use crate::sim::snapshot::{RunFrame, Status};
+use crate::sim::{RunFrame, Status};
 use glam::DVec3;
 
 impl Composer<'_> {

@@ -8,7 +8,8 @@ use crate::picture::layout;
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::Staged;
 use crate::picture::shadow::{Casters, Plane, Shade};
-use crate::sim::contact::{self, Motion, Obstacle, Shape};
+use crate::sim::geometry;
+use crate::sim::{Motion, Obstacle, Shape};
 use glam::{DVec2, DVec3};
 
 /// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
@@ -39,7 +40,7 @@ impl Draft<'_> {
         if self.flat {
             return None;
         }
-        let (normal, height) = contact::ground(&self.scene.obstacles, self.run.snapshot.time)?;
+        let (normal, height) = geometry::ground(&self.scene.obstacles, self.run.snapshot.time)?;
         let (plane, anchor) = self.plane(normal, height);
         let view = &self.scene.view;
         let farther = self.farther(&plane);

@@ -15,9 +15,8 @@ use crate::picture::shadow::key_light;
 use crate::picture::surface::SurfaceLines;
 use crate::picture::{Framing, Line, Mark, Mesh, Obstacles, Panel, Sight};
 use crate::scene::Scene;
-use crate::sim::body::{Body, Dimension};
-use crate::sim::contact;
-use crate::sim::snapshot::{RunFrame, Snapshot, Status};
+use crate::sim::geometry;
+use crate::sim::{Body, Dimension, RunFrame, Snapshot, Status};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
@@ -246,7 +245,7 @@ impl<'a> Draft<'a> {
         let staging = Staging {
             site,
             cell: self.cell(),
-            ground: contact::ground(&self.scene.obstacles, self.run.snapshot.time),
+            ground: geometry::ground(&self.scene.obstacles, self.run.snapshot.time),
             position: &self.position,
             skin: (self.scene.view.visible.surfaces && !self.diverged).then_some(&self.composer.skin),
             soft: self.composer.soft * self.side,

@@ -5,7 +5,7 @@ use crate::picture::caption::{self, Writer};
 use crate::picture::layout::{self, Layout, Rectangle, Scale};
 use crate::picture::tracking::Shot;
 use crate::picture::{Framing, number};
-use crate::sim::snapshot::{RunFrame, Snapshot};
+use crate::sim::{RunFrame, Snapshot};
 
 /// The scale bar is at most and at least this long (px in the reference picture).
 const LONGEST: f64 = 120.0;

@@ -1,6 +1,6 @@
 //! Half-spaces, which floors and plates fill, and clipping polygons and lines at them.
 
-use crate::sim::contact::{Obstacle, Shape};
+use crate::sim::{Obstacle, Shape};
 use glam::DVec3;
 
 /// A half-space: the unit normal out of it and its distance from the origin along that (m).
@@ -52,8 +52,7 @@ pub(super) fn clipped_line([mut from, mut to]: [DVec3; 2], solid: &[HalfSpace]) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::contact::Motion;
-    use crate::sim::motion::Offset;
+    use crate::sim::{Motion, Offset};
     use std::f64::consts::PI;
 
     #[test]

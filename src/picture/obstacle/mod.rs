@@ -19,7 +19,7 @@ use super::camera::Lens;
 use super::narrow::narrow_point;
 use super::pointer::Going;
 use crate::look::Palette;
-use crate::sim::contact::Obstacle;
+use crate::sim::Obstacle;
 use glam::DVec3;
 
 /// The obstacles of one panel, and how it shows them.

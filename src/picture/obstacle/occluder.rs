@@ -6,7 +6,7 @@ use super::pierced::height;
 use super::space::Staging;
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::{MOST_OCCLUDERS, Occluder};
-use crate::sim::contact::{Obstacle, Shape};
+use crate::sim::{Obstacle, Shape};
 use glam::{DQuat, DVec3};
 
 /// Radius of the edges of boxes, and half the sides of a box that stands for a half-space (soft units).

@@ -2,7 +2,7 @@
 
 use super::space::Staging;
 use crate::picture::{Line, LineKind, Mesh};
-use crate::sim::contact::Shape;
+use crate::sim::Shape;
 use glam::DVec3;
 
 /// Into how many parts the sides of a triangle are cut to find where it is pierced.

@@ -5,7 +5,7 @@ use super::{Site, Staged};
 use crate::picture::narrow::narrow;
 use crate::picture::pointer::Pointers;
 use crate::picture::{Mark, Mesh, Obstacles, Solid, Vertex};
-use crate::sim::contact::{Motion, Obstacle, Shape};
+use crate::sim::{Motion, Obstacle, Shape};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 

@@ -7,7 +7,7 @@ use crate::picture::narrow::narrow;
 use crate::picture::pointer::Pointers;
 use crate::picture::shadow::Plane;
 use crate::picture::{Mark, Pane, PaneCorner, Slab};
-use crate::sim::contact::{Motion, Pose, Shape};
+use crate::sim::{Motion, Pose, Shape};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 

@@ -6,7 +6,7 @@ use super::{Site, Staged};
 use crate::picture::skin::Skin;
 use crate::picture::{Line, Obstacles};
 use crate::runner::history::Reach;
-use crate::sim::contact::Shape;
+use crate::sim::Shape;
 use glam::DVec3;
 
 /// What is needed to draw the obstacles of one panel in space.

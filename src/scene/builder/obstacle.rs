@@ -1,8 +1,7 @@
 //! Obstacles and motions made in code.
 
 use crate::scene::file::{Coordinates, KeyFile, MotionPath, ObstacleFile, Rotation, ShapeFile, Swing};
-use crate::sim::contact::FrictionOf;
-use crate::sim::motion::Ease;
+use crate::sim::{Ease, FrictionOf};
 
 /// Builds a rigid obstacle that nodes collide with. It is fixed unless a path or a swing moves it.
 #[derive(Clone, Debug)]

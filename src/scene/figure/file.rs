@@ -4,7 +4,7 @@
 use crate::look::Theme;
 use crate::look::file::ColourFile;
 use crate::look::print::{SizeFile, TextScaleFile};
-use crate::sim::snapshot::Diagnostic;
+use crate::sim::Diagnostic;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -14,7 +14,7 @@ use super::load::{self, Document, stem};
 use super::schema::schema_of;
 use crate::look::{Print, Style, Theme};
 use crate::reading::setting::Setting;
-use crate::sim::snapshot::Diagnostic;
+use crate::sim::Diagnostic;
 use serde_json::Value;
 use std::path::Path;
 use std::sync::LazyLock;

@@ -8,7 +8,7 @@ use crate::reading::report::{Report, Way, way};
 use crate::reading::words::{list, quoted};
 use crate::scene::structure::Checked;
 use crate::scene::{Scene, SceneError};
-use crate::sim::snapshot::Diagnostic;
+use crate::sim::Diagnostic;
 use crate::sim::words::typed;
 use serde::Deserialize;
 use serde_json::Value;

@@ -1,7 +1,7 @@
 //! Paths and kinematic constraints as typed.
 
 use super::{Coordinates, Rotation};
-use crate::sim::motion::Ease;
+use crate::sim::Ease;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

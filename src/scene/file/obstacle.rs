@@ -1,7 +1,7 @@
 //! Obstacles as typed.
 
 use super::{Coordinates, MotionPath, Rotation, Swing};
-use crate::sim::contact::FrictionOf;
+use crate::sim::FrictionOf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

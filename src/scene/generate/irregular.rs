@@ -2,7 +2,7 @@
 
 use super::grid::Grid;
 use super::random;
-use crate::sim::body::IndexLists;
+use crate::sim::IndexLists;
 use glam::DVec3;
 
 /// An element counts as flat if one of its corners has less than this part of its regular volume (area).

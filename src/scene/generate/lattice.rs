@@ -4,7 +4,7 @@ use super::grid::Grid;
 use super::{Made, irregular, mixed};
 use crate::scene::file::{Cells, Lattice};
 use crate::scene::limits::BodySize;
-use crate::sim::body::IndexLists;
+use crate::sim::IndexLists;
 
 /// The largest size of a block. A block of mixed elements may come out smaller, with middle nodes in fewer cells.
 pub(super) fn size(typed: &Lattice) -> BodySize {
@@ -67,10 +67,8 @@ fn tetrahedra(grid: &Grid, cell: [u32; 3], elements: &mut IndexLists) {
 mod tests {
     use super::*;
     use crate::scene::file::{Positive, SideFile};
-    use crate::sim::body::Solids;
-    use crate::sim::body::{Body, Dimension, ElementKind, bounds};
-    use crate::sim::diagnose::volume_by_faces;
-    use crate::sim::element::kind;
+    use crate::sim::geometry::{bounds, kind, volume_by_faces};
+    use crate::sim::{Body, Dimension, ElementKind, Solids};
     use glam::DVec3;
     use std::collections::BTreeMap;
 
@@ -164,7 +162,7 @@ mod tests {
             let count = nodes.len();
             if typed.cells.len() == 2 {
                 // Every side of a single element lies on the outline.
-                let mut sides: Vec<[u32; 2]> = elements.iter().flat_map(crate::sim::element::around).collect();
+                let mut sides: Vec<[u32; 2]> = elements.iter().flat_map(crate::sim::geometry::around).collect();
                 sides.sort_unstable();
                 assert!(sides.windows(2).all(|two| two[0] != two[1]), "{typed:?}");
                 for &[a, b] in sides.iter().filter(|&&[a, b]| sides.binary_search(&[b, a]).is_err()) {

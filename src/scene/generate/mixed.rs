@@ -2,7 +2,7 @@
 
 use super::grid::Grid;
 use super::random;
-use crate::sim::body::IndexLists;
+use crate::sim::IndexLists;
 
 /// Uses of random numbers, besides the axes 0 to 2 along which nodes move.
 const WISH: u64 = 3;

@@ -15,7 +15,7 @@ pub(super) use start::brought_to_start;
 use super::file::BodyFile;
 use super::file::{BarsFile, Cells, DiscFile, Lattice, PolygonFile, SideFile};
 use super::limits::BodySize;
-use crate::sim::body::{Dimension, IndexLists};
+use crate::sim::{Dimension, IndexLists};
 use glam::DVec3;
 
 /// A generated body.

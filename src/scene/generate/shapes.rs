@@ -3,7 +3,7 @@
 use super::Made;
 use crate::scene::file::{BarsFile, PolygonFile};
 use crate::scene::limits::BodySize;
-use crate::sim::body::IndexLists;
+use crate::sim::IndexLists;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -74,8 +74,8 @@ pub(super) fn bars(typed: &BarsFile, direction: DVec3) -> Made {
 mod tests {
     use super::*;
     use crate::scene::file::{Coordinates, Positive};
-    use crate::sim::body::ElementKind;
-    use crate::sim::diagnose::volume_by_faces;
+    use crate::sim::ElementKind;
+    use crate::sim::geometry::volume_by_faces;
 
     fn assert_size(made: &Made, said: &BodySize) {
         assert_eq!(made.nodes.len() as u128, said.nodes);

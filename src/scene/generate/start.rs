@@ -2,7 +2,8 @@
 
 use super::random;
 use crate::scene::file::StartShape;
-use crate::sim::body::{Dimension, bounds};
+use crate::sim::Dimension;
+use crate::sim::geometry::bounds;
 use glam::DVec3;
 
 /// The use of random numbers in clouds, to which the axis is added.

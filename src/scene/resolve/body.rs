@@ -8,9 +8,8 @@ use crate::reading::words::quoted;
 use crate::scene::file::{BodyFile, Cells, Coordinates, Lattice, RunFile, SideFile, StartShape};
 use crate::scene::generate::{Generator, Made, brought_to_start};
 use crate::scene::limits::{BodySize, Excess, Limits};
-use crate::sim::body::{Body, Dimension, Solids};
-use crate::sim::state::State;
 use crate::sim::words::typed;
+use crate::sim::{Body, Dimension, Solids, State};
 use glam::DVec3;
 use std::collections::BTreeMap;
 

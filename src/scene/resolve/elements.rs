@@ -3,10 +3,8 @@
 use super::lists::{ListSource, Lists};
 use crate::reading::report::Report;
 use crate::reading::words::{count, list};
-use crate::sim::alike::Alike;
-use crate::sim::body::{Body, Dimension, ElementKind, Solids, bounds};
-use crate::sim::diagnose::volume_by_faces;
-use crate::sim::element::kind;
+use crate::sim::geometry::{Alike, bounds, kind, volume_by_faces};
+use crate::sim::{Body, Dimension, ElementKind, Solids};
 use glam::DVec3;
 
 /// An area or volume below this part of the element's bounding cube counts as zero. Rounding of coordinates leaves some

@@ -8,7 +8,7 @@ use crate::scene::file::{BodyFile, Coordinates, Positive};
 use crate::scene::limits::Limits;
 use crate::scene::npz::{Array, Npz, Values};
 use crate::scene::structure::LARGEST;
-use crate::sim::body::{Dimension, IndexLists};
+use crate::sim::{Dimension, IndexLists};
 use glam::DVec3;
 use sha2::{Digest, Sha256};
 use std::path::Path;

@@ -3,8 +3,7 @@
 use super::{direction, vector};
 use crate::reading::report::{Report, Way, way, written};
 use crate::scene::file::{Coordinates, MotionPath, Rotation, Swing};
-use crate::sim::body::Dimension;
-use crate::sim::motion::{Key, Motion, Offset};
+use crate::sim::{Dimension, Key, Motion, Offset};
 use glam::DVec3;
 
 /// The unit axis of a rotation. Without one in space, or with one in the plane, it is a mistake.

@@ -5,10 +5,9 @@ use super::motion::{self, axis};
 use super::{direction, vector};
 use crate::reading::report::{Report, Way, way};
 use crate::scene::file::{Coordinates, ObstacleFile, ShapeFile};
-use crate::sim::body::{Dimension, bounds};
-use crate::sim::contact::{Motion, Obstacle, Shape};
-use crate::sim::inside::is_inside;
+use crate::sim::geometry::{bounds, is_inside};
 use crate::sim::words::{quantity, rounded};
+use crate::sim::{Dimension, Motion, Obstacle, Shape};
 use glam::{DQuat, DVec3};
 
 /// The obstacles, or `None` after reporting every mistake in them.

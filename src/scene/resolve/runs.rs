@@ -6,11 +6,9 @@ use crate::reading::words;
 use crate::scene::Run;
 use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::scene::step::NamedStep;
-use crate::sim::grip::Grip;
-use crate::sim::integrate::Integrator;
 use crate::sim::model::ElasticModel;
 use crate::sim::stability::Stability;
-use crate::sim::world::Kernel;
+use crate::sim::{Grip, Integrator, Kernel};
 use std::sync::Arc;
 
 /// The most steps of a run. Beyond, double precision cannot distinguish the times of two steps.

@@ -12,8 +12,7 @@ use glam::DVec3;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::mass_spring::MassSpring;
 use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
-use localshape::sim::world::Stepping;
-use localshape::sim::{Body, Integrator, Kernel, Springs, State, Status, World};
+use localshape::sim::{Body, Integrator, Kernel, Springs, State, Status, Stepping, World};
 use rayon::prelude::*;
 use trials::{Trial, trials};
 

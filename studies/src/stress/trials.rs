@@ -3,9 +3,9 @@
 use super::Promise;
 use crate::random::Random;
 use glam::{DMat3, DQuat, DVec3};
-use localshape::sim::body::Solids;
-use localshape::sim::world::Surroundings;
-use localshape::sim::{Body, Dimension, Ease, FrictionOf, IndexLists, Key, Motion, Obstacle, Offset, Shape, State};
+use localshape::sim::{
+    Body, Dimension, Ease, FrictionOf, IndexLists, Key, Motion, Obstacle, Offset, Shape, Solids, State, Surroundings,
+};
 use std::sync::Arc;
 
 /// A body and its treatment.

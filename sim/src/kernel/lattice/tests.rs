@@ -1,14 +1,15 @@
 //! The lattice kernel, compared with the reference and with itself.
 
 use super::*;
-use crate::body::{IndexLists, Solids};
-use crate::contact::{self, Bound, Obstacle, Shape};
+use crate::contact::{Bound, Obstacle, Shape};
 use crate::dynamics::Runaway;
+use crate::element::Solids;
 use crate::kernel::stepper::Way;
 use crate::kernel::tests::{FREE, PEFRL, Random, rotations, shape_based, stepped_by_reference};
+use crate::lists::IndexLists;
 use crate::model::shape_based::ShapeBased;
 use crate::state::State;
-use crate::world::Surroundings;
+use crate::system::Surroundings;
 use glam::DQuat;
 use std::sync::Arc;
 
@@ -59,7 +60,7 @@ fn floor() -> Obstacle {
     let shape = Shape::Floor { normal, height: 0.02 };
     Obstacle {
         shape,
-        motion: contact::Motion::Still,
+        motion: crate::motion::Motion::Still,
         pivot: DVec3::ZERO,
         restitution: 0.5,
         friction: 0.3,

@@ -6,7 +6,7 @@ use crate::picture::compose::panel::Draft;
 use crate::picture::layout::{Rectangle, Scale};
 use crate::runner::moments;
 use crate::scene::Scene;
-use crate::sim::snapshot::{RunFrame, Snapshot};
+use crate::sim::{RunFrame, Snapshot};
 use glam::{DVec2, DVec3};
 
 /// Room inside a cell above and below what is drawn (px in the reference picture).

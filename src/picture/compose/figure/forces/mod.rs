@@ -17,7 +17,7 @@ use crate::runner::history::History;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::{Figure, Forces};
-use crate::sim::contact::Shape;
+use crate::sim::Shape;
 use cell::{Cell, fit};
 use drawn::Drawn;
 use key::Key;

@@ -9,8 +9,8 @@ use crate::picture::tally::{self, Tally};
 use crate::picture::text::Weight;
 use crate::picture::{Mark, number, series};
 use crate::scene::Scene;
-use crate::sim::snapshot::{Diagnostic, RunFrame, Snapshot, Status};
 use crate::sim::words::elements;
+use crate::sim::{Diagnostic, RunFrame, Snapshot, Status};
 
 /// Size of diagnostics (px in the reference picture).
 const NUMBER: f64 = 14.0;

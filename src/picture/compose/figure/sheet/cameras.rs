@@ -9,9 +9,8 @@ use crate::runner::history::Reach;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::Sheet;
-use crate::sim::body::{Dimension, bounds};
-use crate::sim::contact::{self, Shape};
-use crate::sim::snapshot::{RunFrame, Snapshot, Status};
+use crate::sim::geometry::{self, bounds};
+use crate::sim::{Dimension, RunFrame, Shape, Snapshot, Status};
 use glam::{DVec2, DVec3};
 
 /// Bodies that would be smaller than this part of their tile, each in its own place, are looked for column by column,
@@ -276,7 +275,7 @@ impl TileCamera<'_> {
     /// ground.
     fn centred(&self, lens: &Lens, framing: &Framing, (low, high): (DVec2, DVec2)) -> Framing {
         let [left, top, right, bottom] = self.plan.body_room();
-        let has_ground = contact::ground(&self.scene.obstacles, 0.0).is_some();
+        let has_ground = geometry::ground(&self.scene.obstacles, 0.0).is_some();
         let below = if has_ground { BELOW_GROUND } else { 0.5 } * ((bottom - top) - (high.y - low.y)).max(0.0);
         let wanted =
             DVec2::new((left + right) / 2.0, (bottom - below - (high.y - low.y) / 2.0).max((top + bottom) / 2.0));

@@ -34,7 +34,7 @@ use crate::runner::history::History;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::{Figure, Sheet};
-use crate::sim::snapshot::Frame;
+use crate::sim::Frame;
 use below::Below;
 use charts::Charts;
 use glam::DVec2;

@@ -5,7 +5,7 @@ use super::headings::{HEADING_LINE, Heading};
 use crate::picture::caption::Writer;
 use crate::picture::layout::{Rectangle, Scale};
 use crate::scene::figure::Sheet;
-use crate::sim::body::Dimension;
+use crate::sim::Dimension;
 
 /// From the last line of the header to the first of the headings, and from the last of these to the tiles (px in the
 /// reference picture).

@@ -1,4 +1,10 @@
-//! Whether a point, such as that of a camera, lies inside a body.
+//! Measures of bodies, elements and obstacles, for programs that draw or check them.
+
+pub use super::alike::Alike;
+pub use super::contact::ground;
+pub use super::diagnose::volume_by_faces;
+pub use super::element::{around, kind, ordered};
+pub use super::hull::bounds;
 
 use super::body::Body;
 use glam::DVec3;
