@@ -30,7 +30,8 @@ pub(super) fn write(animation: &Animation<'_>, out: &mut impl Write) -> Result<W
 
     let patch = |at: usize| {
         let image = animation.reel.image(shots[at].frame)?;
-        // Read again: a thread has every second frame or fewer, and reading takes a fraction of the time of compressing.
+        // The frame before is read again: a thread has every second frame or fewer, and reading takes a fraction of the
+        // time of compressing.
         let before = at.checked_sub(1).map(|before| animation.reel.image(shots[before].frame)).transpose()?;
         Ok(Patch::new(&image, before.as_ref()))
     };

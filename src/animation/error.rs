@@ -13,7 +13,7 @@ pub enum AnimationError {
     Picture {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The error in it.
         source: PictureError,
     },
     /// The request cannot be met, or a frame is not as required.
@@ -23,7 +23,7 @@ pub enum AnimationError {
     #[error(transparent)]
     File(#[from] OutputError),
     /// The disk has no room for a file.
-    #[error("cannot write {}: the disk is full; nothing of this file is left, an earlier one is as it was", .0.display())]
+    #[error("cannot write {}: the disk is full; this file is removed, and an earlier one of that name is kept", .0.display())]
     Full(PathBuf),
     /// The output of the animation cannot be written.
     #[error("cannot write the animation")]

@@ -116,7 +116,7 @@ fn buffered(
         out.flush().map_err(AnimationError::Out)?;
         Ok(written)
     });
-    // Not another attempt to write what is left in the buffer of a failed file.
+    // Dropping the buffer would try to write the rest of it to the failed file.
     drop(out.into_parts());
     written
 }

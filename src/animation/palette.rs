@@ -116,8 +116,7 @@ fn chosen(cells: &[Cell]) -> Vec<Colour> {
         let widest = (0..boxes.len()).max_by(|&one, &other| boxes[one].0.1.total_cmp(&boxes[other].0.1));
         let ((axis, _, middle), members) = boxes.swap_remove(widest.unwrap_or(0));
         let (low, high): (Vec<_>, Vec<_>) = members.into_iter().partition(|&at| cells[at].lab.0[axis] < middle);
-        // Cells of one colour have nothing on one side; there are more cells than colours, so another box can be
-        // divided.
+        // A box of one colour has an empty half. There are more cells than colours, so another box can be divided.
         for half in [low, high].into_iter().filter(|half| !half.is_empty()) {
             boxes.push((spread(cells, &half), half));
         }
@@ -138,7 +137,7 @@ fn chosen(cells: &[Cell]) -> Vec<Colour> {
             }
         }
     }
-    // A colour with most of the pixels of a centre is kept exactly: the background should match that of a page.
+    // A centre takes the exact colour that most of its pixels have: the background should match that of a page.
     let mut of: Vec<(u64, u64, usize)> = vec![(0, 0, 0); centres.len()];
     for (at, (cell, &centre)) in cells.iter().zip(&nearest).enumerate() {
         let (all, most, which) = &mut of[centre];
@@ -205,8 +204,8 @@ impl Mixture {
     }
 }
 
-/// The order in which the pixels of an 8×8 square get the second colour (B. Bayer, 1973): pixels that have it at one
-/// share have it at every larger one, and they are as far apart as possible.
+/// The order in which the pixels of an 8×8 square get the second colour (B. Bayer, 1973). A pixel with the second
+/// colour at one share keeps it at every larger share, and such pixels are as far apart as possible.
 const ORDER: [[u8; 8]; 8] = {
     let mut order = [[0; 8]; 8];
     let mut y = 0;

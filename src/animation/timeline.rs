@@ -115,7 +115,7 @@ impl Timeline {
         self.rate.unwrap_or(1.0 / shortest)
     }
 
-    /// Pictures per second at which every frame can be shown at its time, as numerator and denominator.
+    /// Pictures per second that show every frame at its time, as numerator and denominator.
     pub(super) fn rate(&self) -> [u32; 2] {
         fraction(self.own_rate(), 1 << 20)
     }
@@ -150,7 +150,7 @@ const USUAL: [f64; 10] = [60.0, 30.0, 50.0, 25.0, 100.0, 120.0, 24.0, 20.0, 15.0
 /// Greatest difference between the end of a step and the time of its frame, relative to the time between two frames.
 const STRAY: f64 = 0.15;
 
-/// The intended rate for one measured over `count` frames: a common one or a whole number, if it is near enough.
+/// The intended rate for a rate measured over `count` frames: a common one or a whole number, if it is near enough.
 fn likely_rate(rate: f64, count: u64) -> f64 {
     let is_near = |other: &f64| (rate - other).abs() <= STRAY / count as f64 * other;
     let mut candidates = USUAL.into_iter().chain([rate.round()]).filter(|candidate| *candidate >= 1.0);
@@ -174,7 +174,7 @@ pub(super) fn fraction(number: f64, most: u32) -> [u32; 2] {
         }
         rest = 1.0 / (rest - whole);
     }
-    // A number above all such fractions.
+    // The number is above all such fractions.
     if here[1] == 0.0 { [most, 1] } else { here.map(|part| part as u32) }
 }
 

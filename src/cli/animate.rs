@@ -179,8 +179,8 @@ impl Reel for Folder {
 }
 
 impl Folder {
-    /// Reads what frames of a folder say about themselves: those that are asked for, up to the last one there, or all. They are
-    /// scaled to a width (px), if one is asked for.
+    /// Reads the metadata of frames in a folder: of the requested ones up to the last one there, or of all. Frames are
+    /// scaled to a width (px), if it is given.
     fn open(
         path: &Path,
         asked: impl FnOnce(u64) -> Option<Result<Vec<u64>, String>>,

@@ -19,7 +19,7 @@ Examples:
   localshape check scenes/fig4b.toml
   localshape check scenes/*.toml --quiet && echo all right";
 
-/// Why a scene for print cannot be drawn.
+/// Why pages cannot be printed.
 #[cfg(feature = "render")]
 fn too_small(scene: &Scene) -> Option<String> {
     super::still::too_small(scene, &(0..scene.runs.len()).collect::<Vec<_>>())
@@ -88,7 +88,7 @@ impl Check {
                     let no_room = no_room(&scene);
                     if !no_room.is_empty() {
                         let [width, height] = scene.view.size;
-                        note(&format!("{file}: not everything has room in {width}×{height}: {}", no_room.join("; ")));
+                        note(&format!("{file}: some parts have no room in {width}×{height}: {}", no_room.join("; ")));
                     }
                 }
                 Err(error) => {
@@ -108,7 +108,7 @@ impl Check {
         Ok(failed.unwrap_or(Status::Done))
     }
 
-    /// A scene with the size that the user wants.
+    /// A scene in the requested size.
     #[cfg(feature = "render")]
     fn resized(&self, mut scene: Scene) -> Scene {
         if let Some(size) = self.size {
@@ -149,7 +149,7 @@ fn cut(_: &Scene) -> Option<Mistake> {
     None
 }
 
-/// What finds no room in the pictures of a scene.
+/// The parts that have no room in the pictures of a scene.
 fn no_room(scene: &Scene) -> Vec<String> {
     #[cfg(feature = "render")]
     return crate::picture::left_out(scene);

@@ -30,7 +30,7 @@ Examples:
   localshape compare golden/fig4b scenes/fig4b.toml          draws the golden's frames and compares them
   localshape compare --bless golden/fig4b scenes/fig4b.toml  makes or renews that golden
 
-A golden is a folder with a few small pictures of a scene and golden.toml, a record of what the scene says and of the states of \
+A golden is a folder with a few small pictures of a scene and golden.toml, a record of the scene's keys and of the states of \
 its frames. The result then names the keys that changed, the first state that moved, the node, and its distance.
 
 Frames record a digest of the state that they show, so a difference is either one of the state (`state moved`) or one of \
@@ -50,7 +50,7 @@ pub(super) struct Compare {
     #[arg(value_name = "ACTUAL", value_hint = ValueHint::AnyPath)]
     actual: PathBuf,
 
-    /// Make the golden of a scene or figure, or renew it: what is not as it was is replaced, and told
+    /// Make the golden of a scene or figure, or renew it: changed parts are replaced, and listed
     #[arg(long)]
     bless: bool,
 
@@ -94,7 +94,7 @@ impl Compare {
         Ok(if comparison.passes() { Status::Done } else { Status::Difference })
     }
 
-    /// Writes the page and prints the result, and what was accepted.
+    /// Writes the page, and prints the result and the accepted changes.
     fn tell(&self, comparison: &Comparison, accepted: Option<&[String]>) -> Result<(), Failure> {
         // The verdict is printed even if the page cannot be written.
         let reported = match &self.report {
@@ -123,7 +123,7 @@ impl Compare {
         Ok(reported?)
     }
 
-    /// Compares the scene or figure with its golden, which is made or renewed on request.
+    /// Compares the scene or figure with its golden. On request, makes or renews the golden.
     #[cfg(feature = "render")]
     fn with_golden(&self) -> Result<Status, Failure> {
         let path: &Path = &self.actual;
@@ -142,7 +142,7 @@ impl Compare {
             DrawError::Disk(_) => Failure::files(error.to_string()),
             DrawError::NoRoom(message) => Failure::usage(message),
         })?;
-        // If interrupted while the last picture was drawn, nothing is accepted.
+        // If the last picture was interrupted, nothing is accepted.
         let Some(drawn) = drawn.filter(|_| !interrupt::requested()) else { return Ok(Status::Interrupted) };
         let comparison = Comparison::of_golden(&golden, &drawn);
         let accepted = self.bless.then(|| comparison.accept(&golden, &drawn)).transpose()?;
@@ -200,7 +200,7 @@ fn replaceable(path: &Path) -> Result<(), Failure> {
     bail!("--report: {} exists and is not a page of a comparison; name another file", path.display())
 }
 
-/// How pages begin.
+/// The beginning of every page.
 const PAGE: &[u8] = b"<!doctype html>";
 
 /// The whole result as JSON.

@@ -1,4 +1,4 @@
-//! The pictures of a scene as `render` makes them: composed, drawn while the next frame is simulated, and written.
+//! The pictures of a scene for `render`: composed, drawn while the next frame is simulated, and written.
 
 use super::failure::Failure;
 use super::film::{comment, summary as line_of};
@@ -21,23 +21,23 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tempfile::TempDir;
 
-/// What all scenes are drawn with.
+/// The device and the settings for the pictures of all scenes.
 pub(super) struct Device {
     pub(super) gpu: Gpu,
-    /// Threads that compress.
+    /// The number of threads that compress.
     pub(super) threads: usize,
-    /// Whether frames stay.
+    /// Whether frames are kept after the command.
     pub(super) keep: bool,
-    /// Whether frames that are there already are kept.
+    /// Whether frames of an earlier command are kept.
     pub(super) resume: bool,
-    /// The share of the frames, if it is not all.
+    /// The shard of the frames, unless all are drawn.
     pub(super) shard: Option<Shard>,
-    /// Animations of the frames, and the command that makes them.
+    /// The files of animations, and the command that makes them.
     pub(super) films: Vec<(Format, PathBuf)>,
     pub(super) words: Vec<OsString>,
 }
 
-/// Threads that write frames, at most: a few keep up with any device.
+/// The most threads that write frames: a few keep up with any device.
 const MOST_WRITERS: usize = 4;
 
 /// The pictures of one scene.
@@ -46,26 +46,25 @@ pub(super) struct Drawing<'a> {
     /// The time series of the scene, until the first frame is composed.
     history: History,
     composer: Option<Composer<'a>>,
-    /// The last frame that was composed, and its picture, if only states change pictures. The same states are not composed
-    /// again.
+    /// The last composed frame and its picture, if pictures depend on states only. Equal states are not composed again.
     still: Option<(Frame, Arc<Picture>)>,
     renderer: Renderer,
-    /// The frame that is being drawn while the next one is simulated and composed.
+    /// The frame that is drawn while the next one is simulated and composed.
     begun: Option<Begun>,
-    /// The last picture and its pixels. One that is the same is not drawn again.
+    /// The last picture and its pixels. An equal picture is not drawn again.
     last: Option<(Arc<Picture>, Arc<Vec<u8>>)>,
-    /// The number of pictures that were not.
+    /// The number of pictures that were not drawn again.
     repeated: usize,
-    /// The folder with frames that were drawn before and are kept if they are the same.
+    /// The folder with frames of an earlier command, which are kept if they are the same.
     drawn_before: Option<PathBuf>,
-    /// The number of these.
+    /// The number of kept frames.
     kept: usize,
     writer: FrameWriter,
     device: Arc<Device>,
-    /// The frames that are asked for, and their folder.
+    /// The requested frames, and their folder.
     frames: Vec<u64>,
     folder: PathBuf,
-    /// That folder, if frames do not stay.
+    /// The folder, if frames are not kept.
     temporary: Option<TempDir>,
     adapter: String,
     compose_time: Spent,
@@ -82,7 +81,7 @@ struct Begun {
     pixels: Pixels,
 }
 
-/// Pixels, or what becomes of them.
+/// Pixels, or a drawing that will return them.
 enum Pixels {
     Pending(Pending),
     Drawn(Arc<Vec<u8>>),
@@ -134,7 +133,7 @@ impl<'a> Drawing<'a> {
         picture
     }
 
-    /// Begins to draw a picture, unless it is that of the last frame.
+    /// Begins to draw a picture, unless it equals the last one.
     fn submit(&mut self, picture: &Arc<Picture>) -> Result<Pixels, RenderError> {
         let is_same = |last: &Arc<Picture>| Arc::ptr_eq(last, picture) || last == picture;
         Ok(match self.last.as_ref().filter(|(last, _)| is_same(last)) {
@@ -146,7 +145,7 @@ impl<'a> Drawing<'a> {
         })
     }
 
-    /// Waits for the frame that is being drawn, and sees to it that it is written.
+    /// Waits for the frame that is being drawn, and passes it to the writer.
     fn hand_on(&mut self) -> Result<(), Failure> {
         let Some(Begun { frame, texts, picture, pixels }) = self.begun.take() else { return Ok(()) };
         let clock = Clock::thread();
@@ -162,7 +161,7 @@ impl<'a> Drawing<'a> {
         Ok(self.writer.write(PixelFrame { size, dpi, pixels, frame, texts })?)
     }
 
-    /// What is wrong with a frame that was drawn before, and what to do, in words.
+    /// Why a frame of an earlier command cannot be kept, and a remedy, in words.
     fn wrong(&self, frame: u64, path: &Path) -> Result<String, Failure> {
         let name = frame_file_name(frame);
         if !path.is_file() {
@@ -201,7 +200,7 @@ impl<'a> Drawing<'a> {
     }
 }
 
-/// Why drawing stopped on the way, where frames are kept or not.
+/// The error of drawing, with a remedy if frames are kept.
 fn stopped(keep: bool, error: RenderError) -> Failure {
     let is_lost = matches!(error, RenderError::Gpu(GpuError::Lost(_)));
     let failure = Failure::from(error);
@@ -285,7 +284,7 @@ impl Pictures for Drawing<'_> {
 
 /// Whether two frames show the same runs in the same states, at any times.
 fn have_same_states(one: &Frame, other: &Frame) -> bool {
-    // By their bits: what is not a number is not equal to itself. Directions follow from the nodes.
+    // Bits are compared, since NaN is not equal to itself. Directions follow from the nodes.
     let values = |run: &RunFrame| -> Vec<_> {
         Diagnostic::ALL.iter().map(|one| one.value(&run.snapshot.diagnostics).size().to_bits()).collect()
     };

@@ -1,23 +1,24 @@
-//! Settings of graphics drivers, for the same pictures on every machine, and of the memory that drawing takes.
+//! Settings of graphics drivers, for equal pictures on every machine and less memory.
 
 #[cfg(target_os = "linux")]
 use super::failure::note;
 
-/// The vector width (bits) of the software driver, unless the user has set another one that it can work with.
+/// The vector width (bits) of the software driver, unless the user has set another one that works.
 #[cfg(target_os = "linux")]
 const VECTOR_WIDTH: [&str; 2] = ["LP_NATIVE_VECTOR_WIDTH", "256"];
 
-/// Those that it can work with: Mesa 22.3 writes beyond its memory with less, its choice on processors without wider vectors.
+/// The widths that work. With less, the default on processors without wider vectors, Mesa 22.3 writes beyond its
+/// memory.
 #[cfg(target_os = "linux")]
 const WIDTHS: [&str; 2] = [VECTOR_WIDTH[1], "512"];
 
-/// Heaps of the C library (glibc), unless the user has set it. With one for each thread, several megabytes are held that no
-/// thread uses.
+/// The number of heaps of the C library (glibc), unless the user has set it. With a heap for each thread, several
+/// megabytes are reserved that no thread uses.
 #[cfg(target_os = "linux")]
 const HEAPS: [&str; 2] = ["MALLOC_ARENA_MAX", "1"];
 
-/// Restarts the program (`exec`) with one heap, and with the vector width of the software driver fixed, so that pictures are
-/// the same on every processor. If the restart fails, pictures are drawn with the driver's own choice.
+/// Restarts the program (`exec`) with one heap and a fixed vector width of the software driver, so that pictures are
+/// equal on every processor. If the restart fails, the driver chooses the width.
 ///
 /// Only the program itself may call this, before anything else.
 #[cfg(target_os = "linux")]
@@ -28,7 +29,7 @@ pub fn settle(words: &[std::ffi::OsString]) {
     // A process cannot change its own environment safely, so the restarted one gets it.
     let is_scene = |word: &std::ffi::OsString| word.to_string_lossy().ends_with(".toml");
     let draws = command == "render" || command == "figure" || command == "compare" && rest.iter().any(is_scene);
-    // `info` names the driver as it is when pictures are drawn.
+    // `info` names the driver with the settings for drawing.
     let draws = draws || command == "info";
     let is_quiet = |word: &std::ffi::OsString| word == "--quiet" || word.to_string_lossy().starts_with("-q");
     let width = var_os(VECTOR_WIDTH[0]).filter(|width| !width.is_empty());
@@ -49,6 +50,6 @@ pub fn settle(words: &[std::ffi::OsString]) {
     let _error = std::process::Command::new(image).arg0(program).arg(command).args(rest).envs(to_set).exec();
 }
 
-/// Nothing needs to be settled here.
+/// Only Linux needs these settings.
 #[cfg(not(target_os = "linux"))]
 pub fn settle(_words: &[std::ffi::OsString]) {}

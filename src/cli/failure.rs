@@ -67,7 +67,7 @@ impl Failure {
         Self { status, message: None }
     }
 
-    /// Adds what to do to the message.
+    /// Adds a remedy to the message.
     #[cfg(feature = "render")]
     pub(super) fn advise(mut self, advice: &str) -> Self {
         self.message = self.message.map(|message| format!("{message}; {advice}"));
@@ -111,7 +111,7 @@ impl From<RenderError> for Failure {
     }
 }
 
-/// Why a file that the command line names, with this ending, cannot be read.
+/// Why a file on the command line, which should have this ending, cannot be read.
 pub(super) fn missing(file: &Path, ending: &str, error: io::Error) -> Failure {
     if error.kind() != io::ErrorKind::NotFound {
         return OutputError::reading(file)(error).into();
@@ -148,7 +148,7 @@ pub(super) fn warn_of_figure(figure: &Figure) {
     }
 }
 
-/// Prints a warning that is no mistake in a scene.
+/// Prints a warning that is not a mistake in a scene.
 pub(super) fn note(message: &str) {
     let _ = writeln!(io::stderr(), "warning: {message}");
 }

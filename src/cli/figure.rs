@@ -33,7 +33,7 @@ Examples:
 A figure file arranges runs and moments of scenes on a sheet. The files of the paper's figures are in figures/; copy one \
 to make your own.";
 
-/// Where figures go if nothing else is said.
+/// The default folder for figures.
 const FOLDER: &str = "output/figures";
 /// The shortest side of a figure (px).
 const LEAST_SIDE: u32 = 64;
@@ -47,8 +47,8 @@ pub(super) struct FigureCommand {
     #[arg(value_name = "FIGURE", value_hint = ValueHint::FilePath)]
     figures: Vec<String>,
 
-    /// Output folder, with a file NAME.png for each figure; or a file for one figure, whose extension chooses the format:
-    /// png, or svg and pdf for print
+    /// Output folder, with a file NAME.png for each figure; or the file of one figure, whose extension chooses the
+    /// format: png, or svg and pdf for print
     #[arg(short, long, value_name = "DIR|FILE", default_value = FOLDER, value_hint = ValueHint::AnyPath)]
     out: PathBuf,
 
@@ -109,7 +109,7 @@ impl FigureCommand {
         std::fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
         let _lock = FolderLock::beside_others(folder);
         let (mut made, mut result) = (Vec::new(), Ok(Status::Done));
-        // Figures are compressed and written while the next ones are simulated and drawn, one on each thread at the most.
+        // Figures are compressed and written while the next ones are simulated and drawn, each on a thread.
         thread::scope(|scope| {
             let (mut figures, mut writing) = (figures.iter().zip(&paths), VecDeque::new());
             loop {
@@ -129,7 +129,7 @@ impl FigureCommand {
                 let Some((figure, path, numbers, thread)) = writing.pop_front() else { break };
                 match thread.join().unwrap_or_else(|panic| resume_unwind(panic)) {
                     Ok(true) => made.push((figure, path, numbers)),
-                    // What happened first is told.
+                    // Only the first error is reported.
                     _ if result.is_err() => {}
                     Ok(false) => result = Ok(Status::Interrupted),
                     Err(failure) => result = Err(failure),
@@ -162,8 +162,8 @@ impl FigureCommand {
         Ok(())
     }
 
-    /// Makes one figure, up to its file, and returns it with the numbers behind it; `None` if it was interrupted. That its
-    /// file can be written is checked before the work.
+    /// Makes one figure, ready to be written, and returns it with its numbers; `None` if it was interrupted. Before the
+    /// work, checks that its file can be written.
     fn make(&self, figure: &Figure, path: &Path, gpu: Option<&Gpu>) -> Result<Option<(Made, Value)>, Failure> {
         let file = AtomicFile::create(path)?;
         let Some(moments) = self.take(figure) else { return Ok(None) };
@@ -223,7 +223,7 @@ impl FigureCommand {
         Ok(figures.into_iter().map(|(figure, _)| figure).collect())
     }
 
-    /// Where each figure goes; nothing of others is replaced.
+    /// The file of each figure. Files of other programs are not replaced.
     fn paths(&self, figures: &[Figure]) -> Result<Vec<PathBuf>, Failure> {
         if Format::of(&self.out).is_some() {
             return match figures {
@@ -249,7 +249,7 @@ impl FigureCommand {
         figures.iter().map(path).collect()
     }
 
-    /// What a figure shows of its simulations; `None` if it was interrupted.
+    /// Simulates the states that a figure shows; `None` if it was interrupted.
     fn take(&self, figure: &Figure) -> Option<Moments> {
         let mut taking = Taking::new(figure, Reach::Summaries);
         let slice = figure.scenes().iter().map(|scene| record::slice(&scene.body)).min().unwrap_or(1);
@@ -283,14 +283,14 @@ impl FigureCommand {
     }
 }
 
-/// A figure that is drawn, and its file.
+/// A drawn figure, and its file.
 struct Made {
     drawn: Drawn,
     file: AtomicFile,
 }
 
 impl Made {
-    /// Compresses and writes it, unless the user asked to stop. Returns whether it did.
+    /// Compresses and writes the figure, unless the user interrupts the command. Returns whether it did.
     fn write(mut self) -> Result<bool, Failure> {
         let bytes = self.drawn.file();
         if interrupt::requested() {
@@ -302,8 +302,8 @@ impl Made {
     }
 }
 
-/// The numbers behind a figure: forces over stiffness of every run in sides, as the figure writes them, or what each cell
-/// of a sheet shows (SI).
+/// The numbers of a figure: for a diagram of forces, forces over stiffness of every run in sides; for a sheet, what
+/// each cell shows (SI).
 fn numbers(figure: &Figure, moments: &Moments) -> Value {
     match &figure.content {
         Content::Forces(forces) => {

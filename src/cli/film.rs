@@ -1,4 +1,4 @@
-//! Animation files: messages about them, and which may be replaced.
+//! Animation files: messages, and the rule for replacing files.
 
 use super::failure::{Failure, Status, with_causes};
 use crate::animation::{AnimationError, Written};
@@ -9,7 +9,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Beginning of each comment, by which files of this program are recognised.
+/// The beginning of the comment by which files of this program are recognised.
 pub(super) const MARK: &str = "made by localshape ";
 
 /// The result, on one line.
@@ -30,7 +30,7 @@ pub(super) fn comment(words: &[OsString], scene: &str) -> String {
 
 /// Refuses to replace files that this program did not make.
 pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
-    /// Comments stand near the beginning, in films behind tables of all pictures.
+    /// Comments stand near the beginning; in films they follow the tables of all pictures.
     const BEGINNING: u64 = 1 << 20;
     let Ok(found) = path.metadata() else { return Ok(()) };
     let name = path.display();
@@ -46,10 +46,10 @@ pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
     bail!("{name} exists and was not made by this command; choose another name with -o, or replace it with --overwrite")
 }
 
-/// Whether a file that begins with these bytes is one that this program has made: our mark stands where its format has
-/// the comment.
+/// Whether this program made a file with this beginning: its format has the comment in the place where our mark stands.
 fn is_ours(beginning: &[u8]) -> bool {
-    /// Where the bytes that all files of a kind begin with are, these bytes, and what stands before a comment.
+    /// For each kind: the position and the value of the bytes that its files begin with, and the bytes before a
+    /// comment.
     const KINDS: [(usize, &[u8], &[u8]); 6] = [
         (0, b"GIF89a", b"\x21\xfe"),
         (0, b"\x89PNG\r\n\x1a\n", b"iTXtComment\0"),
@@ -58,7 +58,7 @@ fn is_ours(beginning: &[u8]) -> bool {
         (4, b"ftyp", b"data\0\0\0\x01"),
         (0, b"\x1a\x45\xdf\xa3", b"\x44\x87"),
     ];
-    /// Between that and the comment there is room for its length and language (bytes).
+    /// The length and the language of a comment stand between these bytes and the comment; this is their most (bytes).
     const BETWEEN: usize = 8;
     let after = |at: usize| beginning.get(at..).unwrap_or_default();
     KINDS.iter().any(|&(at, magic, before)| {

@@ -1,4 +1,4 @@
-//! `--frames`: which frames are wanted.
+//! The options `--frames`, `--at` and `--shard`: which frames are requested.
 
 use crate::output::Shard;
 use crate::reading::words::short;
@@ -34,7 +34,7 @@ impl Moments {
     pub(super) fn nearest(&self, last: u64, rate: f64) -> Result<Vec<(f64, u64)>, String> {
         let nearest = |&time: &f64| {
             let frame = (time * rate).round();
-            // A moment up to half a frame after the last one has that.
+            // A moment up to half a frame after the last frame has that frame.
             let is_there = frame <= last as f64;
             is_there.then_some((time, frame as u64)).ok_or_else(|| {
                 format!("there is no frame at {} s; the last one is at {} s", short(time), short(last as f64 / rate))
@@ -88,7 +88,7 @@ impl FromStr for FrameRanges {
 }
 
 impl Shard {
-    /// Its share of some frames: `2/4` has the second frame and every fourth one after it.
+    /// The shard's share of some frames: `2/4` has the second frame and every fourth one after it.
     pub(super) fn select(self, frames: &[u64]) -> Result<Vec<u64>, String> {
         let share: Vec<_> = frames.iter().copied().skip(self.number - 1).step_by(self.of).collect();
         if share.is_empty() {

@@ -72,7 +72,7 @@ fn graphics() -> (Vec<String>, Vec<Value>) {
     both.unzip()
 }
 
-/// Without pictures no adapter is searched for.
+/// Without pictures no adapter is listed.
 #[cfg(not(feature = "render"))]
 fn graphics() -> (Vec<String>, Vec<Value>) {
     (vec!["not searched: this program was built without the feature `render`".to_owned()], Vec::new())

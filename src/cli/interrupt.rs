@@ -10,9 +10,9 @@ static REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// Installs the handlers.
 ///
-/// Ctrl-C a second or more after the first request ends the program at once; no file is then left half-written under its
-/// final name. Signals within that second count as one request, since `timeout` sends its signal twice. Other signals
-/// only request the end: they come from programs, which have SIGKILL.
+/// The first request only asks the command to end. Ctrl-C a second or more later ends the program at once; no file is
+/// then left half-written under its final name. Signals within that second count as one request, since `timeout` sends
+/// its signal twice. Other signals are never more than a request: they come from programs, which can send SIGKILL.
 pub(super) fn listen() {
     static LISTENING: Once = Once::new();
     LISTENING.call_once(|| {
@@ -25,17 +25,17 @@ pub(super) fn listen() {
     });
 }
 
-/// Requests within this time from the first are one.
+/// Signals within this time of the first are one request.
 const MOMENT: Duration = Duration::from_secs(1);
 
 /// Exit status of an immediate end by Ctrl-C.
 const ENDED: i32 = Status::Interrupted as i32;
 
-/// Calls `request` for each signal that asks to end the program, with whether it is Ctrl-C, until it returns that the
-/// program shall end at once.
+/// Calls `request` for each signal that asks the program to end, with whether it is Ctrl-C. Stops when `request`
+/// returns that the program must end at once.
 ///
-/// Only signals whose default action is in place get a handler: ignored ones, as with `nohup`, stay ignored, and a program
-/// keeps handlers of its own.
+/// Only signals with their default action get a handler: ignored ones, as with `nohup`, stay ignored, and a program
+/// keeps its own handlers.
 #[cfg(unix)]
 fn take_requests(mut request: impl FnMut(bool) -> bool + Send + 'static) {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -51,21 +51,21 @@ fn take_requests(mut request: impl FnMut(bool) -> bool + Send + 'static) {
     });
 }
 
-/// Whether a signal does what it does by default: neither ignored nor handled.
+/// Whether a signal has its default action: neither ignored nor handled.
 #[cfg(unix)]
-#[allow(unsafe_code, reason = "no crate asks for this in a safe way, and only Linux has it in a file")]
+#[allow(unsafe_code, reason = "no crate has a safe function for it, and only Linux has it in a file")]
 fn is_default(signal: std::ffi::c_int) -> bool {
     let mut action = std::mem::MaybeUninit::<libc::sigaction>::uninit();
-    // SAFETY: without a new action, `sigaction` changes nothing but what the last pointer points to, which has room for
-    // it, and which is read only if it was written.
+    // SAFETY: without a new action, `sigaction` changes only the value of the last pointer, which has room for it and
+    // is read only if it was written.
     unsafe {
         libc::sigaction(signal, std::ptr::null(), action.as_mut_ptr()) == 0
             && action.assume_init().sa_sigaction == libc::SIG_DFL
     }
 }
 
-/// Calls `request` for each request to end the program, all of which count as Ctrl-C, until it returns that the program
-/// shall end at once.
+/// Calls `request` for each request to end the program; each counts as Ctrl-C. Stops when `request` returns that the
+/// program must end at once.
 #[cfg(not(unix))]
 fn take_requests(mut request: impl FnMut(bool) -> bool + Send + 'static) {
     // A program that has its own handler keeps it.

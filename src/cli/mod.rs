@@ -4,7 +4,7 @@
 //! difference; 2 wrong usage or a wrong scene; 3 no usable graphics adapter; 4 reading or writing failed;
 //! 130 interrupted.
 
-/// Ends a function with wrong usage, said as by `format!`.
+/// Ends a function with wrong usage, with a message as of `format!`.
 macro_rules! bail {
     ($($message:tt)*) => { return Err($crate::cli::failure::Failure::usage(format!($($message)*))) };
 }
@@ -69,7 +69,7 @@ This program was built without the feature `render`: it cannot draw pictures.";
 const EXAMPLES: &str = "\
 Examples:
   localshape render scenes/fig4b.toml          frames, diagnostics and a summary in output/fig4b/
-  localshape simulate scenes/fig4b.toml        the same without pictures
+  localshape simulate scenes/fig4b.toml        diagnostics and a summary, without pictures
   localshape check scenes/*.toml               what scenes contain, or every mistake in them
   localshape animate output/fig4b -o fig4b.gif frames as an animation
   localshape figure all                        the paper's figures in output/figures/";
@@ -100,12 +100,13 @@ enum Command {
 
 /// Runs the program with the arguments of a command line, the program's name first, and returns its exit status.
 ///
-/// Results go to standard output, progress and errors to standard error. Signals are handled from the first scene that is run.
+/// Results go to standard output, progress and errors to standard error. Signals are handled from the start of the
+/// first scene.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let words: Vec<_> = words.into_iter().collect();
     let status = match Cli::try_parse_from(&words) {
         Ok(cli) => cli.command.run(&words).unwrap_or_else(Failure::report),
-        // Help and version come here, too. If printing fails there is nowhere to report it.
+        // Help and version are such errors, too. If printing fails, there is nowhere to report it.
         Err(error) => {
             let _ = error.print();
             if error.use_stderr() { Status::Usage } else { Status::Done }

@@ -16,7 +16,7 @@ use clap::{Args, ValueHint};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
 
-/// What is run.
+/// The scenes of a command.
 #[derive(Args, Clone, Debug)]
 pub(super) struct SceneOptions {
     /// Scene files (TOML); all are read and checked before the first is run
@@ -34,7 +34,7 @@ pub(super) struct SceneOptions {
     pub(super) allow_large: bool,
 }
 
-/// Which part of it, and where the results go.
+/// The frames and runs that are made, and their folder.
 #[derive(Args, Clone, Debug)]
 pub(super) struct RunOptions {
     /// Output folder [default: output/NAME, with NAME from the scene file]; with several scenes, the folder that
@@ -42,8 +42,8 @@ pub(super) struct RunOptions {
     #[arg(short, long, value_name = "DIR", value_hint = ValueHint::AnyPath)]
     pub(super) out: Option<PathBuf>,
 
-    /// Replace what hinders in the output folder: results of another scene, frames of another size or choice of runs, and other files of
-    /// these names
+    /// Replace results of another scene, frames of another size or choice of runs, and other files with the names of
+    /// output files
     #[arg(long)]
     pub(super) overwrite: bool,
 
@@ -60,9 +60,9 @@ pub(super) struct RunOptions {
     #[arg(long)]
     pub(super) states: bool,
 
-    /// Go on after an interruption, with the results of a command without one: from its last checkpoint, or from the start if
-    /// there is none. Frames that are there already, with the same scene, states, version, adapter and size, are not drawn
-    /// again
+    /// Continue after an interruption, from the last checkpoint or, without one, from the start. The results are those
+    /// of an uninterrupted command. Frames that are there already, with the same scene, states, version, adapter and
+    /// size, are not drawn again
     #[arg(long)]
     pub(super) resume: bool,
 
@@ -86,13 +86,13 @@ impl ThreadOptions {
         self.count_or(processors())
     }
 
-    /// The requested number, or this one.
+    /// The requested number, or `usual`.
     pub(super) fn count_or(self, usual: usize) -> usize {
         self.threads.map_or(usual, usize::from)
     }
 }
 
-/// What is printed, and how.
+/// The output of a command to the terminal.
 #[derive(Args, Clone, Copy, Debug)]
 pub(super) struct PrintOptions {
     /// Print errors only, neither progress, results nor warnings
@@ -110,7 +110,8 @@ impl PrintOptions {
         !self.quiet && !self.json
     }
 
-    /// A progress bar with the estimated time left and frames in its message. Invisible with `--quiet` or without a terminal.
+    /// A progress bar with the estimated time left, and with frames as its message. Invisible with `--quiet` or without
+    /// a terminal.
     pub(super) fn progress(self, title: &str, steps: u64) -> ProgressBar {
         let target = if self.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         let style = ProgressStyle::with_template("{prefix}  {wide_bar}  {msg}, {eta} left");
@@ -121,7 +122,7 @@ impl PrintOptions {
     }
 }
 
-/// What draws.
+/// The graphics adapter.
 #[cfg(feature = "render")]
 #[derive(Args, Debug)]
 pub(super) struct DeviceOptions {
@@ -132,7 +133,7 @@ pub(super) struct DeviceOptions {
 
 #[cfg(feature = "render")]
 impl DeviceOptions {
-    /// Opens the device, on which pictures of these sizes (px) are to be drawn.
+    /// Opens the device for pictures of these sizes (px).
     pub(super) fn open(&self, sizes: impl IntoIterator<Item = [u32; 2]>) -> Result<Gpu, Failure> {
         let gpu = Gpu::new(&self.adapter)?;
         let longest = gpu.longest_side();
@@ -162,7 +163,7 @@ impl ThemeOption {
         }
     }
 
-    /// The same as a value of a scene.
+    /// The theme as a setting of a scene.
     pub(super) fn setting(self) -> Setting {
         let name = typed(&self.theme());
         format!("view.theme={name}").parse().expect("a key and a value")
@@ -177,7 +178,7 @@ pub(super) fn number_in(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, S
     }
 }
 
-/// Sides of a picture that a scene may have, too (px).
+/// The sides that a picture of a scene may have (px).
 #[cfg(feature = "render")]
 const SIDES: std::ops::RangeInclusive<u32> = 16..=16384;
 
@@ -194,7 +195,7 @@ pub(super) fn size(typed: &str) -> Result<[u32; 2], String> {
     Ok(sides)
 }
 
-/// How many threads run at the same time on this machine.
+/// The number of threads that this machine runs at the same time.
 pub(super) fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }

@@ -1,4 +1,4 @@
-//! The way of one scene through the program: simulate, show, write down.
+//! Simulates one scene, draws it, and writes the results.
 
 use super::failure::{Failure, Status, with_causes};
 use super::options::{PrintOptions, RunOptions};
@@ -26,7 +26,7 @@ use std::time::Duration;
 /// Begins the pictures of some frames of a scene, in a folder.
 pub(super) type Begin<'d> = dyn for<'s> Fn(&'s Scene, &Path, &[u64]) -> Result<Box<dyn Pictures + 's>, Failure> + 'd;
 
-/// Runs all scenes, one after the other, and reports on each. Pictures are made by an adapter, by name, if any are.
+/// Runs all scenes in order and reports on each. If pictures are made, `adapter` is the name of the graphics adapter.
 pub(super) fn run_all(
     jobs: Vec<Job>,
     options: &RunOptions,
@@ -65,7 +65,7 @@ pub(super) fn run_all(
             documents.push(document);
         } else if !options.printing.quiet && result.is_ok() {
             console::print(&format!("{blank}{}", report::report(&summary, &path, timings)))?;
-            // Frames that are not kept cannot be gone on with.
+            // Frames that are not kept cannot be continued.
             if summary.outcome == Outcome::Interrupted && (pictures.is_none() || summary.frames.size.is_some()) {
                 console::print(&format!("to go on: {}\n", with_option(words, "--resume")))?;
             }
@@ -81,7 +81,7 @@ pub(super) fn run_all(
     Ok(if interrupted || interrupt::requested() { Status::Interrupted } else { Status::Done })
 }
 
-/// Runs one scene. However it ends, the summary says so.
+/// Runs one scene. Its summary has the outcome in every case.
 fn record(
     job: Job,
     summary: &mut Summary,
@@ -112,8 +112,8 @@ fn record(
     result
 }
 
-/// One frame of some runs of a scene, and the time series of the scene if its pictures need them; `None` if the user asked to stop.
-/// States wait in `folder`.
+/// One frame of some runs of a scene, and the time series of the scene if its pictures need them; `None` if the user
+/// interrupts the command. States wait in `folder`.
 #[cfg(feature = "render")]
 pub(super) fn one_frame(
     scene: &Scene,
@@ -173,13 +173,13 @@ struct Recording<'a> {
     folder: &'a Claimed,
     summary: &'a mut Summary,
     last: Option<Frame>,
-    /// The last state of each run in a frame before it diverged, from which its way into that is looked at.
+    /// The last sound state of each run in a frame, from which the cause of its divergence is searched for.
     sound: Vec<State>,
     times: Timings,
 }
 
 impl<'a> Recording<'a> {
-    /// Makes all frames, or those after a checkpoint. Whatever happens on the way, what was made until then is finished and
+    /// Makes all frames, or the frames after a checkpoint. After an error, the results made until then are finished and
     /// kept.
     fn run(
         mut self,
@@ -267,7 +267,7 @@ impl<'a> Recording<'a> {
         result.and(written)
     }
 
-    /// Finds out why runs have diverged since the last frame.
+    /// Finds the causes of divergences since the last frame.
     fn find_causes(&mut self, states: &[&State]) {
         let runs = self.summary.runs.iter_mut().zip(&self.runs).zip(&mut self.sound);
         for (((summary, &run), sound), state) in runs.zip(states) {
@@ -282,14 +282,14 @@ impl<'a> Recording<'a> {
         }
     }
 
-    /// The error for a checkpoint that lacks what belongs to it.
+    /// The error for a checkpoint without its files.
     fn unusable(&self, error: &dyn Error) -> OutputError {
         let what = format!("cannot be used ({})", with_causes(error)).into();
         OutputError::Checkpoint { path: self.folder.path().to_owned(), what }
     }
 
-    /// Where the frames come from. Only pictures, now or from the states that are written, need the scene's field, and some of
-    /// them its time series, which are those of the whole scene.
+    /// The source of frames. Only pictures, now or from written states, need the field of the scene, and some of them
+    /// the time series of the whole scene.
     fn simulation(
         &self,
         pool: &ThreadPool,
@@ -321,7 +321,7 @@ impl<'a> Recording<'a> {
             }
             let length = progress.as_ref().map_or(0, Progress::waiting_length);
             let open = || match self.folder.shard() {
-                // It does not go on from there.
+                // This file is not continued after an interruption.
                 Some(_) => tempfile::tempfile_in(folder),
                 None => open_growing(&waiting_states(folder), length),
             };
@@ -338,7 +338,7 @@ impl<'a> Recording<'a> {
         })
     }
 
-    /// Takes all frames, and the time series if there are any, until all are there or the user wants to stop.
+    /// Takes all frames, and the time series if there are any, until the last frame or an interruption.
     fn simulate(
         &mut self,
         pool: &ThreadPool,
@@ -352,13 +352,13 @@ impl<'a> Recording<'a> {
         }
         let slice = slice(&self.scene.body);
         self.sound = simulation.frames.states().cloned().collect();
-        // Runs that diverged on the way from the last frame to the checkpoint.
+        // Runs that diverged between the last frame and the checkpoint.
         for ((summary, &run), sound) in self.summary.runs.iter().zip(&self.runs).zip(&mut self.sound) {
             if simulation.read_from.is_none() && sound.status != sim::Status::Ok && summary.cause.is_none() {
                 *sound = self.scene.world(run).state().clone();
             }
         }
-        // Frames that are not kept cannot be continued, and states that are read need not be.
+        // Frames that are not kept cannot be continued, and states that are read need no checkpoint.
         let can_resume = simulation.read_from.is_none()
             && self.folder.shard().is_none()
             && (results.pictures.is_none() || self.summary.frames.size.is_some());
@@ -415,19 +415,19 @@ impl<'a> Recording<'a> {
     }
 }
 
-/// Where frames come from.
+/// The source of frames.
 struct Simulation<'a> {
     frames: Frames<'a>,
-    /// Whether all is simulated before the first frame.
+    /// Whether everything is simulated before the first frame.
     ahead: bool,
-    /// Whether the time series are known after the last one.
+    /// Whether the time series are known after the last frame.
     notes: bool,
-    /// The file from which states are read instead.
+    /// The file from which states are read instead of simulated.
     read_from: Option<PathBuf>,
 }
 
-/// Steps of each run after which the user is listened to: some milliseconds' worth, at some 2 ns for each corner of an
-/// element, and ten times that with the reference code. A frame seldom takes more.
+/// Steps of each run between tests for an interruption: some milliseconds, at some 2 ns for each corner of an element,
+/// and ten times that with the reference code. A frame seldom takes more.
 pub(super) fn slice(body: &Body) -> u64 {
     const CORNERS: usize = 2_500_000;
     (CORNERS / body.elements.indices().len().max(1)).max(1) as u64
@@ -438,14 +438,14 @@ fn processor_time(pool: &ThreadPool) -> Option<Duration> {
     pool.broadcast(|_| thread_time()).into_iter().sum()
 }
 
-/// Processor time so far of the threads that were lent to runs.
+/// Processor time so far of the helper threads of runs.
 fn helpers_time(frames: &mut Frames<'_>) -> Option<Duration> {
     let times = Mutex::new(Vec::new());
     frames.ask_helpers(&|| times.lock().unwrap_or_else(PoisonError::into_inner).push(thread_time()));
     times.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().sum()
 }
 
-/// The processor time that no other stage accounts for: that of drawing, wherever its driver spends it.
+/// The processor time that no other stage accounts for. It is that of drawing, on any thread of its driver.
 fn rest(times: &Timings) -> Option<f64> {
     let others = [Some(times.simulate), times.compose, times.encode].into_iter().flatten();
     let others: Option<f64> = others.map(|spent| spent.cpu).sum();

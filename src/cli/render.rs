@@ -29,7 +29,7 @@ Examples:
   localshape render scenes/*.toml -o pictures --size 640x360
   localshape render scenes/fig4b.toml --animate fig4b.gif --no-frames
   localshape render scenes/fig4b.toml --only Mass-spring --frames 30 -o one
-  localshape render scenes/fig4b.toml --resume             after an interruption: goes on from there
+  localshape render scenes/fig4b.toml --resume             continues after an interruption
   localshape render scenes/fig4b.toml --set run[0].model.stiffness=1e5 -o stiff    with another value in the scene
   localshape render scenes/fig4b.toml --at 0.5s -o frame.pdf     one frame for print, with text that can be searched
 
@@ -60,7 +60,7 @@ pub(super) struct Render {
     #[arg(long, value_name = "THEME")]
     theme: Option<ThemeOption>,
 
-    /// Moments to make in place of frames, such as 2s, 500ms or 0.5,1: the nearest frame to each
+    /// Moments in place of frames, such as 2s, 500ms or 0.5,1: the nearest frame to each is made
     #[arg(long, value_name = "TIME", conflicts_with = "frames", allow_hyphen_values = true)]
     at: Option<Moments>,
 
@@ -93,7 +93,7 @@ pub(super) struct Render {
 impl Render {
     pub(super) fn run(mut self, words: &[OsString]) -> Result<Status, Failure> {
         self.options.out.as_deref().map_or(Ok(()), FileFormat::check_name)?;
-        // A key of the scene, so that frames of two themes are those of two scenes.
+        // The theme is a key of the scene, so frames of two themes belong to two scenes.
         self.scenes.set.extend(self.theme.map(ThemeOption::setting));
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
         scenes.iter_mut().for_each(|scene| self.resize(scene));
@@ -113,7 +113,7 @@ impl Render {
             file.metadata().map_err(|error| missing(file, "npz", error))?;
             job.stored = Some(StoredStates::open(file, &job.scene, &job.runs, &job.frames)?);
         }
-        // Opened when all else is known to be right, and before the first folder is touched.
+        // The device is opened after all other checks, and before any folder is changed.
         let gpu = self.device.open(jobs.iter().map(|job| job.scene.view.size))?;
         jobs.iter().try_for_each(|job| self.tell_moments(&job.scene))?;
         let adapter = gpu.description().to_string();
@@ -131,14 +131,14 @@ impl Render {
         record::run_all(jobs, &self.options, &self.scenes.set, words, self.timings, pictures)
     }
 
-    /// Gives a scene the size that the user wants.
+    /// Gives a scene the requested size.
     fn resize(&self, scene: &mut Scene) {
         if let Some(size) = self.size {
             (scene.view.size, scene.view.print) = (size, None);
         }
     }
 
-    /// Prints which frames the moments that the user wants have.
+    /// Prints the frames of the requested moments.
     fn tell_moments(&self, scene: &Scene) -> Result<(), Failure> {
         let Some(at) = self.at.as_ref().filter(|_| self.options.printing.prints_text()) else { return Ok(()) };
         let line =
@@ -146,7 +146,7 @@ impl Render {
         nearest(at, scene)?.into_iter().map(line).try_for_each(|line| console::print(&line))
     }
 
-    /// Whether a scene can be drawn as it is wanted.
+    /// Checks that a scene can be drawn.
     fn check(&self, scene: &Scene) -> Result<(), Failure> {
         too_small(scene, &self.options.runs(scene)?).map_or(Ok(()), |message| Err(Failure::usage(message)))
     }
@@ -228,7 +228,7 @@ impl Render {
     }
 }
 
-/// Whether the run is there that pictures outline over others.
+/// Checks that the requested runs include the one whose outline is drawn over the others.
 fn check_ghost(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
     match scene.view.ghost {
         Some(Ghost::Run(run)) if !runs.contains(&run) => {

@@ -1,4 +1,4 @@
-//! The summary after a scene was run.
+//! The summary after a scene.
 
 use super::console::columns;
 use crate::output::{Outcome, RunStatus, RunSummary, Spent, Summary};
@@ -8,7 +8,7 @@ use crate::sim::words::quantity;
 use std::fmt::Write;
 use std::path::Path;
 
-/// A block of text: what was made and where, how each run fares at the end, and how long it took.
+/// A block of text: the results and their folder, the state of each run at the end, and the time taken.
 pub(super) fn report(summary: &Summary, folder: &Path, timings: bool) -> String {
     let mut text = format!("{}\n{}\n", summary.scene.title, made(summary, folder));
     let heads = ["run", "status", "turned over", "shape error"].map(str::to_owned);

@@ -1,4 +1,4 @@
-//! What becomes of frames, and the checkpoints from which an interrupted command goes on.
+//! Writes the results of frames, and the checkpoints from which an interrupted command continues.
 
 use super::failure::{Failure, note, with_causes};
 use crate::output::{Checkpoint, Claimed, DiagnosticsWriter, OutputError, StatesWriter, Summary, Timings};
@@ -7,34 +7,34 @@ use crate::runner::{Frames, Next};
 use crate::sim::{Diagnostic, Frame};
 use std::time::{Duration, Instant};
 
-/// What turns frames into pictures, for one scene.
+/// Makes pictures of frames, for one scene.
 pub(super) trait Pictures {
-    /// The diagnostics whose time series over the whole scene are needed before the first frame, if its course is.
+    /// The diagnostics whose time series are needed before the first frame; `None` if none are.
     fn time_series(&self) -> Option<&[Diagnostic]>;
     /// Sets the time series of the scene.
     fn take_history(&mut self, history: &History);
-    /// Draws a frame and sees to it that it is written, now or a little later.
+    /// Draws a frame. It is written now or a little later.
     fn draw(&mut self, frame: &Frame) -> Result<(), Failure>;
     /// Waits until all frames so far are written.
     fn flush(&mut self) -> Result<(), Failure>;
-    /// Leaves frames as an earlier command has drawn them, unless one of them is no longer so: what is wrong with it, in words.
+    /// Keeps frames of an earlier command. If one of them has changed, returns what is wrong with it, in words.
     fn keep(&mut self, frames: &[u64]) -> Result<Option<String>, Failure>;
-    /// Waits until all frames are written, and writes down how many and how long it took.
+    /// Waits until all frames are written, and records their number and the time taken.
     fn finish(self: Box<Self>, summary: &mut Summary, times: &mut Timings) -> Result<(), Failure>;
 }
 
 /// The results of one scene, frame by frame.
 pub(super) struct Results<'a> {
-    /// None in a shard.
+    /// `None` in a shard.
     pub(super) diagnostics: Option<DiagnosticsWriter>,
     pub(super) states: Option<StatesWriter>,
     pub(super) pictures: Option<Box<dyn Pictures + 'a>>,
-    /// Whether the user was told that no checkpoint can be written, or wants no warnings.
+    /// Whether the user has read that no checkpoint can be written, or wants no warnings.
     pub(super) warned: bool,
 }
 
 impl Results<'_> {
-    /// Takes what comes next of the frames.
+    /// Takes the next result of the frames.
     pub(super) fn take(&mut self, next: &Next, frames: &Frames<'_>) -> Result<(), Failure> {
         let Self { diagnostics, states, pictures, .. } = self;
         match next {
@@ -54,11 +54,11 @@ impl Results<'_> {
         }
     }
 
-    /// Writes a checkpoint, if anything is left to simulate, by the command of the summary, with what that knows of divergences.
-    /// With `ahead` all is simulated before the first frame.
+    /// Writes a checkpoint unless the simulation is finished. With `ahead`, everything is simulated before the first
+    /// frame.
     ///
     /// # Errors
-    /// If frames cannot be drawn or written. A checkpoint that cannot be written is only warned of: a disk without room
+    /// If frames cannot be drawn or written. A checkpoint that cannot be written is only a warning: a disk without room
     /// for it may have enough for the results.
     pub(super) fn save(
         &mut self,
@@ -93,28 +93,28 @@ impl Results<'_> {
     }
 }
 
-/// When a checkpoint is due: as often as costs two per cent of the time.
+/// When a checkpoint is due, so that checkpoints take two per cent of the time.
 pub(super) struct Pace {
     next: Instant,
 }
 
 impl Pace {
-    /// From the start to the first checkpoint, and between two at least.
+    /// The least time before the first checkpoint, and between two.
     const LEAST: Duration = Duration::from_secs(2);
-    /// The time between two, in times that one takes.
+    /// The time between two checkpoints, in times that one takes.
     const TIMES: u32 = 50;
 
-    /// From now on.
+    /// Starts the clock.
     pub(super) fn new() -> Self {
         Self { next: Instant::now() + Self::LEAST }
     }
 
-    /// Whether it is time.
+    /// Whether a checkpoint is due.
     pub(super) fn is_due(&self) -> bool {
         Instant::now() >= self.next
     }
 
-    /// Takes one by calling `save`.
+    /// Makes a checkpoint by calling `save`.
     pub(super) fn take<T>(&mut self, save: impl FnOnce() -> T) -> T {
         let begun = Instant::now();
         let saved = save();

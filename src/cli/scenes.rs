@@ -1,4 +1,4 @@
-//! From scene files as typed to scenes that can be run.
+//! Reads and checks the scenes on a command line.
 
 use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::{FrameRanges, Moments};
@@ -11,7 +11,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 impl SceneOptions {
-    /// How large scenes may be.
+    /// The limits on the size of scenes.
     pub(super) fn limits(&self) -> Limits {
         if self.allow_large { Limits::NONE } else { Limits::default() }
     }
@@ -46,7 +46,7 @@ impl SceneOptions {
     }
 }
 
-/// Mistakes in a scene, unless it could not be read.
+/// The status for mistakes in a scene, or for one that could not be read.
 pub(super) fn status_of(error: &SceneError) -> Status {
     if error.is_unreadable() { Status::Files } else { Status::Usage }
 }
@@ -57,12 +57,12 @@ impl From<SceneError> for Failure {
     }
 }
 
-/// A mistake of the user's comes before one of the system's.
+/// The more important of two statuses: a mistake of the user comes before an error of the system.
 pub(super) fn worse(one: Option<Status>, other: Status) -> Status {
     if one == Some(Status::Usage) { Status::Usage } else { other }
 }
 
-/// One scene with what is wanted of it, all checked; nothing is written yet.
+/// One scene with the requested runs and frames, all checked; nothing is written yet.
 #[derive(Debug)]
 pub(super) struct Job {
     pub(super) scene: Scene,
@@ -70,28 +70,28 @@ pub(super) struct Job {
     pub(super) runs: Vec<usize>,
     /// Numbers of frames, rising.
     pub(super) frames: Vec<u64>,
-    /// How many frames all shards have.
+    /// The number of frames of all shards together.
     pub(super) all: usize,
     pub(super) folder: Folder,
-    /// The states of the frames, if they were simulated before.
+    /// The states of the frames, if they are read from a file.
     pub(super) stored: Option<StoredStates>,
 }
 
-/// What the commands that run scenes do differently.
+/// The differences between the commands that run scenes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Wish<'a> {
     /// Whether frames are drawn and kept.
     pub(super) pictures: bool,
-    /// The share of the frames, if it is not all.
+    /// The shard of the frames, unless all are made.
     pub(super) shard: Option<Shard>,
     /// Whether states are read, so that no checkpoint is needed.
     pub(super) from_states: bool,
-    /// The moments whose frames are wanted, if they are chosen so.
+    /// The requested moments, if frames are chosen by `--at`.
     pub(super) at: Option<&'a Moments>,
 }
 
 impl RunOptions {
-    /// What is to be done for each scene by the command of these `words`.
+    /// The jobs for scenes, requested by the command with these `words`.
     pub(super) fn jobs(&self, scenes: Vec<Scene>, wish: Wish<'_>, words: &[OsString]) -> Result<Vec<Job>, Failure> {
         let several = scenes.len() > 1;
         let mut folders: HashMap<PathBuf, String> = HashMap::new();
@@ -111,7 +111,7 @@ impl RunOptions {
         Ok(jobs)
     }
 
-    /// What is to be done for one scene in a folder.
+    /// The job for one scene in a folder.
     fn job(&self, scene: Scene, path: &Path, wish: Wish<'_>, words: &[OsString]) -> Result<Job, Failure> {
         let Wish { pictures, shard, from_states, at } = wish;
         let runs = self.runs(&scene)?;
@@ -133,7 +133,7 @@ impl RunOptions {
         runs_of(&self.only, scene)
     }
 
-    /// The frames that are wanted of a scene, in rising order.
+    /// The requested frames of a scene, in rising order.
     pub(super) fn frames(&self, scene: &Scene, at: Option<&Moments>) -> Result<Vec<u64>, Failure> {
         if let Some(at) = at {
             let mut frames: Vec<_> = nearest(at, scene)?.into_iter().map(|(_, frame)| frame).collect();
@@ -165,7 +165,7 @@ pub(super) fn runs_of(only: &[String], scene: &Scene) -> Result<Vec<usize>, Fail
     Ok((0..names.len()).filter(|&run| is_wanted(names[run])).collect())
 }
 
-/// Why a folder cannot be used, with the command of these `words` that replaces what is there.
+/// Why a folder cannot be used. The message has the command, made from these `words`, that replaces its contents.
 pub(super) fn occupied(error: OutputError, words: &[OsString]) -> Failure {
     match error {
         OutputError::Occupied { .. } => Failure::usage(format!("{error}: {}", with_option(words, "--overwrite"))),
@@ -173,7 +173,7 @@ pub(super) fn occupied(error: OutputError, words: &[OsString]) -> Failure {
     }
 }
 
-/// The same command with another option, placed where it cannot be the value of one.
+/// The same command with another option, in a place where it is not taken for a value.
 pub(super) fn with_option(words: &[OsString], option: &str) -> String {
     let mut words: Vec<_> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     if !words.iter().any(|word| word == option) {

@@ -1,4 +1,4 @@
-//! `schema`: what scene files and figure files may hold, for editors and for readers.
+//! `schema`: the format of scene files and figure files, for editors and for readers.
 
 use super::console::{print, print_json};
 use super::failure::{Failure, Status};

@@ -23,7 +23,7 @@ pub(super) enum Format {
 }
 
 impl Format {
-    /// The format that the name of a file stands for; `None` for names of folders.
+    /// The format for the name of a file; `None` for names of folders.
     pub(super) fn of(path: &Path) -> Option<Self> {
         if path.is_dir() {
             return None;
@@ -32,7 +32,7 @@ impl Format {
         if is_png { Some(Self::Png) } else { vector::Format::of(path).map(Self::Vector) }
     }
 
-    /// Refuses names that are hardly meant for folders: those of other formats of pictures.
+    /// Refuses names with the endings of other picture formats, which are hardly meant for folders.
     pub(super) fn check_name(path: &Path) -> Result<(), Failure> {
         const OTHERS: [&str; 11] = ["jpg", "jpeg", "gif", "apng", "webp", "tif", "tiff", "bmp", "eps", "mp4", "webm"];
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
@@ -46,16 +46,16 @@ impl Format {
         )
     }
 
-    /// Whether pictures of scenes need a graphics device: vectors only where bodies are lit.
+    /// Whether pictures of scenes need a graphics device; vector formats need one only for lit bodies.
     pub(super) fn needs_device<'a>(self, scenes: impl IntoIterator<Item = &'a Scene>) -> bool {
         self == Self::Png || scenes.into_iter().any(|scene| scene.body.dimension == Dimension::Space)
     }
 }
 
-/// What stands for the adapter in files that are drawn without one.
+/// The name of the adapter in files that are drawn without one.
 pub(super) const NO_ADAPTER: &str = "none";
 
-/// Refuses to replace a file that is no figure or single frame of this program.
+/// Refuses to replace a file that is not a figure or single frame of this program.
 pub(super) fn replaceable(path: &Path, format: Format) -> Result<(), Failure> {
     match format {
         Format::Png if path.is_file() && read_tags(path)?.is_some() => Ok(()),
@@ -76,7 +76,7 @@ fn smallest_type(picture: &Picture) -> f32 {
     picture.words.iter().map(|run| run.size).fold(f32::INFINITY, f32::min)
 }
 
-/// Why some runs of a scene are not printed, as far as the first frame shows: before anything is simulated.
+/// Why some runs of a scene cannot be printed, judged by the first frame before anything is simulated.
 pub(super) fn too_small(scene: &Scene, runs: &[usize]) -> Option<String> {
     let print = scene.view.print.as_ref()?;
     let mut runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
@@ -95,16 +95,16 @@ pub(super) struct Still<'a> {
     pub(super) picture: &'a Picture,
     /// Its size in print.
     pub(super) print: Option<&'a Print>,
-    /// The path of the file that says what it shows.
+    /// The file name of the scene or figure that it shows.
     pub(super) source: &'a str,
     /// Its title; empty for none.
     pub(super) title: &'a str,
-    /// What the file says about itself.
+    /// The metadata of the file.
     pub(super) tags: &'a [(&'static str, String)],
 }
 
 impl Still<'_> {
-    /// Draws it, with a device if one is needed.
+    /// Draws the picture, with a device if one is needed.
     pub(super) fn draw(&self, format: Format, gpu: Option<&Gpu>) -> Result<Drawn, Failure> {
         let picture = self.picture;
         check_type(self.print, picture, self.source)?;
@@ -135,9 +135,9 @@ fn draw(gpu: Option<&Gpu>, picture: &Picture) -> Result<Vec<u8>, RenderError> {
     Ok(Renderer::new(gpu.expect("a device for pixels"), picture.size)?.draw(picture)?.into_raw())
 }
 
-/// One picture that is drawn.
+/// A drawn picture.
 pub(super) enum Drawn {
-    /// What is yet to be compressed, which takes longest.
+    /// Pixels that are not compressed yet, which takes longest.
     Pixels { size: [u32; 2], pixels: Vec<u8>, tags: Vec<(&'static str, String)>, dpi: Option<f64> },
     /// The file.
     Vectors(Vec<u8>),

@@ -26,7 +26,7 @@ impl AtomicFile {
         Self::create_for(path, None)
     }
 
-    /// The same for a process that makes a share of the files of a folder: only that one removes its leftovers.
+    /// Creates a file of a shard. Only a process with the same shard removes its leftovers.
     pub(super) fn create_for(path: &Path, shard: Option<Shard>) -> Result<Self, OutputError> {
         let folder = folder_of(path);
         // `File::create` gives results the usual permissions; files made by tempfile can be read by their owner only.
@@ -54,7 +54,7 @@ impl AtomicFile {
     /// Appends bytes.
     ///
     /// # Errors
-    /// If they cannot be written; some of them may have been.
+    /// If they cannot be written; some of them may have been written.
     pub(crate) fn append(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
         self.temporary.as_file_mut().write_all(bytes).map_err(OutputError::writing(&self.path))
     }
@@ -62,8 +62,8 @@ impl AtomicFile {
     /// Renames the file to its final name, replacing an earlier file, after its contents are synced to the disk. So the
     /// final name always has complete contents, even after a power failure.
     ///
-    /// The sync took 4 ms for a file of 300 kB (median of 100). For frames it is done by the threads that compress
-    /// them, while others are drawn: rendering took as long as without.
+    /// The sync takes 4 ms for a file of 300 kB (median of 100). The threads that compress frames do it while others
+    /// are drawn, so rendering takes no longer.
     ///
     /// # Errors
     /// If it cannot be written or renamed; it is then removed.
@@ -83,23 +83,23 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> 
     write_whole_for(path, bytes, None)
 }
 
-/// The same for a process that makes a share of the files of a folder.
+/// Writes a whole file of a shard.
 pub(super) fn write_whole_for(path: &Path, bytes: &[u8], shard: Option<Shard>) -> Result<(), OutputError> {
     let mut file = AtomicFile::create_for(path, shard)?;
     file.append(bytes)?;
     file.commit()
 }
 
-/// Begins the hidden names of files of a share, or of a whole.
+/// The beginning of the hidden names of files, of a shard or of the whole.
 fn prefix(shard: Option<Shard>) -> String {
     shard.map_or(PREFIX.to_owned(), |Shard { number, of }| format!("{SHARDS}{number}-of-{of}-"))
 }
 
-/// Opens a file with a fixed hidden name in a folder, which grows and outlives its process, so that another one can go on
-/// with it. What lies behind the first `length` bytes is cut off; with 0 the file is new.
+/// Opens a growing file with a fixed hidden name in a folder. It outlives its process, so that another one can continue
+/// it. Bytes beyond `length` are cut off; with 0 the file is new.
 ///
 /// # Errors
-/// If it cannot be opened, or is shorter.
+/// If it cannot be opened, or is shorter than `length`.
 pub(crate) fn open_growing(path: &Path, length: u64) -> io::Result<File> {
     let mut file = File::options().read(true).write(true).create(length == 0).truncate(false).open(path)?;
     if file.metadata()?.len() < length {
@@ -110,7 +110,7 @@ pub(crate) fn open_growing(path: &Path, length: u64) -> io::Result<File> {
     Ok(file)
 }
 
-/// Makes a folder with a hidden name in a folder, which is removed with all that is in it when this is dropped.
+/// Makes a hidden folder in a folder. When dropped, it is removed with its contents.
 ///
 /// # Errors
 /// If it cannot be made.
@@ -126,8 +126,8 @@ pub(super) fn sync_folder(folder: &Path) {
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
 
-/// Removes the files that killed processes left unfinished in a folder, and nothing else: those of one share, or those of no share.
-/// No other process may be writing the same.
+/// Removes the unfinished files of killed processes from a folder: those of one shard, or those of no shard. No other
+/// process may be writing the same files.
 ///
 /// # Errors
 /// If the folder cannot be read or a leftover cannot be removed.

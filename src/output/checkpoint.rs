@@ -1,7 +1,7 @@
-//! Checkpoints: a simulation on its way, with exact states, from which another process goes on after an interruption.
+//! Checkpoints: the exact states of a simulation, from which another process continues after an interruption.
 //!
-//! A checkpoint is a hidden file beside the results, replaced as a whole. What grows with the frames, such as
-//! `diagnostics.csv`, lies in hidden files of its own, and the checkpoint says how much of them it goes with.
+//! A checkpoint is a hidden file beside the results, replaced as a whole. Results that grow with the frames, such as
+//! `diagnostics.csv`, have hidden files of their own. The checkpoint stores how long they were when it was written.
 
 use super::atomic::{remove, sync_folder};
 use super::diagnostics::Rows;
@@ -13,15 +13,15 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
-/// The name of the file in its folder. A command that does not go on from it removes it as a leftover.
+/// The name of the file in its folder. A command that does not continue from it removes it as a leftover.
 const CHECKPOINT_FILE: &str = ".localshape-checkpoint.partial";
 
 /// The first bytes of the file; a digest of the rest follows.
 const MARK: &[u8] = b"localshape checkpoint 4\n";
-/// What earlier marks begin with, too.
+/// The beginning of the marks of all versions.
 const ANY_MARK: &[u8] = b"localshape checkpoint ";
 
-/// What a command writes into the folder of a scene.
+/// The output of a command in the folder of a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Plan {
     /// Names of the runs, in the scene's order.
@@ -34,30 +34,30 @@ pub(crate) struct Plan {
     pub size: Option<[u32; 2]>,
 }
 
-/// Where a command has come to.
+/// The progress of a command.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Checkpoint {
-    /// The command line that wrote it.
+    /// The command line.
     pub(crate) command: Vec<String>,
-    /// Digest of what it makes.
+    /// Digest of the plan.
     plan: [u8; 32],
     /// The simulation.
     pub(crate) progress: Progress,
-    /// Why runs have diverged, as far as that is known: one for each run.
+    /// The known cause of the divergence of each run.
     pub(crate) causes: Vec<Option<Cause>>,
-    /// The rows of frames that are written; `None` if no frame is written before the end of the simulation.
+    /// The rows of the frames written so far; `None` if no frame is written before the end of the simulation.
     pub(crate) rows: Option<Rows>,
-    /// The states that are written with them, if states are.
+    /// The states written so far, if states are written.
     pub(crate) course: Option<Course>,
 }
 
 impl Checkpoint {
-    /// Of a command that makes what a `plan` says.
+    /// The checkpoint of a command with a plan.
     pub(crate) fn new(command: Vec<String>, plan: &Plan, progress: Progress) -> Self {
         Self { command, plan: digest(plan), progress, causes: Vec::new(), rows: None, course: None }
     }
 
-    /// Replaces the one in a folder, if there is one. What it refers to has to be on the disk.
+    /// Writes the checkpoint into a folder, replacing an earlier one. The files that it refers to must be on the disk.
     ///
     /// # Errors
     /// If it cannot be written; an earlier one is then unchanged.
@@ -65,12 +65,12 @@ impl Checkpoint {
         let origin = Origin::of(whose);
         let mut rest = postcard::to_allocvec(&origin).expect("plain data");
         rest.extend(postcard::to_allocvec(self).expect("plain data"));
-        // The names of frames and of hidden files must be on the disk before this one says that they are.
+        // The names of frames and of hidden files must be on the disk before the checkpoint is.
         sync_folder(folder);
         write_whole(&folder.join(CHECKPOINT_FILE), &[MARK, &Sha256::digest(&rest), &rest].concat())
     }
 
-    /// Reads the one in a folder, if there is one.
+    /// Reads the checkpoint in a folder, if there is one.
     ///
     /// # Errors
     /// If it cannot be read, is damaged, or belongs to another version, scene or command.
@@ -105,7 +105,7 @@ impl Checkpoint {
         Ok(found)
     }
 
-    /// Removes the one in a folder, after all is done.
+    /// Removes the checkpoint of a finished command from a folder.
     ///
     /// # Errors
     /// If it cannot be removed.
@@ -113,13 +113,13 @@ impl Checkpoint {
         remove(&folder.join(CHECKPOINT_FILE))
     }
 
-    /// Whether there is one in a folder.
+    /// Whether a folder has a checkpoint.
     pub(crate) fn is_in(folder: &Path) -> bool {
         folder.join(CHECKPOINT_FILE).is_file()
     }
 }
 
-/// The name of the hidden file in a folder in which states wait to be drawn.
+/// The path of the hidden file in a folder whose states wait to be drawn.
 pub(crate) fn waiting_states(folder: &Path) -> PathBuf {
     folder.join(".localshape-frames.partial")
 }

@@ -16,7 +16,7 @@ pub(crate) const DIAGNOSTICS_FILE: &str = "diagnostics.csv";
 /// Its name until it is finished.
 const UNFINISHED: &str = ".localshape-diagnostics.partial";
 
-/// Writes the diagnostics of frames, one after the other. The file gets its name in [`Self::finish`].
+/// Writes the diagnostics of frames in order. The file gets its name in [`Self::finish`].
 #[derive(Debug)]
 pub(crate) struct DiagnosticsWriter {
     file: File,
@@ -24,7 +24,7 @@ pub(crate) struct DiagnosticsWriter {
     path: PathBuf,
     names: Vec<String>,
     written: Rows,
-    /// The digest of what is written.
+    /// The digest of the written bytes.
     digest: Sha256,
 }
 
@@ -45,7 +45,7 @@ impl DiagnosticsWriter {
         Ok(writer)
     }
 
-    /// Goes on after rows that another process has written, whether it has finished the file or not.
+    /// Continues after the rows of another process, whether it has finished the file or not.
     pub(crate) fn resume(folder: &Path, scene: &Scene, before: Rows) -> Result<Self, OutputError> {
         let [hidden, path] = [UNFINISHED, DIAGNOSTICS_FILE].map(|name| folder.join(name));
         // A finished file has lost its hidden name.
@@ -84,19 +84,18 @@ impl DiagnosticsWriter {
         Ok(())
     }
 
-    /// What is written so far.
+    /// The rows written so far.
     fn written(&self) -> Rows {
         Rows { digest: self.digest.clone().finalize().into(), ..self.written }
     }
 
-    /// Makes what is written so far survive a power failure.
+    /// Makes the rows written so far survive a power failure.
     pub(crate) fn sync(&mut self) -> io::Result<Rows> {
         self.file.sync_data()?;
         Ok(self.written())
     }
 
-    /// Renames the file to its final name. Also after a failed [`Self::write`]: the file then ends with the last
-    /// complete frame.
+    /// Renames the file to its final name. After a failed [`Self::write`] it ends with the last complete frame.
     pub(crate) fn finish(self) -> Result<(), OutputError> {
         let Self { file, hidden, path, written, .. } = self;
         let renamed =
@@ -105,7 +104,7 @@ impl DiagnosticsWriter {
     }
 }
 
-/// The digest of a whole file, which is then at its end.
+/// The digest of a whole file, leaving the position at its end.
 fn digest_of(file: &mut File) -> io::Result<Sha256> {
     file.rewind()?;
     let (mut digest, mut reader) = (Sha256::new(), BufReader::new(file));

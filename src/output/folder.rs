@@ -42,7 +42,7 @@ pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputEr
 /// The scene to which results belong.
 #[derive(Clone, Debug)]
 pub(crate) struct Whose {
-    /// Digest of its meaning.
+    /// Digest of the scene's contents.
     pub digest: String,
     pub title: String,
     /// Its file, as a full path.
@@ -54,7 +54,8 @@ impl Whose {
         Self { digest: scene.digest.clone(), title: scene.title.clone(), file: scene.file.clone() }
     }
 
-    /// Whether results of a scene of this digest are its own. A scene with a model made in code has no digest and nothing of its own.
+    /// Whether results with this digest belong to the scene. A scene with a model made in code has no digest, so no
+    /// results belong to it.
     fn owns(&self, digest: &str) -> bool {
         !digest.is_empty() && digest == self.digest
     }
@@ -63,13 +64,13 @@ impl Whose {
 /// How a command uses its folder.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Access {
-    /// Replaces whatever has the name of an output file.
+    /// Replaces every file with the name of an output file.
     pub overwrite: bool,
     /// Replaces the results of other versions of the scene's file.
     pub follows: bool,
-    /// Goes on from a checkpoint there.
+    /// Continues from a checkpoint in the folder.
     pub resume: bool,
-    /// Only adds a share of the frames, at the same time as other processes that do so.
+    /// Only adds the frames of a shard, while other processes may add theirs.
     pub shard: Option<Shard>,
 }
 
@@ -89,16 +90,16 @@ pub(crate) struct Folder {
     scene: Whose,
     plan: Plan,
     access: Access,
-    /// What is replaced without `--overwrite`, in words.
+    /// The results that are replaced without `--overwrite`, in words.
     replaced: Option<String>,
 }
 
 impl Folder {
     /// Inspects a folder, which need not exist, before it is used for a scene.
     ///
-    /// Refused are, unless `access` permits their replacement: a folder with results of another scene, with frames of this scene
-    /// in another size or with other runs, and with other files that have the names of output files. Something that has such
-    /// a name but is not a file, such as a folder, is always refused, and so is a folder to which another process writes.
+    /// Unless `access` permits their replacement, the folder is refused if it has results of another scene, frames of
+    /// this scene in another size or with other runs, or other files with the names of output files. It is always
+    /// refused if another process writes to it, or if a folder or the like has the name of an output file.
     ///
     /// # Errors
     /// If the folder cannot be read, is refused or is not a folder.
@@ -128,28 +129,29 @@ impl Folder {
         &self.path
     }
 
-    /// What is written there, and for which scene.
+    /// The planned output, and its scene.
     pub(crate) fn contents(&self) -> (&Plan, &Whose) {
         (&self.plan, &self.scene)
     }
 
-    /// The share of the frames that is written there, if it is not all.
+    /// The shard of the frames that is written, unless all are.
     pub(crate) fn shard(&self) -> Option<Shard> {
         self.access.shard
     }
 
-    /// What is replaced although the user has not asked for that, in words: `the results of another version of sag.toml`.
+    /// The results that are replaced although the user has not asked for it, in words: `the results of another version
+    /// of sag.toml`.
     pub(crate) fn replaced(&self) -> Option<&str> {
         self.replaced.as_deref()
     }
 
-    /// Creates the folder if necessary, locks it, removes what is replaced, and writes a `summary` by which the folder is known as
-    /// this scene's, even if the program is killed. Leftovers of killed processes go, but for a checkpoint to go on from and what
-    /// belongs to it.
+    /// Creates the folder if necessary, locks it, removes replaced results, and writes a `summary`, which marks the
+    /// folder as this scene's even if the program is killed. Leftovers of killed processes are removed, except for a
+    /// checkpoint to continue from and its files.
     ///
     /// # Errors
-    /// If the folder cannot be created or written to, or has a checkpoint to resume that does not belong to the plan; and
-    /// the errors of [`Self::inspect`], which is repeated because the folder may have changed before it was locked.
+    /// If the folder cannot be created or written to, or its checkpoint does not belong to the plan; and the errors of
+    /// [`Self::inspect`], which is repeated because the folder may have changed before it was locked.
     pub(crate) fn prepare(self, summary: &Summary) -> Result<Claimed, OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
         if let Some(shard) = self.access.shard {
@@ -160,7 +162,7 @@ impl Folder {
         let checkpoint = if self.access.resume { read()? } else { None };
         let found = self.find()?;
         if checkpoint.is_none() {
-            // First, so that no checkpoint is left without what belongs to it.
+            // First, so that no checkpoint is left without its files.
             Checkpoint::remove(&self.path)?;
             remove_leftovers(&self.path, None)?;
         }
@@ -169,8 +171,8 @@ impl Folder {
         Ok(Claimed { folder: self, checkpoint, _lock: lock })
     }
 
-    /// The same beside processes with other shards. Only a process that is alone replaces what is there, and the summary is that of
-    /// the first one.
+    /// Prepares the folder for a shard, beside processes with other shards. Only a process that is alone replaces
+    /// results. The summary is that of the first process.
     fn prepare_shared(self, shard: Shard, summary: &Summary) -> Result<Claimed, OutputError> {
         let path = &self.path;
         let lock = FolderLock::shared(path)?;
@@ -190,13 +192,13 @@ impl Folder {
             }
             lock.becomes_shared(path)?;
         }
-        // Files of others may be on their way, also on machines that do not see the lock.
+        // Other processes may be writing, also on machines that do not see the lock.
         remove_leftovers(path, Some(shard))?;
         Ok(Claimed { folder: self, checkpoint: None, _lock: lock })
     }
 }
 
-/// A locked folder: until this is dropped no other process writes to it, or only others that share it.
+/// A locked folder. Until it is dropped, no other process writes to it, except for those that share the lock.
 #[derive(Debug)]
 pub(crate) struct Claimed {
     folder: Folder,
@@ -213,7 +215,7 @@ impl Deref for Claimed {
 }
 
 impl Claimed {
-    /// Takes the checkpoint from which to go on, if there is one.
+    /// Takes the checkpoint to continue from, if there is one.
     pub(crate) fn take_checkpoint(&mut self) -> Option<Checkpoint> {
         self.checkpoint.take()
     }
@@ -232,11 +234,11 @@ impl Drop for Claimed {
 /// Existing results in a folder.
 #[derive(Debug)]
 struct Found {
-    /// Results that are replaced, the summary last: until then it tells whose the others are.
+    /// Results that are replaced. The summary is last, because it tells whose the others are.
     stale: Vec<PathBuf>,
-    /// Why the folder is refused unless these may be replaced, in words.
+    /// Why the folder is refused unless `stale` may be replaced, in words.
     hindrance: Option<String>,
-    /// Whether all of that was made by other versions of the scene's file.
+    /// Whether other versions of the scene's file made all of `stale`.
     is_other_version: bool,
     /// Whether there is a summary of this scene.
     has_summary: bool,
@@ -314,7 +316,7 @@ impl Found {
         Ok(Self { stale, hindrance, is_other_version, has_summary })
     }
 
-    /// Removes what is replaced.
+    /// Removes the stale results.
     fn remove(&self) -> Result<(), OutputError> {
         self.stale.iter().try_for_each(|path| remove(path))
     }
@@ -330,7 +332,7 @@ struct Owner {
 }
 
 impl Owner {
-    /// Reads it from `run.json`; `None` if there is none or another program wrote it.
+    /// Reads the owner from `run.json`; `None` if there is none or another program wrote it.
     fn read(path: &Path) -> Result<Option<Self>, OutputError> {
         let Some(bytes) = read_file(path)? else { return Ok(None) };
         let Ok(summary) = serde_json::from_slice::<serde_json::Value>(&bytes) else { return Ok(None) };
@@ -341,7 +343,7 @@ impl Owner {
         Ok(text("digest").filter(|_| ours).map(|digest| Self { digest, title, file, relative_file }))
     }
 
-    /// Whether its scene has the file of another. One that was moved together with the output `folder` is the same.
+    /// Whether the owner has the same file as a scene. A scene that was moved together with the output `folder` has.
     fn is_of_file(&self, scene: &Whose, folder: &Path) -> bool {
         let moved = self.relative_file.as_ref().and_then(|file| folder.join(file).canonicalize().ok());
         scene.file.is_some() && [self.file.as_ref().map(PathBuf::from), moved].contains(&scene.file)
@@ -355,7 +357,7 @@ mod tests {
     use crate::sim::model::shape_based::ShapeBased;
     use std::sync::Arc;
 
-    /// They have no digest by which they could be compared.
+    /// Scenes without a digest cannot be compared.
     #[test]
     fn scenes_with_models_of_their_own_are_never_taken_for_each_other() {
         let scene = |title: &str, side: f64| {

@@ -7,7 +7,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A folder with the frames of a scene and their diagnostics, in files as `localshape render` writes them.
+/// A folder with the frames of a scene and their diagnostics, in the files of `localshape render`.
 ///
 /// A file has its name only when it is complete. The folder is not locked: only one program may write to it.
 #[derive(Debug)]
@@ -37,7 +37,7 @@ impl<'a> FrameFolder<'a> {
         self.diagnostics.write(frame).map_err(io::Error::other)
     }
 
-    /// Writes the picture of a frame that a device has drawn, with its metadata, and returns the path of the file, such as
+    /// Writes a drawn picture of a frame, with its metadata, and returns the path of the file, such as
     /// `frame_00030.png`.
     ///
     /// # Errors
@@ -56,7 +56,7 @@ impl<'a> FrameFolder<'a> {
     /// Gives `diagnostics.csv` its name.
     ///
     /// # Errors
-    /// If that fails.
+    /// If it cannot be renamed.
     pub fn finish(self) -> io::Result<()> {
         self.diagnostics.finish().map_err(io::Error::other)
     }

@@ -12,7 +12,7 @@ use std::thread::JoinHandle;
 pub(crate) struct PixelFrame {
     /// Width and height (px).
     pub size: [u32; 2],
-    /// Pixels of an inch, if it is for print.
+    /// Pixels per inch, for print.
     pub dpi: Option<f64>,
     /// Red, green and blue of each pixel, in rows from the top left, sRGB; see [`encode`].
     pub pixels: Arc<Vec<u8>>,
@@ -22,7 +22,7 @@ pub(crate) struct PixelFrame {
     pub texts: Texts,
 }
 
-/// The pixels of a frame, and its file, whose compressed pixels serve further frames with the same ones.
+/// The pixels of the last frame and its file, whose compressed pixels are reused for equal frames.
 type Last = Mutex<(Weak<Vec<u8>>, Arc<Vec<u8>>)>;
 
 /// Threads that compress and write frames, started as needed, up to a bound. Memory is bounded: while all threads are
@@ -119,7 +119,7 @@ impl FrameWriter {
     }
 }
 
-/// The file of a frame. Pixels that are those of the last one are not compressed again.
+/// The file of a frame. Pixels equal to the last ones are not compressed again.
 fn compressed(frame: &PixelFrame, last: &Last) -> Arc<Vec<u8>> {
     let lock = || last.lock().unwrap_or_else(PoisonError::into_inner);
     let PixelFrame { size, dpi, pixels, texts, .. } = frame;

@@ -7,8 +7,8 @@ use std::fs::{File, TryLockError};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// How long a process may hold a lock that does not write there: to remove leftovers, which takes milliseconds, or because
-/// it was killed and has not ended yet.
+/// How long another process may hold a lock without writing to the folder: to remove leftovers, which takes
+/// milliseconds, or between being killed and ending.
 const MOMENT: Duration = Duration::from_secs(1);
 
 /// A folder to which this process writes, locked until this is dropped. Where the system cannot lock folders, there is
@@ -20,7 +20,8 @@ pub(crate) struct FolderLock {
 }
 
 impl FolderLock {
-    /// Locks an existing folder for exclusive use, leaving leftovers of killed processes, which may be the way to go on.
+    /// Locks an existing folder for exclusive use. Leftovers of killed processes stay, since one may be a checkpoint to
+    /// continue from.
     ///
     /// # Errors
     /// If another process writes to it.
@@ -38,21 +39,21 @@ impl FolderLock {
         lock.becomes_shared(path).map(|()| lock)
     }
 
-    /// Tries to lock for exclusive use what it shared. It is shared no longer in any case.
+    /// Tries to make a shared lock exclusive. It is no longer shared in either case.
     pub(super) fn becomes_alone(&self) -> bool {
         self.take(true)
     }
 
-    /// Shares what may have been locked for exclusive use.
+    /// Makes a lock shared.
     ///
     /// # Errors
-    /// If another process has it in the meantime.
+    /// If another process has locked the folder exclusively in the meantime.
     pub(super) fn becomes_shared(&self, path: &Path) -> Result<(), OutputError> {
         if self.take(false) { Ok(()) } else { Err(in_use(path)) }
     }
 
     /// Locks an existing folder for writing single files beside those of other processes. Leftovers are kept, as they
-    /// may belong to these.
+    /// may belong to other processes.
     pub(crate) fn beside_others(path: &Path) -> Self {
         let lock = Self::open(path);
         // A process that keeps an exclusive lock for longer has removed its leftovers: there is no need to wait for it.

@@ -1,8 +1,8 @@
 //! Output files: frames, diagnostics, states and a summary of each run of the program.
 //!
-//! Every file is first written under a hidden name in the same folder and then renamed, so that it is complete or does
-//! not exist, also when the program is killed or the disk is full. Equal input gives equal bytes, except for the times
-//! in `run.json`.
+//! Every file is first written under a hidden name in the same folder and then renamed. So it is complete or does not
+//! exist, even if the program is killed or the disk is full. Equal input gives equal bytes, except for the times in
+//! `run.json`.
 
 mod atomic;
 mod checkpoint;

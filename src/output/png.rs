@@ -16,7 +16,7 @@ pub(crate) type Texts = Vec<(&'static str, String)>;
 /// The metadata of a picture, in text chunks. They include no time of day: equal pictures are equal files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tags {
-    /// What it shows.
+    /// The subject.
     pub shows: Shown,
     /// `localshape:scene`: the digests of its scenes, one line each.
     pub scenes: Vec<String>,
@@ -136,7 +136,7 @@ pub fn encode(size: [u32; 2], pixels: &[u8], texts: &[(&'static str, String)], c
     encode_print(size, pixels, texts, compression, None)
 }
 
-/// The same, with the pixels of an inch in print, if they are known (`pHYs`).
+/// Encodes a picture likewise, with its pixels per inch in print if they are known (`pHYs`).
 pub(crate) fn encode_print(
     size: [u32; 2],
     pixels: &[u8],
@@ -147,7 +147,8 @@ pub(crate) fn encode_print(
     file(size, pixels.len(), texts, compression, dpi, |writer| writer.write_image_data(pixels))
 }
 
-/// The same for the pixels of another file that was made so, which are not compressed again.
+/// Encodes a picture likewise, with the compressed pixels of another file, which [`encode_print`] made from equal
+/// pixels.
 pub(crate) fn encode_like(
     (file_before, length): (&[u8], usize),
     size: [u32; 2],
@@ -159,7 +160,7 @@ pub(crate) fn encode_like(
     })
 }
 
-/// A file with so many bytes of pixels, which `write` adds.
+/// A file with `length` bytes of pixels, which `write` adds.
 fn file(
     size: [u32; 2],
     length: usize,
@@ -194,7 +195,7 @@ fn file(
     bytes
 }
 
-/// Pixels of a kind, filtered and packed as in a PNG file, with the settings of `set`: the contents of its `IDAT` chunks.
+/// Pixels, filtered and packed with the settings of `set`, as the contents of `IDAT` chunks.
 #[cfg(feature = "render")]
 pub(crate) fn packed(
     [width, height]: [u32; 2],
@@ -256,8 +257,8 @@ fn header(path: &Path) -> Result<Option<png::Reader<BufReader<File>>>, OutputErr
     }
 }
 
-/// Whether a file is the picture that would be written with this size (px), these texts and these pixels of an inch; `false`
-/// if there is no such file.
+/// Whether a file is the picture that would be written with this size (px), these texts and this resolution (px per
+/// inch); `false` if there is no such file.
 pub(crate) fn is_drawn(
     path: &Path,
     size: [u32; 2],
@@ -272,19 +273,19 @@ pub(crate) fn is_drawn(
     Ok([info.width, info.height] == size && is_for_print && texts.iter().all(has))
 }
 
-/// The pixels of a metre from those of an inch.
+/// Pixels per metre from pixels per inch.
 fn pixel_dims(dpi: f64) -> png::PixelDimensions {
     let count = (dpi / 0.0254).round() as u32;
     png::PixelDimensions { xppu: count, yppu: count, unit: png::Unit::Meter }
 }
 
-/// The texts with one of our keywords, `None` for each that cannot be read.
+/// The texts with one of our keywords; `None` for each text that cannot be read.
 fn texts_of(info: &png::Info<'_>, name: &str) -> Vec<Option<String>> {
     let is = |keyword: &str| keyword.strip_prefix("localshape:") == Some(name);
     let plain =
         info.uncompressed_latin1_text.iter().filter(|chunk| is(&chunk.keyword)).map(|chunk| Some(chunk.text.clone()));
     let wide = info.utf8_text.iter().filter(|chunk| is(&chunk.keyword)).map(|chunk| chunk.get_text().ok());
-    // Other programs may have compressed it.
+    // Other programs may have compressed the text.
     let packed = info.compressed_latin1_text.iter().filter(|chunk| is(&chunk.keyword));
     plain.chain(wide).chain(packed.map(|chunk| chunk.get_text().ok())).collect()
 }

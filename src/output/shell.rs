@@ -1,6 +1,6 @@
 //! Command lines in messages, quoted so that they can be pasted into a shell.
 
-/// A word, quoted where it must be, as it can be pasted into a command line.
+/// A word of a command line, quoted if necessary.
 pub(crate) fn word(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c) || cfg!(windows) && c == '\\';
     match !word.is_empty() && word.chars().all(is_plain) {
@@ -9,7 +9,7 @@ pub(crate) fn word(word: &str) -> String {
     }
 }
 
-/// A command line of such words.
+/// A command line.
 pub(crate) fn line(words: &[String]) -> String {
     words.iter().map(|one| word(one)).collect::<Vec<_>>().join(" ")
 }

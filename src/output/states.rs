@@ -18,7 +18,7 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 /// The name of the file in its folder.
 pub(crate) const STATES_FILE: &str = "states.npz";
 
-/// Its frames until they are arranged.
+/// The hidden file of frames until they are arranged.
 const SPOOL: &str = ".localshape-states.partial";
 
 /// The name of the array of bytes that only this program reads.
@@ -31,15 +31,14 @@ pub(super) const COURSE: &str = "localshape";
 /// of the first run, and a run with another time step has its own `NAME.time` (F). Scenes allow only names of runs that
 /// are valid in an archive.
 ///
-/// The body is stored once: `rest` (N × 3, m), `mass` (N, kg), and as 64-bit integers the nodes of each element,
-/// `elements`, and of each face on the surface of the body, `faces`, with -1 at the end of shorter rows.
+/// The body is stored once: `rest` (N × 3, m) and `mass` (N, kg). The nodes of each element (`elements`) and of each
+/// face on the surface of the body (`faces`) are 64-bit integers, with -1 at the end of shorter rows.
 ///
-/// So that pictures can be drawn from it, it also has what models and constraints remember from step to step, `NAME.memory`
-/// (F × M), and `localshape`, bytes with an [`Origin`] and a [`Course`].
+/// For drawing, the archive also has the memory of models and constraints, `NAME.memory` (F × M), and the array of
+/// bytes `localshape` with an [`Origin`] and a [`Course`].
 ///
-/// Arrays are consecutive in the archive but all grow with each frame, and the number of frames is known only at the
-/// end. So frames are first written to a hidden file, one record each, and rearranged at the end, which temporarily needs
-/// twice the disk space.
+/// Each array grows with every frame, and the number of frames is known only at the end. So frames are first written to
+/// a hidden file, one record each, and rearranged at the end, which temporarily needs twice the disk space.
 #[derive(Debug)]
 pub(crate) struct StatesWriter {
     path: PathBuf,
@@ -48,23 +47,23 @@ pub(crate) struct StatesWriter {
     arrays: Vec<Array>,
     /// Length of one frame in the temporary file (bytes).
     record: u64,
-    /// For each run whether it has its own times.
+    /// Whether each run has its own times.
     own_time: Vec<bool>,
     origin: Origin,
     course: Course,
 }
 
-/// Where states come from.
+/// The program and the scene that states come from.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Origin {
-    /// Version of this crate. Another one may read [`Course`] differently.
+    /// Version of this crate. Other versions may read [`Course`] differently.
     pub(super) version: String,
     /// Digest of the scene.
     pub(super) digest: String,
     pub(super) title: String,
 }
 
-/// What pictures of states need besides the arrays; it grows with each frame.
+/// The data of states that pictures need besides the arrays; it grows with each frame.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Course {
     /// Numbers of the frames, rising.
@@ -79,18 +78,18 @@ pub(crate) struct Course {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct StoredRun {
     pub(super) name: String,
-    /// How many numbers of the memory belong to the model; the others belong to constraints.
+    /// The length of the model's part of the memory; the rest belongs to constraints.
     pub(super) model: usize,
-    /// Where it diverged, if it did.
+    /// The divergence of the run, if it diverged.
     pub(super) divergence: Option<Divergence>,
-    /// What [`Stored::last_fit`](crate::runner::Stored::last_fit) returns, with the state as bytes.
+    /// The result of [`Stored::last_fit`](crate::runner::Stored::last_fit), with the state as bytes.
     pub(super) last_fit: Option<Option<(Vec<u8>, f64)>>,
-    /// For each frame the SHA-256 of positions, velocities and memory: single frames are read, and the archive's own
-    /// checksums are those of all.
+    /// The SHA-256 of positions, velocities and memory of each frame. Single frames are read, and the archive's own
+    /// checksums cover all frames.
     pub(super) digests: Vec<[u8; 32]>,
 }
 
-/// One array of the archive, and the position of its part in each record.
+/// One array of the archive, and its part of each record.
 #[derive(Debug)]
 struct Array {
     name: String,
@@ -103,13 +102,13 @@ struct Array {
 }
 
 impl Origin {
-    /// What this program makes of a scene.
+    /// The origin of the results of a scene in this program.
     pub(super) fn of(whose: &Whose) -> Self {
         let version = env!("CARGO_PKG_VERSION").to_owned();
         Self { version, digest: whose.digest.clone(), title: whose.title.clone() }
     }
 
-    /// Why what comes from here is of no use for a scene, in words; `None` if it is.
+    /// Why results of this origin cannot be used for a scene, in words; `None` if they can.
     pub(super) fn refusal(&self, digest: &str, title: &str) -> Option<String> {
         let (version, found) = (env!("CARGO_PKG_VERSION"), &self.title);
         if self.version != version {
@@ -122,7 +121,7 @@ impl Origin {
 }
 
 impl Course {
-    /// Whether it goes on with these runs.
+    /// Whether the course can be continued with these runs.
     fn fits(&self, runs: &[StoredRun]) -> bool {
         let kinds = |runs: &[StoredRun]| runs.iter().map(|run| (run.name.clone(), run.model)).collect::<Vec<_>>();
         kinds(&self.runs) == kinds(runs) && self.runs.iter().all(|run| run.digests.len() == self.frames.len())
@@ -130,11 +129,11 @@ impl Course {
 }
 
 impl StatesWriter {
-    /// Creates the file in `folder`, for frames that show `runs`, indices into the scene's runs, which have states of this kind.
-    /// It goes on after the frames `before` that another process has written.
+    /// Creates the file in `folder`, for frames of `runs`, indices into the scene's runs. Their states have the kind of
+    /// `states`. The file continues after the frames `before` of another process.
     ///
     /// # Errors
-    /// If the folder cannot be written to, or these frames are not there.
+    /// If the folder cannot be written to, or the frames `before` are missing.
     pub(crate) fn create<'s>(
         folder: &Path,
         scene: &Scene,
@@ -215,7 +214,7 @@ impl StatesWriter {
         Ok(())
     }
 
-    /// Adds what pictures show of the run at a place among the runs if it diverges, see
+    /// Stores the drawn state of a run, by its place among the runs, if the run diverges; see
     /// [`Frames::last_fit`](crate::runner::Frames::last_fit).
     pub(crate) fn set_last_fit(&mut self, place: usize, found: Option<Option<(&State, f64)>>) {
         let bytes = |(state, times_wider): (&State, f64)| (state.to_bytes(), times_wider);

@@ -31,7 +31,7 @@ struct Place {
 }
 
 impl StoredStates {
-    /// Opens the states of some frames and runs of a scene, if the file has all that pictures of them need.
+    /// Opens the states of some frames and runs of a scene, if the file has everything that their pictures need.
     ///
     /// # Errors
     /// If the file cannot be read, is damaged, or has other states.
@@ -59,13 +59,13 @@ impl StoredStates {
     }
 }
 
-/// What is stored besides the arrays, if it belongs to the scene.
+/// The stored course, if it belongs to the scene.
 fn course(npz: &mut Npz, scene: &Scene) -> Result<Course, String> {
     let again = "simulate the scene again with --states";
     let bytes = match npz.array(COURSE) {
         None => return Err(format!("has no array `{COURSE}`, which `localshape simulate --states` writes; {again}")),
         Some(array) => {
-            // What is packed could unfold to any size, and this program packs nothing.
+            // Packed data could unfold to any size, and this program packs nothing.
             let fits = |array: Array| match npz.has_room_for(&array) {
                 true => npz.values(&array),
                 false => Err(format!("is packed, or longer than the file; {again}")),
@@ -105,12 +105,12 @@ fn place(npz: &mut Npz, course: &Course, scene: &Scene, run: usize) -> Result<Pl
     let of_memory = |row: &[u64]| matches!(*row, [length] if length >= stored.model as u64);
     let arrays = [array("position", &of_nodes)?, array("velocity", &of_nodes)?, array("memory", &of_memory)?];
     if stored.digests.len() != course.frames.len() {
-        return Err(format!("is damaged: what it says of “{name}” does not fit its frames"));
+        return Err(format!("is damaged: its entry for “{name}” does not fit its frames"));
     }
     Ok(Place { run, arrays })
 }
 
-/// Refuses frames that are not there.
+/// Refuses frames that the course does not have.
 fn has_frames(course: &Course, frames: &[u64]) -> Result<(), String> {
     let Some(missing) = frames.iter().find(|frame| course.frames.binary_search(frame).is_err()) else { return Ok(()) };
     let there = match course.frames[..] {
@@ -123,7 +123,7 @@ fn has_frames(course: &Course, frames: &[u64]) -> Result<(), String> {
     ))
 }
 
-/// Leaves of the time series those of some runs.
+/// Keeps only the time series of some runs.
 fn only(history: &mut History, runs: &[usize]) {
     history.series.retain(|series| runs.contains(&series.run));
 }
@@ -147,7 +147,7 @@ impl Stored for StoredStates {
         };
         let [position, velocity, mut model] = [read(&arrays[0])?, read(&arrays[1])?, read(&arrays[2])?];
         if hash.finalize()[..] != stored.digests[row] {
-            return Err(damaged("is damaged: it has not the numbers that were written"));
+            return Err(damaged("is damaged: its numbers are not the ones that were written"));
         }
         let vectors = |numbers: &[f64]| numbers.as_chunks::<3>().0.iter().map(|&v| DVec3::from_array(v)).collect();
         let constraints = model.split_off(stored.model);

@@ -18,7 +18,7 @@ pub(crate) struct Summary {
     pub scene: SceneSummary,
     /// The command line, one entry for each argument.
     pub command: Vec<String>,
-    /// Values that the command has set in place of those in the scene file, as typed; absent if there are none.
+    /// Keys and values of `--set`, as typed; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub set: Vec<String>,
     pub outcome: Outcome,
@@ -30,10 +30,11 @@ pub(crate) struct Summary {
     pub adapter: Option<String>,
     /// The requested runs, in the scene's order.
     pub runs: Vec<RunSummary>,
-    /// A line on each animation that was made.
+    /// A line on each animation.
     #[serde(skip)]
     pub films: Vec<String>,
-    /// How far all runs are simulated, and the time of the last frame (s), if the user stopped it on the way.
+    /// The time that all runs have reached, and the time of the last frame (s), if the user interrupted the command
+    /// before.
     #[serde(skip)]
     pub reached: Option<[f64; 2]>,
     /// Times by stage (s); `null` before the end.
@@ -49,9 +50,9 @@ pub(crate) struct SceneSummary {
     /// The file relative to the folder of `run.json`; set by [`Summary::write`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub relative_file: Option<String>,
-    /// Digest of its meaning.
+    /// Digest of the scene's contents.
     pub digest: String,
-    /// The period T of the lightest node and the stiffest run (s), of which steps can be fractions.
+    /// The period T of the lightest node and the stiffest run (s), the unit of steps such as `T/70`.
     pub cycle: f64,
 }
 
@@ -65,7 +66,7 @@ pub(crate) enum Outcome {
     Done,
     /// The user stopped it; all files made until then are complete.
     Interrupted,
-    /// The frames are drawn in shards, and no command has written tables.
+    /// The frames are drawn in shards, and the tables are not written yet.
     Shards,
     /// Writing or drawing failed; all files made until then are complete.
     Failed,
@@ -80,10 +81,10 @@ pub(crate) struct FrameSummary {
     pub recorded: usize,
     /// The number of written pictures; `null` without pictures.
     pub written: Option<usize>,
-    /// The number of pictures that were there already and stayed (`--resume`); absent if there are none.
+    /// The number of pictures of an earlier command that were kept (`--resume`); absent if there are none.
     #[serde(skip_serializing_if = "is_zero")]
     pub kept: usize,
-    /// The number of pictures that are the same as the one before and were not drawn again; absent if there are none.
+    /// The number of pictures that equal the one before and were not drawn again; absent if there are none.
     #[serde(skip_serializing_if = "is_zero")]
     pub repeated: usize,
     /// Width and height of the pictures (px); `null` without pictures.
@@ -96,12 +97,12 @@ pub(crate) struct RunSummary {
     pub name: String,
     /// Time step (s).
     pub time_step: f64,
-    /// The steps that this command has simulated; after a divergence they are only counted.
+    /// The number of steps that this command has simulated; after a divergence steps are only counted.
     pub steps: u64,
     /// `ok` or `diverged`.
     #[serde(flatten)]
     pub status: RunStatus,
-    /// Why it diverged; absent if it did not, or its states are read.
+    /// The cause of its divergence; absent if it did not diverge, or if its states are read from a file.
     #[serde(flatten)]
     pub cause: Option<Cause>,
     /// The frames drawn by this command in which its body leaves its panel; absent if there are none.
@@ -111,17 +112,17 @@ pub(crate) struct RunSummary {
     pub last: Option<LastState>,
 }
 
-/// Whether a run has diverged.
+/// The outcome of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "status", rename_all = "kebab-case")]
 pub(crate) enum RunStatus {
-    /// It has not.
+    /// It has not diverged.
     Ok,
-    /// It has.
+    /// It has diverged.
     Diverged {
         /// Time of the first step that was rejected (s).
         time: f64,
-        /// Number of that step.
+        /// Number of the rejected step.
         step: u64,
         /// The first element with the node that exceeded the speed limit.
         element: Option<usize>,
@@ -137,14 +138,14 @@ pub(crate) struct LastState {
     pub time: f64,
     #[serde(flatten)]
     pub diagnostics: Chosen,
-    /// Another diagnostic, which is not in goldens; `null` for a model without it.
+    /// A diagnostic that goldens do not record; `null` for a model without it.
     pub global_rotations: Option<u64>,
     /// Digest of the state.
     pub state: String,
 }
 
 impl Summary {
-    /// The summary before the first frame, of `asked` frames of some of the scene's runs.
+    /// The summary of `asked` frames of some of the scene's runs, before the first frame.
     pub(crate) fn new(scene: &Scene, runs: &[usize], asked: usize, command: &[String]) -> Self {
         let run = |&run: &usize| {
             let run = &scene.runs[run];
@@ -208,17 +209,17 @@ impl Summary {
     }
 }
 
-/// Plain data as a JSON document to read.
+/// Plain data as a formatted JSON document.
 pub(crate) fn document(value: &impl Serialize) -> String {
     serde_json::to_string_pretty(value).expect("plain data") + "\n"
 }
 
-/// Whether a number of frames is not worth a word.
+/// Leaves zeros out of the summary.
 fn is_zero(count: &usize) -> bool {
     *count == 0
 }
 
-/// The relative path from a folder to a file with a full path; `None` if there is none, as between disks on Windows.
+/// The relative path from a folder to a file with a full path; `None` if there is none, as between drives on Windows.
 pub(crate) fn relative(file: &Path, folder: &Path) -> Option<String> {
     let folder = folder.canonicalize().ok()?;
     let shared = folder.components().zip(file.components()).take_while(|(one, other)| one == other).count();

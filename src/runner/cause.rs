@@ -1,4 +1,4 @@
-//! The cause of a divergence, found by simulating the steps before it once more, also with smaller steps.
+//! The cause of a divergence, found by simulating the steps before it again, also with smaller steps.
 
 use super::last_fit::fits;
 use crate::scene::{Run, Scene};
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// The place and the cause of a divergence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Cause {
-    /// The first node whose speed became too large or no number.
+    /// The first node whose speed became too large or not a number.
     pub(crate) node: usize,
     /// The cause and the remedy, as sentences in one line.
     #[serde(rename = "cause")]
@@ -26,8 +26,7 @@ const HALVINGS: u32 = 5;
 const MOST_ELEMENT_STEPS: u64 = 10_000_000;
 
 impl Cause {
-    /// The explanation of a run that diverges after a sound state, found with some threads. `None` if too many steps
-    /// lie between.
+    /// Explains the divergence of a run after a sound state, with some threads. `None` if too many steps lie between.
     pub(crate) fn find(
         scene: &Scene,
         run: usize,
@@ -58,7 +57,7 @@ impl Cause {
         Some(Self { node, words: format!("{what}: {why}") })
     }
 
-    /// The cause that something moves too far for one step, if anything does.
+    /// The cause of a divergence by something that moves too far in one step, if there is one.
     fn too_fast(scene: &Scene, run: usize, world: &World, node: usize, divergence: Divergence) -> Option<String> {
         /// The distance of a step in sizes of an element.
         const FAR: f64 = 0.5;
@@ -77,7 +76,7 @@ impl Cause {
             (format!("obstacle[{number}]"), way(obstacle.pose(begin), obstacle.pose(end), obstacle.pivot))
         });
         let grips = scene.grips.iter().filter(|grip| grip.holds(begin) && grip.holds(end));
-        let grips = grips.map(|grip| ("what is grabbed".to_owned(), way(grip.way(begin), grip.way(end), at)));
+        let grips = grips.map(|grip| ("the grabbed part".to_owned(), way(grip.way(begin), grip.way(end), at)));
         let (name, way) = obstacles.chain(grips).max_by(|one, other| one.1.total_cmp(&other.1))?;
         (way > FAR * size).then(|| {
             let [way, size] = [way, size].map(|length| quantity(length, "m"));

@@ -1,6 +1,6 @@
-//! The time series of a scene: its diagnostics from start to end, for charts, and where its bodies are,
-//! for cameras that follow them and for the drawn size of plates and walls. They depend on the scene only and not on the
-//! requested frames.
+//! The time series of a scene: its diagnostics from start to end, for charts, and the places of its bodies, for cameras
+//! that follow them and for the drawn size of plates and walls. They depend on the scene only and not on the requested
+//! frames.
 
 use crate::look::CameraBox;
 use crate::scene::Scene;
@@ -9,10 +9,10 @@ use crate::sim::{Diagnostics, Divergence, Moment, Shape, World};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Least number of moments, if there are as many steps: a curve as wide as a picture then looks smooth.
+/// Least number of moments, if there are as many steps: the curve then looks smooth over the whole width of a picture.
 const FEWEST_MOMENTS: u64 = 600;
-/// The first of so many equal parts of the scene has as many moments again: bodies are often dropped or thrown, and charts
-/// show what happens early on a scale of its own.
+/// The first of this many equal parts of the scene has as many moments again. Bodies are often dropped or thrown, and
+/// charts show the early part on a scale of its own.
 const EARLY: u64 = 16;
 /// Greatest number of moments for any number of frames: charts have no higher resolution.
 const MOST_MOMENTS: u64 = 2000;
@@ -22,7 +22,7 @@ const MOST_MOMENTS: u64 = 2000;
 pub struct History {
     /// Time of the scene's last frame (s).
     pub end: f64,
-    /// The requested runs, in that order.
+    /// The requested runs, in the requested order.
     pub series: Vec<TimeSeries>,
 }
 
@@ -31,18 +31,19 @@ pub struct History {
 pub struct TimeSeries {
     /// Index of the run in the scene.
     pub run: usize,
-    /// The times of steps of this run (s), rising from the start to the scene's last frame; for a run that diverged, up
-    /// to its last finite state.
+    /// The times of steps of this run (s), from the start to the scene's last frame; for a run that diverged, up to its
+    /// last finite state.
     pub times: Vec<f64>,
-    /// The diagnostics at each of these times: those that were requested; the others are zero.
+    /// The diagnostics at each of these times. Diagnostics that were not requested are zero.
     pub diagnostics: Vec<Diagnostics>,
-    /// For each point of the body that leaves a path ([`crate::look::View::paths`]), where it was at each of these times (m).
+    /// The positions (m) of each point of the body that leaves a path ([`crate::look::View::paths`]), at each of these
+    /// times.
     pub paths: Vec<Vec<DVec3>>,
     /// The boxes around the body at these times, if the scene's camera follows it.
     pub(crate) boxes: Vec<CameraBox>,
-    /// Where its nodes have come near plates and walls.
+    /// The boxes around its nodes near plates and walls.
     pub(crate) reach: Reach,
-    /// Where the run diverged, if it did.
+    /// The divergence of the run, if it diverged.
     pub divergence: Option<Divergence>,
 }
 
@@ -53,7 +54,7 @@ impl TimeSeries {
         Self { run, times, diagnostics, paths, boxes, reach, divergence: None }
     }
 
-    /// Whether it is one of the same run and the same quantities as an empty one.
+    /// Whether it has the same run and the same quantities as an empty one.
     pub(crate) fn fits(&self, empty: &Self) -> bool {
         let moments = self.times.len();
         self.run == empty.run
@@ -73,13 +74,13 @@ impl TimeSeries {
     }
 }
 
-/// For each obstacle of a scene the box around all nodes that have been near it (m), where the obstacle was at the start;
-/// `None` for all but plates and walls.
+/// For each obstacle of a scene the box around all nodes that have been near it (m), relative to the obstacle at the
+/// start; `None` for all but plates and walls.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Reach(Vec<Option<[DVec3; 2]>>);
 
 impl Reach {
-    /// Nodes no farther from a plate or a wall than this are near it (sizes of the body).
+    /// Nodes are near a plate or a wall up to this distance (sizes of the body).
     const NEAR: f64 = 0.6;
 
     /// Adds nodes at positions (m) at a time (s).
@@ -103,7 +104,7 @@ impl Reach {
         }
     }
 
-    /// Adds what another run has reached.
+    /// Adds the boxes of another run.
     pub(crate) fn merge(&mut self, other: &Self) {
         self.0.resize(self.0.len().max(other.0.len()), None);
         for (one, other) in self.0.iter_mut().zip(&other.0) {

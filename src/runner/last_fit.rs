@@ -5,12 +5,12 @@ use crate::sim::{Crew, Divergence, LastFit, State, Status, World};
 use glam::DVec3;
 
 /// A state fits if its nodes lie within this many times the radius of the body at rest or at the start, whichever is
-/// larger. Sound motions stretch few bodies so far; diverging ones have hardly begun to.
+/// larger. Sound motions seldom stretch a body so far, and diverging ones have hardly begun to.
 const FITS: f64 = 1.5;
 /// The number of steps between tests of a state. From the last fitting one on, each step is tested.
 const STRIDE: u64 = 64;
 
-/// The last state that fits of a run that diverges, and the drawn snapshot.
+/// The last fitting state of a run that diverges, and the drawn snapshot.
 #[derive(Clone, Debug)]
 pub(crate) struct Fitting {
     /// The state. Its status has the divergence.
@@ -33,8 +33,8 @@ pub(crate) fn fits(scene: &Scene, position: &[DVec3]) -> bool {
     radius(position) <= FITS * radius(&scene.body.rest).max(radius(&scene.initial.position))
 }
 
-/// The search for the last state that fits of a run that diverges. It simulates the run once more, so only runs pay for
-/// it that diverge or have a state that does not fit.
+/// The search for the last fitting state of a run that diverges. It simulates the run again. So only runs pay for it
+/// that diverge or have a state that does not fit.
 pub(crate) struct Search {
     world: World,
     /// The last tested step.
@@ -56,8 +56,8 @@ impl Search {
         Self { world, last, stride: STRIDE, fitting, end: None }
     }
 
-    /// Searches about this many steps, and returns the result at the end: the inner `None` means that the run does not
-    /// diverge.
+    /// Searches through about this many steps, and returns the result at the end: the inner `None` means that the run
+    /// does not diverge.
     pub(crate) fn advance(&mut self, scene: &Scene, most_steps: u64) -> Option<Option<Fitting>> {
         let mut left = most_steps;
         loop {

@@ -83,8 +83,8 @@ impl<'a> Runner<'a> {
         Self { scene, runs: runs.iter().map(running).collect() }
     }
 
-    /// Leaves out computations for pictures: the field that colours the scene, and the last states that fit of runs
-    /// that diverge.
+    /// Leaves out computations for pictures: the field that colours the scene, and the last fitting states of runs that
+    /// diverge.
     pub(crate) fn without_pictures(mut self) -> Self {
         for running in &mut self.runs {
             running.world.show(None);
@@ -205,7 +205,7 @@ impl Running {
         self.world.status() == Status::Ok && fits(scene, &self.world.state().position)
     }
 
-    /// Looks for what pictures show instead, through about so many steps; returns whether it is known or not needed.
+    /// Searches for the drawn state through about this many steps. Returns whether it is known or not needed.
     fn find_last_fit(&mut self, scene: &Scene, most_steps: u64) -> bool {
         if !self.is_drawn || self.last_fit.get().is_some() || self.shows_itself(scene) {
             return true;
@@ -242,7 +242,7 @@ impl Running {
         self.world.advance_towards(moment, left)
     }
 
-    /// Records the present state as that after a step.
+    /// Records the present state after a step.
     fn note(&mut self, scene: &Scene, step: u64) {
         let diagnostics = self.world.some_diagnostics(&self.wanted);
         let position = &self.world.state().position;
@@ -279,8 +279,8 @@ impl History {
         Self::with(scene, runs, Diagnostic::ALL)
     }
 
-    /// Simulates runs of a scene from start to end, with what pictures of them show: charts, paths, cameras that follow, and
-    /// the size of plates and walls. Empty, without a simulation, where pictures show nothing of that.
+    /// Simulates runs of a scene from start to end for their pictures: charts, paths, cameras that follow, and the size
+    /// of plates and walls. Empty, without a simulation, if pictures show none of these.
     ///
     /// # Panics
     /// If the scene has no such run.

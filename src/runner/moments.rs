@@ -12,12 +12,12 @@ use rayon::prelude::*;
 /// The states that a figure shows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Moments {
-    /// The cells of a contact sheet, row by row; empty for other figures. The run index is that in its scene.
+    /// The cells of a sheet, row by row; empty for other figures. The run index is that in its scene.
     pub cells: Vec<Vec<RunFrame>>,
-    /// For each of them the run that is outlined over it, at the same moment, if there is one.
+    /// For each cell the run that is outlined over it, at the same moment, if there is one.
     pub others: Vec<Vec<Option<RunFrame>>>,
-    /// The time series of each scene, of the runs that rows show in the order of the scene: over the whole scene where charts
-    /// show them, up to the last cell where only paths need them, and empty for other scenes. Empty for other figures.
+    /// The time series of each scene, for the runs in its rows, in the scene's order. They end with the scene if charts
+    /// show them, and with the last cell if only paths need them. Empty for other scenes and other figures.
     pub histories: Vec<History>,
     /// The forces of each run of each scene, for a diagram of forces; empty for other figures.
     pub forces: Vec<Vec<Forces>>,
@@ -42,13 +42,13 @@ impl Moments {
         taking.finish()
     }
 
-    /// The states of a figure, each with a unique name: those of a contact sheet cell by cell; for a diagram of forces
-    /// the initial states of all runs of its scenes.
+    /// The states of a figure, each with a unique name: cell by cell for a sheet; the initial states of all runs of its
+    /// scenes for a diagram of forces.
     pub fn states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, &'a Snapshot)> {
         self.runs_and_states(figure).into_iter().map(|(name, _, state)| (name, state)).collect()
     }
 
-    /// The same, with the scene and the run of each state.
+    /// The states likewise, with the scene and the run of each.
     pub(crate) fn runs_and_states<'a>(&'a self, figure: &'a Figure) -> Vec<(String, OfRun<'a>, &'a Snapshot)> {
         let mut states = self.named_states(figure);
         // Two scenes may have the same title.
@@ -94,11 +94,11 @@ pub(crate) struct Taking<'a> {
     /// The diagnostics of its states.
     wanted: Vec<Diagnostic>,
     parts: Vec<Part<'a>>,
-    /// For each scene the parts with the time series of its runs, if these are shown.
+    /// For each scene the parts with time series of its runs, if these are shown.
     series: Vec<Vec<usize>>,
 }
 
-/// One run, advanced through the moments of it that are shown.
+/// One run, advanced through its shown moments.
 struct Part<'a> {
     /// Index of the scene, and of the run in it.
     of: [usize; 2],
@@ -106,13 +106,13 @@ struct Part<'a> {
     /// Moments to stop at, rising, each with the cells (row by row) that show that state.
     stops: Vec<(Moment, Vec<usize>)>,
     taken: Vec<RunFrame>,
-    /// The moment at which it ends.
+    /// The last moment.
     end: Moment,
 }
 
 impl<'a> Taking<'a> {
-    /// The simulations of a figure at their start. The states have the diagnostics that are written at least so widely, and
-    /// those that the figure shows.
+    /// The simulations of a figure at their start. The states have the diagnostics that are written at this `reach` or
+    /// wider, and those that the figure shows.
     pub(crate) fn new(figure: &'a Figure, reach: Reach) -> Self {
         let wanted = Diagnostic::within(reach);
         match &figure.content {
@@ -143,7 +143,7 @@ impl<'a> Taking<'a> {
             runs.map(|run| part([at, run])).collect::<Vec<_>>()
         };
         let series: Vec<_> = sheet.scenes.iter().enumerate().map(of_scene).collect();
-        // After the cells come the runs outlined over them.
+        // The outlined runs come after the cells.
         let ghost = |(scene, run, time): (usize, usize, f64)| match sheet.scenes[scene].view.ghost {
             Some(Ghost::Run(other)) if other != run => Some((scene, other, time)),
             _ => None,

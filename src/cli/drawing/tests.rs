@@ -6,7 +6,7 @@ use crate::gpu::AdapterChoice;
 use crate::runner::Runner;
 use crate::scene::Limits;
 
-/// What draws into a folder.
+/// A device with the settings of the tests.
 fn device(gpu: &Gpu, resume: bool) -> Arc<Device> {
     let (films, words) = Default::default();
     Arc::new(Device { gpu: gpu.clone(), threads: 2, keep: true, resume, shard: None, films, words })
@@ -43,7 +43,7 @@ fn a_frame_like_the_last_one_is_not_drawn() {
     assert_eq!((told.frames.written, told.frames.repeated), (Some(3), 1));
 }
 
-/// Frames that were drawn are whole and written, and a second device goes on after them.
+/// Drawn frames are whole and written, and a second device continues after them.
 #[test]
 fn a_lost_device_loses_no_frame_that_was_drawn() {
     const DRAWN: usize = 3;
