@@ -1,4 +1,4 @@
-//! What a scene does beside its golden, and accepting it as what is expected.
+//! Compares a scene with its golden, and accepts its results as the expected ones.
 
 use super::comparison::{Comparison, paired};
 use super::folder::{Drawn, Golden};
@@ -10,7 +10,7 @@ use crate::output::{AtomicFile, FolderLock, OutputError, read_file, shell};
 use std::path::Path;
 
 impl Comparison {
-    /// Compares what was drawn of a scene or figure with its golden.
+    /// Compares the states and pictures of a scene or figure with its golden.
     pub(crate) fn of_golden(golden: &Golden, drawn: &Drawn) -> Self {
         let pictures = drawn.pictures.clone().map(|actual| paired(golden.pictures.clone(), actual));
         let sides = [golden.folder.clone(), drawn.origin.clone()];
@@ -58,7 +58,7 @@ impl Comparison {
         comparison
     }
 
-    /// Makes the golden, or replaces in it what is not as it was, and returns what was done, line by line. Pictures within the
+    /// Makes the golden, or replaces its parts that changed, and returns a line on each change. Pictures within the
     /// tolerance are kept. All files are written under hidden names before the first one is renamed.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Two sides beside each other: pictures, folders of pictures, or a scene and its golden.
+//! Compares two sides: pictures, folders of pictures, or a scene and its golden.
 
 use super::error::ComparisonError;
 use super::keys::ChangedKey;
@@ -22,13 +22,13 @@ const MOST_LISTED: usize = 12;
 pub(crate) struct Comparison {
     /// One for each picture on either side, in the order of their names.
     pub(crate) pictures: Vec<Compared>,
-    /// The runs whose states are not as expected, in any frame known on both sides, drawn or not.
+    /// The runs with unexpected states, in any frame known on both sides, drawn or not.
     pub(crate) moved: Vec<Moved>,
     /// The keys of the scene that changed, compared with its golden.
     pub(crate) keys: Vec<ChangedKey>,
     /// The last frame of the golden and that of its scene, if the scene ends earlier.
     pub(crate) ends_early: Option<[u64; 2]>,
-    /// Whether the golden is still to be made.
+    /// Whether the golden does not exist yet.
     pub(crate) golden_is_missing: bool,
     /// Further remarks.
     pub(crate) notes: Vec<String>,
@@ -82,7 +82,7 @@ impl Comparison {
         });
         let scenes = tags.each_ref().map(|tags| tags.iter().flat_map(|tags| &tags.scenes).collect::<BTreeSet<_>>());
         let are_other = scenes.iter().all(|scenes| !scenes.is_empty()) && scenes[0] != scenes[1];
-        // The verdict on a single picture says as much.
+        // A single picture has a verdict, which includes its states.
         let moved = if are_folders[0] { moved(&states_of(&tags[0]), &states_of(&tags[1])) } else { Vec::new() };
         comparison.moved = moved;
         comparison.notes.extend(are_other.then(|| "the scenes are not the same".to_owned()));
@@ -116,7 +116,7 @@ impl Comparison {
         pictures.chain(moved).chain(missing).max().unwrap_or(Verdict::Identical)
     }
 
-    /// The command that makes or renews the golden, if it is not as its scene is.
+    /// The command that makes or renews the golden, if it differs from its scene.
     pub(crate) fn command_to_accept(&self) -> Option<&str> {
         self.command.as_deref().filter(|_| !self.passes())
     }
@@ -146,7 +146,7 @@ impl Comparison {
         }
     }
 
-    /// What was found, line by line, besides the verdicts on single pictures.
+    /// All findings but the verdicts on single pictures, line by line.
     pub(super) fn findings(&self) -> Vec<String> {
         let moved = self.moved.iter().map(|moved| format!("state moved: {moved}"));
         let keys = self.keys.iter().map(|key| format!("changed: {key}"));
@@ -165,7 +165,7 @@ pub(super) fn paired(expected: Pictures, actual: Pictures) -> Vec<(String, [Opti
     pairs.into_iter().collect()
 }
 
-/// The states that pictures record; none if they are of several scenes, whose frames have nothing to do with each other.
+/// The states that pictures record; none if the pictures show several scenes, whose frames cannot be compared.
 fn states_of(tags: &[&Tags]) -> States {
     let mut states = States::default();
     let scenes: BTreeSet<_> = tags.iter().flat_map(|tags| &tags.scenes).collect();

@@ -1,4 +1,4 @@
-//! A scene or figure, simulated and drawn to be compared with its golden, or to become one.
+//! Simulates and draws a scene or figure, for comparing it with its golden or for making one.
 
 use super::folder::{Drawn, Golden};
 use super::record::{Record, frames_with_digests, frames_with_positions};
@@ -19,7 +19,7 @@ use std::path::Path;
 
 /// Width of new goldens (px), unless their scene is smaller: small pictures detect as much and keep repositories small.
 const WIDTH: u32 = 320;
-/// Number of pictures in new goldens, if there are so many frames.
+/// Number of pictures in new goldens, unless there are fewer frames.
 pub(crate) const PICTURES: u64 = 3;
 /// Steps of each run between checks for interruption.
 const SLICE: u64 = 100;
@@ -43,7 +43,7 @@ impl Subject {
     }
 }
 
-/// Why it could not be drawn.
+/// Why a scene or figure could not be drawn.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum DrawError {
     #[error(transparent)]
@@ -56,14 +56,14 @@ pub(crate) enum DrawError {
 
 /// The device for a golden: the kind of adapter that drew it if this machine has it, else a software driver.
 pub(crate) fn usual_gpu(golden: &Golden) -> Result<Gpu, InitError> {
-    // What follows in brackets are versions.
+    // Versions follow in brackets.
     let kind = golden.adapter().map(|adapter| adapter.split(" (").next().unwrap_or_default().to_owned());
     let same = kind.filter(|kind| !kind.is_empty()).and_then(|kind| Gpu::new(&AdapterChoice::Named(kind)).ok());
     same.map_or_else(|| Gpu::new(&AdapterChoice::Cpu), Ok)
 }
 
-/// Simulates a scene or figure and draws the pictures that its golden has, or so many for a new one. Without a device
-/// nothing is drawn, and states alone can be compared. If `go_on` returns `false`, there is no result.
+/// Simulates a scene or figure and draws the pictures that its golden has, or `pictures` of them for a new golden.
+/// Without a device nothing is drawn, and only states can be compared. If `go_on` returns `false`, there is no result.
 ///
 /// # Errors
 /// If the device fails, or a figure has no room in the size of its golden.
@@ -217,7 +217,7 @@ mod tests {
         scenes
     }
 
-    /// Some frames of a scene from its start on, with one run as if its body had started elsewhere.
+    /// Some frames of a scene from its start on. One run has the states of `moved`, whose body starts elsewhere.
     fn drawn(scene: &Scene, moved: &Scene, moved_run: usize) -> Drawn {
         let mut states = States::default();
         for (number, run) in scene.runs.iter().enumerate() {
@@ -231,13 +231,13 @@ mod tests {
         Drawn::new(record, BTreeMap::new(), true, Vec::new())
     }
 
-    /// As it is read from its file, with all that is lost there.
+    /// The golden of drawn frames, read from its file as stored there.
     fn golden(drawn: &Drawn) -> Golden {
         let record = Record::parse(&drawn.record.text()).expect("a record");
         Golden { record: Some(record), ..Golden::read(Path::new("golden-that-is-absent")).expect("none") }
     }
 
-    /// Fewer states are other ones, also where no picture shows it.
+    /// Fewer states differ from more, even if no picture shows the missing ones.
     #[test]
     fn a_scene_that_became_shorter_never_passes() {
         let text = "
@@ -256,7 +256,7 @@ mod tests {
         assert!(shorter.moved.is_empty());
     }
 
-    /// A relative error of 1e-9 of one node of one run is physics, whatever the scene, and of that run alone.
+    /// A relative error of 1e-9 of one node of one run is reported as physics in any scene, and only for this run.
     #[test]
     fn the_smallest_errors_of_a_node_are_seen_in_every_scene() {
         let shipped = shipped();

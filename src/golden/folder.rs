@@ -1,4 +1,4 @@
-//! A golden in its folder, and what is there instead.
+//! A golden in its folder.
 
 use super::error::ComparisonError;
 use super::record::{RECORD_FILE, Record};
@@ -45,10 +45,10 @@ impl Golden {
         Ok(golden)
     }
 
-    /// The same, refusing one whose record cannot be read.
+    /// Reads a golden like [`Self::read`], but refuses one with an unreadable record.
     ///
     /// # Errors
-    /// As [`Self::read`], and what is wrong with the record.
+    /// As [`Self::read`], and if the record cannot be read.
     pub(crate) fn read_whole(folder: &Path) -> Result<Self, ComparisonError> {
         let golden = Self::read(folder)?;
         match golden.damage {
@@ -61,7 +61,7 @@ impl Golden {
         }
     }
 
-    /// The sizes and metadata of its pictures, as far as they can be read.
+    /// The sizes and metadata of its readable pictures.
     fn tags(&self) -> impl Iterator<Item = ([u32; 2], Tags)> {
         let paths = self.pictures.keys().map(|name| self.folder.join(name));
         paths.filter_map(|path| read_tags(&path).ok()?)
@@ -91,7 +91,7 @@ fn other_file(folder: &Path) -> Option<String> {
     names.filter(|name| !name.starts_with('.')).min()
 }
 
-/// A scene or figure that was simulated, and drawn if there is a graphics adapter.
+/// A simulated scene or figure, drawn if there is a graphics adapter.
 #[derive(Clone, Debug)]
 pub(crate) struct Drawn {
     /// Its file.
@@ -104,7 +104,7 @@ pub(crate) struct Drawn {
 }
 
 impl Drawn {
-    /// A scene or figure with its PNG files by name, if it was drawn. The caller sets the file.
+    /// A scene or figure, with its PNG files by name if it was drawn. The caller sets the file.
     pub(super) fn new(record: Record, files: BTreeMap<String, Vec<u8>>, is_drawn: bool, notes: Vec<String>) -> Self {
         let pictures = files.into_iter().map(|(name, bytes)| (name, Source::Memory(bytes))).collect();
         Self { origin: PathBuf::new(), record, pictures: is_drawn.then_some(pictures), notes }

@@ -1,4 +1,4 @@
-//! Keys of scenes and their values, and which of them changed.
+//! Keys of scenes and their values, and the keys that changed.
 
 use serde::Serialize;
 #[cfg(feature = "render")]
@@ -8,7 +8,7 @@ use std::fmt;
 /// A key of a scene file and its value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Key {
-    /// As in `run[0].model.stiffness`.
+    /// Its path, such as `run[0].model.stiffness`.
     pub(super) path: String,
     pub(super) value: String,
 }
@@ -16,7 +16,7 @@ pub(super) struct Key {
 /// A key whose value changed; `None` where the scene does not have it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct ChangedKey {
-    /// As in `run[0].model.stiffness`.
+    /// Its path, such as `run[0].model.stiffness`.
     pub(crate) key: String,
     pub(crate) before: Option<String>,
     pub(crate) after: Option<String>,

@@ -1,7 +1,7 @@
-//! Compares pictures, and says whether the simulation or its drawing changed.
+//! Compares pictures, and tells whether the simulation or its drawing changed.
 //!
-//! Frames have digests of the states that they show. A golden, a folder with a few small pictures and a record of its scene,
-//! also has rounded positions of nodes. So states are compared first, and then pixels.
+//! Frames have digests of their states. A golden, a folder with a few small pictures and a record of its scene, also
+//! has rounded positions of nodes. So states are compared first, and then pixels.
 //!
 //! `Suite` tests scenes against goldens in `cargo test` (with the feature `render`).
 

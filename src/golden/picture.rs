@@ -8,7 +8,7 @@ use std::path::Path;
 /// The longest side of a picture (px) and its largest number of pixels: both pictures of a pair are held in memory.
 const LONGEST_SIDE: u32 = 16_384;
 const MOST_PIXELS: u64 = 100_000_000;
-/// The largest file (bytes), which is more than such pictures need.
+/// The largest file (bytes); such pictures need less.
 const MOST_BYTES: u64 = 1 << 29;
 /// The largest size of data besides pixels (bytes); the text chunks are far smaller.
 const MOST_BESIDE: usize = 4 << 20;
@@ -45,7 +45,7 @@ pub enum PictureError {
     Laden,
     /// Its metadata is invalid.
     #[error(
-        "the picture was drawn by this program, but its text `localshape:{0}` is missing, damaged or there twice; \
+        "the picture was drawn by this program, but its text `localshape:{0}` is missing, damaged or repeated; \
          its pixels alone prove nothing"
     )]
     Label(&'static str),

@@ -1,8 +1,8 @@
-//! The text file of a golden: what its scene says, and what it did, frame by frame.
+//! The text file of a golden: the keys of its scene, and its states frame by frame.
 //!
-//! A digest for each run and frame says whether a state is the same, bit for bit. Eleven frames from the first to the last also
-//! have rounded positions, from which the distance is known when digests differ. The file has some tens of kilobytes for any
-//! scene: long scenes have digests of fewer frames, large bodies positions of fewer nodes.
+//! A digest for each run and frame tells whether a state is the same, bit for bit. Eleven frames from the first to the
+//! last also have rounded positions, which give the distance when digests differ. The file has some tens of kilobytes
+//! for any scene: long scenes have digests of fewer frames, large bodies positions of fewer nodes.
 
 use super::keys::Key;
 use super::states::{Run, State, States};
@@ -15,7 +15,7 @@ use std::path::Path;
 /// The name of the file in a golden's folder.
 pub(crate) const RECORD_FILE: &str = "golden.toml";
 
-/// The largest file that is read (bytes).
+/// The largest accepted file (bytes).
 const LARGEST_FILE: u64 = 4 << 20;
 /// The version of its format.
 const FORMAT: u32 = 2;
@@ -28,7 +28,7 @@ const ROOM_FOR_DIGESTS: usize = 24 << 10;
 const ROOM_FOR_POSITIONS: usize = 12 << 10;
 /// Approximate size of a coordinate (bytes).
 const COORDINATE: usize = 7;
-/// Positions are rounded to about this part of the extent of all nodes.
+/// The precision of rounded positions, about, in extents of all nodes.
 const FINENESS: f64 = 1e-5;
 
 /// The contents of a record.
@@ -40,12 +40,12 @@ pub(super) struct Record {
     pub(super) size: [u32; 2],
     /// Frames with pictures; 0 for figures.
     pub(super) frames: BTreeSet<u64>,
-    /// What the scene says.
+    /// The keys of the scene.
     pub(super) keys: Vec<Key>,
     pub(super) states: States,
 }
 
-/// The file as it is read.
+/// The fields of the file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -139,14 +139,14 @@ impl Record {
     pub(super) fn text(&self) -> String {
         let runs = &self.states.runs;
         let (mut digests, mut positions) = (String::new(), String::new());
-        // Those of a record are rounded already.
+        // Positions of a record are rounded already.
         let (every, quantum) = match self.states.quantum {
             0.0 => (stride(&self.states), quantum(&self.states)),
             quantum => (1, quantum),
         };
         let frames: BTreeSet<u64> = runs.iter().flat_map(|run| run.states.keys().copied()).collect();
         for frame in frames {
-            // Only what is known of all runs is recorded.
+            // A frame is recorded only if the states of all runs are known.
             let states: Option<Vec<&State>> = runs.iter().map(|run| run.states.get(&frame)).collect();
             let Some(states) = states else { continue };
             let short = states.iter().map(|state| &state.digest[..DIGITS.min(state.digest.len())]);
@@ -198,7 +198,7 @@ fn short(line: &str) -> String {
     }
 }
 
-/// Adds the states of a line of digests; `None` if it is wrong.
+/// Adds the states of a line of digests; `None` if the line is wrong.
 fn read_digests(line: &str, states: &mut States) -> Option<()> {
     let mut words = line.split_whitespace();
     let frame: u64 = words.next()?.parse().ok()?;
@@ -216,7 +216,7 @@ fn read_digests(line: &str, states: &mut States) -> Option<()> {
     Some(())
 }
 
-/// Adds the positions of a line to the state that it names; `None` if it is wrong.
+/// Adds the positions of a line to the state that it names; `None` if the line is wrong.
 fn read_positions(line: &str, states: &mut States) -> Option<()> {
     let mut words = line.split_whitespace();
     let (frame, run): (u64, usize) = (words.next()?.parse().ok()?, words.next()?.parse().ok()?);
@@ -232,7 +232,7 @@ fn read_positions(line: &str, states: &mut States) -> Option<()> {
     Some(())
 }
 
-/// The stride at which the known positions have room in a record.
+/// The stride of nodes at which the known positions fit into a record.
 fn stride(states: &States) -> usize {
     let known = states.runs.iter().flat_map(|run| run.states.values()).filter_map(|state| state.positions.as_ref());
     (3 * COORDINATE * known.map(Vec::len).sum::<usize>()).div_ceil(ROOM_FOR_POSITIONS).max(1)
@@ -250,19 +250,20 @@ fn quantum(states: &States) -> f64 {
         return 1e-6;
     }
     let power = (extent * FINENESS).log10().floor().clamp(-12.0, 12.0) as i32;
-    // Parsed from text, to be the nearest double.
+    // Parsed from text, which gives the nearest double.
     format!("1e{power}").parse().expect("a power of ten")
 }
 
-/// The frames of a scene whose digests a record has: as many as there is room for, and all of `others`.
+/// The frames of a scene whose digests a record has: as many as fit, and all of `others`.
 pub(super) fn frames_with_digests(last: u64, runs: usize, others: &BTreeSet<u64>) -> BTreeSet<u64> {
     let row = 5 + (DIGITS + 1) * runs;
-    // So that a scene that becomes longer still has frames in common with its golden.
+    // With powers of two, a scene that becomes longer still has frames in common with its golden.
     let stride = ((last as usize + 1) * row).div_ceil(ROOM_FOR_DIGESTS).next_power_of_two();
     (0..=last).step_by(stride).chain(others.iter().copied()).chain(frames_with_positions(last)).collect()
 }
 
-/// The frames of a scene whose positions a record has, whatever frames are drawn: from the first to the last, evenly spaced.
+/// The frames of a scene whose positions a record has, evenly spaced from the first to the last and independent of the
+/// drawn frames.
 pub(super) fn frames_with_positions(last: u64) -> BTreeSet<u64> {
     (0..=SPACES).map(|at| (u128::from(last) * u128::from(at) / u128::from(SPACES)) as u64).collect()
 }
@@ -350,7 +351,7 @@ mod tests {
         assert!(none.contains("`digests`"), "{none}");
     }
 
-    /// Whatever frames are drawn, positions of at least ten frames and of both ends are known.
+    /// For any drawn frames, positions of at least ten frames and of both ends are recorded.
     #[test]
     fn positions_are_spread_over_the_scene() {
         assert_eq!(frames_with_positions(120), (0..=120).step_by(12).collect());

@@ -1,4 +1,4 @@
-//! What a scene file says, key by key, so that a golden can name what changed.
+//! The keys and values of a scene file, so that a golden can name those changed.
 
 use super::keys::Key;
 use crate::scene::Scene;
@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 use std::path::Path;
 use toml::Value;
 
-/// A longer value is written as its digest (characters).
+/// A value with more characters is replaced by its digest.
 const LONGEST: usize = 100;
 
 /// The keys of a scene, with the step of each run in seconds: it may follow from the stiffness of another run.
@@ -41,7 +41,7 @@ fn of_file(path: &Path) -> Vec<Key> {
     keys
 }
 
-/// The keys of scenes and figures that name files beside them: of a body, of fonts, of a scene.
+/// The keys of scenes and figures whose values name other files: of a body, of fonts, of a scene.
 const FILES: [&str; 4] = ["file", "regular", "semi_bold", "scene"];
 
 fn add(keys: &mut Vec<Key>, folder: &Path, path: String, value: Value) {
@@ -58,7 +58,7 @@ fn add(keys: &mut Vec<Key>, folder: &Path, path: String, value: Value) {
             let beside = value.as_str().filter(|_| is_file).and_then(|name| std::fs::read(folder.join(name)).ok());
             let text = written(&value);
             let value = match beside {
-                // A file beside the scene, such as that of a body.
+                // A file beside the scene, such as the body.
                 Some(bytes) => format!("{text}, {}", digest(&bytes)),
                 None if text.len() > LONGEST => digest(text.as_bytes()),
                 None => text,
@@ -68,7 +68,7 @@ fn add(keys: &mut Vec<Key>, folder: &Path, path: String, value: Value) {
     }
 }
 
-/// A value on one line: numbers alike, however they are typed.
+/// A value on one line. Equal numbers are written alike.
 fn written(value: &Value) -> String {
     match value {
         Value::Float(number) => number.to_string(),
@@ -113,11 +113,11 @@ mod tests {
         let told = |after: &str| -> Vec<String> {
             changed(&before, &of_scene(&scene(folder.path(), after))).iter().map(ToString::to_string).collect()
         };
-        // Neither comments nor the notation of numbers are changes.
+        // Changed comments and notations of numbers are not reported.
         assert_eq!(told(&text.replace("1e4 }", "10000.0 } # ten thousand")), [""; 0]);
         let stiffer = told(&text.replace("stiffness = 1e4", "stiffness = 2e4, damping = 3"));
         assert_eq!(stiffer, ["run[0].model.damping: not given → 3", "run[0].model.stiffness: 10000 → 20000"]);
-        // The step of all runs is a fraction of the cycle of the stiffest.
+        // The step of all runs is a fraction of the cycle of the stiffest run.
         let shared = told(&text.replace("2e4", "8e4"));
         assert_eq!(shared[0], "run[1].model.stiffness: 20000 → 80000");
         assert!(

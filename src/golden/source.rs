@@ -1,4 +1,4 @@
-//! Pictures of one side: files, or drawn for a comparison.
+//! Pictures of one side: files, or pictures drawn for a comparison.
 
 use super::error::ComparisonError;
 use super::picture::{PictureError, Pixels, file};
@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Where a picture is.
+/// A picture that is yet to be read.
 #[derive(Clone, Debug)]
 pub(super) enum Source {
     File(PathBuf),

@@ -1,4 +1,4 @@
-//! Known states, exact or rounded, and how those of two sides differ.
+//! Known states, exact or rounded, and the differences between two sides.
 
 use crate::sim::words::quantity;
 use glam::DVec3;
@@ -30,7 +30,7 @@ pub(super) struct Run {
 /// One run at one frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct State {
-    /// Digest of all positions and velocities in hexadecimal digits, or as many of them as were kept.
+    /// Digest of all positions and velocities in hexadecimal digits, complete or shortened.
     pub(super) digest: String,
     /// Positions of known nodes (m).
     pub(super) positions: Option<Vec<DVec3>>,
@@ -47,7 +47,7 @@ impl States {
         self.runs.iter().find(|run| run.name == name)
     }
 
-    /// The run of this name, which is added if it is new.
+    /// The run of this name. A new run is added.
     pub(super) fn run_mut(&mut self, name: &str) -> &mut Run {
         let at = self.runs.iter().position(|run| run.name == name).unwrap_or_else(|| {
             self.runs.push(Run { name: name.to_owned(), ..Run::default() });
@@ -63,7 +63,7 @@ impl States {
 }
 
 impl State {
-    /// Whether two states are the same, as far as both digests go.
+    /// Whether two states are the same, as far as their digests are known.
     fn equals(&self, other: &Self) -> bool {
         let length = self.digest.len().min(other.digest.len());
         length > 0 && self.digest.as_bytes()[..length] == other.digest.as_bytes()[..length]
@@ -83,7 +83,7 @@ pub(crate) struct Displacement {
     pub(crate) precision: f64,
 }
 
-/// How a run changed.
+/// The change of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Change {
@@ -96,12 +96,12 @@ pub(crate) enum Change {
     New,
 }
 
-/// A run whose states are not as expected.
+/// A run with unexpected states.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Moved {
     /// Name of the run.
     pub(crate) run: String,
-    /// How it changed.
+    /// The change.
     pub(crate) change: Change,
     /// The first compared frame with another state.
     pub(crate) first: Option<u64>,
@@ -115,7 +115,7 @@ pub(crate) struct Moved {
     pub(crate) largest: Option<Displacement>,
 }
 
-/// The runs that moved, and those on one side only. Without any known state on a side nothing has moved.
+/// The runs that moved, and the runs on one side only. If a side has no known state, nothing has moved.
 pub(super) fn moved(expected: &States, actual: &States) -> Vec<Moved> {
     if expected.last().is_none() || actual.last().is_none() {
         return Vec::new();
@@ -236,13 +236,13 @@ mod tests {
         let told = "run, first at frame 2: node 1 by 100 mm; farthest at frame 3: node 1 by 200 mm";
         assert_eq!(words(&golden, &later), [told]);
         assert_eq!(moved(&golden, &later)[0].last_equal, Some(1));
-        // Where positions are not recorded, the next ones tell, and where digests are not, the frames between.
+        // Without recorded positions the next recorded ones are named, and without digests the frames between.
         let mut sparse = golden.clone();
         sparse.runs[0].states.get_mut(&2).expect("four frames").positions = None;
         sparse.runs[0].states.remove(&1);
         let told = "run, first between frames 1 and 2; at frame 3, the next with recorded positions: node 1 by 200 mm";
         assert_eq!(words(&sparse, &later), [told]);
-        // Below what the record knows, nothing is made up.
+        // Changes below the precision of the record have no distance.
         let hardly = words(&golden, &states(0.0, |_| ("bbbb", vec![1e-5, 1.0])));
         assert!(hardly[0].starts_with("run, first at frame 0: no node by more than 1.73 mm (positions"), "{hardly:?}");
         let velocities = words(&later, &states(0.0, |_| ("cccc", vec![0.0, 1.0])));
@@ -257,11 +257,11 @@ mod tests {
         other.runs[0].name = "walk".into();
         assert_eq!(words(&golden, &other), ["run is gone", "walk is new"]);
         assert_eq!(words(&golden, &States::default()), [""; 0]);
-        // An empty digest says nothing and is no state.
+        // An empty digest is no state.
         assert!(!State::default().equals(&State::default()));
     }
 
-    /// Nodes that one side does not know are not compared with their neighbours.
+    /// Nodes that one side does not know are not compared.
     #[test]
     fn nodes_are_compared_with_themselves() {
         let places: Vec<f64> = (0..13).map(f64::from).collect();

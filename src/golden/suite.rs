@@ -30,13 +30,13 @@ const UPDATE: &str = "UPDATE_GOLDENS";
 /// states. [`Self::finish`] panics with all failures: states that moved, pictures that are drawn differently, missing
 /// goldens, and goldens without a scene.
 ///
-/// With `UPDATE_GOLDENS=1` in the environment, goldens are made or renewed instead, and what is accepted is told on the standard
-/// error output, states that moved above all. Each failure has a page for a browser in `target/golden/`.
+/// With `UPDATE_GOLDENS=1` in the environment, goldens are made or renewed instead. Each accepted change is printed on
+/// standard error, states that moved first. Each failure has a page for a browser in `target/golden/`.
 ///
 /// Pictures are drawn by the kind of adapter that drew the goldens if the machine has it, else by a software driver, else by
 /// any adapter. Without a graphics adapter only states are compared; with `LOCALSHAPE_REQUIRE_GPU=1` this is a failure.
 #[derive(Debug)]
-#[must_use = "`finish` tells what is wrong"]
+#[must_use = "`finish` reports failures"]
 pub struct Suite {
     goldens: PathBuf,
     reports: PathBuf,
@@ -72,8 +72,8 @@ impl Suite {
         self
     }
 
-    /// Draws on a given adapter instead of the kind that drew the goldens. Nothing is accepted then: goldens come from one
-    /// kind of adapter.
+    /// Draws on a given adapter instead of the kind that drew the goldens. Then nothing is accepted: goldens come from
+    /// one kind of adapter.
     pub fn on(mut self, adapter: AdapterChoice) -> Self {
         self.adapter = Some(adapter);
         self
@@ -85,7 +85,7 @@ impl Suite {
         self
     }
 
-    /// Simulates and draws a scene or a figure, and compares it with the golden that has its name.
+    /// Simulates and draws a scene or a figure, and compares it with the golden of its name.
     pub fn scene(&mut self, path: impl AsRef<Path>) -> &mut Self {
         let path = path.as_ref();
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
@@ -116,7 +116,7 @@ impl Suite {
         let _ = std::fs::remove_file(&report);
         if updates {
             let told = comparison.accept(&golden, &drawn).map_err(|error| error.to_string())?;
-            // Not by a macro, whose output `cargo test` keeps for itself.
+            // `cargo test` captures the output of the printing macros.
             let told = told.iter().fold(String::new(), |told, line| format!("{told}{name}: {line}\n"));
             let _ = std::io::stderr().write_all(told.as_bytes());
             return Ok(());
@@ -198,7 +198,7 @@ impl Suite {
     }
 }
 
-/// A suite without a call of `finish` would pass.
+/// Without a call of `finish`, a suite would pass.
 impl Drop for Suite {
     fn drop(&mut self) {
         let is_forgotten = !self.is_finished && !std::thread::panicking();

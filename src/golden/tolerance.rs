@@ -1,38 +1,38 @@
-//! How far two pictures of one size are apart, and how far they may be.
+//! The distance of two pictures of one size, and the tolerance.
 //!
-//! Graphics drivers round differently, and take other samples along silhouettes and lines. So a pixel is compared with all
-//! pixels around its place: only what lies outside their range of colours differs. One tolerance holds for all drivers. It was
-//! measured between two software drivers of different makers, llvmpipe and SwiftShader, with all goldens of this project: at
+//! Graphics drivers round differently, and take other samples along silhouettes and lines. So each pixel is compared
+//! with the range of colours of all pixels around its place. One tolerance holds for all drivers. It was measured
+//! between two software drivers of different makers, llvmpipe and SwiftShader, with all goldens of this project: at
 //! most 0.67 % of the pixels differ by more than [`FAINT`], and 0.016 % by more than [`STRONG`].
 
 use super::picture::Pixels;
 use serde::Serialize;
 use std::fmt;
 
-/// A smaller difference of a channel, of 255, is no difference.
+/// The largest difference of a channel, of 255, that is ignored.
 pub(super) const FAINT: u8 = 2;
-/// A larger difference shows at once.
+/// The largest difference of a channel that is hard to see.
 pub(super) const STRONG: u8 = 16;
-/// The parts of all pixels that may differ by more than [`FAINT`] and by more than [`STRONG`].
+/// The shares of pixels that may differ by more than [`FAINT`] and by more than [`STRONG`].
 const PARTS: [f64; 2] = [0.01, 0.0003];
-/// So many pixels may differ, however small the picture is.
+/// The number of pixels that may differ in any picture, however small.
 const AT_LEAST: u64 = 8;
 
-/// How far two pictures of one size are apart.
+/// The distance of two pictures of one size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub(crate) struct Distance {
     /// Pixels that are not equal.
     pub(crate) unequal: u64,
     /// Pixels that differ by more than [`FAINT`] and by more than [`STRONG`].
     pub(crate) differing: [u64; 2],
-    /// How many of them may.
+    /// The number of pixels that may differ so.
     pub(crate) allowed: [u64; 2],
     /// The largest difference of a channel, of 255.
     pub(crate) largest: u8,
 }
 
 impl Distance {
-    /// The distance of two pictures; `None` if their sizes are not alike.
+    /// The distance of two pictures; `None` if their sizes differ.
     pub(super) fn new(expected: &Pixels, actual: &Pixels) -> Option<Self> {
         let all = u64::from(expected.size[0]) * u64::from(expected.size[1]);
         let allowed = PARTS.map(|part| ((part * all as f64) as u64).max(AT_LEAST));
@@ -47,14 +47,14 @@ impl Distance {
         Some(distance)
     }
 
-    /// Whether the pictures are alike within the tolerance.
+    /// Whether the distance is within the tolerance.
     pub(crate) fn is_allowed(&self) -> bool {
         self.differing.iter().zip(&self.allowed).all(|(differing, allowed)| differing <= allowed)
     }
 }
 
-/// Calls `each` for every pixel that is not equal, with its index and by how much its worst channel lies outside the range of
-/// the pixels around its place in the other picture; `None` if their sizes are not alike.
+/// Calls `each` for every pixel that is not equal, with its index and its distance ([`outside`]); `None` if the sizes
+/// differ.
 pub(super) fn differences(expected: &Pixels, actual: &Pixels, mut each: impl FnMut(usize, u8)) -> Option<()> {
     if expected.size != actual.size {
         return None;
@@ -71,7 +71,7 @@ pub(super) fn differences(expected: &Pixels, actual: &Pixels, mut each: impl FnM
     Some(())
 }
 
-/// By how much the worst channel of a pixel lies outside the range of the nine pixels around a place in a picture.
+/// The distance of a pixel, in its worst channel, from the range of the nine pixels around its place in a picture.
 fn outside(pixel: &[u8; 3], picture: &Pixels, [x, y]: [usize; 2]) -> u8 {
     let [width, height] = picture.size.map(|side| side as usize);
     let near = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
@@ -128,7 +128,7 @@ mod tests {
         assert_eq!(told, "37 pixels differ by more than 16 of 255 (36 may), 37 by more than 2 (1200 may)");
     }
 
-    /// Drivers disagree about the pixels of a border, but not by two pixels, and not about what is there.
+    /// Drivers may disagree about the pixels along a border, but not about two rows of them or about an object.
     #[test]
     fn borders_may_wander_by_a_pixel() {
         let [width, _] = SIZE;

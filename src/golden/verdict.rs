@@ -32,12 +32,12 @@ pub(crate) enum Verdict {
 }
 
 impl Verdict {
-    /// Whether nothing is wrong.
+    /// Whether the picture passes.
     pub(crate) fn passes(self) -> bool {
         self <= Self::WithinTolerance
     }
 
-    /// In words.
+    /// The verdict in words.
     pub(crate) fn words(self) -> &'static str {
         match self {
             Self::Identical => "identical",
@@ -61,18 +61,18 @@ impl Serialize for Verdict {
 /// The verdict on the pictures of one name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Compared {
-    /// Its file's name.
+    /// Its file name.
     pub(crate) name: String,
     /// The frame that it shows, if it records one.
     pub(crate) frame: Option<u64>,
     pub(crate) verdict: Verdict,
     /// The runs whose states differ.
     pub(crate) runs: Vec<String>,
-    /// How far apart the pictures are; `None` if their sizes are not alike, or one is missing.
+    /// The distance of the pixels; `None` if the sizes differ or a picture is missing.
     pub(crate) distance: Option<Distance>,
-    /// What is wrong besides.
+    /// A further difference or a fault.
     pub(crate) note: Option<String>,
-    /// What both record.
+    /// Whether both pictures record states.
     #[serde(skip)]
     pub(super) tags: [Option<Tags>; 2],
 }
@@ -110,7 +110,7 @@ impl Compared {
     }
 }
 
-/// The verdict on two pictures, the runs that moved, the distance of the pixels, and what is to be said besides.
+/// The verdict on two pictures, the runs that moved, the distance of the pixels, and a further difference.
 fn compare(expected: &Pixels, actual: &Pixels) -> (Verdict, Vec<String>, Option<Distance>, Option<String>) {
     let distance = Distance::new(expected, actual);
     let alike = match distance {
@@ -201,12 +201,12 @@ mod tests {
         assert_eq!(told(&golden, &dots(8)), (Verdict::WithinTolerance, words.to_owned()));
         let (verdict, words) = told(&golden, &dots(9));
         assert!(verdict == Verdict::DrawnDifferently && words.starts_with("drawn differently: 9 pixels"), "{words}");
-        // Physics comes before drawing, also where no pixel tells, and every run is named.
+        // Physics comes before drawing, even if all pixels are equal, and every run is named.
         let moved = |states: &[&str]| told(&golden, &pixels(states, |_| ()));
         assert_eq!(moved(&["0", "2"]), (Verdict::StateMoved, "state moved: run 1".to_owned()));
         assert_eq!(moved(&["2", "2"]), (Verdict::StateMoved, "state moved: run 0, run 1".to_owned()));
         assert_eq!(told(&golden, &pixels(&["2", "1"], |bytes| bytes.fill(0))).0, Verdict::StateMoved);
-        // A run that only one of them has is another state, too.
+        // A run of only one picture is another state, too.
         assert_eq!(moved(&["0", "1", "2"]).1, "state moved: run 2");
         assert_eq!(told(&pixels(&["0", "1", "2"], |_| ()), &golden).1, "state moved: run 2");
         // Without a state pixels alone are compared.

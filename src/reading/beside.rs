@@ -52,8 +52,8 @@ pub(crate) fn similar(path: &Path, endings: &[&str]) -> Option<String> {
     Some(similar[stems.iter().position(|&stem| stem == near)?].1.clone())
 }
 
-/// The files with the name of a missing one, in the folders beside it, in order. If its folder is missing too, in the
-/// folders beside that. A name without an ending gets `ending`.
+/// The files with the name of a missing one, in order, from the folders beside it, or if its folder is missing too,
+/// from the folders beside that. A name without an ending gets `ending`.
 pub(crate) fn in_folders(path: &Path, ending: &str) -> Vec<PathBuf> {
     let Some(name) = path.file_name() else { return Vec::new() };
     let name = if path.extension().is_none() { Path::new(name).with_extension(ending) } else { name.into() };

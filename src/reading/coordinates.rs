@@ -53,7 +53,8 @@ pub(crate) fn vector(
 
 /// A vector scaled to unit length. A zero vector is a mistake.
 pub(crate) fn direction(vector: DVec3, path: &[Way<'_>], report: &mut Report<'_>) -> Option<DVec3> {
-    // By its largest coordinate first: squares of very small or large numbers leave the range of double precision.
+    // The largest coordinate is divided out first: squares of very small or large numbers leave the range of double
+    // precision.
     let largest = vector.abs().max_element();
     let unit = (vector / largest).normalize();
     if largest > 0.0 && unit.is_finite() {

@@ -16,7 +16,7 @@ pub struct Mistake {
     pub place: String,
     /// What was found and what was expected.
     pub message: String,
-    /// What to do, unless the message says it.
+    /// The remedy, unless the message has it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub help: Option<String>,
     /// The source line, or a part of it; the option for a setting of the command line; empty in a scene made in code.
@@ -28,8 +28,8 @@ pub struct Mistake {
 
 /// All mistakes of one file, in the order of its text.
 ///
-/// They print with the source line and a mark under the place. The code is our own: `annotate-snippets` would replace the
-/// printing alone, and not the lines, columns and excerpts that programs are given.
+/// They print with the source line and a mark under the place. `annotate-snippets` would replace only the printing, and
+/// not the lines, columns and excerpts that programs get.
 ///
 /// ```text
 /// drop.toml:12:33: unknown key `stifness` in `run[0].model`
@@ -43,7 +43,7 @@ pub struct Mistake {
 /// drop: `run[0].model.stiffness` is -1.0; expected a number greater than 0
 /// ```
 ///
-/// Those in settings of the command line print with the option in place of line and column:
+/// Mistakes in settings of the command line print with the option in place of line and column:
 ///
 /// ```text
 /// drop.toml: --set time.duraton=1: unknown key `duraton` in `time`; did you mean `duration`?

@@ -159,7 +159,7 @@ impl<'t> Report<'t> {
         Mistakes { file: file.into(), found: self.in_order(found), total: self.total }
     }
 
-    /// Mistakes in the order of the text. Those in settings of the command line come last and get no position.
+    /// Mistakes in the order of the text. Mistakes in settings of the command line come last and get no position.
     fn in_order(&self, mut found: Vec<Mistake>) -> Vec<Mistake> {
         found.sort_by_key(|mistake| (mistake.line, mistake.column));
         let of_settings = found.iter_mut().filter(|mistake| self.source.is_setting(mistake.line));

@@ -1,4 +1,4 @@
-//! Values that a command sets in place of those in a file: `run[0].model.stiffness=1e4`.
+//! Values that a command sets in place of values in a file: `run[0].model.stiffness=1e4`.
 
 use super::report::Report;
 use super::words::{found, list, nearest, quoted, shortened};
@@ -11,11 +11,11 @@ use toml::de::{DeArray, DeTable, DeValue};
 /// A key, written as messages write it, and a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Setting {
-    /// As typed.
+    /// The text as typed.
     text: String,
-    /// The parts of the key, and where they stand in the text.
+    /// The parts of the key, and their places in the text.
     parts: Vec<(Part, Range<usize>)>,
-    /// Where the value stands.
+    /// The place of the value in the text.
     value: Range<usize>,
 }
 
@@ -41,7 +41,7 @@ impl FromStr for Setting {
             parts.push((Part::Key(text[at..end].to_owned()), at..end));
             at = end;
             while let Some(rest) = text[at..].strip_prefix('[') {
-                // A shell takes the quotation marks away, unless others are around the option.
+                // A shell removes the quotation marks, unless others are around the option.
                 let close = if rest.starts_with('"') { "\"]" } else { "]" };
                 let length = rest.find(close).ok_or(EXPECTED)?;
                 let inside = rest[..length].trim_start_matches('"');
@@ -63,21 +63,22 @@ impl FromStr for Setting {
 }
 
 impl Setting {
-    /// As it was typed.
+    /// The text as typed.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
-    /// Puts the value into a file, where `typed` is the text of this setting, which begins at the byte `start` of a longer text.
+    /// Sets the value in a file. `typed` is the text of this setting, which begins at the byte `start` of a longer
+    /// text.
     ///
     /// # Errors
-    /// A key that leads nowhere, or a value that is no TOML.
+    /// If the key leads nowhere, or the value is not TOML.
     pub(crate) fn apply<'t>(&self, root: &mut Spanned<DeValue<'t>>, typed: &'t str, start: usize) -> Result<(), Wrong> {
         let value = &typed[self.value.clone()];
         let at = |range: &Range<usize>| start + range.start..start + range.end;
         let new = match DeValue::parse(value) {
             Ok(new) => moved(new, start + self.value.start),
-            // What begins like this is no word without quotation marks.
+            // Text that begins like this is not a word without quotation marks.
             Err(_) if value.starts_with(['[', '{', '"', '\'']) => {
                 let message = format!("`{}` is not TOML", shortened(value));
                 let help = "in a shell, quotation marks need others around the whole: --set 'view.labels=[\"name\"]'";
@@ -100,7 +101,7 @@ impl Setting {
     }
 }
 
-/// What is wrong with a setting, and where in the text of all.
+/// A mistake in a setting, and its place in the text of all settings.
 pub(crate) struct Wrong {
     span: Range<usize>,
     message: String,
@@ -108,7 +109,7 @@ pub(crate) struct Wrong {
 }
 
 impl Wrong {
-    /// Reports it, unless a mistake in the same setting is known, such as an unknown key.
+    /// Reports the mistake, unless one in the same setting is known, such as an unknown key.
     pub(crate) fn report(self, report: &mut Report<'_>) {
         if !report.has_mistake_in_line_of(self.span.start) {
             report.at_span(self.span, &[], self.message, self.help);
@@ -119,7 +120,8 @@ impl Wrong {
 /// A message and help.
 type Told = (String, Option<String>);
 
-/// The value of a key in the table at `here`. If there is none, one is begun: an array or a table, as the next part of the key says.
+/// The value of a key in the table at `here`. A missing one is created, as an array or a table according to the next
+/// part of the key.
 fn in_table<'s, 't>(
     slot: &'s mut Spanned<DeValue<'t>>,
     key: &str,

@@ -8,7 +8,7 @@ pub(crate) struct Source<'t> {
     text: &'t str,
     /// The first byte of each line.
     lines: Vec<usize>,
-    /// How many lines are those of the file. Those after them are settings of the command line.
+    /// The number of lines of the file. Settings of the command line follow.
     of_file: usize,
 }
 
@@ -37,7 +37,7 @@ impl<'t> Source<'t> {
         self.text
     }
 
-    /// The nearest character boundary at or before a byte offset.
+    /// The last character boundary up to a byte offset.
     fn boundary(&self, byte: usize) -> usize {
         let byte = byte.min(self.text.len());
         (0..=byte).rev().find(|&at| self.text.is_char_boundary(at)).unwrap_or(0)
@@ -50,8 +50,8 @@ impl<'t> Source<'t> {
         (line, self.text[self.lines[line - 1]..byte].chars().count() + 1)
     }
 
-    /// The line in which a span begins, cut to a readable width, and the span's columns in it (characters). Control
-    /// characters such as tabs become spaces, so that the mark is aligned.
+    /// The line in which a span begins, cut to a readable width, and the columns of the span in it (characters).
+    /// Control characters such as tabs become spaces, so that the mark is aligned.
     pub(crate) fn excerpt(&self, span: &Range<usize>) -> (String, Range<usize>) {
         let (line, column) = self.position(span.start);
         let start = self.lines[line - 1];

@@ -32,9 +32,9 @@ pub(crate) fn list<S: AsRef<str>>(names: &[S], joint: &str, write: impl Fn(&str)
 }
 
 /// The known name that is most similar to the typed one. They differ by at most one letter in three, or the known name
-/// contains the typed one, or its words begin with its letters, as those of `frames_per_second` do with `fps`.
+/// contains the typed one, or its words begin with the letters of the typed one, as in `fps` for `frames_per_second`.
 pub(crate) fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
-    // A quadratic comparison, so nothing long is compared.
+    // The comparison is quadratic, so long names are not compared.
     if typed.len() > 100 {
         return None;
     }

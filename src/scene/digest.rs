@@ -60,7 +60,7 @@ pub(super) fn digest(typed: &impl Serialize, lists: &BodyFile, files: FileDigest
     hash.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// A part of the canonical scene.
+/// An entry of the canonical scene.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Part<'a> {
@@ -77,7 +77,7 @@ fn table(value: &Value) -> BTreeMap<&str, Part<'_>> {
     value.as_object().into_iter().flatten().map(|(key, value)| (key.as_str(), Part::Value(value))).collect()
 }
 
-/// The lists that a body has.
+/// The non-empty lists of a body.
 fn listed(body: &BodyFile) -> impl Iterator<Item = (&str, Part<'_>)> {
     let lists = [
         ("nodes", body.nodes.as_deref().map(Part::Points)),

@@ -18,7 +18,7 @@ pub enum SceneError {
         /// A file of this name in a folder beside, or the most similar name in the same folder.
         nearest: Option<PathBuf>,
     },
-    /// The file's name is an ending alone, so that no folder of results can have it.
+    /// The file's name is only an extension, so that no folder of results can have it.
     #[error("{}: the name of the file without its extension is empty; rename the file", path.display())]
     Nameless {
         /// The path.
@@ -40,7 +40,7 @@ pub enum SceneError {
         /// The system's error.
         source: io::Error,
     },
-    /// The file is longer than a scene may be.
+    /// The file is too long for a scene.
     #[error("{}: the file has more than {limit} bytes, the most that a scene file may have", path.display())]
     TooLong {
         /// The path.
@@ -61,7 +61,7 @@ pub enum SceneError {
     NotText {
         /// The file, as named by the caller.
         file: String,
-        /// The first byte that is no text, counted from 0.
+        /// The first byte that is not text, counted from 0.
         offset: usize,
         /// The byte's value, or the probable kind of the file.
         what: String,

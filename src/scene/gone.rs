@@ -6,7 +6,7 @@ use crate::reading::report::Way;
 struct Gone {
     /// The path of the key, without the indices of entries.
     key: &'static str,
-    /// The value that is gone, or `None` if the whole key is.
+    /// The removed value; `None` if the whole key is gone.
     value: Option<&'static str>,
     /// What to write instead.
     instead: &'static str,
@@ -20,7 +20,7 @@ const fn value(key: &'static str, value: &'static str, instead: &'static str) ->
     Gone { key, value: Some(value), instead }
 }
 
-/// For what is now a word in the list of labels, which replaces the usual list.
+/// For parts of pictures that became words in the list of labels. A list replaces the usual one.
 const ALL_LABELS: &str = "write `labels = [\"letters\", \"name\", \"model\", \"clock\", \"count\", \"number\", \"scale-bar\", \
                           \"legend\"]` without the words for what is not shown";
 

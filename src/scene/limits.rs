@@ -4,14 +4,14 @@ use super::file::RunFile;
 use crate::reading::words::{count, size};
 use std::collections::BTreeMap;
 
-/// The largest scene that is accepted. Larger scenes are refused before memory is allocated for them.
+/// The largest accepted scene. Larger scenes are refused before memory is allocated for them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Nodes of the body.
     pub nodes: u64,
     /// Nodes of all elements, counted once for each run.
     pub corners: u64,
-    /// Springs of all runs, with no springs shared between neighbours.
+    /// Springs of all runs, if neighbours shared no springs.
     pub springs: u64,
     /// Length of the scene file (bytes).
     pub file: u64,
@@ -48,7 +48,7 @@ pub(super) struct BodySize {
 pub(super) struct Excess {
     /// The request and the limit.
     pub(super) message: String,
-    /// What to do.
+    /// The remedy.
     pub(super) help: String,
     /// The run with the most springs, if there are too many.
     pub(super) run: Option<usize>,
@@ -118,8 +118,8 @@ impl BodySize {
     }
 }
 
-/// Whether the machine has this much memory (bytes): it is reserved, and released without being written. An allocation
-/// that fails later would abort the program without a message.
+/// Whether the machine has this much memory (bytes), tested by reserving and releasing it. An allocation that fails
+/// later would abort the program without a message.
 fn is_given(memory: u128) -> bool {
     let bytes = usize::try_from(memory).unwrap_or(usize::MAX);
     Vec::<u8>::new().try_reserve_exact(bytes).is_ok()

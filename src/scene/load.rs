@@ -41,8 +41,8 @@ impl Scene {
         Ok(Self { file: path.canonicalize().ok(), ..scene })
     }
 
-    /// Reads a scene from a text. `name` is the name of the file in messages; its stem is the name of the scene. A
-    /// body's own file and fonts are searched in the current directory.
+    /// Reads a scene from a text. `name` is the name of the file in messages; its stem is the name of the scene. Files
+    /// of bodies and fonts are searched in the current directory.
     ///
     /// # Errors
     /// The text is empty, not TOML, or not a scene. All mistakes in it are reported.
@@ -68,7 +68,7 @@ impl Scene {
         Self::read(Document { text, name, settings: &[] }, Path::new(""), limits)
     }
 
-    /// Reads a scene from a text; a body's own file and fonts are searched in `folder`.
+    /// Reads a scene from a text. Files of bodies and fonts are searched in `folder`.
     pub(super) fn read(document: Document<'_>, folder: &Path, limits: &Limits) -> Result<Self, SceneError> {
         let name = stem(Path::new(document.name)).unwrap_or_else(|| "scene".into());
         checked(document, &SCHEMA, FIGURE, |checked, report| {
@@ -77,14 +77,14 @@ impl Scene {
     }
 }
 
-/// A file as it is read.
+/// A file and settings for it.
 #[derive(Clone, Copy)]
 pub(super) struct Document<'a> {
     /// Its text.
     pub(super) text: &'a str,
     /// Its name, for messages.
     pub(super) name: &'a str,
-    /// Values that the command line sets in place of its own.
+    /// Values that the command line sets in place of the file's.
     pub(super) settings: &'a [Setting],
 }
 
@@ -133,7 +133,7 @@ pub(super) fn checked<T>(
     if !errors.is_empty() {
         return Err(SceneError::Syntax(syntax(&Source::new(text), &errors, name)));
     }
-    // Settings follow the file, a line each, so that every value has a place in one text.
+    // Each setting follows the file as a line, so that every value has a place in one text.
     let mut whole = Cow::Borrowed(text);
     settings.iter().for_each(|setting| whole.to_mut().extend(["\n", OPTION, setting.text()]));
     let source = Source::with_settings(&whole, text.len());
@@ -154,8 +154,8 @@ pub(super) fn checked<T>(
 /// The option before a setting.
 const OPTION: &str = "--set ";
 
-/// A file with the values of settings in place of its own, and what is wrong with these. Their text follows that of the file at a
-/// byte of the whole.
+/// A file with the values of settings in place of its own, and the mistakes in settings. The text of the settings
+/// begins at a byte of the whole, after the file.
 fn set<'t>(
     root: Spanned<DeTable<'t>>,
     settings: &[Setting],
@@ -174,8 +174,8 @@ fn set<'t>(
     (Spanned::new(span, table), wrong)
 }
 
-/// The text of a file that should not be of another kind. For a missing one, the message names a file that may be
-/// meant: one of this name in a folder beside, or one of a similar name.
+/// The text of a file that must not be of another kind. For a missing file, the message suggests one with this name in
+/// a folder beside, or one with a similar name.
 pub(super) fn text_of(path: &Path, limits: &Limits, other: Other) -> Result<String, SceneError> {
     let bytes = read(path, limits).map_err(|error| match error {
         SceneError::Missing { path, .. } => {
@@ -191,7 +191,7 @@ pub(super) fn text_of(path: &Path, limits: &Limits, other: Other) -> Result<Stri
     Ok(as_text(&bytes, &path.display().to_string())?.to_owned())
 }
 
-/// The name of a scene from its file's name; none if no folder could have it.
+/// The name of a scene from its file's name; `None` if no folder could have it.
 pub(super) fn stem(file: &Path) -> Option<String> {
     let stem = file.file_stem()?.to_string_lossy().into_owned();
     (!["", ".", ".."].contains(&stem.trim())).then_some(stem)
@@ -249,8 +249,7 @@ fn key_without_value(text: &str, at: usize) -> Option<&str> {
     key.rsplit([' ', ',', '{']).next().filter(|key| is_end && !key.is_empty())
 }
 
-/// The decimal comma of a value that a byte of a text lies in or after, in its line, and the digits before and after
-/// the comma.
+/// The decimal comma of a value in a line, at or before a byte of a text, and the digits before and after the comma.
 fn decimal_comma(text: &str, at: usize) -> Option<(usize, [&str; 2])> {
     let (before, after) = text.split_at_checked(at)?;
     let from = before.rfind('\n').map_or(0, |end| end + 1);

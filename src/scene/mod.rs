@@ -6,7 +6,7 @@
 //!
 //! `load` reads a scene file, `structure` checks it against the `schema` made from the types in `file`, and `resolve`
 //! resolves it. All of them report mistakes to one `report`. Bodies come from `generate`, from the scene's own lists,
-//! or from a file beside it, which `npz` reads. `font` reads fonts beside it.
+//! or from a NumPy archive, read by `npz`. Fonts are read by `font`.
 
 mod builder;
 mod digest;
@@ -56,7 +56,7 @@ pub struct Scene {
     pub title: String,
     /// Stem of the scene file, and name of the default output folder.
     pub name: String,
-    /// Full path of the scene file; none for a scene from a text.
+    /// Full path of the scene file; `None` for a scene from a text.
     pub file: Option<PathBuf>,
     /// Digest of the scene's meaning: 64 hexadecimal digits. Comments, layout and order of keys do not count. Empty if
     /// a run has a model of its own ([`RunBuilder::own`]).
@@ -102,13 +102,13 @@ pub struct Run {
     /// The run's place in the palette, which gives its line ([`Self::line`]). In a figure of several scenes, runs of
     /// one name have one place.
     pub(crate) place: usize,
-    /// A chosen colour of the run's lines. Other runs keep away from it.
+    /// A chosen colour of the run's lines. Other runs get different colours.
     pub colour: Option<Colour>,
 }
 
 impl Scene {
-    /// The diagnostics whose time series pictures need, if pictures show the course of the whole scene: in charts and
-    /// paths, with cameras that follow, and with drawn sizes of plates and walls.
+    /// The diagnostics whose time series pictures need; `None` if pictures do not show the course of the whole scene.
+    /// Charts, paths, cameras that follow, and the drawn sizes of plates and walls show it.
     pub(crate) fn time_series(&self) -> Option<&[Diagnostic]> {
         let view = &self.view;
         let is_flat = self.body.dimension == Dimension::Plane;
@@ -125,8 +125,7 @@ impl Scene {
         needed.then_some(view.strip.as_slice())
     }
 
-    /// Whether pictures show more of the time than states: a clock, the course of the scene, or something that moves by
-    /// itself.
+    /// Whether pictures depend on more than states: a clock, the course of the scene, or moving objects.
     #[cfg(feature = "render")]
     pub(crate) fn shows_time(&self) -> bool {
         let view = &self.view;
@@ -137,11 +136,11 @@ impl Scene {
             || self.grips.iter().any(is_moved)
     }
 
-    /// The message for a diagnostic that no run has, and the diagnostics that charts can show; `None` if a run may have
-    /// it.
+    /// The message for a diagnostic that no run has, with the diagnostics that charts can show; `None` if a run may
+    /// have it.
     pub(crate) fn lacks(&self, diagnostic: Diagnostic) -> Option<&'static str> {
         let has = |has: &dyn Fn(&dyn ElasticModel) -> bool| self.runs.iter().any(|run| has(&*run.model));
-        // Only the forces of a model tell, which are computed for that.
+        // Only the model can tell, from its forces.
         let has_residual = |model: &dyn ElasticModel| {
             let (forces, memory) = (model.prepare(&self.body), model.start(&self.body, &self.initial.position));
             let report = forces.report(self.initial.nodes(), &memory, &mut |_, _, _| ());

@@ -3,8 +3,8 @@
 //! Archives are untrusted. Sizes are compared with the file before memory is allocated, and memory grows only with the
 //! data.
 //!
-//! No library reads the arrays: `npyz` allocates the length that a header claims, up to 4 GiB, before it reads it,
-//! brings twelve crates, and would leave the checks and messages, which are most of this file.
+//! No library reads the arrays: `npyz` allocates the length that a header claims, up to 4 GiB, before it reads it, and
+//! brings twelve crates. It would not replace the checks and messages, which are most of this file.
 
 use crate::reading::words::{count, quoted};
 use std::borrow::Cow;
@@ -149,7 +149,7 @@ impl Npz {
     /// Opens an archive.
     ///
     /// # Errors
-    /// The file is no archive; the message says why.
+    /// The file is not an archive; the message tells why.
     pub(crate) fn open(path: &Path) -> Result<Self, String> {
         if path.is_dir() {
             return Err("is a folder; expected a NumPy archive (.npz)".to_owned());

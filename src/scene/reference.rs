@@ -25,14 +25,14 @@ fn written(introduction: &str, schema: &Value) -> String {
     reference.text
 }
 
-/// A reference that is being written.
+/// An unfinished reference.
 struct Reference<'s> {
     text: String,
     /// Tables that have a section, each with its path. A table that occurs at several paths has one section.
     sections: Vec<(&'s Value, String)>,
-    /// Lists of choices that were written, each with the path of its key. Elsewhere they are referred to.
+    /// Written lists of choices, each with the path of its key. Other keys refer to it.
     lists: Vec<(&'s Value, String)>,
-    /// Tables of the section just written, whose sections follow it.
+    /// Tables of the last section. Their sections follow it.
     next: Vec<(&'s Value, String)>,
 }
 
@@ -69,7 +69,7 @@ impl<'s> Reference<'s> {
         self.keys(first, path, shared);
     }
 
-    /// Those keys of a table that are wanted, as a list.
+    /// The selected keys of a table, as a list.
     fn keys(&mut self, table: &'s Value, path: &str, wanted: impl Fn(&str, &Value) -> bool) {
         let Some(properties) = table["properties"].as_object() else { return };
         let required = table["required"].as_array();
@@ -78,7 +78,7 @@ impl<'s> Reference<'s> {
             let (mut kind, mut meaning) = (kind(value), description(value).to_owned());
             if table_of(value).is_some() {
                 let (table, path) = self.section(value, path, key);
-                // The section has the rest, unless it was written for a key that means something else.
+                // The section repeats the rest, unless it was written for a key with another meaning.
                 if description(table) == meaning {
                     meaning = split(description(value)).0;
                 }
@@ -102,7 +102,7 @@ impl<'s> Reference<'s> {
         }
     }
 
-    /// The section of a table, which is written later unless there is one already.
+    /// The section of a table, which is written later unless it exists.
     fn section(&mut self, table: &'s Value, path: &str, key: &str) -> (&'s Value, String) {
         let inner = |table| table_of(table).expect("a table");
         let is_same = |known| ["properties", "oneOf"].iter().all(|part| inner(known)[part] == inner(table)[part]);
@@ -120,7 +120,7 @@ fn joined(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
-/// The first sentence of a description with its default, for the list of keys, and what lies between, for a section.
+/// The first sentence of a description with its default, for the list of keys, and the other sentences, for a section.
 fn split(description: &str) -> (String, &str) {
     let first = first_sentence(description);
     let rest = description[first.len()..].trim();
@@ -149,7 +149,7 @@ fn kind(schema: &Value) -> String {
         return alternatives.iter().map(kind).collect::<Vec<_>>().join(" or ");
     }
     if let Some(choices) = choices(schema) {
-        // Those with descriptions stand in a list of their own.
+        // Choices with descriptions have a list of their own.
         let described = described_choices(schema).is_some();
         let quoted: Vec<_> = choices.iter().map(|choice| format!("`\"{choice}\"`")).collect();
         return if described { "string".into() } else { quoted.join(" or ") };
@@ -209,7 +209,7 @@ fn entries(array: &Value) -> impl Iterator<Item = &Value> {
     array.as_array().into_iter().flatten()
 }
 
-/// A default as one would type it; none for tables and for what is empty.
+/// A default as typed; `None` for tables and empty values.
 fn default(value: &Value) -> Option<String> {
     match value {
         Value::Object(_) => None,

@@ -22,7 +22,7 @@ pub fn schema() -> Value {
 /// The schema, made once.
 pub(super) static SCHEMA: LazyLock<Value> = LazyLock::new(|| schema_of::<SceneFile>("Scene file of localshape"));
 
-/// The same for scenes made in code, whose runs may have models of the caller's own.
+/// The schema of scenes made in code, whose runs may have models of the caller's own.
 pub(super) static SCHEMA_OF_CODE: LazyLock<Value> = LazyLock::new(|| {
     let mut schema = schema();
     let required = schema["properties"]["run"]["items"]["required"].as_array_mut();
@@ -104,7 +104,7 @@ fn share_keys(table: &mut Map<String, Value>) {
     }
 }
 
-/// Gives the key that names a variant the variant's own description.
+/// Gives the key that names a variant the description of the variant.
 fn describe_kind(table: &mut Map<String, Value>) {
     let Some(description) = table.get("description").cloned() else { return };
     let Some(Value::Object(properties)) = table.get_mut("properties") else { return };

@@ -12,8 +12,8 @@ impl Scene {
         Stability::of(&self.body, run.model.as_ref(), run.integrator, &self.grips, self.duration)
     }
 
-    /// The message and help for a run whose step is more than 0.9 of the largest stable one, with that share. Runs far
-    /// below, nearly all, need no eigenvalue. Explicit Euler without damping has a message of its own
+    /// The message and remedy for a run whose step is more than 0.9 of the largest stable one, with that share. Runs
+    /// far below, nearly all, need no eigenvalue. Explicit Euler without damping has another message
     /// ([`Self::never_stable`]), and models of the caller have none.
     pub(super) fn near_limit(&self, number: usize) -> Option<(f64, [String; 2])> {
         const NEAR: f64 = 0.9;
@@ -37,7 +37,7 @@ impl Scene {
         Some((share, [message, format!("use {half} s or less, or `step = \"auto\"`")]))
     }
 
-    /// The message and help for a run that no step makes stable: explicit Euler without damping.
+    /// The message and remedy for a run that is unstable with any step: explicit Euler without damping.
     pub(super) fn never_stable(&self, number: usize) -> Option<[String; 2]> {
         let run = &self.runs[number];
         let is_undamped = run.model.bound(&self.body).is_some_and(|bound| bound.damping == 0.0);
@@ -50,9 +50,9 @@ impl Scene {
         })
     }
 
-    /// The share of energy that each rebound adds, about, to an undamped run with `e = 1`: elastic forces change within
-    /// the step of the rebound. Measured for blocks of eight cubes that fall 1 m, with steps of T/25 to T/400: 0.14 to
-    /// 0.23 times the square of the step over the limit, for both models.
+    /// The approximate share of energy that each rebound adds to an undamped run with `e = 1`: elastic forces change
+    /// within the step of the rebound. Measured for blocks of eight cubes that fall 1 m, with steps of T/25 to T/400:
+    /// 0.14 to 0.23 times the square of the step over the limit, for both models.
     pub(super) fn rebound_gain(&self, number: usize, largest: f64) -> Option<f64> {
         const GAIN: f64 = 0.2;
         let run = &self.runs[number];
@@ -70,7 +70,7 @@ impl Scene {
     }
 }
 
-/// The energy that rebounds add to a run, in words, unless it is little.
+/// The energy that rebounds add to a run, in words; `None` if it is little.
 pub(super) fn rebounds_in_words(run: &RunSummary) -> Option<String> {
     const LITTLE: f64 = 1e-4;
     let gain = run.rebound_gain.filter(|&gain| gain > LITTLE)?;
@@ -84,7 +84,7 @@ pub(super) fn rebounds_in_words(run: &RunSummary) -> Option<String> {
     ))
 }
 
-/// The largest stable step of a run in words, and the share of it that the run takes.
+/// The largest stable step of a run in words, and the run's share of it.
 pub(super) fn in_words(run: &RunSummary) -> String {
     let part =
         |limit: f64| format!("{} s ({} % used)", short(limit), short((1000.0 * run.step / limit).round() / 10.0));

@@ -66,7 +66,7 @@ pub struct RunSummary {
     pub kernel: Kernel,
     /// Time step (s).
     pub step: f64,
-    /// The error allowed in each step of an integrator that chooses its own, as a share of the body's size.
+    /// The error allowed in each step of an integrator that chooses its steps, as a share of the body's size.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     /// Number of steps up to the last frame.
@@ -77,8 +77,8 @@ pub struct RunSummary {
     /// The largest step (s) that is stable however far springs are stretched. Absent for models without springs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_stretched_step: Option<f64>,
-    /// The share of energy that each rebound adds, about. Absent unless the run is undamped and an obstacle has `e =
-    /// 1`.
+    /// The approximate share of energy that each rebound adds. Absent unless the run is undamped and an obstacle has `e
+    /// = 1`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rebound_gain: Option<f64>,
 }

@@ -224,7 +224,7 @@ fn what_is_no_picture_never_passes() {
     let long: &'static str = Box::leak("a".repeat(5 << 20).into_boxed_str());
     let wrong: [(&str, Vec<u8>, &str); 23] = [
         ("damaged-text.png", damaged, "damaged or cut short (a checksum is wrong)"),
-        ("twice.png", twice, "is missing, damaged or there twice"),
+        ("twice.png", twice, "is missing, damaged or repeated"),
         ("late.png", late.concat(), "text chunks after its pixels"),
         ("sum.png", sum_lies, "damaged or cut short"),
         ("long.png", text("comment", long), "carries more than 4 MiB beside its pixels"),

@@ -1,5 +1,5 @@
 //! A comparison as one HTML file, which works offline: every picture beside the expected one, the worst first. The file
-//! `page.html` has its text, style and script; what was found is plain HTML, so that it can be read without scripts.
+//! `page.html` has its text, style and script. The findings are plain HTML, which can be read without scripts.
 
 use super::comparison::Comparison;
 use super::picture::Pixels;
@@ -15,7 +15,7 @@ use sha2::{Digest, Sha256};
 use std::cmp::Reverse;
 
 const TEMPLATE: &str = include_str!("page.html");
-/// So many pictures are on a page; others are only listed.
+/// The most pictures on a page; further ones are only listed.
 const MOST_SHOWN: usize = 24;
 /// The colours of pixels that differ by more than [`STRONG`], by more than [`FAINT`], and by less.
 const COLOURS: [[u8; 3]; 3] = [[213, 40, 0], [230, 159, 0], [150, 196, 232]];
@@ -29,20 +29,20 @@ pub struct Page {
     pub passes: bool,
     /// The overall verdict.
     pub verdict: String,
-    /// What was found: which run moved first, at which node and how far; which keys changed.
+    /// The findings: the run that moved first, its node and distance; the keys that changed.
     pub findings: Vec<String>,
     /// The command that accepts the actual pictures; `None` if there is nothing to accept.
     pub accept: Option<String>,
     /// The pictures, the worst first.
     pub pictures: Vec<PicturePair>,
-    /// Those for which there is no room: names with verdicts.
+    /// Pictures for which there is no room: names with verdicts.
     pub others: Vec<String>,
 }
 
 /// An actual picture and the expected one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PicturePair {
-    /// Its file's name.
+    /// Its file name.
     pub name: String,
     /// The verdict as a sentence.
     pub words: String,
@@ -93,8 +93,7 @@ fn pair(picture: &Compared, sources: &[Option<Source>; 2]) -> PicturePair {
     PicturePair { name, words, passes, files: [expected, difference, actual] }
 }
 
-/// The differences of two pictures over a faint copy of the expected one, as a PNG file; `None` if their sizes are not
-/// alike.
+/// The differences of two pictures over a faint copy of the expected one, as a PNG file; `None` if their sizes differ.
 fn difference(expected: &Pixels, actual: &Pixels) -> Option<Vec<u8>> {
     let faint = |pixel: &[u8]| {
         let [red, green, blue] = [0, 1, 2].map(|at| u32::from(pixel[at]));
@@ -118,7 +117,7 @@ impl Page {
             let rest = page.split(&format!("<{tag}>")).nth(1).expect("the page has one");
             hash(rest.split(&format!("</{tag}>")).next().unwrap_or_default())
         });
-        // Only this script and style are used, whatever the names of files and runs contain.
+        // Browsers run only this script and style, whatever text files and runs have for names.
         let policy = format!(
             "default-src 'none'; img-src data:; style-src '{style}'; script-src '{script}'; base-uri 'none'; form-action 'none'"
         );

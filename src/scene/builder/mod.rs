@@ -1,4 +1,4 @@
-//! Scenes made in code. Builders fill in the same description that a scene file is, so that both mean the same, have the same
+//! Scenes made in code. Builders fill in the structs that scene files are read into. So both have the same meaning and
 //! limits, and are checked by the same code.
 
 /// Setters: name, arguments, the part, and its value.
@@ -105,7 +105,7 @@ impl SceneBuilder {
         gravity(acceleration: impl Into<Coordinates>) 0.gravity = Some(acceleration.into());
         /// Simulated time (s).
         duration(seconds: f64) 0.time.duration = seconds;
-        /// Time step ΔT (s) of runs without one of their own.
+        /// Time step ΔT (s) of runs without a step of their own.
         step(seconds: f64) 0.time.step = Some(StepFile::Seconds(seconds));
         /// The number of steps in the shortest period T = 2π√(m/k) of all runs, 50 by default, for runs without a step
         /// of their own.
@@ -203,7 +203,7 @@ impl SceneBuilder {
     pub fn build(self, limits: &Limits) -> Result<Scene, SceneError> {
         let Self(mut file) = self;
         let name = file.title.clone().unwrap_or_default();
-        // Long lists are checked where they are.
+        // Long lists are checked in place.
         let mut lists = if file.body.nodes.is_some() { file.body.take_lists() } else { BodyFile::default() };
         let values = toml::Value::try_from(&file).expect("numbers, texts, and lists and tables of them");
         let digits = digits(&values);
@@ -242,7 +242,7 @@ fn digits(value: &toml::Value) -> Vec<String> {
     }
 }
 
-/// A description as the tree that files are read into, which refers to digits. Its values have no places.
+/// A description as a TOML tree, which borrows the digits of numbers. Its values have no places in a text.
 fn tree<'t>(value: toml::Value, digits: &mut impl Iterator<Item = &'t String>) -> Spanned<DeValue<'t>> {
     let inner = match value {
         toml::Value::String(text) => DeValue::String(text.into()),

@@ -1,5 +1,5 @@
-//! Figures: scenes put together on one sheet. A figure file names scenes, and places their runs and moments. The scenes
-//! say how they look.
+//! Figures: scenes on one sheet. A figure file names scenes and arranges their runs and moments. The scenes determine
+//! their look.
 
 mod built_in;
 mod file;
@@ -95,7 +95,7 @@ impl Sheet {
     pub fn cell(&self, row: usize, column: usize) -> (usize, usize, f64) {
         let (row, column) = (&self.rows[row], &self.columns[column]);
         let run = self.scenes[column.scene].runs.iter().position(|run| run.name == row.run);
-        (column.scene, run.expect("a run of all scenes"), row.time.or(column.time).expect("one of them says it"))
+        (column.scene, run.expect("a run of all scenes"), row.time.or(column.time).expect("one of them has it"))
     }
 }
 
@@ -120,7 +120,7 @@ impl Figure {
         Some(Self::built_in_with(name, &[])?.unwrap_or_else(|error| panic!("{error}")))
     }
 
-    /// The same with settings of the command line, which hold for each of its scenes.
+    /// A built-in figure, with settings of the command line for each of its scenes.
     ///
     /// # Errors
     /// Mistakes in the settings.
@@ -143,7 +143,7 @@ impl Figure {
         Self::load_with(path, &[], limits)
     }
 
-    /// The same with settings of the command line, which hold for each of its scenes.
+    /// Reads a figure from a file, with settings of the command line for each of its scenes.
     ///
     /// # Errors
     /// As [`Self::load`].
@@ -190,7 +190,7 @@ pub(crate) fn schema() -> Value {
 
 static SCHEMA: LazyLock<Value> = LazyLock::new(|| schema_of::<file::FigureFile>("Figure file of localshape"));
 
-/// The style of a figure: that of its first scene, in another theme and with larger type if the figure says so.
+/// The style of a figure: the first scene's, or in another theme and with another text scale if the figure has them.
 fn look(first: &Scene, theme: Option<Theme>, text_scale: Option<f64>) -> Style {
     let look = match theme {
         Some(theme) if theme != first.view.look.theme => {

@@ -128,7 +128,7 @@ impl Scenes<'_, '_, '_> {
             None => file.column,
         };
         if are_moments && file.scene.is_none() {
-            self.report.at_key(&at("moments"), "there is no `scene` beside the moments that are shown of it", None);
+            self.report.at_key(&at("moments"), "the moments have no `scene`", None);
             return Ok(None);
         }
         if columns.is_empty() {
@@ -178,7 +178,7 @@ impl Scenes<'_, '_, '_> {
         if let Some(index) = rows.iter().position(|row| row.time.is_some()).filter(|_| !file.strips.is_empty()) {
             let path = way!["sheet", "row", index, "time"];
             let message = "strips mark the moments of columns, but here a row has one of its own";
-            self.report.at_key(&path, message, "leave out `sheet.strips`, or say the moments in columns");
+            self.report.at_key(&path, message, "leave out `sheet.strips`, or give the moments of columns");
         }
         let row = |row: RowFile| Row {
             label: row.label.unwrap_or_else(|| row.run.clone()),
@@ -249,8 +249,8 @@ impl Scenes<'_, '_, '_> {
         let timed = rows.iter().position(|row| row.time.is_some());
         if let Some(index) = timed.filter(|_| columns.iter().any(|column| column.time.is_some())) {
             let path = way!["sheet", "row", index, "time"];
-            let message = "both a row and a column say the moment of the same picture";
-            self.report.at_key(&path, message, "keep the moments of rows, or those of columns");
+            let message = "both a row and a column give the moment of the same picture";
+            self.report.at_key(&path, message, "keep the moments of either rows or columns");
         }
         let timeless = rows.iter().find(|row| row.time.is_none());
         for (index, column) in columns.iter().enumerate() {
@@ -263,7 +263,7 @@ impl Scenes<'_, '_, '_> {
             }
             if let Some(row) = timeless.filter(|_| column.time.is_none()) {
                 let message = format!("the column has no `time`, and neither has the row “{}”", row.run);
-                self.report.at(&path("time"), message, "say it in one of them");
+                self.report.at(&path("time"), message, "give it in one of them");
             }
         }
     }
@@ -284,7 +284,11 @@ impl Scenes<'_, '_, '_> {
         for (index, scene) in self.scenes.iter().enumerate() {
             if names(scene) != runs {
                 let all = list(&runs, "and", |name| format!("“{name}”"));
-                self.report.at(&path(index), format!("the runs of this scene are not those of the first: {all}"), None);
+                self.report.at(
+                    &path(index),
+                    format!("the runs of this scene differ from those of the first: {all}"),
+                    None,
+                );
             }
         }
         let compare = file.compare.map(|name| {
@@ -306,9 +310,8 @@ impl Scenes<'_, '_, '_> {
         let stiffness = self.scenes[0].runs[0].model.stiffness();
         for (index, scene) in self.scenes.iter().enumerate() {
             if scene.runs.iter().any(|run| run.model.stiffness() != stiffness) {
-                let message = format!(
-                    "a run has another stiffness than {stiffness} N/m, that of the first: forces would have two units"
-                );
+                let message =
+                    format!("a run has another stiffness than the first, {stiffness} N/m: forces would have two units");
                 self.report.at(&path(index), message, "give all runs the same stiffness");
             }
             if scene.body.len() > MOST_NODES {
@@ -318,7 +321,7 @@ impl Scenes<'_, '_, '_> {
         }
         if file.vectors && (file.numbers == NumbersFile::Force || runs.len() > 1) {
             let message = "vectors are drawn for one run, and without numbers";
-            let help = "leave one run in the scenes, and say `numbers = \"none\"`".to_owned();
+            let help = "leave one run in the scenes, and write `numbers = \"none\"`".to_owned();
             self.report.at_key(&way!["forces", "vectors"], message, help);
         }
         let side = self.scenes[0].view.side;
@@ -328,10 +331,10 @@ impl Scenes<'_, '_, '_> {
             .position(|scene| (scene.view.side / side - 1.0).abs() > 1e-3 && file.numbers == NumbersFile::Force)
         {
             let message = format!(
-                "the elements of this scene have sides of {} m, those of the first of {side} m: numbers in `k × side` would mean two things",
+                "the elements of this scene have sides of {} m, but {side} m in the first: numbers in `k × side` would have two units",
                 self.scenes[index].view.side
             );
-            self.report.at(&path(index), message, "take bodies of one size, or `numbers = \"none\"`");
+            self.report.at(&path(index), message, "use bodies of one size, or `numbers = \"none\"`");
         }
         let mut notes = file.notes;
         notes.resize(runs.len(), String::new());
@@ -343,7 +346,7 @@ impl Scenes<'_, '_, '_> {
     }
 }
 
-/// The parts of a scene that views depend on.
+/// The scene's part of the input of views.
 fn subject(scene: &Scene) -> Subject<'_> {
     Subject {
         body: &scene.body,
@@ -359,7 +362,7 @@ fn subject(scene: &Scene) -> Subject<'_> {
     }
 }
 
-/// Runs of one name have the line of the first scene that has them; runs of different names have different lines.
+/// Runs of one name have the line of the first scene with such a run; runs of different names have different lines.
 fn share_lines(scenes: &mut [Scene]) {
     let Some(first) = scenes.first() else { return };
     let palette = first.view.look.palette();

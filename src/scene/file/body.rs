@@ -92,7 +92,7 @@ pub(in crate::scene) struct BodyFile {
 }
 
 impl BodyFile {
-    /// Exchanges all lists with those of another body.
+    /// Exchanges all lists with another body.
     pub(in crate::scene) fn swap_lists(&mut self, other: &mut Self) {
         swap(&mut self.nodes, &mut other.nodes);
         swap(&mut self.elements, &mut other.elements);
@@ -103,7 +103,7 @@ impl BodyFile {
         swap(&mut self.masses, &mut other.masses);
     }
 
-    /// Takes all lists out. A single valid entry stands for each that has any.
+    /// Takes all lists out. A non-empty list leaves a single valid entry behind.
     pub(in crate::scene) fn take_lists(&mut self) -> Self {
         fn short<T>(list: &Option<Vec<T>>, entry: T) -> Option<Vec<T>> {
             list.as_ref().map(|list| list.first().map(|_| entry).into_iter().collect())

@@ -1,5 +1,5 @@
-//! The structs that scene files are read into. `localshape schema` prints the documentation of their fields, and the
-//! schema made from them is what files are checked against: there is no second list of keys.
+//! The structs that scene files are read into. The schema made from them is the only list of keys: files are checked
+//! against it, and `localshape schema` prints it with the documentation of their fields.
 //!
 //! A length is in metres, a time in seconds, a mass in kilograms, an angle in radians. Vectors have three coordinates
 //! in space and two in the plane.
@@ -160,7 +160,8 @@ impl ModelFile {
         matches!(self, Self::Own(_))
     }
 
-    /// The most springs that it has on a body with so many elements of each number of nodes and so many listed springs.
+    /// The most springs of the model on a body, by the number of elements with each number of nodes and of listed
+    /// springs.
     pub(in crate::scene) fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {
         match self {
             Self::Typed(parameters) => parameters.most_springs(elements, listed),
@@ -168,7 +169,7 @@ impl ModelFile {
         }
     }
 
-    /// The model for a body. `springs` are those that the scene lists for it.
+    /// The model for a body, with the springs that the scene lists.
     pub(in crate::scene) fn resolve(
         &self,
         body: &Body,
@@ -181,7 +182,7 @@ impl ModelFile {
     }
 }
 
-/// Checks what a model of the caller's own says of itself.
+/// Checks the properties of a model of the caller's own.
 fn check_own(model: &dyn ElasticModel, body: &Body) -> Result<(), Misfit> {
     let misfit = |key, message: String| Err(Misfit { key, message });
     let (stiffness, nodes) = (model.stiffness(), body.len());

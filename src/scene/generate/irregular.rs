@@ -64,7 +64,7 @@ pub(super) fn disturb(
 fn shifts(grid: &Grid, part: f64, seed: u32) -> Vec<DVec3> {
     let axes = if grid.is_flat() { 2 } else { 3 };
     let shortest = grid.sides.to_array()[..axes].iter().copied().fold(f64::INFINITY, f64::min);
-    // The diagonal of the box in which a node moves is as long as the displacement asked for.
+    // The diagonal of the box in which a node moves has the length of the requested displacement.
     let farthest = part * shortest / (axes as f64).sqrt();
     let [nx, ny, nz] = grid.cells;
     let mut shifts = Vec::with_capacity(grid.len() as usize);
@@ -90,7 +90,7 @@ fn is_spoilt(element: &[u32], regular: &[DVec3], now: &[DVec3], is_flat: bool) -
         };
         spanned(now) / spanned(regular) < LEAST
     };
-    // Each corner with its neighbours in any order: only ratios matter.
+    // The neighbours of a corner may have any order: only ratios matter.
     match (is_flat, element.len()) {
         (true, 3) => is_lost([0, 1, 2, 0]),
         (true, 4) => (0..4).any(|at| is_lost([at, (at + 1) % 4, (at + 3) % 4, at])),

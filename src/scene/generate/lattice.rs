@@ -6,7 +6,7 @@ use crate::scene::file::{Cells, Lattice};
 use crate::scene::limits::BodySize;
 use crate::sim::IndexLists;
 
-/// The largest size of a block. A block of mixed elements may come out smaller, with middle nodes in fewer cells.
+/// The largest size of a block. A block of mixed elements may be smaller, with middle nodes in fewer cells.
 pub(super) fn size(typed: &Lattice) -> BodySize {
     let product = |extra: u128| typed.cells.iter().fold(1, |all: u128, &n| all.saturating_mul(u128::from(n) + extra));
     let (cells, is_flat) = (product(0), typed.cells.len() == 2);

@@ -4,7 +4,7 @@ use super::grid::Grid;
 use super::random;
 use crate::sim::IndexLists;
 
-/// Uses of random numbers, besides the axes 0 to 2 along which nodes move.
+/// Uses of random numbers; 0 to 2 are the axes along which nodes move.
 const WISH: u64 = 3;
 const TURN: u64 = 4;
 
@@ -34,8 +34,8 @@ pub(super) fn cut_squares(grid: &Grid, seed: u32, elements: &mut IndexLists) {
     }
 }
 
-/// Two squares side by side as a hexagon, or without one of their four corners as a pentagon and a triangle. Both begin
-/// at a node that sees all their sides, the middle one of the lower or upper row.
+/// Joins two squares side by side: `whole` as a hexagon, else as a pentagon and a triangle, cut off at one of the four
+/// outer corners. Both begin at a node that sees all their sides, the middle one of the lower or upper row.
 fn join(grid: &Grid, seed: u32, [x, y, z]: [u32; 3], whole: bool, elements: &mut IndexLists) {
     let [a, b, e, f] = grid.square([x, y, z]);
     let [_, c, d, _] = grid.square([x + 1, y, z]);
@@ -70,8 +70,8 @@ fn wish(grid: &Grid, seed: u32, cell: [u32; 3]) -> Wish {
     }
 }
 
-/// The diagonal of the face at the low end of a cell along an axis, if one of its two cells wishes for wedges along
-/// that axis. The lower cell comes first.
+/// The diagonal of the face at the low end of a cell along an axis, if one of its two cells is to become wedges along
+/// that axis. The lower cell takes precedence.
 fn diagonal(grid: &Grid, seed: u32, axis: usize, cell: [u32; 3]) -> Option<bool> {
     let mut below = cell;
     below[axis] = below[axis].wrapping_sub(1);
@@ -87,8 +87,8 @@ fn diagonal(grid: &Grid, seed: u32, axis: usize, cell: [u32; 3]) -> Option<bool>
 const FACES: [[[usize; 4]; 2]; 3] =
     [[[0, 4, 6, 2], [1, 3, 7, 5]], [[0, 1, 5, 4], [2, 6, 7, 3]], [[0, 2, 3, 1], [4, 5, 7, 6]]];
 
-/// A cube in space stays whole, becomes two wedges, or pyramids and tetrahedra about a node in its middle. Returns the
-/// corners of cubes with such a node. These nodes follow the nodes of the grid in this order.
+/// Cuts a cube in space into two wedges, or into pyramids and tetrahedra about a node in its middle, or leaves it
+/// whole. Returns the corners of each cube with such a node. These nodes follow the nodes of the grid in this order.
 pub(super) fn cut_cubes(grid: &Grid, seed: u32, elements: &mut IndexLists) -> Vec<[u32; 8]> {
     let mut middles = Vec::new();
     for cell in grid.each_cell() {

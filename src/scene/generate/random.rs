@@ -1,6 +1,6 @@
 //! Pseudo-random numbers that are the same on every machine.
 //!
-//! Each number is a hash of its use, independent of the order of drawing.
+//! Each number is a hash of its index and its use, so the order of drawing has no effect.
 
 /// A number for an index and a use: the finaliser of SplitMix64 (Steele, Lea, Flood 2014) over both.
 pub(super) fn hash(seed: u32, index: u64, usage: u64) -> u64 {

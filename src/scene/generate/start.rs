@@ -6,7 +6,7 @@ use crate::sim::Dimension;
 use crate::sim::geometry::bounds;
 use glam::DVec3;
 
-/// The use of random numbers in clouds, to which the axis is added.
+/// The use of random numbers in clouds; the axis is added to it.
 const CLOUD: u64 = 16;
 
 /// Moves nodes (m) from rest to a start shape, with a unit direction if it has one and a seed if it is random.

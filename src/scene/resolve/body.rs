@@ -37,7 +37,7 @@ pub(super) fn dimension(file: &BodyFile, beside: Option<&Lists>) -> Option<Dimen
 }
 
 /// The body, or `None` after reporting every mistake in it. `flawed` lists keys that were left out because of mistakes.
-/// `beside` is the content of the body's file.
+/// `beside` has the lists of the body's file.
 pub(super) fn resolve(
     file: &BodyFile,
     beside: Option<Lists>,
@@ -227,7 +227,7 @@ fn start(
 
 /// The start shape (with a unit direction and a seed), the rotation (unit axis, angle), the spin (rad/s), the
 /// translation and the velocity. Settings with mistakes are reported and left out.
-#[expect(clippy::type_complexity, reason = "a list of all that a start may have")]
+#[expect(clippy::type_complexity, reason = "the list of all settings of a start")]
 fn check_start(
     file: &BodyFile,
     dimension: Dimension,

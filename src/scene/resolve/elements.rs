@@ -7,12 +7,12 @@ use crate::sim::geometry::{Alike, bounds, kind, volume_by_faces};
 use crate::sim::{Body, Dimension, ElementKind, Solids};
 use glam::DVec3;
 
-/// An area or volume below this part of the element's bounding cube counts as zero. Rounding of coordinates leaves some
-/// 1e-16; a needle a millionth as thick as long still has 1e-6.
+/// An area or volume below this part of the element's bounding cube counts as zero. Rounded coordinates leave some
+/// 1e-16; a needle a million times as long as thick still has 1e-6.
 const FLAT: f64 = 1e-12;
 
 /// Reports every wrong index, repeated node, repeated element or spring, degenerate or inverted element, and every node
-/// without element or spring. `flawed`: there were mistakes before, whose consequences are not reported.
+/// without element or spring. If there were mistakes before (`flawed`), their consequences are not reported.
 pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Report<'_>) {
     let Lists { source, nodes, elements, springs, faces, .. } = lists;
     let node_count = nodes.len();
@@ -57,7 +57,7 @@ pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Re
 }
 
 impl Lists {
-    /// Reports an element that has no extent, is inside out or clockwise.
+    /// Reports an element that has no extent, or is inside out or clockwise.
     fn check_extent(
         &self,
         at: usize,
@@ -77,7 +77,7 @@ impl Lists {
         }
         let kind = kind(self.dimension, solids, element.len());
         let whole = match kind {
-            // Elements of two nodes have a length if their box has one. Other elements that are no solids may be flat
+            // Elements of two nodes have a length if their box has one. Other elements that are not solids may be flat
             // or rods.
             ElementKind::Segment => return,
             ElementKind::Triangle | ElementKind::Other => {
@@ -100,7 +100,7 @@ impl Lists {
         let measure = volume_by_faces(kind, element, &self.nodes);
         disorder.ordered += 1;
         let around = || volume_by_faces(kind, &AROUND.map(|place| element[place]), &self.nodes);
-        // A valid hexahedron read in the other order intersects itself and has hardly any volume, of either sign.
+        // A valid hexahedron read in the other order intersects itself. Its volume is nearly zero, with either sign.
         if kind == ElementKind::Hexahedron && around().abs() > (2.0 * measure.abs()).max(FLAT * whole) {
             disorder.found.push((at, Wrong::Around, kind));
         } else if measure.abs() <= FLAT * whole {
@@ -154,9 +154,9 @@ impl Disorder {
     }
 }
 
-/// What is wrong with several elements, given by number and kind, and what helps.
+/// The mistake of several elements, given by number and kind, and the remedy.
 fn in_common(lists: &Lists, wrong: Wrong, found: &[(usize, ElementKind)], is_all: bool) -> (String, Option<String>) {
-    /// Elements that are named.
+    /// The most elements that are named.
     const NAMED: usize = 5;
     let (what, help) = match (wrong, lists.dimension) {
         (Wrong::Flat, Dimension::Plane) => ("have no area: their nodes are on lines, or their sides cross", None),
@@ -199,7 +199,7 @@ fn in_common(lists: &Lists, wrong: Wrong, found: &[(usize, ElementKind)], is_all
     (format!("{number} of {all} elements of `{name}` {what}: {named}"), help)
 }
 
-/// The mistake of one element, and the help.
+/// The mistake of one element, and the remedy.
 fn in_words(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (String, Option<String>) {
     let (name, element) = (lists.source.name("elements", &[at]), &lists.elements[at]);
     match (wrong, kind) {
@@ -227,15 +227,15 @@ fn in_words(lists: &Lists, at: usize, wrong: Wrong, kind: ElementKind) -> (Strin
     }
 }
 
-/// The help for any order.
+/// The remedy that allows any order.
 const CONVEX: &str = "write convex = true in [body] for nodes in any order";
 
-/// The most nodes of an element whose faces are found from its convex hull: it takes seconds from there on.
+/// The most nodes of an element whose faces are found from its convex hull: more take seconds.
 const MOST_IN_HULL: usize = 10_000;
 /// The most nodes of a polygon whose sides are compared pairwise.
 const MOST_COMPARED: usize = 2000;
 
-/// Whether points lie on a line, to round-off in a box of a size around them.
+/// Whether points lie on a line, to round-off in a box of this size around them.
 fn is_on_a_line(points: &[DVec3], size: f64) -> bool {
     let from = |point: &DVec3| *point - points[0];
     let along =
@@ -258,7 +258,7 @@ fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2]> {
         .find(|&[one, other]| apart(side(one), side(other)) && apart(side(other), side(one)))
 }
 
-/// Reports indices that do not exist and repeated nodes. Returns true if there are none.
+/// Reports missing and repeated nodes. Returns true if there are none.
 fn check_indices(
     source: &ListSource,
     key: &str,
@@ -267,14 +267,14 @@ fn check_indices(
     nodes: usize,
     report: &mut Report<'_>,
 ) -> bool {
-    /// Up to this length comparing all pairs is faster than sorting.
+    /// Up to this length, comparing all pairs is faster than sorting.
     const FEW: usize = 16;
     let is_new = |entry: usize| (list[entry] as usize) < nodes && !list[..entry].contains(&list[entry]);
     if list.len() <= FEW && (0..list.len()).all(is_new) {
         return true;
     }
     let mut are_valid = true;
-    // Positions in order of their node, so that long lists are compared quickly.
+    // Positions are sorted by node, so that long lists are compared quickly.
     let mut order: Vec<usize> = (0..list.len()).collect();
     order.sort_by_key(|&entry| (list[entry], entry));
     for pair in order.windows(2).filter(|pair| list[pair[0]] == list[pair[1]]) {
@@ -293,7 +293,7 @@ fn check_indices(
     are_valid
 }
 
-/// Reports a list with the same nodes as an earlier one, in any order. Returns true if it is one.
+/// Reports a list with the same nodes as an earlier one, in any order. Returns true if there is one.
 fn repeated<'l>(
     source: &ListSource,
     key: &str,
@@ -339,7 +339,7 @@ pub(in crate::scene) fn mean_edge(body: &Body) -> f64 {
     if sum > 0.0 { sum / count } else { body.extent() }
 }
 
-/// A point as it is typed.
+/// A point as typed.
 fn point(point: DVec3, dimension: Dimension) -> String {
     match dimension {
         Dimension::Plane => format!("[{}, {}]", point.x, point.y),

@@ -52,7 +52,7 @@ impl ListSource {
         }
     }
 
-    /// The position is that of the file's name in the scene, so the message names list and entry.
+    /// Reports at the file's name in the scene, so the message names list and entry.
     fn report_in_file(&self, report: &mut Report<'_>, key: &str, at: &[usize], message: String, help: Option<String>) {
         let named = message.contains(&format!("`{}", self.name(key, &at[..at.len().min(1)])));
         let message = if named { message } else { format!("`{}`: {message}", self.name(key, at)) };
@@ -186,7 +186,7 @@ fn beyond(number: f64) -> Option<String> {
     (number.is_nan() || number.abs() > LARGEST).then(|| format!("is {number}; expected {expected}"))
 }
 
-/// Reports numbers out of range and lists that are too short in lists made in code, as the schema does in files.
+/// Reports numbers out of range and too short lists in scenes made in code. In files the schema finds them.
 pub(in crate::scene) fn check_unwritten(file: &BodyFile, report: &mut Report<'_>) {
     let mut say = |key: &str, at: &[usize], message: String| {
         ListSource::Scene.report(report, key, at, format!("`{}` {message}", ListSource::Scene.name(key, at)), None);
@@ -334,7 +334,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A number that is finite and not too large; zero after reporting another.
+    /// A number that is finite and not too large; otherwise a mistake is reported, and it is zero.
     fn number(&mut self, key: &str, values: &Values, at: &[usize]) -> f64 {
         let number = values.double(at[0], at.get(1).copied().unwrap_or(0));
         let Some(message) = beyond(number) else { return number };
@@ -351,7 +351,7 @@ impl Reader<'_, '_> {
         (0..values.rows()).map(point).collect()
     }
 
-    /// Points with as many coordinates as the nodes have, if that is known.
+    /// Points with `columns` coordinates, if the number of coordinates is known.
     fn vectors(&mut self, key: &str, array: &Array, columns: Option<u64>) -> Option<Vec<DVec3>> {
         let fits = array.shape.len() == 2 && columns.is_none_or(|columns| array.shape[1] == columns);
         if !fits || !(2..=3).contains(&array.shape[1]) {
@@ -454,7 +454,7 @@ pub(super) fn check_count(source: &ListSource, key: &str, length: usize, nodes: 
     }
 }
 
-/// Reports a key of the scene that an array of the file repeats.
+/// Reports a key of the scene that conflicts with an array of the file.
 pub(super) fn check_exclusive(lists: &Lists, typed: bool, key: &str, array: &str, report: &mut Report<'_>) {
     if typed {
         let path = way!["body", key];

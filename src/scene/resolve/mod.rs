@@ -63,7 +63,7 @@ impl Parts {
     pub(super) fn new(checked: &Checked, folder: &Path, limits: &Limits, report: &mut Report<'_>) -> Self {
         let file = &checked.valid;
         let body: Option<BodyFile> = part(file, "body", report).map(|mut body: BodyFile| {
-            // Lists beside a generator or a file are mistakes, which have been reported.
+            // Lists beside a generator or a file are a mistake, which was reported.
             if body.file.is_some() || Generator::of(&body).is_some() {
                 (body.nodes, body.elements, body.springs, body.faces) = (None, None, None, None);
                 (body.positions, body.velocities, body.masses) = (None, None, None);
@@ -96,8 +96,8 @@ impl Parts {
         }
     }
 
-    /// The parts of a scene made in code without those that have mistakes. Its long lists were checked apart, and `flawed` says
-    /// whether a mistake was found in them.
+    /// The valid parts of a scene made in code. Its long lists were checked separately; `flawed` tells whether they had
+    /// a mistake.
     pub(super) fn of(file: SceneFile, checked: &Checked, flawed: bool) -> Self {
         fn entries<T>(entries: Vec<T>, key: &str, checked: &Checked) -> Vec<Option<T>> {
             let is_sound = |at: usize| !checked.valid.get(key).is_some_and(|valid| valid[at].is_null());
@@ -173,7 +173,7 @@ fn read<T: DeserializeOwned>(json: &Json, path: &[Way<'_>], report: &mut Report<
 /// The most frames a scene may have: at 60 a second nearly two days of film.
 const MOST_FRAMES: f64 = 1e7;
 
-/// The physics. A part is `None` if it has a mistake, or needs a part with one.
+/// The physics. A part is `None` if it has a mistake, or depends on a part with one.
 struct Physics {
     gravity: Option<DVec3>,
     body: Option<ResolvedBody>,
@@ -262,7 +262,7 @@ fn view(parts: &Parts, physics: &Physics, report: &mut Report<'_>) -> Option<Vie
     Some(view)
 }
 
-/// Warns of a scene with one frame, and of one that takes very long.
+/// Warns of a scene with one frame, and of a very long computation.
 fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
     /// Computation time for one corner of an element and one step (s), measured on one cube.
     const CORNER: f64 = 3e-8;

@@ -6,7 +6,7 @@ use crate::scene::file::{Coordinates, MotionPath, Rotation, Swing};
 use crate::sim::{Dimension, Key, Motion, Offset};
 use glam::DVec3;
 
-/// The unit axis of a rotation. Without one in space, or with one in the plane, it is a mistake.
+/// The unit axis of a rotation. Reports a missing axis in space, and an axis in the plane.
 pub(super) fn axis(
     typed: Option<&Coordinates>,
     dimension: Dimension,
@@ -99,7 +99,7 @@ pub(super) fn keys(
 
 /// Whether two offsets are equal, to round-off and whole turns.
 fn same(one: Offset, other: Offset) -> bool {
-    /// Round-off of typed numbers is no jump.
+    /// A smaller difference is round-off of typed numbers.
     const CLOSE: f64 = 1e-6;
     let [one_pose, other_pose] = [one, other].map(|offset| Motion::at(offset).pose(0.0));
     one.shift.distance(other.shift) <= CLOSE * (one.shift.length() + other.shift.length()).max(1e-3)

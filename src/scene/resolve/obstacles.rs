@@ -105,7 +105,7 @@ fn shape(typed: &ShapeFile, dimension: Dimension, path: &[Way<'_>], report: &mut
 /// The depth that rounding may leave a node in an obstacle at the start, in body sizes.
 const TOUCHING: f64 = 1e-9;
 
-/// Reports obstacles with nodes inside at the start, and obstacles that start inside the body.
+/// Reports obstacles that contain nodes at the start, and obstacles that start inside the body.
 fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], report: &mut Report<'_>) {
     let placed = obstacle.at(0.0, 1.0);
     let name = match obstacle.shape {
@@ -150,7 +150,7 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], repor
     }
 }
 
-/// The most points of an obstacle, times faces of the body, that are tested: some tenths of a second.
+/// The most points of an obstacle, times faces of the body, that are tested. This many take some tenths of a second.
 const MOST_COMPARED: usize = 10_000_000;
 
 /// The number of tested points of an obstacle along each axis.
@@ -180,7 +180,7 @@ fn inner_points(shape: &Shape, dimension: Dimension) -> Vec<DVec3> {
     }
 }
 
-/// Reports motions that are too fast for the time step, in which the obstacle would jump.
+/// Reports motions that are too fast for the time step, so that the obstacle would jump.
 pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mut Report<'_>) {
     for (at, obstacle) in typed.iter().enumerate() {
         let Some(obstacle) = obstacle else { continue };

@@ -33,7 +33,7 @@ pub(super) fn resolve(
             model.map_err(|misfit| report.at(&path(misfit.key), misfit.message, None)).ok()
         })
         .collect();
-    // T depends on all models: without one of them steps would be reported wrongly.
+    // T depends on all models: without one of them, steps would be reported wrongly.
     let models: Vec<Arc<dyn ElasticModel>> = models.into_iter().collect::<Option<_>>()?;
     let cycle = models.iter().map(|model| model.shortest_period(&body.body)).reduce(f64::min)?;
     let limits = limits(typed, time?, body, &models, grips.unwrap_or_default());
@@ -113,8 +113,8 @@ pub(super) fn resolve(
     Some(runs)
 }
 
-/// The place, message and help for a step with an integrator that chooses its own, or a tolerance with another
-/// integrator.
+/// The place, message and remedy for a `step` with an integrator that chooses its own steps, or a tolerance with
+/// another integrator.
 fn misplaced(
     at: usize,
     run: &RunFile,
@@ -136,8 +136,8 @@ fn misplaced(
     is_typed.then(|| (path, message, "give `step`, or `integrator = \"dormand-prince\"`".into()))
 }
 
-/// The largest stable step (s) for each run with `step = "auto"`, and the run that limits it: the run itself, or the
-/// one with the least step of all that share the scene's.
+/// The largest stable step (s) for each run with `step = "auto"`, and the run that limits it: the run itself, or among
+/// the runs that share the scene's step the one with the least.
 fn limits(
     typed: &[Option<RunFile>],
     time: &TimeFile,
@@ -173,7 +173,7 @@ fn automatic(limit: f64, time: &TimeFile) -> Option<f64> {
     (limit > 0.0 && limit.is_finite()).then(|| frame / (frame / (Stability::SHARE * limit)).ceil())
 }
 
-/// The message and help if there is no `step = "auto"`.
+/// The message and remedy for a run without a step by `step = "auto"`.
 fn no_limit(run: &RunFile, integrator: Integrator, limit: f64) -> (String, String) {
     let (name, method) = (words::quoted(&run.name), words::quoted(&crate::sim::words::typed(&integrator)));
     match limit > 0.0 {
@@ -183,7 +183,7 @@ fn no_limit(run: &RunFile, integrator: Integrator, limit: f64) -> (String, Strin
         ),
         false => (
             format!("`step = \"auto\"` finds no step for {name}: {method} is never stable without damping"),
-            "give a step, or take another integrator".into(),
+            "give a step, or use another integrator".into(),
         ),
     }
 }

@@ -11,7 +11,7 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 impl Walk<'_, '_, '_> {
-    /// The keys that a table requires, and the keys that need or exclude each other.
+    /// Checks the keys that a table requires, and keys that need or exclude each other.
     pub(super) fn table_rules(&mut self, schema: &Json, table: &DeTable<'_>, span: Range<usize>) {
         let has = |name: &str| table.contains_key(name);
         for name in strings(schema.get("required")).filter(|name| !has(name)) {
@@ -28,7 +28,7 @@ impl Walk<'_, '_, '_> {
         let Some(dependent) = schema.get("dependentRequired").and_then(Json::as_object) else { return };
         for (name, needed) in dependent {
             let Some((key, _)) = table.get_key_value(name.as_str()) else { continue };
-            // Keys of an alternative that need each other have been reported.
+            // Missing keys of an alternative were reported.
             let partner = |other: &str| {
                 let begun = |set: &Json| {
                     strings(Some(set)).any(|key| key == name) && strings(Some(set)).any(|key| key == other)
@@ -44,7 +44,7 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// A missing key, unless an unknown key is nearly it.
+    /// Reports a missing key, unless an unknown key is similar.
     fn missing_key(&mut self, schema: &Json, table: &DeTable<'_>, name: &str, given: &str, span: Range<usize>) {
         if misspelt(schema, table, name) {
             return;
@@ -60,7 +60,7 @@ impl Walk<'_, '_, '_> {
         self.mistake(span, missing, help);
     }
 
-    /// Sets of keys: a table has exactly one complete set.
+    /// Checks sets of keys: a table has exactly one complete set.
     fn alternatives(&mut self, schema: &Json, table: &DeTable<'_>, span: Range<usize>) {
         let branches = schema.get("oneOf").and_then(Json::as_array).into_iter().flatten();
         let sets: Vec<Vec<&str>> = branches.map(|branch| strings(branch.get("required")).collect()).collect();
@@ -84,7 +84,7 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// Keys that exclude each other, reported at the later one.
+    /// Reports keys that exclude each other, at the later one.
     fn exclusive(&mut self, keys: &[(&Spanned<DeString<'_>>, &Spanned<DeValue<'_>>)]) {
         let last = keys.iter().map(|(key, _)| key.span()).max_by_key(|span| span.start);
         let names = list(&names(keys), "and", |key| format!("`{key}`"));
@@ -95,9 +95,9 @@ impl Walk<'_, '_, '_> {
         );
     }
 
-    /// An unknown key of a table of one kind, which other `kinds` may have.
+    /// Reports an unknown key of a table of one kind. Other `kinds` may have it.
     pub(super) fn unknown_key(&mut self, schema: &Json, name: &str, span: Range<usize>, kinds: &[(&str, &Json)]) {
-        // There may be millions of them, and finding a similar name takes long.
+        // There may be millions of mistakes, and finding a similar name takes long.
         if self.report.only_counted() {
             return;
         }
@@ -142,15 +142,15 @@ fn known(schema: &Json) -> Vec<&str> {
     schema["properties"].as_object().into_iter().flatten().map(|(key, _)| key.as_str()).collect()
 }
 
-/// Whether a table has an unknown key that is nearly this one.
+/// Whether a table has an unknown key similar to this one.
 fn misspelt(schema: &Json, table: &DeTable<'_>, name: &str) -> bool {
     let known = known(schema);
     let unknown = table.keys().map(|key| key.get_ref().as_ref()).filter(|key| !known.contains(key));
     unknown.take(1000).any(|key| nearest(key, &known) == Some(name))
 }
 
-/// The tables in which a key is known, as written: `view.camera`. Deeper ones are left out if there is one near the
-/// top.
+/// The tables in which a key is known, as written: `view.camera`. Deeper tables are left out if one near the top has
+/// it.
 fn elsewhere(schema: &Json, name: &str) -> Vec<String> {
     let properties = || tables(schema).filter_map(|table| table["properties"].as_object()).flatten();
     let knows = |inner: &Json| tables(inner).any(|table| table["properties"].get(name).is_some());

@@ -1,7 +1,7 @@
 //! Checks the structure of a scene file against the schema: keys, types, ranges, lengths and choices.
 //!
 //! `jsonschema` has about fifty dependencies and would replace little of this: it checks JSON without lines and
-//! columns, says of alternatives only that none fits, and suggests no similar key.
+//! columns, reports of alternatives only that none fits, and suggests no similar key.
 
 pub(super) mod expect;
 mod keys;
@@ -68,7 +68,7 @@ pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) 
 }
 
 struct Walk<'r, 't, 'p> {
-    /// That of the whole file.
+    /// The schema of the whole file.
     schema: &'r Json,
     report: &'r mut Report<'t>,
     path: Vec<Way<'p>>,
@@ -83,7 +83,7 @@ impl<'p> Walk<'_, '_, 'p> {
         written(&self.path)
     }
 
-    /// The meaning of a key, in its first sentence; nothing for an entry of an array.
+    /// The first sentence of the description of a key; `None` for an entry of an array.
     fn meaning(&self, schema: &Json) -> Option<String> {
         let keyed = matches!(self.path.last(), Some(Way::Key(_)));
         schema.get("description").and_then(Json::as_str).filter(|_| keyed).map(|text| first_sentence(text).into())
@@ -179,7 +179,7 @@ impl<'p> Walk<'_, '_, 'p> {
             }
         } else if schema["format"] == "colour" {
             match TypedColour::read(text) {
-                // A name and its digits mean the same.
+                // A name and its digits are the same colour.
                 Ok(colour) => return Json::String(colour.into()),
                 Err((wrong, help)) => {
                     self.mistake(span, format!("`{}` is {}{wrong}", self.here(), quoted(text)), help);
@@ -309,7 +309,7 @@ impl<'p> Walk<'_, '_, 'p> {
 }
 
 /// Whether text with a character needs shaping: it runs from right to left, is joined or reordered with its neighbours,
-/// or combines with the one before. Text is drawn from left to right, one glyph for each character.
+/// or combines with the previous one. Text is drawn from left to right, one glyph for each character.
 fn needs_shaping(character: char) -> bool {
     matches!(
         u32::from(character),
@@ -333,7 +333,7 @@ fn needs_shaping(character: char) -> bool {
     )
 }
 
-/// The help for a text that holds a number, perhaps with a decimal comma.
+/// The remedy for a text that holds a number, perhaps with a decimal comma.
 fn unquoted(text: &str, is_whole: bool) -> Option<String> {
     let number = text.trim().replacen(',', ".", 1);
     let is_one = number.chars().all(|c| c.is_ascii_digit() || "+-.eE_".contains(c));
