@@ -1,4 +1,4 @@
-//! Displacements as arrows: from where the best rigid placement of the rest shape has each node to where it is.
+//! Displacements as arrows: from the place of each node in the best fit of the rest shape to its present place.
 
 use super::camera::Lens;
 use super::layout::Rectangle;
@@ -10,7 +10,7 @@ use crate::colour::Colour;
 use crate::sim::Placement;
 use glam::{DVec2, DVec3};
 
-/// The widths of an arrow's halo and of its head with it, in parts of the head's own width. The shader has them, too.
+/// The widths of an arrow's halo, and of its head with the halo, in widths of the head. The shader has the same values.
 const HALO: f64 = 3.0 / 17.0;
 const HEIGHT: f64 = 1.0 + 2.0 * HALO;
 /// Width of the head of a long arrow (px in the reference picture).
@@ -18,18 +18,18 @@ pub(super) const HEAD: f64 = 17.0;
 /// Elements smaller than this (px in the reference picture) get smaller arrows, down to this part of their size.
 const ROOMY_ELEMENT: f64 = 105.0;
 const SMALLEST: f64 = 0.36;
-/// No arrow is smaller than this beside those of the reference picture, or it could not be seen.
+/// The least size of arrows, relative to the reference picture; smaller ones could not be seen.
 const FAINTEST: f64 = 0.33;
-/// Arrows shorter than this are left out (parts of the size, and px): they would be specks on the nodes.
+/// Arrows shorter than this are left out (relative to the size, and px): they would be specks on the nodes.
 const SHORTEST: [f64; 2] = [9.0, 2.5];
-/// They fade over this part of that length above it.
+/// Longer arrows fade up to this part of that length above it.
 const FADING: f64 = 0.35;
 /// Arrows nearer to each other than the first distance are thinned out, and fade up to the second one (widths of a head).
 const APART: [f64; 2] = [0.75, 1.5];
 /// Thinning more arrows than this would take long.
 const MOST_ARROWS: usize = 500;
 
-/// The nodes that get an arrow: those on the surface, and of very many a part that looks even but follows no rows.
+/// The nodes with arrows: those on the surface. Of very many, a subset that looks even but follows no rows.
 pub(super) fn bearers(on_surface: &[u32]) -> Vec<u32> {
     let mut nodes = on_surface.to_vec();
     if nodes.len() > MOST_ARROWS {
@@ -40,14 +40,14 @@ pub(super) fn bearers(on_surface: &[u32]) -> Vec<u32> {
     nodes
 }
 
-/// The place of a node in an order that looks even but follows no rows (Fibonacci hashing): the same in every frame, run and
-/// picture.
+/// The rank of a node in an order that looks even but follows no rows (Fibonacci hashing). It is the same in every
+/// frame, run and picture.
 fn rank(node: u32) -> (u64, u32) {
     (u64::from(node).wrapping_mul(0x9e37_79b9_7f4a_7c15), node)
 }
 
-/// How opaque arrows are that fade before others: each is given by its ends (px) and its own opacity, those that stay come
-/// first. Opacities change steadily as arrows move, so that none appears at once.
+/// The opacities of arrows that fade near others. Each arrow has its ends (px) and its own opacity; the first ones take
+/// precedence. Opacities change steadily as arrows move, so that none appears suddenly.
 fn thinned(arrows: &[([DVec2; 2], f64)], head: f64) -> Vec<f64> {
     let [near, far] = APART.map(|widths| widths * head);
     let mut opacities: Vec<f64> = Vec::with_capacity(arrows.len());
@@ -76,12 +76,12 @@ fn between([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// How large arrows are beside those of the reference picture, for elements of a length (px) in type of a unit.
+/// The size of arrows relative to the reference picture, for elements of a length (px) in type of a unit.
 pub(super) fn size(element: f64, unit: f64) -> f64 {
     (unit * (element / (ROOMY_ELEMENT * unit)).clamp(SMALLEST, 1.0)).max(FAINTEST)
 }
 
-/// An arrow from one pixel to another; the tip stands exactly at the second one.
+/// An arrow from one pixel to another, with its tip exactly at the second one.
 pub(super) fn arrow([from, to]: [DVec2; 2], size: f64, colour: Colour, halo: Colour) -> Mark {
     let length = (to - from).length();
     let along = if length > 0.0 { (to - from) / length } else { DVec2::X };
@@ -97,23 +97,23 @@ pub(super) fn arrow([from, to]: [DVec2; 2], size: f64, colour: Colour, halo: Col
     }
 }
 
-/// What is needed to draw the arrows of one panel.
+/// The data for the arrows of one panel.
 pub(super) struct Arrows<'a> {
     pub(super) lens: &'a Lens,
-    /// Where arrows may be (px).
+    /// The room for arrows (px).
     pub(super) room: Rectangle,
     /// See [`size`].
     pub(super) size: f64,
-    /// The radius of the nodes, if they are drawn (px): no arrow is as short as one of them is wide.
+    /// The radius of drawn nodes (px): no arrow is shorter than the diameter.
     pub(super) node: f64,
-    /// How many times longer than the displacements they are.
+    /// The length of arrows relative to the displacements.
     pub(super) times: f64,
     pub(super) colour: Colour,
     pub(super) halo: Colour,
 }
 
 impl Arrows<'_> {
-    /// Adds an arrow for each of the nodes, as opaque as it says and as others leave room for it, the farthest first.
+    /// Adds an arrow for each node with its opacity, fainter near other arrows, the farthest first.
     pub(super) fn draw(
         &self,
         nodes: &[(u32, f64)],
@@ -139,8 +139,8 @@ impl Arrows<'_> {
         marks.extend(drawn.filter_map(|(ends, opacity)| arrow(ends, self.size, self.colour, self.halo).faded(opacity)));
     }
 
-    /// The part of an arrow inside the room, and its opacity: the shortest fade. Long arrows are cut, not left out, or the
-    /// remaining small ones would mislead.
+    /// The part of an arrow inside the room, and its opacity where it is short. Long arrows are cut rather than left
+    /// out, or the remaining small ones would mislead.
     fn inside(&self, [from, to]: [DVec2; 2]) -> Option<([DVec2; 2], f64)> {
         let shortest = (SHORTEST[0] * self.size).max(SHORTEST[1]).max(2.0 * self.node);
         let shares = clipped(from, to - from, sides(self.room.map(f64::from)), [0.0, 1.0])?;
@@ -171,7 +171,7 @@ mod tests {
         let level = ([DVec2::new(-10.0, 20.0), DVec2::new(90.0, 20.0)], 1.0);
         assert_eq!(thinned(&[upright(0.0), level, upright(40.0)], 17.0), [1.0, 0.0, 1.0]);
         assert_eq!(thinned(&[level, upright(0.0), upright(40.0)], 17.0), [1.0, 0.0, 0.0]);
-        // One that is not seen takes no room.
+        // An invisible arrow takes no room.
         assert_eq!(thinned(&[(level.0, 0.0), upright(0.0)], 17.0), [0.0, 1.0]);
         let beside = |x: f64| thinned(&[upright(0.0), upright(x)], 17.0)[1];
         assert_eq!([beside(0.0), beside(12.0), beside(30.0)], [0.0, 0.0, 1.0]);

@@ -3,16 +3,16 @@
 use super::number::{self, times_ten, with_minus};
 use crate::sim::words::{prefix, rounded};
 
-/// What an axis shows, which decides how it is divided.
+/// The quantity along an axis, which determines its division.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {
-    /// Time (s), from end to end and no further.
+    /// Time (s). The axis ends at its ends.
     Time,
-    /// Whole things that are counted.
+    /// A number of things.
     Count,
-    /// Anything else.
+    /// Another value.
     Value,
-    /// The values of a scale of colours, from end to end and no further.
+    /// The values of a colour scale. The axis ends at its ends.
     Colour,
 }
 
@@ -23,22 +23,22 @@ pub(super) struct Axis {
     pub(super) range: [f64; 2],
     /// The round numbers, rising.
     pub(super) ticks: Vec<f64>,
-    /// The text at each of them.
+    /// The text at each of the ticks.
     pub(super) texts: Vec<String>,
-    /// The unit of these texts, with its prefix.
+    /// The unit of the texts, with its prefix.
     pub(super) unit: String,
 }
 
-/// An axis goes on to the next round number if that is no further away than this part of its range, else by the second
-/// part, so that no curve runs along its border.
+/// An axis extends to the next round number up to this part of its range away, otherwise by the second part, so that no
+/// curve runs along its border.
 const NEAR: f64 = 0.13;
 const BEYOND: f64 = 0.05;
 /// The units that take an SI prefix; `kkg m/s` would be wrong.
 const WITH_PREFIX: [&str; 2] = ["m/s", "J"];
 
 impl Axis {
-    /// An axis for values of a unit between two ends, with `most` ticks at most and two at least, if there are such
-    /// round numbers. Lengths are in the unit for a body of a size (m).
+    /// An axis for values of a unit between two ends, with at least two and at most `most` ticks, if there are such
+    /// round numbers. Lengths have the unit for a body of a size (m).
     pub(super) fn new(kind: Kind, [low, high]: [f64; 2], unit: &str, extent: f64, most: usize) -> Self {
         let largest = low.abs().max(high.abs());
         let (factor, prefix) = match kind {
@@ -66,7 +66,7 @@ impl Axis {
         let digits = (libm::log10(largest / factor / span).max(0.0) + 3.0) as usize;
         let plain = division.decimals <= if kind == Kind::Colour { 5 } else { 4 } && largest / factor < 99_999.5;
         let text = |value: f64| match plain {
-            // Numbers beside each other need no decimals in common.
+            // Adjacent numbers may have different numbers of decimals.
             _ if value == 0.0 && kind == Kind::Time => "0".to_owned(),
             true => with_minus(format!("{value:.*}", division.decimals)),
             false if value == 0.0 => "0".to_owned(),
@@ -86,7 +86,7 @@ impl Axis {
         self.texts = self.texts.iter().step_by(2).cloned().collect();
     }
 
-    /// Where a value stands: 0 at the low end, 1 at the high one.
+    /// The place of a value: 0 at the low end, 1 at the high end.
     pub(super) fn share(&self, value: f64) -> f64 {
         let [low, high] = self.range.map(|end| end / 2.0);
         (value / 2.0 - low) / (high - low)
@@ -102,7 +102,8 @@ struct Division {
     worth: usize,
 }
 
-/// The division with most ticks, preferably with ticks at its ends. For colours, ticks at both ends matter more than many.
+/// The division with most ticks, preferably with ticks at its ends. For colours, ticks at both ends take precedence
+/// over their number.
 fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
     let highest = libm::floor(libm::log10(high - low));
     let digits: &[f64] = match kind {
@@ -113,7 +114,7 @@ fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
     // Counts have no fractions.
     let powers = [highest, highest - 1.0].map(|power| if kind == Kind::Count { power.max(0.0) } else { power });
     let steps = powers.into_iter().flat_map(|power| digits.iter().map(move |&digit| (digit, power)));
-    // On to the next round number where that is near, or not.
+    // With or without an extension to the next round number.
     let ways = steps.flat_map(|(digit, power)| [NEAR, 0.0].map(|near| (digit, power, near)));
     let divisions = ways.map(|(digit, power, near)| {
         let step = times_ten(digit, power);
@@ -148,12 +149,13 @@ fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
         let (worth, count) = (all[at].worth, all[at].ticks.len());
         match kind {
             Kind::Colour => (usize::from(worth == count + 2), count, 0),
-            // Of equals rather three ticks than two, then rather those at the ends: 0, 5, 10 and not 0, 3, 6, 9.
+            // Among equals, three ticks are preferred to two, and then ticks at the ends: 0, 5, 10 instead of 0, 3, 6,
+            // 9.
             _ => (worth, count.min(3), worth - count),
         }
     };
     let best = best.rev().max_by_key(rank);
-    // Some ranges have too many ticks or too few, whatever the step: then every second of too many.
+    // Some ranges have too many ticks or too few with every step. Then every second of too many is kept.
     let crowded = || (0..all.len()).filter(|&at| all[at].ticks.len() > most).min_by_key(|&at| all[at].ticks.len());
     let best = best.or_else(crowded).unwrap_or(0);
     let mut division = all.swap_remove(best);

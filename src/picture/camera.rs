@@ -6,26 +6,25 @@ use crate::look::{Camera, View, axes};
 use crate::sim::Dimension;
 use glam::{DVec3, DVec4, Mat4};
 
-/// How far below the middle of the room between the text the point looked at is, in parts of that room's height: bodies
-/// rise.
+/// The distance of the target below the middle of the room between the text, in heights of that room: bodies rise.
 const LOWERED: f64 = 0.037;
-/// Which part of a panel's height that room is in the reference picture.
+/// The height of that room in the reference picture, in heights of the panel.
 const REFERENCE_ROOM: f64 = 0.75;
-/// The narrowest panel that shows a body at full size, in heights; in narrower ones everything shrinks alike.
+/// The narrowest panel that shows a body at full size, in heights. In narrower ones the whole scene is smaller.
 const FULL_ASPECT: f64 = 640.0 / 720.0;
-/// Distance of the nearest thing drawn, as a part of the camera's distance.
+/// Distance of the near plane, relative to the camera's distance.
 const NEAR: f64 = 0.02;
 
-/// What the camera of a panel looks at.
+/// The target and distance of the camera of a panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Framing {
     /// The point looked at, the origin of the panel (m).
     pub target: DVec3,
     /// Distance from the target (m).
     pub distance: f64,
-    /// How much higher than it stands the body starts, where the picture shows both (m).
+    /// The height of the body at the start above the target, where the picture shows both (m).
     pub rise: f64,
-    /// Whether it differs between frames.
+    /// Whether the framing differs between frames.
     pub moves: bool,
 }
 
@@ -37,10 +36,10 @@ impl Framing {
     }
 }
 
-/// A camera at work on one panel: maps points of the world (m) to pixels of the picture.
+/// The camera of one panel: maps points of the world (m) to pixels of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lens {
-    /// Where it stands (m).
+    /// Its position (m).
     pub eye: DVec3,
     /// Unit vector to the right of the panel.
     pub right: DVec3,
@@ -50,11 +49,11 @@ pub(crate) struct Lens {
     pub forward: DVec3,
     /// Pixels for a slope of one; in the plane, for one metre.
     pub focal: f64,
-    /// The pixel of the point looked at.
+    /// The pixel of the target.
     pub centre: [f64; 2],
-    /// Distance of the nearest thing drawn (m).
+    /// Distance of the near plane (m).
     pub near: f64,
-    /// Whether things keep their size at any distance.
+    /// Whether sizes do not depend on the distance.
     pub orthographic: bool,
 }
 
@@ -104,15 +103,15 @@ impl Lens {
         if cosine.is_finite() { cosine } else { 0.0 }
     }
 
-    /// Whether a plane through `point` with an outward `normal` shows its outside.
+    /// Whether the camera sees the outside of a plane through `point` with an outward `normal`.
     pub(crate) fn sees(&self, point: DVec3, normal: DVec3) -> bool {
         let view = if self.orthographic { self.forward } else { point - self.eye };
         normal.dot(view) < 0.0
     }
 
     /// The matrix from points relative to `origin`, in units of `unit` (m), to clip space of the panel. Its fourth
-    /// coordinate is the distance along the view in that unit, so that nothing in it depends on how small or large a
-    /// body is. Depth is 1 at the near plane and 0 infinitely far; in the plane it is ½ throughout, at a distance of 1.
+    /// coordinate is the distance along the view in that unit, so its entries do not depend on the size of the body.
+    /// Depth is 1 at the near plane and 0 infinitely far; in the plane it is ½ throughout, at a distance of 1.
     pub(crate) fn clip(&self, origin: DVec3, unit: f64, panel: [f64; 4]) -> Mat4 {
         let [left, top, width, height] = panel;
         let shift = [2.0 * (self.centre[0] - left) / width - 1.0, 1.0 - 2.0 * (self.centre[1] - top) / height];
@@ -126,7 +125,7 @@ impl Lens {
         Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
     }
 
-    /// Distance of the nearest thing drawn, in the terms of [`Self::clip`].
+    /// Distance of the near plane, in the unit of [`Self::clip`].
     pub(crate) fn near_in(&self, unit: f64) -> f64 {
         if self.orthographic { 0.5 } else { self.near / unit }
     }

@@ -15,15 +15,15 @@ const WIDEST_TIME: &str = "8888.8 s";
 /// The largest part of a panel's inner width that the clock's label may take.
 const LABEL_SHARE: f64 = 0.55;
 
-/// Size of the title above all panels, in parts of that of names.
+/// Size of the title above all panels, in sizes of names.
 const TITLE: f64 = 1.16;
-/// Between a panel's letter and its name, and the height of small letters, in parts of the type's size.
+/// The gap between a panel's letter and its name, and the height of small letters, in sizes of type.
 const LETTER_GAP: f64 = 0.42;
 const X_HEIGHT: f64 = 0.55;
 /// Between a name and the sample of its line; the sample's length and thickness (px in the reference picture).
 const SAMPLE_GAP: f64 = 14.0;
 const SAMPLE: [f64; 2] = [40.0, 2.6];
-/// How far the scale bar lies above the baseline of counts, and the length of its ticks (px in the reference picture).
+/// The height of the scale bar above the baseline of counts, and the length of its ticks (px in the reference picture).
 const BAR_HEIGHT: f64 = 7.0;
 const BAR_TICK: f64 = 9.0;
 
@@ -58,34 +58,34 @@ impl Room {
     }
 }
 
-/// What stands before and beside the name of a run.
+/// The parts of a heading.
 pub(super) struct Heading<'a> {
-    /// A letter to speak of the panel by; empty for none.
+    /// The letter that names the panel in text; empty for none.
     pub(super) letter: String,
-    /// The run's name, and those of all runs shown.
+    /// The run's name, and the names of all runs shown.
     pub(super) name: &'a str,
     pub(super) names: &'a [&'a str],
-    /// The style of its curves and arrows.
+    /// The style of the run's curves and arrows.
     pub(super) sample: Option<LineStyle>,
-    /// The line below.
+    /// The second line.
     pub(super) second: String,
 }
 
 /// A number in a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Number {
-    /// The widest value of its kind; room for it is reserved, so that text does not appear and disappear.
+    /// The widest value of its kind. Its room is reserved, so that other text does not appear and disappear.
     widest: String,
-    /// The number with its unit, and what it is; then the same in fewer words.
+    /// The number with its unit, and its name; then shorter wordings.
     wordings: Vec<[String; 2]>,
-    /// Whether it is semi-bold and written in any case.
+    /// Whether it is semi-bold, and written even if it is too small to read.
     is_loud: bool,
 }
 
 impl Writer<'_> {
     /// The title above all panels.
     pub(super) fn title(&mut self, around: Scale, lines: &[String]) {
-        // Its left edge is that of the panels' words.
+        // The title and the words of panels have the same left edge.
         let (margin, size) = (self.scale.margin(), title_size(around));
         for (at, line) in lines.iter().enumerate() {
             let baseline = layout::title_baseline(around, at + 1);
@@ -110,7 +110,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Letter, name and second line, upper left, with `taken` (px) kept free at the right of each.
+    /// Letter, name and second line, upper left. `taken` (px) is kept free at the right of each line.
     pub(super) fn heading(&mut self, panel: Rectangle, heading: &Heading<'_>, taken: [f64; 2]) {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
@@ -124,7 +124,7 @@ impl Writer<'_> {
         let sample = heading.sample.filter(|_| !heading.name.is_empty());
         let reserved = if sample.is_some() { (SAMPLE_GAP + SAMPLE[0]) * self.scale.unit } else { 0.0 };
         let free_for_name = free[0] - (left - room.left) - reserved;
-        // Names are written smaller, all alike, before one is cut.
+        // All names become smaller before one is cut.
         let size = self.size_of_names(heading, free_for_name);
         let name = self.fonts.told_apart(heading.name, heading.names, Weight::SemiBold, size, free_for_name);
         self.left(&name, Weight::SemiBold, size, self.palette.text, left, baseline);
@@ -132,7 +132,7 @@ impl Writer<'_> {
             let left = left + self.fonts.width(&name, Weight::SemiBold, size) + SAMPLE_GAP * self.scale.unit;
             self.sample([left, baseline - X_HEIGHT / 2.0 * title], sample);
         }
-        // Parts are left out from the end on: what is left out of the middle of a number makes another one.
+        // Parts are left out from the end: a number without its middle would be another number.
         let fits = |text: &str| self.fonts.width(text, Weight::Regular, caption) <= free[1];
         let mut second = &*heading.second;
         while !fits(second) {
@@ -141,8 +141,8 @@ impl Writer<'_> {
         self.left(second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
     }
 
-    /// The size of the names of a heading where each has so much room (px): smaller than usual if one of them is too wide, but
-    /// no smaller than other words.
+    /// The common size of names in headings with a room (px). It is smaller than usual if one of them is too wide, but
+    /// not smaller than other words.
     fn size_of_names(&self, heading: &Heading<'_>, room: f64) -> f64 {
         let title = self.scale.title();
         let names = heading.names.iter().copied().chain([heading.name]);
@@ -150,7 +150,7 @@ impl Writer<'_> {
         (title * (room / widest.max(f64::MIN_POSITIVE))).clamp(self.scale.caption().min(title), title)
     }
 
-    /// A sample of the line of a run, from a place on (px).
+    /// A sample of the line of a run, from a place (px).
     pub(super) fn sample(&mut self, [left, middle]: [f64; 2], LineStyle { colour, dash }: LineStyle) {
         let unit = self.scale.unit;
         let [length, thickness] = SAMPLE.map(|length| length * unit);
@@ -182,7 +182,7 @@ impl Writer<'_> {
         [first - (1.0 - least) * name > room, second > room]
     }
 
-    /// How wide a heading is, with letter and sample: its first and its second line (px).
+    /// The widths of both lines of a heading (px), the first one with letter and sample.
     fn heading_width(&self, heading: &Heading<'_>) -> [f64; 2] {
         let title = self.scale.title();
         let wide = |text: &str| self.fonts.width(text, Weight::SemiBold, title);
@@ -193,14 +193,14 @@ impl Writer<'_> {
         [letter + wide(heading.name) + sample, second]
     }
 
-    /// Whether a heading leaves the clock no room beside it.
+    /// Whether the heading leaves no room for the clock.
     pub(super) fn is_crowded(&self, panel: Rectangle, heading: &Heading<'_>, label: &str) -> bool {
         let free = Room::new(panel, self.scale).width() - self.scale.gap();
         let clock = self.clock_room(panel, label);
         self.heading_width(heading).iter().zip(clock).any(|(heading, clock)| heading + clock > free)
     }
 
-    /// How much room the clock and its label take (px), at any time.
+    /// The widths of the clock and its label (px) at any time.
     pub(super) fn clock_room(&self, panel: Rectangle, label: &str) -> [f64; 2] {
         let label = self.clock_label(panel, label);
         let time = self.fonts.width(WIDEST_TIME, Weight::Regular, self.scale.title());
@@ -222,7 +222,7 @@ impl Writer<'_> {
         self.right(&label, Weight::Regular, caption, self.palette.second_text, room.right, room.top + lines.second);
     }
 
-    /// The clock with its label behind it, at the right of a picture of a width, with its baseline at a height (px).
+    /// The clock followed by its label, at the right of a picture of a width, with its baseline at a height (px).
     pub(super) fn clock_alone(&mut self, around: Scale, [width, baseline]: [f64; 2], time: f64, label: &str) {
         let right = width - self.scale.margin();
         let time = number::time(time);
@@ -236,8 +236,8 @@ impl Writer<'_> {
         self.right(&time, Weight::Regular, around.title(), palette.text, right, baseline);
     }
 
-    /// Tally and count, lower left; the tally takes at most a share of the panel's width. Returns where they end at the widest
-    /// (px).
+    /// Tally and count, lower left; the tally takes at most a share of the panel's width. Returns the right end of the
+    /// widest possible count (px).
     pub(super) fn count(&mut self, panel: Rectangle, (tally, share): (&Tally, f64), snapshot: &Snapshot) -> f64 {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
@@ -250,7 +250,7 @@ impl Writer<'_> {
             0 => (self.palette.text, self.palette.second_text),
             _ => (self.palette.alarm_text, self.palette.alarm_text),
         };
-        // Where none has turned over, those that are flat count.
+        // If no element has turned over, flat ones are counted.
         let (count, state) = if over == 0 && flattened > 0 { (flattened, "flat") } else { (over, "turned over") };
         let bottom = room.bottom - self.scale.margin();
         let taken = tally.draw(
@@ -269,12 +269,12 @@ impl Writer<'_> {
         let explained = |state: &str| self.fonts.shortened(state, Weight::Regular, caption, free);
         let (usual, state) = (explained("turned over"), explained(state));
         self.left(&state, Weight::Regular, caption, second, left, room.top + lines.caption);
-        // The widest count, so that what stands beside it does not come and go.
+        // The widest count is reserved, so that its neighbours do not come and go.
         let widest = self.fonts.width(&format!("{all} of {all}"), Weight::SemiBold, title);
         left + widest.max(self.fonts.width(&usual, Weight::Regular, caption))
     }
 
-    /// Where numbers at the lower right begin at the widest (px), whatever becomes of the run.
+    /// The left end of the widest possible number at the lower right (px), diverged or not.
     pub(super) fn left_of_numbers(&self, panel: Rectangle, usual: &Number) -> f64 {
         let room = Room::new(panel, self.scale);
         let [title, caption] = [self.scale.title(), self.scale.caption()];
@@ -287,7 +287,7 @@ impl Writer<'_> {
         room.right - widest.into_iter().fold(0.0, f64::max)
     }
 
-    /// A number with what it is, lower right, if there is room for it right of `taken` (px).
+    /// A number with its name, lower right, if there is room for it right of `taken` (px).
     pub(super) fn number(&mut self, panel: Rectangle, taken: f64, number: &Number) {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
@@ -308,8 +308,8 @@ impl Writer<'_> {
         self.right(explained, Weight::Regular, caption, colour, room.right, room.top + lines.caption);
     }
 
-    /// A bar that is `pixels` long and stands for a length in words, in the middle between two places (px), if there is
-    /// room. Returns where it ends (px).
+    /// A scale bar of `pixels` with its length in words, centred between two places (px), if there is room. Returns its
+    /// right end (px).
     pub(super) fn scale_bar(&mut self, panel: Rectangle, between: [f64; 2], text: &str, pixels: f64) -> Option<f64> {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let (unit, caption) = (self.scale.unit, self.scale.caption());
@@ -337,10 +337,10 @@ impl Writer<'_> {
         Some(middle + 0.5 * pixels.max(wide))
     }
 
-    /// Hairlines between panels that stand beside or above each other.
+    /// Hairlines between adjacent panels.
     pub(super) fn hairlines(&mut self, layout: &Layout) {
         let inset = self.scale.margin();
-        // A hairline of one pixel that lies between two pixels fills half of both.
+        // A hairline of one pixel between two pixels would fill half of both.
         let thickness = (2.0 * self.scale.unit).round().max(1.0);
         let (line, ground) = (self.palette.hairline, self.palette.background);
         let halved = if thickness < 2.0 { line } else { std::array::from_fn(|at| line[at].midpoint(ground[at])) };
@@ -382,7 +382,7 @@ pub(super) fn letter(at: usize) -> String {
     if at < 26 { last.to_string() } else { format!("{}{last}", letter(at / 26 - 1)) }
 }
 
-/// In place of the number of a run that diverges or did so, as far as it is shown: when, and how much wider it is in the end.
+/// Replaces the number of a run that diverges within the shown time: when it diverges, and how much wider it becomes.
 pub(super) fn divergence(run: &RunFrame) -> Option<Number> {
     let Status::Diverged(Divergence { time, .. }) = run.shown().status else { return None };
     let (loud, at) = (diverged(run), format!("at {}", number::time(time)));
@@ -392,12 +392,12 @@ pub(super) fn divergence(run: &RunFrame) -> Option<Number> {
     Some(Number { widest: String::new(), wordings, is_loud: true })
 }
 
-/// What a run that diverges does or did at the time of a frame.
+/// The present or past tense for a run that diverges, at the time of a frame.
 pub(super) fn diverged(run: &RunFrame) -> &'static str {
     if run.snapshot.status == Status::Ok { "diverges" } else { DIVERGED }
 }
 
-/// How much wider a run is in the end than it is shown; `None` if hardly.
+/// The final width of a run relative to the shown width, in words; `None` if they are similar.
 pub(super) fn wider(run: &RunFrame) -> Option<String> {
     let times = run.last_fit.as_ref()?.times_wider;
     (times >= 1.5).then(|| format!("{} times wider than shown", number::times(times)))

@@ -9,25 +9,25 @@ use crate::colour::{Colour, mixed};
 
 /// Size of the numbers at ticks (px in the reference picture).
 pub(super) const NUMBERS: f64 = 14.0;
-/// From the chart to the bottom of the room for its times (px in the reference picture).
+/// The height below the chart for its times (px in the reference picture).
 pub(super) const BELOW: f64 = 20.0;
-/// Between the numbers at the left and the chart, the length of a tick of time, and the least distances between numbers
-/// above and beside each other (px in the reference picture).
+/// The gap between the numbers at the left and the chart, the length of a tick of time, and the least vertical and
+/// horizontal distances of numbers (px in the reference picture).
 pub(super) const GAP: f64 = 8.0;
 const TICK: f64 = 4.0;
 pub(super) const ROWS_APART: f64 = 21.0;
 const COLUMNS_APART: f64 = 30.0;
-/// Ticks of values and of time, at most.
+/// The most ticks of values and of time.
 pub(super) const MOST_TICKS: usize = 4;
 const MOST_TIMES: usize = 6;
-/// Width of the line of a moment (px in the reference picture), its opacity and that of the area below a count.
+/// Width of the line of a moment (px in the reference picture), its opacity, and the opacity of the area below a count.
 const MOMENT: f64 = 1.3;
 const MOMENT_ALPHA: f64 = 0.75;
 const AREA: f64 = 0.16;
-/// Curves that leave the chart are drawn this far outside it (px in the reference picture).
+/// Curves that leave the chart end at this distance outside (px in the reference picture).
 const OUTSIDE: f64 = 5.0;
 
-/// Where the chart is (px).
+/// The place and the scale of a chart (px).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chart {
     pub(super) left: f64,
@@ -36,27 +36,27 @@ pub(super) struct Chart {
     pub(super) bottom: f64,
     /// Pixels for one pixel of type in the reference picture.
     pub(super) unit: f64,
-    /// Thickness of lines, in parts of that in the reference picture.
+    /// Thickness of lines, relative to the reference picture.
     pub(super) line: f64,
 }
 
 impl Chart {
-    /// Where a time stands (px).
+    /// The place of a time (px).
     pub(super) fn x(self, times: &Axis, time: f64) -> f64 {
         self.left + times.share(time).clamp(0.0, 1.0) * (self.right - self.left)
     }
 
-    /// Where a value stands (px), which may be far outside.
+    /// The place of a value (px), which may be far outside.
     pub(super) fn y(self, values: &Axis, value: f64) -> f64 {
         self.bottom - values.share(value) * (self.bottom - self.top)
     }
 
-    /// Thickness of hairlines, which go with the type, in whole pixels.
+    /// Thickness of hairlines, which depends on the type, in whole pixels.
     fn hairline(self) -> f64 {
         self.unit.round().max(1.0)
     }
 
-    /// The colour of a hairline: one that would be thinner than a pixel is fainter instead.
+    /// The colour of a hairline. A hairline thinner than a pixel is fainter instead.
     fn thinned(self, colour: Colour, ground: Colour) -> Colour {
         mixed(ground, colour, (1.25 * self.unit / self.hairline()).min(1.0))
     }
@@ -65,7 +65,7 @@ impl Chart {
         OUTSIDE * self.unit
     }
 
-    /// An axis of time between two moments (s) with as many ticks as there is room for.
+    /// An axis of time between two moments (s) with as many ticks as fit.
     pub(super) fn times(self, fonts: &Fonts, [start, end]: [f64; 2]) -> Axis {
         let axis = |most: usize| Axis::new(Kind::Time, [start, end], "s", 1.0, most);
         let fits = |axis: &Axis| {
@@ -76,8 +76,8 @@ impl Chart {
         (3..=MOST_TIMES).rev().map(axis).find(fits).unwrap_or_else(|| axis(2))
     }
 
-    /// Grid lines at round values, a stronger one at zero, and optionally their numbers; in a chart that is too low for two,
-    /// the upper one.
+    /// Grid lines at round values, a stronger one at zero, and optionally their numbers. A chart that is too low for
+    /// two has only the upper one.
     pub(super) fn rows(self, writer: &mut Writer<'_>, values: &Axis, with_numbers: bool) {
         let palette = writer.palette;
         let thickness = self.hairline();
@@ -95,8 +95,8 @@ impl Chart {
         }
     }
 
-    /// Ticks at round times with their numbers, the last one with the unit; a line along them if there is no other.
-    /// Numbers end with the chart, and none begins left of `from` (px).
+    /// Ticks at round times with their numbers, the last one with the unit, and a line along them if requested. Numbers
+    /// end with the chart, and none begins left of `from` (px).
     pub(super) fn columns(self, writer: &mut Writer<'_>, times: &Axis, with_line: bool, from: f64) {
         let palette = writer.palette;
         let thickness = self.hairline();
@@ -106,7 +106,8 @@ impl Chart {
             writer.marks.push(filled(line, hairline));
         }
         let mut free = f64::INFINITY;
-        // From the last one, which has the unit, backwards: numbers that would overlap the next one are left out.
+        // Numbers are written from the last one, which has the unit, backwards. A number that would overlap the next
+        // one is left out.
         for (at, (&tick, text)) in times.ticks.iter().zip(&times.texts).enumerate().rev() {
             let x = self.x(times, tick);
             let top = (self.bottom + thickness / 2.0).round();

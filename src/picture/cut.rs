@@ -1,10 +1,10 @@
-//! How finely the faces of a surface are cut into triangles: each bilinear patch as finely as its own curvature needs, and
-//! along edges as finely as its neighbours, so that there are no gaps between them. All other faces keep whole sides, and so
-//! do edges between sets of elements: there, gaps are those of rounding.
+//! The number of triangles of curved faces. Each bilinear patch is cut as finely as its curvature needs, and along
+//! edges as finely as its neighbours, so that there are no gaps between them. All other faces, and edges between sets
+//! of elements, keep whole sides; gaps there are round-off.
 
 use std::collections::HashMap;
 
-/// Into how many pieces a face is cut.
+/// The cut of a face into pieces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Cut {
     /// Cells in each direction.
@@ -15,18 +15,19 @@ pub(super) struct Cut {
 
 /// The cuts of all faces of a surface.
 pub(super) struct Cuts {
-    /// The cells of each face in each direction, and the most of the faces around each node. None if nothing is cut.
+    /// For each face its cells in each direction, and for each node the most cells of the faces around it. Empty if
+    /// nothing is cut.
     faces: Vec<u8>,
     nodes: Vec<u8>,
 }
 
 impl Cuts {
-    /// Nothing so far, of so many nodes.
+    /// No cuts yet, for a number of nodes.
     pub(super) fn new(nodes: usize) -> Self {
         Self { faces: Vec::new(), nodes: vec![1; nodes] }
     }
 
-    /// Adds a face that needs so many cells in each direction.
+    /// Adds a face with a number of cells in each direction.
     pub(super) fn add(&mut self, nodes: &[u32], cells: u8) {
         self.faces.push(cells);
         for &node in nodes {
@@ -35,12 +36,13 @@ impl Cuts {
         }
     }
 
-    /// Nothing is cut.
+    /// No cuts.
     pub(super) fn none() -> Self {
         Self { faces: Vec::new(), nodes: Vec::new() }
     }
 
-    /// Pieces of an edge. Its nodes alone decide, so that all its faces have the same; none of them needs more.
+    /// Pieces of an edge. They depend on its nodes only, so all its faces have the same number, and at least the one
+    /// that they need.
     pub(super) fn edge(&self, ends: [u32; 2]) -> u8 {
         let [from, to] = ends.map(|node| self.nodes.get(node as usize).copied().unwrap_or(1));
         from.min(to)
@@ -56,7 +58,7 @@ impl Cuts {
 /// The pieces of a bilinear patch.
 #[derive(Debug, Default)]
 pub(super) struct Grid {
-    /// The points, by their shares of the way along both directions, and how much each corner weighs there.
+    /// The points: their coordinates in both directions, and the weight of each corner.
     pub(super) points: Vec<([f64; 2], [f64; 4])>,
     /// The corners of the small triangles, as places in `points`.
     pub(super) triangles: Vec<[u32; 3]>,
@@ -88,8 +90,8 @@ impl Grid {
         grid
     }
 
-    /// Sides with more pieces than there are cells: a ring of triangles leads from them to the cells within, or, if these are
-    /// too few, all lead to the middle.
+    /// Sides with more pieces than cells: a ring of triangles joins them to the inner cells or, if there are too few
+    /// cells, to the middle.
     fn uneven(cut: Cut) -> Self {
         let mut grid = Self::default();
         let starts = [0, 1, 2, 3].map(|side| {
@@ -124,7 +126,7 @@ impl Grid {
             let (mut out, mut along) = (0, 0);
             while out < pieces || along < within {
                 let ends = [outer[out as usize], inner(along)];
-                // The one of the next two pieces whose middle comes first.
+                // The next piece is the one whose middle comes first.
                 if along == within || (out < pieces && (2 * out + 1) * cells <= (2 * along + 3) * pieces) {
                     out += 1;
                     grid.triangles.push([ends[0], outer[out as usize], ends[1]]);
@@ -143,12 +145,12 @@ impl Grid {
     }
 }
 
-/// The triangles of a cell, by its first corner and how many points there are in a row.
+/// The triangles of a cell, by its first corner and the number of points in a row.
 fn cell(across: u32) -> impl Fn(u32) -> [[u32; 3]; 2] {
     move |at| [[at, at + 1, at + across + 1], [at, at + across + 1, at + across]]
 }
 
-/// Grids as they were needed.
+/// The grids used so far.
 #[derive(Default)]
 pub(super) struct Grids(HashMap<Cut, Grid>);
 
@@ -178,7 +180,7 @@ mod tests {
             };
             let areas: Vec<_> = grid.triangles.iter().map(area).collect();
             assert!(areas.iter().all(|&area| area > 1e-6) && (areas.iter().sum::<f64>() - 1.0).abs() < 1e-12);
-            // Each side of a triangle is one of another, the other way round, or a piece of the border.
+            // Each side of a triangle is shared with another one, in reverse, or is a piece of the border.
             let around = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
             let ends: HashSet<_> = grid.triangles.iter().flat_map(around).collect();
             let border: HashSet<_> = ends.iter().filter(|&&[a, b]| !ends.contains(&[b, a])).copied().collect();

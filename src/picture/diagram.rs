@@ -47,15 +47,15 @@ impl Diagram {
         self.picture.marks.push(Mark::upright(rectangle, MarkShape::Filled, colour));
     }
 
-    /// Adds a curve through points, with round ends; a single point is a disc. `dash` has the lengths of dashes and of the gaps after
-    /// them, by turns, up to three of each, and is empty for a solid curve.
+    /// Adds a curve through points, with round ends; a single point is a disc. `dash` has the lengths of dashes and
+    /// gaps in turn, up to three of each, and is empty for a solid curve.
     pub fn curve(&mut self, points: &[[f64; 2]], width: f64, colour: [u8; 3], dash: &[f64]) {
         let points = points.iter().map(|point| point.map(narrow)).collect();
         let dash = dash.iter().map(|&length| narrow(length)).collect();
         self.picture.curves.push(Curve { points, width: narrow(width), dash, colour, alpha: 1.0 });
     }
 
-    /// Adds a line of text that begins at a place on its baseline.
+    /// Adds a line of text from a place on its baseline.
     pub fn text(&mut self, text: &str, style: TextStyle, [left, baseline]: [f64; 2]) {
         let run = self.picture.fonts.lay_out(text, style.weight(), style.size, style.colour, left, baseline);
         self.picture.words.push(super::TextRun { has_halo: style.has_halo, ..run });
@@ -66,7 +66,7 @@ impl Diagram {
         self.picture.fonts.width(text, style.weight(), style.size)
     }
 
-    /// What was made.
+    /// The finished picture.
     pub fn picture(&self) -> &Picture {
         &self.picture
     }

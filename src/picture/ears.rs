@@ -4,16 +4,16 @@ use crate::sim::Body;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
-/// Polygons of more corners than this stay fans: ear clipping takes the cube of their number.
+/// Polygons with more corners than this stay fans: ear clipping takes cubic time.
 const MOST_CORNERS: usize = 256;
 
-/// Triangles of the faces of a body that are not convex at rest, as places in their lists of nodes. They are chosen from
-/// the shape at rest, so that they stay the same however the body moves.
+/// Triangles of the faces of a body that are not convex at rest, as places in their lists of nodes. They follow from
+/// the shape at rest, so that they stay the same while the body moves.
 #[derive(Debug, Default)]
 pub(super) struct Ears(HashMap<Vec<u32>, Vec<[u32; 3]>>);
 
 impl Ears {
-    /// Looks through all faces that have a single side, or more than four corners.
+    /// Searches all faces that have a single side, or more than four corners.
     pub(super) fn new(body: &Body) -> Self {
         let sides = body.faces.nodes.iter().zip(&body.faces.outer);
         let single = sides.filter(|(nodes, outer)| outer.is_none() && (4..=MOST_CORNERS).contains(&nodes.len()));
@@ -30,7 +30,7 @@ impl Ears {
     }
 }
 
-/// The corners of a polygon in the plane of its mean normal, seen so that it runs counter-clockwise.
+/// The corners of a polygon in the plane of its mean normal, oriented counter-clockwise.
 fn flattened(corners: &[DVec3]) -> Option<Vec<DVec2>> {
     let next = corners.iter().cycle().skip(1);
     let normal: DVec3 = corners.iter().zip(next).map(|(&a, &b)| (a - corners[0]).cross(b - corners[0])).sum();
@@ -71,17 +71,17 @@ fn ears(corners: &[DVec2]) -> Option<Vec<[u32; 3]>> {
     Some(triangles)
 }
 
-/// Positive where a point lies to the left of a line.
+/// Positive if a point lies to the left of a line.
 fn side_of(corners: &[DVec2], [from, to]: [usize; 2], point: usize) -> f64 {
     (corners[to] - corners[from]).perp_dot(corners[point] - corners[from])
 }
 
-/// Elements without a face, unless the body lists faces of its own to draw instead.
+/// Elements without a face, unless the body lists its drawn faces.
 pub(super) fn bare_elements(body: &Body) -> Vec<usize> {
     let mut has_face = vec![false; body.elements.len()];
     let owners = body.faces.inner.iter().chain(&body.faces.outer).flatten();
     owners.for_each(|&element| has_face[element as usize] = true);
-    // Listed faces are drawn instead of the elements' own, and then elements inside may stay hidden.
+    // Listed faces are drawn instead of the elements' own, so elements inside may stay hidden.
     let own = (0..body.elements.len()).all(|element| {
         let mut expected = false;
         body.topology().for_each_face(element, |_| expected = true);

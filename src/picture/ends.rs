@@ -1,5 +1,4 @@
-//! Names at the ends of curves, right of a chart. Where curves end close to each other, names are shifted apart, and thin
-//! lines lead to them.
+//! Names at the ends of curves, right of a chart. Names of close ends are moved apart, and thin lines lead to them.
 
 use super::Curve;
 use super::caption::{Writer, letter};
@@ -9,28 +8,28 @@ use super::narrow::narrow;
 use super::series::{DOTS, OWN, Series};
 use super::text::{Fonts, Weight};
 
-/// From the chart to the names: the mark of the present moment has room there (px in the reference picture).
+/// The gap from the chart to the names, with room for the mark of the present moment (px in the reference picture).
 const GAP: f64 = 14.0;
-/// Where there are more names than this, a sample of its line stands before each: its length, and the gap after it (px in
-/// the reference picture).
+/// With more names than this, a sample of its line stands before each name; its length, and the gap after it (px in the
+/// reference picture).
 const FEW: usize = 4;
 const SAMPLE: [f64; 2] = [30.0, 6.0];
-/// Free at both ends of a leader line, its width (px in the reference picture), and its opacity. It is dotted where its curve ends
-/// early, or it would look like a part of the curve.
+/// The gaps at both ends of a leader line, its width (px in the reference picture), and its opacity. It is dotted if
+/// its curve ends early, or it would look like a part of the curve.
 const FREE: f64 = 3.0;
 const LEADER: f64 = 1.0;
 const LEADER_ALPHA: f64 = 0.7;
-/// A name that is shifted by less than this needs no line (px in the reference picture).
+/// A name that is moved by less than this needs no line (px in the reference picture).
 const HARDLY: f64 = 3.0;
-/// Names have room for so many letters at least (sizes of type).
+/// The least room for names (sizes of type).
 const LEAST_ROOM: f64 = 3.0;
-/// Where one is longer than this many times the room for it, the letters of panels stand instead of all names.
+/// If a name is longer than this many times its room, all names are replaced by the letters of panels.
 const LONG: f64 = 1.2;
 
 /// The names of several curves.
 #[derive(Debug)]
 pub(super) struct Ends {
-    /// One for each curve, shortened to the room, and whether it differs from all others.
+    /// A name for each curve, shortened to the room, and whether it differs from all others.
     names: Vec<(String, bool)>,
     /// The width of the sample before each, with its gap (px).
     sample: f64,
@@ -76,8 +75,8 @@ impl Ends {
         are_clear.contains(&true).then(|| Self { names: names.into_iter().zip(are_clear).collect(), sample, width })
     }
 
-    /// Writes them beside a chart, between two heights (px), as many as have room. `ends` are the ends of the curves (px), of
-    /// those that have any.
+    /// Writes the names beside a chart, between two heights (px), as many as fit. `ends` are the ends of the curves
+    /// (px) that have any.
     pub(super) fn write(
         &self,
         writer: &mut Writer<'_>,
@@ -128,12 +127,12 @@ impl Ends {
     }
 }
 
-/// How many names fit above each other into a height (px).
+/// The number of names that fit above each other into a height (px).
 fn fitting(height: f64, unit: f64) -> usize {
     (height / (CURVE_NAME * unit) + 1e-6) as usize
 }
 
-/// At most so many ends of curves: the first one, then repeatedly the one farthest from all chosen ones.
+/// At most `most` ends of curves: the first one, then repeatedly the one farthest from all chosen ones.
 fn farthest(mut all: Vec<(usize, [f64; 2])>, most: usize) -> Vec<(usize, [f64; 2])> {
     if all.len() <= most || most == 0 {
         all.truncate(most);
@@ -150,9 +149,10 @@ fn farthest(mut all: Vec<(usize, [f64; 2])>, most: usize) -> Vec<(usize, [f64; 2
     chosen
 }
 
-/// The places nearest to given rising ones that are at least so far apart and within two ends (isotonic regression).
+/// The places nearest to given rising ones that are at least `apart` from each other and within two ends (isotonic
+/// regression).
 pub(super) fn spread(places: &[f64], apart: f64, [low, high]: [f64; 2]) -> Vec<f64> {
-    // Neighbours that would be too near are centred around their common mean.
+    // Neighbours that would be too close are centred around their common mean.
     let mut groups: Vec<(f64, usize)> = Vec::new();
     for (at, place) in places.iter().enumerate() {
         let mut group = (place - at as f64 * apart, 1);

@@ -1,4 +1,4 @@
-//! What happens in time series, in words: flags in a chart and in panels stand for it.
+//! Events in time series, in words. Flags in a chart and in panels mark them.
 
 use super::number;
 use super::series::Series;
@@ -9,24 +9,24 @@ use crate::sim::Diagnostic;
 const MOST: usize = 9;
 /// A count that does not change in this last part of the scene has settled.
 const SETTLED: f64 = 0.1;
-/// An extreme value differs from those at the start and at the end by more than this part of all values.
+/// An extreme value differs from the values at the start and at the end by more than this part of the range.
 const EXTREME: f64 = 0.1;
-/// Where this part of all changes happens in the first of these parts of the scene, that part gets a scale of its own, which
-/// ends at a round time.
+/// If this part of all changes happens in the first of these parts of the scene, that part gets a scale of its own,
+/// which ends at a round time.
 const NEARLY_ALL: f64 = 0.95;
 const SHORT: f64 = 0.1;
 
-/// Something that happens to a run.
+/// An event of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Event {
     pub(super) run: usize,
-    /// When (s).
+    /// The time (s).
     pub(super) time: f64,
-    /// What, with its time and without.
+    /// The name, with its time and without.
     pub(super) words: [String; 2],
 }
 
-/// What happens in time series of a diagnostic of a body of a size (m) up to an end (s), in the order of time.
+/// The events in time series of a diagnostic of a body of a size (m), up to an end (s), in the order of time.
 pub(super) fn events(diagnostic: Diagnostic, series: &[Series], extent: f64, end: f64) -> Vec<Event> {
     let widest = series
         .iter()
@@ -70,7 +70,7 @@ pub(super) fn events(diagnostic: Diagnostic, series: &[Series], extent: f64, end
     events
 }
 
-/// What may happen to a run of a scene, in the narrowest words.
+/// The possible events of a run of a scene, in the narrowest words.
 pub(super) fn narrowest(diagnostic: Diagnostic, scene: &Scene) -> Vec<Event> {
     const AT: f64 = 1e-3;
     let event = |words: String, joint: &str| Event {
@@ -85,8 +85,8 @@ pub(super) fn narrowest(diagnostic: Diagnostic, scene: &Scene) -> Vec<Event> {
     vec![event(format!("lowest {}", number::value(diagnostic, 0.1 * extent, extent)), "at")]
 }
 
-/// The time (s) at which the scale of time changes in a scene up to an end (s): soon after nearly everything has happened,
-/// if that is early.
+/// The time (s) at which the scale of time changes in a scene up to an end (s): soon after nearly all changes, if that
+/// is early.
 pub(super) fn split(series: &[Series], end: f64) -> Option<f64> {
     let steps =
         series.iter().flat_map(|one| one.points.windows(2).map(|two| (two[1][0], (two[1][1] - two[0][1]).abs())));
@@ -134,7 +134,7 @@ mod tests {
         let shape = series(0, true, &[[0.0, 0.0], [3.0, 0.0]]);
         let told = words(Diagnostic::TurnedOver, &[shape, springs.clone()]);
         assert_eq!(told, ["first turned over at 20 ms", "settles at 9 after 100 ms"]);
-        // Who still changes at the end has not settled, and who never changes has no story.
+        // A run that changes at the end has not settled, and one that never changes has no events.
         let restless = series(0, true, &[[0.0, 0.0], [1.0, 1.0], [2.9, 2.0]]);
         assert_eq!(words(Diagnostic::TurnedOver, &[restless]), ["first turned over at 1.00 s"]);
         let many: Vec<_> = (0..20).map(|run| Series { run, ..springs.clone() }).collect();

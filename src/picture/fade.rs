@@ -1,25 +1,26 @@
-//! Lines fade where they leave their room: nothing is cut off hard.
+//! Lines fade at the sides of their room instead of being cut off.
 
 use super::layout::Rectangle;
 use super::plane::sides;
 use glam::DVec2;
 
-/// Over what distance lines fade at the sides of their room (px in the reference picture), and in how many steps.
+/// The distance over which lines fade at the sides of their room (px in the reference picture), and its number of
+/// steps.
 pub(super) const FADING: f64 = 28.0;
 const STEPS: f64 = 8.0;
-/// No piece of a line is cut shorter than this (px).
+/// The least length of a piece of a line (px).
 const PIECE: f64 = 1.0;
 
-/// Where lines fade.
+/// The fading of lines at the sides of a room.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fade {
-    /// The left, upper, right and lower side of the room, and over what distance lines fade from each (px).
+    /// The left, upper, right and lower side of the room, and the distance of fading from each (px).
     sides: [f64; 4],
     distances: [f64; 4],
 }
 
 impl Fade {
-    /// In a room (px), over distances from its left, upper, right and lower side (px).
+    /// The fading in a room (px), over distances from its left, upper, right and lower side (px).
     pub(super) fn new(room: Rectangle, distances: [f64; 4]) -> Self {
         Self { sides: sides(room.map(f64::from)), distances }
     }
@@ -33,13 +34,13 @@ impl Fade {
         ((share.max(0.0) * STEPS).floor() + 1.0).min(STEPS) / STEPS
     }
 
-    /// A line, parted so that it fades, with the opacity of each part.
+    /// A line, divided into parts with the opacity of each.
     pub(super) fn parts(&self, line: &[[f64; 2]]) -> Vec<(Vec<[f64; 2]>, f64)> {
         let shortest = self.distances.into_iter().filter(|&distance| distance > 0.0).fold(f64::INFINITY, f64::min);
         let mut parts: Vec<(Vec<[f64; 2]>, f64)> = Vec::new();
         for two in line.windows(2) {
             let [from, to] = [two[0], two[1]].map(DVec2::from);
-            // Pieces as short as a step where it may fade.
+            // Pieces are as short as a step if the line may fade.
             let fades = self.opacity(from).min(self.opacity(to)) < 1.0;
             let piece = (shortest / STEPS).max(PIECE);
             let count = if fades { (from.distance(to) / piece).ceil().max(1.0) as u32 } else { 1 };
@@ -59,7 +60,7 @@ impl Fade {
 /// A line cut into dashes with gaps between them (px).
 pub(super) fn dashed(line: &[DVec2], [dash, gap]: [f64; 2]) -> Vec<Vec<DVec2>> {
     let mut dashes: Vec<Vec<DVec2>> = Vec::new();
-    // How much of the present dash or gap is left.
+    // The rest of the present dash or gap.
     let (mut is_dash, mut left) = (false, 0.0);
     for two in line.windows(2) {
         let (mut at, mut rest) = (two[0], two[0].distance(two[1]));
@@ -91,12 +92,12 @@ mod tests {
         let line = [[5.0, 0.0], [5.0, 100.0]];
         let fade = |distances| Fade::new([0, 0, 10, 200], distances);
         let parts = fade([0.0, 40.0, 0.0, 40.0]).parts(&line);
-        // They join without a gap, and become steadily more opaque.
+        // The parts join without a gap, and become steadily more opaque.
         assert_eq!(parts.len(), STEPS as usize);
         assert!(parts.windows(2).all(|two| two[0].0.last() == two[1].0.first() && two[0].1 < two[1].1));
         assert_eq!((parts[0].0[0], parts[7].0.last(), parts[7].1), ([5.0, 0.0], Some(&[5.0, 100.0]), 1.0));
         assert_eq!(fade([0.0; 4]).parts(&line), [(line.to_vec(), 1.0)]);
-        // At the left and right, too.
+        // Lines also fade at the left and right.
         let across = [[0.0, 50.0], [100.0, 50.0]];
         let parts = Fade::new([0, 0, 100, 100], [40.0; 4]).parts(&across);
         assert_eq!((parts.len(), parts[0].1, parts[7].1, parts[14].1), (15, 0.125, 1.0, 0.125));

@@ -5,7 +5,7 @@ use crate::colour::Colour;
 use crate::look::ColourScale;
 use crate::sim::{Body, Support};
 
-/// The place of a value that is not a number: such parts keep the body's own colour.
+/// The place of a value that is not a number. Such parts have the body's colour.
 pub(super) const NOWHERE: f32 = -1.0;
 
 /// One run's field, as places on the scale: 0 at its low end, 1 at its high end, or [`NOWHERE`].
@@ -15,8 +15,8 @@ pub(super) struct Shades {
 }
 
 impl Shades {
-    /// The places of a field. Values beyond the scale, also infinite ones, come to its ends; NaN is nowhere. A field of
-    /// another length than the body is nowhere altogether.
+    /// The places of a field. Values beyond the scale, also infinite ones, are at its ends. NaN is nowhere, and so are
+    /// all values if their number does not match the body.
     pub(super) fn new(body: &Body, scale: &ColourScale, values: &[f64]) -> Self {
         let support = scale.field.support();
         let expected = match support {
@@ -43,14 +43,14 @@ impl Shades {
         }
     }
 
-    /// The places of the corners of a face; all are nowhere if one of them is, because places are interpolated.
+    /// The places of the corners of a face. If one of them is nowhere, all are, because places are interpolated.
     pub(super) fn corners(&self, nodes: &[u32], element: Option<u32>) -> Vec<f64> {
         let nowhere = f64::from(NOWHERE);
         let corners: Vec<_> = nodes.iter().map(|&node| f64::from(self.corner(node, element))).collect();
         if corners.contains(&nowhere) { vec![nowhere; nodes.len()] } else { corners }
     }
 
-    /// A place for each node, for lines and discs: its own, or the mean of its elements'.
+    /// A place for each node, for lines and discs: its own, or the mean of its elements' places.
     pub(super) fn of_nodes(&self, body: &Body) -> Vec<f32> {
         if self.support == Support::Nodes {
             return self.places.clone();
@@ -66,12 +66,12 @@ impl Shades {
     }
 }
 
-/// Where a value stands between two others.
+/// The place of a value between two others.
 pub(super) fn place(value: f64, [low, high]: [f64; 2]) -> f32 {
     if value.is_nan() {
         return NOWHERE;
     }
-    // Halves, so that the width of the widest range is finite.
+    // Halves keep the width of the widest range finite.
     let share = (value / 2.0 - low / 2.0) / (high / 2.0 - low / 2.0);
     narrow(share.clamp(0.0, 1.0))
 }
@@ -126,7 +126,7 @@ mod tests {
         assert_eq!(strain.corners(&[1, 3, 2], Some(1)), [0.75; 3]);
         assert_eq!(strain.corners(&[1, 3, 2], None), [-1.0; 3]);
         assert_eq!(strain.of_nodes(&body), [0.25, 0.5, 0.5, 0.75]);
-        // What a snapshot without the field gives.
+        // A snapshot without the field has no values.
         assert_eq!(Shades::new(&body, &scale(Field::Strain), &[]).of_nodes(&body), [NOWHERE; 4]);
     }
 }

@@ -1,4 +1,4 @@
-//! Flags above charts: letters or numbers in rings, with lines down to what they stand for.
+//! Flags above charts: letters or numbers in rings, with lines down to their places.
 
 use super::caption::{Room, Writer};
 use super::chart::dot;
@@ -9,22 +9,23 @@ use super::narrow::narrow;
 use super::text::Weight;
 use super::{Colour, Curve};
 
-/// Radius of a ring, thickness of its rim, size of the letter in it, free beside this, and between rings (px in the
-/// reference picture).
+/// Radius of a ring, thickness of its rim, size of the letter in it, the gap beside the letter, and the gap between
+/// rings (px in the reference picture).
 const RING: f64 = 10.0;
 const RIM: f64 = 1.3;
 const LETTER: f64 = 14.0;
 const BESIDE_LETTER: f64 = 4.0;
 const RINGS_APART: f64 = 3.0;
-/// The part of the margin into which crowded rings reach at each end at the most.
+/// The most of the margin that crowded rings take at each end.
 const BEYOND: f64 = 0.35;
-/// How far above the charts the lines become upright, their width (px in the reference picture), and their opacity.
+/// The height above the charts at which the lines become upright, their width (px in the reference picture), and their
+/// opacity.
 const UPRIGHT_ABOVE: f64 = 9.0;
 const LINE: f64 = 1.1;
 const LINE_ALPHA: f64 = 0.62;
 
-/// Radius of the ring of an event, in sizes of its number; between it and its words, and between events (px in the reference
-/// picture).
+/// Radius of the ring of an event, in sizes of its number; the gap between it and its words, and the gap between events
+/// (px in the reference picture).
 const EVENT_RING: f64 = 0.68;
 const EVENT_BESIDE: f64 = 7.0;
 const EVENTS_APART: f64 = 18.0;
@@ -32,15 +33,15 @@ const EVENTS_APART: f64 = 18.0;
 /// A letter or a number at a place in a chart.
 #[derive(Clone, Debug)]
 pub(super) struct Flag {
-    /// Where it points to (px from the left).
+    /// Its place (px from the left).
     pub(super) at: f64,
     pub(super) text: String,
-    /// The colour of its line and its rim.
+    /// The colour of its line and rim.
     pub(super) colour: Colour,
 }
 
-/// Draws flags, sorted by their places: rings whose middles are at a height, side by side within a span, and lines through
-/// all charts from their top to their bottom (px).
+/// Draws flags, sorted by their places: rings at a height, side by side within a span, with lines from the top of all
+/// charts to their bottom (px).
 pub(super) fn draw(
     writer: &mut Writer<'_>,
     flags: &[Flag],
@@ -54,9 +55,9 @@ pub(super) fn draw(
     let widest = flags.iter().map(|flag| wide(&flag.text)).fold(0.0, f64::max);
     let radius = (RING * scale.type_unit()).max(0.5 * widest + BESIDE_LETTER * scale.type_unit());
     let apart = 2.0 * radius + RINGS_APART * scale.type_unit();
-    // The outermost ones reach into the margins, but not to the picture's sides.
+    // The outermost rings reach into the margins, but not to the picture's sides.
     let span = right - left + 2.0 * radius.min(BEYOND * scale.margin());
-    // Many rings become smaller as long as their letters can be read, and are then left out.
+    // Many rings become smaller while their letters can be read; otherwise they are left out.
     let smaller = (span / (apart * flags.len().max(1) as f64)).min(1.0);
     let letter = LETTER * scale.type_unit() * smaller;
     let with_rings = Scale::legible(letter);
@@ -83,7 +84,7 @@ pub(super) fn draw(
     }
 }
 
-/// A ring with a letter of a size in it, around a place (px): the colours of its rim, of its ground and of the letter.
+/// A ring with a letter of a size around a place (px), and the colours of its rim, its ground and the letter.
 pub(super) fn ring(
     writer: &mut Writer<'_>,
     at: [f64; 2],
@@ -100,20 +101,20 @@ pub(super) fn ring(
 }
 
 impl Writer<'_> {
-    /// How many of the events of a run, from the first on, have room for their words in a panel.
+    /// The number of a run's events, from the first one on, whose words fit into a panel.
     pub(super) fn explained(&self, panel: Rectangle, events: &[&Event]) -> usize {
         let room = Room::new(panel, self.scale).width();
         let fits = |count: &usize| self.events_width(events[..*count].iter().copied(), 1) <= room;
         (0..=events.len()).rev().find(fits).filter(|_| Scale::legible(self.scale.caption())).unwrap_or(0)
     }
 
-    /// Whether all of some events have room for their words in a panel, and whether they have with their times.
+    /// Whether the words of all events fit into a panel, without and with their times.
     pub(super) fn explains(&self, panel: Rectangle, events: &[Event]) -> [bool; 2] {
         let room = Room::new(panel, self.scale).width();
         [1, 0].map(|at| Scale::legible(self.scale.caption()) && self.events_width(events.iter(), at) <= room)
     }
 
-    /// How wide events are with their words, with or without their times (px).
+    /// The width of events with their words, with or without their times (px).
     fn events_width<'e>(&self, events: impl Iterator<Item = &'e Event>, at: usize) -> f64 {
         let (unit, size) = (self.scale.type_unit(), self.scale.caption());
         let [beside, apart] = [EVENT_BESIDE, EVENTS_APART].map(|length| length * unit);
@@ -122,8 +123,8 @@ impl Writer<'_> {
         (all - apart).max(0.0)
     }
 
-    /// What happens to a run of a colour, each with a number in a ring, in a line below its heading: as many words as there is
-    /// room for. Rings are filled as soon as it has happened.
+    /// The events of a run, each with a number in a ring of a colour, in a line below its heading, with as many words
+    /// as fit. The rings of past events are filled.
     pub(super) fn events<'e>(
         &mut self,
         panel: Rectangle,

@@ -1,4 +1,4 @@
-//! The outline of a body that is not drawn itself: dashed curves along the border of its projection.
+//! The outline of a body that is not drawn: dashed curves along the border of its projection.
 
 use super::Curve;
 use super::camera::Lens;
@@ -10,44 +10,45 @@ use crate::colour::Colour;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
-/// Width of the outline and of its casing, the opacity of this, and the lengths of its dashes and of the gaps between
-/// them (px in the reference picture).
+/// Width of the outline and of its casing, the opacity of the casing, and the lengths of dashes and gaps (px in the
+/// reference picture).
 const WIDTH: f64 = 2.0;
 const HALO: f64 = 4.4;
 const HALO_ALPHA: f64 = 0.65;
 pub(super) const DASH: [f64; 2] = [6.5, 4.5];
-/// Length of an arrow to what lies outside of the room, that of its head, and from its tip to the border (px in the reference
-/// picture).
+/// Length of an arrow to a body outside of the room, length of its head, and distance from its tip to the border (px in
+/// the reference picture).
 const POINTER: [f64; 3] = [34.0, 11.0, 6.0];
-/// A ghost of which this part is seen needs no arrow.
+/// A ghost with this part visible needs no arrow.
 const MOSTLY: f64 = 0.9;
-/// Edges are looked at in pieces of this length, and covered this far beside them on both sides they lie inside (px).
+/// The length of pieces of edges, and the distance at which an edge is inside the projection if both sides are covered
+/// (px).
 const PIECE: f64 = 3.0;
 const BESIDE: f64 = 1.6;
-/// Lines touch whose ends are no farther apart than this (px).
+/// The distance up to which two ends of lines touch (px).
 const TOUCH: f64 = 1.0;
 
 /// A triangulated surface seen by a camera.
 pub(super) struct Ghost<'a> {
     pub(super) lens: &'a Lens,
-    /// The positions of nodes (m), the nodes of the surface, and its triangles as places among these.
+    /// The positions of nodes (m), the nodes of the surface, and its triangles as places among these nodes.
     pub(super) position: &'a [DVec3],
     pub(super) nodes: &'a [u32],
     pub(super) triangles: &'a [[u32; 3]],
     /// The ends of the edges of elements without faces, as nodes.
     pub(super) bars: &'a [[u32; 2]],
-    /// Nothing is drawn outside of it.
+    /// The room, outside of which nothing is drawn.
     pub(super) room: Rectangle,
 }
 
 impl Ghost<'_> {
     /// The dashed outline in a colour, on a casing without dashes; nothing if a part of the surface is not in front of
-    /// the camera. Where next to nothing of the body lies in the room, an arrow may point there.
+    /// the camera. If hardly any part of the body is in the room, an arrow may point to it.
     pub(super) fn draw(&self, scale: Scale, colour: Colour, halo: Colour, curves: &mut Vec<Curve>) {
         let lines = [without_stray(self.outline(), DASH[0] * scale.line()), self.bars()].concat();
         let fade = self.fade(scale);
         let whole: f64 = lines.iter().map(|line| length(line)).sum();
-        // What fades is cut into dashes here.
+        // Fading lines are cut into dashes here.
         let (mut pieces, mut casing) = (Vec::new(), Vec::new());
         let mut seen = 0.0;
         for line in lines {
@@ -72,7 +73,7 @@ impl Ghost<'_> {
             let pointer = self.pointer(scale, seen > 0.0);
             if !pointer.is_empty() {
                 casing = pointer.iter().map(|line| (line.clone(), None, 1.0)).collect();
-                // Its shaft has the dashes by which the key names the ghost.
+                // The shaft has the dashes of the ghost in the key.
                 let dash = |at: usize| (at == 0).then_some(DASH.map(|length| length * scale.line()));
                 pieces = pointer.into_iter().enumerate().map(|(at, line)| (line, dash(at), 1.0)).collect();
             }
@@ -89,8 +90,7 @@ impl Ghost<'_> {
         }
     }
 
-    /// Where it fades: at the sides that it leaves, over no longer a distance than it goes on outside, so that nothing
-    /// changes at once.
+    /// The fading at the sides that it leaves, over at most its length outside, so that nothing changes suddenly.
     fn fade(&self, scale: Scale) -> Fade {
         let [left, top, right, bottom] = sides(self.room.map(f64::from));
         let [low, high] = self.bounds();
@@ -104,8 +104,8 @@ impl Ghost<'_> {
         seen.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
     }
 
-    /// An arrow at the border of the room towards a body whose middle lies outside of it: its shaft and its head (px).
-    /// Nothing if a body of which nothing is seen in the room is around all of it.
+    /// An arrow at the border of the room towards a body whose middle lies outside: its shaft and its head (px). No
+    /// arrow if an invisible body surrounds the room.
     fn pointer(&self, scale: Scale, is_seen: bool) -> Vec<Vec<DVec2>> {
         let [left, top, right, bottom] = sides(self.room.map(f64::from));
         let [low, high] = self.bounds();
@@ -154,7 +154,7 @@ impl Ghost<'_> {
 
     /// The edges at which the surface ends, or turns from facing the viewer to facing away.
     fn turning_edges(&self, pixels: &[DVec2]) -> Vec<[u32; 2]> {
-        // For each edge, how many triangles face the viewer, and how many face away.
+        // For each edge, the number of triangles that face the viewer, and that face away.
         let mut edges: BTreeMap<[u32; 2], [u32; 2]> = BTreeMap::new();
         for corners in self.triangles {
             let [a, b, c] = corners.map(|at| pixels[at as usize]);
@@ -177,7 +177,7 @@ fn length(line: &[DVec2]) -> f64 {
     line.windows(2).map(|two| two[0].distance(two[1])).sum()
 }
 
-/// Lines without those shorter than a length (px) that touch no end of a longer one: in folds they come and go between frames.
+/// Lines without those shorter than a length (px) that touch no end of a longer one: in folds they would flicker.
 fn without_stray(lines: Vec<Vec<DVec2>>, least: f64) -> Vec<Vec<DVec2>> {
     let (long, short): (Vec<_>, Vec<_>) = lines.into_iter().partition(|line| length(line) >= least);
     let ends = |line: &[DVec2]| [line[0], line[line.len() - 1]];
@@ -186,12 +186,12 @@ fn without_stray(lines: Vec<Vec<DVec2>>, least: f64) -> Vec<Vec<DVec2>> {
         let own = ends(line);
         of_long.iter().any(|&end| own.iter().any(|own| own.distance(end) <= TOUCH))
     };
-    // A body as small as that is all short lines.
+    // A very small body has only short lines.
     let kept: Vec<_> = short.into_iter().filter(|line| long.is_empty() || touches(line)).collect();
     [long, kept].concat()
 }
 
-/// Dashes and gaps along a line, such that a closed one has whole dashes (px).
+/// The lengths of dashes and gaps along a line, such that a closed line has whole dashes (px).
 fn dashes(line: &[DVec2], unit: f64) -> [f64; 2] {
     let dash = DASH.map(|length| length * unit);
     let length = length(line);
@@ -234,7 +234,7 @@ impl Cover {
         Self { room, is_covered }
     }
 
-    /// Whether the pixel at a place is covered, if it is in the room.
+    /// Whether the pixel at a place in the room is covered.
     fn holds(&self, at: DVec2) -> bool {
         let [left, top, width, height] = self.room;
         let [x, y] = [at.x - f64::from(left), at.y - f64::from(top)];
@@ -243,23 +243,23 @@ impl Cover {
     }
 }
 
-/// Pieces of edges on their way to longer lines.
+/// Pieces of edges, to be joined to longer lines.
 #[derive(Default)]
 struct Lines {
     /// The ends of whole edges.
     edges: Vec<[u32; 2]>,
-    /// Parts of others (px).
+    /// Parts of other edges (px).
     parts: Vec<Vec<DVec2>>,
 }
 
 impl Lines {
-    /// Adds what of an edge lies in the room and on the border.
+    /// Adds the part of an edge in the room and on the border.
     fn add(&mut self, nodes: [u32; 2], [from, to]: [DVec2; 2], cover: &Cover) {
         let way = to - from;
         let length = way.length();
         let Some([begin, end]) = clipped(from, way, sides(cover.room.map(f64::from)), [0.0, 1.0]) else { return };
         if length <= 0.0 {
-            // Two nodes at one place: lines go on through it.
+            // Two nodes at one place: lines pass through it.
             return self.edges.push(nodes);
         }
         let beside = BESIDE * way.perp() / length;
@@ -282,7 +282,7 @@ impl Lines {
         }
     }
 
-    /// All of them, with whole edges joined at their nodes.
+    /// All lines, with whole edges joined at their nodes.
     fn joined(self, pixels: &[DVec2]) -> Vec<Vec<DVec2>> {
         let mut at_node: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (edge, nodes) in self.edges.iter().enumerate() {
@@ -299,7 +299,7 @@ impl Lines {
             }
             line
         };
-        // First lines with ends, then closed ones.
+        // Open lines come first, then closed ones.
         let odd = at_node.iter().filter(|(_, edges)| edges.len() % 2 == 1).map(|(&node, _)| node);
         let starts: Vec<_> = odd.chain(at_node.keys().copied()).collect();
         let lines = starts.into_iter().map(&mut follow).filter(|line| line.len() > 1);
@@ -352,7 +352,7 @@ mod tests {
         let lines = outline(&lens, &position, &triangles, ROOM);
         let [line] = &lines[..] else { panic!("{lines:?}") };
         assert_eq!((line.len(), line[0]), (7, line[6]));
-        // Whole dashes, hardly longer or shorter than usual.
+        // Dashes are whole, and hardly longer or shorter than usual.
         let length: f64 = line.windows(2).map(|two| two[0].distance(two[1])).sum();
         let [dash, gap] = dashes(line, 1.0);
         let count = length / (dash + gap);
@@ -369,7 +369,7 @@ mod tests {
             Ghost { lens: &lens, position: &position, nodes: &nodes, triangles: &triangles, bars: &[], room: ROOM };
         let mut curves = Vec::new();
         ghost.draw(Scale::REFERENCE, [0; 3], [255; 3], &mut curves);
-        // A shaft and a head, each with its halo, at the upper border.
+        // A shaft and a head, each with a halo, at the upper border.
         assert_eq!(curves.iter().map(|curve| curve.points.len()).collect::<Vec<_>>(), [2, 3, 2, 3]);
         let [tail, tip] = [0, 1].map(|at| curves[0].points[at]);
         assert_eq!((tip, tip[1] < tail[1], curves[0].dash.len()), (curves[1].points[1], true, 0));
@@ -394,7 +394,7 @@ mod tests {
         assert!(whole.len() == 1 && !whole[0].dash.is_empty() && whole[0].alpha == 1.0);
         let xs = || whole[0].points.iter().map(|at| at[0]);
         let middle = xs().fold(0.0, |sum: f32, x| sum + x) / xs().count() as f32;
-        // A room that ends within it: each dash for itself, and fainter towards the side.
+        // In a room that ends within the body, each dash is separate, and fainter towards the side.
         let cut = drawn([0, 0, middle as u32 + 30, 640]);
         let right = |curve: &Curve| curve.points.iter().fold(0.0, |most: f32, at| most.max(at[0]));
         let last = cut.iter().max_by(|a, b| right(a).total_cmp(&right(b))).unwrap();
@@ -404,7 +404,7 @@ mod tests {
 
     #[test]
     fn edges_inside_the_outline_are_left_out() {
-        // A small cube before the middle of a large one turns away from the viewer, too, but not at the border.
+        // A small cube in front of a large one also turns away from the viewer, but not at the border.
         let lens = lens(Dimension::Space);
         let (mut position, mut triangles) = cube();
         let [towards, small]: [DVec3; 2] = [(lens.eye - DVec3::ZERO).normalize(), DVec3::splat(0.2)];
@@ -422,7 +422,7 @@ mod tests {
         let triangles = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]];
         let lines = outline(&lens, &position, &triangles, ROOM);
         assert_eq!(lines.iter().map(Vec::len).collect::<Vec<_>>(), [7]);
-        // Of what leaves the room nothing is drawn outside.
+        // Nothing is drawn outside of the room.
         let room = [380, 250, 200, 200];
         let lines = outline(&lens, &position, &triangles, room);
         let [left, top, right, bottom] = sides(room.map(f64::from));

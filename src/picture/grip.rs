@@ -8,19 +8,19 @@ use crate::look::Palette;
 use crate::sim::{Grip, Motion};
 use glam::DVec3;
 
-/// Half the width of a pin, and of the ring around a node that is dragged (px in the reference picture), in space and
-/// in the plane, where nodes are discs.
+/// Half the width of a pin, and of the ring around a dragged node (px in the reference picture), in space and in the
+/// plane, where nodes are discs.
 const PIN: [f64; 2] = [6.5, 9.0];
 const HAND: [f64; 2] = [9.5, 12.0];
-/// More nodes than this that are dragged together are marked like held ones; the arrow shows the motion.
+/// More dragged nodes than this are marked like held ones; the arrow shows their motion.
 const FEW: usize = 4;
-/// A mark is no wider than this part of an element, and none is drawn narrower than this (px).
+/// The largest width of a mark in lengths of an element, and its least width (px).
 const SHARE: f64 = 0.45;
 const NARROWEST: f64 = 3.0;
-/// The opacity of the mark of a node that is hidden.
+/// The opacity of the mark of a hidden node.
 const HIDDEN: f64 = 0.38;
 
-/// What is needed to mark the nodes of one panel.
+/// The data for marking the nodes of one panel.
 pub(super) struct Hands<'a> {
     pub(super) grips: &'a [Grip],
     /// The time of the panel's state (s).

@@ -1,5 +1,5 @@
-//! The layout of a picture: panels and text. It does not depend on the frame, so nothing jumps. A long file, with its tests, so
-//! that all distances of the layout stand together.
+//! The layout of a picture: panels and text. It does not depend on the frame, so nothing jumps. This long file keeps
+//! all distances of the layout together, with their tests.
 //!
 //! ```text
 //! title
@@ -17,95 +17,94 @@
 
 use crate::look::{Labels, View, print};
 
-/// The smallest type of a picture (px in the reference picture): panels that are too small for words of this size have
-/// fewer words.
+/// The smallest type of a picture (px in the reference picture): panels that are too small for it have fewer words.
 const LEAST_TYPE: f64 = 14.0;
-/// Type smaller than this cannot be read in any picture and is left out (px).
+/// Smaller type cannot be read in any picture and is left out (px).
 const SMALLEST_TYPE: f64 = 5.0;
 
-/// Free around and inside each panel (px in the reference picture).
+/// The margin around and inside each panel (px in the reference picture).
 const MARGIN: f64 = 40.0;
 /// Height of the ground of the title, and of the chart with the room around it (px in the reference picture).
 const TITLE: f64 = 48.0;
-/// The baseline of the title, and the distance of its lines; height of a row for the clock alone, and its baseline, which reaches into the margin of the
-/// panels below (px in the reference picture).
+/// The baseline of the title, and the distance of its lines; the height of a row for the clock alone, and its baseline,
+/// which reaches into the margin of the panels below (px in the reference picture).
 const TITLE_BASELINE: f64 = 62.0;
 const TITLE_LINE: f64 = 38.0;
 const CLOCK_ROW: f64 = 40.0;
 const CLOCK_BASELINE: f64 = 50.0;
 const CHART: f64 = 140.0;
-/// Free below the chart (px in the reference picture).
+/// The gap below the chart (px in the reference picture).
 const BELOW_CHART: f64 = 18.0;
-/// Distance of the caption's lines, free above the first baseline and below the last (px in the reference picture).
+/// Distance of the caption's lines, and the gaps above the first baseline and below the last one (px in the reference
+/// picture).
 pub(super) const CAPTION_LINE: f64 = 22.0;
 const ABOVE_CAPTION: f64 = 8.0;
 const BELOW_CAPTION: f64 = 30.0;
-/// The text above and below a body takes at most this part of its panel with second lines, the second part without, and the
-/// third with the margins.
+/// The most of a panel for the text above and below a body: with second lines, without them, and with the margins.
 const MOST_WORDS: [f64; 3] = [0.34, 0.45, 0.8];
-/// What a chart needs besides its curves (px in the reference picture), and the lowest chart (px).
+/// The room of a chart besides its curves (px in the reference picture), and the lowest chart (px).
 const LEAST_CHART_ROOM: f64 = 54.0;
 pub(super) const LEAST_CHART: f64 = 14.0;
-/// The chart takes at most this part of what panels and chart have together.
+/// The most of the height of panels and chart that the chart takes.
 const CHART_SHARE: f64 = 0.34;
-/// From one name at the end of a curve to the next, the height of the room for these names in a chart of the usual height
-/// (px in the reference picture), and how many names make it higher.
+/// The distance of names at the ends of curves, the height of their room in a chart of the usual height (px in the
+/// reference picture), and the most names that make a chart higher.
 pub(super) const CURVE_NAME: f64 = 15.0;
 const CURVE_NAMES: f64 = 94.0;
 const MOST_NAMES: usize = 8;
 
-/// Free above and below the body in a panel without words there (px in the reference picture).
+/// The gaps above and below the body in a panel without words there (px in the reference picture).
 const NO_WORDS: f64 = 28.0;
-/// Distances of lines of words in a panel: from its margin to the name, on to the second line and to the events; from the
-/// lowest words up to the count; and from words to the body (px in the reference picture).
+/// Distances of lines of words in a panel: from its margin to the name, on to the second line and to the events; from
+/// the lowest words up to the count; and from words to the body (px in the reference picture).
 const ROWS: [f64; 3] = [20.0, 26.0, 24.0];
 const COUNT_ABOVE: f64 = 20.0;
 const CLEAR: [f64; 3] = [10.0, 9.0, 27.0];
 /// The least distance of lines, in sizes of their type.
 const LINE: f64 = 1.25;
 const ASCENT: f64 = 0.77;
-/// Free below the baseline of a clock and of a title, in sizes of names.
+/// The gap below the baseline of a clock and of a title, in sizes of names.
 const DESCENT: [f64; 2] = [0.4, 0.9];
 
 /// A rectangle: left, top, width, height (px).
 pub(crate) type Rectangle = [u32; 4];
 
-/// The places of everything in a picture.
+/// The places of all parts of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Layout {
     /// Sizes of type and lines in panels.
     pub(super) scale: Scale,
     /// Sizes of type and lines around panels.
     pub(super) around: Scale,
-    /// One for each run shown, row by row.
+    /// A rectangle for each run shown, row by row.
     pub(super) panels: Vec<Rectangle>,
-    /// The room of the chart below them.
+    /// The room of the chart below the panels.
     pub(super) chart: Option<Rectangle>,
     /// The part of the picture that the panels cover.
     pub(super) ground: Rectangle,
-    /// For how many lines of the title there is room.
+    /// The number of lines of the title that fit.
     pub(super) title_lines: usize,
-    /// Height of the clock's baseline (px from the top), if it has a row for itself.
+    /// Height of the clock's baseline (px from the top), if it has a row of its own.
     pub(super) clock: Option<f64>,
     /// Whether there is room for the keys of colours and arrows.
     pub(super) has_legend: bool,
-    /// For how many lines of the caption there is room.
+    /// The number of lines of the caption that fit.
     pub(super) caption_lines: usize,
-    /// Where the keys of colours and arrows begin (px from the top).
+    /// The top of the keys of colours and arrows (px from the top).
     pub(super) legend: u32,
     /// Height of the caption's first baseline (px from the top).
     pub(super) caption: f64,
 }
 
 impl Layout {
-    /// The layout of a view of a number of panels in columns, with room for what stands around them.
+    /// The layout of a view with a number of panels in columns and with the `wanted` parts around them.
     pub(super) fn new(view: &View, panels: usize, columns: usize, wanted: Wanted) -> Self {
-        // How wide the margins of panels are follows from their size.
+        // The width of panels' margins follows from their size.
         let margin = Self::with_margin(view, panels, columns, wanted, f64::INFINITY).scale.margin();
         Self::with_margin(view, panels, columns, wanted, margin)
     }
 
-    /// The same for panels with margins of a width (px), if these are too narrow for what reaches into them.
+    /// The layout for panels with margins of a width (px), if these are too narrow for the text that reaches into them.
     fn with_margin(view: &View, count: usize, columns: usize, around_them: Wanted, margin: f64) -> Self {
         let Wanted { title_lines, clock, legend, caption_lines } = around_them;
         let size = view.size.map(|length| length.max(1));
@@ -115,7 +114,7 @@ impl Layout {
             0 => 0,
             lines => rows(around.of_type(TITLE + (lines - 1) as f64 * TITLE_LINE)),
         };
-        // Panels keep at least half of the picture: of the rest, first the title gets room, then the clock, then the keys, then
+        // Panels keep at least half of the picture. The rest goes first to the title, then to the clock, the keys and
         // the caption.
         let most = size[1] / 2;
         let clock_row = Some(rows(around.of_type(CLOCK_ROW))).filter(|&row| clock && row <= most);
@@ -126,13 +125,13 @@ impl Layout {
         let in_row = f64::from(title) + around.of_type(CLOCK_BASELINE * around.unit);
         let clock = clock_row.map(|_| in_row.max(title_end + LINE * around.title()));
         let top = title + clock_row.unwrap_or(0);
-        // What stands there reaches into the margin of the panels, unless that is too narrow.
+        // The row reaches into the margin of the panels, unless that is too narrow.
         let free = DESCENT[usize::from(clock.is_none())] * around.title();
         let reach = clock.unwrap_or(title_end) + free - f64::from(top);
         let spared = (reach - margin).max(0.0).ceil() as u32;
         let title = (top + spared).min(most.max(top));
         let legend = if title + legend <= most { legend } else { 0 };
-        // So does the caption below them, by less than half of it.
+        // The caption reaches into the margin above it, too, by less than half of it.
         let reach = ASCENT * around.caption() - ABOVE_CAPTION * around.type_unit();
         let spared = if legend > 0 { 0 } else { (reach - 0.5 * margin).max(0.0).ceil() as u32 };
         let caption_height = |lines: usize| match lines {
@@ -144,20 +143,20 @@ impl Layout {
         let caption = caption_height(caption_lines);
         let height = size[1] - title - legend - caption;
         let chart = view.strip.map_or(0.0, |_| {
-            // The names at the ends of curves have room above each other.
+            // The names at the ends of curves need room above each other.
             let names = count.min(MOST_NAMES) as f64 * CURVE_NAME;
             let units = CHART + (names - CURVE_NAMES).max(0.0) - BELOW_CHART;
             let usual = units * around.type_unit() + BELOW_CHART * around.unit;
             usual.min(CHART_SHARE * f64::from(height)).round()
         });
-        // A chart too low to be read leaves its room to the bodies.
+        // A chart that is too low to be read leaves its room to the bodies.
         let below = (BELOW_CHART * around.unit).min(chart);
         let has_room = chart - below > LEAST_CHART_ROOM * around.type_unit() + LEAST_CHART;
         let has_chart = has_room && Scale::legible(LEAST_TYPE * around.type_unit());
         let chart = if has_chart { chart as u32 } else { 0 };
         let mut panels = panels([size[0], height - chart], count, columns);
         panels.iter_mut().for_each(|panel| panel[1] += title);
-        // Together with the chart, panels are as high as without it.
+        // With a chart, the rows of panels have the height that they have without it.
         let rows = count.div_ceil(columns.clamp(1, count.max(1))).max(1) as u32;
         let with_chart = |panel: Rectangle| [panel[0], panel[1], panel[2], panel[3] + chart / rows];
         let scale = panels.first().map_or(around, |&panel| Scale::new(size, with_chart(panel)).within(view));
@@ -179,13 +178,14 @@ impl Layout {
         }
     }
 
-    /// Sizes of type and lines around the panels of a view, which do not depend on these.
+    /// Sizes of type and lines around the panels of a view; they do not depend on the panels.
     pub(super) fn around(view: &View) -> Scale {
         Scale { unit: whole(view), ..Scale::REFERENCE }.within(view)
     }
 }
 
-/// What wants room around panels: lines of the title, a row for the clock, a key of a height (px), and lines of the caption.
+/// The requested parts around panels: lines of the title, a row for the clock, a key of a height (px), and lines of the
+/// caption.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Wanted {
     pub(super) title_lines: usize,
@@ -199,26 +199,26 @@ pub(super) fn title_baseline(around: Scale, lines: usize) -> f64 {
     around.row(TITLE_BASELINE) + lines.saturating_sub(1) as f64 * TITLE_LINE * around.type_unit()
 }
 
-/// Pixels of the picture of a view for one of the reference picture.
+/// Pixels of the picture of a view per pixel of the reference picture.
 fn whole(view: &View) -> f64 {
     let [width, height] = view.size.map(|length| f64::from(length.max(1)));
-    // Panels that arrange themselves stand side by side where the picture is wide.
+    // Panels that arrange themselves stand side by side in a wide picture.
     let columns = view.columns.unwrap_or(if width < height { 1 } else { 2 }).clamp(1, 2) as u32;
     print::unit(view.size, [(width / f64::from(columns)) as u32, u32::MAX])
 }
 
-/// What is written in a panel.
+/// The text in a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Written {
     pub(super) labels: Labels,
-    /// Whether there is a second line, with the model and what the clock counts from.
+    /// Whether there is a second line, with the model and the start of the clock.
     pub(super) second: bool,
     /// Whether there is a line for events.
     pub(super) events: bool,
 }
 
-/// What is written in a panel of a height (px), with a number of pixels for each of the reference picture: where not
-/// everything has room beside the body, first the events are left out, then second lines, then what stands below.
+/// The text in a panel of a height (px), with `unit` pixels per pixel of the reference picture. If not all of it fits
+/// beside the body, first the events are left out, then second lines, then the text below.
 pub(super) fn written(view: &View, height: f64, unit: f64) -> Written {
     let scale = Scale { unit, ..Scale::REFERENCE }.within(view);
     let Labels { letters, name, model, clock, .. } = view.labels;
@@ -238,13 +238,13 @@ pub(super) fn written(view: &View, height: f64, unit: f64) -> Written {
     choices.into_iter().find(fits).unwrap_or(none)
 }
 
-/// The room above and below the body in a panel of a height (px) that words need (px in the reference picture), with a
-/// number of pixels for each of the reference picture.
+/// The heights for words above and below the body in a panel of a height (px), with `unit` pixels per pixel of the
+/// reference picture (px in the reference picture).
 pub(super) fn rooms(view: &View, height: f64, unit: f64) -> [f64; 2] {
     rooms_of(written(view, height, unit), Scale { unit, ..Scale::REFERENCE }.within(view)).map(|room| room / unit)
 }
 
-/// The same for chosen words (px).
+/// The heights for chosen words (px).
 fn rooms_of(Written { labels, second, events }: Written, scale: Scale) -> [f64; 2] {
     let Labels { letters, name, clock, count, number, scale_bar, .. } = labels;
     let unit = scale.type_unit();
@@ -261,8 +261,8 @@ fn rooms_of(Written { labels, second, events }: Written, scale: Scale) -> [f64; 
     [above, below]
 }
 
-/// Divides a picture into panels, row by row; together they cover it without gaps. No panel is without a pixel as
-/// long as the picture has enough of them.
+/// Divides a picture into panels, row by row, which cover it without gaps. Every panel has a pixel if the picture has
+/// enough of them.
 pub(super) fn panels(size: [u32; 2], count: usize, columns: usize) -> Vec<Rectangle> {
     let columns = columns.clamp(1, count.max(1));
     let rows = count.div_ceil(columns);
@@ -280,79 +280,79 @@ pub(super) fn panels(size: [u32; 2], count: usize, columns: usize) -> Vec<Rectan
 /// Sizes of type and lines of one picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scale {
-    /// Pixels for one pixel of the reference picture.
+    /// Pixels per pixel of the reference picture.
     pub(super) unit: f64,
-    /// How many times larger than usual type is, with its rows.
+    /// The size of type, with its rows, relative to the usual one.
     type_factor: f64,
     /// The smallest type (px).
     least: f64,
 }
 
 impl Scale {
-    /// That of the reference picture.
+    /// The sizes of the reference picture.
     pub(super) const REFERENCE: Self = Self { unit: 1.0, type_factor: 1.0, least: 0.0 };
 
     pub(super) fn new(size: [u32; 2], panel: Rectangle) -> Self {
         Self { unit: print::unit(size, [panel[2], panel[3]]), ..Self::REFERENCE }
     }
 
-    /// That of a picture of a number of pixels for each of the reference picture.
+    /// The sizes of a picture with a number of pixels per pixel of the reference picture.
     pub(super) fn at(unit: f64) -> Self {
         Self { unit, ..Self::REFERENCE }
     }
 
-    /// The same for things of another size.
+    /// The sizes with another unit.
     pub(super) fn with_unit(self, unit: f64) -> Self {
         Self { unit, ..self }
     }
 
-    /// The same with type as a scene asks for.
+    /// The sizes with the type of a scene.
     pub(super) fn with(self, view: &View) -> Self {
         Self { type_factor: view.look.text_scale, ..self }
     }
 
-    /// The same for a part of the picture of a scene, which has no smaller type than that.
+    /// The sizes for a part of the picture of a scene, whose type is no smaller than its least one.
     fn within(self, view: &View) -> Self {
         Self { least: LEAST_TYPE * whole(view) * view.look.text_scale.min(1.0), ..self.with(view) }
     }
 
-    /// Pixels for one pixel of type in the reference picture, and of what stands in its rows.
+    /// Pixels per pixel of the reference picture, for type and for objects in its rows.
     pub(super) fn type_unit(self) -> f64 {
         self.of_type(self.unit)
     }
 
-    /// A length as much longer as type is larger.
+    /// A length, scaled like the type.
     pub(super) fn of_type(self, length: f64) -> f64 {
         length * self.type_factor
     }
 
-    /// A height of type within margins, given in the reference picture with its margins (px): inside the margin, rows are
-    /// as high as their type.
+    /// A height of type within margins, given in the reference picture with its margins (px). Inside the margin, rows
+    /// are scaled like their type.
     pub(super) fn row(self, height: f64) -> f64 {
         (MARGIN + (height - MARGIN) * self.type_factor) * self.unit
     }
 
-    /// Names, clock and count (px).
+    /// Size of names, clock and count (px).
     pub(super) fn title(self) -> f64 {
         (26.0 * self.type_unit()).max(self.least)
     }
 
-    /// Everything else (px).
+    /// Size of all other type (px).
     pub(super) fn caption(self) -> f64 {
         (16.0 * self.type_unit()).max(self.least)
     }
 
-    /// Numbers in charts and in rings (px).
+    /// Size of numbers in charts and in rings (px).
     pub(super) fn small(self) -> f64 {
         (14.0 * self.type_unit()).max(self.least)
     }
 
-    /// Free space around and inside each panel (px).
+    /// The margin around and inside each panel (px).
     pub(super) fn margin(self) -> f64 {
         MARGIN * self.unit
     }
 
-    /// Between things beside each other (px).
+    /// The gap between adjacent parts (px).
     pub(super) fn gap(self) -> f64 {
         16.0 * self.unit
     }
@@ -362,14 +362,14 @@ impl Scale {
         size >= SMALLEST_TYPE
     }
 
-    /// How thick lines are, in parts of their thickness in the reference picture. Thinner ones than at a third of
-    /// that size would only be fainter.
+    /// The thickness of lines relative to the reference picture. It is at least that at a third of the size, below
+    /// which lines would only be fainter.
     pub(super) fn line(self) -> f64 {
         self.unit.max(0.35)
     }
 }
 
-/// The lowest baseline of a panel lies so far within its margin (px in the reference picture).
+/// The height of the lowest baseline of a panel above its margin (px in the reference picture).
 const BELOW_BASELINE: f64 = 2.0;
 
 /// The lines of text in a panel (px from its top).
@@ -414,7 +414,7 @@ mod tests {
         {
             let panels = panels(size, count, columns);
             assert_eq!(panels.len(), count);
-            // Each begins where the one before it ends, and the last ones end at the picture's edges.
+            // Each panel begins at the end of the one before, and the last ones end at the picture's edges.
             let columns = columns.min(count);
             for (at, &[left, top, width, height]) in panels.iter().enumerate() {
                 assert!(width > 0 && height > 0);
@@ -453,7 +453,7 @@ mod tests {
             let [_, top, width, height] = layout.ground;
             assert!(width == size[0] && height >= size[1] / 2 && layout.legend == top + height);
             assert!(layout.caption >= f64::from(layout.legend));
-            // Where a chart could not be read, its room is the bodies'.
+            // A chart that could not be read leaves its room to the bodies.
             assert_eq!(layout.chart.is_some(), size[1] > 200, "{size:?}");
             let bottom = layout.chart.map_or(top + height, |chart| chart[1]);
             for panel in &layout.panels {

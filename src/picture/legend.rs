@@ -14,33 +14,33 @@ use crate::colour::Colour;
 use glam::DVec2;
 use std::borrow::Cow;
 
-/// Height of the ground of the key, and how far the bar reaches above it (px in the reference picture).
+/// Height of the ground of the key, and the height of the bar above it (px in the reference picture).
 const HEIGHT: f64 = 50.0;
 const ABOVE: f64 = 4.0;
-/// Its type is no smaller than this part of the reference, as long as it takes no more than this of the picture.
+/// The least size of its type relative to the reference picture, as long as it takes no more than this of the picture.
 const LEAST_UNIT: f64 = 0.66;
 const MOST_HEIGHT: f64 = 0.1;
-/// The room that the arrow with its words, a sample with its name and the bar with its name take at least (px in the reference
-/// picture).
+/// The least widths of the arrow with its words, of a sample with its name, and of the bar with its name (px in the
+/// reference picture).
 const ARROW_ROOM: f64 = 250.0;
 const SAMPLE_ROOM: f64 = 220.0;
 const BAR_ROOM: f64 = 365.0;
 /// Height of the bar, its least and largest length, and the length of a tick (px in the reference picture).
 const BAR: f64 = 12.0;
 const LENGTHS: [f64; 2] = [190.0, 340.0];
-/// Numbers nearer to each other than this are thinned out (px in the reference picture).
+/// The least distance of numbers (px in the reference picture).
 const NUMBERS_APART: f64 = 9.0;
 const TICK: f64 = 5.0;
-/// Ticks at the most.
+/// The most ticks.
 const MOST_TICKS: usize = 5;
-/// Between the two parts of the key (px in the reference picture).
+/// The gap between two parts of the key (px in the reference picture).
 const APART: f64 = 44.0;
 /// The length and the width of the sample of a line (px in the reference picture).
 const SAMPLE: [f64; 2] = [48.0, 2.0];
-/// About how long the key's arrow is where nothing moves (px in the reference picture).
+/// The approximate length of the key's arrow if nothing moves (px in the reference picture).
 const ARROW: f64 = 64.0;
 
-/// A scale of colours.
+/// A colour scale.
 pub(super) struct Bar<'a> {
     name: &'static str,
     unit: &'static str,
@@ -55,8 +55,8 @@ pub(super) struct Bar<'a> {
 }
 
 impl<'a> Bar<'a> {
-    /// The scale of something of a body of a size (m) with a name, a unit and a definition, over a range in which its values lie, or beyond
-    /// which.
+    /// The scale of a quantity with a name, a unit and a definition, for a body of a size (m), over a range. `values`
+    /// may lie beyond the range.
     pub(super) fn new(
         [name, unit, definition]: [&'static str; 3],
         range: [f64; 2],
@@ -72,12 +72,12 @@ impl<'a> Bar<'a> {
 
 /// A line or a mark with its meaning.
 pub(super) struct Sample<'a> {
-    /// Its name: the longest wording that fits, of at least one.
+    /// Wordings of its name, at least one. The longest one that fits is used.
     pub(super) names: Vec<Cow<'a, str>>,
     pub(super) kind: SampleKind,
 }
 
-/// What a sample looks like.
+/// The look of a sample.
 pub(super) enum SampleKind {
     /// The dashed outline of a ghost.
     Ghost(Colour),
@@ -88,15 +88,15 @@ pub(super) enum SampleKind {
 /// Sizes of the key of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Legend {
-    /// Pixels for one pixel of the reference picture.
+    /// Pixels per pixel of the reference picture.
     unit: f64,
     /// Height of its ground (px).
     pub(super) height: u32,
 }
 
 impl Legend {
-    /// The key of a picture of a size (px) whose panels have a scale, with or without an arrow and a bar, and with a number of
-    /// samples; `None` where it could not be read.
+    /// The key of a picture of a size (px) with panels of a scale, with or without an arrow and a bar, and with a
+    /// number of samples; `None` if it could not be read.
     pub(super) fn new(size: [u32; 2], scale: Scale, [arrow, bar]: [bool; 2], samples: usize) -> Option<Self> {
         let [width, height] = size.map(f64::from);
         let parts = usize::from(arrow) + samples + usize::from(bar);
@@ -110,8 +110,8 @@ impl Legend {
         Scale::legible(NUMBERS * unit).then_some(Self { unit, height })
     }
 
-    /// Draws the key over its ground, which begins at a height of a picture of a width (px). `arrow` is the length that
-    /// the arrow stands for, in words, its own (px), and how large it is beside those of the reference picture.
+    /// Draws the key over its ground, which begins at a height of a picture of a width (px). `arrow` has its length in
+    /// words, its pixels, and its size relative to the reference picture.
     pub(super) fn draw(
         self,
         writer: &mut Writer<'_>,
@@ -140,7 +140,7 @@ impl Legend {
         }
     }
 
-    /// An arrow and the length that it stands for; returns where the text ends (px).
+    /// An arrow and its length; returns the right end of the text (px).
     fn arrow(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], metres: &str, [length, size]: [f64; 2]) -> f64 {
         let (unit, palette) = (self.unit, writer.palette);
         let ends = [left, left + length].map(|x| DVec2::new(x, middle));
@@ -158,7 +158,7 @@ impl Legend {
         )
     }
 
-    /// A sample with its name in a room (px); returns where that ends (px).
+    /// A sample with its name in a room (px); returns its right end (px).
     fn sample(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], room: f64, sample: &Sample<'_>) -> f64 {
         let (unit, palette) = (self.unit, writer.palette);
         let [length, width] = SAMPLE.map(|length| length * unit);
@@ -186,8 +186,8 @@ impl Legend {
         self.write(writer, &name, Weight::Regular, 16.0, palette.second_text, left + before, middle + 5.5 * unit)
     }
 
-    /// A bar of colours between two places, with its name before it, its numbers below and, where there is room, its
-    /// definition below its name; it stands in the given middle if it can.
+    /// A colour bar between two places, with its name before it, its numbers below and, if there is room, its
+    /// definition below its name. It is centred at the given middle if possible.
     fn bar(self, writer: &mut Writer<'_>, [left, right, middle]: [f64; 3], top: f64, bar: &Bar<'_>) {
         let (unit, palette) = (self.unit, writer.palette);
         let &Bar { name, ramp, beyond, mut definition, .. } = bar;
@@ -208,7 +208,7 @@ impl Legend {
         if defined + gap + 2.0 * overhang + LENGTHS[0] * unit > right - left {
             definition = "";
         }
-        // Clear of the first number, which stands beside it.
+        // The first number overlaps the left end by half its width.
         let beside = widths.first().map_or(0.0, |width| width / 2.0);
         let named = if definition.is_empty() { named } else { named.max(defined + beside) };
         let free = right - left - named - gap - overhang;
@@ -228,7 +228,7 @@ impl Legend {
         self.write(writer, definition, Weight::Regular, NUMBERS, palette.second_text, left, below);
         let bar_left = (left + named + gap).round();
         let rim = unit.round().max(1.0);
-        // Where values lie beyond the scale, the bar ends in a point.
+        // If values lie beyond the scale, the bar ends in a point.
         let cap = 0.8 * height;
         for (end, x) in [bar_left, bar_left + length].into_iter().enumerate().filter(|&(end, _)| beyond[end]) {
             let colour = ramp[if end == 0 { 0 } else { ramp.len() - 1 }];
@@ -257,8 +257,8 @@ impl Legend {
         }
     }
 
-    /// Writes a text of a size in the reference picture and returns where it ends (px).
-    #[expect(clippy::too_many_arguments, reason = "a line of text is all of these")]
+    /// Writes a text of a size in the reference picture and returns its right end (px).
+    #[expect(clippy::too_many_arguments, reason = "all of these describe a line of text")]
     fn write(
         self,
         writer: &mut Writer<'_>,
@@ -277,7 +277,7 @@ impl Legend {
         left + writer.fonts.width(text, weight, size)
     }
 
-    /// The length (m) that the key's arrow stands for: a round one of about the length of the key where a metre has
+    /// The length (m) of the key's arrow: a round one, for about the arrow's length in the key, if a metre has
     /// `pixels`.
     pub(super) fn arrow_metres(self, pixels: f64) -> f64 {
         number::round_below(ARROW * self.unit / pixels)

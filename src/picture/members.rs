@@ -1,5 +1,5 @@
-//! Time series of one run in several scenes, such as those of one body with several seeds: their mean, in a band from the least to
-//! the greatest value.
+//! Time series of one run in several scenes, such as one body with several seeds: their mean, in a band from the least
+//! to the greatest value.
 
 use super::Curve;
 use super::axis::Axis;
@@ -15,7 +15,7 @@ const SINGLE: f64 = 1.0;
 const SINGLE_ALPHA: f64 = 0.5;
 
 impl Series {
-    /// The mean of a run's time series in several scenes, up to the first end of one of them. A single one stays as it is.
+    /// The mean of a run's time series in several scenes, up to the earliest end. A single one is returned as it is.
     pub(super) fn mean(mut all: Vec<Self>) -> Option<Self> {
         if all.len() < 2 {
             return all.pop();
@@ -31,13 +31,13 @@ impl Series {
         Some(Self { points, members, diverged, ..first })
     }
 
-    /// All its points, with those of what it is the mean of.
+    /// All its points, with those of its members.
     pub(super) fn all(&self) -> impl Iterator<Item = &[f64; 2]> {
         self.points.iter().chain(self.members.iter().flatten())
     }
 
-    /// Draws the band between the least and the greatest value of several scenes, and the thin curve of each: a mean may lie
-    /// where none of them is.
+    /// Draws the band between the least and the greatest value of several scenes, and the thin curve of each: the mean
+    /// may be far from all of them.
     pub(super) fn draw_range(&self, writer: &mut Writer<'_>, chart: Chart, [times, values]: [&Axis; 2]) {
         let member = |points: &Vec<[f64; 2]>| {
             let at = |&[time, value]: &[f64; 2]| [chart.x(times, time), chart.y(values, value)];
@@ -45,7 +45,7 @@ impl Series {
             if self.is_count { steps(&points) } else { points }
         };
         let members: Vec<_> = self.members.iter().map(member).collect();
-        // The band goes as far as the shortest time series.
+        // The band ends with the shortest time series.
         let end =
             members.iter().map(|points| points.last().map_or(chart.left, |end| end[0])).fold(chart.right, f64::min);
         if members.is_empty() {
@@ -91,11 +91,11 @@ mod tests {
         let mean = Series::mean(vec![series(&[0.0, 2.0, 4.0], false), series(&[2.0, 8.0], true)]).expect("two");
         assert_eq!(mean.points, [[0.0, 1.0], [1.0, 5.0]]);
         assert_eq!((mean.members.len(), mean.diverged), (2, Some(2.0)));
-        // The scale holds all of them.
+        // The scale includes all members.
         assert_eq!(range(std::slice::from_ref(&mean), false), Some([0.0, 8.0]));
         let part = mean.between([0.5, 0.75]);
         assert_eq!(part.members, [[[0.5, 1.0], [0.75, 1.5]], [[0.5, 5.0], [0.75, 6.5]]]);
-        // A single scene is drawn as without others.
+        // A single scene has no band.
         let alone = Series::mean(vec![series(&[1.0], false)]).expect("one");
         assert!(alone.members.is_empty() && alone.points == [[0.0, 1.0]]);
     }

@@ -5,9 +5,9 @@
 //! Scene ─▶ Composer ─ compose(Frame) ─▶ Picture ─▶ render
 //! ```
 //!
-//! A [`Composer`] computes once what all frames of a scene share. Any frame can be composed alone: the result depends on
-//! the scene and that frame only. A chart ([`crate::look::View::strip`]) and paths show time series of
-//! the whole scene, which the composer gets beforehand; these depend on the scene only, too.
+//! A [`Composer`] computes once the data that all frames of a scene share. Any frame can be composed alone: the result
+//! depends only on the scene and the frame. A chart ([`crate::look::View::strip`]) and paths show time series of the
+//! whole scene, which the composer gets beforehand; these depend only on the scene, too.
 
 mod arrows;
 mod axis;
@@ -60,7 +60,7 @@ pub(crate) use text::{Face, Fonts, Glyph, TextRun, Weight};
 use glam::{DVec2, Mat4, Vec3};
 use narrow::narrow;
 
-/// Everything that a frame shows, ready to be drawn.
+/// A whole frame, ready to be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// Width and height (px).
@@ -71,7 +71,7 @@ pub struct Picture {
     pub(crate) fonts: Fonts,
     /// The colours of a scalar field from the lowest to the highest value, [`SHADES`] of them; empty if no panel shows one.
     pub(crate) ramp: Vec<Colour>,
-    /// One for each run shown.
+    /// A panel for each run shown.
     pub(crate) panels: Vec<Panel>,
     /// Flat marks below the bodies, in the order in which they are drawn.
     pub(crate) under: Vec<Mark>,

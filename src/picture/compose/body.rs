@@ -12,7 +12,7 @@ use glam::DVec3;
 use std::collections::HashSet;
 
 impl Composer<'_> {
-    /// The scale of colours on which the springs of a run show their own strain, if they do.
+    /// The colour scale for the strain of a run's springs, if they show it.
     pub(super) fn strain_of_springs(&self, run: usize) -> Option<ColourScale> {
         let view = &self.scene.view;
         let has_springs = self.scene.runs.get(run).is_some_and(|run| !run.model.springs().is_empty());
@@ -22,7 +22,7 @@ impl Composer<'_> {
 }
 
 impl Draft<'_> {
-    /// The surfaces of the elements that are not turned over and of those that are, with their lines.
+    /// The surfaces of sound and of turned-over elements, with their lines.
     pub(super) fn surfaces(&self, lines: &mut SurfaceLines) -> [Mesh; 2] {
         let [mut sound, mut turned_over] = [Mesh::default(), Mesh::default()];
         if self.position.is_empty() || !self.scene.view.visible.surfaces {
@@ -48,14 +48,14 @@ impl Draft<'_> {
         let kinds = Lines { edge: LineKind::AlarmEdge, contour: LineKind::AlarmContour };
         let of_sound = lines.borders.len();
         surroundings.add(&sets[1], total, kinds, &mut turned_over, lines);
-        // What both sets share counts once.
+        // A border of both sets counts once.
         let shared: HashSet<_> = lines.borders[of_sound..].iter().filter_map(|border| border.edge).collect();
         let mut at = 0;
         lines.borders.retain(|border| {
             at += 1;
             at > of_sound || border.edge.is_none_or(|edge| !shared.contains(&edge))
         });
-        // With a field, strokes are drawn instead.
+        // With a field, coloured strokes replace them.
         if self.shades.is_none() {
             self.bare_lines(&mut lines.drawn);
         }
@@ -83,8 +83,8 @@ impl Draft<'_> {
         }
     }
 
-    /// Lines with colours of their own: springs, or the edges of elements where there would be nothing else to see, and
-    /// what a field colours of elements without faces.
+    /// Coloured lines: springs, the edges of elements if nothing else would be visible, and elements without faces that
+    /// a field colours.
     pub(super) fn strokes(&self) -> Vec<Stroke> {
         let visible = self.scene.view.visible;
         let over = &self.run.snapshot.turned_over;
@@ -115,7 +115,7 @@ impl Draft<'_> {
         if !springs.is_empty() {
             strokes.extend(wire.without_surfaces().springs(springs, strain));
             if !visible.surfaces {
-                // Turned-over elements are marked in any case.
+                // Turned-over elements are always marked.
                 strokes.extend(wire.edges(edges, over, true));
             }
         }

@@ -1,4 +1,4 @@
-//! How the panels of a frame are seen: their arrangement and their cameras.
+//! The arrangement and the cameras of the panels of a frame.
 
 use super::Composer;
 use crate::look::Traced;
@@ -8,13 +8,13 @@ use crate::picture::tracking::Shot;
 use crate::scene::Scene;
 use crate::sim::RunFrame;
 
-/// Panels that a scene leaves to be arranged stand in at most so many columns, and in fewer than possible only where that
-/// makes bodies so many times larger.
+/// The most columns of panels that a scene does not arrange itself, and how many times larger bodies must become for
+/// fewer columns than possible.
 const MOST_COLUMNS: usize = 64;
 const LARGER: f64 = 1.02;
 
 impl Composer<'_> {
-    /// In how many columns the panels of some runs stand: as the scene says, or so that bodies are largest.
+    /// The number of columns for the panels of some runs: that of the scene, or the one with the largest bodies.
     pub(super) fn columns(&self, runs: &[usize]) -> usize {
         let (view, words) = (&self.scene.view, self.words());
         let pixels = |columns: usize| {
@@ -28,7 +28,8 @@ impl Composer<'_> {
         let most = panels.clamp(1, MOST_COLUMNS);
         let chosen = || {
             let mut best = (most, pixels(most).unwrap_or(0.0));
-            // With as many rows, as even as possible; side by side unless that costs much.
+            // For each number of rows the columns are as even as possible. One row is preferred unless bodies become
+            // much smaller.
             for columns in (2..=panels).map(|rows| panels.div_ceil(rows)).filter(|&columns| columns < most) {
                 let pixels = pixels(columns).unwrap_or(0.0);
                 best = if pixels > LARGER * best.1 { (columns, pixels) } else { best };
@@ -38,12 +39,12 @@ impl Composer<'_> {
         view.columns.map_or_else(chosen, |columns| columns.clamp(1, panels.max(1)))
     }
 
-    /// How a camera that follows sees bodies in a panel.
+    /// The view of a camera that follows, in a panel.
     pub(super) fn shot(&self, viewport: Rectangle, scale: Scale) -> Option<Shot> {
         Some(self.tracking.as_ref()?.shot(self.scene, (viewport, scale)))
     }
 
-    /// What the camera of a run looks at in a panel.
+    /// The target and distance of the camera of a run in a panel.
     pub(super) fn framing(&self, shot: Option<&Shot>, run: &RunFrame, panel: (Rectangle, Scale)) -> Framing {
         let Scene { view, body, .. } = self.scene;
         let Some((tracking, shot)) = self.tracking.as_ref().zip(shot) else { return Framing::still(&view.camera) };

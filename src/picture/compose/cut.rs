@@ -1,4 +1,4 @@
-//! Obstacles that leave their panel fade there, instead of being cut off.
+//! Obstacles that leave their panel fade instead of being cut off.
 
 use super::panel::Draft;
 use crate::picture::fade::FADING;
@@ -7,31 +7,31 @@ use crate::picture::plane::sides;
 use crate::picture::{Fading, Mark, MarkShape, Obstacles};
 use glam::{DVec2, DVec3};
 
-/// Free around the body, which is not faded with them (px in the reference picture).
+/// The margin around the body, which does not fade (px in the reference picture).
 const AROUND_BODY: f64 = 4.0;
-/// Nothing fades that goes on by less than the first length, and all that goes on by more than the second one fades
-/// alike (px in the reference picture).
+/// Obstacles that extend by less than the first length do not fade; those that extend by more than the second one fade
+/// fully (px in the reference picture).
 const BEGINS: [f64; 2] = [0.5, 8.0];
 /// Room for the lines of an obstacle (px in the reference picture).
 const LINE_ROOM: f64 = 3.0;
 
-/// Solid obstacles fade out over this part of the width and of the height: so far that thick rods do not end like cut ones, and
-/// most of the picture is left.
+/// Solid obstacles fade over this part of the width and of the height. It is long enough for thick rods not to look
+/// cut, and short enough to keep most of the picture.
 const FADE: [f64; 2] = [0.11, 0.13];
 
-/// What of obstacles goes on beyond a side.
+/// The part of obstacles beyond one side.
 #[derive(Clone, Copy)]
 struct Beyond {
-    /// How strongly it fades, from 0 to 1.
+    /// The strength of its fading, from 0 to 1.
     strength: f64,
-    /// From where to where along the side (px).
+    /// Its ends along the side (px).
     along: [f64; 2],
 }
 
 impl Draft<'_> {
-    /// Lets solid obstacles fade out where they leave the part of the panel between its words and half of its margins. Covers
-    /// the sides of the panel where plates leave it with the background, without the body. Both fade the more the nearer to
-    /// the side; those that hardly leave it less, so that nothing changes at once.
+    /// Lets solid obstacles fade where they leave the part of the panel between its words and half of its margins. At
+    /// the sides where plates leave the panel, covers everything but the body with the background. Both fade towards
+    /// the side, and less where they hardly leave it, so that nothing changes suddenly.
     pub(super) fn fade_obstacles(&self, obstacles: &mut Obstacles, marks: &mut Vec<Mark>) {
         let place = |at: [f32; 3]| self.origin + self.side * DVec3::from(at.map(f64::from));
         let has_words = self.scene.view.labels.are_in_panels();
@@ -45,7 +45,7 @@ impl Draft<'_> {
         let fades = strength.iter().any(|&strength| strength > 0.0);
         let distance = [FADE[0] * (room[2] - room[0]), FADE[1] * (room[3] - room[1])].map(narrow);
         obstacles.fade = fades.then(|| Fading { room: room.map(narrow), distance, strength: strength.map(narrow) });
-        // Plates go behind words, too; walls fade by themselves.
+        // Plates extend behind words, too; walls have a fading of their own.
         let slabs = obstacles.slabs.iter().filter_map(|slab| {
             let panes = slab.panes.iter().filter(|pane| !pane.grid);
             self.bounds(panes.flat_map(|pane| &pane.corners).map(|corner| place(corner.position)))
@@ -53,7 +53,7 @@ impl Draft<'_> {
         self.cover_plates(sides(self.viewport.map(f64::from)), slabs, marks);
     }
 
-    /// Covers the sides of a room (px: left, top, right and bottom) where plates in boxes (px) leave it.
+    /// Covers the sides of a room (px: left, top, right and bottom) that plates in boxes (px) leave.
     fn cover_plates(
         &self,
         [left, top, right, bottom]: [f64; 4],
@@ -70,7 +70,7 @@ impl Draft<'_> {
         let body = [body[0].x - around, body[0].y - around, body[1].x + around, body[1].y + around];
         for (side, part) in parts.into_iter().enumerate() {
             let Some(Beyond { strength, along: [first, last] }) = part else { continue };
-            // The body across the fading, and along the side.
+            // The box of the body, across and along the side.
             let ([from, to], [begin, end]) = match side % 2 {
                 0 => ([body[0], body[2]], [body[1], body[3]]),
                 _ => ([body[1], body[3]], [body[0], body[2]]),
@@ -95,8 +95,8 @@ impl Draft<'_> {
         }
     }
 
-    /// What of obstacles in boxes (px), if it is seen, goes on beyond each side of a room. The fading spans all that
-    /// reach into it, so that none is cut where it ends.
+    /// The parts of visible obstacles in boxes (px) beyond each side of a room. The fading spans all obstacles that
+    /// reach into it, so that none is cut at its end.
     fn beyond(
         &self,
         [left, top, right, bottom]: [f64; 4],

@@ -11,7 +11,7 @@ use crate::sim::{RunFrame, Status};
 use glam::DVec3;
 
 impl Composer<'_> {
-    /// What the ghosts of a scene are called, and their colour, if there are any.
+    /// The name and the colour of the scene's ghosts, if it has any.
     pub(super) fn ghost(&self) -> Option<(&str, Colour)> {
         Some(match self.scene.view.ghost? {
             Ghost::Rest => ("rest shape, best fit", self.palette.second_text),
@@ -21,7 +21,7 @@ impl Composer<'_> {
 }
 
 impl Draft<'_> {
-    /// The ghost that the scene asks for, inside a part of the picture. `others` are runs at the same moment.
+    /// The ghost of the scene, inside a part of the picture. `others` are runs at the same moment.
     pub(super) fn ghost(&self, others: &[RunFrame], room: Rectangle, curves: &mut Vec<Curve>) {
         let Some((_, colour)) = self.composer.ghost() else { return };
         match self.scene.view.ghost {
@@ -40,7 +40,7 @@ impl Draft<'_> {
         }
     }
 
-    /// The outline of the body with its nodes elsewhere (m).
+    /// The outline of the body with its nodes at other positions (m).
     pub(super) fn outline(&self, position: &[DVec3], colour: Colour, room: Rectangle, curves: &mut Vec<Curve>) {
         if self.diverged || position.len() != self.body.len() {
             return;

@@ -12,26 +12,25 @@ use crate::sim::geometry;
 use crate::sim::{Motion, Obstacle, Shape};
 use glam::{DVec2, DVec3};
 
-/// Where floor, grid and shadow begin and end to fade (sizes of the body around the point looked at).
+/// The distances at which floor, grid and shadow begin and end to fade (sizes of the body around the target).
 const FLOOR_FADE: [f64; 2] = [0.7, 2.0];
-/// The floor is drawn farther by as much as the shadow lies beyond the first distance from the point looked at, up to the
-/// third one; that begins gently over the second one (sizes of the body).
+/// The floor extends farther by the distance of the shadow beyond the first distance from the target, at most by the
+/// third one; the second one smooths the start (sizes of the body).
 const STILL_NEAR: f64 = 0.5;
 const GENTLY: f64 = 0.3;
 const FARTHEST_SHADOW: f64 = 3.0;
-/// Distance of the camera above which the floor is drawn wider (sizes of the body).
+/// Distance of the camera above which the floor is wider (sizes of the body).
 const USUAL_DISTANCE: f64 = 12.0;
-/// The floor begins to fade so far above the room for text below the body (px at type of the reference size), and ends at
-/// half that height, so that no grid lies behind the text.
+/// The floor begins to fade at this height above the room for text below the body (px at type of the reference size),
+/// and ends at half that height, so that no grid lies behind the text.
 const FADE_ABOVE: f64 = 45.0;
-/// The lines of the grid are a side apart, or more if a body would cover more cells than this: a lattice, whose cells the
-/// grid repeats, and any other body, beside which a fine grid would distract.
+/// The most grid cells across a body, so that its lines are a side apart or more: for a lattice, whose cells the grid
+/// repeats, and for any other body, beside which a fine grid would distract.
 const MOST_CELLS: [f64; 2] = [10.0, 5.0];
-/// Nor are they nearer to each other than this (px), or they would make a moiré; so flat does the floor look at least
-/// (sine of the angle).
+/// The least distance of grid lines (px), against moiré, for a floor at this angle at least (its sine).
 const LEAST_CELL: f64 = 8.0;
 const FLATTEST: f64 = 0.2;
-/// The darkness of the shadow of a body without surfaces, in parts of that of one with surfaces.
+/// The darkness of the shadow of a body without surfaces, relative to one with surfaces.
 const SHEER: f64 = 0.38;
 
 impl Draft<'_> {
@@ -45,12 +44,12 @@ impl Draft<'_> {
         let view = &self.scene.view;
         let farther = self.farther(&plane);
         let fade = FLOOR_FADE.map(|sizes| sizes * self.composer.extent / self.side * self.widening() + farther);
-        // Around the point looked at, which is the origin, projected onto the floor.
+        // The target is the origin, projected onto the floor.
         let middle = DVec2::ZERO;
         let cell = self.cell();
         let grid = plane.axes.map(|axis| narrow(((self.origin - anchor) / self.side).dot(axis).rem_euclid(cell)));
         let [_, below] = layout::rooms(view, f64::from(self.viewport[3]), self.scale.unit);
-        // Where there are no words it goes on to the border.
+        // Without words it extends to the border.
         let fade_above = if self.clear == self.viewport { 1.0 } else { (below + FADE_ABOVE) * self.scale.unit };
         Some(Floor {
             normal: narrow_point(plane.normal),
@@ -67,8 +66,8 @@ impl Draft<'_> {
         })
     }
 
-    /// How much farther than usual the floor is drawn so that the shadow of a body that has gone away or flies high still
-    /// falls on it (sides).
+    /// The extra width of the floor (sides), so that the shadow of a body that has moved away or flies high still falls
+    /// on it.
     fn farther(&self, plane: &Plane) -> f64 {
         if self.diverged || self.position.is_empty() {
             return 0.0;
@@ -81,8 +80,7 @@ impl Draft<'_> {
         beyond * beyond / (beyond + GENTLY * size)
     }
 
-    /// The plane of the ground, and a point through which lines of its grid go (m): the origin of the world, or where a
-    /// moving floor has brought it.
+    /// The plane of the ground, and a point on lines of its grid (m): the origin of the world, moved with the floor.
     fn plane(&self, normal: DVec3, height: f64) -> (Plane, DVec3) {
         let time = self.run.snapshot.time;
         let mut plane = Plane::new(normal, (height - normal.dot(self.origin)) / self.side);
@@ -105,7 +103,7 @@ impl Draft<'_> {
         } else {
             std::array::from_fn(|_| Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
         };
-        // A body without surfaces lets most of the light through.
+        // A body without surfaces lets most light through.
         if !self.scene.view.visible.surfaces {
             let cells = shades.iter_mut().flat_map(|shade| &mut shade.cells);
             cells.for_each(|cell| *cell = (f64::from(*cell) * SHEER).round() as u8);
@@ -127,8 +125,8 @@ impl Draft<'_> {
         casters
     }
 
-    /// How many times wider than usual the floor is drawn: what lies farther away fades at about the same place in the
-    /// panel. A camera that a scene places far away shows more than a body, on one floor throughout.
+    /// The factor by which the floor is wider than usual: distant parts fade at about the same place in the panel. A
+    /// camera that a scene places far away shows more than a body, on one floor throughout.
     pub(super) fn widening(&self) -> f64 {
         let usual = USUAL_DISTANCE * self.composer.extent;
         let farther = (self.framing.distance / usual).max(1.0);
@@ -139,15 +137,15 @@ impl Draft<'_> {
     pub(super) fn cell(&self) -> f64 {
         let camera = &self.scene.view.camera;
         let most = MOST_CELLS[usize::from(!self.scene.view.has_cells)];
-        // Cameras do not zoom, so cells do not change between frames.
+        // Cameras do not zoom, so cells are the same in all frames.
         let pixels =
             self.lens.focal * self.side / self.framing.distance * libm::sin(camera.elevation).abs().max(FLATTEST);
         cell(self.composer.extent / self.side, most, LEAST_CELL / pixels)
     }
 }
 
-/// The distance of the grid's lines (sides) beside a body of an extent (sides), which is so many cells at most, and no less
-/// than `least` (sides): 1, 2, 5, 10, 20, …
+/// The distance of the grid's lines (sides) for a body of an extent (sides), which spans at most `most` cells, and no
+/// less than `least` (sides): 1, 2, 5, 10, 20, …
 fn cell(extent: f64, most: f64, least: f64) -> f64 {
     let mut cells = 1.0;
     for factor in [2.0, 2.5, 2.0].into_iter().cycle().take(36) {

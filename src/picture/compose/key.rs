@@ -1,4 +1,4 @@
-//! What the key of a picture says: colours, lines, marks and arrows.
+//! The contents of the key of a picture: colours, lines, marks and arrows.
 
 use super::Composer;
 use crate::look::ColourScale;
@@ -10,7 +10,7 @@ use crate::sim::{Frame, RunFrame};
 use std::borrow::Cow;
 
 impl Composer<'_> {
-    /// What lines and marks mean.
+    /// Samples of lines and marks with their meanings.
     pub(super) fn samples(&self) -> Vec<Sample<'_>> {
         let ghost =
             self.ghost().map(|(name, colour)| Sample { names: vec![name.into()], kind: SampleKind::Ghost(colour) });
@@ -21,7 +21,7 @@ impl Composer<'_> {
         ghost.into_iter().chain(path).collect()
     }
 
-    /// The scale of colours of a frame, if there is one.
+    /// The colour scale of a frame, if there is one.
     pub(super) fn bar(&self, frame: &Frame) -> Option<Bar<'_>> {
         let colour = self.scene.view.colour.as_ref()?;
         let of_springs: Vec<_> = frame.runs.iter().map(|run| self.strain_of_springs(run.run)).collect();
@@ -38,7 +38,7 @@ impl Composer<'_> {
         Some(Bar::new([field.name(), field.unit(), definition], colour.range, self.extent, &self.ramp, values))
     }
 
-    /// The values of the springs of a run on a scale.
+    /// The strains of a run's springs on a scale.
     fn strains(&self, run: &RunFrame, scale: &ColourScale) -> Vec<f64> {
         let (body, position) = (&*self.scene.body, &run.shown().position);
         if position.len() != body.len() {
@@ -48,7 +48,7 @@ impl Composer<'_> {
         springs.iter().map(|&ends| scale.of_spring(spring_strain(body, position, ends))).collect()
     }
 
-    /// What the arrow of the key stands for, in words, its length (px), and how large it is beside those of the reference picture.
+    /// The length in words of the key's arrow, its pixels, and its size relative to the reference picture.
     pub(super) fn key_arrow(
         &self,
         legend: Legend,

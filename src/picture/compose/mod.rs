@@ -43,7 +43,7 @@ use std::sync::OnceLock;
 use words::{Around, Clock, Words};
 pub(crate) use words::{left_out, type_left_out};
 
-/// Bodies with more elements than this along a side get softer light, as if their elements were larger.
+/// Bodies with more elements than this along a side get softer light, as if they had larger elements.
 const SOFT_SHARE: f64 = 4.5;
 
 /// Composes frames of one scene.
@@ -58,12 +58,12 @@ pub struct Composer<'a> {
     descriptions: Vec<String>,
     /// The signed area of each polygon of a body in the plane.
     rest_areas: Vec<f64>,
-    /// Which faces lie on its outside, and which between elements.
+    /// The faces on its outside, and the faces between elements.
     shell: Shell,
-    /// The surface of the body, and the edges of its triangles if it throws a shadow.
+    /// The surface of the body, and the edges of its triangles if it casts a shadow.
     skin: Skin,
     seams: Vec<shadow::Edge>,
-    /// How faces that are not convex are cut into triangles.
+    /// The triangles of faces that are not convex.
     ears: Ears,
     /// Elements without faces.
     bare: Vec<usize>,
@@ -71,7 +71,7 @@ pub struct Composer<'a> {
     ramp: Vec<Colour>,
     /// The edges of the elements, if surfaces are not shown.
     edges: Edges,
-    /// The nodes that get arrows.
+    /// The nodes with arrows.
     bearers: Vec<u32>,
     /// The size of the body (m).
     extent: f64,
@@ -81,33 +81,34 @@ pub struct Composer<'a> {
     soft: f64,
     /// The chart below the panels, if the time series are known.
     timeline: Option<Timeline>,
-    /// The paths of all runs, likewise.
+    /// The paths of all runs, if the time series are known.
     traced: Vec<TimeSeries>,
-    /// How the camera follows, if it does.
+    /// The data of a camera that follows, if it does.
     tracking: Option<Tracking>,
-    /// Where nodes have come near plates and walls, if the time series are known.
+    /// The boxes of nodes near plates and walls, if the time series are known.
     reach: Reach,
-    /// How the panels of the first frame are arranged, and those of all others of the same runs.
+    /// The arrangement of the panels of the first frame, which all frames of the same runs have.
     arranged: OnceLock<Arranged>,
 }
 
-/// How the panels of some runs are arranged, in any frame.
+/// The arrangement of the panels of some runs, in any frame.
 #[derive(Debug)]
 struct Arranged {
     runs: Vec<usize>,
     columns: usize,
     around: Around,
-    /// How a camera that follows sees the bodies.
+    /// The view of a camera that follows.
     shot: Option<Shot>,
-    /// The part of panels' widths that tallies take.
+    /// The part of panels' widths for tallies.
     tally: f64,
 }
 
 impl<'a> Composer<'a> {
-    /// Prepares to compose frames of a scene, by the time series of all runs that frames show ([`History::for_pictures`]).
+    /// Prepares to compose frames of a scene, with the time series of all runs in the frames
+    /// ([`History::for_pictures`]).
     ///
-    /// Charts and paths show the time series; a camera that follows takes its scale from them, and plates and walls their
-    /// size. With an empty history the places of charts and paths stay empty, and all scales are those of the start.
+    /// Charts and paths show the time series. A camera that follows takes its scale from them, and plates and walls
+    /// their size. With an empty history there are no charts and paths, and all scales are those of the start.
     pub fn new(scene: &'a Scene, history: &History) -> Self {
         let body = &*scene.body;
         let areas = match body.dimension {
@@ -173,7 +174,7 @@ impl<'a> Composer<'a> {
         Words { scene: self.scene, fonts: &self.fonts, palette: &self.palette, descriptions: &self.descriptions }
     }
 
-    /// Writes nothing yet, in type and lines of a scale.
+    /// An empty writer, with type and lines of a scale.
     fn writer(&self, scale: Scale) -> Writer<'_> {
         let (marks, curves, words) = Default::default();
         Writer { palette: &self.palette, fonts: &self.fonts, scale, marks, curves, words }
@@ -273,7 +274,8 @@ impl<'a> Composer<'a> {
             if labels.count {
                 let before = (writer.marks.len(), writer.words.len());
                 from = writer.count(viewport, (&self.tally, tally), run.shown());
-                // The state that is shown of a run that diverges does not say how many have turned over since; its room stays.
+                // The shown state of a run that diverges does not have the present number of turned-over elements. Its
+                // room is kept.
                 if run.shown().status != Status::Ok {
                     writer.marks.truncate(before.0);
                     writer.words.truncate(before.1);
@@ -281,7 +283,7 @@ impl<'a> Composer<'a> {
             }
             let usual = caption::number(self.extent, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
             let to = to.min(writer.left_of_numbers(viewport, &usual));
-            // One scale for all panels, and so one bar.
+            // All panels have one scale, so there is one bar.
             if let Some(framing) = framing.filter(|_| labels.scale_bar && at == 0) {
                 from = self.draw_bar(viewport, framing, [from, to], writer).unwrap_or(from);
             }
@@ -293,7 +295,7 @@ impl<'a> Composer<'a> {
         }
     }
 
-    /// The pixels of a metre at the point looked at.
+    /// Pixels per metre at the target.
     fn pixels_a_metre(&self, viewport: Rectangle, framing: &Framing, scale: Scale) -> f64 {
         let Self { scene, .. } = self;
         let lens = Lens::new(&scene.view, framing, scene.body.dimension, viewport.map(f64::from), scale.unit);
@@ -311,7 +313,7 @@ impl<'a> Composer<'a> {
     }
 }
 
-/// As many lines as there is room for; if that is not all of them, the last one ends in an ellipsis.
+/// As many lines as fit. If some are left out, the last one ends in an ellipsis.
 fn cut(mut lines: Vec<String>, room: usize) -> Vec<String> {
     let is_cut = lines.len() > room;
     lines.truncate(room);
@@ -322,7 +324,7 @@ fn cut(mut lines: Vec<String>, room: usize) -> Vec<String> {
     lines
 }
 
-/// The nodes that get arrows: those on the surface and those of elements without faces.
+/// The nodes with arrows: those on the surface, and those of elements without faces.
 fn bearers(body: &Body, skin: &Skin, bare: &[usize]) -> Vec<u32> {
     let of_bare = bare.iter().flat_map(|&element| &body.elements[element]);
     let mut nodes: Vec<u32> = skin.nodes.iter().chain(of_bare).copied().collect();

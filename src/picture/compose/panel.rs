@@ -23,12 +23,12 @@ use std::borrow::Cow;
 /// Coordinates of diverged runs are clamped to this (sides).
 const FARTHEST: f64 = 1e12;
 
-/// Contours become narrower for bodies smaller than the second size, down to this part of their width at the first size (px
-/// in the reference picture); otherwise small bodies would be mostly outline.
+/// Bodies smaller than the second size have narrower contours, down to this part of the width at the first size (px in
+/// the reference picture); otherwise small bodies would be mostly outline.
 const SMALL_BODY: [f64; 2] = [30.0, 150.0];
 const LEAST_CONTOUR: f64 = 0.4;
 
-/// One panel while it is composed: the data that all its parts need.
+/// One panel while it is composed, with the data for all its parts.
 pub(super) struct Draft<'a> {
     pub(super) composer: &'a Composer<'a>,
     pub(super) scene: &'a Scene,
@@ -36,7 +36,7 @@ pub(super) struct Draft<'a> {
     pub(super) run: Shown<'a>,
     pub(super) framing: &'a Framing,
     pub(super) viewport: Rectangle,
-    /// The part of it that words leave free.
+    /// The part of it without words.
     pub(super) clear: Rectangle,
     pub(super) scale: Scale,
     pub(super) lens: Lens,
@@ -46,25 +46,25 @@ pub(super) struct Draft<'a> {
     pub(super) origin: DVec3,
     /// The panel's unit of length (m).
     pub(super) side: f64,
-    /// The nodes (m); none if not all are known.
+    /// The nodes (m); empty if not all are known.
     pub(super) position: Cow<'a, [DVec3]>,
-    /// The field that is shown.
+    /// The shown field.
     pub(super) shades: Option<Shades>,
-    /// Its places at the nodes, if anything but surfaces shows them.
+    /// Its places on the colour scale at the nodes, if lines or discs show them.
     pub(super) of_nodes: Vec<f32>,
     /// Length of an element's edge at the body's distance (px).
     pub(super) element: f64,
     /// Whether the body lies in the plane.
     pub(super) flat: bool,
-    /// Whether the run diverged and no state of it is known that fits.
+    /// Whether the run diverged and no fitting state of it is known.
     pub(super) diverged: bool,
-    /// Whether the body is greyed, because the run diverges or did so.
+    /// Whether the body is greyed because the run diverges or has diverged.
     pub(super) greyed: bool,
     /// The colours.
     pub(super) palette: Palette,
 }
 
-/// A run with the state that is shown of it.
+/// A run with its shown state.
 #[derive(Clone, Copy)]
 pub(super) struct Shown<'a> {
     pub(super) run: usize,
@@ -89,9 +89,9 @@ impl<'a> Draft<'a> {
         // Without positions nothing is drawn.
         let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
         let position = finite(position, FARTHEST * view.side);
-        // Without values, a greyed body has its own colour.
+        // A greyed body shows no values.
         let field = if greyed { &[][..] } else { &run.snapshot.field[..] };
-        // Beside springs that show their own strain, nothing else is coloured.
+        // If springs show their strain, the body has no colours.
         let shown = view.colour.as_ref().filter(|_| composer.strain_of_springs(run.run).is_none());
         let shades = shown.map(|scale| Shades::new(body, scale, field));
         let of_nodes = match &shades {
@@ -173,7 +173,7 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// How wide the contours of the body are, in parts of their usual width.
+    /// The width of the body's contours, relative to the usual one.
     fn contour_share(&self) -> f64 {
         if self.flat || self.diverged {
             return 1.0;
@@ -225,7 +225,7 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// All obstacles but the ground, with the lines and marks that belong to them.
+    /// All obstacles but the ground, with their lines and marks.
     fn obstacles(&self, surfaces: [&Mesh; 2], lines: &mut Vec<Line>, above: &mut Vec<Mark>) -> (Obstacles, Staged) {
         let site = Site {
             obstacles: &self.scene.obstacles,
@@ -291,7 +291,7 @@ impl<'a> Draft<'a> {
             times: view.arrow_scale,
             colour: match self.scene.runs.get(self.run.run) {
                 Some(run) if view.colour.is_none() => run.line(&self.composer.palette).colour,
-                // Among the colours of a field, an arrow of a run's colour would not stand out.
+                // An arrow of the run's colour would not stand out among the colours of a field.
                 _ => self.composer.palette.text,
             },
             halo: self.composer.palette.background,
@@ -299,7 +299,7 @@ impl<'a> Draft<'a> {
         arrows.draw(&self.facing_bearers(), &self.body.rest, &self.position, &self.run.snapshot.placement, above);
     }
 
-    /// The nodes that get arrows, and the opacity of these: 0 where all faces of a node in space are turned away.
+    /// The nodes with arrows and their opacity: 0 if all faces of a node in space are turned away.
     fn facing_bearers(&self) -> Vec<(u32, f64)> {
         let Composer { skin, bearers, .. } = self.composer;
         if !self.scene.view.visible.surfaces {
@@ -311,24 +311,24 @@ impl<'a> Draft<'a> {
         bearers.iter().map(|&node| (node, visible[node as usize])).collect()
     }
 
-    /// The part of the panel that words leave free, as wide as the panel.
+    /// The part of the panel without words, over its whole width.
     pub(super) fn between_words(&self) -> Rectangle {
         let ([left, _, width, _], [_, top, _, height]) = (self.viewport, self.clear);
         [left, top, width, height]
     }
 
-    /// A point (m) as the panel has it.
+    /// A point (m) in the panel's coordinates.
     pub(super) fn relative(&self, point: DVec3) -> [f32; 3] {
         narrow_point((point - self.origin) / self.side).to_array()
     }
 
-    /// Draws the arrows of what moves, in a room.
+    /// Draws the arrows of moving objects, in a room.
     fn pointers(&self, room: Rectangle) -> Pointers<'_> {
         Pointers { lens: &self.lens, room, scale: self.scale, palette: &self.composer.palette }
     }
 }
 
-/// Clamps coordinates where any is too large, so that arithmetic with them stays finite.
+/// Clamps too large coordinates, so that arithmetic with them stays finite.
 fn finite(points: &[DVec3], farthest: f64) -> Cow<'_, [DVec3]> {
     if points.iter().all(|point| point.abs().cmple(DVec3::splat(farthest)).all()) {
         return Cow::Borrowed(points);

@@ -13,8 +13,8 @@ use crate::picture::series::{EXACT, simplified};
 use crate::runner::history::TimeSeries;
 use glam::DVec2;
 
-/// Widths of the paths of the centre and of a node, and how much wider their halo is (px in the reference picture), and its
-/// opacity.
+/// Widths of the paths of the centre and of a node, the extra width of their halo (px in the reference picture), and
+/// its opacity.
 const CENTRE: f64 = 2.2;
 const NODE: f64 = 1.4;
 const HALO: f64 = 2.0;
@@ -23,8 +23,8 @@ const HALO_ALPHA: f64 = 0.6;
 const DOT: f64 = 1.7;
 
 impl Composer<'_> {
-    /// What the paths are called in the key, from the longest wording to the shortest; none if there are none. The one
-    /// of the centre is drawn thicker.
+    /// The names of the paths in the key, from the longest wording to the shortest; none if there are no paths. The
+    /// path of the centre is thicker.
     pub(super) fn path_names(&self) -> Vec<String> {
         let paths = &self.scene.view.paths;
         let nodes: Vec<_> = paths
@@ -48,7 +48,7 @@ impl Composer<'_> {
 }
 
 impl Draft<'_> {
-    /// The paths up to the present moment inside a part of the picture, as far as the time series of the run is known.
+    /// The paths up to the present moment inside a part of the picture, for the known part of the run's time series.
     pub(super) fn paths(&self, series: &[TimeSeries], room: Rectangle, curves: &mut Vec<Curve>) {
         let snapshot = &self.run.snapshot;
         let own = series.iter().find(|series| series.run == self.run.run);
@@ -62,7 +62,7 @@ impl Draft<'_> {
             let way = path.iter().take(past).copied().chain([now]);
             let lines = within(way.map(|at| self.lens.project(at).map(|(pixel, _)| DVec2::from(pixel))), room);
             let pieces = lines.iter().flat_map(|line| parted(simplified(line, EXACT)));
-            // Where there are no words they go on to the border.
+            // Without words they extend to the border.
             let fading = if self.clear == self.viewport { 0.0 } else { FADING * self.scale.unit };
             let fade = Fade::new(room, [fading; 4]);
             let pieces: Vec<_> = pieces.flat_map(|piece| fade.parts(&piece)).collect();
@@ -87,7 +87,8 @@ fn holds(room: Rectangle, pixel: DVec2) -> bool {
     (left..=right).contains(&pixel.x) && (top..=bottom).contains(&pixel.y)
 }
 
-/// A line, parted where it turns back on itself: the shader of curves joins pieces that go on in about the same direction.
+/// A line, divided where it turns back on itself: the shader of curves joins pieces that continue in about the same
+/// direction.
 fn parted(line: Vec<[f64; 2]>) -> Vec<Vec<[f64; 2]>> {
     let mut pieces: Vec<Vec<[f64; 2]>> = Vec::new();
     for two in line.windows(2) {
@@ -104,13 +105,13 @@ fn parted(line: Vec<[f64; 2]>) -> Vec<Vec<[f64; 2]>> {
     pieces
 }
 
-/// The parts of a line in a rectangle (px). Points that no camera sees part it.
+/// The parts of a line in a rectangle (px). Points that the camera does not see divide it.
 fn within(points: impl Iterator<Item = Option<DVec2>>, room: Rectangle) -> Vec<Vec<[f64; 2]>> {
     let edges = sides(room.map(f64::from));
     let mut lines: Vec<Vec<[f64; 2]>> = Vec::new();
     let (mut before, mut is_open): (Option<DVec2>, bool) = (None, false);
     for point in points {
-        // A body that rests stays where it is.
+        // A resting body repeats its point.
         if before == point {
             continue;
         }

@@ -1,4 +1,4 @@
-//! The part of a panel that the body and its lines may touch.
+//! The part of a panel that the body and its lines may cover.
 
 use super::panel::Draft;
 use crate::picture::camera::Lens;
@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 const LINE_ROOM: f64 = 3.0;
 
 impl Draft<'_> {
-    /// The part of the panel that the body, its lines and points around obstacles (m) may touch.
+    /// The part of the panel that the body, its lines and points around obstacles (m) may cover.
     pub(super) fn region(&self, around_obstacles: &[DVec3]) -> Rectangle {
         let mut room = LINE_ROOM * self.scale.line() + 2.0;
         if let Some(radius) = self.bead_radius() {
@@ -17,11 +17,11 @@ impl Draft<'_> {
         }
         let [body, around] =
             [&self.position[..], around_obstacles].map(|points| region(self.viewport, points.iter(), &self.lens, room));
-        // Obstacles go under the rows of words, where there are any.
+        // Obstacles are drawn below the rows of words, if there are any.
         let has_words = self.scene.view.labels.are_in_panels();
         let region = union(body, if has_words { overlap(around, self.between_words()) } else { around });
-        // Everything ends at the panel, with its words above it; but a diverged body may cover everything, and the words
-        // report it.
+        // Everything ends at the words of the panel. A diverged body may cover the whole panel, and the words report
+        // it.
         if self.diverged { overlap(region, self.clear) } else { region }
     }
 
@@ -36,7 +36,7 @@ impl Draft<'_> {
     }
 }
 
-/// The smallest rectangle that holds two, of which one may be empty.
+/// The smallest rectangle around two, which may be empty.
 fn union(one: Rectangle, other: Rectangle) -> Rectangle {
     let is_empty = |[_, _, width, height]: Rectangle| width == 0 || height == 0;
     if is_empty(one) || is_empty(other) {
@@ -48,7 +48,7 @@ fn union(one: Rectangle, other: Rectangle) -> Rectangle {
     [left, top, right - left, bottom - top]
 }
 
-/// What two rectangles share.
+/// The common part of two rectangles.
 fn overlap([x, y, width, height]: Rectangle, [x2, y2, width2, height2]: Rectangle) -> Rectangle {
     let [left, top] = [x.max(x2), y.max(y2)];
     let right = (x + width).min(x2 + width2).max(left);
@@ -56,7 +56,7 @@ fn overlap([x, y, width, height]: Rectangle, [x2, y2, width2, height2]: Rectangl
     [left, top, right - left, bottom - top]
 }
 
-/// The part of a panel that points and what lies between them may touch, with `room` (px) around it.
+/// The part of a panel that points and the lines between them may cover, with `room` (px) around it.
 fn region<'p>(viewport: Rectangle, points: impl Iterator<Item = &'p DVec3>, lens: &Lens, room: f64) -> Rectangle {
     let [left, top, width, height] = viewport;
     let mut low = DVec2::INFINITY;

@@ -7,14 +7,14 @@ use crate::picture::tracking::Shot;
 use crate::picture::{Framing, number};
 use crate::sim::{RunFrame, Snapshot};
 
-/// The scale bar is at most and at least this long (px in the reference picture).
+/// The largest and the least length of the scale bar (px in the reference picture).
 const LONGEST: f64 = 120.0;
 const LEAST: f64 = 20.0;
-/// The parts of a panel's width that tallies may take: the first one that leaves room for a scale bar.
+/// Shares of a panel's width for tallies: the first one that leaves room for a scale bar is used.
 const TALLY_SHARES: [f64; 4] = [0.36, 0.28, 0.20, 0.12];
 
 impl Composer<'_> {
-    /// Draws the scale bar of a panel between two places (px), if there is room; returns where it ends (px).
+    /// Draws the scale bar of a panel between two places (px), if there is room. Returns its right end (px).
     pub(super) fn draw_bar(
         &self,
         panel: Rectangle,
@@ -24,7 +24,7 @@ impl Composer<'_> {
     ) -> Option<f64> {
         let room = between[1] - between[0] - 2.0 * writer.scale.gap();
         let (metres, pixels) = self.scale_bar(panel, framing, writer.scale, room);
-        // Words of a shorter one may be narrower.
+        // A shorter bar may have narrower words.
         let shorter = number::round_below(0.9 * metres);
         let bars = [(metres, pixels), (shorter, pixels * shorter / metres)].into_iter();
         let least = LEAST * writer.scale.unit;
@@ -33,8 +33,8 @@ impl Composer<'_> {
         })
     }
 
-    /// The part of panels' widths that tallies take, and whether the scale bar has room beside one: less than usual where it
-    /// would have none.
+    /// The part of panels' widths for tallies, reduced if the scale bar needs it, and whether the scale bar has room
+    /// beside them.
     pub(super) fn beside_tally(&self, layout: &Layout, shot: Option<&Shot>) -> (f64, bool) {
         let fits = |&share: &f64| self.fits_bar(layout, shot, share);
         match TALLY_SHARES.iter().find(|share| fits(share)) {
@@ -66,14 +66,14 @@ impl Composer<'_> {
         labels.scale_bar && self.draw_bar(panel, &framing, [from, to], &mut writer).is_some()
     }
 
-    /// Whether the scale bar of some runs in columns has no room, as far as the start tells.
+    /// Whether the scale bar of some runs in columns has no room, judged by the start.
     pub(super) fn lacks_bar(&self, runs: &[usize], columns: usize) -> bool {
         let layout = self.words().around(runs, columns).layout;
         let shot = layout.panels.first().and_then(|&panel| self.shot(panel, layout.scale));
         self.scene.view.labels.scale_bar && !layout.panels.is_empty() && !self.beside_tally(&layout, shot.as_ref()).1
     }
 
-    /// What a scale bar in a room (px) stands for (m), and how long it is (px).
+    /// The length of a scale bar in a room (px), in metres and in pixels.
     fn scale_bar(&self, viewport: Rectangle, framing: &Framing, scale: Scale, room: f64) -> (f64, f64) {
         let pixels = self.pixels_a_metre(viewport, framing, scale);
         let metres = number::round_below((LONGEST * scale.unit).min(room).max(1.0) / pixels);

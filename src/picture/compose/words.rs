@@ -1,4 +1,4 @@
-//! The words of a scene's pictures: what stands where, whatever the frame, and what finds no room.
+//! The words of a scene's pictures: their places, which are the same in all frames, and words without room.
 
 use super::{Composer, cut};
 use crate::look::{Ghost, Labels, LineStyle, Palette, View};
@@ -12,12 +12,12 @@ use crate::picture::wrap::{balanced, wrapped};
 use crate::runner::history::History;
 use crate::scene::Scene;
 
-/// Titles and captions are never longer than this (lines).
+/// The most lines of titles and captions.
 const MOST_LINES: [usize; 2] = [4, 200];
 
-/// From so many panels on, not each of them says what is the same in all.
+/// From this number of panels on, only the first one has the part of descriptions that all share.
 const MANY: usize = 4;
-/// What stands between the parts of a description.
+/// The separator of the parts of a description.
 const BETWEEN_PARTS: &str = ", ";
 
 /// The words of a scene.
@@ -29,7 +29,7 @@ pub(super) struct Words<'a> {
     pub(super) descriptions: &'a [String],
 }
 
-/// What stands around panels, and where everything stands.
+/// The text around panels, and the layout.
 #[derive(Debug)]
 pub(super) struct Around {
     pub(super) layout: Layout,
@@ -38,12 +38,12 @@ pub(super) struct Around {
     pub(super) caption: Vec<String>,
     /// The key of colours and arrows.
     pub(super) legend: Option<Legend>,
-    /// Where the clock stands.
+    /// The place of the clock.
     pub(super) clock: Clock,
 }
 
-/// Where a clock stands: in a panel, or where it has no room beside the heading there, at a baseline (px) above all panels,
-/// if it has room there.
+/// The place of a clock: in a panel or, without room beside the heading there, at a baseline (px) above all panels, if
+/// it has room there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Clock {
     InPanel,
@@ -55,7 +55,7 @@ impl<'a> Words<'a> {
         &self.scene.view
     }
 
-    /// What stands around the panels of some runs, in columns.
+    /// The text around the panels of some runs, in columns.
     pub(super) fn around(&self, runs: &[usize], columns: usize) -> Around {
         let (view, scale, panels) = (self.view(), Layout::around(self.view()), runs.len());
         let [title, caption] = self.lines(scale);
@@ -67,7 +67,7 @@ impl<'a> Words<'a> {
             caption_lines: caption.len().min(MOST_LINES[1]),
         };
         let layout = Layout::new(view, panels, columns, wanted);
-        // Where names are so long or type is so large that they would be in each other's way, the clock stands alone.
+        // If names are long or type is large, the clock stands alone.
         let is_crowded = self.is_crowded(&layout, runs, columns);
         let is_beside = layout.title_lines == title.len()
             && self.writer(layout.scale).has_room_beside(scale, &title, &view.clock, view.size[0]);
@@ -86,7 +86,7 @@ impl<'a> Words<'a> {
     /// All lines of title and caption.
     fn lines(&self, around: Scale) -> [Vec<String>; 2] {
         let view = self.view();
-        // Panels' margins are no wider than those around them.
+        // Panels' margins are no wider than the margins around them.
         let room = f64::from(view.size[0]) - 2.0 * around.margin();
         let lines = |text: &str, weight: Weight, size: f64, wrap: fn(&Fonts, &str, Weight, f64, f64) -> Vec<String>| {
             if Scale::legible(size) { wrap(self.fonts, text, weight, size, room) } else { Vec::new() }
@@ -118,7 +118,7 @@ impl<'a> Words<'a> {
         runs.iter().map(|&run| self.scene.runs.get(run).map_or("", |run| &*run.name)).collect()
     }
 
-    /// What describes the run of a panel. Where there are many, only the first one says what is the same in all.
+    /// The description of the run of a panel. Among many panels, only the first one has the part that all share.
     fn description(&self, at: usize, runs: &[usize]) -> String {
         let all: Vec<_> = runs.iter().filter_map(|&run| self.descriptions.get(run)).collect();
         let Some(&own) = all.get(at) else { return String::new() };
@@ -146,7 +146,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The line that stands for a run in the chart and among arrows, if there are any.
+    /// The line of a run in the chart or among arrows, if there are any.
     fn sample(&self, run: usize, has_chart: bool) -> Option<LineStyle> {
         let view = self.view();
         let has_arrows = view.visible.displacements && view.colour.is_none();
@@ -154,7 +154,7 @@ impl<'a> Words<'a> {
         (view.labels.legend && (has_chart || has_arrows || has_ghost)).then(|| self.scene.runs.get(run)).flatten().map(
             |run| {
                 let line = run.line(self.palette);
-                // As its curve in the chart. Without one, only colours count.
+                // The same as its curve in the chart. Without a chart, only colours count.
                 match view.strip.filter(|_| has_chart) {
                     Some(diagnostic) => series::style(diagnostic, line),
                     None => LineStyle { dash: &[], ..line },
@@ -177,7 +177,7 @@ impl<'a> Words<'a> {
         Writer { palette: self.palette, fonts: self.fonts, scale, marks, curves, words }
     }
 
-    /// What finds no room in pictures of some runs, each with what becomes of it.
+    /// The words without room in pictures of some runs, each with the consequence.
     fn left_out(&self, runs: &[usize], columns: usize) -> Vec<String> {
         let (view, around) = (self.view(), self.around(runs, columns));
         let layout = &around.layout;
@@ -197,12 +197,12 @@ impl<'a> Words<'a> {
         let Some(panel) = layout.panels.first() else { return told };
         let written = layout::written(view, f64::from(panel[3]), layout.scale.unit);
         let has = |one: fn(Labels) -> bool| one(view.labels) && !one(written.labels);
-        tell(view.strip.is_some() && !written.events, "panels do not say what happens in the chart");
+        tell(view.strip.is_some() && !written.events, "panels do not name the events of the chart");
         if let Some(diagnostic) = view.strip.filter(|_| written.events && layout.chart.is_some()) {
             let [explained, with_times] =
                 self.writer(layout.scale).explains(*panel, &event::narrowest(diagnostic, self.scene));
-            tell(!explained, "panels do not say all that may happen in the chart");
-            tell(explained && !with_times, "panels do not say when all of it happens");
+            tell(!explained, "panels do not name all possible events of the chart");
+            tell(explained && !with_times, "panels do not have the times of all events");
         }
         tell(has(|labels| labels.model), "panels do not describe the models");
         tell(has(|labels| labels.count || labels.number), "panels have no numbers");
@@ -223,17 +223,18 @@ impl<'a> Words<'a> {
     }
 }
 
-/// What finds no room in the pictures of a scene.
+/// The words without room in the pictures of a scene.
 pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
     let composer = Composer::new(scene, &History::default());
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let words = composer.words();
-    // Nobody expects words in a thumbnail.
+    // A thumbnail needs no words.
     if !Scale::legible(Layout::around(&scene.view).small()) {
         return Vec::new();
     }
     let columns = composer.columns(&runs);
-    // How panels stand follows from the course of the scene, too: between what the start suggests and side by side.
+    // The arrangement of panels also depends on the course of the scene: it is between that of the start and side by
+    // side.
     let last = if scene.view.columns.is_none() { runs.len().max(columns) } else { columns };
     let mut told = words.left_out(&runs, columns);
     for columns in columns + 1..=last {
@@ -248,7 +249,7 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
     told
 }
 
-/// The size of the words of a scene (px) if they are left out because nobody could read them in any picture.
+/// The size of the words of a scene (px) if it is too small to be read, so that they are left out.
 pub(crate) fn type_left_out(scene: &Scene) -> Option<f64> {
     let view = &scene.view;
     let Labels { name, model, clock, count, number, .. } = view.labels;
@@ -257,7 +258,7 @@ pub(crate) fn type_left_out(scene: &Scene) -> Option<f64> {
     (has_words && !Scale::legible(usual)).then_some(usual)
 }
 
-/// The panel with the clock, of so many in columns: upper right.
+/// The panel with the clock, upper right, among panels in columns.
 pub(super) fn clock_panel(panels: usize, columns: usize) -> usize {
     columns.clamp(1, panels.max(1)) - 1
 }

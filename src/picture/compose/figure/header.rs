@@ -13,20 +13,21 @@ use crate::scene::figure::Figure;
 const TITLE_BASELINE: f64 = 60.0;
 const FIRST_BASELINE: f64 = 54.0;
 const BELOW_TITLE: f64 = 27.0;
-/// Captions have at most so many lines, and all of it takes at most this part of the picture.
+/// The most lines of captions, and the most of the picture that the header takes.
 const MOST_LINES: usize = 3;
 const MOST_HEIGHT: f64 = 0.34;
-/// Side of the key's square, between this and its words, and between caption and key (px in the reference picture).
+/// Side of the key's square, gap between the square and its words, and gap between caption and key (px in the reference
+/// picture).
 const SQUARE: f64 = 13.0;
 const SQUARE_GAP: f64 = 9.0;
 const APART: f64 = 36.0;
 /// Between the keys of two squares (px in the reference picture).
 const KEYS_APART: f64 = 22.0;
-/// What a hollow square means.
+/// The meaning of a hollow square.
 const FLAT: &str = "flat: volume below 1 %";
 
-/// Writes title, caption and a key of what a struck square means, in the first of its wordings that fits, and a hollow one
-/// if there are any, into a picture of a width (px). Returns the last baseline (px), 0 if nothing is written.
+/// Writes title, caption and a key into a picture of a width (px). The key explains struck squares, in the first of its
+/// wordings that fits, and hollow ones if there are any. Returns the last baseline (px), 0 if nothing is written.
 pub(super) fn write(writer: &mut Writer<'_>, figure: &Figure, wordings: &[String], has_flat: bool) -> f64 {
     let (scale, palette, fonts) = (writer.scale, writer.palette, writer.fonts);
     let [width, height] = figure.size.map(f64::from);
@@ -34,7 +35,7 @@ pub(super) fn write(writer: &mut Writer<'_>, figure: &Figure, wordings: &[String
     let [large, small] = [scale.title(), scale.caption()];
     let most = MOST_HEIGHT * height;
     let mut last = 0.0;
-    // Each line, and where it ends (px).
+    // Each line, and its end (px).
     let mut lines: Vec<[f64; 2]> = Vec::new();
     let title = fonts.shortened(&figure.title, Weight::SemiBold, large, room);
     let baseline = scale.row(TITLE_BASELINE);
@@ -64,7 +65,7 @@ pub(super) fn write(writer: &mut Writer<'_>, figure: &Figure, wordings: &[String
     let one = |text: &str| side + gap + fonts.width(text, Weight::Regular, small);
     let of_flat = if has_flat { one(FLAT) + KEYS_APART * scale.unit } else { 0.0 };
     let wide = |text: &String| of_flat + one(text);
-    // Beside the last line, or else one above it.
+    // Beside the last line, or else a line above it.
     let beside = wordings.iter().find_map(|text| {
         let free = |line: &&[f64; 2]| line[1] + APART * scale.unit + wide(text) <= width - margin;
         lines.iter().rev().find(free).map(|line| (text, line[0], width - margin - wide(text)))

@@ -3,14 +3,15 @@
 use crate::picture::plane::{clipped, is_inside};
 use glam::DVec2;
 
-/// Distances between a point and its label that are tried (px in the reference picture).
+/// Distances that are tried between a point and its label (px in the reference picture).
 const DISTANCES: [f64; 3] = [7.0, 14.0, 24.0];
-/// Directions that are tried, as angles from the wanted one (rad).
+/// Directions that are tried, as angles from the preferred one (rad).
 const ANGLES: [f64; 9] = [0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2, 1.6, -1.6];
-/// The cost of an angle (per rad) and of a distance (per px in the reference picture); a hidden pixel of a line costs 1.
+/// The cost of an angle (per rad) and of a distance (per px in the reference picture); each hidden pixel of a line
+/// costs 1.
 const ANGLE_COST: f64 = 14.0;
 const DISTANCE_COST: f64 = 1.2;
-/// The cost of a place at the tail of an arrow, and how far the node there reaches behind it (px in the reference picture).
+/// The cost of a place at the tail of an arrow, and the extent of the node behind it (px in the reference picture).
 const TAIL_COST: f64 = 38.0;
 const TAIL: f64 = 5.0;
 /// The cost of each corner and of the middle of a label that lies on a surface.
@@ -18,13 +19,13 @@ const SURFACE_COST: f64 = 9.0;
 /// The cost of leaving the room (per px), and of covering another label (per px²).
 const OUTSIDE_COST: f64 = 500.0;
 const LABEL_COST: f64 = 8.0;
-/// Free around a label (px in the reference picture).
+/// The margin around a label (px in the reference picture).
 const FREE: f64 = 3.0;
 
 /// A box: left, top, right, bottom (px).
 pub(super) type Edges = [f64; 4];
 
-/// What labels should not hide, and the labels placed so far.
+/// The lines and surfaces that labels should not hide, and the labels placed so far.
 #[derive(Clone, Debug)]
 pub(super) struct Labels {
     /// The room for labels.
@@ -33,7 +34,7 @@ pub(super) struct Labels {
     pub(super) unit: f64,
     /// Straight pieces of arrows and edges.
     pub(super) lines: Vec<[DVec2; 2]>,
-    /// Surfaces, which labels may lie on but rather do not.
+    /// Surfaces, which labels may cover at a cost.
     pub(super) surfaces: Vec<Vec<DVec2>>,
     boxes: Vec<Edges>,
 }
@@ -43,13 +44,13 @@ impl Labels {
         Self { room, unit, lines: Vec::new(), surfaces: Vec::new(), boxes: Vec::new() }
     }
 
-    /// The place of a label of a size beside a point, as far as possible in a direction from it: its left upper corner.
+    /// The place of a label of a size beside a point, preferably in a direction from it: its upper left corner.
     pub(super) fn place(&mut self, point: DVec2, away: DVec2, size: DVec2) -> DVec2 {
         let best = self.best(point, away, size);
         self.take(best, size)
     }
 
-    /// The place of a label at the tip of an arrow or, where that is crowded, behind its tail.
+    /// The place of a label at the tip of an arrow or, if that is crowded, behind its tail.
     pub(super) fn place_at_arrow(&mut self, [from, to]: [DVec2; 2], size: DVec2) -> DVec2 {
         let back = (from - to).normalize_or_zero() * TAIL * self.unit;
         let (at_tip, mut at_tail) = (self.best(to, to - from, size), self.best(from + back, from - to, size));
@@ -62,7 +63,7 @@ impl Labels {
         corner
     }
 
-    /// The cheapest place beside a point, and what it costs.
+    /// The cheapest place beside a point, and its cost.
     fn best(&self, point: DVec2, away: DVec2, size: DVec2) -> (f64, DVec2) {
         let away = away.try_normalize().unwrap_or(DVec2::NEG_Y);
         let mut best = (f64::INFINITY, DVec2::ZERO);
@@ -70,7 +71,8 @@ impl Labels {
             for angle in ANGLES {
                 let (sine, cosine) = libm::sincos(angle);
                 let along = DVec2::new(cosine, sine).rotate(away);
-                // The middle of the label is so far away that the label only reaches up to the distance.
+                // The middle of the label is moved away by its extent in this direction, so that only its edge is at
+                // the distance.
                 let reach = (0.5 * size * along.abs()).element_sum().min(0.5 * size.max_element());
                 let middle = point + (distance * self.unit + reach) * along;
                 let corner = (middle - 0.5 * size).round();
@@ -101,7 +103,7 @@ impl Labels {
     }
 }
 
-/// The area that two boxes share (px²).
+/// The common area of two boxes (px²).
 fn shared(one: Edges, other: Edges) -> f64 {
     let width = one[2].min(other[2]) - one[0].max(other[0]);
     let height = one[3].min(other[3]) - one[1].max(other[1]);

@@ -9,18 +9,18 @@ use crate::picture::Picture;
 use crate::runner::moments::Moments;
 use crate::scene::figure::{Content, Figure};
 
-/// There is no room for a figure.
+/// A figure is too small for its contents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no room for what the figure shows; draw it larger or with fewer scenes")]
+#[error("the figure is too small for its contents; draw it larger or with fewer scenes")]
 pub(crate) struct NoRoom;
 
-/// Composes a figure from what was simulated for it.
+/// Composes a figure from its simulated states.
 ///
 /// # Errors
-/// If the figure is too small for all that it shows.
+/// If the figure is too small for its contents.
 ///
 /// # Panics
-/// If `moments` are those of another figure.
+/// If `moments` belong to another figure.
 pub(crate) fn compose_figure(figure: &Figure, moments: &Moments) -> Result<Picture, NoRoom> {
     match &figure.content {
         Content::Sheet(sheet) => Ok(sheet::compose(figure, sheet, moments)),

@@ -1,4 +1,4 @@
-//! The cells of a diagram of forces: what each shows, and where its body stands.
+//! The cells of a diagram of forces: their contents, and the places of their bodies.
 
 use crate::picture::camera::{Framing, Lens};
 use crate::picture::compose::Composer;
@@ -9,19 +9,19 @@ use crate::scene::Scene;
 use crate::sim::{RunFrame, Snapshot};
 use glam::{DVec2, DVec3};
 
-/// Room inside a cell above and below what is drawn (px in the reference picture).
+/// Room inside a cell above and below its contents (px in the reference picture).
 const ROW_ROOM: [f64; 2] = [44.0, 22.0];
 
-/// What one cell shows.
+/// The contents of one cell.
 pub(super) struct Cell<'a> {
     pub(super) composer: &'a Composer<'a>,
     pub(super) scene: &'a Scene,
     pub(super) frame: RunFrame,
     /// The force on each node over the stiffness (m): its arrow.
     pub(super) ways: Vec<DVec3>,
-    /// The same for the run that all are compared with.
+    /// The arrows of the run for comparison, with its index.
     pub(super) compared: Option<(usize, Vec<DVec3>)>,
-    /// The nodes of the rest shape in its best fit (m), which is drawn faintly behind the body.
+    /// The nodes of the rest shape in its best fit (m), drawn faintly behind the body.
     pub(super) ghost: Vec<DVec3>,
     /// The camera of the scene, turned to the middle of the body.
     pub(super) framing: Framing,
@@ -74,7 +74,7 @@ impl<'a> Cell<'a> {
         [lens.right, lens.up]
     }
 
-    /// The box around all that is drawn, seen from far away: to the right and up from the middle of the body (m).
+    /// The box around the contents, seen from far away: to the right and up from the middle of the body (m).
     fn extent(&self) -> [DVec2; 2] {
         let axes = self.axes();
         let position = &self.snapshot().position;
@@ -100,8 +100,8 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// The largest scale at which all cells fit (px/m), and the pixel of the middle of each cell's body. The cells of a
-/// column, and those of a row, have their bodies below and beside each other; rows share the height as they need.
+/// The largest scale at which all cells fit (px/m), and the pixel of the middle of each cell's body. Bodies are aligned
+/// in columns and rows; rows share the height by their needs.
 pub(super) fn fit(
     cells: &mut [Cell<'_>],
     columns: usize,
@@ -125,7 +125,7 @@ pub(super) fn fit(
     if !(pixels > 0.0 && pixels.is_finite()) {
         return None;
     }
-    // What is left over goes between the rows.
+    // Spare height goes between the rows.
     let spare = ((height - rows as f64 * (above + below) - needed * pixels) / rows as f64).max(0.0);
     let mut at = top;
     let mut centres = Vec::new();

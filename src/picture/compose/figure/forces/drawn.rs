@@ -30,11 +30,11 @@ const CENTRE: f64 = 3.4;
 const ARROW: f64 = 5.0;
 /// Arrows shorter than this are not drawn (px in the reference picture).
 const SHORTEST: f64 = 3.0;
-/// An arrow that leaves both sides of a corner by less than this (rad) has no halo there.
+/// An arrow that is closer than this to both sides of a corner (rad) has no halo there.
 const NARROW: f64 = 0.5;
-/// Forces that would move no node farther than this (sides) are none, but for round-off.
+/// Forces that would move no node farther than this (sides) are round-off.
 const NONE: f64 = 1e-9;
-/// Opacity of what a body hides.
+/// Opacity of nodes and arrows that a body hides.
 const HIDDEN: f64 = 0.3;
 
 /// A cell with its camera.
@@ -56,7 +56,7 @@ impl<'a> Drawn<'a> {
 
     /// The body with its rest shape behind it.
     pub(super) fn panel(&self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) -> Panel {
-        // Without the ring arrows, nodes and displacements of usual pictures.
+        // Ring arrows, nodes and displacements of usual panels are left out.
         let mut panel = self.draft.panel(under, &mut Vec::new());
         self.draft.fade_obstacles(&mut panel.obstacles, above);
         panel.beads.clear();
@@ -116,7 +116,7 @@ impl<'a> Drawn<'a> {
         strokes.map(stroke).collect()
     }
 
-    /// The dashed outline of the ghost in the plane: as far as the body does not cover it, or all of it.
+    /// The dashed outline of the ghost in the plane, outside of the body or complete.
     fn ghost_outline(&self, marks: &mut Vec<Mark>, also_inside: bool) {
         let body = &self.cell.scene.body;
         let pixels: Vec<_> = self.cell.snapshot().position.iter().map(|&at| self.pixel(at)).collect();
@@ -147,7 +147,8 @@ impl<'a> Drawn<'a> {
         let palette = &self.figure.look.palette();
         let unit = scale.unit;
         let position = &cell.snapshot().position;
-        // In the plane all nodes are seen; in space those of elements without faces are, too, and those inside are not.
+        // In the plane all nodes are visible. In space the nodes of elements without faces are, too, but nodes inside
+        // are not.
         let mut seen = cell.composer.skin.visible(position, &self.draft.lens);
         let body = &cell.scene.body;
         for node in (0..position.len()).filter(|&node| !cell.composer.skin.holds(node as u32)) {
@@ -221,8 +222,7 @@ impl<'a> Drawn<'a> {
         }
     }
 
-    /// Whether the arrow of a node of a body in the plane lies in a narrow corner of an element there, whose sides its
-    /// halo would cover.
+    /// Whether a node's arrow in the plane lies in a narrow corner of an element, whose sides its halo would cover.
     fn is_in_corner(&self, node: usize, [from, to]: [DVec2; 2]) -> bool {
         let way = to - from;
         let nearly = |other: u32| {
@@ -237,7 +237,7 @@ impl<'a> Drawn<'a> {
             })
     }
 
-    /// The size of a force at its arrow, and the angle to the one that it is compared with.
+    /// The size of a force at its arrow, and the angle to the force that it is compared with.
     fn number(&self, at: usize, [from, to]: [DVec2; 2], writer: &mut Writer<'_>, labels: &mut Labels, colour: Colour) {
         let Self { cell, scale, .. } = self;
         let palette = &self.figure.look.palette();
@@ -252,7 +252,7 @@ impl<'a> Drawn<'a> {
         let lines = if second.is_empty() { 1.0 } else { 2.0 };
         let extent = DVec2::new(wide(&number).max(wide(&second)), size * 0.8 + (lines - 1.0) * line);
         let corner = labels.place_at_arrow([from, to], extent);
-        // Towards the arrow, lines end or begin alike.
+        // Both lines are aligned at the side of the arrow.
         let on_left = corner.x + 0.5 * extent.x < if corner.x < from.x.min(to.x) { from.x } else { to.x };
         for (row, (text, colour)) in [(number, colour), (second, palette.second_text)].into_iter().enumerate() {
             let left = if on_left { corner.x + extent.x - wide(&text) } else { corner.x };
@@ -261,14 +261,14 @@ impl<'a> Drawn<'a> {
         }
     }
 
-    /// The centre, and the vectors from there to a node and to its place in the equilibrium shape.
+    /// The centre, and the vectors from it to a node and to its place in the equilibrium shape.
     fn vectors(&self, writer: &mut Writer<'_>, labels: &mut Labels, seen: &[f64]) {
         let Self { cell, scale, .. } = self;
         let palette = &self.figure.look.palette();
         let unit = scale.unit;
         let position = &cell.snapshot().position;
         let centre = self.pixel(cell.middle());
-        // The node that is displaced most among those that are seen.
+        // The visible node with the largest displacement.
         let displaced = |node: &usize| self.pixel(position[*node]).distance(self.pixel(cell.ghost[*node]));
         let visible = (0..position.len()).filter(|&node| seen[node] > 0.5);
         let Some(node) = visible.max_by(|one, other| displaced(one).total_cmp(&displaced(other))) else { return };
@@ -311,7 +311,7 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// What an arrow covers, for labels: its middle and both its sides.
+/// The lines of an arrow that labels should not hide: its middle and both its sides.
 fn wide([from, to]: [DVec2; 2], half: f64) -> [[DVec2; 2]; 3] {
     let across = (to - from).perp().normalize_or_zero() * half;
     [-1.0, 0.0, 1.0].map(|side| [from + side * across, to + side * across])

@@ -12,7 +12,7 @@ use crate::scene::Scene;
 use crate::scene::figure::{Figure, Forces};
 use glam::DVec2;
 
-/// The key's arrow is about as long as this (px in the reference picture).
+/// The approximate length of the key's arrow (px in the reference picture).
 const KEY_ARROW: f64 = 60.0;
 
 /// The key at the bottom.

@@ -8,7 +8,7 @@ use crate::picture::narrow::narrow;
 use crate::picture::{Mark, MarkShape};
 use glam::DVec2;
 
-/// Opacity of the rest shape, and of the inside and the outline of arrows to compare with.
+/// Opacity of the rest shape, and of the inside and the outline of arrows for comparison.
 const GHOST: f64 = 0.075;
 const COMPARED: f64 = 0.16;
 const OUTLINE_ALPHA: f64 = 0.75;
@@ -21,7 +21,7 @@ pub(super) fn ghost_colour(palette: &Palette) -> Colour {
     mixed(palette.background, palette.edge_on_ground(), GHOST)
 }
 
-/// An arrow of the run to compare with: faintly filled, with an outline.
+/// An arrow of the run for comparison: faintly filled, with an outline.
 pub(super) fn outlined(ends: [DVec2; 2], scale: Scale, colour: Colour, ground: Colour, has_halo: bool) -> Vec<Mark> {
     let points = outline(ends, HEAD * scale.line());
     let edge = mixed(ground, colour, OUTLINE_ALPHA);
@@ -35,7 +35,7 @@ pub(super) fn outlined(ends: [DVec2; 2], scale: Scale, colour: Colour, ground: C
 /// An arrow without a halo, which would cover the lines beside it.
 pub(super) fn bare([from, to]: [DVec2; 2], size: f64, colour: Colour) -> [Mark; 2] {
     let points = outline([from, to], HEAD * size);
-    // Around it: the shaft's two sides, the joint, a wing and the tip.
+    // The points run around the arrow: both sides of the shaft, the joint, a wing and the tip.
     let [shaft, joint, wing, tip] = [points[0], points[1], points[2], points[3]];
     let along = (to - from).normalize_or_zero();
     let [half_shaft, half_head] = [shaft, wing].map(|at| (at - from).perp_dot(along).abs());
@@ -47,10 +47,10 @@ pub(super) fn bare([from, to]: [DVec2; 2], size: f64, colour: Colour) -> [Mark; 
     [Mark::line([from, end], 2.0 * half_shaft, colour), head]
 }
 
-/// The outline of an arrow with a head of a width (px), closed. The shader that draws arrows has the same shares.
+/// The closed outline of an arrow with a head of a width (px). The shader for arrows has the same proportions.
 fn outline([from, to]: [DVec2; 2], width: f64) -> Vec<DVec2> {
-    /// Length of the head and depth of its notch, width of the shaft, and length of the head of a short arrow: in parts
-    /// of the head's width, the last of the arrow's length.
+    /// Length of the head, depth of its notch and width of the shaft in widths of the head, and length of the head of a
+    /// short arrow in lengths of the arrow.
     const SHAPE: [f64; 4] = [1.235, 0.2, 0.247, 0.62];
     let length = from.distance(to);
     let along = (to - from) / length.max(1e-9);

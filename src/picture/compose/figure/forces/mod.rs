@@ -1,4 +1,4 @@
-//! Diagrams of forces: what each model does to the nodes at the start of a scene.
+//! Diagrams of forces: the forces of each model on the nodes at the start of a scene.
 
 mod cell;
 mod drawn;
@@ -28,13 +28,13 @@ const BARE_ROOM: f64 = 84.0;
 /// Heights of the heads of columns and of the key at the bottom (px in the reference picture).
 const HEADS: f64 = 106.0;
 const KEY: f64 = 74.0;
-/// Baselines of a column's name, the part of that which its type takes, and baselines of its note and of a row's name
-/// below its top (px in the reference picture).
+/// Baselines of a column's name, the part of that for its type, and baselines of its note and of a row's name below its
+/// top (px in the reference picture).
 const NAME: f64 = 60.0;
 const NAME_TYPE: f64 = 20.0;
 const NOTE: f64 = 86.0;
 const ROW_NAME: f64 = 20.0;
-/// Free below the figure's title and caption, below which heads stand so much higher (px in the reference picture).
+/// The gap below the figure's title and caption, which heads need less margin for (px in the reference picture).
 const BELOW_HEADER: f64 = 16.0;
 const UNDER_TITLE: f64 = 20.0;
 
@@ -54,7 +54,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     let unit = scale.unit;
     let last = header::write(&mut writer, figure, &[], false);
     let top = if last > 0.0 { last + BELOW_HEADER * unit } else { 0.0 };
-    // Below a title, names need no margin above them.
+    // Below a title, names need no margin above.
     let raised = if top > 0.0 { UNDER_TITLE * unit } else { 0.0 };
     let has_notes = runs > 1 && forces.notes.iter().any(|note| !note.is_empty());
     let heads = scale.of_type(if has_notes { HEADS } else { HEADS - (NOTE - NAME) }) * unit - raised;
@@ -101,7 +101,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
             let thickness = unit.round().max(1.0);
             let from = top + scale.margin() - raised;
             let line = [x, from, thickness, cells_bottom - from];
-            // Above what fades at the sides of the cells.
+            // Above the fading at the sides of the cells.
             above.push(filled(line, palette.hairline));
         }
     }
@@ -120,16 +120,16 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     Ok(Picture { size: figure.size, palette, fonts, ramp: Vec::new(), panels, under, marks: above, curves, words })
 }
 
-/// A scene as a diagram shows it: in the figure's colours, without fields, strips, words, arrows and floors of its own.
+/// A scene for a diagram: in the figure's colours, without fields, strips, words, arrows and floors.
 fn bare(scene: &Scene, figure: &Figure) -> Scene {
     let mut scene = scene.clone();
     let view = &mut scene.view;
     view.look = figure.look.clone();
     (view.colour, view.strip) = (None, None);
     view.visible.displacements = false;
-    // There is no scale bar, but the room for it.
+    // There is no scale bar, but its room is kept.
     view.labels = Labels { scale_bar: view.labels.scale_bar, ..Labels::NONE };
-    // Floors are not drawn, and so cut nothing.
+    // Floors are not drawn, so they cover nothing.
     scene.obstacles.retain(|obstacle| !matches!(obstacle.shape, Shape::Floor { .. }));
     scene
 }

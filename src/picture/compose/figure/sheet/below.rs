@@ -14,16 +14,16 @@ use crate::sim::{Diagnostic, RunFrame, Snapshot, Status};
 
 /// Size of diagnostics (px in the reference picture).
 const NUMBER: f64 = 14.0;
-/// How large tallies are beside those of panels, the part of a tile's width that they take at most, and between tally,
-/// count and number (px in the reference picture).
+/// The size of tallies relative to those of panels, the most of a tile's width that they take, and the gap between
+/// tally, count and number (px in the reference picture).
 const TALLY: f64 = 0.54;
 const TALLY_SHARE: f64 = 0.6;
 const COUNT_GAP: f64 = 10.0;
 const NUMBER_GAP: f64 = 18.0;
-/// Half the height of digits, in parts of the type's size.
+/// Half the height of digits, in sizes of type.
 const X_MIDDLE: f64 = 0.36;
 
-/// The elements of all scenes in rows, in one style: squares for all, or bars.
+/// The tallies of all scenes in one style: squares for all, or bars.
 pub(super) fn tallies(scenes: &[Scene], scale: Scale, plan: &Plan) -> Vec<Tally> {
     let tallies: Vec<_> = scenes.iter().map(|scene| Tally::new(&scene.body, scene.view.side)).collect();
     let (scale, room) = size_of_tallies(scale, plan);
@@ -31,7 +31,7 @@ pub(super) fn tallies(scenes: &[Scene], scale: Scale, plan: &Plan) -> Vec<Tally>
     if have_squares { tallies } else { tallies.iter().map(Tally::as_bar).collect() }
 }
 
-/// The scale and the room of tallies (px).
+/// The scale and the width of tallies (px).
 fn size_of_tallies(scale: Scale, plan: &Plan) -> (Scale, f64) {
     (scale.with_unit(TALLY * scale.unit), TALLY_SHARE * plan.words_width(scale))
 }
@@ -54,22 +54,22 @@ pub(super) fn key(scenes: &[Scene], tallies: &[Tally], scale: Scale, plan: &Plan
     wordings
 }
 
-/// What stands below the body of a tile.
+/// The text below the body of a tile.
 pub(super) struct Below {
-    /// The tally, as if the tile's lower left corner were the picture's left upper one.
+    /// The tally, placed as in a tile at the picture's origin.
     tally: Vec<Mark>,
     tally_width: f64,
-    /// How many elements have turned over or, if none has, are flat; empty if unknown.
+    /// The number of turned-over elements or, if there are none, of flat ones; empty if unknown.
     count: String,
     is_alarm: bool,
     /// A diagnostic; empty for none.
     number: String,
-    /// That the run diverges, in words and in fewer words; empty if it does not.
+    /// Wordings for a run that diverges, from long to short; empty if it does not.
     diverged: Vec<String>,
 }
 
 impl Below {
-    /// The text for a run, with a diagnostic if one is asked for.
+    /// The text for a run, with a diagnostic if requested.
     pub(super) fn new(
         writer: &Writer<'_>,
         plan: &Plan,
@@ -113,7 +113,7 @@ impl Below {
         self.tally_width + gap + writer.fonts.width(&self.count, Weight::SemiBold, writer.scale.caption())
     }
 
-    /// Whether there is room for the diagnostic, too.
+    /// Whether the diagnostic has room, too.
     pub(super) fn has_room(&self, writer: &Writer<'_>, plan: &Plan) -> bool {
         let size = NUMBER * writer.scale.type_unit();
         let number = NUMBER_GAP * writer.scale.type_unit() + writer.fonts.width(&self.number, Weight::Regular, size);
@@ -121,7 +121,7 @@ impl Below {
             || Scale::legible(size) && self.counted(writer) + number <= plan.words_width(writer.scale)
     }
 
-    /// Writes tally, count and, if there is room in all tiles, the diagnostic; or that the run diverged.
+    /// Writes tally, count and, if it has room in all tiles, the diagnostic; or that the run diverged.
     pub(super) fn write(self, writer: &mut Writer<'_>, plan: &Plan, [row, column]: [usize; 2], with_number: bool) {
         let (scale, palette, fonts) = (writer.scale, writer.palette, writer.fonts);
         let size = scale.caption();

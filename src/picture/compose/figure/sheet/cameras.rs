@@ -1,5 +1,4 @@
-//! The cameras of a contact sheet: all bodies are seen from the same distance, so that they can be compared, and none is
-//! cut.
+//! The cameras of a sheet: all bodies are seen from the same distance, so that they can be compared, and none is cut.
 
 use super::plan::Plan;
 use crate::look::Ghost;
@@ -13,23 +12,23 @@ use crate::sim::geometry::{self, bounds};
 use crate::sim::{Dimension, RunFrame, Shape, Snapshot, Status};
 use glam::{DVec2, DVec3};
 
-/// Bodies that would be smaller than this part of their tile, each in its own place, are looked for column by column,
-/// and then one by one.
+/// If bodies would be smaller than this part of their tiles, cameras follow the bodies column by column, and if that is
+/// not enough, one by one.
 const SMALLEST: f64 = 0.30;
-/// And none is larger than this part, even where a tile shows only a part of what it was.
+/// The largest part of a tile that a body takes, even if the tile shows only a part of it.
 const LARGEST: f64 = 0.8;
 /// Bodies whose sizes differ by more than this factor are not shown at one scale.
 const UNLIKE: f64 = 3.0;
-/// How far around the body obstacles are looked at (sizes of the body).
+/// The distance around the body up to which obstacles are considered (sizes of the body).
 const AROUND: f64 = 1.0;
-/// The part of the room left over that is below bodies on the ground.
+/// The share of spare room that is below bodies on the ground.
 const BELOW_GROUND: f64 = 0.25;
-/// A body is without width if no node is farther than this from a line (px).
+/// A body is collapsed if no node is farther than this from a line (px).
 const FLAT: f64 = 0.5;
-/// Steps of the search; each brings it about ten times nearer.
+/// Steps of the search; each reduces the error about ten times.
 const STEPS: usize = 12;
 
-/// The points that a tile has to show.
+/// The points that a tile must show.
 pub(super) struct Cell {
     scene: usize,
     /// Corners (m).
@@ -49,7 +48,7 @@ pub(super) fn cells(scenes: &[Scene], reaches: &[Reach], sheet: &Sheet, moments:
     moments.cells.iter().zip(&moments.others).map(row).collect()
 }
 
-/// Where the nodes shown in a sheet come near the plates and walls of each scene.
+/// The parts of the plates and walls of each scene near the shown nodes.
 pub(super) fn reaches(scenes: &[Scene], sheet: &Sheet, moments: &Moments) -> Vec<Reach> {
     let mut reaches = vec![Reach::default(); scenes.len()];
     for (column, run) in moments.cells.iter().flat_map(|row| row.iter().enumerate()) {
@@ -125,13 +124,13 @@ fn points(scene: &Scene, reach: &Reach, run: &RunFrame, ghost: Vec<DVec3>) -> Ve
             }
         }
     }
-    // Of what is distant only the nearest part is shown.
+    // Only the nearest part of distant objects is shown.
     let ghost = ghost.into_iter().filter(|point| point.is_finite());
     points.extend(near.into_iter().chain(ghost).map(|point| point.clamp(low, high)));
     points
 }
 
-/// What the camera of each tile looks at.
+/// The target and distance of the camera of each tile.
 pub(super) fn framings(scenes: &[Scene], cells: &[Vec<Cell>], plan: &Plan) -> Vec<Vec<Framing>> {
     let mut framings: Vec<Vec<_>> = cells
         .iter()
@@ -146,7 +145,7 @@ pub(super) fn framings(scenes: &[Scene], cells: &[Vec<Cell>], plan: &Plan) -> Ve
         let Some(&[row, column]) = own.first() else { continue };
         let scene = &scenes[cells[row][column].scene];
         let camera = TileCamera { scene, plan };
-        // The same view for all, one for each column, one for each tile.
+        // One view for all tiles, for each column, or for each tile.
         let ways: [fn([usize; 2]) -> [usize; 2]; 3] = [|_| [0, 0], |[_, column]| [0, column], |place| place];
         for (at, way) in ways.iter().enumerate() {
             let mut groups: Vec<([usize; 2], Vec<[usize; 2]>)> = Vec::new();
@@ -176,7 +175,7 @@ pub(super) fn framings(scenes: &[Scene], cells: &[Vec<Cell>], plan: &Plan) -> Ve
     framings
 }
 
-/// The classes of scenes that are shown at one scale: those seen from the same direction, with bodies of similar sizes.
+/// The classes of scenes that are shown at one scale: the same direction of view, and bodies of similar sizes.
 fn classes(scenes: &[Scene]) -> Vec<usize> {
     let alike = |one: &Scene, other: &Scene| {
         let [a, b] = [&one.view.camera, &other.view.camera];
@@ -196,7 +195,7 @@ fn classes(scenes: &[Scene]) -> Vec<usize> {
     (0..scenes.len()).map(class).collect()
 }
 
-/// The camera of a tile, wherever that stands.
+/// The camera of a tile, independent of the tile's place.
 struct TileCamera<'a> {
     scene: &'a Scene,
     plan: &'a Plan,
@@ -213,21 +212,21 @@ impl TileCamera<'_> {
         Framing { target, distance, rise: 0.0, moves: false }
     }
 
-    /// Pixels of a metre at a distance (m).
+    /// Pixels per metre at a distance (m).
     fn pixels(&self, distance: f64) -> f64 {
         let lens = self.lens(&Self::framing(DVec3::ZERO, distance));
         lens.focal / if lens.orthographic { 1.0 } else { distance }
     }
 
-    /// The part of the room for bodies that the body at rest takes at a distance (m).
+    /// The share of the room for bodies that the body at rest takes at a distance (m).
     fn share(&self, distance: f64) -> f64 {
         let [left, top, right, bottom] = self.plan.body_room();
         self.pixels(distance) * self.scene.body.extent() / (right - left).min(bottom - top).max(1.0)
     }
 
-    /// No tile is seen from nearer (m).
+    /// The least distance of any tile (m).
     fn nearest(&self) -> f64 {
-        // Pixels of a metre fall with the distance.
+        // Pixels per metre fall with the distance.
         let usual = self.usual();
         usual * self.share(usual) / LARGEST
     }
@@ -236,7 +235,7 @@ impl TileCamera<'_> {
         self.scene.view.camera.distance.max(f64::MIN_POSITIVE)
     }
 
-    /// Where points are all in the room for bodies, as large as possible.
+    /// The nearest framing with all points in the room for bodies.
     fn fit(&self, points: &[DVec3]) -> Framing {
         let mut framing = self.start(points, self.usual());
         let [left, top, right, bottom] = self.plan.body_room();
@@ -254,7 +253,7 @@ impl TileCamera<'_> {
         framing
     }
 
-    /// The view from a distance (m) with points in the middle of the room for bodies.
+    /// The framing at a distance (m) with points in the middle of the room for bodies.
     fn aim(&self, points: &[DVec3], distance: f64) -> Framing {
         let mut framing = self.start(points, distance);
         for _ in 0..STEPS {
@@ -271,8 +270,8 @@ impl TileCamera<'_> {
         Self::framing(target, distance)
     }
 
-    /// The same with a box of the picture (px) moved into the middle of the room for bodies, or lower where there is
-    /// ground.
+    /// The framing moved so that a box of the picture (px) is in the middle of the room for bodies, or lower if there
+    /// is ground.
     fn centred(&self, lens: &Lens, framing: &Framing, (low, high): (DVec2, DVec2)) -> Framing {
         let [left, top, right, bottom] = self.plan.body_room();
         let has_ground = geometry::ground(&self.scene.obstacles, 0.0).is_some();
@@ -284,7 +283,7 @@ impl TileCamera<'_> {
     }
 }
 
-/// The ends of a body without any width as a line in its tile (px), or the same point twice; `None` for all others.
+/// The ends of a collapsed body as a line in its tile (px), or the same point twice; `None` for other bodies.
 pub(super) fn collapsed(
     scene: &Scene,
     plan: &Plan,

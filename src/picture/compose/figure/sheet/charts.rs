@@ -1,4 +1,4 @@
-//! Charts below the tiles: diagnostics of all rows over the time of their scene, and the moments of the columns.
+//! Charts below the tiles: diagnostics of all rows over the time of their scene, with the moments of the columns.
 
 use crate::picture::caption::{self, Writer};
 use crate::picture::chart::NUMBERS;
@@ -9,34 +9,34 @@ use crate::picture::strip::{Parts, Strip};
 use crate::runner::history::History;
 use crate::scene::figure::Sheet;
 
-/// The part of the picture's width that names at the ends of curves take at most, and half of what is free between those
-/// of two charts (px in the reference picture).
+/// The most of the picture's width for names at the ends of curves, and half of the gap between names of two charts (px
+/// in the reference picture).
 const NAMES: f64 = 0.16;
 const NAMES_APART: f64 = 3.0;
 
-/// Where charts stand (px).
+/// The places of charts (px).
 pub(super) struct ChartsRoom {
     /// The middle of the rings above all charts.
     pub(super) rings: f64,
     /// Left and right end of all charts.
     pub(super) span: [f64; 2],
-    /// Where their names begin.
+    /// The left end of their names.
     pub(super) names: Option<f64>,
     /// Top and bottom of each chart.
     pub(super) charts: Vec<[f64; 2]>,
-    /// What is free between them.
+    /// The gap between charts.
     pub(super) between: f64,
 }
 
-/// What charts show.
+/// The contents of charts.
 pub(super) struct Charts<'a> {
     sheet: &'a Sheet,
     /// The last moment (s).
     end: f64,
     charts: Vec<Strip>,
-    /// Names at the ends of curves, if there is room for them; the same beside all charts.
+    /// Names at the ends of curves, if there is room for them, the same beside all charts.
     ends: Option<Ends>,
-    /// The room that names take, and that the numbers beside the charts take with gaps (px).
+    /// The widths of the names, and of the numbers beside the charts with gaps (px).
     pub(super) names_width: f64,
     pub(super) numbers_width: f64,
 }
@@ -45,7 +45,7 @@ impl<'a> Charts<'a> {
     /// The charts of a sheet, with the time series of each of its scenes.
     pub(super) fn new(sheet: &'a Sheet, histories: &[History], writer: &Writer<'_>, width: f64) -> Self {
         let (fonts, scale) = (writer.fonts, writer.scale);
-        // A label shared by all rows of a run replaces its name.
+        // A common label of all rows of a run replaces the run's name.
         let label = |run: &str| {
             let mut labels = sheet.rows.iter().filter(|row| row.run == run).map(|row| &row.label);
             labels.next().filter(|first| labels.all(|label| label == *first)).map_or(run, |label| label).to_owned()
@@ -77,7 +77,7 @@ impl<'a> Charts<'a> {
         self.charts.len()
     }
 
-    /// Draws as many charts as there is room for, and says what bands are where that has room below a name.
+    /// Draws as many charts as fit, and explains bands if there is room below a name.
     pub(super) fn draw(&mut self, writer: &mut Writer<'_>, room: &ChartsRoom) {
         let (fonts, scale) = (writer.fonts, writer.scale);
         if !Scale::legible(NUMBERS * scale.type_unit()) || self.end <= 0.0 {
@@ -96,7 +96,7 @@ impl<'a> Charts<'a> {
         flags.sort_by(|one, other| one.at.total_cmp(&other.at));
         flag::draw(writer, &flags, room.rings, room.span, all);
         for (at, (one, &[top, bottom])) in self.charts.iter_mut().zip(&room.charts).enumerate() {
-            // Names may stand beside the gaps between charts, too, but not next to those of another chart.
+            // Names may extend beside the gaps between charts, but must stay apart from the names of another chart.
             let beyond = 0.5 * room.between - NAMES_APART * scale.type_unit();
             let between = [top - beyond, bottom + beyond];
             let parts = parts([top, bottom]);

@@ -1,4 +1,4 @@
-//! The headings of the columns of a contact sheet.
+//! The headings of the columns of a sheet.
 
 use crate::picture::caption::{self, Writer};
 use crate::picture::layout::Scale;
@@ -7,22 +7,22 @@ use crate::picture::text::{Fonts, Weight};
 use crate::picture::wrap::wrapped;
 use crate::scene::figure::Sheet;
 
-/// Between two lines of a heading, between the letter of a column and what stands beside it, and between columns (px in
-/// the reference picture).
+/// The distance of two lines of a heading, the gap between a column's letter and its lines, and the gap between columns
+/// (px in the reference picture).
 pub(super) const HEADING_LINE: f64 = 20.0;
 const LETTER_GAP: f64 = 10.0;
 const HEADINGS_APART: f64 = 14.0;
 
-/// What stands above a column.
+/// The heading of a column.
 pub(super) struct Heading {
-    /// Empty for none.
+    /// The letter; empty for none.
     letter: String,
-    /// What stands beside the letter.
+    /// The lines beside the letter.
     pub(super) lines: Vec<String>,
 }
 
 impl Heading {
-    /// Those of all columns, which are `pitch` apart (px); none if not all have room.
+    /// The headings of all columns, which are `pitch` apart (px); none if not all fit.
     pub(super) fn all(sheet: &Sheet, writer: &Writer<'_>, pitch: f64, with_charts: bool) -> Vec<Self> {
         let (scale, fonts) = (writer.scale, writer.fonts);
         let size = scale.caption();
@@ -30,12 +30,12 @@ impl Heading {
         let count = sheet.columns.len();
         let times = || sheet.columns.iter().filter_map(|column| column.time);
         let moment = number::moments(times());
-        // A time that every row replaces by its own is left out.
+        // A time is left out if every row replaces it.
         let replaced = sheet.rows.iter().all(|row| row.time.is_some());
         let text = |at: usize| {
             let column = &sheet.columns[at];
             let own = column.time.filter(|_| !replaced).map(&moment);
-            // Columns of several scenes, such as one body with several seeds, are told apart by these.
+            // Columns of several scenes, such as one body with several seeds, have the names of their scenes.
             let scene = sheet.scenes.get(column.scene).map(|scene| scene.name.clone());
             let own: Vec<_> = scene.filter(|_| sheet.scenes.len() > 1).into_iter().chain(own).collect();
             column.label.clone().unwrap_or_else(|| own.join(", "))
@@ -57,7 +57,7 @@ impl Heading {
             heading.lines.is_empty() || heading.lines.len() <= 2 && heading.lines.iter().all(whole)
         };
         if !all.iter().all(fits) {
-            // Labels are shortened to one line each, moments are left out.
+            // Labels are shortened to one line each; moments are left out.
             let least = 4.0 * size;
             for (at, heading) in all.iter_mut().enumerate() {
                 let room = pitch - apart - beside_letter(&heading.letter, fonts, scale);
@@ -80,7 +80,7 @@ impl Heading {
         all
     }
 
-    /// Writes it from a left end and a first baseline on (px).
+    /// Writes the heading from a left end and a first baseline (px).
     pub(super) fn write(&self, writer: &mut Writer<'_>, [left, baseline]: [f64; 2]) {
         let (scale, palette) = (writer.scale, writer.palette);
         writer.left(&self.letter, Weight::SemiBold, scale.caption(), palette.text, left, baseline);
@@ -92,7 +92,7 @@ impl Heading {
     }
 }
 
-/// The room that a letter takes before what stands beside it (px).
+/// The width of a letter with its gap (px).
 fn beside_letter(letter: &str, fonts: &Fonts, scale: Scale) -> f64 {
     if letter.is_empty() {
         return 0.0;

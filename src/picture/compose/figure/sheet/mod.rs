@@ -1,4 +1,4 @@
-//! Contact sheets: rows of runs and columns of moments, and below them diagnostics over the time of the whole scene.
+//! Sheets: rows of runs and columns of moments, with diagnostics over the time of the whole scene below them.
 //!
 //! ```text
 //! title
@@ -63,7 +63,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let plan_below = |header: f64, writer: &Writer<'_>| {
         Plan::new(sheet, writer, [size[0], bottom], header, labels.width, charts.as_ref())
     };
-    // How wide tiles are does not depend on the header, whose key says how tallies are drawn.
+    // The width of tiles does not depend on the header, whose key explains tallies.
     let plan = plan_below(0.0, &writer);
     let tallies = below::tallies(&scenes, scale, &plan);
     let has_flat = moments.cells.iter().flatten().any(|run| run.snapshot.flat.contains(&true));
@@ -82,7 +82,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let reaches = cameras::reaches(&scenes, sheet, moments);
     let cells = cameras::cells(&scenes, &reaches, sheet, moments);
     let framings = cameras::framings(&scenes, &cells, &plan);
-    // The tiles of a scene share what is computed for the first of them.
+    // The tiles of a scene share data that is computed once.
     let scenes: Vec<_> = scenes.iter().enumerate().map(|(at, scene)| seen(scene, at, sheet, &framings)).collect();
     let traced = |scene: usize| moments.histories.get(scene).map_or_else(Vec::new, |history| history.series.clone());
     let composers = scenes.iter().zip(reaches).zip(tallies).enumerate();
@@ -123,7 +123,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
             draft.ghost(moments.others[row][column].as_slice(), room, &mut curves);
             draft.paths(&composer.traced, room, &mut curves);
             panels.push(draft.panel(&mut under, &mut marks));
-            // Surfaces without width do not show.
+            // Surfaces without width are invisible.
             let ends = cameras::collapsed(&scenes[sheet.columns[column].scene], &plan, [row, column], framing, run);
             curves.extend(ends.map(|ends| collapsed(ends, plan.tile_scale, palette.outline)));
         }
@@ -136,7 +136,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     Picture { size, palette: *palette, fonts, ramp, panels, under, marks, curves, words }
 }
 
-/// The scenes as their tiles show them: without words of their own, in the look of the figure.
+/// The scenes for their tiles: without words, in the look of the figure.
 fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
     let first = sheet.scenes.first().map(|scene| &scene.view);
     let alike = |one: &Scene| first.is_some_and(|first| one.view.colour == first.colour);
@@ -148,14 +148,14 @@ fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
         view.look = figure.look.clone();
         view.labels = Labels { legend: view.labels.legend, ..Labels::NONE };
         view.strip = None;
-        // One scale of colours for all, or none.
+        // One colour scale for all, or none.
         view.colour = view.colour.filter(|_| is_shared);
         scene
     };
     sheet.scenes.iter().map(one).collect()
 }
 
-/// A scene whose camera stands as in its first tile, so that nothing is drawn as if the camera had moved there.
+/// A scene with the camera of its first tile, so that nothing is drawn for a moved camera.
 fn seen(scene: &Scene, at: usize, sheet: &Sheet, framings: &[Vec<Framing>]) -> Scene {
     let mut scene = scene.clone();
     let column = sheet.columns.iter().position(|column| column.scene == at);
@@ -166,7 +166,7 @@ fn seen(scene: &Scene, at: usize, sheet: &Sheet, framings: &[Vec<Framing>]) -> S
     scene
 }
 
-/// A body without width, as a line or a dot.
+/// A collapsed body, as a line or a dot.
 fn collapsed(ends: [DVec2; 2], scale: Scale, colour: Colour) -> Curve {
     let is_dot = ends[0].distance(ends[1]) < 1.0;
     let width = scale.line() * if is_dot { COLLAPSED[1] } else { COLLAPSED[0] };

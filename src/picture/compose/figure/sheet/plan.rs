@@ -1,4 +1,4 @@
-//! The layout of a contact sheet.
+//! The layout of a sheet.
 
 use super::charts::{Charts, ChartsRoom};
 use super::headings::{HEADING_LINE, Heading};
@@ -7,44 +7,44 @@ use crate::picture::layout::{Rectangle, Scale};
 use crate::scene::figure::Sheet;
 use crate::sim::Dimension;
 
-/// From the last line of the header to the first of the headings, and from the last of these to the tiles (px in the
-/// reference picture).
+/// The distance from the last line of the header to the first line of the headings, and from the last one to the tiles
+/// (px in the reference picture).
 const ABOVE_HEADINGS: f64 = 37.0;
 const BELOW_HEADINGS: f64 = 9.0;
-/// Between the words of rows and the tiles (px in the reference picture).
+/// The gap between the words of rows and the tiles (px in the reference picture).
 const BESIDE_LABELS: f64 = 18.0;
 /// The words beside rows and charts take at most this part of the picture's width.
 const MOST_LABELS: f64 = 0.4;
-/// Room for tally and count below the body in a tile, and how far these stand above its lower side (px in the reference
+/// Room for tally and count below the body in a tile, and their height above its lower side (px in the reference
 /// picture). Tiles lower or narrower than the second length have none.
 const BELOW_BODY: f64 = 36.0;
 pub(super) const TALLY_RAISED: f64 = 9.0;
 const LEAST_TILE: [f64; 2] = [100.0, 62.0];
-/// Free beside the words in a tile, both sides together (px in the reference picture).
+/// The gaps at both sides of the words in a tile, together (px in the reference picture).
 const BESIDE_WORDS: f64 = 12.0;
-/// So far above the lower side of a tile the floor of the plane is drawn at least (px at the tile's scale).
+/// The least height of the floor of the plane above the lower side of a tile (px at the tile's scale).
 const BELOW_FLOOR: f64 = 44.0;
 /// Tiles are at most this many times higher than wide.
 const HIGHEST: f64 = 1.12;
-/// Lines of a tile of this size (px in the reference picture) are this part as thick as those of a panel, and in others
-/// thicker or thinner up to the limits.
+/// The size of a tile (px in the reference picture) whose lines have this thickness, relative to those of a panel.
+/// Larger and smaller tiles have thicker and thinner lines, within the limits.
 const USUAL_TILE: f64 = 240.0;
 const TILE_LINES: f64 = 0.78;
 const TILE_LIMITS: [f64; 2] = [0.34, 1.0];
-/// From the tiles to the middle of the rings, from there to the first chart, between charts at the most and at the least,
-/// and from the last chart to the end of the picture (px in the reference picture).
+/// The distances from the tiles to the middle of the rings, from there to the first chart, between charts (most and
+/// least), and from the last chart to the end of the picture (px in the reference picture).
 const ABOVE_RINGS: f64 = 24.0;
 const BELOW_RINGS: f64 = 27.0;
 const BETWEEN_CHARTS: [f64; 2] = [40.0, 26.0];
 const BELOW_CHARTS: f64 = 44.0;
-/// Height of a chart at the least, usually and at the most (px in the reference picture).
+/// The least, usual and largest height of a chart (px in the reference picture).
 const CHART: [f64; 3] = [32.0, 68.0, 150.0];
-/// The part of the height for tiles and charts that the charts take at the most.
+/// The most of the height of tiles and charts that the charts take.
 const CHARTS_SHARE: f64 = 0.58;
-/// Free below the tiles if there are no charts (px in the reference picture).
+/// The gap below the tiles if there are no charts (px in the reference picture).
 const BELOW_TILES: f64 = 22.0;
 
-/// Where everything stands (px).
+/// The places of all parts (px).
 pub(super) struct Plan {
     /// The left side of the first column, and the top of the first row.
     origin: [u32; 2],
@@ -59,7 +59,7 @@ pub(super) struct Plan {
     /// The headings of the columns, and the baseline of their first lines.
     pub(super) headings: Vec<Heading>,
     pub(super) headings_baseline: f64,
-    /// The room of the words beside rows: left end and width; `None` if there is none.
+    /// The left end and width of the words beside rows; `None` if there are none.
     pub(super) labels: Option<[f64; 2]>,
     pub(super) charts: Option<ChartsRoom>,
 }
@@ -101,7 +101,7 @@ impl Plan {
         let usual = ((free - below) / rows as f64).max(1.0);
         let tally = (BELOW_BODY * type_unit).max(TALLY_RAISED * unit);
         let tile_height = usual.min(HIGHEST * pitch + tally).floor().max(1.0);
-        // Height that tiles do not need makes charts higher.
+        // Spare height makes charts higher.
         let left_over = (free - below - tile_height * rows as f64).max(0.0);
         let shape = shape.map(|shape| shape.higher(left_over, scale));
         let has_tally = pitch >= LEAST_TILE[1] * type_unit && tile_height >= LEAST_TILE[0] * type_unit;
@@ -122,14 +122,14 @@ impl Plan {
             headings_baseline: first,
             labels: has_labels.then_some([margin, words]),
             charts: shape.map(|shape| {
-                // Right of the charts are the names of their curves.
+                // The names of curves are right of the charts.
                 let right = right - charts.map_or(0.0, Charts::ends_width);
                 shape.place(tiles_end, [left, right.round()], has_labels.then_some(margin), scale)
             }),
         }
     }
 
-    /// Where a tile stands.
+    /// The place of a tile.
     pub(super) fn tile(&self, row: usize, column: usize) -> Rectangle {
         let ([left, top], [width, height]) = (self.origin, self.tile);
         debug_assert!(column < self.columns);
@@ -155,7 +155,7 @@ impl Plan {
     }
 }
 
-/// How high charts are (px).
+/// The heights of charts (px).
 #[derive(Clone, Copy)]
 struct ChartsShape {
     count: usize,
@@ -164,15 +164,15 @@ struct ChartsShape {
 }
 
 impl ChartsShape {
-    /// As many charts as there is room for in a height (px), with tiles above them; `None` for none.
+    /// As many charts as fit into a height (px) with tiles above them; `None` for none.
     fn new(charts: &Charts<'_>, free: f64, scale: Scale) -> Option<Self> {
         let [least, usual, _] = CHART;
         let [wide, narrow] = BETWEEN_CHARTS;
         let sizes = [(usual, wide), (0.75 * usual, wide), (0.75 * usual, narrow), (least, narrow)];
-        // As high as the names of their curves need, or lower without these.
+        // Charts are as high as the names of their curves need, or lower without names.
         let with_names = |(chart, between): (f64, f64)| (chart.max(charts.ends_height() - between), between);
         let sizes: Vec<_> = sizes.map(with_names).into_iter().chain([sizes[3]]).collect();
-        // Where type is larger than usual, charts are lower rather than bodies small.
+        // With larger type, charts become lower before bodies become smaller.
         let wanted = CHARTS_SHARE * (scale.unit / scale.type_unit()).min(1.0);
         (1..=charts.count()).rev().find_map(|count| {
             let shape = |size: &(f64, f64)| {
@@ -185,13 +185,13 @@ impl ChartsShape {
         })
     }
 
-    /// The height of all charts with everything between and around them.
+    /// The height of all charts with the gaps between and around them.
     fn height(&self, scale: Scale) -> f64 {
         let count = self.count as f64;
         count * self.chart + (count - 1.0) * self.between + around(scale)
     }
 
-    /// With room left over used.
+    /// The heights after spare room is used.
     fn higher(self, left_over: f64, scale: Scale) -> Self {
         let chart = self.chart + left_over / self.count as f64;
         Self { chart: chart.min(CHART[2] * scale.type_unit()).max(self.chart), ..self }

@@ -1,4 +1,4 @@
-//! The names and notes of the rows of a contact sheet.
+//! The names and notes of the rows of a sheet.
 
 use super::plan::Plan;
 use crate::picture::caption::Writer;
@@ -11,20 +11,20 @@ use crate::picture::wrap::wrapped;
 use crate::scene::Scene;
 use crate::scene::figure::{Row, Sheet};
 
-/// Names and notes are at most this part of the picture wide, or the second one where a word is as long, and have at most so
-/// many lines.
+/// The largest width of names and notes relative to the picture, or the second one for long words, and their most
+/// lines.
 const WIDEST: [f64; 2] = [0.125, 0.25];
 const NAME_LINES: usize = 2;
 const NOTE_LINES: usize = 3;
-/// Size of notes, distances of the lines of names and notes, and from a name to the sample of its line and on to the
-/// notes (px in the reference picture).
+/// Size of notes, distances of the lines of names and notes, and the distance from a name to the sample of its line and
+/// on to the notes (px in the reference picture).
 const NOTE: f64 = 14.0;
 const NAME_LINE: f64 = 20.0;
 const NOTE_LINE: f64 = 18.0;
 const SAMPLE_BELOW: f64 = 13.0;
 const NOTE_BELOW: f64 = 21.0;
 
-/// What stands beside the rows.
+/// The words beside the rows.
 pub(super) struct RowLabels {
     /// Lines of the name and of the note of each row.
     rows: Vec<[Vec<String>; 2]>,
@@ -66,7 +66,7 @@ impl RowLabels {
         Self { width: widths.fold(0.0, f64::max), rows, with_sample }
     }
 
-    /// Writes them in the middle of their rows' bodies, as far as there is room.
+    /// Writes the words beside the middle of their rows' bodies, as far as there is room.
     pub(super) fn write(&self, writer: &mut Writer<'_>, plan: &Plan, sheet: &Sheet) {
         let Some([left, _]) = plan.labels else { return };
         let (scale, palette) = (writer.scale, writer.palette);
@@ -79,7 +79,7 @@ impl RowLabels {
                 let notes = if notes > 0 { NOTE_BELOW + (notes - 1) as f64 * NOTE_LINE } else { 0.0 };
                 (names as f64 * NAME_LINE + sample + notes) * unit
             };
-            // What does not fit is left out: first the note, then the sample, then further lines of the name.
+            // If not all fit, first the note is left out, then the sample, then further lines of the name.
             let choices = [
                 (name.len(), self.with_sample, note.len()),
                 (name.len(), self.with_sample, 0),
@@ -100,7 +100,7 @@ impl RowLabels {
                 baseline += SAMPLE_BELOW * unit;
                 let run = |scene: &Scene| scene.runs.iter().position(|run| run.name == sheet.rows[row].run);
                 if let Some((scene, run)) = sheet.scenes.first().and_then(|scene| Some((scene, run(scene)?))) {
-                    // Where not all charts have dashes, those that have them tell.
+                    // Some charts have no dashes. Those with dashes determine the sample.
                     let line = scene.runs[run].line(palette);
                     let lines = sheet.strips.iter().map(|&diagnostic| series::style(diagnostic, line));
                     let line = lines.max_by_key(|line| line.dash.len()).unwrap_or(line);
