@@ -64,11 +64,7 @@
 
 #![cfg_attr(
     not(feature = "render"),
-    allow(
-        dead_code,
-        unused_imports,
-        reason = "much of what a scene says is for pictures, and is read without them, too"
-    )
+    allow(dead_code, unused_imports, reason = "many keys of a scene are for pictures, and are read without them, too")
 )]
 
 /// The vectors in which positions are given, of the version that this crate uses.

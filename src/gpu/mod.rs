@@ -13,7 +13,7 @@ pub(crate) use work::Work;
 use std::fmt;
 use std::sync::{Arc, Mutex};
 
-/// The wanted graphics adapter.
+/// The requested graphics adapter.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum AdapterChoice {
     /// The fastest adapter: a GPU if one can be used, else software.
@@ -162,8 +162,8 @@ pub struct Gpu {
 impl Gpu {
     /// Opens a device on the adapter that fits `choice`.
     ///
-    /// On Unix, standard error of the whole process is buffered meanwhile: what any thread writes there appears once the
-    /// device is open, without the complaints of drivers about the lack of a window. [`adapters`] does the same.
+    /// On Unix, standard error of the whole process is buffered meanwhile. Lines that other threads write appear once
+    /// the device is open, without the complaints of drivers about the lack of a window. [`adapters`] does the same.
     ///
     /// # Errors
     /// No adapter exists, none fits, or the fitting one cannot be used.

@@ -1,6 +1,6 @@
 //! Filters messages of graphics drivers on standard error.
 
-/// Lines to drop, because they mean nothing to a program without a window: those of libwayland, which Vulkan drivers of
+/// Lines to drop, which mean nothing to a program without a window. They come from libwayland, which Vulkan drivers of
 /// Mesa load.
 #[cfg(unix)]
 const NOISE: [&str; 2] = [
@@ -8,8 +8,8 @@ const NOISE: [&str; 2] = [
     "error: XDG_RUNTIME_DIR not set in the environment.",
 ];
 
-/// Calls a function while standard error is buffered, then writes what arrived, also from other threads, without the
-/// lines to drop.
+/// Calls a function while standard error is buffered, then writes its lines, also of other threads, except those to
+/// drop.
 ///
 /// Standard error belongs to the whole process, so only one thread does this at a time, and briefly.
 #[cfg(unix)]
@@ -18,7 +18,7 @@ pub(super) fn hushed<T>(open: impl FnOnce() -> T) -> T {
     use std::sync::{Mutex, PoisonError};
     static ALONE: Mutex<()> = Mutex::new(());
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-    // Where buffering fails, the noise is harmless.
+    // If buffering fails, the noise is harmless.
     let Some((mut buffer, held)) = Held::take() else { return open() };
     let result = open();
     drop(held);

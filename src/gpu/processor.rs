@@ -10,7 +10,7 @@ pub(super) fn processor() -> String {
 fn described(text: &str) -> String {
     /// Maker and type on x86, and on Arm.
     const KEYS: [&str; 6] = ["vendor_id", "cpu family", "model", "CPU implementer", "CPU architecture", "CPU part"];
-    /// The widest of these extensions is named: a virtual machine may hide some.
+    /// Only the widest extension is named: a virtual machine may hide some.
     const VECTORS: [&str; 4] = ["avx512f", "avx2", "avx", "sve"];
     let first = text.split("\n\n").next().unwrap_or_default();
     let value = |wanted: &str| {

@@ -1,4 +1,4 @@
-//! What the program, the benchmarks and the tests that run the program need from outside. It may change at any time.
+//! Functions for the program, the benchmarks and the tests that run the program. They may change at any time.
 
 pub use crate::cli::run;
 #[cfg(feature = "render")]

@@ -5,12 +5,12 @@ use crate::sim::{Body, Dimension};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// The box around a body at one moment, whose sides lie along the axes of a camera.
+/// The box around a body at one moment, along the axes of a camera.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CameraBox {
     /// The centre of mass of the body (m).
     pub(crate) centre: DVec3,
-    /// The corners of the box from there: to the right, up and towards the camera (m).
+    /// The corners of the box, relative to the centre of mass: to the right, up and towards the camera (m).
     pub(crate) corners: [DVec3; 2],
 }
 

@@ -1,4 +1,4 @@
-//! Resolves what stands over and beside bodies: ghosts and paths.
+//! Resolves ghosts and paths.
 
 use super::file::{PathFile, PathPointFile};
 use super::subject::Subject;
@@ -6,10 +6,10 @@ use super::view::{Ghost, Traced};
 use crate::reading::report::{Report, Way};
 use crate::reading::words::{list, nearest, quoted, short};
 
-/// What a ghost of the rest shape is called.
+/// The name for a ghost of the rest shape.
 const REST: &str = "rest";
 
-/// What is outlined over each body; `None` also after a mistake.
+/// The outline over each body; `None` also after a mistake.
 pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<Ghost> {
     let path = [Way::Key("view"), Way::Key("ghost")];
     let run = scene.runs.iter().position(|(known, _)| *known == name);
@@ -31,11 +31,11 @@ pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &mut Report<'_>) ->
     }
 }
 
-/// What leaves a path; empty also after a mistake.
+/// The points with paths; empty also after a mistake.
 pub(super) fn paths(paths: &[PathFile], scene: &Subject<'_>, report: &mut Report<'_>) -> Vec<Traced> {
     if let Some(at) = (1..paths.len()).find(|&at| paths[..at].contains(&paths[at])) {
         let path = [Way::Key("view"), Way::Key("paths"), Way::Index(at)];
-        report.at(&path, "this path is asked for a second time".to_owned(), "remove it".to_owned());
+        report.at(&path, "this path is listed a second time".to_owned(), "remove it".to_owned());
     }
     let one = |(at, path): (usize, &PathFile)| match *path {
         PathFile::Point(PathPointFile::Centre) => Some(Traced::Centre),
@@ -47,7 +47,7 @@ pub(super) fn paths(paths: &[PathFile], scene: &Subject<'_>, report: &mut Report
     paths.iter().enumerate().filter_map(one).collect()
 }
 
-/// A node, or `None` after reporting that there is none of this number.
+/// A node, or `None` after reporting that the body has no such node.
 fn known_node(node: u32, path: &[Way<'_>], scene: &Subject<'_>, report: &mut Report<'_>) -> Option<u32> {
     let nodes = scene.body.len();
     if (node as usize) < nodes {
@@ -58,7 +58,7 @@ fn known_node(node: u32, path: &[Way<'_>], scene: &Subject<'_>, report: &mut Rep
     None
 }
 
-/// Reports a run that is not there, unless there are mistakes in the runs themselves.
+/// Reports an unknown run, unless there are mistakes in the runs themselves.
 fn unknown<T>(name: &str, more: &[&str], path: &[Way<'_>], scene: &Subject<'_>, report: &mut Report<'_>) -> Option<T> {
     if scene.runs.is_empty() {
         return None;
@@ -82,5 +82,5 @@ fn other_steps(runs: [usize; 2], path: &[Way<'_>], scene: &Subject<'_>, report: 
         quoted(other),
         short(other_step)
     );
-    report.at(path, message, "give the runs that are compared the same `step`".to_owned());
+    report.at(path, message, "give both runs the same `step`".to_owned());
 }

@@ -13,7 +13,7 @@ fn way(role: &str) -> [Way<'_>; 3] {
     [Way::Key("view"), Way::Key("colours"), Way::Key(role)]
 }
 
-/// Checks the colours that a scene gives runs: their contrast with the background, and their difference from turned-over
+/// Checks the chosen colours of runs: their contrast with the background, and their difference from turned-over
 /// elements.
 pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &mut Report<'_>) {
     let like_alarm = |colour| TooLike::find([(colour, ())], palette.alarm);
@@ -40,7 +40,7 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
         } else if let Some(found) = like_alarm(colour) {
             let alarm = written(palette.alarm);
             let message =
-                format!("`run[{at}].colour` is too similar to that of turned-over elements, {alarm}: {found}");
+                format!("`run[{at}].colour` is too similar to the colour of turned-over elements, {alarm}: {found}");
             report.at(&path, message, "choose another hue, or remove it".to_owned());
         }
     }
@@ -50,7 +50,7 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
 pub(super) fn check_alarm(typed: &Colours, palette: &Palette, report: &mut Report<'_>) {
     let (key, other) = match (typed.turned_over, typed.body) {
         (Some(_), _) => ("turned_over", "the body's"),
-        (None, Some(_)) => ("body", "that of turned-over elements,"),
+        (None, Some(_)) => ("body", "the colour of turned-over elements,"),
         (None, None) => return,
     };
     let sound = [(palette.sound, "in space"), (palette.sound_flat, "in the plane")];
@@ -60,17 +60,17 @@ pub(super) fn check_alarm(typed: &Colours, palette: &Palette, report: &mut Repor
     report.at(&way(key), message, "choose another hue, or make one of them much lighter than the other".to_owned());
 }
 
-/// A colour that may be mistaken for that of turned-over elements.
+/// A colour that may be mistaken for the colour of turned-over elements.
 struct TooLike<T> {
     colour: Colour,
-    /// Where it is used.
+    /// Its use.
     place: T,
     difference: f64,
     vision: Vision,
 }
 
 impl<T: Copy> TooLike<T> {
-    /// The colour that is most similar to that of turned-over elements for any colour vision; `None` if all are
+    /// The colour that is most similar to the colour of turned-over elements for any colour vision; `None` if all are
     /// different enough.
     fn find(colours: impl IntoIterator<Item = (Colour, T)>, alarm: Colour) -> Option<Self> {
         let seen = colours.into_iter().flat_map(|(colour, place)| Vision::ALL.map(|vision| (colour, place, vision)));
@@ -90,7 +90,7 @@ impl<T> fmt::Display for TooLike<T> {
     }
 }
 
-/// A number rounded down to one decimal, so that a value just below a limit does not look as if it met it.
+/// A number rounded down to one decimal, so that a value just below a limit does not seem to meet it.
 fn rounded_down(number: f64) -> f64 {
     (number * 10.0).floor() / 10.0
 }

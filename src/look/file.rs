@@ -16,7 +16,7 @@ pub(crate) enum PathFile {
     Point(PathPointFile),
 }
 
-/// A point of the body that is no node.
+/// A point of the body that is not a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum PathPointFile {
@@ -28,9 +28,9 @@ pub(crate) enum PathPointFile {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum PanelsFile {
-    /// Their number in a row.
+    /// The number of panels in a row.
     Columns(#[schemars(range(min = 1, max = 64))] u32),
-    /// In one direction.
+    /// All panels in one direction.
     Along(ArrangementFile),
 }
 

@@ -8,13 +8,13 @@ use sha2::{Digest, Sha256};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The longest file that is read (bytes). Fonts of all Chinese characters have some 20 MiB.
+/// The longest accepted file (bytes). Fonts of all Chinese characters have some 20 MiB.
 const LONGEST: u64 = 64 << 20;
-/// What the files of fonts are called.
+/// The extensions of font files.
 const ENDINGS: [&str; 3] = ["ttf", "otf", "ttc"];
 const EXPECTED: &str = "expected a TrueType or OpenType font (.ttf, .otf, .ttc)";
 
-/// The fonts of a scene, looked for in its folder, or `None` after reporting what is wrong with them.
+/// The fonts of a scene, searched in its folder, or `None` after reporting mistakes in them.
 pub(crate) fn read(folder: &Path, typed: &FontFile, report: &mut Report<'_>) -> Option<FontFiles> {
     let mut one = |key: &str, name: &str| {
         let found = bytes(&folder.join(name), &ENDINGS, LONGEST, "a font", EXPECTED);
@@ -64,7 +64,7 @@ fn letters(_: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
-/// The digest of what is in a file, which replaces its name in that of a scene.
+/// The digest of a file, which replaces its name in the digest of a scene.
 pub(crate) fn digest(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

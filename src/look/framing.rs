@@ -1,4 +1,4 @@
-//! Cameras that show a body and what comes near it.
+//! Cameras that show a body and objects near it.
 
 use super::file::CameraFile;
 use super::reach;
@@ -18,11 +18,11 @@ const FIELD_OF_VIEW: f64 = 20.0 / 180.0 * std::f64::consts::PI;
 /// Distance in body sizes at which a body fills a third of the picture's height and has room to jump.
 const DISTANCE: f64 = 8.5;
 
-/// How far bodies may reach from the point looked at, sideways, up and down, in heights of the picture at the reference
-/// shape: clear of margins and of words. Pictures of other shapes show everything smaller and have as much room.
+/// The largest distances of bodies from the target, sideways, up and down, clear of margins and words, in heights of
+/// the picture at the reference shape. In pictures of other shapes the whole scene is smaller and has as much room.
 const ROOM: [f64; 3] = [0.388, 0.395, 0.34];
 
-/// The camera of a scene: as typed, and where nothing is typed so that it shows the body and what comes near it.
+/// The camera of a scene: as typed, with defaults that show the body and objects near it.
 pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, scene: &Subject<'_>) -> Camera {
     let (dimension, obstacles) = (scene.body.dimension, scene.obstacles);
     let (azimuth, elevation) = match dimension {
@@ -58,7 +58,7 @@ pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, scene: &Subject<
     chosen
 }
 
-/// What comes near a body where it starts and where it will stand (m).
+/// Points of objects near a body where it starts and where it will stand (m).
 fn near(start: &[DVec3], standing: DVec3, scene: &Subject<'_>) -> Vec<DVec3> {
     let (low, high) = bounds(start);
     let drop = standing - (low + high) / 2.0;
@@ -81,8 +81,8 @@ fn standing(start: &[DVec3], obstacles: &[Obstacle]) -> DVec3 {
     DVec3::new(middle.x, ground + (high.y - low.y) / 2.0, middle.z)
 }
 
-/// Moves a camera that looks at where a body will stand so that the body is also in the picture where it starts. A start
-/// that is in the picture already changes nothing.
+/// Moves a camera whose target is the place where a body will stand, so that the body is also in the picture at its
+/// start. If it already is, the camera stays.
 fn show_start(camera: &mut Camera, start: &[DVec3], dimension: Dimension, keep_distance: bool) {
     let (low, high) = bounds(start);
     let drop = camera.target - (low + high) / 2.0;
@@ -97,8 +97,8 @@ fn show_start(camera: &mut Camera, start: &[DVec3], dimension: Dimension, keep_d
     }
 }
 
-/// Moves a camera aside and back so that it also shows what comes near the body. If all of that is in the picture
-/// already, or if there is nothing near, the camera stays.
+/// Moves a camera aside and back so that it also shows objects near the body. If all are in the picture already, or if
+/// there are none, the camera stays.
 fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, near: &[DVec3], dimension: Dimension) {
     if near.is_empty() || least_distance(camera, near.iter().copied(), dimension) <= camera.distance {
         return;
@@ -115,7 +115,7 @@ fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, near: &[DVe
     }
 }
 
-/// The way (m) from the point that a camera looks at to the one in whose picture points stand in the middle of the room.
+/// The shift (m) of the target that brings points into the middle of the room.
 fn middle_of(camera: &Camera, points: &[DVec3], dimension: Dimension) -> DVec3 {
     let [right, up, towards] = axes(camera.azimuth, camera.elevation);
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
@@ -129,7 +129,7 @@ fn middle_of(camera: &Camera, points: &[DVec3], dimension: Dimension) -> DVec3 {
     let aside = 0.5 * (low.x + high.x);
     let upward = (low.y * above + high.y * below) / (above + below);
     let (_, level) = libm::sincos(camera.elevation);
-    // Upwards in the world, unless that is hardly to be seen.
+    // Upwards in the world, unless that is hardly visible.
     let upward = if level > 0.3 { upward / level * DVec3::Y } else { upward * up };
     aside * right + upward
 }

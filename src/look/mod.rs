@@ -1,5 +1,5 @@
-//! What pictures look like: view, colours, fonts, colour scales and cameras. A scene has a [`View`], resolved here from its
-//! `[view]` table and from the body, models and surroundings that it shows. Nothing here draws.
+//! The look of pictures: view, colours, fonts, colour scales and cameras. A scene has a [`View`], resolved here from
+//! its `[view]` table and from its body, models and surroundings. Nothing here draws.
 
 mod camera_box;
 mod compared;

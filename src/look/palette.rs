@@ -1,4 +1,4 @@
-//! The colours of a picture, and those of the two themes. Vermilion means "turned over" and nothing else.
+//! The colours of a picture, and the two themes. Vermilion means "turned over" and nothing else.
 
 use crate::colour::{Colour, LEAST_CONTRAST, Oklab, contrast, from_oklab, mixed, oklab, readable};
 use schemars::JsonSchema;
@@ -24,9 +24,9 @@ pub(crate) struct Palette {
     pub floor: Colour,
     /// The lines on the floor.
     pub grid: Colour,
-    /// What the floor's colour goes to in the shadow.
+    /// The colour of the floor in the shadow.
     pub shadow: Colour,
-    /// How far it goes there for full shadow of the key light and of the sky.
+    /// The share of that colour in full shadow of the key light and of the sky.
     pub shadow_strength: [f32; 2],
     /// An element in space that is not turned over, before lighting.
     pub sound: Colour,
@@ -34,7 +34,7 @@ pub(crate) struct Palette {
     pub sound_flat: Colour,
     /// A node in the plane.
     pub node: Colour,
-    /// A turned-over element, before light falls on it.
+    /// A turned-over element, before lighting.
     pub alarm: Colour,
     /// Hatch and edges of turned-over elements.
     pub alarm_line: Colour,
@@ -48,7 +48,7 @@ pub(crate) struct Palette {
     pub outline: Colour,
     /// Opacity of the outline.
     pub outline_alpha: f32,
-    /// A solid obstacle in space, before light falls on it.
+    /// A solid obstacle in space, before lighting.
     pub obstacle: Colour,
     /// A solid obstacle in the plane, and its outline.
     pub obstacle_flat: [Colour; 2],
@@ -58,13 +58,13 @@ pub(crate) struct Palette {
     pub plate_side: Colour,
     /// A wall or a slope.
     pub wall: Colour,
-    /// Edges of what is transparent.
+    /// Edges of transparent obstacles.
     pub pane_edge: Colour,
-    /// Arrows of what moves, and marks of what is held.
+    /// Arrows of moving objects, and marks on held nodes.
     pub pointer: Colour,
     /// Names and numbers.
     pub text: Colour,
-    /// Everything else that is written.
+    /// All other text.
     pub second_text: Colour,
     /// The line of the floor in the plane.
     pub axis: Colour,
@@ -78,11 +78,11 @@ pub(crate) struct Palette {
     pub spring_on_body: Colour,
     /// The sides of lines that a field colours.
     pub casing: Colour,
-    /// The lines that stand for runs, by their places: see [`Run::line`](crate::scene::Run::line).
+    /// The lines of runs, by their places: see [`Run::line`](crate::scene::Run::line).
     pub runs: [Colour; 8],
 }
 
-/// How much of the background there is in the greys of a run that is over.
+/// The share of the background in the greys of a diverged run.
 const GREYED: f64 = 0.45;
 
 impl Palette {
@@ -94,18 +94,18 @@ impl Palette {
         }
     }
 
-    /// Signs on elements in the plane that are not turned over: their edges' colour, a third of the way to the
-    /// elements' own.
+    /// The colour of signs on sound elements in the plane: that of their edges, a third of the way to the elements'
+    /// own.
     pub(crate) fn sign(&self) -> Colour {
         std::array::from_fn(|at| ((2 * u16::from(self.edge[at]) + u16::from(self.sound_flat[at])) / 3) as u8)
     }
 
-    /// What ghosts of shapes on the background are tinted with.
+    /// The tint of ghosts of shapes on the background.
     pub(crate) fn edge_on_ground(&self) -> Colour {
         if self.is_made_for_light() { self.edge } else { self.outline }
     }
 
-    /// The same with the colours of bodies and their lines greyed, for a run that is over.
+    /// The palette with the colours of bodies and their lines greyed, for a diverged run.
     pub(crate) fn greyed(&self) -> Self {
         let grey = |colour| {
             let grey = from_oklab(Oklab([oklab(colour).0[0], 0.0, 0.0]));
@@ -123,7 +123,7 @@ impl Palette {
         contrast(self.background, [0; 3]) >= contrast(self.background, [255; 3])
     }
 
-    /// A colour in which words can be read on the background: the nearest to a given one.
+    /// The legible colour for words on the background that is nearest to a given one.
     pub(crate) fn text_like(&self, colour: Colour) -> Colour {
         readable(colour, self.background, LEAST_CONTRAST)
     }
@@ -220,8 +220,8 @@ mod tests {
     use super::*;
     use crate::colour::{Lab, Vision, cie76, ciede2000, encoded, lab, linear, seen_by};
 
-    /// The light that falls on faces, as `shaders/surface.wgsl` has it: on all sides of the key light, facing up, level
-    /// and down, standing on the floor and in the air.
+    /// The light on faces, as in `shaders/surface.wgsl`: on all sides of the key light, facing up, level and down,
+    /// standing on the floor and in the air.
     fn lights() -> Vec<[f64; 3]> {
         const KEY: [f64; 3] = [0.66, 0.635, 0.595];
         const SKY: [f64; 3] = [0.60, 0.635, 0.68];

@@ -34,7 +34,7 @@ pub(crate) struct PrintFile {
     /// Width and height (mm).
     #[schemars(inner(range(min = 5.0, max = 2000.0)))]
     pub(crate) mm: [f64; 2],
-    /// Pixels of an inch in PNG files, which say so, and of lit bodies in SVG and PDF files.
+    /// Pixels per inch, recorded in PNG files, and of lit bodies in SVG and PDF files.
     #[serde(default = "dpi")]
     #[schemars(range(min = 72.0, max = 1200.0))]
     pub(crate) dpi: f64,
@@ -48,7 +48,7 @@ fn dpi() -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum TextScaleFile {
-    /// Times the usual size.
+    /// A multiple of the usual size.
     Times(#[schemars(range(min = 0.5, max = 3.0))] f64),
     /// In pictures for print: the size of most type, such as `{ pt = 7 }`. Names are larger, numbers at axes smaller.
     Points(TypeSizeFile),
@@ -68,9 +68,10 @@ pub(crate) struct TypeSizeFile {
 pub struct Print {
     /// Width and height (mm).
     pub mm: [f64; 2],
-    /// Pixels of an inch.
+    /// Pixels per inch.
     pub dpi: f64,
-    /// The file that says it, for messages, with line and column, both 0 if an option says it; empty for that of the scene.
+    /// The file with the size, for messages, with line and column; both are 0 for an option, and the name is empty for
+    /// the scene's file.
     pub(crate) file: String,
     pub(crate) at: (usize, usize),
 }
@@ -99,7 +100,7 @@ impl Print {
 }
 
 impl SizeFile {
-    /// Width and height (px), and the size in print if that is what was typed. `way` leads to the key.
+    /// Width and height (px), and the size in print if it was typed. `way` leads to the key.
     pub(crate) fn resolve(
         self,
         least: u32,
@@ -125,8 +126,8 @@ impl SizeFile {
 }
 
 impl TextScaleFile {
-    /// How many times the usual size type has, in a picture with so many pixels for one of the reference picture. `way`
-    /// leads to the key.
+    /// The scale of type, in a picture with a number of pixels per pixel of the reference picture. `way` leads to the
+    /// key.
     pub(crate) fn resolve(
         self,
         print: Option<&Print>,
@@ -155,8 +156,8 @@ impl TextScaleFile {
     }
 }
 
-/// Pixels for one pixel of the reference picture, in a picture and panels of these sizes (px): what is 720 high, or has
-/// panels of 540 × 460, is drawn at its own size.
+/// Pixels per pixel of the reference picture, for a picture and panels of these sizes (px). It is one for a picture 720
+/// high, or with panels of 540 × 460.
 pub(crate) fn unit(size: [u32; 2], panel: [u32; 2]) -> f64 {
     const HEIGHT: f64 = 720.0;
     const PANEL: [f64; 2] = [540.0, 460.0];
@@ -164,8 +165,8 @@ pub(crate) fn unit(size: [u32; 2], panel: [u32; 2]) -> f64 {
     (f64::from(size[1]) / HEIGHT).min(width / PANEL[0]).min(height / PANEL[1])
 }
 
-/// The same for a contact sheet: one of 1600 × 900 is drawn at its own size. Smaller ones have less in them, not smaller
-/// type.
+/// Pixels per pixel of the reference picture, for a sheet; one at 1600 × 900. Smaller sheets have fewer parts, not
+/// smaller type.
 pub(crate) fn unit_of_sheet([width, height]: [u32; 2]) -> f64 {
     const SIZE: [f64; 2] = [1600.0, 900.0];
     const LEAST: f64 = 0.36;

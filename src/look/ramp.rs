@@ -11,9 +11,9 @@ pub(crate) const SHADES: usize = 64;
 /// Points of the usual scale at equal steps, from pale mint through teal to indigo: lightness and the two opponent
 /// colours of Oklab (B. Ottosson, 2020), in which equal distances look about equally large.
 ///
-/// Why these: lightness alone falls evenly over the scale, so that it reads in grey and by colour-blind eyes; hue turns
-/// with it, so that mild shading does not look like another value; nowhere is there more red than green or blue together,
-/// so that nothing looks like vermilion, "turned over"; and the dark end is light enough for edges to show on it.
+/// The reasons: lightness falls evenly over the scale, so that it reads in grey and by colour-blind eyes. Hue turns
+/// with it, so that mild shading does not look like another value. There is never more red than green and blue
+/// together, so that nothing looks like vermilion, "turned over". The dark end is light enough for edges on it.
 const POINTS: [[f64; 3]; 9] = [
     [0.9550, -0.0193, 0.0230],
     [0.8853, -0.0516, 0.0162],
@@ -27,19 +27,19 @@ const POINTS: [[f64; 3]; 9] = [
 ];
 
 /// Ends and middle of the diverging scale, in Oklab, in the light and in the dark theme. The ends are equally strong,
-/// with hues that differ for any colour vision; the middle is grey, and nearer to the background than they are.
+/// with hues that differ for any colour vision; the middle is grey, and nearer to the background.
 const DIVERGING: [[[f64; 3]; 3]; 2] = [
     [[0.4300, 0.0850, -0.1500], [0.7700, 0.0000, -0.0050], [0.4900, -0.1150, 0.0850]],
     [[0.7200, 0.0900, -0.1300], [0.5600, 0.0000, -0.0050], [0.7800, -0.1400, 0.1050]],
 ];
 
-/// The part of `magma` that is left out at its black end, where neither shading nor edges could be seen.
+/// The part of `magma` that is omitted at its black end, where neither shading nor edges could be seen.
 const BLACK_OF_MAGMA: f64 = 0.25;
 
-/// Lightness of the two ends of the scale of greys: those of the usual one, for the same reasons.
+/// Lightness of the two ends of the scale of greys: the same as of the usual one, for the same reasons.
 const GREYS: [f64; 2] = [0.9550, 0.3850];
 
-/// The colours of a scale, from its lowest to its highest value at equal steps. On the scales that go with the theme
+/// The colours of a scale, from its lowest to its highest value at equal steps. On scales that depend on the theme,
 /// large values stand out from the ground: they are dark in the light theme and light in the dark one.
 pub(crate) fn ramp(map: ColourMap, theme: Theme) -> Vec<Colour> {
     let share = |at: usize| at as f64 / (SHADES - 1) as f64;
@@ -104,7 +104,7 @@ mod tests {
         for theme in [Theme::Light, Theme::Dark] {
             let ramp = ramp(USUAL, theme);
             assert_eq!(ramp.len(), SHADES);
-            // Over eight steps at a time the rounding to bytes does not count.
+            // Over eight steps, rounding to bytes does not count.
             let steps: Vec<_> = ramp.windows(9).map(|part| apart(part[0], part[8])).collect();
             let (least, most) = steps.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &x| (a.min(x), b.max(x)));
             assert!(most / least < 1.12, "{least} {most}");
@@ -169,7 +169,7 @@ mod tests {
         }
     }
 
-    /// `magma` is the one exception, and its description says so.
+    /// `magma` is the only exception, as its description tells.
     #[test]
     fn no_scale_looks_like_turned_over_elements() {
         use ColourMap::{Cividis, Greys, PurpleGreen, VioletGreen, Viridis};

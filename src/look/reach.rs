@@ -5,16 +5,16 @@ use crate::sim::geometry::bounds;
 use crate::sim::{Dimension, Grip, Motion, Obstacle, Shape};
 use glam::DVec3;
 
-/// What is farther from the body than this (body sizes) does not affect the camera, so that bodies stay large.
+/// Objects farther from the body than this (body sizes) do not affect the camera, so that bodies stay large.
 const NEAR: f64 = 1.25;
-/// Half the side of what is shown of a plate (body sizes).
+/// Half the side of the shown part of a plate (body sizes).
 const PLATE: f64 = 0.85;
-/// Into how many parts the way between two keys, and a swing, is cut.
+/// The number of parts of the path between two keys, and of a swing.
 const PARTS: usize = 24;
-/// Longer paths are looked at in their keys alone.
+/// Of paths with more keys, only the keys are considered.
 const MANY_KEYS: usize = 500;
 
-/// The points (m) of obstacles and grips that are at any time near the box around a body of a size (m).
+/// The points (m) of obstacles and grips that come near the box around a body of a size (m) at any time.
 pub(crate) fn near(scene: &Subject<'_>, [low, high]: [DVec3; 2], size: f64) -> Vec<DVec3> {
     let (low, high) = (low - NEAR * size, high + NEAR * size);
     let around = Neighbourhood { scene, size, middle: (low + high) / 2.0, corners: [low, high] };
@@ -50,7 +50,7 @@ impl Neighbourhood<'_> {
         for time in times(&obstacle.motion, [0.0, self.scene.duration]) {
             let pose = obstacle.pose(time);
             outermost.iter().for_each(|&point| self.add(pose.apply(pivot, point), points));
-            // Of a large obstacle only the nearest part may be in the picture.
+            // Only the nearest part of a large obstacle may be in the picture.
             let nearest = nearest(&obstacle.shape, pose.undo(pivot, self.middle));
             nearest.into_iter().for_each(|point| self.add(pose.apply(pivot, point), points));
         }
@@ -117,7 +117,7 @@ fn nearest(shape: &Shape, to: DVec3) -> Option<DVec3> {
     }
 }
 
-/// Times between two others (s) that between them show everywhere that a motion leads.
+/// Times between two others (s) at which a motion is at all its extreme places.
 fn times(motion: &Motion, [from, until]: [f64; 2]) -> Vec<f64> {
     let between =
         |from: f64, to: f64, parts: usize| (0..=parts).map(move |part| from + (to - from) * part as f64 / parts as f64);

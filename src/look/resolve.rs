@@ -1,4 +1,4 @@
-//! Reads a `[view]` table into the view of the body, the runs and the surroundings that it shows.
+//! Reads a `[view]` table into the view of a body, its runs and its surroundings.
 
 use super::compared;
 use super::contrast;
@@ -23,14 +23,14 @@ const LEAST_SIDE: u32 = 16;
 /// A `[view]` table as typed, of the right structure.
 pub(crate) type TypedView = Map<String, Json>;
 
-/// A value as typed, if it is.
+/// A value as typed, if there is one.
 fn get<T: DeserializeOwned>(typed: &TypedView, key: &str, report: &mut Report<'_>) -> Option<T> {
     let read = T::deserialize(typed.get(key)?);
     // The structure of the value is right, so an error is unexpected.
     read.map_err(|error| report.at(&way!["view", key], error.to_string(), None)).ok()
 }
 
-/// Puts a value in its place, if it is typed.
+/// Sets a field to the typed value, if there is one.
 fn set<T: DeserializeOwned>(place: &mut T, typed: &TypedView, key: &str, report: &mut Report<'_>) {
     if let Some(value) = get(typed, key, report) {
         *place = value;
@@ -38,7 +38,7 @@ fn set<T: DeserializeOwned>(place: &mut T, typed: &TypedView, key: &str, report:
 }
 
 impl View {
-    /// The view of a scene: what is typed, in its place, and what the scene makes of the rest. `None` after a mistake.
+    /// The view of a scene: typed values, and defaults that depend on the scene. `None` after a mistake.
     pub(crate) fn read(
         typed: &TypedView,
         scene: &Subject<'_>,
@@ -71,7 +71,7 @@ impl View {
         let text_scale = get(typed, "text_scale", report).unwrap_or(TextScaleFile::Times(view.look.text_scale));
         let usual = view.columns.unwrap_or(panels.clamp(1, 3));
         if let TextScaleFile::Points(_) = text_scale {
-            // Type in points holds for one arrangement.
+            // Type in points has a fixed arrangement.
             view.columns = Some(usual);
         }
         let panel = [view.size[0] / usual as u32, view.size[1] / panels.div_ceil(usual).max(1) as u32];
@@ -109,7 +109,7 @@ fn camera(typed: &CameraFile, scene: &Subject<'_>, report: &mut Report<'_>) -> O
     let given = [("azimuth", typed.azimuth), ("elevation", typed.elevation)];
     for (key, _) in given.iter().filter(|(_, value)| dimension == Dimension::Plane && value.is_some()) {
         let message = format!("`view.camera.{key}` is given, but a body in the plane is seen from the front");
-        report.at_key(&way!["view", "camera", *key], message, format!("take `{key}` out"));
+        report.at_key(&way!["view", "camera", *key], message, format!("remove `{key}`"));
     }
     let target = match &typed.target {
         Some(target) => Some(vector(target, dimension, &way!["view", "camera", "target"], report)?),
@@ -126,10 +126,10 @@ fn camera(typed: &CameraFile, scene: &Subject<'_>, report: &mut Report<'_>) -> O
     Some(chosen)
 }
 
-/// The narrowest range of colours, in parts of its larger end: ticks still differ in a few digits.
+/// The narrowest range of colours, relative to its larger end: ticks still differ in a few digits.
 const NARROWEST: f64 = 1e-9;
 
-/// The colours of a field, over a range that is typed somewhere or else follows from the scenes.
+/// The colours of a field. A range that is not typed follows from the scenes.
 pub(crate) fn colour(
     typed: &ColourFile,
     scenes: &[Subject<'_>],

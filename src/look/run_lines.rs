@@ -1,12 +1,12 @@
-//! The lines that stand for runs: colours and dashes.
+//! The lines of runs: colours and dashes.
 
 use super::palette::Palette;
 use crate::colour::{Colour, LINE_CONTRAST, least_difference, readable};
 
 /// The least difference of the colours of two runs, for any colour vision (CIEDE2000).
 const RUNS_APART: f64 = 15.0;
-/// Lengths of the dashes of runs and of the gaps after them, by their places (px in the reference picture). They
-/// distinguish runs where colours do not: in greyscale print, and where there are more runs than colours.
+/// Lengths of the dashes and gaps of runs, by their places (px in the reference picture). They distinguish runs in
+/// greyscale print, and if there are more runs than colours.
 const DASHES: [&[f64]; 8] = [
     &[],
     &[7.0, 4.0],
@@ -18,19 +18,20 @@ const DASHES: [&[f64]; 8] = [
     &[4.0, 8.0],
 ];
 
-/// The style of the line of a run: of its curves in charts and of samples beside its name. Its arrows have the same colour.
+/// The style of the line of a run: of its curves in charts and of samples beside its name. Its arrows have the same
+/// colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LineStyle {
     /// Its colour.
     pub colour: Colour,
-    /// Lengths of its dashes and of the gaps after them, by turns (px in the reference picture); empty for a solid line.
+    /// Lengths of its dashes and gaps in turn (px in the reference picture); empty for a solid line.
     pub dash: &'static [f64],
 }
 
 impl Palette {
-    /// The line of a run, the same in every picture of its scene. Eight runs differ in colour and in dashes, more of them,
-    /// up to 64, in one of both. Colours are made lighter or darker where they could not be seen on the background.
-    /// `place` is that of the run ([`Self::places`]), `chosen` a colour of its own.
+    /// The line of a run, the same in every picture of its scene. Up to eight runs differ in both colour and dashes, up
+    /// to 64 in one of them. Colours are made lighter or darker to be visible on the background. `place` is the place
+    /// of the run ([`Self::places`]), `chosen` its chosen colour.
     pub(crate) fn line(&self, place: usize, chosen: Option<Colour>) -> LineStyle {
         let (colours, dashes) = (self.runs.len(), DASHES.len());
         let colour = chosen.unwrap_or(self.runs[place % colours]);
@@ -40,8 +41,8 @@ impl Palette {
         }
     }
 
-    /// The places of runs, some of which have chosen colours. Each has the dashes of its number. The others leave out
-    /// colours that look like a chosen one, as far as there are any left.
+    /// The places of runs, some of which have chosen colours. Each has the dashes of its number. The others avoid
+    /// colours that look like a chosen one, if enough are left.
     pub(crate) fn places(&self, chosen: &[Option<Colour>]) -> Vec<usize> {
         let (colours, dashes) = (self.runs.len(), DASHES.len());
         let seen = |colour| readable(colour, self.background, LINE_CONTRAST);
@@ -56,7 +57,7 @@ impl Palette {
                 return at;
             }
             let dash = (at + at / colours) % dashes;
-            // The place of this colour that has these dashes.
+            // The place with this colour and these dashes.
             others.next().map_or(at, |colour| colour + colours * ((dash + dashes - colour) % dashes))
         };
         (0..chosen.len()).map(place).collect()

@@ -1,4 +1,4 @@
-//! The colours of a scene: those that it gives replace the theme's, and related colours follow them.
+//! The colours of a scene: chosen colours replace the theme's, and related colours follow them.
 
 use super::palette::{Palette, Theme};
 use super::view::Colours;
@@ -8,12 +8,12 @@ use crate::colour::{
 
 /// The contrast of text whose colour is chosen here, with some reserve for a floor below it.
 const GOOD_CONTRAST: f64 = 5.0;
-/// An alarm colour darker than this (lightness of Oklab) has a lighter hatch, and how much lighter.
+/// The lightness (Oklab) of an alarm colour below which the hatch is lighter, and by how much.
 const DARK_ALARM: f64 = 0.48;
 const LIGHTER_HATCH: f64 = 0.36;
 
 impl Palette {
-    /// The theme whose text is legible on a background: the requested one, or else the better one.
+    /// The theme whose text is legible on a background: the requested one, if possible.
     pub(crate) fn theme_on(background: Option<Colour>, theme: Theme) -> Theme {
         let Some(ground) = background else { return theme };
         let other = if theme == Theme::Light { Theme::Dark } else { Theme::Light };
@@ -21,7 +21,7 @@ impl Palette {
         if own >= LEAST_CONTRAST || own >= others { theme } else { other }
     }
 
-    /// The colours of a theme with those that a scene gives, and with related colours that follow these.
+    /// The colours of a theme with the scene's colours, and with related colours that follow them.
     pub(crate) fn with(theme: Theme, background: Option<Colour>, given: &Colours) -> Self {
         let theme = Self::of(theme);
         let mut own = theme;
@@ -53,8 +53,8 @@ impl Palette {
         own
     }
 
-    /// Sets the colours of secondary text and of lines: between the text and the background, as far from each as in the
-    /// theme, and legible.
+    /// Sets the colours of secondary text and of lines: between the text and the background, at the same relative
+    /// distances as in the theme, and legible.
     fn set_secondary_colours(&mut self, theme: &Self) {
         let (text, ground) = (self.text, self.background);
         let between = |colour: Colour| mixed(text, ground, share(theme.text, theme.background, colour));
@@ -67,8 +67,7 @@ impl Palette {
     }
 }
 
-/// A colour related to one of the scene as `other` is to `counterpart` in the theme: as much lighter or darker, and as much
-/// more or less colourful.
+/// A colour that relates to `own` as `other` relates to `counterpart` in the theme: in lightness and in colourfulness.
 fn like(own: Colour, counterpart: Colour, other: Colour) -> Colour {
     let [own, counterpart, other] = [own, counterpart, other].map(oklab);
     let Oklab([lightness, a, b]) = own;
@@ -92,7 +91,7 @@ fn most_contrast(ground: Colour) -> f64 {
     contrast([0; 3], ground).max(contrast([255; 3], ground))
 }
 
-/// How far a colour is on the way from one to another.
+/// The share of the way from one colour to another at which a colour lies.
 fn share(from: Colour, to: Colour, colour: Colour) -> f64 {
     let sum = |colour: Colour| f64::from(colour.map(u32::from).iter().sum::<u32>());
     ((sum(colour) - sum(from)) / (sum(to) - sum(from))).clamp(0.0, 1.0)

@@ -8,13 +8,13 @@ use crate::sim::{Field, Grip, Obstacle, State};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// What default values of a view depend on.
+/// The data on which default values of a view depend.
 pub(crate) struct Subject<'a> {
     pub(crate) body: &'a Body,
     pub(crate) initial: &'a State,
     /// Mean length of the elements' edges (m).
     pub(crate) side: f64,
-    /// Whether that is the side of a lattice's cells.
+    /// Whether `side` is the side of a lattice's cells.
     pub(crate) has_cells: bool,
     pub(crate) gravity: DVec3,
     pub(crate) obstacles: &'a [Obstacle],
@@ -47,7 +47,7 @@ impl Subject<'_> {
                 let fall = (2.0 * self.gravity.length() * drop).sqrt();
                 let pushed = self.obstacles.iter().map(|obstacle| obstacle.motion.greatest_speed(side));
                 let fastest = pushed.fold((start * start + fall * fall).sqrt(), f64::max);
-                // A body that nothing else moves swings at its own frequency.
+                // A body that nothing else moves oscillates at its own frequency.
                 let periods = self.models.iter().map(|model| model.shortest_period(self.body));
                 let swing = LARGE * side * TAU / periods.fold(f64::INFINITY, f64::min);
                 if fastest > 0.0 { fastest } else { swing }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// The expected colours, for messages.
 const EXPECTED: &str = "; expected digits such as \"#93a5ba\" or a name of CSS such as \"steelblue\"";
 
-/// An opaque colour. It is written back as digits, so that a name and its digits mean the same.
+/// An opaque colour. It is written back as digits, so that a name and its digits are equal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "String", into = "String")]
 #[schemars(extend("format" = "colour"))]
@@ -18,7 +18,7 @@ impl TypedColour {
     /// Reads a colour.
     ///
     /// # Errors
-    /// The continuation of a message about a text that is no colour, and the help.
+    /// The continuation of a message about a text that is not a colour, and the remedy.
     pub(crate) fn read(text: &str) -> Result<Self, (String, Option<String>)> {
         parse(text).map(Self).map_err(|why| match why {
             UnknownColour::Unknown => {
@@ -28,9 +28,7 @@ impl TypedColour {
             }
             UnknownColour::WithoutHash => (EXPECTED.to_owned(), Some(format!("write \"#{}\"", text.trim()))),
             UnknownColour::Digits => ("; expected three or six digits, such as \"#93a5ba\"".to_owned(), None),
-            UnknownColour::Transparent => {
-                (", which something shows through; expected an opaque colour".to_owned(), None)
-            }
+            UnknownColour::Transparent => (", which is transparent; expected an opaque colour".to_owned(), None),
         })
     }
 }
@@ -59,7 +57,7 @@ pub(crate) struct FontFile {
     /// combining marks, are not.
     #[schemars(length(min = 1))]
     pub(crate) regular: String,
-    /// The font of names and counts. Default: that of `regular`.
+    /// The font of names and counts. Default: the `regular` font.
     #[schemars(length(min = 1))]
     pub(crate) semi_bold: Option<String>,
 }

@@ -55,7 +55,8 @@ pub struct View {
     /// Length of an element's edge, the unit of the floor's grid and of soft distances in light and shadow (m).
     #[serde(skip)]
     pub side: f64,
-    /// Whether this length is the side of a lattice's cells, which the floor's grid then repeats, or a mean of edges.
+    /// Whether `side` is the side of a lattice's cells, which the floor's grid then repeats; otherwise it is a mean of
+    /// edges.
     #[serde(skip)]
     pub has_cells: bool,
     /// A title above all panels, wrapped at the width of the picture. Default: none.
@@ -69,10 +70,10 @@ pub struct View {
     #[schemars(with = "Vec<Label>")]
     pub labels: Labels,
     /// A diagnostic plotted over the whole time of the scene in one chart below all panels, with the current time
-    /// marked. Curves end with their names, or with the letters of their panels where names have no room. Numbered
-    /// flags mark the moments when elements first turn over and when their count settles, or the extreme value. Where
-    /// nearly everything happens early, that time has a larger scale. The whole scene is simulated before the first
-    /// frame is drawn. Default: none.
+    /// marked. Curves end with their names, or with the letters of their panels if names have no room. Numbered flags
+    /// mark the moments when elements first turn over and when their count settles, or the extreme value. If nearly all
+    /// changes are early, that time has a larger scale. The whole scene is simulated before the first frame is drawn.
+    /// Default: none.
     pub strip: Option<Diagnostic>,
     /// A dashed outline over each body: `"rest"` for the rest shape in its best rigid fit, or the name of a run for its
     /// body at the same moment, in the colour of that run. All runs then have that run's time step. Default: none.
@@ -97,13 +98,13 @@ pub struct View {
     pub camera: Camera,
 }
 
-/// For the schema, which has no default for what follows from the scene.
+/// For the schema, which has no default for values that follow from the scene.
 fn open<T, S: Serializer>(_: &T, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_none()
 }
 
 impl View {
-    /// Whether frames show something of the course of the scene besides the chart.
+    /// Whether frames depend on the course of the scene besides the chart.
     pub(crate) fn looks_ahead(&self) -> bool {
         !self.paths.is_empty()
     }
@@ -268,7 +269,7 @@ pub enum EdgeStyle {
 }
 
 impl EdgeStyle {
-    /// Whether edges before the body, and behind it, are drawn.
+    /// Whether edges in front of the body, and behind it, are drawn.
     pub(crate) fn are_drawn(self) -> [bool; 2] {
         [self != Self::Outline, self == Self::All]
     }
@@ -359,7 +360,7 @@ pub struct Style {
     /// The background. The other theme is used if this one's text cannot be read on it. Default: the theme's.
     #[schemars(with = "Option<TypedColour>")]
     pub background: Option<Colour>,
-    /// Colours of the body, such as `{ body = "steelblue" }`, from which shades are derived. Default: the theme's.
+    /// Colours of the body, such as `{ body = "steelblue" }`. Related shades follow them. Default: the theme's.
     #[serde(serialize_with = "open")]
     pub colours: Colours,
     /// The font files, such as `{ regular = "NotoSansCJK.ttc" }`. Default: the built-in font, which has Latin and Greek
@@ -474,17 +475,17 @@ pub struct Camera {
     pub elevation: f64,
     /// Vertical field of view (rad).
     pub field_of_view: f64,
-    /// The point looked at (m).
+    /// The target (m).
     pub target: DVec3,
     /// Distance from it (m).
     pub distance: f64,
-    /// The height of the body's start above its stand, where target and distance were chosen to show both (m).
+    /// The height of the body's start above its stand, if target and distance were chosen to show both (m).
     pub rise: f64,
     /// Whether the camera follows the centre of each run's body, from a distance at which the body fills its panel at
     /// its widest moment.
     pub follow: bool,
     /// Points of obstacles and moved nodes that come near the body's start or stand (m). A following camera shows them,
-    /// too, where it can stand still.
+    /// too, if it can stand still.
     pub(crate) near: Vec<DVec3>,
 }
 

@@ -83,32 +83,32 @@ pub struct Picture {
     pub(crate) words: Vec<TextRun>,
 }
 
-/// One run, seen by one camera. Lengths are in sides ([`crate::look::View::side`]), measured from the panel's origin.
+/// One run, seen by one camera. Lengths are in sides ([`crate::look::View::side`]), from the panel's origin.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Panel {
     /// The part of the picture that belongs to it.
     pub viewport: Rectangle,
-    /// The part of the viewport that the body and its lines may touch. Its width or height is 0 if there is none.
+    /// The part of the viewport that the body and its lines may cover. Its width or height is 0 if there is none.
     pub region: Rectangle,
     /// Camera and light.
     pub sight: Sight,
-    /// What the body stands on, if it is drawn.
+    /// The floor, if it is drawn.
     pub floor: Option<Floor>,
     /// The boundary of the elements that have not turned over.
     pub sound: Mesh,
     /// The boundary of the elements that have turned over.
     pub turned_over: Mesh,
-    /// Whether others are flat, and so dotted.
+    /// Whether some elements of `sound` are flat, and so dotted.
     pub dotted: bool,
-    /// Whether the body is drawn in greys, because its run diverges or did so.
+    /// Whether the body is grey, because its run diverges or has diverged.
     pub greyed: bool,
-    /// Edges and contours of both, and of solid obstacles.
+    /// Edges and contours of both surfaces, and of solid obstacles.
     pub lines: Vec<Line>,
     /// Lines at which the colours of surfaces may change, drawn or not: pixels that they cross are smoothed.
     pub borders: Vec<Line>,
     /// The obstacles besides the floor.
     pub obstacles: Obstacles,
-    /// Springs and other lines with colours of their own, above the surfaces, in the order in which they are drawn.
+    /// Coloured lines, such as springs, above the surfaces, in the order in which they are drawn.
     pub strokes: Vec<Stroke>,
     /// Nodes in space, above the strokes, in the order in which they are drawn.
     pub beads: Vec<Bead>,
@@ -125,25 +125,25 @@ pub(crate) struct Obstacles {
     pub slabs: Vec<Slab>,
     /// In space, the obstacles near the body, which occlude its ambient light; at most [`MOST_OCCLUDERS`].
     pub occluders: Vec<Occluder>,
-    /// How its solids fade out where they leave their room; `None` if none leaves it.
+    /// The fading of its solids at the sides of their room; `None` if none leaves it.
     pub fade: Option<Fading>,
 }
 
-/// How solid obstacles fade out at the sides of a room: left, top, right and bottom.
+/// The fading of solid obstacles at the sides of a room: left, top, right and bottom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Fading {
     /// The sides (px).
     pub(crate) room: [f32; 4],
-    /// Over how far they do so, across and up (px).
+    /// The distances of the fading, across and up (px).
     pub(crate) distance: [f32; 2],
-    /// How strongly they do so, from 0 to 1.
+    /// The strength of the fading, from 0 to 1.
     pub(crate) strength: [f32; 4],
 }
 
 /// The largest number of obstacles that occlude the ambient light of a body.
 pub(crate) const MOST_OCCLUDERS: usize = 5;
 
-/// An obstacle that occludes the ambient light of a body near it: all points within a distance of a box. That makes a
+/// An obstacle that occludes the ambient light of a body near it: all points within a distance of a box. It is a
 /// rounded box, a capsule or a sphere; a plate or a wall is a very large one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Occluder {
@@ -164,22 +164,22 @@ pub(crate) struct Occluder {
 pub(crate) struct Solid {
     /// The surface.
     pub mesh: Mesh,
-    /// Its colour, before light falls on it.
+    /// Its colour, before lighting.
     pub colour: Colour,
-    /// The colour of its rim, in the plane. There `hatch` of a corner is its distance inside the outline (px), and
-    /// corners reach beyond the outline by more than half a pixel.
+    /// The colour of its rim, in the plane. There, the `hatch` of a corner is its distance inside the outline (px), and
+    /// corners are more than half a pixel outside of it.
     pub rim: Option<Colour>,
-    /// How much the body occludes the ambient light at each corner, in space: 1 where they touch face to face, 0 where it
-    /// does not. Empty if the body is not near.
+    /// The share of ambient light that the body occludes at each corner, in space: 1 where they touch face to face, 0
+    /// far away. Empty if the body is not near.
     pub near: Vec<f32>,
 }
 
 /// A transparent obstacle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Slab {
-    /// Its faces that are turned towards the viewer.
+    /// Its faces towards the viewer.
     pub panes: Vec<Pane>,
-    /// The edges of these.
+    /// The edges of these faces.
     pub edges: Vec<[[f32; 3]; 2]>,
 }
 
@@ -192,19 +192,19 @@ pub(crate) struct Pane {
     pub colour: Colour,
     /// Its opacity.
     pub alpha: f32,
-    /// Whether there is a grid on it, like that on the floor.
+    /// Whether it has a grid, like the floor.
     pub grid: bool,
 }
 
 /// A corner of a pane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PaneCorner {
-    /// Where it is.
+    /// Its position.
     pub position: [f32; 3],
-    /// Where it is on the grid, whose lines are at whole numbers.
+    /// Its coordinates on the grid, whose lines are at whole numbers.
     pub grid: [f32; 2],
-    /// Where it is in the circle of radius one in which the pane fades out. A pane all of whose corners are at zero does
-    /// not fade.
+    /// Its coordinates in the unit circle at which the pane has faded out. A pane with all corners at zero does not
+    /// fade.
     pub from_middle: [f32; 2],
 }
 
@@ -213,21 +213,21 @@ pub(crate) struct PaneCorner {
 pub(crate) struct Sight {
     /// From the panel's coordinates to clip space of its viewport. Depth is `near` over the distance.
     pub clip: Mat4,
-    /// Where the eye is.
+    /// The position of the eye.
     pub eye: Vec3,
-    /// Distance of the nearest thing drawn.
+    /// Distance of the near plane.
     pub near: f32,
     /// Pixels of the picture for a slope of one; in the plane, for one side.
     pub focal: f32,
     /// Unit vector towards the key light.
     pub key: Vec3,
-    /// Whether faces are flat colours without light, seen without perspective.
+    /// Whether faces have flat colours without light, seen without perspective.
     pub flat: bool,
-    /// Thickness of lines, in parts of that in the reference picture.
+    /// Thickness of lines, relative to the reference picture.
     pub line_scale: f32,
     /// Length of an element's edge at the body's distance (px).
     pub element: f32,
-    /// Width of the body's contours, from 0 to 1: below 1 where the body is small.
+    /// Width of the body's contours, from 0 to 1: below 1 if the body is small.
     pub contour_share: f32,
     /// The pixel of the body's middle, to which the hatch of flat bodies is fixed.
     pub middle: [f32; 2],
@@ -244,15 +244,15 @@ pub(crate) struct Floor {
     pub axes: [Vec3; 2],
     /// Its place along the normal.
     pub height: f32,
-    /// Coordinates along the axes of the point around which it is drawn.
+    /// Coordinates along the axes of the point around which the floor is drawn.
     pub middle: [f32; 2],
     /// Distance of the grid's lines.
     pub cell: f32,
-    /// What to add to coordinates so that the grid's lines are at whole cells.
+    /// The shift of coordinates by which the grid's lines come to whole cells.
     pub grid: [f32; 2],
-    /// From where to where it fades out around the middle.
+    /// The distances from the middle at which it begins and ends to fade.
     pub fade: [f32; 2],
-    /// Over which height above the lower side of the viewport it fades out (px).
+    /// The height above the lower side of the viewport over which it fades (px).
     pub fade_above: f32,
     /// Whether it has a colour of its own, besides shadows and grid.
     pub is_filled: bool,
@@ -269,8 +269,7 @@ pub(crate) struct Mesh {
     pub vertices: Vec<Vertex>,
     /// Its triangles, counter-clockwise from outside the set that it bounds.
     pub triangles: Vec<[u32; 3]>,
-    /// Where each corner stands on the scale of a field, from 0 to 1; −1 where there is no value. Empty if no field
-    /// is shown.
+    /// The place of each corner on the scale of a field, from 0 to 1; −1 without a value. Empty if no field is shown.
     pub shades: Vec<f32>,
 }
 
@@ -278,11 +277,11 @@ pub(crate) struct Mesh {
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(crate) struct Vertex {
-    /// Where it is.
+    /// Its position.
     pub position: [f32; 3],
     /// Normal of the face, of any length.
     pub normal: [f32; 3],
-    /// On turned-over elements: where it lies in the hatch that is painted on the material, in periods. On others: 1 if the
+    /// On turned-over elements: its place in the hatch, which is fixed to the material, in periods. On others: 1 if the
     /// element is flat, and so dotted, else 0.
     pub hatch: f32,
 }
@@ -294,14 +293,13 @@ pub(crate) struct Line {
     pub from: [f32; 3],
     /// The other end.
     pub to: [f32; 3],
-    /// What it is.
+    /// Its kind.
     pub kind: LineKind,
-    /// From 0 to 1: the opacity of a contour; the opacity of an edge of an element that is not turned over where a surface
-    /// hides it.
+    /// From 0 to 1: the opacity of a contour, or of an edge of a sound element behind a surface.
     pub strength: f32,
 }
 
-/// The kind of a line, which decides how it is drawn.
+/// The kind of a line, which determines its look.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub(crate) enum LineKind {
@@ -311,7 +309,7 @@ pub(crate) enum LineKind {
     AlarmEdge = 1,
     /// A place where the surface of the elements that are not turned over turns away from the viewer.
     Contour = 2,
-    /// The same of the turned-over set.
+    /// A place where the surface of the turned-over elements turns away from the viewer.
     AlarmContour = 3,
     /// An edge of an element without faces.
     Bar = 4,
@@ -322,13 +320,13 @@ pub(crate) enum LineKind {
 }
 
 impl LineKind {
-    /// Whether it is of turned-over elements.
+    /// Whether it belongs to turned-over elements.
     pub(crate) fn is_alarm(self) -> bool {
         matches!(self, Self::AlarmEdge | Self::AlarmContour)
     }
 }
 
-/// A straight line in space with colours of its own.
+/// A straight coloured line in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stroke {
     /// Its ends.
@@ -337,7 +335,7 @@ pub(crate) struct Stroke {
     pub colours: [Colour; 2],
     /// Its second colour, if it has one.
     pub second: Second,
-    /// Opacity of what lies behind a surface.
+    /// Opacity of its parts behind a surface.
     pub behind: u8,
     /// Its width (px).
     pub width: f32,
@@ -346,11 +344,11 @@ pub(crate) struct Stroke {
 /// The second colour of a stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Second {
-    /// There is none.
+    /// No second colour.
     None,
-    /// It replaces the first colours over surfaces.
+    /// A colour that replaces the first ones over surfaces.
     OnBody(Colour),
-    /// A casing along both sides, so that light colours show on light ground.
+    /// A casing along both sides, which makes light colours visible on light ground.
     Casing(Colour),
 }
 
@@ -374,7 +372,7 @@ pub(crate) struct Curve {
     pub points: Vec<[f32; 2]>,
     /// Its width (px).
     pub width: f32,
-    /// Lengths of its dashes and of the gaps after them, by turns (px), up to three of each; empty for a solid curve.
+    /// Lengths of its dashes and gaps in turn (px), up to three of each; empty for a solid curve.
     pub dash: Vec<f32>,
     /// Its colour.
     pub colour: Colour,
@@ -391,16 +389,16 @@ pub(crate) struct Mark {
     pub along: [f32; 2],
     /// Its colour.
     pub colour: Colour,
-    /// The colour of what is drawn on it.
+    /// The colour of the shape on it.
     pub second: Colour,
     /// Its opacity (of 255).
     pub opacity: u8,
-    /// What it looks like.
+    /// Its shape.
     pub shape: MarkShape,
 }
 
 impl Mark {
-    /// Along the width of a mark that is not turned.
+    /// The direction of a mark that is not turned.
     pub(crate) const UPRIGHT: [f32; 2] = [1.0, 0.0];
 
     /// An opaque mark of one colour that is not turned: left, top, width and height (px).
@@ -409,7 +407,7 @@ impl Mark {
         Self { rectangle, along: Self::UPRIGHT, colour, second: colour, opacity: u8::MAX, shape }
     }
 
-    /// The same around a middle and as far as a radius (px).
+    /// A mark that is not turned, around a middle, with a radius (px).
     fn around(middle: DVec2, radius: f64, shape: MarkShape, colour: Colour) -> Self {
         let DVec2 { x, y } = middle;
         Self::upright([x - radius, y - radius, 2.0 * radius, 2.0 * radius], shape, colour)
@@ -424,14 +422,14 @@ impl Mark {
         Self { along: along.to_array().map(narrow), ..Self::upright(rectangle, MarkShape::Smooth, colour) }
     }
 
-    /// The mark with a part of its opacity, from 0 to 1; `None` if nothing of it would be seen.
+    /// The mark with a part of its opacity, from 0 to 1; `None` if it would be invisible.
     fn faded(self, part: f64) -> Option<Self> {
         let opacity = (f64::from(self.opacity) * part.clamp(0.0, 1.0)).round() as u8;
         (opacity > 0).then_some(Self { opacity, ..self })
     }
 }
 
-/// What a mark looks like.
+/// The shape of a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum MarkShape {
     /// A filled rectangle.
@@ -451,9 +449,9 @@ pub(crate) enum MarkShape {
     /// A filled rectangle with smooth borders, a pixel wide inside it.
     Smooth,
     /// An arrow along the width with a halo of the second colour. The halo fills the rectangle's border, 3/23 of the
-    /// height wide; the tip stands before it.
+    /// height wide; the tip is inside it.
     Arrow,
-    /// A filled rectangle that goes from its colour to the second one along its width.
+    /// A filled rectangle whose colour changes to the second one along its width.
     Blend,
     /// A triangle that points along the width.
     Point,

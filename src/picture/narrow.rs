@@ -2,13 +2,12 @@
 
 use glam::{DVec3, DVec4, Vec3, Vec4};
 
-/// The largest coordinate that a picture holds: far outside of any panel, and small enough that products of four
-/// coordinates are finite.
+/// The largest coordinate of a picture: far outside of any panel, but products of four coordinates are finite.
 const FARTHEST: f64 = 1e6;
 
 /// Rounds to single precision. NaN becomes 0, and huge values are clamped, so that a diverged run can be drawn like any
 /// other.
-#[expect(clippy::cast_possible_truncation, reason = "this is the function that is meant to do it")]
+#[expect(clippy::cast_possible_truncation, reason = "narrowing is the purpose of this function")]
 pub(super) fn narrow(value: f64) -> f32 {
     if value.abs() <= FARTHEST {
         value as f32
@@ -24,8 +23,8 @@ pub(super) fn narrow_point(point: DVec3) -> Vec3 {
     Vec3::new(narrow(point.x), narrow(point.y), narrow(point.z))
 }
 
-/// A row of a matrix. Its numbers may be much larger than coordinates: those far away and the strongest lenses still
-/// come out undistorted.
+/// A row of a matrix. Its numbers may be much larger than coordinates, so that distant objects and the strongest lenses
+/// are not distorted.
 #[expect(clippy::cast_possible_truncation, reason = "the numbers are kept in range")]
 pub(super) fn narrow_row(row: DVec4) -> Vec4 {
     const LARGEST: f64 = 1e15;

@@ -17,8 +17,8 @@ pub(super) fn time(seconds: f64) -> String {
     with_minus(text)
 }
 
-/// A moment (s) as exactly as someone typed it: milliseconds below a second, if zero is to be one of those, too; then
-/// seconds with so many decimals.
+/// A moment (s) as exactly as it was typed: milliseconds below a second, also for zero if `small`, then seconds with a
+/// number of decimals.
 fn moment(seconds: f64, small: bool, decimals: usize) -> String {
     let text = match seconds.abs() {
         0.0 if !small => "0 s".to_owned(),
@@ -28,14 +28,14 @@ fn moment(seconds: f64, small: bool, decimals: usize) -> String {
     with_minus(text)
 }
 
-/// How many decimals of a moment (s) from a second on are worth writing, at least one.
+/// The number of significant decimals of a moment (s) from a second on, at least one.
 fn decimals(seconds: f64) -> usize {
     let text = format!("{:?}", rounded(seconds, 4));
     let plain = seconds.abs() >= LEAST_SECOND && !text.contains('e');
     text.split_once('.').filter(|_| plain).map_or(1, |(_, decimals)| decimals.len())
 }
 
-/// How times (s) that stand beside each other are written: with equally many decimals from a second on, and zero in the
+/// Writes times (s) that stand beside each other: with the same number of decimals from a second on, and zero in the
 /// unit of its neighbours.
 pub(super) fn moments(times: impl Iterator<Item = f64>) -> impl Fn(f64) -> String {
     let times: Vec<_> = times.collect();
@@ -44,7 +44,7 @@ pub(super) fn moments(times: impl Iterator<Item = f64>) -> impl Fn(f64) -> Strin
     move |time| moment(time, small, decimals)
 }
 
-/// What is shorter is written in milliseconds (s).
+/// Shorter times are written in milliseconds (s).
 const LEAST_SECOND: f64 = 0.999_95;
 
 /// The factor and the prefix of the unit of all lengths in pictures of a body of a size (m).
@@ -107,7 +107,7 @@ pub(super) fn ratio(value: f64) -> String {
     }
 }
 
-/// A number as it is set: with a true minus sign, no negative zero, and thin spaces between thousands from 10 000 on.
+/// A typeset number: with a true minus sign, no negative zero, and thin spaces between thousands from 10 000 on.
 pub(super) fn with_minus(text: String) -> String {
     let zero = text.strip_prefix('-').filter(|rest| !rest.contains(|c: char| ('1'..='9').contains(&c)));
     let text = zero.map_or_else(|| text.replace('-', "−"), str::to_owned);
@@ -124,7 +124,7 @@ pub(super) fn with_minus(text: String) -> String {
     set + &text[first + length..]
 }
 
-/// How many times: in words up to twelve, then in digits, from a thousand on in powers of ten.
+/// A factor: in words up to twelve, then in digits, from a thousand on in powers of ten.
 pub(super) fn times(value: f64) -> String {
     const WORDS: [&str; 11] =
         ["two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"];
@@ -152,12 +152,13 @@ pub(super) fn round_below(value: f64) -> f64 {
     )
 }
 
-/// A number times a power of ten, as exact as it is typed.
+/// A number times a power of ten, rounded like its text.
 pub(super) fn times_ten(digits: f64, power: f64) -> f64 {
     format!("{digits}e{power}").parse().unwrap_or(digits)
 }
 
-/// A round length (m) in pictures of a body of a size (m): in the unit of its other lengths, but no thousands of these.
+/// A round length (m) in pictures of a body of a size (m): in the unit of its other lengths, or a larger one for
+/// thousands.
 pub(super) fn round_length(metres: f64, extent: f64) -> String {
     let (factor, prefix) = metre(extent);
     let suits = (1e-2..0.999e3).contains(&(metres / factor));

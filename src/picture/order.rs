@@ -3,8 +3,8 @@
 /// Depths that differ by less than this part of the largest are equal.
 const EQUALLY_DEEP: f64 = 1e-6;
 
-/// Things with their distances from the eye, the farthest first. Things of equal depth keep their order; depths are rounded
-/// to steps, so that rounding errors hardly ever change it.
+/// Items with their distances from the eye, the farthest first. Items of equal depth keep their order; depths are
+/// rounded to steps, so that round-off hardly ever changes it.
 pub(super) fn farthest_first<T>(mut things: Vec<(f64, T)>) -> impl Iterator<Item = T> {
     let step = EQUALLY_DEEP * things.iter().map(|(depth, _)| depth.abs()).fold(0.0, f64::max);
     let rank = |depth: f64| (depth / step.max(f64::MIN_POSITIVE)).round();

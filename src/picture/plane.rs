@@ -18,37 +18,37 @@ use std::f64::consts::TAU;
 pub(super) const LEVEL: f64 = 1.0 - 1e-9;
 /// Radius of a node (px in the reference picture).
 const NODE: f64 = 5.2;
-/// Radius of a ring arrow, and of the disc behind one of a turned-over element (px in the reference picture).
+/// Radius of a ring arrow, and of the disc behind the arrow of a turned-over element (px in the reference picture).
 const RING: [f64; 2] = [13.0, 17.0];
-/// Elements whose middle is nearer to a side than this get smaller arrows (px in the reference picture), down to this part
-/// of their size.
+/// Elements whose middle is nearer to a side than this get smaller arrows (px in the reference picture), down to this
+/// part of their size.
 const ROOMY: f64 = 18.0;
 const SMALLEST_SIGN: f64 = 0.35;
 const SMALLEST_ALARM: f64 = 0.7;
-/// Above these sizes they fade in over this part of their whole size: nothing appears at once.
+/// Above these sizes signs fade in over this part of their whole size, so that none appears suddenly.
 const FADING_SIGN: f64 = 0.2;
-/// What is covered by the disc of another, or by an element that has turned over, fades over this distance beside it (px in
-/// the reference picture).
+/// Signs near the disc of another one, or near a turned-over element, fade over this distance (px in the reference
+/// picture).
 const FADING_BESIDE: f64 = 6.0;
-/// A sign that would cover its turned-over element stands beside the body instead, at this distance from it; its leader has
+/// A sign that would cover its turned-over element stands beside the body instead, at this distance; its leader has
 /// this width and ends in a dot of this radius (px in the reference picture).
 const BESIDE: f64 = 20.0;
 const LEADER: f64 = 1.3;
 const LEADER_DOT: f64 = 2.6;
-/// It fades in over this part of a disc's radius, of the circle inside its element.
+/// The leader fades in between these radii of the circle inside its element, relative to a disc's radius.
 const FADING_LEADER: [f64; 2] = [0.04, 0.12];
-/// Bodies of more elements than this have no signs, which would hide what they stand for.
+/// Bodies of more elements have no signs, which would hide the elements.
 const MOST_SIGNS: usize = 16;
-/// Nodes have at most this part of an element's edge for a radius, and at least this radius (px).
+/// The largest radius of nodes in lengths of an element's edge, and the least radius (px).
 const CROWDED: f64 = 0.14;
 const SMALLEST_NODE: f64 = 1.4;
 /// Thickness of the floor's line (px in the reference picture).
 const FLOOR_LINE: f64 = 1.6;
-/// How far the floor reaches down (px in the reference picture).
+/// Depth of the floor below its line (px in the reference picture).
 const FLOOR_DEPTH: f64 = 50.0;
 /// Floors whose normal rises or falls less than this are walls.
 const STEEP: f64 = 0.5;
-/// Between walls and the sides of the panel (px in the reference picture).
+/// The margin between walls and the sides of the panel (px in the reference picture).
 const WALL_MARGIN: f64 = 4.0;
 /// Depth of the soft shadow on the floor (px in the reference picture).
 const SHADOW_DEPTH: f64 = 16.0;
@@ -66,7 +66,7 @@ pub(super) struct Flat<'a> {
     /// Whether the camera moves between frames.
     pub(super) moves: bool,
     pub(super) viewport: Rectangle,
-    /// The part of the viewport that words leave free.
+    /// The part of the viewport without words.
     pub(super) clear: Rectangle,
     /// Whether floors, and the shadows on them, are drawn.
     pub(super) floors: [bool; 2],
@@ -87,10 +87,10 @@ impl Flat<'_> {
         }
     }
 
-    /// A floor at any angle, also a wall or a ceiling: a line between the words, soft on the side that is solid.
+    /// A floor at any angle, also a wall or a ceiling: a line between the words, soft on its solid side.
     fn slope(&self, normal: DVec3, height: f64, marks: &mut Vec<Mark>) {
         let unit = self.scale.unit;
-        // The point of it nearest to the middle of what is seen.
+        // The point of the floor nearest to the middle of the picture.
         let middle = DVec3::new(self.lens.eye.x, self.lens.eye.y, 0.0);
         let Some(start) = self.pixel(middle + (height - normal.dot(middle)) * normal) else { return };
         let along = DVec2::new(normal.y, normal.x);
@@ -101,7 +101,7 @@ impl Flat<'_> {
             (clear[0], clear[2]) = (left + WALL_MARGIN * unit, width - 2.0 * WALL_MARGIN * unit);
         }
         let Some([from, to]) = clipped(start, along, sides(clear), WHOLE) else { return };
-        // Nothing of one panel appears in its neighbour.
+        // The floor does not extend into the neighbouring panel.
         let inward = along.perp();
         let ends = [from, to].map(|at| start + at * along);
         let reaches = ends.iter().flat_map(|end| {
@@ -134,8 +134,8 @@ impl Flat<'_> {
         mark([from, to], [0.5, thickness + 0.5], self.palette.axis, MarkShape::Smooth);
     }
 
-    /// The offset at which a level floor is drawn (px), so that it lies on whole pixels while neither it nor the camera
-    /// moves. It is the same in all frames, so that motion stays even.
+    /// The shift of a level floor (px) by which it lies on whole pixels, unless the floor or the camera moves. It is
+    /// the same in all frames, so that motion is even.
     fn alignment(&self, obstacle: &Obstacle) -> f64 {
         let start = half_space(obstacle, 0.0).filter(|(normal, _)| normal.y > LEVEL && !self.moves);
         let pixel = start.and_then(|(_, level)| self.lens.project(DVec3::new(self.lens.eye.x, level, 0.0)));
@@ -147,10 +147,10 @@ impl Flat<'_> {
         let Some((pixel, _)) = self.lens.project(DVec3::new(self.lens.eye.x, level, 0.0)) else { return };
         let [left, top, width, height] = self.viewport.map(f64::from);
         let (y, unit) = (sharpened(pixel[1] + alignment), self.scale.unit);
-        // Where there are no words it goes on to the border.
+        // Without words it extends to the border.
         let margin = if self.clear == self.viewport { 0.0 } else { self.scale.margin() };
         let length = width - 2.0 * margin;
-        // Below the captions it would look like an underline; but under a body it is drawn in any case.
+        // Below the captions it would look like an underline, so it is drawn only below a body.
         let [_, clear, _, room] = self.clear.map(f64::from);
         if y < top || y > clear + room + NEARER[1] * unit || length <= 0.0 {
             return;
@@ -165,7 +165,7 @@ impl Flat<'_> {
         let lowest = pixels.clone().map(|pixel| pixel[1]).fold(f64::NEG_INFINITY, f64::max);
         let room = 40.0 * unit;
         if lowest > y - room && has_shadow {
-            // The shadow of what is close to the floor.
+            // The shadow of the part of the body near the floor.
             let near = pixels.filter(|pixel| pixel[1] > y - room).map(|pixel| pixel[0]);
             let (low, high) = near.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
             let low = (low - room).max(left + margin);
@@ -209,8 +209,8 @@ impl Flat<'_> {
         }
     }
 
-    /// Nodes, above the arrows. `element` is the length of an element's edge (px); `colours` are those of the nodes if
-    /// they have colours of their own.
+    /// Nodes, above the arrows. `element` is the length of an element's edge (px); `colours` are the colours of nodes,
+    /// if they have any.
     pub(super) fn nodes(&self, element: f64, colours: &dyn Fn(usize) -> Option<Colour>, marks: &mut Vec<Mark>) {
         let radius = node_radius(self.scale, element);
         for (node, &point) in self.position.iter().enumerate() {
@@ -220,7 +220,7 @@ impl Flat<'_> {
         }
     }
 
-    /// Where an element's arrow stands: in the roomiest of its triangles if it is not convex.
+    /// The place of an element's arrow: in the roomiest of its triangles if it is not convex.
     fn place(&self, nodes: &[u32], corners: &[DVec2]) -> Circle {
         let Some(ears) = self.ears.of(nodes) else { return roomiest(corners) };
         let places = ears.iter().map(|ear| roomiest(&ear.map(|at| corners[at as usize])));
@@ -230,12 +230,12 @@ impl Flat<'_> {
     /// The arrow of an element that is not turned over, unless a turned-over one covers it.
     fn sound_arrow(&self, (middle, room): Circle, turned_over: &[(Vec<DVec2>, Circle)], marks: &mut Vec<Mark>) {
         let unit = self.scale.line();
-        // The distance to any such element and to the disc of its arrow.
+        // The distance to a turned-over element, or to the disc of its arrow.
         let beside = |(polygon, (disc, _)): &(Vec<DVec2>, Circle)| {
             outside(polygon, middle).min(disc.distance(middle) - (RING[0] + RING[1]) * unit)
         };
         let free = turned_over.iter().map(beside).fold(f64::INFINITY, f64::min) / (FADING_BESIDE * unit);
-        // Where there is less room it is smaller, so that it grows gradually as the camera draws near.
+        // The arrow is smaller in a small element, so it grows gradually as the camera approaches.
         let size = (room / (ROOMY * unit)).min(1.0);
         let grown = ((size - SMALLEST_SIGN) / FADING_SIGN).min(1.0);
         let radius = size * RING[0] * unit;
@@ -245,8 +245,8 @@ impl Flat<'_> {
         }
     }
 
-    /// Signs of elements that these would cover, left or right of the body, with leaders to the elements. Returns the elements
-    /// for whose signs there is no room.
+    /// Signs that would cover their elements stand left or right of the body, with leaders to the elements. Returns the
+    /// elements whose signs have no room.
     fn callouts(&self, mut places: Vec<Circle>, marks: &mut Vec<Mark>) -> Vec<Circle> {
         let disc = RING[1] * self.scale.line();
         let pixels = self.position.iter().filter_map(|&point| self.pixel(point));
@@ -254,7 +254,8 @@ impl Flat<'_> {
         let [low, high] = pixels.fold(none, |[low, high], at| [low.min(at), high.max(at)]);
         let [_, top, _, bottom] = sides(self.viewport.map(f64::from));
         let away = BESIDE * self.scale.line() + disc;
-        // Each on the nearer side, above each other where they would touch, and none below the body, on the floor.
+        // Each sign is on the nearer side. Signs that would touch are above each other, and none is below the body, on
+        // the floor.
         places.sort_by(|one, other| one.0.y.total_cmp(&other.0.y));
         let is_right = |place: &Circle| place.0.x >= low.x.midpoint(high.x);
         let (right, left): (Vec<_>, Vec<_>) = places.into_iter().partition(is_right);
@@ -286,10 +287,10 @@ impl Flat<'_> {
         without_room
     }
 
-    /// The arrow of a turned-over element, on a disc of its own, at most with a part of its opacity.
+    /// The arrow of a turned-over element on a disc, with at most a part of its opacity.
     fn alarm_arrow(&self, (middle, room): Circle, most: f64, marks: &mut Vec<Mark>) {
         let [ring, disc] = RING.map(|radius| radius * self.scale.line());
-        // A disc must not hide the element that it stands on.
+        // A disc must not hide its element.
         let size = (room / (0.55 * disc)).min(1.0);
         let grown = ((size - SMALLEST_ALARM) / FADING_SIGN).min(most);
         let ground = (size * disc, MarkShape::Node, [255; 3]);
@@ -301,7 +302,7 @@ impl Flat<'_> {
         }
     }
 
-    /// Adds a mark of a radius around a pixel (px), unless it would reach into a neighbouring panel.
+    /// Adds a mark of a radius around a pixel (px), unless it would extend into a neighbouring panel.
     fn add(&self, mark: Mark, middle: DVec2, radius: f64, marks: &mut Vec<Mark>) {
         marks.extend(self.holds(middle, radius).then_some(mark));
     }
@@ -320,18 +321,18 @@ impl Flat<'_> {
     }
 }
 
-/// A place near a given one (px), attracted by the borders of pixels, where a line is sharp.
+/// A place near a given one (px), closer to the border of pixels, where a line is sharp.
 fn sharpened(place: f64) -> f64 {
     place - libm::sin(TAU * place) / TAU
 }
 
-/// The radius of a node where elements have edges of a length (px): smaller than usual where they are short.
+/// The radius of a node for elements with edges of a length (px), smaller than usual if they are short.
 pub(super) fn node_radius(scale: Scale, element: f64) -> f64 {
     (NODE * scale.line()).min((CROWDED * element).max(SMALLEST_NODE))
 }
 
-/// From where to where a straight line lies in a rectangle given by its four sides, in multiples of a direction from a
-/// point of the line, within a range (Liang and Barsky).
+/// The part of a straight line inside a rectangle, which is given by its four sides, as a range of multiples of a
+/// direction from a point of the line (Liang and Barsky).
 pub(super) fn clipped(
     start: DVec2,
     along: DVec2,
@@ -340,7 +341,7 @@ pub(super) fn clipped(
 ) -> Option<[f64; 2]> {
     for (at, step, low, high) in [(start.x, along.x, left, right), (start.y, along.y, top, bottom)] {
         if step.abs() < 1e-12 {
-            // It runs beside the rectangle or between these two sides.
+            // The line is parallel to these two sides, outside or between them.
             if at < low || at > high {
                 return None;
             }
@@ -357,7 +358,7 @@ pub(super) fn sides([left, top, width, height]: [f64; 4]) -> [f64; 4] {
     [left, top, left + width, top + height]
 }
 
-/// All of a line.
+/// The whole line.
 const WHOLE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// Whether a polygon winds around a point.
@@ -369,7 +370,7 @@ pub(super) fn is_inside(polygon: &[DVec2], point: DVec2) -> bool {
     crossed.count() % 2 == 1
 }
 
-/// How far a point lies outside of a polygon; 0 inside it.
+/// The distance of a point from a polygon; 0 inside it.
 fn outside(polygon: &[DVec2], point: DVec2) -> f64 {
     if is_inside(polygon, point) {
         return 0.0;
@@ -378,13 +379,13 @@ fn outside(polygon: &[DVec2], point: DVec2) -> f64 {
     sides.map(|(&a, &b)| from_side(point, a, b)).fold(f64::INFINITY, f64::min)
 }
 
-/// How far a point lies from a straight line between two others.
+/// The distance of a point from the straight line between two others.
 pub(super) fn from_side(point: DVec2, a: DVec2, b: DVec2) -> f64 {
     let share = (point - a).dot(b - a) / (b - a).length_squared().max(f64::MIN_POSITIVE);
     point.distance(a.lerp(b, share.clamp(0.0, 1.0)))
 }
 
-/// The point among a few inside a polygon that is farthest from all its sides, and how far it is.
+/// Among some points inside a polygon, the one farthest from all its sides, and its distance.
 fn roomiest(corners: &[DVec2]) -> Circle {
     let centroid = corners.iter().sum::<DVec2>() / corners.len() as f64;
     let next = corners.iter().cycle().skip(1);

@@ -1,4 +1,4 @@
-//! Arrows in the direction in which obstacles and grips move.
+//! Arrows in the direction of motion of obstacles and grips.
 
 use super::Mark;
 use super::arrows::arrow;
@@ -7,17 +7,17 @@ use super::layout::{Rectangle, Scale};
 use crate::look::Palette;
 use glam::{DVec2, DVec3};
 
-/// Length of the arrow of what moves fast, and of the shortest one drawn (px in the reference picture).
+/// Length of the arrow of a fast object, and of the shortest drawn arrow (px in the reference picture).
 const LENGTH: f64 = 74.0;
 const SHORTEST: f64 = 11.0;
-/// It fades over this part of its length above the shortest.
+/// Longer arrows fade up to this part of their length above the shortest.
 const FADING: f64 = 0.35;
-/// The part of the greatest speed from which on the arrow has its full length.
+/// From this part of the greatest speed on, the arrow has its full length.
 const FAST: f64 = 0.25;
-/// Height of the mark that holds an arrow: its head with room for a halo (px in the reference picture).
+/// Height of the mark of an arrow: its head with room for a halo (px in the reference picture).
 const HEIGHT: f64 = 23.0;
 
-/// The motion of something at one time.
+/// The motion of an object at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Going {
     /// Its velocity (m/s).
@@ -29,16 +29,16 @@ pub(super) struct Going {
 /// Draws arrows into one panel.
 pub(super) struct Pointers<'a> {
     pub(super) lens: &'a Lens,
-    /// Where there may be arrows.
+    /// The room for arrows.
     pub(super) room: Rectangle,
     pub(super) scale: Scale,
     pub(super) palette: &'a Palette,
 }
 
 impl Pointers<'_> {
-    /// The arrow of what moves at a point (m), from there on or, with `arriving`, up to there. It grows with the root
-    /// of the speed, so that it fades gently; there is none for what rests, and none from outside its room. It is
-    /// shorter where it comes near the sides of that.
+    /// The arrow of an object at a point (m), from that point or, with `arriving`, to it. It grows with the square root
+    /// of the speed, so that it fades gently. A resting object has none, and none begins outside of its room. It is
+    /// shorter near the sides of the room.
     pub(super) fn draw(&self, point: DVec3, going: Going, arriving: bool, gap: f64, marks: &mut Vec<Mark>) {
         let speed = going.velocity.length();
         let share = (speed / (FAST * going.greatest)).min(1.0);
@@ -47,7 +47,7 @@ impl Pointers<'_> {
         }
         let Some((from, distance)) = self.lens.project(point) else { return };
         let pixels = if self.lens.orthographic { self.lens.focal } else { self.lens.focal / distance };
-        // A way of one pixel, which perspective hardly shortens.
+        // A displacement of one pixel, which perspective hardly shortens.
         let way = going.velocity / speed;
         let Some((to, _)) = self.lens.project(point + way / pixels) else { return };
         let step = DVec2::from(to) - DVec2::from(from);
@@ -65,8 +65,8 @@ impl Pointers<'_> {
         marks.extend(arrow(ends, unit, self.palette.pointer, self.palette.background).faded(grown.min(inside)));
     }
 
-    /// How opaque an arrow may be that begins at a point, which fades near the sides of its room, and how far it can go in a
-    /// direction without coming near them (px).
+    /// The opacity of an arrow from a point, which fades near the sides of its room, and the distance in a direction
+    /// until it comes near them (px).
     fn way(&self, from: DVec2, along: DVec2) -> (f64, f64) {
         let [left, top, width, depth] = self.room.map(f64::from);
         let sides = [(from.x, along.x, left, left + width), (from.y, along.y, top, top + depth)];

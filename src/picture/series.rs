@@ -15,25 +15,25 @@ use crate::sim::{Diagnostic, Dimension};
 pub(super) const OWN: f64 = 2.2;
 const CROSS: f64 = 1.8;
 const ARM: f64 = 4.0;
-/// Dots of thin lines and the gaps between them (px in the reference picture).
+/// Lengths of dots and gaps of thin lines (px in the reference picture).
 pub(super) const DOTS: [f64; 2] = [1.0, 3.5];
-/// Half the width and the length of the arrowhead where the curve of a diverged run leaves its chart, and the width of the
-/// dotted line from there to the cross (px in the reference picture).
+/// Half the width and the length of the arrowhead where the curve of a diverged run leaves its chart, and the width of
+/// the dotted line from the arrowhead to the cross (px in the reference picture).
 const HEAD: [f64; 2] = [4.0, 6.0];
 const DOT: f64 = 1.0;
-/// A curve is dense where it turns four times within this length, by more than the second one (px in the reference picture);
-/// for a count a band of this strength of its colour stands for it.
+/// A curve is dense where it turns four times within this length, by more than the second one (px in the reference
+/// picture). A count has a band there, with this strength of its colour.
 const DENSE: f64 = 12.0;
 const TURN: f64 = 3.0;
 const BAND: f64 = 0.35;
 /// Curves are simplified as long as no point moves by more than this (px).
 pub(super) const EXACT: f64 = 0.08;
 
-/// Values of a diverged run above this many times the largest value of the other runs do not set the scale.
+/// Values of a diverged run do not determine the scale above this many times the largest value of the other runs.
 const BEYOND: f64 = 3.0;
-/// The range holds zero unless zero is farther away than this many times its width.
+/// The range includes zero unless zero is farther away than this many times its width.
 const NEAR_ZERO: f64 = 1.5;
-/// A range is at least this part of its values, so that no rounding error fills a strip.
+/// A range is at least this part of its values, so that round-off does not fill a strip.
 const LEAST_RANGE: f64 = 0.02;
 
 /// The time series of a diagnostic of one run.
@@ -46,9 +46,10 @@ pub(super) struct Series {
     pub(super) style: LineStyle,
     /// Whether it is a count, which is drawn in steps.
     pub(super) is_count: bool,
-    /// Times (s) and values, as far as they are numbers.
+    /// Times (s) and finite values.
     pub(super) points: Vec<[f64; 2]>,
-    /// Where it is the mean of several scenes, the time series of each: a band shows their least and greatest values. Else empty.
+    /// For a mean of several scenes, the time series of each: a band shows their least and greatest values. Empty
+    /// otherwise.
     pub(super) members: Vec<Vec<[f64; 2]>>,
     /// When the run diverged (s).
     pub(super) diverged: Option<f64>,
@@ -85,7 +86,7 @@ impl Series {
         Self { points, members, diverged, name: self.name.clone(), ..*self }
     }
 
-    /// Where the curve ends in a chart (px); `None` if it has no values.
+    /// The end of the curve in a chart (px); `None` if it has no values.
     pub(super) fn end(&self, chart: Chart, [times, values]: [&Axis; 2]) -> Option<[f64; 2]> {
         let &[time, value] = self.points.last()?;
         Some([chart.x(times, time), chart.y(values, value).clamp(chart.top, chart.bottom)])
@@ -98,13 +99,14 @@ impl Series {
         if self.is_count { steps(&points) } else { points }
     }
 
-    /// Whether a band stands for a part of the curve in a chart.
+    /// Whether a part of the curve in a chart is a band.
     pub(super) fn has_band(&self, chart: Chart, axes: [&Axis; 2]) -> bool {
         self.is_count && !dense(&self.pixels(chart, axes), [DENSE, TURN].map(|length| length * chart.line)).is_empty()
     }
 
-    /// Draws the curve, with a cross where the run diverged. Counts are solid steps; where they go up and down too densely for
-    /// a line, their least and greatest values enclose a band. Other curves have no dashes there, which would be a hatch.
+    /// Draws the curve, with a cross at a divergence. Counts are solid steps; if they go up and down too densely for a
+    /// line, a band covers the range between their least and greatest values. Dense parts of other curves have no
+    /// dashes, which would look like a hatch.
     pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: Chart, [times, values]: [&Axis; 2]) {
         self.draw_range(writer, chart, [times, values]);
         let points = self.pixels(chart, [times, values]);
@@ -169,7 +171,8 @@ fn leaving(points: &[[f64; 2]], borders: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     part.last_chunk().copied()
 }
 
-/// A value of a time series at a time (s); `None` before its start and after its end. Counts keep their value up to the next one.
+/// A value of a time series at a time (s); `None` before its start and after its end. Counts keep their value until the
+/// next one.
 pub(super) fn value(points: &[[f64; 2]], at: f64, is_count: bool) -> Option<f64> {
     let after = points.partition_point(|&[time, _]| time <= at);
     let &[from, one] = points.get(after.checked_sub(1)?)?;
@@ -178,7 +181,7 @@ pub(super) fn value(points: &[[f64; 2]], at: f64, is_count: bool) -> Option<f64>
     Some(one + share * (other - one))
 }
 
-/// What the line of a run looks like in a chart of a diagnostic: counts are solid steps.
+/// The line of a run in a chart of a diagnostic: counts are solid steps.
 pub(super) fn style(diagnostic: Diagnostic, line: LineStyle) -> LineStyle {
     if diagnostic == Diagnostic::TurnedOver { LineStyle { dash: &[], ..line } } else { line }
 }
@@ -196,14 +199,15 @@ fn peak(one: &Series) -> f64 {
     one.all().fold(0.0, |most, [_, value]| value.abs().max(most))
 }
 
-/// The range of values to show: all values of runs that did not diverge, and those of diverged runs that are not far larger.
+/// The range of shown values: all values of runs that did not diverge, and the values of diverged runs that are not far
+/// larger.
 pub(super) fn range(series: &[Series], may_diverge: bool) -> Option<[f64; 2]> {
     let with_values = || series.iter().filter(|one| !one.points.is_empty());
     let is_wild = |one: &Series| may_diverge && one.diverged.is_some();
     let calm = with_values().filter(|one| !is_wild(one)).map(peak).reduce(f64::max);
     let limit = match calm {
         Some(calm) if calm > 0.0 => BEYOND * calm,
-        // Without runs to compare with, the median is ordinary.
+        // If all runs diverged, the median counts as ordinary.
         _ => {
             let mut sizes: Vec<_> = with_values().flat_map(Series::all).map(|[_, value]| value.abs()).collect();
             sizes.sort_by(f64::total_cmp);
@@ -221,7 +225,7 @@ pub(super) fn range(series: &[Series], may_diverge: bool) -> Option<[f64; 2]> {
     ends.map(widened)
 }
 
-/// A range that is not too narrow and holds zero unless that is far away.
+/// A range that is not too narrow and includes zero unless that is far away.
 fn widened([low, high]: [f64; 2]) -> [f64; 2] {
     let nearest = if low > 0.0 { low } else { (-high).max(0.0) };
     if nearest <= NEAR_ZERO * (high - low) {
@@ -244,11 +248,11 @@ pub(super) fn steps(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     steps
 }
 
-/// The stretches, from left to right, in which a curve turns up and down four times within a length, by more than a height
-/// (px).
+/// The stretches, from left to right, in which a curve turns up and down four times within a length, by more than a
+/// height (px).
 fn dense(points: &[[f64; 2]], [length, height]: [f64; 2]) -> Vec<[f64; 2]> {
     let Some(&[first, start]) = points.first() else { return Vec::new() };
-    // Where it turns: the last extreme value is one as soon as the curve has left it by that height.
+    // The turns: the last extreme value is one as soon as the curve has left it by that height.
     let mut turns = Vec::new();
     let (mut extreme, mut sense) = ([first, start], 0.0);
     for &[x, y] in points {
@@ -262,7 +266,7 @@ fn dense(points: &[[f64; 2]], [length, height]: [f64; 2]) -> Vec<[f64; 2]> {
     }
     let mut spans: Vec<[f64; 2]> = Vec::new();
     for four in turns.windows(4).filter(|four| four[3] - four[0] <= length) {
-        // What lies between two of them is no rest for the eye, either.
+        // A short stretch between two dense ones is dense, too.
         match spans.last_mut().filter(|last| four[0] <= last[1] + 3.0 * length) {
             Some(last) => last[1] = four[3],
             None => spans.push([four[0], four[3]]),
@@ -271,8 +275,8 @@ fn dense(points: &[[f64; 2]], [length, height]: [f64; 2]) -> Vec<[f64; 2]> {
     spans
 }
 
-/// The area that a curve covers within a stretch and so far to both sides of each place (px): left and right side, upper
-/// and lower end of each part of it.
+/// The area around a curve in a stretch, up to `reach` on both sides of each place (px): left and right side, upper and
+/// lower end of each part.
 fn band(points: &[[f64; 2]], [from, to]: [f64; 2], reach: f64) -> Vec<[f64; 4]> {
     let inside = &points[points.partition_point(|&[x, _]| x < from)..points.partition_point(|&[x, _]| x <= to)];
     let mut parts: Vec<[f64; 4]> = Vec::new();
@@ -317,7 +321,7 @@ pub(super) fn within(points: &[[f64; 2]], [top, bottom]: [f64; 2]) -> Vec<Vec<[f
         let ([from, to], way) = ([two[0], two[1]], two[1][1] - two[0][1]);
         let at = |y: f64| [from[0] + (to[0] - from[0]) * ((y - from[1]) / way).clamp(0.0, 1.0), y];
         let clamped = [from[1], to[1]].map(|y| y.clamp(top, bottom));
-        // Wholly on one side of both borders, or all of it inside.
+        // Both ends are on one side of both borders, or both are inside.
         let outside = (from[1] < top && to[1] < top) || (from[1] > bottom && to[1] > bottom);
         if outside {
             open = false;
@@ -336,7 +340,7 @@ pub(super) fn within(points: &[[f64; 2]], [top, bottom]: [f64; 2]) -> Vec<Vec<[f
     parts
 }
 
-/// A curve with fewer points, none of those left out farther from it than a distance (Douglas and Peucker).
+/// A curve with fewer points; omitted points are at most a distance away from it (Douglas and Peucker).
 pub(super) fn simplified(points: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
     let mut kept = vec![false; points.len()];
     let Some(last) = points.len().checked_sub(1) else { return Vec::new() };
@@ -379,10 +383,10 @@ pub(super) mod tests {
         let range = |all: &[&[f64]]| range(&all.iter().map(|values| series(values, false)).collect::<Vec<_>>(), true);
         assert_eq!(range(&[&[1.0, 2.0, 3.0], &[-0.5, 0.2]]), Some([-0.5, 3.0]));
         assert_eq!(range(&[&[3.0, 2.0, 5.0]]), Some([0.0, 5.0]));
-        // A short peak is no blow-up, and neither is one run that does much more than the other.
+        // A short peak is not a divergence, and neither is one run with much larger values than the other.
         assert_eq!(range(&[&[3000.0, 1.0, 0.1, 0.1, 0.1]]), Some([0.0, 3000.0]));
         assert_eq!(range(&[&[0.001; 8], &[0.1; 8]]), Some([0.0, 0.1]));
-        // Zero is far from a volume that hardly changes, and what does not change has some room.
+        // Zero is far from a volume that hardly changes, and a constant value has some room.
         assert_eq!(range(&[&[1.0, 1.05, 0.97]]), Some([0.97, 1.05]));
         let [low, high] = range(&[&[1.0, 1.0]]).unwrap();
         assert!(low < 1.0 && 1.0 < high && high - low < 0.03, "{low} {high}");
@@ -395,13 +399,13 @@ pub(super) mod tests {
         let calm = series(&[1.0, 2.0, 1.5, 1.0, 1.0, 1.0], false);
         let blown = series(&[1.0, 2.0, 5.0, 40.0, 1e9, 1e300], true);
         assert_eq!(range(&[calm, blown], true), Some([0.0, 5.0]));
-        // What goes on is shown as it is, however late it begins.
+        // Lasting values are shown in full, however late they begin.
         let late = series(&[0.0, 0.0, 0.0, 0.0, 9.0, 9.0], false);
         assert_eq!(range(&[series(&[0.0; 6], false), late], true), Some([0.0, 9.0]));
         // Counts are bounded by themselves.
         let counted = series(&[0.0, 0.0, 8.0], true);
         assert_eq!(range(&[series(&[1.0; 3], false), counted], false), Some([0.0, 8.0]));
-        // Alone, half of its values count.
+        // A single run shows half of its values.
         let alone = series(&[1.0, 1.0, 1.0, 2.0, 1e3, 1e9], true);
         assert_eq!(range(&[alone], true), Some([0.0, 2.0]));
     }
@@ -418,7 +422,7 @@ pub(super) mod tests {
         let part = whole.between([0.5, 2.25]);
         assert_eq!(part.points, [[0.5, 2.0], [1.0, 3.0], [2.0, 2.0], [2.25, 2.0]]);
         assert_eq!((part.diverged, whole.between([2.0, 9.0]).diverged), (None, Some(4.0)));
-        // Where there is a point already, none is made, and beyond the end there is nothing.
+        // An existing point is not repeated, and there is none beyond the end.
         assert_eq!(whole.between([1.0, 2.0]).points, [[1.0, 3.0], [2.0, 2.0]]);
         assert_eq!(whole.between([2.5, 9.0]).points, [[2.5, 2.0], [3.0, 2.0]]);
         assert!(whole.between([5.0, 9.0]).points.is_empty());

@@ -1,9 +1,9 @@
-//! Soft shadows on the floor, of the key light and of the sky. They are computed on the processor, so that they are the
-//! same with any graphics device.
+//! Soft shadows on the floor, of the key light and of the sky. The processor computes them, so that they are the same
+//! with any graphics device.
 //!
-//! Bodies are projected along many directions onto a grid of cells. Only the outlines of a projection are drawn: where
-//! triangles that turn towards the light meet others. Each of them begins or ends a layer, row by row, and a cell is in
-//! the shadow where there is at least one layer. The file is long by its tests.
+//! Bodies are projected along many directions onto a grid of cells. Only the outlines of a projection are drawn, the
+//! edges between triangles that turn towards the light and others. Each edge begins or ends a layer, row by row, and a
+//! cell with at least one layer is in the shadow. The file is long because of its tests.
 
 use super::camera::{Framing, Lens};
 use super::narrow::narrow;
@@ -17,14 +17,13 @@ const KEY_CONE: f64 = 0.12;
 /// Azimuth of the key light from straight behind the viewer to the left, and its elevation above the horizon (rad).
 const KEY_AZIMUTH: f64 = 62.0 / 180.0 * std::f64::consts::PI;
 const KEY_ELEVATION: f64 = 50.0 / 180.0 * std::f64::consts::PI;
-/// How much steeper the key light falls for each distance of the camera that bodies have risen: the shadow stays in the
-/// panel.
+/// The extra slope of the key light per camera distance that bodies have risen: it keeps the shadow in the panel.
 const KEY_STEEPENING: f64 = 8.0;
-/// How many directions stand for the key light and for the sky.
+/// The numbers of directions for the key light and for the sky.
 const DIRECTIONS: [usize; 2] = [48, 96];
-/// Bodies of more triangles than this get fewer directions, or the shadow would take longer than everything else.
+/// Bodies of more triangles get fewer directions, or the shadow would take longer than everything else.
 const MANY_TRIANGLES: usize = 6000;
-/// How far the edges of both shadows are blurred (sides), and how far a blur reaches at most (cells).
+/// The blur of the edges of both shadows (sides), and the largest reach of a blur (cells).
 const BLUR: [f64; 2] = [0.06, 0.14];
 const MOST_BLUR: usize = CELLS / 8;
 /// The golden angle (rad): steps by it spread directions evenly.
@@ -37,7 +36,7 @@ pub(crate) struct Shade {
     pub corner: [f32; 2],
     /// Length of the whole square (sides).
     pub length: f32,
-    /// How much light is missing: 0 none, 255 all; row after row along the second axis. Empty for no shadow at all.
+    /// The share of missing light: 0 none, 255 all; row after row along the second axis. Empty without a shadow.
     pub cells: Vec<u8>,
 }
 
@@ -52,7 +51,7 @@ pub(super) struct Plane {
 impl Plane {
     /// The plane with a normal through the points `normal · x = height`.
     pub(super) fn new(normal: DVec3, height: f64) -> Self {
-        // For a level floor the axes are those of the world, and so is the grid.
+        // On a level floor the axes and the grid are those of the world.
         let first = (DVec3::X - normal.x * normal).try_normalize().unwrap_or(DVec3::Z);
         Self { normal, axes: [first, first.cross(normal)], height }
     }
@@ -63,21 +62,21 @@ impl Plane {
         Foot { at: DVec2::new(point.dot(self.axes[0]), point.dot(self.axes[1])), above }
     }
 
-    /// Where the shadow of a point falls in light from a direction, along both axes. From light that is level with the
-    /// plane it falls nowhere, and from there on it stays below the point.
+    /// The shadow of a point in light from a direction, along both axes. Light level with the plane, or from below it,
+    /// gives no shadow: the result stays below the point.
     pub(super) fn shadow(&self, point: DVec3, towards_light: DVec3) -> DVec2 {
         let foot = self.foot(point);
         if self.normal.dot(towards_light) > 0.05 { foot.shadow(self.slant(towards_light)) } else { foot.at }
     }
 
-    /// How far light from a direction moves the shadow of what is one unit above the plane.
+    /// The shift by light from a direction of the shadow of a point one unit above the plane.
     fn slant(&self, towards_light: DVec3) -> DVec2 {
         let along = DVec2::new(towards_light.dot(self.axes[0]), towards_light.dot(self.axes[1]));
         -along / self.normal.dot(towards_light)
     }
 }
 
-/// Unit vector towards the key light, which goes with a camera.
+/// Unit vector towards the key light, which turns with the camera.
 pub(super) fn key_light(lens: &Lens, framing: &Framing) -> DVec3 {
     let towards_viewer = lens.right.cross(DVec3::Y);
     let (left, towards) = libm::sincos(KEY_AZIMUTH);
@@ -99,18 +98,18 @@ impl Foot {
     }
 }
 
-/// Where two triangles of a surface meet.
+/// An edge where two triangles of a surface meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Edge {
     ends: [u32; 2],
-    /// The triangle whose side runs from the first end to the second one, and the one whose side runs back.
+    /// The triangle whose side runs from the first end to the second one, and the triangle whose side runs back.
     triangles: [u32; 2],
 }
 
-/// In place of a triangle where there is none.
+/// Marks a missing triangle.
 const NO_TRIANGLE: u32 = u32::MAX;
 
-/// The edges of surfaces. Where more than two triangles meet they go in pairs.
+/// The edges of surfaces. If more than two triangles meet at one, they are paired.
 pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {
     let sides = triangles.iter().zip(0..).flat_map(|(&[a, b, c], at)| [[a, b], [b, c], [c, a]].map(|ends| (ends, at)));
     let mut sides: Vec<_> = sides.map(|([from, to], at)| ([from.min(to), from.max(to)], from > to, at)).collect();
@@ -127,7 +126,7 @@ pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {
     edges
 }
 
-/// The closed surfaces that throw shadows, with triangles that turn counter-clockwise as seen from outside.
+/// The closed surfaces that cast shadows, with triangles counter-clockwise as seen from outside.
 pub(super) struct Casters<'a> {
     /// Points (sides from the panel's origin).
     points: Vec<DVec3>,
@@ -150,15 +149,15 @@ impl<'a> Casters<'a> {
         self.points.extend(points);
         let moved = |edge: Edge| Edge {
             ends: edge.ends.map(|end| point + end),
-            // No triangle stays none.
+            // A missing triangle stays missing.
             triangles: edge.triangles.map(|at| at.saturating_add(triangle)),
         };
         self.edges.to_mut().extend(edges(triangles).into_iter().map(moved));
         self.triangles.to_mut().extend(triangles.iter().map(|triangle| triangle.map(|at| point + at)));
     }
 
-    /// Their shadows in key light and in that of the sky on a plane, within `reach` of `middle` on it, with `soft` as unit of
-    /// blur.
+    /// Their shadows in key light and in the light of the sky on a plane, within `reach` of `middle` on it, with `soft`
+    /// as unit of blur.
     pub(super) fn shades(&self, plane: &Plane, key: DVec3, middle: DVec2, reach: f64, soft: f64) -> [Shade; 2] {
         let Self { points, triangles, edges } = self;
         let blur = BLUR.map(|blur| blur * soft);
@@ -199,7 +198,7 @@ impl<'a> Casters<'a> {
             let cells = cover.blurred(directions.len(), blur * scale);
             Shade { corner: [narrow(low.x), narrow(low.y)], length: narrow(length), cells }
         };
-        // The key light's shadow has sharp ends: its grid holds the shadow and no more.
+        // The key light's shadow has sharp ends, so its grid just contains the shadow.
         let (low, high) = bounds(&feet, &key_directions, plane, middle, reach);
         let [key_low, key_length] = snapped(low, (high - low).max_element() + 6.0 * blur[0]);
         let (sky_low, sky_length) = (middle - reach, 2.0 * reach);
@@ -224,8 +223,8 @@ fn bounds(feet: &[Foot], directions: &[DVec3], plane: &Plane, middle: DVec2, rea
     (within(low), within(high))
 }
 
-/// A square around a box, with one of few cell sizes and its corner on the cells' own lattice, so that the cells do not
-/// creep under a body that moves.
+/// A square around a box, with one of few cell sizes and its corner on the lattice of cells, so that the cells do not
+/// creep below a moving body.
 fn snapped(low: DVec2, length: f64) -> [[f64; 2]; 2] {
     let steps = (libm::log2(length.max(1.0) * CELLS as f64 / (CELLS - 8) as f64) * 4.0).ceil();
     let length = libm::exp2(steps / 4.0);
@@ -234,7 +233,7 @@ fn snapped(low: DVec2, length: f64) -> [[f64; 2]; 2] {
     [[corner.x, corner.y], [length, cell]]
 }
 
-/// The signed area of a triangle's shadow: a constant, and shares of both parts of the slant of the light.
+/// The signed area of a triangle's shadow: a constant, and coefficients for both parts of the slant of the light.
 struct Turn([f64; 3]);
 
 impl Turn {
@@ -245,14 +244,14 @@ impl Turn {
     }
 }
 
-/// Directions that are looked at together: one for each bit of a word.
+/// Directions that are processed together: one for each bit of a word.
 const AT_ONCE: usize = 64;
 
-/// The outlines of shadows: the edges between triangles whose shadows are turned counter-clockwise and others. The
+/// The outlines of shadows: the edges between triangles with counter-clockwise shadows and others. The
 /// counter-clockwise ones alone cover the whole shadow, as the others bound the same closed surface from behind.
 #[derive(Default)]
 struct Outlines {
-    /// For each triangle a bit for each direction in which it is turned counter-clockwise.
+    /// For each triangle, a bit for each direction with a counter-clockwise shadow.
     turned: Vec<u64>,
     /// The edges for each direction.
     edges: Vec<Vec<u32>>,
@@ -282,7 +281,7 @@ impl Outlines {
         self.turned.get(triangle as usize).copied().unwrap_or(0)
     }
 
-    /// The outline for a direction: the ends of each edge, in the order in which they bound what is on their left.
+    /// The outline for a direction: the ends of each edge, with the covered side on the left.
     fn of(&self, direction: usize, edges: &[Edge]) -> impl Iterator<Item = [u32; 2]> {
         self.edges[direction].iter().map(move |&number| {
             let Edge { ends: [from, to], triangles } = edges[number as usize];
@@ -298,17 +297,17 @@ const COLUMNS: usize = CELLS + 1;
 /// No range yet.
 const NONE: [usize; 2] = [usize::MAX, 0];
 
-/// How many directions cover each cell.
+/// The number of directions that cover each cell.
 struct Cover {
-    /// In how many more layers a cell lies than the one before it in its row, for one direction: groups of rows, column by
-    /// column.
+    /// For one direction, the number of layers of a cell minus that of the one before it in its row: groups of rows,
+    /// column by column.
     steps: Vec<[i16; LANES]>,
-    /// First and last row and column of these steps.
+    /// First and last row and column of the steps.
     rows: [usize; 2],
     columns: [usize; 2],
-    /// For how many directions a cell lies in any layer, in the same order.
+    /// The number of directions that cover a cell, in the same order.
     counts: Vec<[u16; LANES]>,
-    /// First and last row of these.
+    /// First and last row of the counts.
     counted: [usize; 2],
 }
 
@@ -319,9 +318,9 @@ impl Cover {
         Self { steps, rows: NONE, columns: NONE, counts, counted: NONE }
     }
 
-    /// Begins or ends a layer, which covers the cells whose middles lie on the left of the way between two points.
+    /// Begins or ends a layer, which covers the cells whose middles lie on the left of the line between two points.
     fn bound(&mut self, [from, to]: [DVec2; 2]) {
-        // From left to right, a layer ends at a way up and begins at a way down.
+        // From left to right, a layer ends at an upward line and begins at a downward one.
         let (low, high, step) = if to.y < from.y { (to, from, 1) } else { (from, to, -1) };
         let rows = first_middle(low.y)..first_middle(high.y);
         if rows.is_empty() {
@@ -339,7 +338,7 @@ impl Cover {
         self.columns = [first, last];
     }
 
-    /// Counts the cells that lie in a layer, and begins the next direction.
+    /// Counts the covered cells, and begins the next direction.
     fn count(&mut self) {
         let ([top, bottom], [first, last]) = (self.rows, self.columns);
         (self.rows, self.columns) = (NONE, NONE);
@@ -358,7 +357,7 @@ impl Cover {
         }
     }
 
-    /// The share of directions that are covered, 255 for all, blurred by a standard deviation (cells).
+    /// The share of covering directions, 255 for all, blurred by a standard deviation (cells).
     fn blurred(&self, directions: usize, deviation: f64) -> Vec<u8> {
         if self.counts.iter().flatten().all(|&count| count == 0) {
             return Vec::new();
@@ -392,7 +391,7 @@ impl Cover {
     }
 }
 
-/// The weighted sum of rows of cells, of which the middle one is number [`MOST_BLUR`].
+/// The weighted sum of rows of cells; the middle one has number [`MOST_BLUR`].
 fn blurred<'a>(kernel: &[f32], row: impl Fn(usize) -> &'a [f32; CELLS]) -> [f32; CELLS] {
     let mut sum = row(MOST_BLUR).map(|cell| cell * kernel[0]);
     for (at, weight) in kernel.iter().enumerate().skip(1) {
@@ -404,9 +403,9 @@ fn blurred<'a>(kernel: &[f32], row: impl Fn(usize) -> &'a [f32; CELLS]) -> [f32;
     sum
 }
 
-/// The first cell whose middle is not below a coordinate: that rounded, and kept within the grid.
+/// The first cell whose middle is not below a coordinate, limited to the grid.
 fn first_middle(at: f64) -> usize {
-    // Truncation is many times faster than `round` without SSE 4.1, and that to 32 bits faster than to 64.
+    // Without SSE 4.1, truncation is many times faster than `round`, and truncation to 32 bits faster than to 64.
     (at + 0.5).clamp(0.0, CELLS as f64) as u32 as usize
 }
 
@@ -414,7 +413,7 @@ fn first_middle(at: f64) -> usize {
 mod tests {
     use super::*;
 
-    /// A box standing on the floor, its triangles counter-clockwise from outside.
+    /// A box on the floor, with triangles counter-clockwise from outside.
     fn block() -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let points =
             (0..8).map(|at: u32| DVec3::new(f64::from(at & 1) - 0.5, f64::from(at >> 1 & 1), f64::from(at >> 2) - 0.5));

@@ -1,4 +1,4 @@
-//! The faces that bound a set of elements, without going through all faces.
+//! The faces that bound a set of elements, found without testing all faces.
 
 use crate::sim::Body;
 
@@ -7,9 +7,9 @@ use crate::sim::Body;
 pub(super) struct Shell {
     /// The faces that lie on the outside of the body, in rising order.
     outside: Vec<u32>,
-    /// The faces between two elements, those of one element beside each other and in rising order.
+    /// The faces between two elements, grouped by element, in rising order.
     between: Vec<u32>,
-    /// Where those of each element begin, and where the last ones end.
+    /// The index in `between` where the faces of each element begin, and the end of the last ones.
     starts: Vec<u32>,
 }
 
@@ -18,14 +18,14 @@ pub(super) struct Shell {
 pub(super) struct Side {
     /// Its place among the faces of the body.
     pub(super) face: u32,
-    /// Whether its corners stand the other way round when it is seen from outside of the set.
+    /// Whether its corners are in reverse order when it is seen from outside of the set.
     pub(super) reversed: bool,
-    /// The element of the set that it belongs to.
+    /// Its element in the set.
     pub(super) element: Option<u32>,
 }
 
 impl Shell {
-    /// That of a body.
+    /// The shell of a body.
     pub(super) fn new(body: &Body) -> Self {
         let sides = || (0u32..).zip(body.faces.inner.iter().zip(&body.faces.outer));
         let outside = sides().filter(|(_, (inner, outer))| inner.is_none() || outer.is_none()).map(|(face, _)| face);
@@ -47,10 +47,10 @@ impl Shell {
         Self { outside: outside.collect(), between, starts }
     }
 
-    /// The boundaries of the elements that have kept their sign and of those that have turned over.
+    /// The boundaries of the elements that kept their sign and of the elements that turned over.
     ///
-    /// A face bounds a set when exactly one of its two sides is in it. The side of a face that belongs to no element
-    /// counts as outside of every set; a face that bounds no element at all belongs to the first set.
+    /// A face bounds a set if exactly one of its two sides belongs to it. A side without an element is outside of every
+    /// set; a face without any element bounds the first set.
     pub(super) fn boundaries(&self, body: &Body, turned_over: &[bool]) -> [Vec<Side>; 2] {
         let is_over = |element: u32| turned_over.get(element as usize).copied().unwrap_or(false);
         let elements = (0u32..).zip(turned_over).take(self.starts.len() - 1);
@@ -67,7 +67,7 @@ impl Shell {
         let mut sets = [Vec::with_capacity(self.outside.len() + between.len()), Vec::new()];
         let mut between = between.into_iter().peekable();
         let mut outside = self.outside.iter().copied().peekable();
-        // Both in the order of the body's faces.
+        // Both lists are in the order of the body's faces.
         while let Some(face) = match (outside.peek(), between.peek()) {
             (Some(one), Some(other)) if one < other => outside.next(),
             (Some(_), None) => outside.next(),
@@ -94,7 +94,7 @@ mod tests {
     use crate::sim::{Dimension, IndexLists, Solids};
     use glam::DVec3;
 
-    /// All faces gone through, each by itself.
+    /// The boundary by its definition, face by face.
     fn by_definition(body: &Body, turned_over: &[bool], over: bool) -> Vec<Side> {
         let inside = |element: Option<u32>| element.is_some_and(|at| turned_over[at as usize] == over);
         let faces = (0u32..).zip(body.faces.inner.iter().zip(&body.faces.outer));

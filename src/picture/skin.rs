@@ -8,14 +8,14 @@ use glam::DVec3;
 /// Marks on faces fade between this cosine towards the viewer and zero.
 const GRAZING: f64 = 0.08;
 
-/// The surface of a body, whichever elements have turned over.
+/// The surface of a body, independent of its turned-over elements.
 #[derive(Debug)]
 pub(super) struct Skin {
     /// The nodes on it.
     pub(super) nodes: Vec<u32>,
     /// Its triangles, as places in `nodes`.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Where each node of the body stands in `nodes`, or [`INSIDE`].
+    /// The place of each node of the body in `nodes`, or [`INSIDE`].
     places: Vec<u32>,
 }
 
@@ -51,8 +51,8 @@ impl Skin {
         self.places[node as usize] != INSIDE
     }
 
-    /// The visibility of each node of the body, from 0 to 1: 1 on faces towards the viewer, less as they turn to the side,
-    /// 0 on those turned away. In the plane all are visible.
+    /// The visibility of each node of the body, from 0 to 1: 1 on faces towards the viewer, less as they turn to the
+    /// side, 0 on faces turned away. In the plane all are visible.
     pub(super) fn visible(&self, position: &[DVec3], lens: &Lens) -> Vec<f64> {
         if lens.orthographic {
             return vec![1.0; position.len()];

@@ -1,5 +1,5 @@
-//! Time series of a diagnostic: the curves of several runs in one chart, which has two scales of time where the story is
-//! short. Its name stands left of it, those of the runs at the ends of their curves.
+//! Time series of a diagnostic: the curves of several runs in one chart, with two scales of time if most changes are
+//! early. Its name stands left of it, and the names of the runs at the ends of their curves.
 
 use super::axis::{Axis, Kind};
 use super::caption::Writer;
@@ -15,16 +15,16 @@ use crate::scene::Scene;
 use crate::sim::Diagnostic;
 use crate::sim::words::elements;
 
-/// Size of the unit's type, and from the name to the unit (px in the reference picture).
+/// Size of the unit's type, and the gap from the name to the unit (px in the reference picture).
 const UNIT: f64 = 14.0;
 const UNIT_BELOW: f64 = 19.0;
-/// What a band stands for where a count goes up and down too densely for a line, in one line and in two.
+/// The meaning of a band for a dense count, in one line and in two.
 const BAND: [&[&str]; 2] = [&["band: least to most"], &["band:", "least to most"]];
-/// Between the name and the numbers beside the chart (px in the reference picture).
+/// The gap between the name and the numbers beside the chart (px in the reference picture).
 const BESIDE_NAME: f64 = 14.0;
-/// The first time begins at most so far left of the chart (px in the reference picture).
+/// The most that the first time extends left of the chart (px in the reference picture).
 const BEFORE_TIMES: f64 = 5.0;
-/// Where the scale of time changes: the part of the width before, and the gap (px in the reference picture).
+/// The share of the width before a change of the scale of time, and the gap (px in the reference picture).
 const BEFORE: f64 = 0.8;
 const SPLIT_GAP: f64 = 12.0;
 
@@ -36,17 +36,17 @@ pub(super) struct Strip {
     unit: String,
     /// One for each run shown.
     pub(super) series: Vec<Series>,
-    /// What curves and bands stand for, if that is not clear.
+    /// Explanations of curves and bands, if needed.
     notes: Vec<String>,
-    /// The values shown; `None` if there are none.
+    /// The range of values; `None` if there are none.
     range: Option<[f64; 2]>,
     /// The size of the body (m).
     extent: f64,
 }
 
 impl Strip {
-    /// A diagnostic of all runs of scenes with runs of the same names, as their mean, in the colours of a picture; `label` replaces
-    /// names of runs.
+    /// A diagnostic of all runs, as the mean over scenes with runs of the same names, in the colours of a picture;
+    /// `label` replaces names of runs.
     ///
     /// # Panics
     /// If there is no scene.
@@ -68,7 +68,7 @@ impl Strip {
         };
         let series: Vec<_> = of_scenes[0].1.series.iter().filter_map(|series| of_run(series.run)).collect();
         let is_count = diagnostic == Diagnostic::TurnedOver;
-        // Counts are bounded by the number of elements, so diverged runs are shown whole.
+        // Counts are bounded by the number of elements, so diverged runs are shown in full.
         let range = series::range(&series, !is_count);
         let mut name = series::name(diagnostic, scene).to_owned();
         if let Some(first) = name.get_mut(..1) {
@@ -93,7 +93,7 @@ impl Strip {
         Self { unit, ..one }
     }
 
-    /// The axis of values with so many ticks at most; `None` if there are no values.
+    /// The axis of values with at most `most` ticks; `None` if there are no values.
     fn values(&self, most: usize) -> Option<Axis> {
         let kind = if self.diagnostic == Diagnostic::TurnedOver { Kind::Count } else { Kind::Value };
         self.range.map(|range| Axis::new(kind, range, self.diagnostic.unit(), self.extent, most))
@@ -105,20 +105,20 @@ impl Strip {
         self.values(rows.min(MOST_TICKS))
     }
 
-    /// The room that the numbers beside it take (px), however many ticks there are, with the gap to its name.
+    /// The width of the numbers beside it (px), for any number of ticks, with the gap to its name.
     pub(super) fn numbers_width(&self, fonts: &Fonts, type_unit: f64) -> f64 {
         let texts = (2..=MOST_TICKS).filter_map(|most| self.values(most)).flat_map(|axis| axis.texts);
         texts.map(|text| wide(fonts, &text, type_unit)).fold(0.0, f64::max) + (GAP + BESIDE_NAME) * type_unit
     }
 
-    /// The room that its name takes (px).
+    /// The width of its name (px).
     pub(super) fn name_width(&self, fonts: &Fonts, scale: Scale) -> f64 {
         let below = |text: &str| fonts.width(text, Weight::Regular, UNIT * scale.type_unit());
         let name = fonts.width(&self.name, Weight::SemiBold, scale.caption());
         self.notes.iter().map(|note| below(note)).fold(name.max(below(&self.unit)), f64::max)
     }
 
-    /// The height of its name with all that stands below it (px).
+    /// The height of its name with the lines below it (px).
     pub(super) fn name_height(&self, scale: Scale) -> f64 {
         scale.caption() + (1 + self.notes.len()) as f64 * UNIT_BELOW * scale.type_unit()
     }
@@ -139,7 +139,7 @@ impl Strip {
         }
     }
 
-    /// Says what bands are, if a curve has any in a chart, and what is then said has room.
+    /// Explains bands if a curve has any in a chart and the explanation has room.
     pub(super) fn explain_bands(&mut self, fonts: &Fonts, parts: &Parts, has_room: impl Fn(&Self) -> bool) {
         let has_bands = parts.0.iter().any(|&(chart, span)| {
             let (times, values) = (chart.times(fonts, span), self.values_in(chart));
@@ -159,7 +159,7 @@ impl Strip {
         }
     }
 
-    /// Draws it, optionally with times below, and with names at the ends of its curves between two heights (px).
+    /// Draws the chart, optionally with times below, and with names at the ends of its curves between two heights (px).
     pub(super) fn draw(
         &self,
         writer: &mut Writer<'_>,
@@ -180,7 +180,7 @@ impl Strip {
                 chart.rows(writer, values, at == 0);
             }
             if with_times || values.is_none() {
-                // Beside the lowest value's number, and beside the times of the other scale.
+                // The start is beside the lowest value's number, or beside the times of the other scale.
                 let from = chart.left - if at == 0 { BEFORE_TIMES * chart.unit } else { 0.0 };
                 chart.columns(writer, &times, values.is_none(), from);
             }
@@ -196,12 +196,13 @@ impl Strip {
     }
 }
 
-/// A chart, or two beside each other for two scales of time, each with the time that it shows (s).
+/// A chart, or two beside each other for two scales of time, each with its range of time (s).
 #[derive(Clone, Debug)]
 pub(super) struct Parts(Vec<(Chart, [f64; 2])>);
 
 impl Parts {
-    /// A chart over some pixels to the right and down, from a first time to a last one (s); their scale may change between.
+    /// A chart over some pixels to the right and down, from a first time to a last one (s); the scale of time may
+    /// change between.
     pub(super) fn new(
         scale: Scale,
         [left, right]: [f64; 2],
@@ -217,7 +218,7 @@ impl Parts {
         Self(vec![(chart([left, middle]), [from, split]), (chart([middle + gap, right]), [split, to])])
     }
 
-    /// The chart that shows a time (s), and where that stands in it (px).
+    /// The chart that shows a time (s), and the time's place in it (px).
     pub(super) fn place(&self, time: f64) -> (Chart, f64) {
         let part = self.0.iter().find(|(_, [_, to])| time <= *to).unwrap_or(&self.0[self.0.len() - 1]);
         let &(chart, [from, to]) = part;

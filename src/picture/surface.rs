@@ -1,5 +1,5 @@
-//! Closed surfaces of sets of elements: triangles, edges and contours. All of these come from the pieces into which a face is
-//! cut, so they are in one file, though it is long.
+//! Closed surfaces of sets of elements: triangles, edges and contours. All of them come from the pieces of a cut face,
+//! so they are in one long file.
 
 use super::camera::Lens;
 use super::cut::{Cuts, Grid, Grids};
@@ -15,24 +15,24 @@ use std::collections::HashMap;
 
 /// Stripes of the hatch have this period along `X + Y + Z` of the body at rest (units of soft distances).
 const HATCH_PERIOD: f64 = 0.30;
-/// A patch is cut so finely that its flat pieces are nowhere farther from it than this (px).
+/// The largest distance of the flat pieces of a patch from it (px).
 const FLATNESS: f64 = 0.35;
-/// The finest cut of a patch in each direction, and that of few faces: as fine as gives so many cells in all.
+/// The finest cut of a patch in each direction, and of few faces: the cut that gives this many cells in all.
 const FINEST_CUT: usize = 6;
 const FINEST_OF_FEW: usize = 24;
 const CELLS_OF_FEW: usize = 4000;
-/// Where there are more faces than this they are cut in two at the most, and where there are more than that not at all:
-/// their patches are small, and drawing them takes longest.
+/// More faces than this are cut in two at most, and still more are not cut: their patches are small, and drawing them
+/// takes longest.
 const MANY_FACES: usize = 3000;
 const VERY_MANY_FACES: usize = 12_000;
 
-/// Faces whose normals have a greater cosine than this are lit so alike that no border is seen between them.
+/// Faces with a greater cosine of their normals are lit so alike that no border is visible between them.
 const SMOOTH: f64 = 0.995;
 /// Edges of elements smaller than this (px) would be invisible and are left out. The shader has the same constant.
 const SMALLEST_ELEMENT: f64 = 4.0;
-/// Edges of elements smaller than this (px) do not show through the body: their opacity would be less than 1 %.
+/// Edges of elements smaller than this (px) are not visible through the body: their opacity would be less than 1 %.
 const SEEN_THROUGH: f64 = 7.2;
-/// What is needed to turn faces into what a panel shows.
+/// The data for turning faces into the parts of a panel.
 pub(super) struct Surroundings<'a> {
     pub(super) body: &'a Body,
     pub(super) ears: &'a Ears,
@@ -50,7 +50,7 @@ pub(super) struct Surroundings<'a> {
     pub(super) flat: &'a [bool],
     /// The field that colours the surfaces.
     pub(super) shades: Option<&'a Shades>,
-    /// Whether edges of elements that are not turned over are drawn in front, and behind surfaces.
+    /// Whether edges of sound elements are drawn in front of surfaces, and behind them.
     pub(super) edges: [bool; 2],
 }
 
@@ -61,7 +61,7 @@ pub(super) struct Lines {
     pub(super) contour: LineKind,
 }
 
-/// One face cut into triangles, as long as it is being worked on; its memory then serves the next one.
+/// One face cut into triangles. Its memory is reused for the next one.
 #[derive(Default)]
 struct Patch {
     /// The corners of the face, seen from outside counter-clockwise.
@@ -72,14 +72,14 @@ struct Patch {
     points: Vec<DVec3>,
     /// The triangles, as places in `points`.
     triangles: Vec<[u32; 3]>,
-    /// Whether it is a bilinear patch, whose normals vary over it; else each triangle has its own.
+    /// Whether it is a bilinear patch, whose normals vary over it; otherwise each triangle has a normal.
     is_curved: bool,
-    /// How far the normals point towards the viewer: at each point of a bilinear patch, else of each triangle. Where that
+    /// The component of the normals towards the viewer: at each point of a bilinear patch, else of each triangle. If it
     /// is negative, the viewer sees the inside.
     facing: Vec<f64>,
 }
 
-/// The lines of surfaces: those that are drawn, and borders, at which colours change whether a line is drawn or not.
+/// The lines of surfaces: drawn lines, and borders, at which colours change with or without a line.
 #[derive(Default)]
 pub(super) struct SurfaceLines {
     pub(super) drawn: Vec<Line>,
@@ -98,13 +98,13 @@ pub(super) struct Border {
 struct FaceSide {
     /// Its nodes.
     ends: [u32; 2],
-    /// Where its values begin in [`FaceSides`], and the number of its pieces.
+    /// The index of its first value in [`FaceSides`], and the number of its pieces.
     first: u32,
     pieces: u32,
     face: u32,
 }
 
-/// The sides of all faces of a surface, cut into pieces: how far the normals of the face point towards the viewer there.
+/// The sides of all faces of a surface, cut into pieces, with the component of the face's normals towards the viewer.
 #[derive(Default)]
 struct FaceSides {
     /// The values at the ends of the pieces, side after side.
@@ -112,14 +112,14 @@ struct FaceSides {
     /// The mean unit normal of each face.
     normals: Vec<DVec3>,
     sides: Vec<FaceSide>,
-    /// Where the values of one edge's sides change their sign, as parts of its length.
+    /// The places where the values of one edge's sides change their sign, in lengths of the edge.
     changes: Vec<f64>,
 }
 
 impl FaceSides {
-    /// The sides in the order of their edges; those of one edge stand beside each other.
+    /// The sides sorted by edge.
     fn sorted(&self, nodes: usize) -> Vec<FaceSide> {
-        // Sorted into boxes by the first node, which leaves hardly anything to sort.
+        // Sorted into bins by the first node, which leaves hardly anything to sort.
         let low = |side: &FaceSide| side.ends[0].min(side.ends[1]) as usize;
         let mut starts = vec![0_u32; nodes + 1];
         self.sides.iter().for_each(|side| starts[low(side) + 1] += 1);
@@ -161,10 +161,10 @@ impl FaceSides {
         sides.iter().skip(1).any(|side| normal(side).dot(normal(&sides[0])) < SMOOTH)
     }
 
-    /// Calls `draw` with the parts of an edge at which the surface turns away from the viewer: the outside of one of its
-    /// sides is seen, that of another is not. An edge of one side alone is a border of the surface.
+    /// Calls `draw` with the parts of an edge at which the surface turns away from the viewer: the outside of one of
+    /// its sides is visible, that of another is not. An edge with a single side is a border of the surface.
     fn contours(&mut self, sides: &[FaceSide], draw: &mut dyn FnMut([f64; 2])) {
-        // Nowhere along nearly all edges.
+        // Nearly all edges have no such part.
         let are_away = |side: &FaceSide, away: bool| self.of(side).iter().all(|&seen| (seen < 0.0) == away);
         if sides.len() > 1 && [false, true].iter().any(|&away| sides.iter().all(|side| are_away(side, away))) {
             return;
@@ -223,11 +223,11 @@ impl Surroundings<'_> {
             return;
         }
         let (cuts, mut grids) = (self.cuts(faces, total), Grids::default());
-        // What faces need that are not cut.
+        // The memory for uncut faces.
         mesh.vertices.reserve(4 * faces.len());
         mesh.triangles.reserve(2 * faces.len());
         mesh.shades.reserve(if self.shades.is_some() { 4 * faces.len() } else { 0 });
-        // Faces on the side of the body that is turned away are drawn last: the others hide them, so that they need no light.
+        // Faces on the far side of the body are drawn last: the others hide them, so that they need no light.
         let mut last = Vec::new();
         let is_inside_out = kinds.edge != LineKind::Edge;
         let (mut patch, mut borders) = (Patch::default(), FaceSides::default());
@@ -286,7 +286,7 @@ impl Surroundings<'_> {
         lines.borders.push(Border { line, edge });
     }
 
-    /// How far an outward normal at a point points towards the viewer, in parts of its length times the distance.
+    /// The component of an outward normal at a point towards the viewer, in units of its length times the distance.
     fn facing(&self, point: DVec3, normal: DVec3) -> f64 {
         -normal.dot(if self.lens.orthographic { self.lens.forward } else { point - self.lens.eye })
     }
@@ -296,7 +296,7 @@ impl Surroundings<'_> {
         Line { from: relative(from), to: relative(to), kind, strength: narrow(strength) }
     }
 
-    /// Into how many pieces faces are cut, which are among so many in all.
+    /// The number of pieces of each face, among a total number of faces.
     fn cuts(&self, faces: &[Side], total: usize) -> Cuts {
         if total > VERY_MANY_FACES {
             return Cuts::none();
@@ -319,7 +319,8 @@ impl Surroundings<'_> {
         let distances = [a, b, c, d].into_iter().filter_map(|corner| Some(self.lens.project(corner)?.1));
         let Some(distance) = distances.reduce(f64::min) else { return 1.0 };
         let scale = if self.lens.orthographic { self.lens.focal } else { self.lens.focal / distance };
-        // In the middle of a patch its diagonals are half of this apart, each a quarter away from the patch.
+        // In the middle of a patch the distance of its diagonals is half of this, and each is a quarter away from the
+        // patch.
         let off = (a - b + c - d).length() / 4.0 * scale;
         (off / FLATNESS).sqrt().ceil().max(1.0)
     }
@@ -398,8 +399,8 @@ impl Surroundings<'_> {
         mesh.triangles.extend(triangles.iter().map(|triangle| triangle.map(|at| base + at)));
     }
 
-    /// Contours within one face. Those of a bilinear patch run where its normal is at right angles to the line of sight,
-    /// interpolated within each triangle; they end exactly where those along the edges begin.
+    /// Contours within one face. On a bilinear patch they run where its normal is at right angles to the line of sight,
+    /// interpolated within each triangle. They end exactly at the contours along the edges.
     fn inner_contours(&self, patch: &Patch, kinds: Lines, lines: &mut SurfaceLines) {
         let Patch { points, triangles, is_curved, facing, .. } = patch;
         let is_away = |at: usize| facing[at] < 0.0;
@@ -435,7 +436,7 @@ fn bilinear(nodes: &[u32], ears: Option<&[[u32; 3]]>) -> Option<[u32; 4]> {
     nodes.try_into().ok().filter(|_| ears.is_none())
 }
 
-/// Records how far the normals along the sides of a face point towards the viewer.
+/// Records the component towards the viewer of the normals along the sides of a face.
 fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, grid: Option<&Grid>, cuts: &Cuts, borders: &mut FaceSides) {
     let Patch { nodes, facing, .. } = patch;
     let face = borders.normals.len() as u32;
@@ -450,7 +451,7 @@ fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, grid: Option<&Grid>, c
         }
         let two = [side as u32, ((side + 1) % nodes.len()) as u32];
         let seen = match ears {
-            // The one triangle that has this side.
+            // The only triangle with this side.
             Some(ears) => {
                 let ear = ears.iter().position(|ear| two.iter().all(|corner| ear.contains(corner)));
                 ear.map_or(1.0, |at| facing[at])
@@ -462,20 +463,20 @@ fn note_borders(patch: &Patch, ears: Option<&[[u32; 3]]>, grid: Option<&Grid>, c
     }
 }
 
-/// The sum of what stands at the corners of a face, each times its weight.
+/// The weighted sum of values at the corners of a face.
 fn weighted(weights: &[f64; 4], of_corners: &[f64]) -> f64 {
     weights.iter().zip(of_corners).map(|(weight, corner)| weight * corner).sum()
 }
 
-/// The normal of a bilinear patch, as long as the area it stands for. It is linear in both directions, so that its
-/// values at the corners of any triangulation are enough to have it everywhere.
+/// The normal of a bilinear patch, with the length of its area. It is linear in both directions, so that its values at
+/// the corners of any triangulation determine it everywhere.
 fn bilinear_normal([a, b, c, d]: [DVec3; 4], [u, v]: [f64; 2]) -> DVec3 {
     let along_u = (b - a).lerp(c - d, v);
     let along_v = (d - a).lerp(c - b, u);
     along_u.cross(along_v)
 }
 
-/// The mean normal of a polygon, as long as twice its area (Newell's method).
+/// The mean normal of a polygon, with twice the length of its area (Newell's method).
 fn newell(corners: &[DVec3]) -> DVec3 {
     let next = corners.iter().cycle().skip(1);
     corners.iter().zip(next).map(|(&a, &b)| (a - corners[0]).cross(b - corners[0])).sum()

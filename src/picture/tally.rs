@@ -15,7 +15,7 @@ pub(super) const HEIGHT: f64 = 36.0;
 const WIDTH: f64 = 200.0;
 /// Squares smaller than this (px in the reference picture) would be less legible than a bar.
 const LEAST_SQUARE: f64 = 4.0;
-/// The rim of a hollow square, in parts of its side.
+/// The rim of a hollow square, relative to its side.
 const RIM: f64 = 0.14;
 /// A bar's width and height (px in the reference picture).
 const BAR: [f64; 2] = [140.0, 14.0];
@@ -30,8 +30,7 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// Groups elements into layers where those of one layer stand equally high at rest. Bodies without such layers get
-    /// rows of equal length.
+    /// Groups elements into layers of equal height at rest. Bodies without such layers get rows of equal length.
     pub(super) fn new(body: &Body, side: f64) -> Self {
         let count = body.elements.len();
         if count == 0 || count > MOST_SQUARES {
@@ -61,12 +60,12 @@ impl Tally {
         Self { rows, are_layers, count }
     }
 
-    /// Whether there are squares, one for each element, and not a bar, in a room (px).
+    /// Whether each element has a square in a room (px), instead of a bar for all.
     pub(super) fn has_squares(&self, scale: Scale, room: f64) -> bool {
         self.squares(scale, room).is_some()
     }
 
-    /// The same as a bar.
+    /// The tally as a bar.
     pub(super) fn as_bar(&self) -> Self {
         Self { rows: Vec::new(), are_layers: false, count: self.count }
     }
@@ -76,8 +75,8 @@ impl Tally {
         self.are_layers && self.rows.len() > 1
     }
 
-    /// The marks of the tally with its lower left corner at a place (px), and its width (px). `states` tells which elements
-    /// have turned over, and which are flat.
+    /// The marks of the tally with its lower left corner at a place (px), and its width (px). `states` tells the
+    /// turned-over and the flat elements.
     pub(super) fn draw(
         &self,
         states: [&[bool]; 2],
@@ -89,7 +88,7 @@ impl Tally {
     ) -> f64 {
         match self.squares(scale, room) {
             Some(lengths) => {
-                // Few rows stand in the middle of the height that three would take.
+                // Few rows are centred in the height of three.
                 let taken = self.rows.len() as f64 * (lengths[0] + lengths[1]) - lengths[1];
                 let raised = ((HEIGHT * scale.type_unit() - taken) / 2.0).max(0.0);
                 self.draw_squares(states, palette, lengths, [corner[0], corner[1] - raised], marks)
@@ -153,7 +152,7 @@ impl Tally {
         }
         let [width, height] =
             [(BAR[0] * scale.type_unit()).min(room).round(), (BAR[1] * scale.type_unit()).round().max(1.0)];
-        // A single element among thousands still shows.
+        // A single element among thousands is visible.
         let [over, flat] = states.map(|state| match state.iter().filter(|&&is_so| is_so).count() {
             0 => 0.0,
             count => (width * count as f64 / self.count as f64).max(2.0).min(width).round(),
@@ -172,7 +171,7 @@ impl Tally {
     }
 }
 
-/// A hollow rectangle, which stands for flat elements.
+/// A hollow rectangle, the sign of flat elements.
 pub(in crate::picture) fn hollow([left, top, width, height]: [f64; 4], palette: &Palette) -> [Mark; 2] {
     let rim = (RIM * height).round().max(1.0).min(width / 2.0);
     let inside = [left + rim, top + rim, width - 2.0 * rim, height - 2.0 * rim];

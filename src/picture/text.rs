@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// The two weights in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Weight {
-    /// For everything that explains.
+    /// For explanations.
     Regular,
     /// For names and counts.
     SemiBold,
@@ -23,7 +23,7 @@ pub(crate) struct Glyph {
     pub face: u8,
     /// Its number in the font.
     pub id: u16,
-    /// Where its origin stands, from the left of the picture (px).
+    /// The place of its origin, from the left of the picture (px).
     pub x: f32,
 }
 
@@ -64,11 +64,11 @@ impl TextRun {
     }
 }
 
-/// How far letters reach above and below the baseline, in parts of the type's size.
+/// The heights of letters above and below the baseline, in sizes of type.
 const ASCENT: f32 = 0.78;
 const DESCENT: f32 = 0.22;
 
-/// The fonts of a picture: those of its scene, with the built-in ones as fallback. Cheap to clone.
+/// The fonts of a picture: the scene's fonts, with the built-in ones as fallback. Cheap to clone.
 #[derive(Clone, Debug)]
 pub(crate) struct Fonts {
     faces: Arc<[Face]>,
@@ -82,7 +82,7 @@ struct Letter {
     /// The number of its font, and its glyph there.
     face: u8,
     glyph: GlyphId,
-    /// How far the glyph moves the pen by itself, and how far it is to move it, in units of the type's size.
+    /// The distance by which the glyph moves the pen in its font, and here, in sizes of type.
     own: f64,
     advance: f64,
 }
@@ -115,23 +115,24 @@ pub(super) fn is_invisible(character: char) -> bool {
     )
 }
 
-/// The space between thousands, and its width in parts of that between words.
+/// The space between thousands, and its width relative to the space between words.
 pub(super) const THIN_SPACE: char = '\u{2009}';
 const THIN: f64 = 0.6;
-/// Replaces what was cut out.
+/// Replaces the omitted part of a text.
 const ELLIPSIS: char = '…';
-/// How much of the room for a text that is too long its beginning gets; others are for texts with equal beginnings and ends.
+/// The share of the room that the beginning of a too long text gets. All but the first are for texts with equal
+/// beginnings and ends.
 const BEGINNINGS: [f64; 5] = [0.6, 1.0, 0.0, 0.8, 0.3];
 
 impl Default for Fonts {
-    /// Those that are built in.
+    /// The built-in fonts.
     fn default() -> Self {
         Self::new(&FontFiles::default())
     }
 }
 
 impl Fonts {
-    /// The fonts of a scene. A file that is no font, which no scene that was loaded has, is passed over.
+    /// The fonts of a scene. A file that is not a font is ignored; loaded scenes have none.
     pub(crate) fn new(files: &FontFiles) -> Self {
         let built_in = |bytes: &'static [u8], key| {
             let font = FontRef::try_from_slice(bytes).expect("the font that comes with the program is whole");
@@ -157,12 +158,12 @@ impl Fonts {
         Self { ascii, ..blank }
     }
 
-    /// One of the fonts, by the number that glyphs name. The first one for a number that there is not.
+    /// One of the fonts, by the number in glyphs, or the first one if there is none of this number.
     pub(crate) fn face(&self, number: u8) -> &Face {
         self.faces.get(usize::from(number)).unwrap_or(&self.faces[0])
     }
 
-    /// The fonts that a text of a weight is looked up in, in order.
+    /// The fonts in which a text of a weight is looked up, in order.
     fn order(&self, weight: Weight) -> impl Iterator<Item = u8> {
         let built_in = match weight {
             Weight::Regular => 0,
@@ -177,8 +178,8 @@ impl Fonts {
         own.into_iter().chain([built_in])
     }
 
-    /// The font and the glyph of a character. The first glyph of the built-in font is a box, which stands for all
-    /// characters that no font has.
+    /// The font and the glyph of a character. The first glyph of the built-in font, a box, represents all characters
+    /// that no font has.
     fn glyph(&self, weight: Weight, character: char) -> (u8, GlyphId) {
         let character = if character.is_whitespace() { ' ' } else { character };
         let mut last = (0, GlyphId(0));
@@ -191,13 +192,14 @@ impl Fonts {
         last
     }
 
-    /// A character, with all that a line needs of it.
+    /// A character with its data for a line.
     fn letter(&self, weight: Weight, character: char) -> Letter {
         let known = self.ascii[weight as usize].get(character as usize);
         known.copied().unwrap_or_else(|| self.look_up(weight, character))
     }
 
-    /// The same from the fonts. All digits move the pen equally far, so that numbers do not jump from frame to frame.
+    /// A character looked up in the fonts. All digits move the pen equally far, so that numbers do not jump from frame
+    /// to frame.
     fn look_up(&self, weight: Weight, character: char) -> Letter {
         let own = |(face, glyph): (u8, GlyphId)| {
             let face = self.face(face);
@@ -213,7 +215,7 @@ impl Fonts {
         Letter { face, glyph, own: own((face, glyph)), advance }
     }
 
-    /// How far a character moves the pen, in units of the type's size.
+    /// The distance by which a character moves the pen, in sizes of type.
     fn advance(&self, weight: Weight, character: char) -> f64 {
         self.letter(weight, character).advance
     }
@@ -223,13 +225,14 @@ impl Fonts {
         text.chars().map(|character| self.advance(weight, character)).sum::<f64>() * size
     }
 
-    /// The text itself if it is at most `room` wide (px), else its beginning and its end with an ellipsis between them;
-    /// nothing if even that is too wide. Characters that take no place of their own, such as line breaks, become spaces.
+    /// The text if it is at most `room` wide (px), otherwise its beginning and its end with an ellipsis between them;
+    /// empty if even that is too wide. Characters without a width, such as line breaks, become spaces.
     pub(crate) fn shortened(&self, text: &str, weight: Weight, size: f64, room: f64) -> String {
         self.cut_out(text, weight, size, room, BEGINNINGS[0])
     }
 
-    /// The same for one of several texts: if they are too long, what tells this one from the others stays as far as possible.
+    /// One of several texts, shortened if they are too long. The part that distinguishes it from the others is kept as
+    /// far as possible.
     pub(crate) fn told_apart(&self, text: &str, all: &[&str], weight: Weight, size: f64, room: f64) -> String {
         let cut = |text: &str, beginning: f64| self.cut_out(text, weight, size, room, beginning);
         let own = |&beginning: &f64| {
@@ -239,7 +242,7 @@ impl Fonts {
         cut(text, BEGINNINGS.into_iter().find(own).unwrap_or(BEGINNINGS[0]))
     }
 
-    /// The text without what is too wide for a room (px) between its beginning, which gets a part of that, and its end.
+    /// A text for a room (px) without the part between its beginning, which gets a share of the room, and its end.
     fn cut_out(&self, text: &str, weight: Weight, size: f64, room: f64, beginning: f64) -> String {
         let seen = text.chars().filter(|&c| !is_invisible(c));
         let text: String = seen.map(|c| if c.is_control() { ' ' } else { c }).collect();
@@ -285,7 +288,7 @@ impl Fonts {
         for character in text.chars() {
             let Letter { face, glyph, own, advance } = self.letter(weight, character);
             let [own, moved] = [own, advance].map(|advance| advance * size);
-            // A digit that is narrower than the widest one stands in the middle of its cell.
+            // A digit narrower than the widest one is centred in its cell.
             glyphs.push(Glyph { face, id: glyph.0, x: narrow(pen + (moved - own) / 2.0) });
             pen += moved;
         }
@@ -316,10 +319,10 @@ impl Face {
         }
     }
 
-    /// The outline of a glyph for type of a size (px), whose origin lies at a place between two pixels (px, to the right);
-    /// `None` for blanks.
+    /// The outline of a glyph for type of a size (px), with its origin at a place between two pixels (px, to the
+    /// right); `None` for blanks.
     pub(crate) fn outline(&self, id: u16, size: f32, place: f32) -> Option<OutlinedGlyph> {
-        // The scale of a font is its height, sizes of type are lengths of the em.
+        // The scale of a font is its height; sizes of type are lengths of the em.
         let scale = PxScale::from(size * self.font.height_unscaled() / self.units_per_em());
         self.font.outline_glyph(GlyphId(id).with_scale_and_position(scale, point(place, 0.0)))
     }

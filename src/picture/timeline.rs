@@ -1,5 +1,5 @@
-//! The chart below the panels of a frame: the time series of all runs over the whole scene, numbered flags for what
-//! happens in them, and the present moment. Only that moment moves; all else is composed once.
+//! The chart below the panels of a frame: the time series of all runs over the whole scene, numbered flags for their
+//! events, and the present moment. Only that moment moves; the rest is composed once.
 
 use super::caption::Writer;
 use super::chart::{BELOW, NUMBERS};
@@ -15,14 +15,14 @@ use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::{Diagnostic, Frame, Status};
 
-/// From the top of the room to the middle of the rings, and to the chart (px in the reference picture).
+/// The heights from the top of the room to the middle of the rings, and to the chart (px in the reference picture).
 const RINGS: f64 = 11.0;
 const ABOVE: f64 = 33.0;
-/// The narrowest chart (px), and the parts of the room that its name and the names at the ends of curves take at most.
+/// The narrowest chart (px), and the most of the room for its name and for the names at the ends of curves.
 const LEAST_WIDTH: f64 = 40.0;
 const NAME: f64 = 0.3;
 const NAMES: f64 = 0.22;
-/// How far above the chart these names begin at most (px in the reference picture).
+/// The most that these names extend above the chart (px in the reference picture).
 const NAMES_ABOVE: f64 = 8.0;
 /// Radius of the circles around present values and width of their line (px in the reference picture), and their corners.
 const CIRCLE: [f64; 2] = [4.5, 1.6];
@@ -33,17 +33,17 @@ const CORNERS: usize = 24;
 pub(super) struct Timeline {
     strip: Strip,
     events: Vec<Event>,
-    /// Where it is drawn; `None` if it could not be read.
+    /// Its place; `None` if it could not be read.
     parts: Option<Parts>,
-    /// What does not move.
+    /// The parts that do not move.
     marks: Vec<Mark>,
     curves: Vec<Curve>,
     words: Vec<TextRun>,
 }
 
 impl Timeline {
-    /// The chart of a diagnostic of all runs of a history, in a room of the picture of a writer (px), whose panels may have letters.
-    /// `explained` says how many of the events of a run have room for their words in its panel.
+    /// The chart of a diagnostic of all runs of a history, in a room of the picture of a writer (px), whose panels may
+    /// have letters. `explained` returns the number of events of a run whose words fit into its panel.
     pub(super) fn new(
         diagnostic: Diagnostic,
         history: &History,
@@ -54,7 +54,7 @@ impl Timeline {
     ) -> Self {
         let mut strip = Strip::new(diagnostic, &[(scene, history)], writer.palette, str::to_owned);
         let mut events = event::events(diagnostic, &strip.series, scene.body.extent(), history.end);
-        // A number that its panel does not explain says nothing.
+        // A number without an explanation in its panel would mean nothing.
         for one in &strip.series {
             let own: Vec<_> = events.iter().filter(|event| event.run == one.run).collect();
             let mut left = explained(&own);
@@ -71,7 +71,8 @@ impl Timeline {
         Self { strip, events, parts, marks, curves, words }
     }
 
-    /// Draws it with the present moment: a line behind the curves, and circles around the values, which hide nothing.
+    /// Draws the chart with the present moment: a line behind the curves, and circles around the values, which hide
+    /// nothing.
     pub(super) fn draw(&self, writer: &mut Writer<'_>, frame: &Frame) {
         writer.marks.extend(&self.marks);
         writer.words.extend_from_slice(&self.words);
@@ -92,14 +93,14 @@ impl Timeline {
         }
     }
 
-    /// What happens to a run, each with its number.
+    /// The events of a run, each with its number.
     pub(super) fn events_of(&self, run: usize) -> impl Iterator<Item = (usize, &Event)> {
         (1..).zip(&self.events).filter(move |(_, event)| event.run == run && self.parts.is_some())
     }
 }
 
-/// Draws what does not move into a room (px), for a scene up to an end (s) whose panels may have letters; returns where the
-/// chart stands, if there is room for it.
+/// Draws the parts that do not move into a room (px), for a scene up to an end (s) whose panels may have letters.
+/// Returns the place of the chart, if there is room for it.
 fn still(
     strip: &mut Strip,
     events: &[Event],
@@ -122,7 +123,7 @@ fn still(
             last - first >= LEAST_WIDTH && chart[1] - chart[0] >= LEAST_CHART && Scale::legible(NUMBERS * unit);
         has_room.then(|| (has_name, [first, last], Parts::new(scale, [first, last], chart, [0.0, end], split)))
     };
-    // What bands are stands below the name, if that has room with it.
+    // Bands are explained below the name, if there is room.
     let (_, _, parts) = place(strip)?;
     strip.explain_bands(fonts, &parts, |strip| place(strip).is_some_and(|(has_name, ..)| has_name));
     let (has_name, [first, last], parts) = place(strip)?;

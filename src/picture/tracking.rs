@@ -1,8 +1,8 @@
 //! Cameras that follow: one scale for all panels and frames of a scene, from its time series.
 //!
 //! At that scale the widest moment of all runs takes [`FILLED`] of the width of a panel, if its height leaves room for
-//! the words. Where the whole course of all runs stays in view the camera stands still, and shows what comes near them as
-//! long as that makes them little smaller. Otherwise it keeps the centre of mass of each run's body at one place.
+//! the words. If the whole course of all runs stays in view, the camera stands still, and also shows objects near them
+//! unless bodies would become much smaller. Otherwise the centre of mass of each run's body stays at one place.
 
 use super::camera::{Framing, Lens};
 use super::layout::{self, Rectangle, Scale};
@@ -12,22 +12,22 @@ use crate::scene::Scene;
 use crate::sim::Dimension;
 use glam::{DVec2, DVec3};
 
-/// The part of a panel's width that the widest moment takes.
+/// The share of a panel's width that the widest moment takes.
 const FILLED: f64 = 0.62;
-/// A camera stands still if everything stays in view at a scale at which the widest moment takes this part of that width, or
-/// as much as it can take.
+/// A camera stands still if everything stays in view at a scale at which the widest moment takes this share of that
+/// width, or the most that it can take.
 const LEAST_FILLED: f64 = 0.45;
-/// At the highest moment bodies come this much nearer to the words than other things that words are kept clear of, above
-/// and below (px in the reference picture).
+/// The extra room of bodies at the highest moment, above and below, beyond the usual distance from words (px in the
+/// reference picture).
 pub(super) const NEARER: [f64; 2] = [5.0, 11.0];
 /// Moments of diverged runs count while they are no larger than the largest moment of the others, or than this many times
 /// the start if there are no others.
 const BEYOND: f64 = 2.0;
-/// Bodies that grow count up to this many times their largest side at the start and at rest: others, which do not grow,
-/// would be too small.
+/// Growing bodies count up to this many times their largest side at the start and at rest: otherwise bodies that do not
+/// grow would be too small.
 const MOST_GROWTH: f64 = 1.7;
 
-/// How a camera follows the runs of a scene.
+/// The data of a camera that follows the runs of a scene.
 #[derive(Debug)]
 pub(super) struct Tracking {
     /// Whether the time series are known; if not, only the start is.
@@ -38,22 +38,22 @@ pub(super) struct Tracking {
     around: [DVec3; 2],
     /// Its width at its widest moment (m).
     widest: f64,
-    /// The box around all that all runs ever reach, and the same with what comes near them, along the axes (m).
+    /// The box around the courses of all runs, and the same box with objects near them, along the axes (m).
     all: [[DVec3; 2]; 2],
 }
 
-/// How one panel is seen; all panels of a picture alike.
+/// The view of one panel; all panels of a picture have the same.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shot {
-    /// The point looked at, from the centre of mass if that is followed, or else from the origin (m).
+    /// The target, from the centre of mass if that is followed, or else from the origin (m).
     offset: DVec3,
     is_still: bool,
-    /// Pixels of a metre at the point looked at.
+    /// Pixels per metre at the target.
     pub(super) pixels: f64,
 }
 
 impl Tracking {
-    /// For a scene and its time series; `None` if nothing is known of where its body is.
+    /// The tracking of a scene with its time series; `None` if the place of its body is unknown.
     pub(super) fn new(scene: &Scene, history: &History) -> Option<Self> {
         let (view, body) = (&scene.view, &*scene.body);
         let start = CameraBox::new(view, body, &scene.initial.position)?;
@@ -75,7 +75,7 @@ impl Tracking {
         let is_known = !history.series.is_empty();
         let mut all = Self { is_known, axes, around: none, widest: 0.0, all: [none; 2] };
         for one in counted.copied().chain([start]) {
-            // As much of a body that grows as counts.
+            // Only the counting part of a growing body.
             let corners = one.corners.map(|corner| (most / one.size()).min(1.0) * corner);
             let centre = all.along(one.centre);
             all.around = union(all.around, corners);
@@ -84,24 +84,24 @@ impl Tracking {
         }
         let near = view.camera.near.iter().map(|&point| [all.along(point); 2]);
         all.all[1] = near.fold(all.all[0], union);
-        // A body seen as a point or a line has some width all the same.
+        // A body seen as a point or a line still gets some width.
         all.widest = all.widest.max(0.2 * usual);
         Some(all)
     }
 
-    /// A vector along the axes.
+    /// The components of a vector along the axes.
     fn along(&self, way: DVec3) -> DVec3 {
         let [right, up, towards] = self.axes;
         DVec3::new(way.dot(right), way.dot(up), way.dot(towards))
     }
 
-    /// A vector given along the axes.
+    /// The vector with components along the axes.
     fn across(&self, way: DVec3) -> DVec3 {
         let [right, up, towards] = self.axes;
         way.x * right + way.y * up + way.z * towards
     }
 
-    /// How a panel is seen, in a picture with type of a scale.
+    /// The view of a panel, in a picture with type of a scale.
     pub(super) fn shot(&self, scene: &Scene, (viewport, scale): (Rectangle, Scale)) -> Shot {
         let (view, dimension) = (&scene.view, scene.body.dimension);
         let lens = near(scene, viewport, scale);
@@ -109,7 +109,7 @@ impl Tracking {
             layout::clear_of_words(viewport, view, scale).map(|length| f64::from(length).max(1.0));
         let [above, below] = NEARER.map(|length| length * scale.unit);
         let room = [left, top - above, wide, high + above + below];
-        // What is nearer than the point looked at is seen larger; the outline lies on the way to the nearest.
+        // Points nearer than the target are seen larger; the outline lies half-way to the nearest one.
         let depth = |half: DVec3| if dimension == Dimension::Space { 0.5 * half.z / lens.focal } else { 0.0 };
         let fit = |[low, high]: [DVec3; 2]| {
             let half = 0.5 * (high - low);
@@ -123,13 +123,14 @@ impl Tracking {
         let [body, with_near] = self.all;
         let all = [with_near, body].map(|[low, high]| (fit([low, high]).min(following), low.midpoint(high)));
         let standing = all.into_iter().find(|(pixels, _)| *pixels >= least).map(|(pixels, middle)| {
-            // Room that bodies leave above and below is for what comes near them. Their lowest corner is their nearest one.
+            // The room above and below bodies is for objects near them. The lowest corner of bodies is their nearest
+            // one.
             let half = 0.5 * (body[1] - body[0]);
             let spare = (0.5 * room[3] * (1.0 / pixels - 2.0 * depth(half)) - half.y).max(0.0);
             (pixels, middle + DVec3::Y * (all[0].1.y - middle.y).clamp(-spare, spare))
         });
         let standing = standing.filter(|_| self.is_known);
-        // The middle of the box stands in the middle of the room.
+        // The middle of the box is in the middle of the room.
         let (pixels, middle) = standing.unwrap_or((following, self.around[0].midpoint(self.around[1])));
         let at = DVec2::new(room[0] + 0.5 * room[2], room[1] + 0.5 * room[3]);
         let off = (at - DVec2::from(lens.centre)) / pixels;
@@ -137,7 +138,7 @@ impl Tracking {
         Shot { offset, is_still: standing.is_some(), pixels }
     }
 
-    /// What the camera of a run looks at, whose body has a centre of mass (m), in a panel.
+    /// The target and distance of the camera of a run, whose body has a centre of mass (m), in a panel.
     pub(super) fn framing(
         &self,
         scene: &Scene,
@@ -146,7 +147,7 @@ impl Tracking {
         (viewport, scale): (Rectangle, Scale),
     ) -> Framing {
         let target = if shot.is_still { shot.offset } else { centre + shot.offset };
-        // Panels may differ by a pixel in width; their scale does not.
+        // Panels may differ by a pixel in width, but have one scale.
         let distance = near(scene, viewport, scale).focal / shot.pixels;
         Framing { target, distance, rise: 0.0, moves: !shot.is_still }
     }
@@ -169,7 +170,7 @@ mod tests {
     use crate::look::Traced;
     use crate::runner::Runner;
 
-    /// Over a whole scene with hard impacts.
+    /// A whole scene with hard impacts.
     #[test]
     fn a_camera_that_follows_keeps_the_centre_of_mass_at_its_place() {
         let text = include_str!("../../scenes/fig4b.toml");

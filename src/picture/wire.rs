@@ -15,24 +15,23 @@ const SPRING: f64 = 1.9;
 const EDGE: f64 = 1.3;
 const ALARM_EDGE: f64 = 2.2;
 const BARE: f64 = 2.0;
-/// How much wider lines are that a field colours, to have room for a casing.
+/// The extra width of lines that a field colours, as room for a casing.
 const CASED: f64 = 1.9;
 /// Opacity of a spring behind a surface (of 255).
 const BEHIND: f64 = 28.0;
-/// Elements smaller than this (px) get thinner lines, down to this part of their width, and fainter ones behind surfaces,
-/// or lines would cover everything.
+/// Smaller elements (px) get thinner lines, down to this part of their width, and fainter ones behind surfaces, or
+/// lines would cover everything.
 const SMALL_ELEMENT: f64 = 26.0;
 const THINNEST: f64 = 0.2;
-/// Springs of elements smaller than this (px) are left out behind surfaces: the faintest of them would be too many.
+/// Springs of smaller elements (px) are left out behind surfaces: even the faintest would be too many.
 const SEEN_THROUGH: f64 = 8.0;
-/// The share of the background in the colour of the farthest line or node, as a depth cue where there are no surfaces.
+/// The share of the background in the colour of the farthest line or node, as a depth cue without surfaces.
 const HAZE: f64 = 0.62;
-/// The same of springs that are coloured by their strain, in parts of it: at full strain there is none, so that these have
-/// the colours of the key.
+/// The reduction of this share for springs coloured by their strain, at full strain: these have the colours of the key.
 const STRAINED_HAZE: f64 = 0.8;
-/// Springs are put above others in so many steps of strain; of those of one step the nearest lie on top.
+/// The number of steps of strain by which springs are stacked; within a step the nearest lie on top.
 const STRAIN_STEPS: f64 = 8.0;
-/// A line between two places on a scale farther apart than this is cut, so that it shows what lies between.
+/// A line between two places on a scale farther apart than this is divided, so that it shows the colours between.
 const LONGEST_STEP: f64 = 0.05;
 
 /// The edges of elements, once for all frames.
@@ -40,7 +39,7 @@ const LONGEST_STEP: f64 = 0.05;
 pub(super) struct Edges {
     /// Each edge once.
     pub(super) all: Vec<[u32; 2]>,
-    /// The edges of each element, and the nodes of those that have none.
+    /// The edges of each element, and the nodes of elements without edges.
     of_elements: Vec<Vec<[u32; 2]>>,
 }
 
@@ -56,10 +55,10 @@ impl Edges {
     }
 }
 
-/// A line, and how far its middle is from the eye (m).
+/// A line, and the distance of its middle from the eye (m).
 type Placed = (f64, Stroke);
 
-/// What is needed to draw lines in one panel.
+/// The data for lines in one panel.
 pub(super) struct Wire<'a> {
     pub(super) body: &'a Body,
     pub(super) position: &'a [DVec3],
@@ -71,18 +70,18 @@ pub(super) struct Wire<'a> {
     pub(super) eye: DVec3,
     pub(super) forward: DVec3,
     pub(super) palette: &'a Palette,
-    /// Thickness of lines, in parts of that in the reference picture.
+    /// Thickness of lines, relative to the reference picture.
     pub(super) line: f64,
     /// Length of an element's edge (px).
     pub(super) element: f64,
     /// Whether surfaces are drawn, too.
     pub(super) surfaces: bool,
-    /// The field that colours lines and nodes where there are no surfaces: its colours, and a place for each node.
+    /// The field that colours lines and nodes without surfaces: its colours, and a place for each node.
     pub(super) shades: Option<(&'a [Colour], &'a [f32])>,
 }
 
 impl Wire<'_> {
-    /// The same without the colours of a field if surfaces show them.
+    /// The wire without the colours of a field if surfaces show them.
     pub(super) fn without_surfaces(&self) -> Self {
         Self { shades: self.shades.filter(|_| !self.surfaces), ..*self }
     }
@@ -92,8 +91,8 @@ impl Wire<'_> {
         self.surfaces && self.element < SEEN_THROUGH
     }
 
-    /// Springs, the farthest first. With a scale and its colours, each has the colour of its strain, and the more
-    /// strained lie above the others.
+    /// Springs, the farthest first. With a scale and its colours, each has the colour of its strain, and more strained
+    /// ones lie above the others.
     pub(super) fn springs(&self, springs: &[[u32; 2]], strain: Option<(&[Colour], ColourScale)>) -> Vec<Stroke> {
         let haze = self.haze();
         if let Some((ramp, scale)) = strain {
@@ -129,7 +128,7 @@ impl Wire<'_> {
         (depth, Stroke { second: Second::Casing(faded(self.palette.casing)), ..plain })
     }
 
-    /// The edges of all elements, the farthest first, and those of turned-over ones once more above them.
+    /// The edges of all elements, the farthest first, and the edges of turned-over ones again above them.
     pub(super) fn edges(&self, edges: &Edges, turned_over: &[bool], only_turned_over: bool) -> Vec<Stroke> {
         let haze = self.haze();
         let mut strokes = Vec::new();
@@ -180,7 +179,7 @@ impl Wire<'_> {
         let haze = self.haze();
         let nodes = self.position.iter().enumerate().map(|(node, &at)| (self.depth(at), node));
         let bead = |node: usize| {
-            // A disc is light so that its rim shows; the farther it is, the fainter is the rim.
+            // A disc is light, so that its rim is visible; distant rims are fainter.
             let faded = 0.8 * haze(self.position[node]);
             Bead {
                 at: self.relative(self.position[node]),
@@ -196,7 +195,7 @@ impl Wire<'_> {
         farthest_first(nodes.collect()).map(bead).collect()
     }
 
-    /// Lines from the middle of an element that has no edges of its own to its nodes.
+    /// Lines from the middle of an element without edges to its nodes.
     fn spokes(&self, element: usize, colour: Colour, width: f64, strokes: &mut Vec<Placed>) {
         let nodes = &self.body.elements[element];
         let middle = nodes.iter().map(|&node| self.position[node as usize]).sum::<DVec3>() / nodes.len() as f64;
@@ -213,7 +212,7 @@ impl Wire<'_> {
         }
     }
 
-    /// A line between two nodes, cut where its colours need it.
+    /// A line between two nodes, divided where its colours require it.
     fn stroke(
         &self,
         [a, b]: [u32; 2],
@@ -253,7 +252,7 @@ impl Wire<'_> {
         (self.depth(ends[0].midpoint(ends[1])), stroke)
     }
 
-    /// How far a point is from the eye (m), along its line of sight.
+    /// The distance of a point from the eye (m), along its line of sight.
     fn depth(&self, point: DVec3) -> f64 {
         (point - self.eye).dot(self.forward)
     }
@@ -268,7 +267,7 @@ impl Wire<'_> {
         narrow_point((point - self.origin) / self.side).to_array()
     }
 
-    /// How far a point fades into the background; with surfaces not at all.
+    /// The share of the background at a point; zero with surfaces.
     fn haze(&self) -> impl Fn(DVec3) -> f64 {
         let depth = |point: &DVec3| point.dot(self.forward);
         let depths = self.position.iter().map(depth);
@@ -279,14 +278,14 @@ impl Wire<'_> {
     }
 }
 
-/// How strained a spring is on a scale between two strains: 1 at its nearer end, or beyond.
+/// The strain of a spring relative to a scale between two strains: 1 at its nearer end, or beyond.
 fn strained_share(strain: f64, [low, high]: [f64; 2]) -> f64 {
     let ends = [-low, high].into_iter().filter(|&end| end > 0.0);
     let share = strain.abs() / ends.fold(f64::INFINITY, f64::min);
     if share.is_nan() { 0.0 } else { share.min(1.0) }
 }
 
-/// The change of the distance of two nodes over their distance at rest; NaN where that is zero.
+/// The change of the distance of two nodes over their distance at rest; NaN if that is zero.
 pub(super) fn spring_strain(body: &Body, position: &[DVec3], ends: [u32; 2]) -> f64 {
     let length = |points: &[DVec3]| points[ends[0] as usize].distance(points[ends[1] as usize]);
     let rest = length(&body.rest);

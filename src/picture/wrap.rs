@@ -34,7 +34,7 @@ pub(super) fn wrapped(fonts: &Fonts, text: &str, weight: Weight, size: f64, room
     lines
 }
 
-/// As many lines as [`wrapped`], as evenly long as possible: no last line of one short word.
+/// As many lines as [`wrapped`], as evenly long as possible, without a last line of one short word.
 pub(super) fn balanced(fonts: &Fonts, text: &str, weight: Weight, size: f64, room: f64) -> Vec<String> {
     let mut best = wrapped(fonts, text, weight, size, room);
     let (mut low, mut high) = (room / best.len().max(1) as f64, room);

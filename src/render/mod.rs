@@ -1,15 +1,15 @@
 //! From a [`Picture`] to an image: the passes, in order.
 //!
-//! 1. `surface`: turned-over elements, for themselves, to be seen through the body, and as surfaces of the body.
+//! 1. `surface`: turned-over elements, alone, to be seen through the body, and as surfaces of the body.
 //! 2. `surface`: other elements over them, in textures no larger than the bodies, with solid obstacles (`obstacle`).
 //! 3. `border`: smooth borders where colours change at a line.
 //! 4. `visibility`, then `line`: edges and contours as opacities, with smooth borders of their own.
 //! 5. `ground`: the floor with its grid and its shadows, into the picture.
 //! 6. `composite`: bodies and lines over the ground, between transparent obstacles (`obstacle`).
-//! 7. `stroke`: lines with colours of their own and nodes in space, over the bodies, if there are any.
+//! 7. `stroke`: coloured lines and nodes in space, over the bodies, if there are any.
 //! 8. `overlay`: marks and words, with flat curves (`curve`) between them, if there are any.
 //!
-//! Every pixel has one sample. All borders are found from the geometry, which costs nothing where there are none.
+//! Every pixel has one sample. All borders are found from the geometry, which costs nothing without borders.
 //!
 //!
 //! With a scalar field, `tint` takes the place of `surface`.
@@ -88,7 +88,7 @@ pub enum RenderError {
     Gpu(#[from] GpuError),
 }
 
-/// Draws pictures of one size. The same picture gives the same bytes, whatever was drawn before.
+/// Draws pictures of one size. The same picture gives the same bytes, independent of pictures before it.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,

@@ -12,8 +12,8 @@ use std::ops::Range;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/overlay.wgsl");
 
-/// Words over bodies have a halo of glyphs in the colour of the ground: the radii of rings, in parts of the type's
-/// size, and the number of glyphs on each.
+/// Words over bodies have a halo of glyphs in the colour of the ground: the radii of rings, in sizes of type, and the
+/// number of glyphs on each.
 const HALO: [(f32, u32); 2] = [(0.07, 8), (0.14, 16)];
 
 /// Offsets of whole pixels, roughly even on a circle: glyphs are read pixel by pixel.
@@ -186,7 +186,7 @@ fn opaque([red, green, blue]: Colour) -> [u8; 4] {
     [red, green, blue, 255]
 }
 
-/// A mark that is no glyph, as the shader reads it.
+/// A mark that is not a glyph, as the shader reads it.
 fn plain(mark: &picture::Mark) -> Mark {
     let [red, green, blue] = mark.colour;
     Mark {

@@ -186,7 +186,7 @@ impl Panels {
         }
     }
 
-    /// Draws each panel with something in its rectangle, limited to that rectangle and bound for its body's region.
+    /// Draws the body of each panel in its rectangle, limited to that rectangle and bound for its body's region.
     pub(super) fn draw_regions(
         &self,
         pass: &mut Pass<'_>,

@@ -1,4 +1,4 @@
-//! Lines with colours of their own, and nodes in space.
+//! Coloured lines, and nodes in space.
 
 use super::panel::Panels;
 use super::pass::Pass;

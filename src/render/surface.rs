@@ -1,4 +1,4 @@
-//! Surfaces of bodies: first the turned-over set, for itself and as seen through the body, then the other set over it.
+//! Surfaces of bodies: first the turned-over set, alone and as seen through the body, then the other set over it.
 
 use super::panel::{Panels, has_behind};
 use super::pass::Pass;
@@ -17,7 +17,7 @@ pub(super) fn vertices() -> wgpu::VertexBufferLayout<'static> {
     for_vertices::<Vertex>(&ATTRIBUTES)
 }
 
-/// The part of the shader about occlusion by obstacles near a body, without obstacles and with some.
+/// The part of the shader for occlusion by obstacles near a body, without obstacles and with some.
 const ALONE_SHADER: &str = include_str!("../../shaders/light_alone.wgsl");
 const AMONG_SHADER: &str = include_str!("../../shaders/light_among.wgsl");
 

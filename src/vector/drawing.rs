@@ -97,7 +97,7 @@ pub(super) enum Step {
     Line(Vec2),
     /// A cubic Bézier curve: two control points and its end.
     Cubic([Vec2; 3]),
-    /// Back to the begin of the piece.
+    /// Back to the beginning of the piece.
     Close,
 }
 

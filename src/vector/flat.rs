@@ -10,7 +10,7 @@ use glam::{Vec2, Vec3, Vec4Swizzles};
 const PERIOD: f32 = 9.0;
 const STRIPE: f32 = 0.19;
 const STRIPE_ALPHA: f32 = 0.62;
-/// Widths (px in the reference picture) and opacities of the edges of elements, of those that have turned over, of bars and
+/// Widths (px in the reference picture) and opacities of the edges of sound elements, of turned-over ones, of bars and
 /// of contours.
 const EDGE: [f32; 2] = [1.5, 0.75];
 const ALARM_EDGE: [f32; 2] = [1.5, 0.95];
@@ -21,9 +21,9 @@ const SMALL_ELEMENT: f32 = 26.0;
 const SMALLEST_ELEMENT: [f32; 2] = [1.5, 4.0];
 /// Width of the rim of obstacles (px in the reference picture).
 const RIM_WIDTH: f32 = 2.0;
-/// The rim of a disc, in parts of its radius.
+/// The rim of a disc, relative to its radius.
 const BEAD_RIM: f32 = 0.32;
-/// The width of a casing, in parts of the line's, and the least (px).
+/// The width of a casing relative to the line's, and the least (px).
 const CASING: f32 = 0.24;
 const LEAST_CASING: f32 = 0.6;
 /// The number of pieces of a line of changing colour.
@@ -150,7 +150,8 @@ impl Flat<'_> {
         let bands = ramp.len() - 1;
         let triangles = self.triangles(mesh, |at| mesh.shades[at] * bands as f32);
         if triangles.iter().all(|[a, b, c]| a.1 == b.1 && b.1 == c.1) {
-            // Each element has one value. Where a body is folded over itself, the renderer shows what it draws first.
+            // Each element has one value. Where a body is folded over itself, the renderer shows the triangle that it
+            // draws first.
             for same in triangles.chunk_by(|one, other| one[0].1 == other[0].1).rev() {
                 let path = path_of(same.iter().map(|triangle| triangle.map(|(at, _)| at).to_vec()));
                 let value = same[0][0].1;
@@ -204,7 +205,7 @@ impl Flat<'_> {
         let mut path = Path::default();
         for stripe in low.floor() as i32 - 1..=high.ceil() as i32 {
             let on = middle + slant * (stripe as f32 + 0.5) * period;
-            // Around the middle of the room, so that it crosses all of it.
+            // The line is centred in the room, so that it crosses all of it.
             let across = on + reach.normalize() * reach.normalize().dot(0.5 * (corners[0] + corners[2]) - on);
             path.add_line(&[across - reach, across + reach]);
         }
@@ -252,7 +253,7 @@ impl Flat<'_> {
         }
     }
 
-    /// Lines with colours of their own.
+    /// Coloured lines.
     fn strokes(&self, items: &mut Vec<Item<'_>>) {
         self.panel.strokes.iter().for_each(|stroke| self.stroke(stroke, stroke.colours, items));
         let on_body = |stroke: &&Stroke| matches!(stroke.second, Second::OnBody(_));

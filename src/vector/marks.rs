@@ -5,14 +5,14 @@ use crate::picture::{Curve, Mark, MarkShape};
 use glam::Vec2;
 use std::f32::consts::TAU;
 
-/// The ring arrow, in parts of its mark's radius: radius and thickness, start and end of its line (rad,
+/// The ring arrow, relative to its mark's radius: radius and thickness, start and end of its line (rad,
 /// counter-clockwise from the right), length and half width of its head.
 const RING: f32 = 0.80;
 const THICKNESS: [f32; 2] = [0.14, 0.22];
 const ENDS: [f32; 2] = [0.9, TAU - 0.25];
 const HEAD: [f32; 2] = [0.72, 0.42];
-/// A long arrow in parts of the width of its head: length and notch of the head, thickness of the shaft, the halo and
-/// the share of its room that it fills. The last number is the head of a short arrow, in parts of its length.
+/// A long arrow in widths of its head: length and notch of the head, thickness of the shaft, the halo and the share of
+/// its room that it fills. The last number is the head of a short arrow, in lengths of the arrow.
 const ARROW_HEAD: [f32; 2] = [1.235, 0.2];
 const ARROW_SHAFT: f32 = 0.247;
 const ARROW_HALO: f32 = 0.17647;
@@ -91,7 +91,7 @@ pub(super) fn mark<'a>(mark: &Mark, next: Option<&Mark>, items: &mut Vec<Item<'a
         }
         MarkShape::Struck => {
             fill(place.part([0.0, 0.0, width, height]), paint);
-            // Half the line's width, as a part of the distance from the diagonal to a corner.
+            // Half the line's width, relative to the distance from the diagonal to a corner.
             let part = 0.045 * (width + height) * (width.recip().hypot(height.recip()));
             let [x, y] = [width * part.min(1.0), height * part.min(1.0)];
             let line = [[width - x, 0.0], [width, 0.0], [width, y], [x, height], [0.0, height], [0.0, height - y]];

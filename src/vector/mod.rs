@@ -72,7 +72,7 @@ pub enum VectorError {
     Font(String),
 }
 
-/// Half the width of the halo around words over bodies, in parts of the type's size.
+/// Half the width of the halo around words over bodies, in sizes of type.
 const HALO: f32 = 0.14;
 
 /// The part of a picture that the renderer draws for a page: lit panels without flat items; `None` if there are none.

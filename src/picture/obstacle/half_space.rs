@@ -1,12 +1,12 @@
-//! Half-spaces, which floors and plates fill, and clipping polygons and lines at them.
+//! The half-spaces of floors and plates, and clipping of polygons and lines at them.
 
 use crate::sim::{Obstacle, Shape};
 use glam::DVec3;
 
-/// A half-space: the unit normal out of it and its distance from the origin along that (m).
+/// A half-space: its outward unit normal, and its distance from the origin along the normal (m).
 pub(super) type HalfSpace = (DVec3, f64);
 
-/// The half-space that a floor or a plate fills at a time (s).
+/// The half-space of a floor or a plate at a time (s).
 pub(in crate::picture) fn half_space(obstacle: &Obstacle, time: f64) -> Option<HalfSpace> {
     let Shape::Plate { point, normal } = obstacle.shape else { return obstacle.floor(time) };
     let pose = obstacle.pose(time);
@@ -14,7 +14,7 @@ pub(in crate::picture) fn half_space(obstacle: &Obstacle, time: f64) -> Option<H
     Some((normal, normal.dot(pose.apply(point, point))))
 }
 
-/// The part of a convex polygon that lies outside of half-spaces.
+/// The part of a convex polygon outside of half-spaces.
 pub(super) fn clipped_polygon(polygon: &[DVec3], solid: &[HalfSpace]) -> Vec<DVec3> {
     let mut kept = polygon.to_vec();
     for &(normal, height) in solid {
@@ -35,7 +35,7 @@ pub(super) fn clipped_polygon(polygon: &[DVec3], solid: &[HalfSpace]) -> Vec<DVe
     kept
 }
 
-/// The part of a line that lies outside of half-spaces.
+/// The part of a line outside of half-spaces.
 pub(super) fn clipped_line([mut from, mut to]: [DVec3; 2], solid: &[HalfSpace]) -> Option<[DVec3; 2]> {
     for &(normal, height) in solid {
         let [a, b] = [from, to].map(|point| normal.dot(point) - height);

@@ -22,7 +22,7 @@ use crate::look::Palette;
 use crate::sim::Obstacle;
 use glam::DVec3;
 
-/// The obstacles of one panel, and how it shows them.
+/// The obstacles of one panel, and the panel's data for drawing them.
 pub(super) struct Site<'a> {
     pub(super) obstacles: &'a [Obstacle],
     /// The time of the panel's state (s).
@@ -40,12 +40,13 @@ pub(super) struct Site<'a> {
 }
 
 impl Site<'_> {
-    /// A point as the panel has it.
+    /// A point in the panel's coordinates.
     fn relative(&self, point: DVec3) -> [f32; 3] {
         narrow_point((point - self.origin) / self.side).to_array()
     }
 
-    /// How an obstacle moves at a point of it (m) that is at most `reach` (m) away from its pivot, or nearly.
+    /// The motion of an obstacle at one of its points (m), and its greatest speed within about `reach` (m) of its
+    /// pivot.
     fn going(&self, obstacle: &Obstacle, point: DVec3, reach: f64) -> Going {
         let pivot = obstacle.pivot;
         let own = obstacle.pose(self.time).undo(pivot, point);
@@ -55,7 +56,7 @@ impl Site<'_> {
     }
 }
 
-/// Points and triangles of solid obstacles that other parts of the picture need.
+/// Points and triangles of solid obstacles for other parts of the picture.
 #[derive(Debug, Default)]
 pub(super) struct Staged {
     /// Points around them (m), for the part of the panel that they may cover.

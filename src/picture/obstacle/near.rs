@@ -6,7 +6,7 @@ use glam::DVec3;
 /// The distance at which occlusion between a body and an obstacle begins (soft units). The shader that lights bodies has
 /// the same constant.
 pub(super) const REACH: f64 = 1.3;
-/// Nearer than this part of that distance, the direction to the body loses its influence: where both touch it is undefined.
+/// Below this part of that distance the direction to the body loses its influence: at contact it is undefined.
 const TOUCHING: f64 = 0.3;
 
 /// A triangle with a ball around it.
@@ -17,13 +17,13 @@ struct Piece {
     radius: f64,
 }
 
-/// The part of a body near something.
+/// The part of a body near an obstacle.
 #[derive(Debug)]
 pub(super) struct Near {
     pieces: Vec<Piece>,
-    /// The box around all that the pieces reach (m).
+    /// The box around all pieces with their reach (m).
     bounds: [DVec3; 2],
-    /// How far they reach (m).
+    /// The distance at which their occlusion ends (m).
     reach: f64,
 }
 

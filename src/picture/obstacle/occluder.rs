@@ -9,7 +9,7 @@ use crate::picture::{MOST_OCCLUDERS, Occluder};
 use crate::sim::{Obstacle, Shape};
 use glam::{DQuat, DVec3};
 
-/// Radius of the edges of boxes, and half the sides of a box that stands for a half-space (soft units).
+/// Radius of the edges of boxes, and half the sides of the box of a half-space (soft units).
 const ROUND: f64 = 0.1;
 const LARGE: f64 = 1e3;
 
@@ -36,7 +36,7 @@ impl Staging<'_> {
     fn occluder(&self, obstacle: &Obstacle) -> Occluder {
         let pose = obstacle.pose(self.site.time);
         let place = |point: DVec3| pose.apply(obstacle.pivot, point);
-        // Rounded edges, so that the direction out of the box is defined just inside, too.
+        // With rounded edges the direction out of the box is also defined just inside.
         let round = |half: DVec3| half.min_element().min(ROUND * self.soft);
         let (centre, half, turn, radius) = match obstacle.shape {
             Shape::Floor { .. } | Shape::Plate { .. } => {

@@ -5,7 +5,7 @@ use crate::picture::{Line, LineKind, Mesh};
 use crate::sim::Shape;
 use glam::DVec3;
 
-/// Into how many parts the sides of a triangle are cut to find where it is pierced.
+/// The number of parts into which the sides of a triangle are cut in the search for pierced places.
 const CUT: usize = 10;
 
 impl Staging<'_> {
@@ -36,7 +36,7 @@ impl Staging<'_> {
         }
     }
 
-    /// The lines in a triangle along which something changes its sign.
+    /// The lines in a triangle along which `inside` changes its sign.
     fn pierce(&self, [a, b, c]: [DVec3; 3], inside: impl Fn(DVec3) -> f64, lines: &mut Vec<Line>) {
         let part = |at: usize| at as f64 / CUT as f64;
         let point = |i: usize, j: usize| a + part(i) * (b - a) + part(j) * (c - a);
@@ -61,7 +61,7 @@ impl Staging<'_> {
     }
 }
 
-/// How far a point is from a solid shape before it moves (m); negative inside.
+/// The distance of a point from a solid shape before it moves (m); negative inside.
 pub(super) fn height(shape: &Shape, point: DVec3) -> f64 {
     match *shape {
         Shape::Floor { normal, height } => normal.dot(point) - height,

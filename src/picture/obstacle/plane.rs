@@ -9,24 +9,24 @@ use crate::sim::{Motion, Obstacle, Shape};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// A round outline is nowhere farther from its polygon than this (px).
+/// The largest distance of a round outline from its polygon (px).
 const FLATNESS: f64 = 0.1;
-/// Into how many segments something round is cut, at least and at most.
+/// The least and the largest number of segments of a round outline.
 const SEGMENTS: [f64; 2] = [24.0, 360.0];
 /// Thickness of outlines (px in the reference picture). The shader has the same constant.
 const RIM: f64 = 2.0;
 /// Room for a smooth border on both sides of an outline (px).
 const BORDER: f64 = 0.75;
 
-/// What is needed to draw the obstacles of one panel in the plane.
+/// The data for the obstacles of one panel in the plane.
 pub(in crate::picture) struct Flat<'a> {
     pub(in crate::picture) site: Site<'a>,
-    /// Thickness of lines, in parts of that in the reference picture.
+    /// Thickness of lines, relative to the reference picture.
     pub(in crate::picture) line_scale: f64,
 }
 
 impl Flat<'_> {
-    /// The arrows of plates that move, on the side that is solid.
+    /// The arrows of moving plates, on the solid side.
     pub(in crate::picture) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Mark>) {
         for obstacle in self.site.obstacles {
             let Shape::Plate { point, .. } = obstacle.shape else { continue };
@@ -53,7 +53,7 @@ impl Flat<'_> {
         (Obstacles { solids, ..Obstacles::default() }, Staged { outermost, ..Staged::default() })
     }
 
-    /// An obstacle as far as it lies outside of half-spaces; `None` for these and where nothing is left.
+    /// The part of an obstacle outside of half-spaces; `None` for half-spaces and if nothing is left.
     fn solid(&self, obstacle: &Obstacle, half_spaces: &[HalfSpace]) -> Option<Solid> {
         let pixels = self.site.lens.focal;
         let inward = (RIM * self.line_scale + BORDER).min(0.999 * thinnest(&obstacle.shape) * pixels);
@@ -80,8 +80,8 @@ impl Flat<'_> {
         (!mesh.triangles.is_empty()).then_some(Solid { mesh, colour, rim: Some(rim), near: Vec::new() })
     }
 
-    /// The outline of an obstacle, counter-clockwise, moved inwards by a length (m); `None` for half-spaces and where
-    /// nothing is left. It has as many corners wherever it is moved.
+    /// The outline of an obstacle, counter-clockwise, moved inwards by a length (m); `None` for half-spaces and if
+    /// nothing is left. The number of corners does not depend on the length.
     fn outline(&self, obstacle: &Obstacle, inwards: f64) -> Option<Vec<DVec3>> {
         let (pose, pivot) = (obstacle.pose(self.site.time), obstacle.pivot);
         let place = |point: DVec3| pose.apply(pivot, point);
@@ -119,7 +119,7 @@ impl Flat<'_> {
     }
 }
 
-/// Half the thickness of a solid obstacle where it is thinnest (m).
+/// Half the least thickness of a solid obstacle (m).
 fn thinnest(shape: &Shape) -> f64 {
     match *shape {
         Shape::Floor { .. } | Shape::Plate { .. } => f64::INFINITY,

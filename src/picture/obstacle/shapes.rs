@@ -16,7 +16,7 @@ impl Lathe {
         self.rings.iter().flatten().map(|(at, _)| *at).collect()
     }
 
-    /// The same surface with more rings where two are farther apart than a length (m).
+    /// The surface with more rings where two are farther apart than a length (m).
     pub(super) fn refined(&self, longest: f64) -> Self {
         const MOST: f64 = 64.0;
         let mut rings: Vec<Vec<(DVec3, DVec3)>> = Vec::with_capacity(self.rings.len());
@@ -37,7 +37,7 @@ impl Lathe {
         Self { rings }
     }
 
-    /// Triangles, counter-clockwise from outside, without those that are only a line at a pole.
+    /// Triangles, counter-clockwise from outside, without degenerate ones at the poles.
     pub(super) fn triangles(&self) -> Vec<[u32; 3]> {
         let count = self.rings.first().map_or(0, Vec::len) as u32;
         let last = self.rings.len() as u32;
@@ -98,7 +98,7 @@ pub(super) fn rod([from, to]: [DVec3; 2], radius: f64, segments: usize) -> Lathe
 }
 
 /// The nodes of the faces of a box whose corners have a bit for each axis: low and high side of the first axis, and so
-/// on; counter-clockwise from outside for right-handed axes.
+/// on. Faces are counter-clockwise from outside for right-handed axes.
 pub(super) const FACES: [[usize; 4]; 6] =
     [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
 

@@ -14,18 +14,18 @@ use std::f64::consts::{PI, TAU};
 /// Half the side of a plate, and its thickness (body sizes).
 const PLATE: f64 = 0.85;
 const THICKNESS: f64 = 0.042;
-/// A plate reaches over where the body starts, unless that is farther away than the last of these, and over all places
-/// where nodes come near it at any time in any run, by so much (body sizes).
+/// The margins of a plate around the start of the body, unless the start is farther away than the last one, and around
+/// all places where nodes come near it at any time in any run (body sizes).
 const START_MARGIN: f64 = 0.25;
 const MARGIN: f64 = 0.12;
 const FARTHEST_EDGE: f64 = 4.0;
-/// Opacity of the faces of a plate: those of its two sides, and the small ones around it.
+/// Opacity of the two sides of a plate, and of the small faces around it.
 const PLATE_ALPHA: [f32; 2] = [0.50, 0.80];
-/// How far walls and slopes are drawn around the places where nodes come near them (body sizes).
+/// The extent of walls and slopes around the places where nodes come near them (body sizes).
 const WALL: f64 = 2.1;
 /// Opacity of a wall, seen from its front and from its solid back.
 const WALL_ALPHA: [f32; 2] = [0.75, 0.38];
-/// Above so many slabs they are sorted by distance alone.
+/// More slabs than this are sorted by distance alone.
 const MANY_SLABS: usize = 64;
 
 /// A slab before sorting.
@@ -33,7 +33,7 @@ pub(super) struct Loose {
     slab: Slab,
     /// The plane of its surface (m).
     plane: HalfSpace,
-    /// All its corners (m).
+    /// Its corners (m).
     corners: Vec<DVec3>,
 }
 
@@ -56,7 +56,7 @@ impl Staging<'_> {
         let [first, second] = Plane::new(normal, 0.0).axes;
         let farthest = FARTHEST_EDGE * self.site.extent;
         let (mut low, mut high) = (DVec2::splat(-PLATE * self.site.extent), DVec2::splat(PLATE * self.site.extent));
-        // The box around the corners of a box of the plate as it was at the start.
+        // The box, on the plate at the start, around the corners of a box.
         let around = |[from, to]: [DVec3; 2], before: &Pose| {
             let corners = corners(from.midpoint(to), DVec3::AXES, 0.5 * (to - from));
             let places = corners.map(|corner| {
@@ -66,14 +66,14 @@ impl Staging<'_> {
             let low = places.iter().copied().fold(DVec2::INFINITY, DVec2::min);
             [low, places.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max)]
         };
-        // It covers the place where the body starts,
+        // The plate covers the start of the body,
         let [from, to] = around(self.start, &obstacle.pose(0.0));
         if from.max_element() < farthest && to.min_element() > -farthest {
             let margin = START_MARGIN * self.site.extent;
             low = low.min(from - margin).max(DVec2::splat(-farthest));
             high = high.max(to + margin).min(DVec2::splat(farthest));
         }
-        // and where nodes come near it.
+        // and the places where nodes come near it.
         if let Some(reached) = self.reach.of(at) {
             let [from, to] = around(reached, &Pose::NONE);
             let margin = MARGIN * self.site.extent;
@@ -84,7 +84,7 @@ impl Staging<'_> {
         (pose.apply(pivot, pivot + middle.x * first + middle.y * second), 0.5 * (high - low))
     }
 
-    /// The arrows of plates that move.
+    /// The arrows of moving plates.
     pub(in crate::picture) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Mark>) {
         for (at, obstacle) in self.site.obstacles.iter().enumerate() {
             let Shape::Plate { normal, .. } = obstacle.shape else { continue };
@@ -95,19 +95,19 @@ impl Staging<'_> {
             let out = pose.rotation * normal;
             let (middle, half) = self.span(at, &pose, normal);
             let going = self.site.going(obstacle, middle, half.max_element());
-            // Always on the side that is not the body's.
+            // The arrow is on the side without the body.
             let arriving = going.velocity.dot(out) > 0.0;
             pointers.draw(middle - THICKNESS * self.site.extent * out, going, arriving, 3.0, marks);
         }
     }
 
-    /// A plate: a thin box that ends where floors begin.
+    /// A plate: a thin box that ends at floors.
     pub(super) fn plate(&self, at: usize, pose: &Pose, normal: DVec3, floors: &[HalfSpace]) -> Option<Loose> {
         let (middle, half) = self.span(at, pose, normal);
         let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
         let out = pose.rotation * normal;
         let thickness = THICKNESS * self.site.extent;
-        // Right-handed, so that faces are turned as those of a box.
+        // The axes are right-handed, like those of a box.
         let axes = [second, first, out];
         let behind = middle - 0.5 * thickness * out;
         let corners = corners(behind, axes, DVec3::new(half.y, half.x, 0.5 * thickness));
@@ -120,14 +120,14 @@ impl Staging<'_> {
             seen[face] = self.site.lens.sees(polygon[0], normal);
             let polygon = clipped_polygon(&polygon, floors);
             if seen[face] && polygon.len() > 2 {
-                // Thin faces around it stand out, as the edges of glass do.
+                // The thin faces around it stand out, like the edges of glass.
                 let alpha = PLATE_ALPHA[usize::from(face < 4)];
                 let colour = if face < 4 { self.site.palette.plate_side } else { self.site.palette.plate };
                 let corner = |&at: &DVec3| PaneCorner { position: self.site.relative(at), ..PaneCorner::default() };
                 slab.panes.push(Pane { corners: polygon.iter().map(corner).collect(), colour, alpha, grid: false });
             }
             if seen[face] {
-                // Where it stands on a floor it has an edge, too.
+                // At a floor it has an edge, too.
                 let on = |point: DVec3, (out, height): HalfSpace| {
                     (out.dot(point) - height).abs() < 1e-9 * (self.site.extent + height.abs())
                 };
@@ -146,8 +146,8 @@ impl Staging<'_> {
         (!slab.panes.is_empty()).then(|| Loose { slab, plane: (out, out.dot(middle)), corners: kept })
     }
 
-    /// A floor that is not the ground, with a grid: a piece of it around all places where nodes come near it at any time in
-    /// any run, or where the body starts if none does.
+    /// A floor that is not the ground, with a grid: the part around all places where nodes come near it at any time in
+    /// any run, or around the start of the body if none does.
     pub(super) fn wall(&self, at: usize, normal: DVec3, floor: HalfSpace, others: &[HalfSpace]) -> Option<Loose> {
         const CORNERS: usize = 16;
         let obstacle = &self.site.obstacles[at];
@@ -156,7 +156,7 @@ impl Staging<'_> {
         let [from, to] = self.reach.of(at).unwrap_or([self.start[0].midpoint(self.start[1]); 2]);
         let middle = pose.apply(obstacle.pivot, from.midpoint(to));
         let mut middle = middle + (height - out.dot(middle)) * out;
-        // Along the slope up to where it comes out of the others.
+        // Along the slope to the place where it leaves the others.
         for &(other, level) in others {
             let depth = level - other.dot(middle);
             let along = other - other.dot(out) * out;
@@ -166,7 +166,7 @@ impl Staging<'_> {
         }
         let axes = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
         let reach = WALL * self.site.extent + 0.5 * from.distance(to);
-        // Circumscribed: the circle in which it fades lies within.
+        // The polygon is circumscribed about the circle in which it fades.
         let around = (0..CORNERS).map(|at| {
             let (sine, cosine) = libm::sincos(TAU * at as f64 / CORNERS as f64);
             middle + reach / libm::cos(PI / CORNERS as f64) * (cosine * axes[0] + sine * axes[1])
@@ -178,7 +178,7 @@ impl Staging<'_> {
         let seen = self.site.lens.sees(middle, out);
         let anchor = pose.apply(obstacle.pivot, DVec3::ZERO);
         let shift = axes.map(|axis| {
-            // The grid's lines go through the origin of the world, or where the floor has brought it.
+            // The grid's lines go through the origin of the world, moved with the floor.
             ((middle - anchor) / self.site.side).dot(axis).rem_euclid(self.cell) / self.cell
         });
         let corner = |&at: &DVec3| {
@@ -210,7 +210,7 @@ impl Staging<'_> {
         if slabs.len() > MANY_SLABS {
             return slabs.into_iter().map(|loose| loose.slab).collect();
         }
-        // A slab is drawn when none of the rest lies behind it; where slabs cross, the farthest goes first.
+        // A slab is drawn when none of the others lies behind it. If slabs cross, the farthest is drawn first.
         let mut ordered = Vec::with_capacity(slabs.len());
         while !slabs.is_empty() {
             let covers_none = |at: &usize| {

@@ -9,20 +9,19 @@ use crate::picture::{Line, LineKind, Mesh, Solid, Vertex};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A round outline is nowhere farther from its polygon than this (px).
+/// The largest distance of a round outline from its polygon (px).
 const FLATNESS: f64 = 0.12;
-/// Into how many segments something round is cut: at least and at most, and where it only throws a shadow.
+/// The least and the largest number of segments of a round outline, and their number for shadows only.
 const SEGMENTS: [usize; 2] = [16, 128];
 const SHADOW_SEGMENTS: usize = 20;
-/// Where the body is near, surfaces are cut into cells of this size (soft units), of which a side of a box has so many at
-/// most.
+/// The size of cells of surfaces near the body (soft units), and their most along a side of a box.
 const CELL: f64 = 0.3;
 const MOST_CELLS: f64 = 64.0;
 /// Balls larger than this (body sizes) are cut finely where the body is, and coarsely elsewhere.
 const LARGE_BALL: f64 = 3.0;
 
 impl Staging<'_> {
-    /// Draws something round of a radius around a middle (m), whose shape can be had in any number of segments.
+    /// Draws a round obstacle of a radius around a middle (m), whose shape `lathe` makes with any number of segments.
     pub(super) fn round(
         &self,
         shape: impl Fn(usize) -> Lathe,
@@ -61,7 +60,7 @@ impl Staging<'_> {
             let profile = (0..=rings).map(|ring| (PI * ring as f64 / rings as f64 - FRAC_PI_2, 0.0));
             return lathe(centre, DVec3::Y, radius, profile, segments);
         }
-        // Rings ever closer together towards the body.
+        // The rings become closer towards the body.
         let axis = (self.site.origin - centre).try_normalize().unwrap_or(DVec3::Y);
         let growth = 1.2 * libm::log(1.0 + radius / self.site.extent);
         let profile = (0..=rings).rev().map(|ring| {
@@ -88,7 +87,7 @@ impl Staging<'_> {
             let normal = axes[face / 2] * if face % 2 == 0 { -1.0 } else { 1.0 };
             let base = mesh.vertices.len() as u32;
             let polygon = nodes.map(|node| corners[node]);
-            // Where the body occludes its light it is cut into cells.
+            // Faces are cut into cells where the body occludes their light.
             let cells = |one: usize, other: usize| match near {
                 Some(_) => (polygon[one].distance(polygon[other]) / (CELL * self.soft)).ceil().clamp(1.0, MOST_CELLS),
                 None => 1.0,
@@ -130,7 +129,7 @@ impl Staging<'_> {
         solids.push(Solid { mesh, colour: self.site.palette.obstacle, rim: None, near: light });
     }
 
-    /// The mesh of something round.
+    /// The mesh of a round obstacle.
     fn turned(&self, lathe: &Lathe) -> Mesh {
         let vertex = |&(at, normal): &(DVec3, DVec3)| Vertex {
             position: self.site.relative(at),
@@ -144,7 +143,7 @@ impl Staging<'_> {
         }
     }
 
-    /// Where a round surface turns away from the viewer, and where it goes through the ground.
+    /// The lines where a round surface turns away from the viewer, and where it meets the ground.
     fn outline(&self, lathe: &Lathe, lines: &mut Vec<Line>) {
         let count = lathe.rings.first().map_or(0, Vec::len);
         let at = |ring: usize, segment: usize| lathe.rings[ring][segment % count].0;
@@ -186,7 +185,7 @@ impl Staging<'_> {
         }
     }
 
-    /// The line in which a polygon goes through the ground.
+    /// The line in which a polygon meets the ground.
     fn ground_line(&self, polygon: &[DVec3], lines: &mut Vec<Line>) {
         let Some((normal, height)) = self.ground else { return };
         let above = |point: DVec3| normal.dot(point) - height;

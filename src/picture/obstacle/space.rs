@@ -9,7 +9,7 @@ use crate::runner::history::Reach;
 use crate::sim::Shape;
 use glam::DVec3;
 
-/// What is needed to draw the obstacles of one panel in space.
+/// The data for the obstacles of one panel in space.
 pub(in crate::picture) struct Staging<'a> {
     pub(in crate::picture) site: Site<'a>,
     /// Distance of the grid's lines (sides).
@@ -24,7 +24,7 @@ pub(in crate::picture) struct Staging<'a> {
     pub(in crate::picture) soft: f64,
     /// The box around the nodes at the start (m).
     pub(in crate::picture) start: [DVec3; 2],
-    /// Where nodes of all runs come near plates and walls at any time.
+    /// The places where nodes of all runs come near plates and walls at any time.
     pub(in crate::picture) reach: &'a Reach,
 }
 
