@@ -62,11 +62,6 @@
 //!
 //! `render`, on by default, is everything that draws. Without it the crate simulates, and needs no graphics library.
 
-#![cfg_attr(
-    not(feature = "render"),
-    allow(dead_code, unused_imports, reason = "many keys of a scene are for pictures, and are read without them, too")
-)]
-
 /// The vectors in which positions are given, of the version that this crate uses.
 pub use glam;
 /// The simulation.

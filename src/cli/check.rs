@@ -9,7 +9,6 @@ use super::scenes::{status_of, worse};
 use crate::reading::Mistake;
 #[cfg(feature = "render")]
 use crate::runner::Runner;
-use crate::runner::history::History;
 use crate::scene::Scene;
 use clap::Args;
 use serde_json::{Value, json};
@@ -130,7 +129,7 @@ fn cut(scene: &Scene) -> Option<Mistake> {
     }
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let mut runner = Runner::new(scene, &runs).with_diagnostics(&scene.frame_diagnostics());
-    let picture = crate::picture::Composer::new(scene, &History::default()).compose(&runner.frame(0));
+    let picture = crate::picture::Composer::new(scene, &Default::default()).compose(&runner.frame(0));
     picture.panels.iter().any(|panel| panel.is_cut).then(|| Mistake {
         line: 0,
         column: 0,

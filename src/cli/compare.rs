@@ -173,7 +173,7 @@ impl From<ComparisonError> for Failure {
 impl From<AcceptError> for Failure {
     fn from(error: AcceptError) -> Self {
         match error {
-            AcceptError::Undrawn => Self::difference(error.to_string()),
+            AcceptError::Undrawn => Self::new(Status::Difference, &error),
             AcceptError::Write(error) => error.into(),
         }
     }

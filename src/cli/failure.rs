@@ -3,7 +3,6 @@
 #[cfg(feature = "render")]
 use crate::gpu::InitError;
 use crate::output::OutputError;
-use crate::reading::beside::similar;
 #[cfg(feature = "render")]
 use crate::render::RenderError;
 #[cfg(feature = "render")]
@@ -45,11 +44,6 @@ impl Failure {
     /// Wrong usage, or mistakes in a scene.
     pub(super) fn usage(message: impl Into<String>) -> Self {
         Self { status: Status::Usage, message: Some(message.into()) }
-    }
-
-    /// A check found a difference.
-    pub(super) fn difference(message: impl Into<String>) -> Self {
-        Self { status: Status::Difference, message: Some(message.into()) }
     }
 
     /// An error with its causes.
@@ -109,15 +103,6 @@ impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
         Self::new(Status::Adapter, &error)
     }
-}
-
-/// Why a file on the command line, which should have this ending, cannot be read.
-pub(super) fn missing(file: &Path, ending: &str, error: io::Error) -> Failure {
-    if error.kind() != io::ErrorKind::NotFound {
-        return OutputError::reading(file)(error).into();
-    }
-    let near = similar(file, &[ending]).map_or_else(String::new, |name| format!("; did you mean {name}?"));
-    Failure::usage(format!("{}: there is no such file{near}", file.display()))
 }
 
 /// An error and its causes on one line.

@@ -12,7 +12,8 @@ use crate::picture::compose_figure;
 use crate::reading::setting::Setting;
 use crate::reading::words::nearest;
 use crate::runner::moments::{Forces, Moments, Taking};
-use crate::scene::figure::{Content, Figure, NAMES};
+use crate::scene::figure::built_in::NAMES;
+use crate::scene::figure::{Content, Figure};
 use crate::scene::{Limits, Scene, SceneError};
 use crate::sim::{self, Chosen, Reach, RunFrame, Snapshot};
 use clap::{Args, ValueHint};
@@ -253,14 +254,15 @@ impl FigureCommand {
     fn take(&self, figure: &Figure) -> Option<Moments> {
         let mut taking = Taking::new(figure, Reach::Summaries);
         let slice = figure.scenes().iter().map(|scene| record::slice(&scene.body)).min().unwrap_or(1);
-        let bar = self.printing.progress(&figure.name, taking.steps()[1]);
-        let mut is_there = false;
-        while !is_there && !interrupt::requested() {
-            is_there = taking.advance(slice);
-            bar.set_position(taking.steps()[0]);
+        let bar = self.printing.progress(&figure.name, 0);
+        while !interrupt::requested()
+            && let Some([done, all]) = taking.advance(slice)
+        {
+            bar.set_length(all);
+            bar.set_position(done);
         }
         bar.finish_and_clear();
-        (is_there && !interrupt::requested()).then(|| taking.finish())
+        (!interrupt::requested()).then(|| taking.finish())
     }
 
     /// Lists the figures that were made.

@@ -11,7 +11,6 @@ use crate::output::{
 };
 use crate::reading::setting::Setting;
 use crate::runner::cause::Cause;
-use crate::runner::history::History;
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::Scene;
 use crate::sim::{self, Body, Frame, State};
@@ -110,46 +109,6 @@ fn record(
         summary.outcome = Outcome::Failed;
     }
     result
-}
-
-/// One frame of some runs of a scene, and the time series of the scene if its pictures need them; `None` if the user
-/// interrupts the command. States wait in `folder`.
-#[cfg(feature = "render")]
-pub(super) fn one_frame(
-    scene: &Scene,
-    runs: &[usize],
-    frame: u64,
-    pool: &ThreadPool,
-    options: &RunOptions,
-    folder: &Path,
-) -> Result<Option<(Frame, Option<History>)>, Failure> {
-    let wanted = scene.time_series();
-    let waiting = wanted.map(|_| tempfile::tempfile_in(folder)).transpose().map_err(OutputError::writing(folder))?;
-    let mut frames = pool.install(|| {
-        let runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
-        let runner = match wanted {
-            Some(wanted) => runner.with_time_series(wanted),
-            None => runner,
-        };
-        Frames::new(runner, &[frame], waiting)
-    });
-    let bar = options.printing.progress(&scene.title, frames.steps()[1]);
-    let (slice, mut history) = (slice(&scene.body), None);
-    while !interrupt::requested() {
-        let next = pool.install(|| frames.next(slice)).map_err(OutputError::writing(folder))?;
-        bar.set_position(frames.steps()[0]);
-        match next {
-            Next::Working => {}
-            Next::TimeSeries(found) => history = Some(found),
-            Next::Frame(frame) => {
-                bar.finish_and_clear();
-                return Ok(Some((frame, history)));
-            }
-            Next::Done => break,
-        }
-    }
-    bar.finish_and_clear();
-    Ok(None)
 }
 
 /// Adds the keys of one document to another.

@@ -2,23 +2,27 @@
 
 use super::console;
 use super::drawing::{Device, Drawing};
-use super::failure::{Failure, Status, missing};
+use super::failure::{Failure, Status};
 use super::film::replaceable;
 use super::frames::Moments;
 use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, ThemeOption, size};
 use super::record::{self, Begin};
 use super::scenes::{Wish, nearest};
-use super::still::{Format as FileFormat, NO_ADAPTER, Still, replaceable as replaceable_still, source_of, too_small};
+use super::still::{
+    Format as FileFormat, NO_ADAPTER, Still, one_frame, replaceable as replaceable_still, source_of, too_small,
+};
 use crate::animation::Format;
 use crate::look::Ghost;
 use crate::output::shell;
 use crate::output::{AtomicFile, FolderLock, OutputError, Shard, StoredStates, Tags, folder_of};
 use crate::picture::Composer;
+use crate::reading::beside::similar;
 use crate::reading::words::short;
 use crate::scene::Scene;
 use clap::{Args, ValueHint};
 use std::ffi::OsString;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -181,7 +185,7 @@ impl Render {
         let mut file = AtomicFile::create(path)?;
         interrupt::listen();
         let pool = record::pool(self.options.threads.count())?;
-        let Some((frame, history)) = record::one_frame(scene, &runs, frame, &pool, &self.options, folder)? else {
+        let Some((frame, history)) = one_frame(scene, &runs, frame, &pool, &self.options, folder)? else {
             return Ok(Status::Interrupted);
         };
         let picture = Composer::new(scene, &history.unwrap_or_default()).compose(&frame);
@@ -238,4 +242,13 @@ fn check_ghost(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
+}
+
+/// Why a file on the command line, which should have this ending, cannot be read.
+fn missing(file: &Path, ending: &str, error: io::Error) -> Failure {
+    if error.kind() != io::ErrorKind::NotFound {
+        return OutputError::reading(file)(error).into();
+    }
+    let near = similar(file, &[ending]).map_or_else(String::new, |name| format!("; did you mean {name}?"));
+    Failure::usage(format!("{}: there is no such file{near}", file.display()))
 }

@@ -26,7 +26,7 @@ pub(super) trait Pictures {
 /// The results of one scene, frame by frame.
 pub(super) struct Results<'a> {
     /// `None` in a shard.
-    pub(super) diagnostics: Option<DiagnosticsWriter>,
+    pub(super) diagnostics: Option<DiagnosticsWriter<'a>>,
     pub(super) states: Option<StatesWriter>,
     pub(super) pictures: Option<Box<dyn Pictures + 'a>>,
     /// Whether the user has read that no checkpoint can be written, or wants no warnings.

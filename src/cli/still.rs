@@ -1,17 +1,19 @@
 //! Files of one picture: PNG, or SVG and PDF for print.
 
 use super::failure::Failure;
-use super::film;
+use super::options::RunOptions;
+use super::{film, interrupt, record};
 use crate::gpu::Gpu;
 use crate::look::Print;
-use crate::output::{Compression, encode_print, read_tags};
+use crate::output::{Compression, OutputError, encode_print, read_tags};
 use crate::picture::{Composer, Picture, type_left_out};
 use crate::render::{RenderError, Renderer};
-use crate::runner::Runner;
 use crate::runner::history::History;
+use crate::runner::{Frames, Next, Runner};
 use crate::scene::Scene;
-use crate::sim::Dimension;
+use crate::sim::{Dimension, Frame};
 use crate::vector::{self, Page};
+use rayon::ThreadPool;
 use std::path::Path;
 
 /// The format of a file of one picture.
@@ -50,6 +52,45 @@ impl Format {
     pub(super) fn needs_device<'a>(self, scenes: impl IntoIterator<Item = &'a Scene>) -> bool {
         self == Self::Png || scenes.into_iter().any(|scene| scene.body.dimension == Dimension::Space)
     }
+}
+
+/// One frame of some runs of a scene, and the time series of the scene if its pictures need them; `None` if the user
+/// interrupts the command. States wait in `folder`.
+pub(super) fn one_frame(
+    scene: &Scene,
+    runs: &[usize],
+    frame: u64,
+    pool: &ThreadPool,
+    options: &RunOptions,
+    folder: &Path,
+) -> Result<Option<(Frame, Option<History>)>, Failure> {
+    let wanted = scene.time_series();
+    let waiting = wanted.map(|_| tempfile::tempfile_in(folder)).transpose().map_err(OutputError::writing(folder))?;
+    let mut frames = pool.install(|| {
+        let runner = Runner::new(scene, runs).with_diagnostics(&scene.frame_diagnostics());
+        let runner = match wanted {
+            Some(wanted) => runner.with_time_series(wanted),
+            None => runner,
+        };
+        Frames::new(runner, &[frame], waiting)
+    });
+    let bar = options.printing.progress(&scene.title, frames.steps()[1]);
+    let (slice, mut history) = (record::slice(&scene.body), None);
+    while !interrupt::requested() {
+        let next = pool.install(|| frames.next(slice)).map_err(OutputError::writing(folder))?;
+        bar.set_position(frames.steps()[0]);
+        match next {
+            Next::Working => {}
+            Next::TimeSeries(found) => history = Some(found),
+            Next::Frame(frame) => {
+                bar.finish_and_clear();
+                return Ok(Some((frame, history)));
+            }
+            Next::Done => break,
+        }
+    }
+    bar.finish_and_clear();
+    Ok(None)
 }
 
 /// The name of the adapter in files that are drawn without one.

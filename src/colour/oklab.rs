@@ -54,6 +54,6 @@ mod tests {
         for colour in [[0; 3], [255; 3], [0xe2, 0x66, 0x1c], [0x93, 0xa5, 0xba], [1, 2, 3], [0, 0, 255]] {
             assert_eq!(from_oklab(oklab(colour)), colour);
         }
-        assert!((oklab([255; 3]).0[0] - 1.0).abs() < 1e-6);
+        assert!((oklab([255; 3]).distance(oklab([0; 3])) - 1.0).abs() < 1e-6);
     }
 }

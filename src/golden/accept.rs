@@ -72,7 +72,7 @@ impl Comparison {
         let mut write = |path: &Path, bytes: &[u8]| -> Result<(), OutputError> {
             let mut file = AtomicFile::create(path)?;
             file.append(bytes)?;
-            staged.push(file);
+            staged.push((path.to_owned(), file));
             Ok(())
         };
         let mut gone = Vec::new();
@@ -88,8 +88,8 @@ impl Comparison {
             write(&path, text.as_bytes())?;
         }
         let mut told: Vec<String> = self.moved.iter().map(|moved| format!("accepted: state moved: {moved}")).collect();
-        for file in staged {
-            told.push(format!("accepted {}", file.path().display()));
+        for (path, file) in staged {
+            told.push(format!("accepted {}", path.display()));
             file.commit()?;
         }
         for path in gone {

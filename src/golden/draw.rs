@@ -1,7 +1,7 @@
 //! Simulates and draws a scene or figure, for comparing it with its golden or for making one.
 
 use super::folder::{Drawn, Golden};
-use super::record::{Record, frames_with_digests, frames_with_positions};
+use super::record::{DIGITS, Record};
 use super::said;
 use super::states::{State, States};
 use crate::gpu::{AdapterChoice, Gpu, InitError};
@@ -17,6 +17,10 @@ use crate::sim::{Divergence, Reach, Snapshot, Status};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+/// Spaces between the frames whose positions are recorded.
+const SPACES: u64 = 10;
+/// Approximate maximum size of the digests of a golden (bytes).
+const ROOM_FOR_DIGESTS: usize = 24 << 10;
 /// Width of new goldens (px), unless their scene is smaller: small pictures detect as much and keep repositories small.
 const WIDTH: u32 = 320;
 /// Number of pictures in new goldens, unless there are fewer frames.
@@ -160,7 +164,7 @@ fn draw_figure(
     let mut figure = figure.clone();
     figure.size = size(figure.size, golden);
     let mut taking = Taking::new(&figure, Reach::Summaries);
-    while !taking.advance(SLICE) {
+    while taking.advance(SLICE).is_some() {
         if !go_on() {
             return Ok(None);
         }
@@ -198,6 +202,20 @@ fn size([width, height]: [u32; 2], golden: &Golden) -> [u32; 2] {
         let small = WIDTH.min(width);
         [small, (u64::from(height) * u64::from(small) / u64::from(width.max(1))).max(16) as u32]
     })
+}
+
+/// The frames of a scene whose digests a record has: as many as fit, and all of `others`.
+fn frames_with_digests(last: u64, runs: usize, others: &BTreeSet<u64>) -> BTreeSet<u64> {
+    let row = 5 + (DIGITS + 1) * runs;
+    // With powers of two, a scene that becomes longer still has frames in common with its golden.
+    let stride = ((last as usize + 1) * row).div_ceil(ROOM_FOR_DIGESTS).next_power_of_two();
+    (0..=last).step_by(stride).chain(others.iter().copied()).chain(frames_with_positions(last)).collect()
+}
+
+/// The frames of a scene whose positions a record has, evenly spaced from the first to the last and independent of the
+/// drawn frames.
+fn frames_with_positions(last: u64) -> BTreeSet<u64> {
+    (0..=SPACES).map(|at| (u128::from(last) * u128::from(at) / u128::from(SPACES)) as u64).collect()
 }
 
 #[cfg(test)]
@@ -279,5 +297,17 @@ mod tests {
             let runs: Vec<_> = found.moved.iter().map(|moved| (&moved.run, moved.first)).collect();
             assert_eq!(runs, [(&scene.runs[run].name, Some(0))], "{}", path.display());
         }
+    }
+
+    /// For any drawn frames, positions of at least ten frames and of both ends are recorded.
+    #[test]
+    fn positions_are_spread_over_the_scene() {
+        assert_eq!(frames_with_positions(120), (0..=120).step_by(12).collect());
+        assert_eq!(frames_with_positions(4), (0..=4).collect());
+        assert_eq!(frames_with_positions(0), [0].into());
+        let drawn = [100, 200].into();
+        assert_eq!(frames_with_digests(300, 2, &drawn).len(), 301, "each frame of a usual scene");
+        let long = frames_with_digests(1_000_000, 3, &drawn);
+        assert!(long.len() < 1000 && drawn.is_subset(&long) && frames_with_positions(1_000_000).is_subset(&long));
     }
 }

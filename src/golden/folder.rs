@@ -7,6 +7,9 @@ use crate::output::{Tags, read_tags};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+/// The largest accepted record (bytes).
+const LARGEST_RECORD: u64 = 4 << 20;
+
 /// A golden, or the folder in which one can be made.
 #[derive(Clone, Debug)]
 pub(crate) struct Golden {
@@ -33,7 +36,7 @@ impl Golden {
             return told("is not a golden; expected a folder with golden.toml, or the name of a new one".to_owned());
         }
         golden.pictures = pictures_in(folder)?;
-        match Record::read(folder) {
+        match record_of(folder) {
             Ok(record) => golden.record = record,
             Err(what) => golden.damage = Some(what),
         }
@@ -109,4 +112,22 @@ impl Drawn {
         let pictures = files.into_iter().map(|(name, bytes)| (name, Source::Memory(bytes))).collect();
         Self { origin: PathBuf::new(), record, pictures: is_drawn.then_some(pictures), notes }
     }
+}
+
+/// Reads the record of a golden's folder; `None` if there is none.
+///
+/// # Errors
+/// Why it cannot be read.
+fn record_of(folder: &Path) -> Result<Option<Record>, String> {
+    let path = folder.join(RECORD_FILE);
+    let told = |error: std::io::Error| format!("it cannot be read: {error}");
+    let found = match path.symlink_metadata() {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        _ => path.metadata().map_err(told)?,
+    };
+    if !found.is_file() || found.len() > LARGEST_RECORD {
+        return Err("it is not a file, or far too large: a record has some tens of kilobytes".to_owned());
+    }
+    let text = String::from_utf8(std::fs::read(&path).map_err(told)?).map_err(|_| "it is not text".to_owned())?;
+    Record::parse(&text).map(Some)
 }

@@ -10,21 +10,14 @@ use glam::DVec3;
 use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::path::Path;
 
 /// The name of the file in a golden's folder.
 pub(crate) const RECORD_FILE: &str = "golden.toml";
-
-/// The largest accepted file (bytes).
-const LARGEST_FILE: u64 = 4 << 20;
 /// The version of its format.
 const FORMAT: u32 = 2;
 /// Number of digits of each digest: 48 bits.
-const DIGITS: usize = 12;
-/// Spaces between the frames whose positions are recorded.
-const SPACES: u64 = 10;
-/// Approximate maximum size of the digests and of the positions of a golden (bytes).
-const ROOM_FOR_DIGESTS: usize = 24 << 10;
+pub(super) const DIGITS: usize = 12;
+/// Approximate maximum size of the positions of a golden (bytes).
 const ROOM_FOR_POSITIONS: usize = 12 << 10;
 /// Approximate size of a coordinate (bytes).
 const COORDINATE: usize = 7;
@@ -87,24 +80,6 @@ impl File {
 }
 
 impl Record {
-    /// Reads the record of a golden's folder; `None` if there is none.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
-    pub(super) fn read(folder: &Path) -> Result<Option<Self>, String> {
-        let path = folder.join(RECORD_FILE);
-        let told = |error: std::io::Error| format!("it cannot be read: {error}");
-        let found = match path.symlink_metadata() {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            _ => path.metadata().map_err(told)?,
-        };
-        if !found.is_file() || found.len() > LARGEST_FILE {
-            return Err("it is not a file, or far too large: a record has some tens of kilobytes".to_owned());
-        }
-        let text = String::from_utf8(std::fs::read(&path).map_err(told)?).map_err(|_| "it is not text".to_owned())?;
-        Self::parse(&text).map(Some)
-    }
-
     /// Reads the text of a record.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let file: File = toml::from_str(text).map_err(|error| {
@@ -254,20 +229,6 @@ fn quantum(states: &States) -> f64 {
     format!("1e{power}").parse().expect("a power of ten")
 }
 
-/// The frames of a scene whose digests a record has: as many as fit, and all of `others`.
-pub(super) fn frames_with_digests(last: u64, runs: usize, others: &BTreeSet<u64>) -> BTreeSet<u64> {
-    let row = 5 + (DIGITS + 1) * runs;
-    // With powers of two, a scene that becomes longer still has frames in common with its golden.
-    let stride = ((last as usize + 1) * row).div_ceil(ROOM_FOR_DIGESTS).next_power_of_two();
-    (0..=last).step_by(stride).chain(others.iter().copied()).chain(frames_with_positions(last)).collect()
-}
-
-/// The frames of a scene whose positions a record has, evenly spaced from the first to the last and independent of the
-/// drawn frames.
-pub(super) fn frames_with_positions(last: u64) -> BTreeSet<u64> {
-    (0..=SPACES).map(|at| (u128::from(last) * u128::from(at) / u128::from(SPACES)) as u64).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -339,7 +300,7 @@ mod tests {
         large.states = States::default();
         let run = large.states.run_mut("run");
         run.nodes = 100_000;
-        for frame in frames_with_positions(1_000_000) {
+        for frame in (0..=10).map(|at| 100_000 * at) {
             let positions = Some((0..100_000).map(|node| DVec3::splat(f64::from(node))).collect());
             run.states.insert(frame, State { digest: "0123456789abcdef".into(), positions });
         }
@@ -349,17 +310,5 @@ mod tests {
         assert!(read.states.runs[0].states.values().all(|state| state.positions.is_some()));
         let none = Record::parse(&text.replace(" 0123456789ab", "")).unwrap_err();
         assert!(none.contains("`digests`"), "{none}");
-    }
-
-    /// For any drawn frames, positions of at least ten frames and of both ends are recorded.
-    #[test]
-    fn positions_are_spread_over_the_scene() {
-        assert_eq!(frames_with_positions(120), (0..=120).step_by(12).collect());
-        assert_eq!(frames_with_positions(4), (0..=4).collect());
-        assert_eq!(frames_with_positions(0), [0].into());
-        let drawn = [100, 200].into();
-        assert_eq!(frames_with_digests(300, 2, &drawn).len(), 301, "each frame of a usual scene");
-        let long = frames_with_digests(1_000_000, 3, &drawn);
-        assert!(long.len() < 1000 && drawn.is_subset(&long) && frames_with_positions(1_000_000).is_subset(&long));
     }
 }

@@ -5,7 +5,6 @@
 
 use crate::golden::{Pixels, is_record};
 use crate::output::{Access, Folder, Plan, StoredStates, Whose, read_tags};
-use crate::runner::history::History;
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene};
@@ -70,7 +69,7 @@ fn begin<E>(scene: Result<Scene, E>) -> bool {
     let Ok(scene) = scene else { return false };
     let frame = Runner::new(&scene, &(0..scene.runs.len()).collect::<Vec<_>>()).frame(0);
     #[cfg(feature = "render")]
-    crate::picture::Composer::new(&scene, &History::default()).compose(&frame);
+    crate::picture::Composer::new(&scene, &Default::default()).compose(&frame);
     drop(frame);
     for run in 0..scene.runs.len() {
         let mut world = scene.world(run);

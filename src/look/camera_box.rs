@@ -29,10 +29,4 @@ impl CameraBox {
         }
         (centre.is_finite() && low.is_finite() && high.is_finite()).then_some(Self { centre, corners: [low, high] })
     }
-
-    /// The larger of its width and height (m).
-    pub(crate) fn size(&self) -> f64 {
-        let [low, high] = self.corners;
-        (high - low).truncate().max_element()
-    }
 }

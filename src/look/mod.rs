@@ -4,11 +4,14 @@
 mod camera_box;
 mod compared;
 mod contrast;
+#[cfg(feature = "render")]
+mod drawn;
 pub(crate) mod file;
 pub(crate) mod font;
 mod framing;
 mod palette;
 pub(crate) mod print;
+#[cfg(feature = "render")]
 pub(crate) mod ramp;
 mod reach;
 mod resolve;
@@ -21,16 +24,13 @@ mod view;
 pub use crate::colour::Colour;
 pub(crate) use camera_box::CameraBox;
 pub(crate) use contrast::check_runs;
-pub(crate) use palette::Palette;
 pub use palette::Theme;
 pub use print::Print;
-pub(crate) use ramp::SHADES;
 pub(crate) use resolve::{TypedView, colour};
-pub(crate) use run_lines::LineStyle;
 pub(crate) use subject::Subject;
-#[cfg(feature = "render")]
-pub(crate) use view::axes;
 pub use view::{
     Camera, ColourMap, ColourScale, Colours, EdgeStyle, FloorStyle, FontFiles, Ghost, Labels, Style, Traced, View,
     Visible,
 };
+#[cfg(feature = "render")]
+pub(crate) use {drawn::LineStyle, palette::Palette, ramp::SHADES, view::axes};

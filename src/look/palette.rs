@@ -1,6 +1,6 @@
 //! The colours of a picture, and the two themes. Vermilion means "turned over" and nothing else.
 
-use crate::colour::{Colour, LEAST_CONTRAST, Oklab, contrast, from_oklab, mixed, oklab, readable};
+use crate::colour::{Colour, contrast};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -82,9 +82,6 @@ pub(crate) struct Palette {
     pub runs: [Colour; 8],
 }
 
-/// The share of the background in the greys of a diverged run.
-const GREYED: f64 = 0.45;
-
 impl Palette {
     /// The colours of a theme.
     pub(crate) fn of(theme: Theme) -> Self {
@@ -94,38 +91,9 @@ impl Palette {
         }
     }
 
-    /// The colour of signs on sound elements in the plane: that of their edges, a third of the way to the elements'
-    /// own.
-    pub(crate) fn sign(&self) -> Colour {
-        std::array::from_fn(|at| ((2 * u16::from(self.edge[at]) + u16::from(self.sound_flat[at])) / 3) as u8)
-    }
-
-    /// The tint of ghosts of shapes on the background.
-    pub(crate) fn edge_on_ground(&self) -> Colour {
-        if self.is_made_for_light() { self.edge } else { self.outline }
-    }
-
-    /// The palette with the colours of bodies and their lines greyed, for a diverged run.
-    pub(crate) fn greyed(&self) -> Self {
-        let grey = |colour| {
-            let grey = from_oklab(Oklab([oklab(colour).0[0], 0.0, 0.0]));
-            mixed(grey, self.background, GREYED)
-        };
-        let Self { sound, sound_flat, node, alarm, alarm_line, edge, outline, spring, spring_on_body, .. } = *self;
-        let [sound, sound_flat, node, alarm] = [sound, sound_flat, node, alarm].map(grey);
-        let [alarm_line, edge, outline] = [alarm_line, edge, outline].map(grey);
-        let [spring, spring_on_body] = [spring, spring_on_body].map(grey);
-        Self { sound, sound_flat, node, alarm, alarm_line, edge, outline, spring, spring_on_body, ..*self }
-    }
-
     /// Whether it is made for light ground, such as paper.
     pub(crate) fn is_made_for_light(&self) -> bool {
         contrast(self.background, [0; 3]) >= contrast(self.background, [255; 3])
-    }
-
-    /// The legible colour for words on the background that is nearest to a given one.
-    pub(crate) fn text_like(&self, colour: Colour) -> Colour {
-        readable(colour, self.background, LEAST_CONTRAST)
     }
 }
 

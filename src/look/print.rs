@@ -8,8 +8,6 @@ use serde::{Deserialize, Serialize};
 /// Millimetres and points in an inch.
 const INCH_MM: f64 = 25.4;
 const INCH_POINTS: f64 = 72.0;
-/// The smallest type that is printed (pt).
-pub(crate) const LEAST_POINTS: f64 = 5.0;
 /// The most pixels of a side.
 const MOST_PIXELS: f64 = 16384.0;
 /// The usual type of a picture (px at the reference size).
@@ -80,22 +78,6 @@ impl Print {
     /// A size of type (px) in points.
     pub(crate) fn points(&self, pixels: f64) -> f64 {
         pixels / self.dpi * INCH_POINTS
-    }
-
-    /// Why type of a size (px) is not printed; `None` if it is large enough. `file` has the size.
-    pub(crate) fn too_small(&self, pixels: f64, file: &str) -> Option<String> {
-        let (points, [width, height]) = (self.points(pixels), self.mm);
-        let place = match self.at {
-            (0, _) => file.to_owned(),
-            (line, column) => format!("{file}:{line}:{column}"),
-        };
-        (points < LEAST_POINTS - 1e-6).then(|| {
-            format!(
-                "{place}: at {width} × {height} mm the smallest type would be {} pt; expected at least \
-                 {LEAST_POINTS} pt: make `size` larger, or type with `text_scale`",
-                rounded(points, 2)
-            )
-        })
     }
 }
 

@@ -7,7 +7,7 @@ use crate::colour::{Colour, LINE_CONTRAST, least_difference, readable};
 const RUNS_APART: f64 = 15.0;
 /// Lengths of the dashes and gaps of runs, by their places (px in the reference picture). They distinguish runs in
 /// greyscale print, and if there are more runs than colours.
-const DASHES: [&[f64]; 8] = [
+pub(super) const DASHES: [&[f64]; 8] = [
     &[],
     &[7.0, 4.0],
     &[18.0, 4.0],
@@ -18,29 +18,7 @@ const DASHES: [&[f64]; 8] = [
     &[4.0, 8.0],
 ];
 
-/// The style of the line of a run: of its curves in charts and of samples beside its name. Its arrows have the same
-/// colour.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct LineStyle {
-    /// Its colour.
-    pub colour: Colour,
-    /// Lengths of its dashes and gaps in turn (px in the reference picture); empty for a solid line.
-    pub dash: &'static [f64],
-}
-
 impl Palette {
-    /// The line of a run, the same in every picture of its scene. Up to eight runs differ in both colour and dashes, up
-    /// to 64 in one of them. Colours are made lighter or darker to be visible on the background. `place` is the place
-    /// of the run ([`Self::places`]), `chosen` its chosen colour.
-    pub(crate) fn line(&self, place: usize, chosen: Option<Colour>) -> LineStyle {
-        let (colours, dashes) = (self.runs.len(), DASHES.len());
-        let colour = chosen.unwrap_or(self.runs[place % colours]);
-        LineStyle {
-            colour: readable(colour, self.background, LINE_CONTRAST),
-            dash: DASHES[(place + place / colours) % dashes],
-        }
-    }
-
     /// The places of runs, some of which have chosen colours. Each has the dashes of its number. The others avoid
     /// colours that look like a chosen one, if enough are left.
     pub(crate) fn places(&self, chosen: &[Option<Colour>]) -> Vec<usize> {

@@ -182,12 +182,6 @@ impl Labels {
         legend: false,
     };
 
-    /// Whether panels have words.
-    pub(crate) fn are_in_panels(&self) -> bool {
-        let Self { letters, name, model, clock, count, number, scale_bar: _, legend: _ } = *self;
-        [letters, name, model, clock, count, number].contains(&true)
-    }
-
     /// All labels with their words.
     fn words(&mut self) -> [(Label, &mut bool); 8] {
         [
@@ -268,13 +262,6 @@ pub enum EdgeStyle {
     Outline,
 }
 
-impl EdgeStyle {
-    /// Whether edges in front of the body, and behind it, are drawn.
-    pub(crate) fn are_drawn(self) -> [bool; 2] {
-        [self != Self::Outline, self == Self::All]
-    }
-}
-
 /// The drawing of floors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -319,13 +306,6 @@ pub struct ColourScale {
     pub range: [f64; 2],
     /// The colours.
     pub map: ColourMap,
-}
-
-impl ColourScale {
-    /// The value of a spring with a relative change of length.
-    pub(crate) fn of_spring(&self, strain: f64) -> f64 {
-        if self.range[0] < 0.0 { strain } else { strain.abs() }
-    }
 }
 
 /// Named colour maps.

@@ -35,11 +35,6 @@ impl AtomicFile {
         Ok(Self { path: path.to_owned(), temporary: made.map_err(OutputError::writing(path))? })
     }
 
-    /// The final name of the file.
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// The hidden name, for programs that write the file themselves.
     #[cfg(feature = "render")]
     pub(crate) fn hidden_path(&self) -> &Path {

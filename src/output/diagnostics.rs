@@ -18,11 +18,11 @@ const UNFINISHED: &str = ".localshape-diagnostics.partial";
 
 /// Writes the diagnostics of frames in order. The file gets its name in [`Self::finish`].
 #[derive(Debug)]
-pub(crate) struct DiagnosticsWriter {
+pub(crate) struct DiagnosticsWriter<'a> {
+    pub(super) scene: &'a Scene,
     file: File,
     hidden: PathBuf,
-    path: PathBuf,
-    names: Vec<String>,
+    pub(super) path: PathBuf,
     written: Rows,
     /// The digest of the written bytes.
     digest: Sha256,
@@ -37,16 +37,16 @@ pub(crate) struct Rows {
     digest: [u8; 32],
 }
 
-impl DiagnosticsWriter {
+impl<'a> DiagnosticsWriter<'a> {
     /// Creates the file in `folder`.
-    pub(crate) fn create(folder: &Path, scene: &Scene) -> Result<Self, OutputError> {
+    pub(crate) fn create(folder: &Path, scene: &'a Scene) -> Result<Self, OutputError> {
         let mut writer = Self::open(folder, scene, Rows::default())?;
         writer.append(&rows_as_csv([cells("", 0, &Snapshot::default()).into_iter().map(|(head, _)| head)]))?;
         Ok(writer)
     }
 
     /// Continues after the rows of another process, whether it has finished the file or not.
-    pub(crate) fn resume(folder: &Path, scene: &Scene, before: Rows) -> Result<Self, OutputError> {
+    pub(crate) fn resume(folder: &Path, scene: &'a Scene, before: Rows) -> Result<Self, OutputError> {
         let [hidden, path] = [UNFINISHED, DIAGNOSTICS_FILE].map(|name| folder.join(name));
         // A finished file has lost its hidden name.
         if !hidden.metadata().is_ok_and(|found| found.len() >= before.length) {
@@ -60,11 +60,10 @@ impl DiagnosticsWriter {
         }
     }
 
-    fn open(folder: &Path, scene: &Scene, before: Rows) -> Result<Self, OutputError> {
+    fn open(folder: &Path, scene: &'a Scene, before: Rows) -> Result<Self, OutputError> {
         let [hidden, path] = [UNFINISHED, DIAGNOSTICS_FILE].map(|name| folder.join(name));
         let file = open_growing(&hidden, before.length).map_err(OutputError::writing(&path))?;
-        let names = scene.runs.iter().map(|run| run.name.clone()).collect();
-        Ok(Self { file, hidden, path, names, written: before, digest: Sha256::new() })
+        Ok(Self { scene, file, hidden, path, written: before, digest: Sha256::new() })
     }
 
     /// Appends the rows of one frame, one for each run in it.
@@ -72,8 +71,9 @@ impl DiagnosticsWriter {
     /// # Errors
     /// If they cannot be written; rows written before stay.
     pub(crate) fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
-        let names = &self.names;
-        let row = |run: &RunFrame| cells(&names[run.run], frame.index, &run.snapshot).into_iter().map(|(_, cell)| cell);
+        let runs = &self.scene.runs;
+        let row =
+            |run: &RunFrame| cells(&runs[run.run].name, frame.index, &run.snapshot).into_iter().map(|(_, cell)| cell);
         self.append(&rows_as_csv(frame.runs.iter().map(row)))
     }
 

@@ -21,22 +21,9 @@ pub(crate) fn frame_file_name(index: u64) -> String {
 pub(crate) const FRAME_FILES: &str = "frame_*.png";
 
 /// The frame number from a file name.
-fn frame_number(name: &str) -> Option<u64> {
+pub(super) fn frame_number(name: &str) -> Option<u64> {
     let index = name.strip_prefix("frame_")?.strip_suffix(".png")?.parse().ok()?;
     (frame_file_name(index) == name).then_some(index)
-}
-
-/// The numbers and paths of all frames in a folder, by their names, sorted.
-pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
-    let mut frames = Vec::new();
-    for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
-        let entry = entry.map_err(OutputError::reading(folder))?;
-        if let Some(index) = entry.file_name().to_str().and_then(frame_number) {
-            frames.push((index, entry.path()));
-        }
-    }
-    frames.sort_unstable();
-    Ok(frames)
 }
 
 /// The scene to which results belong.

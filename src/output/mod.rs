@@ -8,39 +8,43 @@ mod atomic;
 mod checkpoint;
 mod diagnostics;
 mod digest;
+#[cfg(feature = "render")]
+mod drawn;
 mod error;
 mod folder;
 mod frame_folder;
+#[cfg(feature = "render")]
 mod frames;
 mod lock;
 mod png;
 pub(crate) mod shell;
 mod states;
-#[cfg_attr(not(feature = "render"), allow(dead_code, reason = "only drawing reads states"))]
 mod stored;
 mod summary;
 mod timing;
 
-#[cfg(feature = "render")]
-pub(crate) use atomic::temporary_folder;
 pub(crate) use atomic::{AtomicFile, folder_of, open_growing, write_whole};
 pub(crate) use checkpoint::{Checkpoint, Plan, waiting_states};
 pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub(crate) use digest::state_digest;
 pub(crate) use error::{OutputError, is_folder, read_file};
-pub(crate) use folder::{Access, Claimed, FRAME_FILES, Folder, Shard, Whose, frame_file_name, frame_files};
+pub(crate) use folder::{Access, Claimed, FRAME_FILES, Folder, Shard, Whose};
 pub use frame_folder::FrameFolder;
-pub(crate) use frames::{FrameWriter, PixelFrame};
 pub(crate) use lock::FolderLock;
-#[cfg(feature = "render")]
-pub(crate) use png::packed;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
-pub(crate) use png::{Texts, encode_like, encode_print, is_drawn};
 pub(crate) use states::{STATES_FILE, StatesWriter};
 pub(crate) use stored::StoredStates;
 pub(crate) use summary::{Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary, document};
 pub(crate) use timing::{Clock, thread_time};
 pub use timing::{Spent, Timings};
+#[cfg(feature = "render")]
+pub(crate) use {
+    atomic::temporary_folder,
+    drawn::{encode_like, frame_files, is_drawn, packed},
+    folder::frame_file_name,
+    frames::{FrameWriter, PixelFrame},
+    png::{Texts, encode_print},
+};
 
 /// Rows of equal length as CSV (RFC 4180, with line feeds), quoted where necessary.
 pub(crate) fn rows_as_csv(rows: impl IntoIterator<Item = impl IntoIterator<Item = impl AsRef<[u8]>>>) -> Vec<u8> {

@@ -147,21 +147,8 @@ pub(crate) fn encode_print(
     file(size, pixels.len(), texts, compression, dpi, |writer| writer.write_image_data(pixels))
 }
 
-/// Encodes a picture likewise, with the compressed pixels of another file, which [`encode_print`] made from equal
-/// pixels.
-pub(crate) fn encode_like(
-    (file_before, length): (&[u8], usize),
-    size: [u32; 2],
-    texts: &[(&'static str, String)],
-    dpi: Option<f64>,
-) -> Vec<u8> {
-    file(size, length, texts, Compression::Fast, dpi, |writer| {
-        image_chunks(file_before).try_for_each(|data| writer.write_chunk(png::chunk::IDAT, data))
-    })
-}
-
 /// A file with `length` bytes of pixels, which `write` adds.
-fn file(
+pub(super) fn file(
     size: [u32; 2],
     length: usize,
     texts: &[(&'static str, String)],
@@ -195,40 +182,6 @@ fn file(
     bytes
 }
 
-/// Pixels, filtered and packed with the settings of `set`, as the contents of `IDAT` chunks.
-#[cfg(feature = "render")]
-pub(crate) fn packed(
-    [width, height]: [u32; 2],
-    kind: png::ColorType,
-    pixels: &[u8],
-    set: impl FnOnce(&mut png::Encoder<'_, &mut Vec<u8>>),
-) -> Vec<u8> {
-    let mut file = Vec::with_capacity(pixels.len() / 8);
-    let mut encoder = png::Encoder::new(&mut file, width, height);
-    encoder.set_color(kind);
-    encoder.set_depth(png::BitDepth::Eight);
-    set(&mut encoder);
-    let written = encoder.write_header().and_then(|mut writer| {
-        writer.write_image_data(pixels)?;
-        writer.finish()
-    });
-    written.expect("pixels of the right length into memory");
-    image_chunks(&file).collect::<Vec<_>>().concat()
-}
-
-/// The contents of the `IDAT` chunks of a PNG file.
-fn image_chunks(file: &[u8]) -> impl Iterator<Item = &[u8]> {
-    // After the signature: length, name, data and checksum of each chunk.
-    let mut rest = &file[8..];
-    let chunks = std::iter::from_fn(move || {
-        let (head, tail) = rest.split_first_chunk::<8>()?;
-        let (data, end) = tail.split_at(u32::from_be_bytes([head[0], head[1], head[2], head[3]]) as usize);
-        rest = &end[4..];
-        Some((head[4..] == png::chunk::IDAT.0, data))
-    });
-    chunks.filter_map(|(is_image, data)| is_image.then_some(data))
-}
-
 /// Reads width and height of a picture (px) and its metadata, without its pixels; `None` if the file is not a PNG file
 /// or was not written by this crate.
 ///
@@ -242,7 +195,7 @@ pub fn read_tags(path: &Path) -> Result<Option<([u32; 2], Tags)>, OutputError> {
 }
 
 /// A reader after the header of a picture; `None` if there is no PNG file at the path.
-fn header(path: &Path) -> Result<Option<png::Reader<BufReader<File>>>, OutputError> {
+pub(super) fn header(path: &Path) -> Result<Option<png::Reader<BufReader<File>>>, OutputError> {
     // Opening a pipe would block.
     if !path.is_file() {
         return Ok(None);
@@ -257,30 +210,14 @@ fn header(path: &Path) -> Result<Option<png::Reader<BufReader<File>>>, OutputErr
     }
 }
 
-/// Whether a file is the picture that would be written with this size (px), these texts and this resolution (px per
-/// inch); `false` if there is no such file.
-pub(crate) fn is_drawn(
-    path: &Path,
-    size: [u32; 2],
-    texts: &[(&'static str, String)],
-    dpi: Option<f64>,
-) -> Result<bool, OutputError> {
-    let Some(reader) = header(path)? else { return Ok(false) };
-    let info = reader.info();
-    let has = |(name, text): &(&'static str, String)| texts_of(info, name) == [Some(text.clone())];
-    let of_metre = |dims: png::PixelDimensions| dims.xppu;
-    let is_for_print = info.pixel_dims.map(of_metre) == dpi.map(pixel_dims).map(of_metre);
-    Ok([info.width, info.height] == size && is_for_print && texts.iter().all(has))
-}
-
 /// Pixels per metre from pixels per inch.
-fn pixel_dims(dpi: f64) -> png::PixelDimensions {
+pub(super) fn pixel_dims(dpi: f64) -> png::PixelDimensions {
     let count = (dpi / 0.0254).round() as u32;
     png::PixelDimensions { xppu: count, yppu: count, unit: png::Unit::Meter }
 }
 
 /// The texts with one of our keywords; `None` for each text that cannot be read.
-fn texts_of(info: &png::Info<'_>, name: &str) -> Vec<Option<String>> {
+pub(super) fn texts_of(info: &png::Info<'_>, name: &str) -> Vec<Option<String>> {
     let is = |keyword: &str| keyword.strip_prefix("localshape:") == Some(name);
     let plain =
         info.uncompressed_latin1_text.iter().filter(|chunk| is(&chunk.keyword)).map(|chunk| Some(chunk.text.clone()));
@@ -330,18 +267,6 @@ mod tests {
             let mut back = vec![0; reader.output_buffer_size().unwrap()];
             reader.next_frame(&mut back).unwrap();
             assert_eq!(back, pixels);
-        }
-    }
-
-    #[test]
-    fn pixels_that_are_compressed_once_give_the_same_files() {
-        let size = [40, 30];
-        let pixels: Vec<u8> = (0..40 * 30 * 3).map(|at: u32| (at * at / 7) as u8).collect();
-        let before = made(size, &pixels, &tags());
-        let later = Tags { shows: Shown::Frame { frame: 8, time: 0.5 }, ..tags() };
-        for dpi in [None, Some(300.0)] {
-            let again = encode_like((&before, pixels.len()), size, &later.texts(), dpi);
-            assert!(again == encode_print(size, &pixels, &later.texts(), Compression::Fast, dpi), "{dpi:?}");
         }
     }
 

@@ -42,7 +42,7 @@ pub struct TimeSeries {
     /// The boxes around the body at these times, if the scene's camera follows it.
     pub(crate) boxes: Vec<CameraBox>,
     /// The boxes around its nodes near plates and walls.
-    pub(crate) reach: Reach,
+    pub(crate) reach: NearObstacles,
     /// The divergence of the run, if it diverged.
     pub divergence: Option<Divergence>,
 }
@@ -77,9 +77,9 @@ impl TimeSeries {
 /// For each obstacle of a scene the box around all nodes that have been near it (m), relative to the obstacle at the
 /// start; `None` for all but plates and walls.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Reach(Vec<Option<[DVec3; 2]>>);
+pub(crate) struct NearObstacles(pub(crate) Vec<Option<[DVec3; 2]>>);
 
-impl Reach {
+impl NearObstacles {
     /// Nodes are near a plate or a wall up to this distance (sizes of the body).
     const NEAR: f64 = 0.6;
 
@@ -102,22 +102,6 @@ impl Reach {
                 }
             }
         }
-    }
-
-    /// Adds the boxes of another run.
-    pub(crate) fn merge(&mut self, other: &Self) {
-        self.0.resize(self.0.len().max(other.0.len()), None);
-        for (one, other) in self.0.iter_mut().zip(&other.0) {
-            *one = match (*one, *other) {
-                (Some([low, high]), Some(other)) => Some([low.min(other[0]), high.max(other[1])]),
-                (one, other) => one.or(other),
-            };
-        }
-    }
-
-    /// The box of an obstacle, by its index.
-    pub(crate) fn of(&self, obstacle: usize) -> Option<[DVec3; 2]> {
-        self.0.get(obstacle).copied().flatten()
     }
 }
 

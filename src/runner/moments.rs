@@ -38,7 +38,7 @@ impl Moments {
     /// It uses the rayon thread pool of the caller; the result has the same bits for any number of threads.
     pub fn new(figure: &Figure) -> Self {
         let mut taking = Taking::new(figure, Reach::Frames);
-        while !taking.advance(u64::MAX) {}
+        while taking.advance(u64::MAX).is_some() {}
         taking.finish()
     }
 
@@ -178,18 +178,15 @@ impl<'a> Taking<'a> {
         Self { figure, wanted, parts, series }
     }
 
-    /// Advances each run by at most `most_steps`, and returns whether all have reached their end. The result has the
-    /// same bits however the steps are divided into calls.
-    pub(crate) fn advance(&mut self, most_steps: u64) -> bool {
+    /// Advances each run by at most `most_steps`. Returns the steps taken so far and those at the end, of all simulations
+    /// together; `None` when all have reached their end. The result has the same bits however the steps are divided into calls.
+    pub(crate) fn advance(&mut self, most_steps: u64) -> Option<[u64; 2]> {
         let arrived = self.parts.par_iter_mut().map(|part| part.advance(most_steps));
-        arrived.reduce(|| true, |one, other| one && other)
-    }
-
-    /// Steps taken so far, and steps at the end, of all simulations together.
-    pub(crate) fn steps(&self) -> [u64; 2] {
-        self.parts.iter().fold([0_u64; 2], |[done, all], part| {
+        let arrived = arrived.reduce(|| true, |one, other| one && other);
+        let steps = |[done, all]: [u64; 2], part: &Part<'_>| {
             [done.saturating_add(part.runner.steps()), all.saturating_add(part.runner.steps_at(part.end))]
-        })
+        };
+        (!arrived).then(|| self.parts.iter().fold([0; 2], steps))
     }
 
     /// The states and time series.
@@ -260,8 +257,8 @@ mod tests {
         let whole = Moments::new(&figure);
         assert_eq!((whole.cells.len(), whole.cells[0].len()), (sheet.rows.len(), sheet.columns.len()));
         let mut taking = Taking::new(&figure, Reach::Frames);
-        while !taking.advance(17) {
-            assert!(taking.steps()[0] < taking.steps()[1]);
+        while let Some([done, all]) = taking.advance(17) {
+            assert!(done < all);
         }
         // A run without rotations has no residual. NaN is not equal to itself, so texts are compared.
         assert_eq!(format!("{:?}", taking.finish()), format!("{whole:?}"));

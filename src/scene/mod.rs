@@ -10,6 +10,8 @@
 
 mod builder;
 mod digest;
+#[cfg(feature = "render")]
+mod drawn;
 mod error;
 pub(crate) mod figure;
 mod file;
@@ -37,10 +39,8 @@ pub use schema::schema;
 pub use summary::{RunSummary, SceneSummary};
 
 use crate::colour::Colour;
-use crate::look::{LineStyle, Palette, View};
+use crate::look::View;
 use crate::reading::words::{list, nearest};
-#[cfg(feature = "render")]
-use crate::sim::Motion;
 use crate::sim::geometry;
 use crate::sim::model::{ElasticModel, Report};
 use crate::sim::{Body, Dimension, Grip, Integrator, Obstacle, Shape};
@@ -125,17 +125,6 @@ impl Scene {
         needed.then_some(view.strip.as_slice())
     }
 
-    /// Whether pictures depend on more than states: a clock, the course of the scene, or moving objects.
-    #[cfg(feature = "render")]
-    pub(crate) fn shows_time(&self) -> bool {
-        let view = &self.view;
-        let is_moved = |grip: &Grip| grip.motion != Motion::Still || grip.from > 0.0 || grip.until.is_finite();
-        view.labels.clock
-            || self.time_series().is_some()
-            || self.obstacles.iter().any(|obstacle| obstacle.motion != Motion::Still)
-            || self.grips.iter().any(is_moved)
-    }
-
     /// The message for a diagnostic that no run has, with the diagnostics that charts can show; `None` if a run may
     /// have it.
     pub(crate) fn lacks(&self, diagnostic: Diagnostic) -> Option<&'static str> {
@@ -158,18 +147,6 @@ impl Scene {
             _ => return None,
         };
         (!exists).then_some(why)
-    }
-
-    /// The diagnostics of a frame in its picture: the number of each run, and the present value in a chart.
-    pub(crate) fn frame_diagnostics(&self) -> Vec<Diagnostic> {
-        self.view.strip.iter().copied().chain([Diagnostic::ShapeError]).collect()
-    }
-}
-
-impl Run {
-    /// The run's line in pictures of a palette.
-    pub(crate) fn line(&self, palette: &Palette) -> LineStyle {
-        palette.line(self.place, self.colour)
     }
 }
 

@@ -139,7 +139,7 @@ fn figures_ask_for_energies_only_where_they_show_them() {
         let Content::Sheet(sheet) = &mut figure.content else { panic!("a contact sheet") };
         (sheet.number, sheet.strips) = (number, vec![strip]);
         let mut taking = Taking::new(&figure, reach);
-        while !taking.advance(u64::MAX) {}
+        while taking.advance(u64::MAX).is_some() {}
         let moments = taking.finish();
         let series = &moments.histories[0].series;
         let noted: usize = series.iter().map(|run| run.times.len()).sum();

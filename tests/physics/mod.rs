@@ -1,5 +1,6 @@
 //! The physics compared with the paper and with closed forms, without files and without a graphics device.
 
+#[cfg(feature = "render")]
 mod asked;
 mod checkpoints;
 mod fig4a;

@@ -2,7 +2,8 @@
 
 use super::expect;
 use localshape::look::Theme;
-use localshape::scene::figure::{Content, Figure, NAMES, Sheet};
+use localshape::scene::figure::built_in::NAMES;
+use localshape::scene::figure::{Content, Figure, Sheet};
 use localshape::scene::{Limits, Scene, SceneError};
 use std::path::Path;
 

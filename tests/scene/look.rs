@@ -351,7 +351,6 @@ fn mistakes_of_fonts() {
     view("font = 'sans.otf'", "20:8 `view.font` is the string \"sans.otf\"; expected a table");
 }
 
-#[cfg(feature = "render")]
 #[test]
 fn fonts_that_are_damaged_or_lack_letters_are_refused() {
     let place = Place::new();
@@ -365,7 +364,6 @@ fn fonts_that_are_damaged_or_lack_letters_are_refused() {
 }
 
 /// The built-in font with an empty table of characters.
-#[cfg(feature = "render")]
 fn without_letters() -> Vec<u8> {
     let mut bytes = FONT.to_vec();
     let tables = usize::from(u16::from_be_bytes([bytes[4], bytes[5]]));

@@ -5,6 +5,7 @@ mod bodies;
 mod digest;
 mod figures;
 mod good;
+#[cfg(feature = "render")]
 mod look;
 mod manipulators;
 mod mistakes;

@@ -32,7 +32,7 @@ use super::{Framing, Picture};
 use crate::colour::Colour;
 use crate::look::Palette;
 use crate::look::ramp::ramp;
-use crate::runner::history::{History, Reach, TimeSeries};
+use crate::runner::history::{History, NearObstacles, TimeSeries};
 use crate::scene::Scene;
 use crate::sim::geometry::bounds;
 use crate::sim::{Body, Dimension, Frame, Snapshot, Status};
@@ -86,7 +86,7 @@ pub struct Composer<'a> {
     /// The data of a camera that follows, if it does.
     tracking: Option<Tracking>,
     /// The boxes of nodes near plates and walls, if the time series are known.
-    reach: Reach,
+    reach: NearObstacles,
     /// The arrangement of the panels of the first frame, which all frames of the same runs have.
     arranged: OnceLock<Arranged>,
 }
@@ -124,7 +124,7 @@ impl<'a> Composer<'a> {
         let bare = bare_elements(body);
         let visible = scene.view.visible;
         let map = scene.view.colour.map(|scale| scale.map);
-        let mut reach = Reach::default();
+        let mut reach = NearObstacles::default();
         history.series.iter().for_each(|series| reach.merge(&series.reach));
         let mut composer = Self {
             scene,

@@ -7,6 +7,7 @@ use crate::picture::narrow::narrow;
 use crate::picture::pointer::Pointers;
 use crate::picture::shadow::Plane;
 use crate::picture::{Mark, Pane, PaneCorner, Slab};
+use crate::runner::history::NearObstacles;
 use crate::sim::{Motion, Pose, Shape};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -235,5 +236,23 @@ impl Staging<'_> {
         };
         front.corners.iter().all(|&at| on_eyes_side(back.plane, at) >= -room)
             || back.corners.iter().all(|&at| on_eyes_side(front.plane, at) <= room)
+    }
+}
+
+impl NearObstacles {
+    /// Adds the boxes of another run.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.0.resize(self.0.len().max(other.0.len()), None);
+        for (one, other) in self.0.iter_mut().zip(&other.0) {
+            *one = match (*one, *other) {
+                (Some([low, high]), Some(other)) => Some([low.min(other[0]), high.max(other[1])]),
+                (one, other) => one.or(other),
+            };
+        }
+    }
+
+    /// The box of an obstacle, by its index.
+    pub(crate) fn of(&self, obstacle: usize) -> Option<[DVec3; 2]> {
+        self.0.get(obstacle).copied().flatten()
     }
 }

@@ -5,7 +5,7 @@ use super::shapes::{corners, rod};
 use super::{Site, Staged};
 use crate::picture::skin::Skin;
 use crate::picture::{Line, Obstacles};
-use crate::runner::history::Reach;
+use crate::runner::history::NearObstacles;
 use crate::sim::Shape;
 use glam::DVec3;
 
@@ -25,7 +25,7 @@ pub(in crate::picture) struct Staging<'a> {
     /// The box around the nodes at the start (m).
     pub(in crate::picture) start: [DVec3; 2],
     /// The places where nodes of all runs come near plates and walls at any time.
-    pub(in crate::picture) reach: &'a Reach,
+    pub(in crate::picture) reach: &'a NearObstacles,
 }
 
 impl Staging<'_> {

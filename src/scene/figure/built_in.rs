@@ -56,7 +56,8 @@ pub(super) fn text(path: &Path) -> Option<&'static str> {
 
 #[cfg(test)]
 mod tests {
-    use crate::scene::figure::{Figure, NAMES};
+    use super::NAMES;
+    use crate::scene::figure::Figure;
 
     #[test]
     fn every_figure_of_the_program_is_sound() {

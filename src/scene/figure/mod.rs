@@ -1,11 +1,9 @@
 //! Figures: scenes on one sheet. A figure file names scenes and arranges their runs and moments. The scenes determine
 //! their look.
 
-mod built_in;
+pub(crate) mod built_in;
 mod file;
 mod resolve;
-
-pub(crate) use built_in::NAMES;
 
 use super::Scene;
 use super::error::SceneError;
@@ -115,7 +113,7 @@ pub struct Forces {
 }
 
 impl Figure {
-    /// A built-in figure of the paper; `None` if [`NAMES`] does not list the name.
+    /// A built-in figure of the paper; `None` if [`built_in::NAMES`] does not list the name.
     pub fn built_in(name: &str) -> Option<Self> {
         Some(Self::built_in_with(name, &[])?.unwrap_or_else(|error| panic!("{error}")))
     }

@@ -4,7 +4,7 @@ use super::plan::Plan;
 use crate::look::Ghost;
 use crate::picture::camera::{Framing, Lens};
 use crate::picture::obstacle::{Site, Staging};
-use crate::runner::history::Reach;
+use crate::runner::history::NearObstacles;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::Sheet;
@@ -36,7 +36,7 @@ pub(super) struct Cell {
 }
 
 /// The cells of a sheet, row by row.
-pub(super) fn cells(scenes: &[Scene], reaches: &[Reach], sheet: &Sheet, moments: &Moments) -> Vec<Vec<Cell>> {
+pub(super) fn cells(scenes: &[Scene], reaches: &[NearObstacles], sheet: &Sheet, moments: &Moments) -> Vec<Vec<Cell>> {
     let cell = |column: usize, run: &RunFrame, other: Option<&RunFrame>| {
         let at = sheet.columns[column].scene;
         let ghost = ghost(&scenes[at], run, other);
@@ -49,8 +49,8 @@ pub(super) fn cells(scenes: &[Scene], reaches: &[Reach], sheet: &Sheet, moments:
 }
 
 /// The parts of the plates and walls of each scene near the shown nodes.
-pub(super) fn reaches(scenes: &[Scene], sheet: &Sheet, moments: &Moments) -> Vec<Reach> {
-    let mut reaches = vec![Reach::default(); scenes.len()];
+pub(super) fn reaches(scenes: &[Scene], sheet: &Sheet, moments: &Moments) -> Vec<NearObstacles> {
+    let mut reaches = vec![NearObstacles::default(); scenes.len()];
     for (column, run) in moments.cells.iter().flat_map(|row| row.iter().enumerate()) {
         let (at, Snapshot { time, position, status, .. }) = (sheet.columns[column].scene, &run.snapshot);
         if *status == Status::Ok {
@@ -70,7 +70,7 @@ fn ghost(scene: &Scene, run: &RunFrame, other: Option<&RunFrame>) -> Vec<DVec3> 
 }
 
 /// The points of a run at a time (m): nodes, and obstacles and the nodes of a ghost near them.
-fn points(scene: &Scene, reach: &Reach, run: &RunFrame, ghost: Vec<DVec3>) -> Vec<DVec3> {
+fn points(scene: &Scene, reach: &NearObstacles, run: &RunFrame, ghost: Vec<DVec3>) -> Vec<DVec3> {
     let snapshot = run.shown();
     if snapshot.position.len() != scene.body.len() {
         return Vec::new();

@@ -1,0 +1,120 @@
+//! Frames in folders, and compressed pixels that are used again: for drawing only.
+
+use super::folder::frame_number;
+use super::png::{file, header, pixel_dims, texts_of};
+use super::{
+    Compression, DiagnosticsWriter, FrameFolder, OutputError, Tags, encode_print, frame_file_name, write_whole,
+};
+use crate::sim::Frame;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+impl FrameFolder<'_> {
+    /// Writes a drawn picture of a frame, with its metadata, and returns the path of the file, such as
+    /// `frame_00030.png`.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write_picture(&self, frame: &Frame, image: &image::RgbImage, gpu: &crate::gpu::Gpu) -> io::Result<PathBuf> {
+        let DiagnosticsWriter { scene, path, .. } = &self.diagnostics;
+        let path = path.with_file_name(frame_file_name(frame.index));
+        let texts = Tags::of_frame(scene, frame, &gpu.description().to_string()).texts();
+        let dpi = scene.view.print.as_ref().map(|print| print.dpi);
+        let file = encode_print(image.dimensions().into(), image.as_raw(), &texts, Compression::Fast, dpi);
+        write_whole(&path, &file).map_err(io::Error::other)?;
+        Ok(path)
+    }
+}
+
+/// The numbers and paths of all frames in a folder, by their names, sorted.
+pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
+    let mut frames = Vec::new();
+    for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
+        let entry = entry.map_err(OutputError::reading(folder))?;
+        if let Some(index) = entry.file_name().to_str().and_then(frame_number) {
+            frames.push((index, entry.path()));
+        }
+    }
+    frames.sort_unstable();
+    Ok(frames)
+}
+
+/// Encodes a picture like [`encode_print`], with the compressed pixels of another file, which it made from equal
+/// pixels.
+pub(crate) fn encode_like(
+    (file_before, length): (&[u8], usize),
+    size: [u32; 2],
+    texts: &[(&'static str, String)],
+    dpi: Option<f64>,
+) -> Vec<u8> {
+    file(size, length, texts, Compression::Fast, dpi, |writer| {
+        image_chunks(file_before).try_for_each(|data| writer.write_chunk(png::chunk::IDAT, data))
+    })
+}
+
+/// Pixels, filtered and packed with the settings of `set`, as the contents of `IDAT` chunks.
+pub(crate) fn packed(
+    [width, height]: [u32; 2],
+    kind: png::ColorType,
+    pixels: &[u8],
+    set: impl FnOnce(&mut png::Encoder<'_, &mut Vec<u8>>),
+) -> Vec<u8> {
+    let mut file = Vec::with_capacity(pixels.len() / 8);
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(kind);
+    encoder.set_depth(png::BitDepth::Eight);
+    set(&mut encoder);
+    let written = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(pixels)?;
+        writer.finish()
+    });
+    written.expect("pixels of the right length into memory");
+    image_chunks(&file).collect::<Vec<_>>().concat()
+}
+
+/// The contents of the `IDAT` chunks of a PNG file.
+fn image_chunks(file: &[u8]) -> impl Iterator<Item = &[u8]> {
+    // After the signature: length, name, data and checksum of each chunk.
+    let mut rest = &file[8..];
+    let chunks = std::iter::from_fn(move || {
+        let (head, tail) = rest.split_first_chunk::<8>()?;
+        let (data, end) = tail.split_at(u32::from_be_bytes([head[0], head[1], head[2], head[3]]) as usize);
+        rest = &end[4..];
+        Some((head[4..] == png::chunk::IDAT.0, data))
+    });
+    chunks.filter_map(|(is_image, data)| is_image.then_some(data))
+}
+
+/// Whether a file is the picture that would be written with this size (px), these texts and this resolution (px per
+/// inch); `false` if there is no such file.
+pub(crate) fn is_drawn(
+    path: &Path,
+    size: [u32; 2],
+    texts: &[(&'static str, String)],
+    dpi: Option<f64>,
+) -> Result<bool, OutputError> {
+    let Some(reader) = header(path)? else { return Ok(false) };
+    let info = reader.info();
+    let has = |(name, text): &(&'static str, String)| texts_of(info, name) == [Some(text.clone())];
+    let of_metre = |dims: png::PixelDimensions| dims.xppu;
+    let is_for_print = info.pixel_dims.map(of_metre) == dpi.map(pixel_dims).map(of_metre);
+    Ok([info.width, info.height] == size && is_for_print && texts.iter().all(has))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_that_are_compressed_once_give_the_same_files() {
+        let size = [40, 30];
+        let pixels: Vec<u8> = (0..40 * 30 * 3).map(|at: u32| (at * at / 7) as u8).collect();
+        let before = encode_print(size, &pixels, &[], Compression::Fast, None);
+        let later = [("frame", "8".to_owned())];
+        for dpi in [None, Some(300.0)] {
+            let again = encode_like((&before, pixels.len()), size, &later, dpi);
+            assert!(again == encode_print(size, &pixels, &later, Compression::Fast, dpi), "{dpi:?}");
+        }
+    }
+}
