@@ -1,4 +1,4 @@
-// Reading what was drawn of the bodies.
+// Reading the drawn bodies.
 
 @group(1) @binding(0) var body_colour: texture_2d<f32>;
 @group(1) @binding(1) var body_depth: texture_depth_2d;

@@ -1,13 +1,13 @@
 // Smooth borders of surfaces. A pixel that a line between two colours crosses gets the colour of the other side for the
 // area there. Gains from several lines are summed, because each covers another part of the pixel.
 
-// A line is hidden by depths that lie before it by more than this many pixels.
+// A line is hidden by depths that are nearer by more than this many pixels.
 const HIDDEN_BY = 6.0;
 // Beyond this distance (px) from the line, rounding cannot put a pixel on the other side.
 const SURE = 0.004;
 
-// The part of a pixel on the side of a line to which its normal points, if the middle of the pixel has this distance
-// from the line (px).
+// The part of a pixel on the side of a line to which its normal points, by the distance of its middle from the line
+// (px).
 fn area_beyond(off: f32, normal: vec2<f32>) -> f32 {
     let wide = max(abs(normal.x), abs(normal.y));
     let narrow = min(abs(normal.x), abs(normal.y));
@@ -64,7 +64,7 @@ fn gained(segment: Segment, of_alarm: bool) -> vec4<f32> {
     let beside = select(min(min(depths.x, depths.y), depths.z), max(depths.x, depths.y), is_crease);
     let distance = distance_of(mix(segment.depths.x, segment.depths.y, share));
     let is_hidden = distance * (1.0 - HIDDEN_BY / panel.focal) > distance_of(beside);
-    // Hidden edges of a set that is seen through others would count where they end at its outline.
+    // Hidden edges of a set that is visible through others would count where they end at its outline.
     if is_hidden || (segment.kind == ALARM_EDGE && min(depths.x, depths.y) <= 0.0) {
         discard;
     }

@@ -1,7 +1,7 @@
-// Bodies and their lines, laid over the ground.
+// Bodies and their lines over the ground.
 
 @group(1) @binding(2) var lines: texture_2d<f32>;
-// What pixels gain that borders cross.
+// The light that borders add to pixels.
 @group(1) @binding(3) var borders: texture_2d<f32>;
 
 struct Corner {
@@ -26,21 +26,21 @@ fn over(colour: vec4<f32>, above: vec3<f32>, alpha: f32) -> vec4<f32> {
     return mix(colour, vec4(above, 1.0), alpha);
 }
 
-// What was drawn of the bodies at a texel of the panel's region, or at the nearest one to it there.
+// The body at a texel of the panel's region, or at the nearest texel in the region.
 fn body_at(at: vec2<i32>) -> vec4<f32> {
     let low = vec2<i32>(panel.region.xy);
     let high = low + vec2<i32>(panel.region.zw) - 1;
     return decoded_body(textureLoad(body_colour, clamp(at, low, high), 0));
 }
 
-// The colour of a pixel with what borders add to it. Each border mixes the pixel with a neighbour, so many of them in one pixel
-// cannot lead beyond the colours of all neighbours.
+// The colour of a pixel with the light of borders. Each border mixes the pixel with a neighbour, so the result stays
+// within the colours of all neighbours.
 fn with_borders(at: vec2<i32>) -> vec4<f32> {
     let own = body_at(at);
     let gained = textureLoad(borders, at, 0);
     var least = own;
     var most = own;
-    // A software driver does both branches, but leaves a loop that all its lanes have left.
+    // A software driver runs both branches, but leaves a loop that all its lanes have left.
     let count = select(0, 4, any(gained != vec4(0.0)));
     var step = vec2(1, 0);
     for (var side = 0; side < count; side++) {
@@ -73,10 +73,10 @@ fn layered(corner: Corner) -> @location(0) vec4<f32> {
     return layered_at(corner);
 }
 
-// Outlines reach so far out of bodies, also where they cross pixels (px in the reference picture).
+// The reach of outlines beyond bodies, also where they cross pixels (px in the reference picture).
 const LINE_REACH = 2.0;
 
-// Whether a body lies at a texel of the region: its opacity is greater than that of obstacles.
+// Whether a body is at a texel of the region: its opacity is greater than that of obstacles.
 fn stays(at: vec2<i32>) -> bool {
     return body_at(at).a > OBSTACLE + 0.001;
 }
@@ -86,7 +86,7 @@ fn layered_fading(corner: Corner) -> @location(0) vec4<f32> {
     let colour = layered_at(corner);
     let pixel = corner.place.xy;
     let at = vec2<i32>(pixel - panel.place.xy);
-    // Beside bodies lie the outer halves of their outlines.
+    // The outer halves of outlines are beside bodies.
     let reach = i32(ceil(LINE_REACH * panel_data.line_scale));
     let beside = body_at(at).a == 0.0 && (stays(at + vec2(reach, 0)) || stays(at - vec2(reach, 0))
         || stays(at + vec2(0, reach)) || stays(at - vec2(0, reach)));

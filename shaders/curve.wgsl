@@ -10,7 +10,7 @@ struct Piece {
     @location(2) colour: vec4<f32>,
     // Width, start in the pattern, and length of the pattern (px): 0 for a solid curve.
     @location(3) pattern: vec3<f32>,
-    // The lengths of three dashes and of the gaps after them (px); 0 for absent ones.
+    // The lengths of up to three dashes and gaps (px); 0 for missing ones.
     @location(4) dashes: vec4<f32>,
     @location(5) last_dash: vec2<f32>,
 }

@@ -21,7 +21,7 @@ struct Ground {
 }
 
 @group(1) @binding(0) var<uniform> ground_data: Ground;
-// As for the panel.
+// A private copy, as for the panel.
 var<private> ground: Ground;
 // Each texel holds the four cells around a corner of the grid, so that one reading is enough.
 @group(1) @binding(1) var shades: texture_2d_array<f32>;

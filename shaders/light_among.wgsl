@@ -17,7 +17,7 @@ fn left_by(occluder: Occluder, position: vec3<f32>, facing: vec3<f32>) -> f32 {
     let size = length(out);
     let apart = saturate((size - occluder.first.w) / (TAKEN_REACH * panel.soft));
     let away = dot(rotated_back(occluder.rotation, facing), out) / max(size, 1e-9);
-    // As at the floor: a face that touches a plate is seen through it and stays light.
+    // As at the floor: a face at a plate is visible through it and stays light.
     let turned = mix(0.5 - 0.5 * away, PLATE_TAKES * (1.0 - abs(away)), occluder.second.w);
     return 1.0 - TAKEN * turned * (1.0 - apart) * (1.0 - apart);
 }

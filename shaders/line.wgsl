@@ -1,16 +1,16 @@
-// Edges, contours and outlines as smooth lines. Each pixel gets the opacity of four kinds of lines: edges of turned-over
-// elements, edges of others, the outer outline, and steps of depth inside the body. The largest wins, so that
-// joints are as even as the rest.
+// Edges, contours and outlines as smooth lines. Each pixel gets the opacity of four kinds of lines: edges of
+// turned-over elements, edges of others, the outer outline, and steps of depth inside the body. The largest opacity
+// wins, so that joints are as even as the rest.
 
 struct Segment {
     @builtin(position) place: vec4<f32>,
     @location(0) @interpolate(flat) ends: vec4<f32>,
     @location(1) @interpolate(flat) depths: vec2<f32>,
     @location(2) @interpolate(flat) kind: u32,
-    // Opacity, and where its samples of visibility are: the first, and how many.
+    // Opacity, and the first of its samples of visibility with their number.
     @location(3) @interpolate(flat) strength: f32,
     @location(4) @interpolate(flat) samples: vec2<u32>,
-    // What all pixels of a panel share.
+    // Values of a panel that all its pixels share.
     @location(5) @interpolate(flat) scales: vec3<f32>,
 }
 
@@ -27,15 +27,15 @@ const ALARM_CONTOUR = 3u;
 const BAR = 4u;
 const OBSTACLE_EDGE = 8u;
 const OBSTACLE_CONTOUR = 9u;
-// How a line is packed into one number: its kind, its opacity (of 255), and above these how many samples it has.
+// The packed number of a line: its kind, its opacity (of 255), and its number of samples.
 const KIND_BITS = 4u;
 const STRENGTH_BITS = 8u;
 
-// Opacities of hidden edges: of elements that are not inverted, and of turned-over ones. The last digits of the first keep the
-// bytes of earlier pictures.
+// Opacities of hidden edges, of sound and of turned-over elements. The last digits of the first keep the bytes of
+// earlier pictures.
 const HIDDEN_ALPHA = 0.16000003;
 const ALARM_HIDDEN_ALPHA = 0.62;
-// Opacities of lines that are seen.
+// Opacities of visible lines.
 const EDGE_ALPHA = 0.80;
 const FLAT_EDGE_ALPHA = 0.75;
 const ALARM_EDGE_ALPHA = 0.95;
@@ -47,13 +47,13 @@ const FLAT_EDGE_WIDTH = 1.5;
 const ALARM_EDGE_WIDTH = 1.5;
 const CONTOUR_WIDTH = 2.2;
 const FLAT_CONTOUR_WIDTH = 2.5;
-// A line lies this much before its surface, as a part of the distance.
+// A line lies this much in front of its surface, relative to the distance.
 const OFFSET = 0.0016;
 // Width of the lines of an element without faces (px in the reference picture).
 const BAR_WIDTH = 2.2;
 // Elements smaller than this (px) get fainter edges, or edges would cover everything.
 const SMALL_ELEMENT = 26.0;
-// Towards this size (px) edges fade out, because so close together they would flicker.
+// Edges fade out towards this size (px), because close edges would flicker.
 const SMALLEST_ELEMENT = vec2<f32>(4.0, 8.0);
 // Folds inside the turned-over set of elements smaller than this (px) are fainter.
 const SMALL_FOLDED = 8.0;
@@ -68,7 +68,8 @@ fn widest(kind: u32) -> f32 {
     }
 }
 
-// A line: its two ends on the panel's region (px), and the bits of its depths, of the packed number, and its first sample.
+// A line: its two ends on the panel's region (px), and the bits of its depths, of the packed number, and of its first
+// sample.
 struct Line {
     ends: vec4<f32>,
     rest: vec4<u32>,
@@ -104,7 +105,7 @@ fn covered(distance: f32, width: f32) -> f32 {
     return clamp(0.5 * drawn + 0.5 - distance, 0.0, 1.0) * (width / drawn);
 }
 
-// Where a pixel is beside a line.
+// The place of a pixel beside a line.
 struct Beside {
     // The nearest point of the line, and the line's direction.
     middle: vec2<f32>,
@@ -125,12 +126,12 @@ fn beside(segment: Segment) -> Beside {
     return Beside(middle, along, length(pixel - middle), mix(segment.depths.x, segment.depths.y, share), share);
 }
 
-// The opacity of edges, but for what they are of.
+// The opacity of edges, before the factor for their elements.
 fn edge_strength() -> f32 {
     return min(1.0, panel.element / SMALL_ELEMENT) * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, panel.element);
 }
 
-// What was found of the visibility of lines, line after line: see `visibility.wgsl`.
+// The tested visibility of lines, line after line: see `visibility.wgsl`.
 @group(1) @binding(4) var visibility: texture_2d<f32>;
 
 const VISIBILITY_WIDTH = 2048u;
@@ -171,7 +172,7 @@ fn alarm_edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     unpack(segment);
     let at = beside(segment);
     let shares = visibility_at(segment, at.share);
-    // Turned-over elements hide more of it than others.
+    // Turned-over elements hide more of a line than others.
     let behind = mix(0.15, ALARM_HIDDEN_ALPHA, shares.z);
     let alpha = ALARM_EDGE_ALPHA * shares.x + behind * shares.y;
     let width = ALARM_EDGE_WIDTH * panel.line_scale * panel.contour_share;
@@ -179,7 +180,7 @@ fn alarm_edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
 }
 
 struct ContourLook {
-    // Opacities of the outline, of steps of depth, and of what surfaces hide.
+    // Opacities of the outline, of steps of depth, and of hidden lines.
     outline: f32,
     step: f32,
     hidden: f32,
@@ -211,7 +212,7 @@ fn alarm_contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let shares = visibility_at(segment, at.share);
     let look = contour_look(at.distance, segment, shares);
     let smallness = min(1.0, panel.element / SMALL_FOLDED);
-    // Where the set ends, its outline is drawn at full strength.
+    // At the end of the set, its outline is drawn at full strength.
     let fold = mix(smallness * smallness, 1.0, shares.w);
     return vec4(0.0, look.step + fold * look.hidden, look.outline, 0.0);
 }

@@ -1,5 +1,5 @@
-// Solid obstacles, among the bodies: the same light on another material, nothing below the floor. In the plane they have
-// a rim and a smooth border of their own.
+// Solid obstacles, among the bodies: the same light on another material, nothing below the floor. In the plane they
+// have a rim and a smooth border.
 
 struct SolidCorner {
     @builtin(position) place: vec4<f32>,
@@ -7,10 +7,10 @@ struct SolidCorner {
     @location(1) normal: vec3<f32>,
     @location(2) @interpolate(flat) colour: vec3<f32>,
     @location(3) @interpolate(flat) rim: vec3<f32>,
-    // How far inside the outline (px).
+    // The distance inside the outline (px).
     @location(4) inward: f32,
     @location(5) above: f32,
-    // How much the body occludes the ambient light.
+    // The share of ambient light that the body occludes.
     @location(6) near: f32,
     @location(7) @interpolate(flat) shared_0: vec4<f32>,
     @location(8) @interpolate(flat) shared_1: vec4<f32>,

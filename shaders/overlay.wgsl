@@ -1,4 +1,4 @@
-// Marks and words on top of everything, blended as sRGB values, for which type is made.
+// Marks and words on top of everything, blended as sRGB values, as type requires.
 
 struct Mark {
     // Left, top, width and height (px).
@@ -47,7 +47,7 @@ const HAND = 13u;
 // The opacity of a halo.
 const HALO = 0.75;
 
-// The ring arrow: radius and thickness in parts of the mark, start and end of its line (rad, counter-clockwise from the
+// The ring arrow: radius and thickness relative to the mark, start and end of its line (rad, counter-clockwise from the
 // right), length and half width of its head.
 const RING = 0.80;
 const THICKNESS = vec2<f32>(0.14, 0.22);
@@ -80,13 +80,13 @@ fn with_halo(colour: vec4<f32>, halo: vec3<f32>, outside: f32, width: f32) -> ve
     return vec4((colour.rgb * inner + halo * outer * (1.0 - inner)) / max(alpha, 1e-6), alpha);
 }
 
-// A long arrow in parts of the width of its head: length and depth of notch of the head, thickness of the shaft, and
-// the halo. The head of a short arrow is this part of its length, and the whole arrow is scaled with it.
+// A long arrow in widths of its head: length and depth of notch of the head, thickness of the shaft, and the halo. The
+// head of a short arrow is this part of its length, and the whole arrow is scaled with it.
 const ARROW_HEAD = vec2<f32>(1.235, 0.2);
 const ARROW_SHAFT = 0.247;
 const ARROW_HALO = 0.17647;
-// The part of the halo's room that it fills, so that it is equally wide beside its arrow in pictures of all sizes: 2.5
-// of the 3 pixels around a long arrow in the reference picture. Half a pixel is left for its smooth border.
+// The share of the halo's room that it fills, so that it is equally wide in pictures of all sizes: 2.5 of the 3 pixels
+// around a long arrow in the reference picture. Half a pixel is left for its smooth border.
 const ARROW_HALO_FILLED = 0.83333;
 const ARROW_SHORT = 0.62;
 

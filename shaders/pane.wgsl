@@ -17,7 +17,7 @@ struct PaneCorner {
 
 // The start of the fade in the circle of a wall.
 const FADE = 0.45;
-// The parts of the panel's width and height in which walls fade out: at the sides, below, and above, where words stand.
+// The parts of the panel's width and height in which walls fade out: at the sides, below, and above, at the words.
 const SIDE_FADE = 0.14;
 const LOWER_FADE = 0.13;
 const UPPER_FADE = vec2<f32>(0.11, 0.20);
@@ -29,11 +29,11 @@ const CREASE_HEIGHT = 0.8;
 const CREASE_SHADE = 0.10;
 // Edges: thickness (px in the reference picture) and opacity.
 const EDGE = vec2<f32>(1.35, 0.86);
-// The opacity of a pane before bodies, as a part of its own, so that they stay visible.
+// The opacity of a pane in front of bodies, relative to its own, so that they stay visible.
 const OVER_BODIES = 0.6;
-// A wall before bodies hides even less of them.
+// A wall in front of bodies hides even less of them.
 const WALL_OVER_BODIES = 0.35;
-// As for other lines: an edge is this much nearer than its faces, as a part of the distance.
+// As for other lines: an edge is this much nearer than its faces, relative to the distance.
 const OFFSET = 0.0016;
 
 @vertex
@@ -51,7 +51,7 @@ fn pane_corner(
     return PaneCorner(place, grid, from_middle, inward, above, place.xyw, colour, lined);
 }
 
-// The share of a pixel in which a depth lies before a body: 0 where there is no body.
+// The share of a pixel in which a depth is in front of a body: 0 without a body.
 fn before_bodies(pixel: vec2<f32>, depth: f32) -> f32 {
     let inside = pixel - panel.place.xy - panel.region.xy;
     if any(inside < vec2(0.0)) || any(inside >= panel.region.zw) {
@@ -60,7 +60,7 @@ fn before_bodies(pixel: vec2<f32>, depth: f32) -> f32 {
     let at = vec2<i32>(pixel - panel.place.xy);
     let here = load_depth(at);
     var share = select(0.0, 1.0, here > 0.0 && here < depth);
-    // Outlines reach over the border of their body, where they have the depth of its neighbour.
+    // Outlines extend over the border of their body, where they have the depth of its neighbour.
     let opacity = textureLoad(lines, at, 0);
     let drawn = max(max(opacity.r, opacity.g), max(opacity.b, opacity.a));
     if drawn > share {

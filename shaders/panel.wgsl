@@ -4,7 +4,7 @@
 const OBSTACLE = 254.0 / 255.0;
 
 struct Occluder {
-    // The middle of a box, and how far around it the obstacle reaches.
+    // The middle of a box, and the reach of the obstacle around it.
     first: vec4<f32>,
     // Half the sides of the box; 1 if the obstacle is transparent.
     second: vec4<f32>,
@@ -13,54 +13,54 @@ struct Occluder {
 }
 
 struct Panel {
-    // From the panel's coordinates to clip space of what is drawn into; depth is near / distance.
+    // From the panel's coordinates to clip space of the target; depth is near / distance.
     clip: mat4x4<f32>,
-    // Where the eye is; distance of the nearest thing drawn.
+    // The position of the eye; distance of the near plane.
     eye: vec3<f32>,
     near: f32,
     // Towards the key light; 1 for flat colours without light.
     key: vec3<f32>,
     flatness: f32,
-    // Out of the floor; its height along that.
+    // The floor's outward normal, and its height along the normal.
     up: vec3<f32>,
     floor: f32,
-    // Colour of elements that are not inverted; length of an element's edge (px).
+    // Colour of sound elements; length of an element's edge (px).
     sound: vec3<f32>,
     element: f32,
-    // Colour of turned-over elements; thickness of lines in parts of the reference.
+    // Colour of turned-over elements; thickness of lines relative to the reference.
     alarm: vec3<f32>,
     line_scale: f32,
     // Colour of their hatch and edges.
     alarm_line: vec3<f32>,
     outline_alpha: f32,
-    // Colour of the edges of elements that are not inverted; pixels for a slope of one.
+    // Colour of the edges of sound elements; pixels for a slope of one.
     edge: vec3<f32>,
     focal: f32,
     // Colour of the outline; unit of soft distances in light and of steps in depth.
     outline: vec3<f32>,
     soft: f32,
-    // Left, top, width and height of the body's region in the textures that hold bodies (px).
+    // Left, top, width and height of the body's region in the textures of bodies (px).
     region: vec4<f32>,
-    // Its left and top in the picture (px), less its left and top in those textures; the middle of the body in the
+    // Its left and top in the picture (px), minus its left and top in those textures; the middle of the body in the
     // picture (px).
     place: vec4<f32>,
-    // How wide contours of bodies are, from 0 to 1.
+    // Width of contours of bodies, from 0 to 1.
     contour_share: f32,
     unused: f32,
-    // Over how far solid obstacles fade out across and down (px); left, upper, right and lower side of the room in which they
-    // do so (px), and how strongly at each.
+    // The distances over which solid obstacles fade, across and down (px); left, upper, right and lower side of their
+    // room (px); and the strength of the fading at each.
     fade_distance: vec2<f32>,
     fade_room: vec4<f32>,
     fade_strength: vec4<f32>,
-    // The obstacles near the body; unused entries reach nothing.
+    // The obstacles near the body; unused entries have no effect.
     occluders: array<Occluder, 5>,
 }
 
 @group(0) @binding(0) var<uniform> panel_data: Panel;
 
-// The same for the functions below, which vertex shaders copy. Where it pays, fragment shaders get what they use most from the
-// corners of what is drawn, as varyings that do not vary: a software driver reads a uniform buffer anew for each lane.
+// A private copy for the functions below, made by vertex shaders. Where it pays, fragment shaders get frequently used
+// values from the corners, as constant varyings: a software driver reads a uniform buffer anew for each lane.
 var<private> panel: Panel;
 
-// Powers of a colour's brightness that the eye weighs.
+// Powers of a colour's brightness, weighted like the eye.
 const LUMINANCE = vec3<f32>(0.2126, 0.7152, 0.0722);

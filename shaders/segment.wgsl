@@ -22,7 +22,7 @@ fn ends_of(start: vec3<f32>, end: vec3<f32>) -> Ends {
 
 const FLIP = vec2<f32>(0.5, -0.5);
 
-// The place of a point in clip space in a target of a size (px).
+// The place in a target of a size (px) of a point in clip space.
 fn pixel_of(at: vec4<f32>, size: vec2<f32>) -> vec2<f32> {
     return (at.xy / at.w * FLIP + 0.5) * size;
 }

@@ -1,5 +1,5 @@
-// Lines with colours of their own, and nodes as discs that face the viewer, over the finished bodies. Parts behind a
-// surface are fainter or not drawn.
+// Coloured lines, and nodes as discs that face the viewer, over the finished bodies. Parts behind a surface are fainter
+// or not drawn.
 
 struct Stroke {
     @builtin(position) place: vec4<f32>,
@@ -21,15 +21,15 @@ const CASED_LINE = 3u;
 
 // As for the surfaces of turned-over elements.
 const NEARER = 0.02;
-// A line lies this much before its surface, as a part of the distance.
+// A line lies this much in front of its surface, relative to the distance.
 const OFFSET = 0.0016;
-// The width of a casing, in parts of the line's, and the least (px).
+// The width of a casing relative to the line's, and the least (px).
 const CASING = 0.24;
 const LEAST_CASING = 0.6;
-// The rim of a disc, in parts of its radius.
+// The rim of a disc, relative to its radius.
 const RIM = 0.32;
-// A disc is cut off by depths before the front of a ball this much larger. It fades over half of that before and
-// behind: depths of a sheet seen nearly from its side change too much within a pixel for a step.
+// A disc is cut off by depths in front of a ball this much larger. It fades over half of that in front and behind:
+// depths of a sheet seen nearly from its side change too much within a pixel for a step.
 const FRONT = 2.0;
 
 @vertex
@@ -76,7 +76,7 @@ fn disc_share(middle: vec2<f32>, pixel: vec2<f32>, before: f32, nearness: f32, t
     return seen * saturate(0.5 + 0.5 * (front - here) / (max(0.5 * FRONT * nearness, FADED_DEPTH) * max(here, 1e-9)));
 }
 
-// The visibility of a line, and the part of it that runs over a surface, not along an outline against the ground.
+// The visibility of a line, and the part of it over a surface, not along an outline against the ground.
 fn line_shares(middle: vec2<f32>, across: vec2<f32>, before: f32, tap: u32) -> vec2<f32> {
     let here = tap_depth(middle, tap);
     let inside = here > 0.0 && min(tap_depth(middle + across, tap), tap_depth(middle - across, tap)) > 0.0;
@@ -95,7 +95,7 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
     let distance = length(pixel - middle);
     let before = mix(stroke.depths.x, stroke.depths.y, share) * (1.0 + OFFSET);
     if stroke.kind == DISC {
-        // The radius of a ball as large as the disc, as a part of the distance.
+        // The radius of a ball as large as the disc, relative to the distance.
         let nearness = min(0.5 / FRONT, stroke.size / panel.focal);
         let inward = stroke.size - distance;
         var shown = 0.0;

@@ -1,5 +1,5 @@
-// Surfaces of bodies: lit, hatched where turned over, and with the turned-over elements showing through the others.
-// Colours are stored as their square roots, which keeps eight bits fine in the dark and is quick to undo.
+// Surfaces of bodies: lit, with a hatch on turned-over elements, which show through the others. Colours are stored as
+// their square roots, which keeps eight bits fine in the dark and is quick to undo.
 
 struct Corner {
     @builtin(position) place: vec4<f32>,
@@ -12,8 +12,8 @@ struct Corner {
     @location(7) @interpolate(flat) shared_3: vec4<f32>,
 }
 
-// What all pixels of a panel share, as far as it is used by all: packed into varyings, and taken out again. More of them would
-// take longer to set up for small triangles than they save.
+// Values of a panel that all its pixels use: packed into varyings, and unpacked again. More of them would take longer
+// to set up for small triangles than they save.
 fn pack_shared(own: vec3<f32>) -> array<vec4<f32>, 4> {
     return array(
         vec4(panel.eye, panel.soft),
@@ -51,32 +51,32 @@ const WRAP = 0.12;
 // Below this height above the floor (soft units) side faces get less light, down to this part of it.
 const CONTACT_HEIGHT = 0.9;
 const CONTACT_LIGHT = 0.72;
-// Where a body and an obstacle touch face to face they take this part of the light around them from each other, and less
-// of the key light.
+// At a face-to-face contact, a body and an obstacle take this part of the ambient light from each other, and less of
+// the key light.
 const TAKEN = 0.75;
 const KEY_TAKEN = 0.8;
 // The turned-over set is drawn this much nearer (sides), so that it wins where it shares faces with the other one.
 const NEARER = 0.02;
-// A face turned away lies this much farther back, as a part of the distance.
+// A face turned away is this much farther back, relative to the distance.
 const BACK_FACE = 1e-5;
-// The share of a stripe's period that is dark, and how dark it is.
+// The dark share of a stripe's period, and its darkness.
 const STRIPE = 0.2;
 const STRIPE_ALPHA = 0.62;
-// A flat body's hatch goes along with the body, has this period (px in the reference picture) and this share of it is dark.
+// A flat body's hatch moves with the body. It has this period (px in the reference picture) and this dark share.
 const FLAT_PERIOD = 9.0;
 const FLAT_STRIPE = 0.19;
-// Dots of flat elements go along with the body, too: their distance and radius (px in the reference picture), and how dark
-// they are.
+// Dots of flat elements move with the body, too: their distance and radius (px in the reference picture), and their
+// darkness.
 const DOTS_APART = 7.0;
 const DOT = 1.3;
 const DOT_ALPHA = 0.6;
-// The depth (soft units) behind the visible surface from which on a turned-over element no longer gains from being near.
+// From this depth (soft units) behind the visible surface on, a turned-over element is equally visible.
 const THROUGH_DEPTH = 0.6;
-// The brightness of a surface that is drawn without light.
+// The brightness of a surface without lighting.
 const UNLIT = 0.86;
 
-// Where a corner of a face is drawn. Of two faces at the same place, as in a body pressed flat, the one towards the viewer
-// is always visible: the other is moved back by a few times the rounding error of depths.
+// The drawn position of a face's corner. Of two faces at the same place, as in a body pressed flat, the one towards the
+// viewer is always visible: the other is moved back by a few times the round-off of depths.
 fn corner_place(position: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
     var place = panel.clip * vec4(position, 1.0);
     if panel.flatness < 0.5 && dot(normal, panel.eye - position) < 0.0 {
@@ -93,7 +93,7 @@ fn sound_corner(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>
     return Corner(place, position, normal, hatch, same[0], same[1], same[2], same[3]);
 }
 
-// Where a corner of the turned-over set is drawn.
+// The drawn position of a corner of the turned-over set.
 fn moved_nearer(position: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
     var place = corner_place(position, normal);
     place.z *= place.w / max(place.w - NEARER, panel.near);
@@ -114,7 +114,7 @@ struct Light {
     gloss: f32,
 }
 
-// A unit normal that is turned towards the viewer.
+// A unit normal turned towards the viewer.
 fn facing_normal(position: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let view = normalize(panel.eye - position);
     // A corner of a collapsed face has no normal; it is lit as if it faced the viewer.
@@ -128,7 +128,7 @@ fn light(position: vec3<f32>, normal: vec3<f32>) -> Light {
     return light_left(position, facing, left_by_obstacles(position, facing));
 }
 
-// The light on a point with a unit normal, of which something near leaves a part.
+// The light on a point with a unit normal, reduced by near objects.
 fn light_left(position: vec3<f32>, facing: vec3<f32>, left: f32) -> Light {
     let view = normalize(panel.eye - position);
     let key = mix(1.0, left, KEY_TAKEN) * max(0.0, dot(facing, panel.key) + WRAP) / (1.0 + WRAP);
@@ -144,17 +144,17 @@ fn light_left(position: vec3<f32>, facing: vec3<f32>, left: f32) -> Light {
     return Light(mix(KEY * key + around, vec3(1.0), panel.flatness), gloss * (1.0 - panel.flatness));
 }
 
-// How much of a pixel the stripes of the hatch cover.
+// The part of a pixel that the stripes of the hatch cover.
 fn stripes(hatch: f32, place: vec2<f32>) -> f32 {
     let from_body = place + panel.place.xy - panel.place.zw;
     let flat_hatch = (from_body.x + from_body.y) * 0.70710678 / (FLAT_PERIOD * panel.line_scale);
     let at = select(hatch, flat_hatch, panel.flatness > 0.5);
     let share = select(STRIPE, FLAT_STRIPE, panel.flatness > 0.5);
-    // Periods a pixel; the width of the filter.
+    // Periods per pixel; the width of the filter.
     let width = max(length(vec2(dpdx(at), dpdy(at))), 1e-5);
     let off = abs(fract(at) - 0.5);
     let covered = clamp((0.5 * share - off) / width + 0.5, 0.0, 1.0);
-    // Stripes finer than three pixels a period would only flicker.
+    // Stripes finer than three pixels per period would only flicker.
     return mix(covered, share, smoothstep(0.2, 0.45, width));
 }
 
@@ -170,7 +170,7 @@ fn alarm(corner: Corner) -> AlarmColour {
     return AlarmColour(colour * light.diffuse + light.gloss, dot(light.diffuse, LUMINANCE));
 }
 
-// The turned-over set, as it is seen through the body, and as a surface of the body.
+// The turned-over set, as seen through the body, and as a surface of the body.
 struct TurnedOver {
     @location(0) behind: vec4<f32>,
     @location(1) surface: vec4<f32>,
@@ -188,12 +188,12 @@ fn opaque(colour: vec3<f32>) -> vec4<f32> {
     return vec4(sqrt(saturate(colour)), 1.0);
 }
 
-// What is stored of a surface of a colour over what lies behind it.
+// The stored colour of a surface over the colour behind it.
 fn over_behind(colour: vec3<f32>, corner: Corner) -> vec4<f32> {
     let at = vec2<i32>(corner.place.xy);
     let behind = load_alarm_depth(at);
     let stored = load_alarm_colour(at);
-    // In the plane, turned-over elements lie before others.
+    // In the plane, turned-over elements lie in front of others.
     if behind <= 0.0 || panel.flatness > 0.5 {
         return opaque(colour);
     }
@@ -207,7 +207,7 @@ fn over_behind(colour: vec3<f32>, corner: Corner) -> vec4<f32> {
     return opaque(mix(grey, alarm, 1.0 - 0.4 * deep));
 }
 
-// How much of a pixel the dots of a flat element cover.
+// The part of a pixel that the dots of a flat element cover.
 fn dots(place: vec2<f32>) -> f32 {
     let scale = panel.line_scale;
     let from_body = (place + panel.place.xy - panel.place.zw) / (DOTS_APART * scale);
@@ -229,7 +229,8 @@ fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
     return opaque(sound(corner, panel.sound));
 }
 
-// Where something lies behind such surfaces, or elements are flat. A software driver would run all of it for every surface.
+// For panels with turned-over elements behind such surfaces, or with flat elements. A software driver would run all of
+// it for every surface.
 @fragment
 fn sound_before(corner: Corner) -> @location(0) vec4<f32> {
     unpack_sound(corner);

@@ -1,18 +1,18 @@
-// Surfaces coloured by a scalar field, lit so mildly that the colours of its scale stay what they are. Turned-over
-// elements are coloured by it, too, and keep their hatch, in vermilion; deep in the body only that is seen.
+// Surfaces coloured by a scalar field, with mild lighting that keeps the colours of its scale. Turned-over elements are
+// coloured, too, and keep their hatch, in vermilion; deep in the body only the hatch is visible.
 
 // The colours of the scale, linear.
 @group(1) @binding(4) var<uniform> ramp: array<vec4<f32>, SHADES>;
 
 const SHADES = 64;
 // Light changes the lightness of a colour by at most this part, up and down, and never its hue. The darkest and the
-// brightest light are of these brightnesses.
+// brightest light have these brightnesses.
 const LIGHTNESS = 0.06;
 const BRIGHTNESS = vec2<f32>(0.40, 1.15);
-// How strong stripes are that are seen through the body.
+// The strength of stripes that are seen through the body.
 const THROUGH = 0.75;
-// Up to this depth (soft units) behind the surface their colours are seen, too, the less the deeper: where they cut it or lie close to it,
-// there is no jagged border, and nothing that pops.
+// Up to this depth (soft units) behind the surface the colours of turned-over elements are visible, fading with depth.
+// So there is no jagged border where they cut the surface or lie close to it, and nothing appears suddenly.
 const NEAR_DEPTH = 0.3;
 
 struct TintedCorner {
@@ -68,18 +68,18 @@ fn tint(corner: TintedCorner) -> vec3<f32> {
     }
     let brightness = dot(light(corner.position, corner.normal).diffuse, LUMINANCE);
     let lightness = 1.0 + LIGHTNESS * (2.0 * smoothstep(BRIGHTNESS.x, BRIGHTNESS.y, brightness) - 1.0);
-    // Lightness goes with the cube root of light (Oklab). What is too bright for the screen would change its hue there.
+    // Lightness follows the cube root of light (Oklab). Colours too bright for the screen would change their hue there.
     let most = 1.0 / max(max(colour.r, colour.g), max(colour.b, 1e-3));
     return colour * min(lightness * lightness * lightness, most);
 }
 
-// The colour of a turned-over element, and how much of it is the stripes of its hatch.
+// The colour of a turned-over element, and the share of the stripes of its hatch.
 fn alarm_tint(corner: TintedCorner) -> vec4<f32> {
     let covered = stripes(corner.hatch, corner.place.xy);
     return vec4(mix(tint(corner), panel.alarm, covered), covered);
 }
 
-// Behind the body, how much of a pixel its hatch covers.
+// Behind the body, the part of a pixel that its hatch covers.
 @fragment
 fn tinted_alarm(corner: TintedCorner) -> TurnedOver {
     panel.alarm = unpack_tinted(corner);
@@ -98,7 +98,7 @@ fn tinted_over(colour: vec3<f32>, corner: TintedCorner) -> vec4<f32> {
     }
     let depth = panel.near / behind - 1.0 / corner.place.w;
     let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
-    // Of a hatch only the stripes are seen, whatever lies between them.
+    // Of a hatch only the stripes are visible, not the colours between them.
     let through = mix(colour, panel.alarm, THROUGH * (1.0 - 0.4 * deep) * stored.a);
     return opaque(mix(stored.rgb * stored.rgb, through, smoothstep(0.0, NEAR_DEPTH * panel.soft, depth)));
 }

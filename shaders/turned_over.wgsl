@@ -1,4 +1,4 @@
-// The turned-over elements, drawn before by themselves: lit colour, brightness of the light in alpha, and depth.
+// The turned-over elements, drawn alone before: lit colour, brightness of the light in alpha, and depth.
 
 @group(1) @binding(2) var alarm_depth: texture_depth_2d;
 @group(1) @binding(3) var alarm_colour: texture_2d<f32>;

@@ -1,11 +1,11 @@
-// How visible lines are: tested once for each pixel of their length, not for each that they cover, before they are drawn.
-// The tests are made at the taps around the point of the line, so that lines end smoothly. Each kind of line has a pipeline of
-// its own, as the tests differ.
+// The visibility of lines, tested before they are drawn: once for each pixel of their length, not for each pixel that
+// they cover. The tests are made at the taps around the point of the line, so that lines end smoothly. Each kind of
+// line has a pipeline, as the tests differ.
 
-// Samples that follow each other along one line: the line, and the first of them on it.
+// Consecutive samples along one line: the line, and its first sample.
 @group(2) @binding(0) var<storage, read> chunks: array<vec2<u32>>;
 @group(2) @binding(2) var found: texture_storage_2d<rgba8unorm, write>;
-// The first of the chunks that are to be done, and how many.
+// The first chunk to test, and the number of chunks.
 @group(2) @binding(3) var<uniform> range: vec2<u32>;
 
 const CHUNK = 4u;
@@ -13,17 +13,18 @@ const GROUP = 128u;
 
 // From this step of depth on, a contour inside the body is drawn (soft units).
 const STEP = 0.22;
-// By less than this step (soft units) an obstacle does not hide the contour of another, or its own.
+// Below this step (soft units) an obstacle does not hide its own contour or that of another.
 const ROUND_STEP = 0.8;
 
-// The depth of the turned-over set by itself at one of the taps around a point.
+// The depth of the turned-over set alone at one of the taps around a point.
 fn alarm_depth_around(place: vec2<f32>, tap: u32) -> f32 {
     return load_alarm_depth(texel_around(place, tap));
 }
 
-// The visibility of an edge, and how much of it lies behind a body.
+// The visibility of an edge, and the part of it behind a body.
 fn edge_shares(at: Beside, tap: u32) -> vec2<f32> {
-    // Of a face seen at a grazing angle, what is a pixel nearer to the viewer lies before its edge. So the farther side counts.
+    // A face seen at a grazing angle has points in front of its edge a pixel nearer to the viewer. So the farther side
+    // counts.
     let across = 0.75 * vec2(-at.along.y, at.along.x);
     let here = tap_depth(at.middle, tap);
     let sides = vec2(tap_depth(at.middle + across, tap), tap_depth(at.middle - across, tap));
@@ -34,7 +35,7 @@ fn edge_shares(at: Beside, tap: u32) -> vec2<f32> {
     return vec2(seen, select(0.0, 1.0 - seen, through));
 }
 
-// How much of a contour is outer outline, how much is a step of depth inside the body, and how much is hidden.
+// The share of a contour that is outer outline, that is a step of depth inside the body, and that is hidden.
 fn contour_shares(at: Beside, kind: u32, tap: u32) -> vec3<f32> {
     let here = tap_depth(at.middle, tap);
     let normal = vec2(-at.along.y, at.along.x);
@@ -44,7 +45,7 @@ fn contour_shares(at: Beside, kind: u32, tap: u32) -> vec3<f32> {
     let farther = min(sides.x, sides.y);
     let step = STEP * panel.soft;
     let distance = distance_of(at.depth);
-    // Surfaces that end in a contour are seen at a grazing angle and come much nearer within a pixel.
+    // Surfaces that end in a contour are seen at a grazing angle, and come much nearer within a pixel.
     let covered_by = distance - distance_of(max(farther, min(here, nearer)));
     var shown = 1.0 - smoothstep(0.4 * step, 0.6 * step, covered_by);
     let obstacles = vec2(
@@ -52,7 +53,7 @@ fn contour_shares(at: Beside, kind: u32, tap: u32) -> vec3<f32> {
         is_obstacle(at.middle - across, tap),
     );
     if kind == OBSTACLE_CONTOUR {
-        // Round obstacles come nearer still: only other things than obstacles hide their contours fully.
+        // Round obstacles come nearer still: only other objects hide their contours fully.
         let least = panel.soft * select(vec2(0.5 * STEP), vec2(ROUND_STEP), obstacles);
         let before_it = vec2(distance) - vec2(distance_of(sides.x), distance_of(sides.y));
         let free = 1.0 - smoothstep(0.8 * least, 1.2 * least, before_it);
@@ -69,7 +70,7 @@ fn contour_shares(at: Beside, kind: u32, tap: u32) -> vec3<f32> {
         let close = normal * select(-0.9, 0.9, sides.x <= sides.y);
         outline = select(shown, 1.0, tap_depth(at.middle + close, tap) <= 0.0);
     }
-    // Where one thing ends before another, a contour is drawn however close they are.
+    // Where one object ends in front of another, a contour is drawn at any distance.
     let deep = smoothstep(0.8 * step, 1.2 * step, distance_of(farther) - distance_of(nearer));
     let meets = obstacles.x != obstacles.y;
     let stepped = (1.0 - outline) * shown * select(deep, 1.0, meets);
@@ -103,7 +104,7 @@ fn sample_of(thread: vec3<u32>, groups: vec3<u32>) -> Sample {
     return Sample(at, kind, visibility_place(line.rest.w + number), within && number < count);
 }
 
-// Edges: how visible, and how much lies behind a body.
+// Edges: the visibility, and the part behind a body.
 @compute @workgroup_size(GROUP)
 fn edges(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let one = sample_of(thread, groups);
@@ -133,7 +134,7 @@ fn alarm_edges(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(num_wo
     textureStore(found, one.place, vec4(shares, free, 0.0));
 }
 
-// Contours: how much of one is outer outline, how much is a step of depth inside the body, and how much is hidden.
+// Contours: the share that is outer outline, that is a step of depth inside the body, and that is hidden.
 @compute @workgroup_size(GROUP)
 fn contours(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let one = sample_of(thread, groups);

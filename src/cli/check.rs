@@ -87,7 +87,7 @@ impl Check {
                     let no_room = no_room(&scene);
                     if !no_room.is_empty() {
                         let [width, height] = scene.view.size;
-                        note(&format!("{file}: some parts have no room in {width}×{height}: {}", no_room.join("; ")));
+                        note(&format!("{file}: not everything has room in {width}×{height}: {}", no_room.join("; ")));
                     }
                 }
                 Err(error) => {

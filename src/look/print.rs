@@ -32,7 +32,7 @@ pub(crate) struct PrintFile {
     /// Width and height (mm).
     #[schemars(inner(range(min = 5.0, max = 2000.0)))]
     pub(crate) mm: [f64; 2],
-    /// Pixels per inch, recorded in PNG files, and of lit bodies in SVG and PDF files.
+    /// Pixels per inch of PNG files, which record it, and of lit bodies in SVG and PDF files.
     #[serde(default = "dpi")]
     #[schemars(range(min = 72.0, max = 1200.0))]
     pub(crate) dpi: f64,
@@ -122,7 +122,7 @@ impl TextScaleFile {
             Self::Points(points) => points,
         };
         let Some(print) = print else {
-            let message = format!("type of {pt} pt is asked for in a picture of a size in pixels");
+            let message = format!("type of {pt} pt needs a size in print, but this picture has one in pixels");
             report.at(way, message, "give `size` in millimetres, such as { mm = [180, 101] }".to_owned());
             return None;
         };

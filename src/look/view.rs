@@ -340,7 +340,7 @@ pub struct Style {
     /// The background. The other theme is used if this one's text cannot be read on it. Default: the theme's.
     #[schemars(with = "Option<TypedColour>")]
     pub background: Option<Colour>,
-    /// Colours of the body, such as `{ body = "steelblue" }`. Related shades follow them. Default: the theme's.
+    /// Colours of the body, such as `{ body = "steelblue" }`, from which shades are derived. Default: the theme's.
     #[serde(serialize_with = "open")]
     pub colours: Colours,
     /// The font files, such as `{ regular = "NotoSansCJK.ttc" }`. Default: the built-in font, which has Latin and Greek

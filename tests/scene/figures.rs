@@ -49,7 +49,7 @@ fn every_mistake_is_said_where_it_is() {
             "1:14 `text_scale` is 3.1; expected a number from 0.5 to 3",
         ),
         ("[sheet]\nscene = 'nowhere.toml'\nmoments = [0]", "2:9 nowhere.toml: there is no such file"),
-        ("[sheet]\nmoments = [0]", "2:1 there is no `scene` beside the moments that are shown of it"),
+        ("[sheet]\nmoments = [0]", "2:1 the moments have no `scene`"),
         ("[sheet]\n[[sheet.column]]\ntime = 0", "2:1 the column has no scene: expected `scene` here or in `[sheet]`"),
         (
             "[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\n[[sheet.column]]\ntime = 0",
@@ -98,7 +98,7 @@ fn every_mistake_is_said_where_it_is() {
         ),
         (
             "[sheet]\nscene = 'fig4b.toml'\nmoments = [1]\n[[sheet.row]]\nrun = 'Mass-spring'\ntime = 2",
-            "6:1 both a row and a column say the moment of the same picture",
+            "6:1 both a row and a column give the moment of the same picture",
         ),
         (
             "[sheet]\nscene = 'fig4b.toml'\nstrips = ['energy']\n[[sheet.column]]\n[[sheet.row]]\nrun = 'Mass-spring'\ntime = 2",

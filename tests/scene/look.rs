@@ -132,7 +132,10 @@ fn mistakes_of_colours_of_runs() {
     good(&of_runs("", &[&format!("colour = '{named}'")]));
     assert!(told("theme = 'dark'", "'navy'").contains("make it lighter, such as \"#"));
     let alarm = told("", "'#d45500'");
-    assert!(alarm.contains("`run[1].colour` is too similar to that of turned-over elements, #e2661c: to "), "{alarm}");
+    assert!(
+        alarm.contains("`run[1].colour` is too similar to the colour of turned-over elements, #e2661c: to "),
+        "{alarm}"
+    );
     assert!(alarm.contains("(CIEDE2000); expected at least 20") && alarm.contains("choose another hue"), "{alarm}");
 }
 
@@ -196,7 +199,7 @@ fn view(to: &str, expected: &str) {
 #[test]
 fn mistakes_of_colours() {
     view("background = 'transparent'", "20:14 `view.background = \"transparent\"` is gone write a colour");
-    view("background = '#ffffff00'", "20:14 , which something shows through; expected an opaque colour");
+    view("background = '#ffffff00'", "20:14 , which is transparent; expected an opaque colour");
     view("background = 7", "20:14 is the whole number 7; expected a string The background");
     view(
         "colours = { body = 'stelblue' }",
@@ -205,8 +208,8 @@ fn mistakes_of_colours() {
     view("colours = { body = 'stelblue' }", "20:20 did you mean \"steelblue\"?");
     view("colours = { body = '93a5ba' }", "20:20 write \"#93a5ba\"");
     view("colours = { body = '#93a5b' }", "20:20 expected three or six digits, such as \"#93a5ba\"");
-    view("colours = { body = '#93a5ba80' }", "20:20 , which something shows through; expected an opaque colour");
-    view("colours = { body = 'transparent' }", "20:20 , which something shows through; expected an opaque colour");
+    view("colours = { body = '#93a5ba80' }", "20:20 , which is transparent; expected an opaque colour");
+    view("colours = { body = 'transparent' }", "20:20 , which is transparent; expected an opaque colour");
     view("colours = { body = '' }", "20:20 `view.colours.body` is \"\"; expected digits");
     view("colours = { bodi = 'red' }", "20:13 unknown key `bodi` in `view.colours` did you mean `body`?");
     view("colours = { turnedover = 'red' }", "20:13 did you mean `turned_over`?");
@@ -225,7 +228,7 @@ fn turned_over_elements_that_anybody_could_overlook_are_refused() {
     view("colours = { turned_over = '#8fa0c0' }", "20:27 (CIEDE2000); expected at least 20 choose another hue");
     view(
         "colours = { body = 'coral' }",
-        "20:20 `view.colours.body` is too similar to that of turned-over elements, #e2661c",
+        "20:20 `view.colours.body` is too similar to the colour of turned-over elements, #e2661c",
     );
     // A red and a green that most people can distinguish.
     let colours = "colours = { body = '#7c8c40', turned_over = '#b8703c' }";
@@ -263,7 +266,7 @@ fn mistakes_of_maps_and_factors() {
     view("text_scale = 3.1", "20:14 expected a number from 0.5 to 3");
     view("text_scale = '2'", "20:14 is the string \"2\"; expected a number");
     view("text_scale = { pt = 4 }", "20:21 `view.text_scale.pt` is 4; expected a number from 5 to 72");
-    view("text_scale = { pt = 7 }", "20:14 type of 7 pt is asked for in a picture of a size in pixels");
+    view("text_scale = { pt = 7 }", "20:14 type of 7 pt needs a size in print, but this picture has one in pixels");
     view("size = { mm = [180] }", "20:15 `view.size.mm` has 1 entry; expected 2");
     view("size = { mm = [4, 101] }", "20:16 `view.size.mm[0]` is 4; expected a number from 5 to 2000");
     view("size = { mm = [180, 101], dpi = 30 }", "20:33 expected a number from 72 to 1200");
@@ -428,7 +431,7 @@ fn paths_are_read() {
     for (typed, expected) in [
         ("paths = ['middle']", "20:10 \"middle\""),
         ("paths = [0, 4]", "20:13 there is no node 4; the body has 4, counted from 0"),
-        ("paths = [1, 'centre', 1]", "20:23 this path is asked for a second time"),
+        ("paths = [1, 'centre', 1]", "20:23 this path is listed a second time"),
     ] {
         expect(&bad(&view(typed)), 0, expected);
     }
