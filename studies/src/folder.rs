@@ -1,4 +1,4 @@
-//! The folder of a study, which belongs to one command, and the notes from which an interrupted study goes on.
+//! The folder of a study, which belongs to one command, and the notes from which an interrupted study continues.
 
 use crate::failure::Failure;
 use std::collections::HashMap;
@@ -12,13 +12,13 @@ pub(crate) struct Folder {
     path: PathBuf,
     /// The name of the study.
     name: &'static str,
-    /// The first line of its Markdown file and of its notes: which command makes them.
+    /// The first line of its Markdown file and of its notes: the command that makes them.
     mark: String,
 }
 
 impl Folder {
-    /// A folder for the files of a command. It is new or empty, or the same command has made its study; with `overwrite` any folder will
-    /// do.
+    /// A folder for the files of a command. It is new or empty, or the same command has made its study; with
+    /// `overwrite` any folder is accepted.
     ///
     /// # Errors
     /// A folder that is refused, or cannot be written to.
@@ -43,7 +43,7 @@ impl Folder {
         match marks.iter().find(|mark| **mark != folder.mark) {
             _ if overwrite => Ok(folder),
             Some(mark) => match mark.strip_prefix("<!-- ").and_then(|mark| mark.strip_suffix(" -->")) {
-                Some(other) => refused(format!("what `{other}` made")),
+                Some(other) => refused(format!("the study of `{other}`")),
                 None => refused(format!("{name}.md, which was not written by localshape-study")),
             },
             None if !marks.is_empty() => Ok(folder),
@@ -66,12 +66,12 @@ impl Folder {
     /// The first line of a file of the study, if there is one.
     fn first_line(&self, kind: &str) -> Option<String> {
         let path = self.path.join(format!("{}.{kind}", self.name));
-        // A pipe would be waited for.
+        // Opening a pipe would block.
         let text = path.is_file().then(|| fs::read(path))?.ok()?;
         Some(String::from_utf8_lossy(text.split(|&byte| byte == b'\n').next()?).into_owned())
     }
 
-    /// The first of the files in the folder by its name, hidden ones aside.
+    /// The first file in the folder by name, except hidden ones.
     fn some_file(&self) -> Option<String> {
         let names = fs::read_dir(&self.path).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
         names.filter(|name| !name.starts_with('.')).min()
@@ -90,14 +90,14 @@ impl Folder {
         Ok(())
     }
 
-    /// The notes of this study. An interrupted study with the same digest has left some.
+    /// The notes of this study. They have the findings of an interrupted study with the same digest.
     pub(crate) fn notes(&self, digest: &str) -> Notes {
         let path = self.path.join(format!("{}.unfinished", self.name));
         Notes::new(path, format!("{}\n{} {digest}\n", self.mark, env!("CARGO_PKG_VERSION")))
     }
 }
 
-/// The name that a file has until it is complete.
+/// The name of an incomplete file.
 fn hidden(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!(".{name}.part"))
 }
@@ -106,7 +106,8 @@ fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     Failure::files(format!("cannot write {}: {error}", path.display()))
 }
 
-/// Notes of a study: a file with a line for each finding so far. After an interruption the same command goes on from there.
+/// Notes of a study: a file with a line for each finding so far. After an interruption, the same command continues from
+/// there.
 pub(crate) struct Notes {
     path: PathBuf,
     /// The first lines, which name the study.
@@ -136,7 +137,7 @@ impl Notes {
         self.known.get(key).map(String::as_str)
     }
 
-    /// Writes down a finding. Errors are not told: a disk without room for notes may have room for the results.
+    /// Records a finding. Errors are ignored: a disk without room for notes may have room for the results.
     pub(crate) fn add(&self, key: &str, found: &str) {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         let line = |(key, found): (&str, &str)| format!("{key}\t{found};\n");
@@ -150,12 +151,12 @@ impl Notes {
         }
     }
 
-    /// Whether there are any.
+    /// Whether there are any notes.
     pub(crate) fn are_kept(&self) -> bool {
         self.path.is_file()
     }
 
-    /// Removes them, once the study is made.
+    /// Removes the notes of a finished study.
     pub(crate) fn remove(&self) {
         let _ = fs::remove_file(&self.path);
     }

@@ -1,5 +1,5 @@
-//! Measurements with `localshape`: the accuracy and the cost of its methods, their limits of stability, the robustness of models, and
-//! the tables of the paper. All is made through the public interface of the library.
+//! Measurements with `localshape`: the accuracy and the cost of its methods, their limits of stability, the robustness
+//! of models, and the tables of the paper. All use the public interface of the library.
 //!
 //! A study has a name, a measurement, and findings: text, tables and pages ([`study`]). It does not depend on files or on the
 //! command line.
@@ -83,8 +83,8 @@ enum Name {
         #[command(flatten)]
         of: OfScene,
     },
-    /// The runs of a scene for stiffnesses over three decades and steps up to beyond the predicted limit: whole, turned over or
-    /// diverged
+    /// The outcome of a scene's runs for stiffnesses over three decades and steps up to beyond the predicted limit:
+    /// whole, turned over or diverged
     Stability {
         #[command(flatten)]
         of: OfScene,
@@ -98,14 +98,14 @@ enum Name {
     },
     /// Table 1 of the paper, the errors of the rotations from Eq. (15), beside ours
     Table1 {
-        /// Number of random orientations; more of them leave the first as they are
+        /// Number of random orientations; the first ones are the same for any number
         #[arg(long, value_name = "N", default_value_t = Table1::ORIENTATIONS)]
         #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
         orientations: u32,
         #[command(flatten)]
         threads: Threads,
     },
-    /// The computation time of the shape model over that of mass-spring, beside the paper's (section 4)
+    /// The computation time of the shape model divided by that of mass-spring, beside the paper's ratio (section 4)
     Ratio {
         /// Number of threads
         #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -180,7 +180,7 @@ impl Name {
                 };
                 if study.work() == 0 {
                     return Err(Failure::usage(format!(
-                        "all runs of “{}” find their own steps: there is nothing to map; give one another integrator",
+                        "all runs of “{}” choose their own steps, so there is nothing to map; give one another integrator",
                         study.scene.title
                     )));
                 }

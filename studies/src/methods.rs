@@ -1,4 +1,4 @@
-//! Symplectic integrators of high order that scenes do not have. They need forces that depend on positions alone.
+//! Symplectic integrators of high order that scenes do not offer. They require forces that depend on positions only.
 
 use localshape::sim::integrate::Composition;
 

@@ -1,4 +1,4 @@
-//! How far a study is, on standard error: a bar in a terminal, else a line every few seconds.
+//! The progress of a study, on standard error: a bar in a terminal, else a line every few seconds.
 
 use crate::failure::Status;
 use crate::study::Watch;
@@ -12,10 +12,10 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// From one line to the next.
+/// The time between two lines.
 const EVERY: Duration = Duration::from_secs(5);
 
-/// Whether the user asks for the end of the study: by Ctrl-C or SIGTERM. A second Ctrl-C ends the program at once.
+/// Whether the user asks the study to end: by Ctrl-C or SIGTERM. A second Ctrl-C ends the program at once.
 pub(crate) fn interrupt() -> Arc<AtomicBool> {
     let asked = Arc::new(AtomicBool::new(false));
     // Without handlers, signals end the program.
@@ -26,8 +26,8 @@ pub(crate) fn interrupt() -> Arc<AtomicBool> {
     asked
 }
 
-/// Calls `measure` with a function that takes the work done, of `work` in all, and tells whether to go on. Shows the progress
-/// unless `is_quiet`.
+/// Calls `measure` with a function that takes the amount of work just done, of `work` in all, and returns whether to
+/// continue. Shows the progress unless `is_quiet`.
 pub(crate) fn shown<T>(name: &str, work: u64, is_quiet: bool, measure: impl FnOnce(&Watch<'_>) -> T) -> T {
     let asked = interrupt();
     let goes_on = || !asked.load(Ordering::SeqCst);
@@ -47,8 +47,8 @@ pub(crate) fn shown<T>(name: &str, work: u64, is_quiet: bool, measure: impl FnOn
     told(name, work, EVERY, &mut io::stderr(), |done| measure(&|more| done(more) && goes_on()))
 }
 
-/// Calls `measure` with a function that takes the work done and returns true, and writes a line at the start and then as often as
-/// this.
+/// Calls `measure` with a function that takes the amount of work just done and returns true. Writes a line at the start
+/// and then after each interval.
 fn told<T>(
     name: &str,
     work: u64,
@@ -63,7 +63,7 @@ fn told<T>(
         scope.spawn(move || {
             loop {
                 let percent = 100 * done.load(Ordering::Relaxed) / work.max(1);
-                // A reader that is gone does not stop the study.
+                // A closed standard error does not stop the study.
                 let _ = writeln!(to, "{name}: {percent} % after {} s", begun.elapsed().as_secs());
                 if wait.recv_timeout(every) != Err(RecvTimeoutError::Timeout) {
                     return;

@@ -32,8 +32,8 @@ impl Random {
     }
 }
 
-/// A number from 0 to below 1 for an index and a use of it, independent of numbers drawn before: the finaliser of SplitMix64 (Steele,
-/// Lea, Flood 2014) over one after the other.
+/// A number from 0 to below 1 for an index and its use, independent of numbers drawn before: the finaliser of
+/// SplitMix64 (Steele, Lea, Flood 2014), applied to both.
 pub(crate) fn unit(seed: u32, index: u64, usage: u64) -> f64 {
     let mixed = [u64::from(seed), index, usage].into_iter().fold(0u64, |state, part| mix(state.wrapping_add(part)));
     // A double holds 53 bits.

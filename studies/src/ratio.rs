@@ -35,12 +35,12 @@ pub(crate) struct Ratio {
 }
 
 impl Ratio {
-    /// From a body that fits into any cache to one that fits into few.
+    /// The blocks range from one that fits into any cache to one that fits into few.
     pub(crate) fn new(threads: usize) -> Self {
         Self { sides: vec![3, 10, 20], rounds: 41, turn: 640_000, threads }
     }
 
-    /// One kind of time for all turns, so that no ratio mixes two: with one thread what a thread spends, else wall time.
+    /// The kind of time of all turns, so that no ratio mixes two: with one thread its own time, else wall time.
     fn kind_of_time(&self) -> &'static str {
         if self.threads == 1 { kind_of_time() } else { "wall" }
     }
@@ -84,7 +84,7 @@ pub(crate) struct Comparison {
     pub(crate) shape: Spread,
     /// Time of mass-spring for one cube and step (ns).
     pub(crate) mass_spring: Spread,
-    /// The first divided by the second, turn by turn.
+    /// The ratio of both times, turn by turn.
     pub(crate) ratio: Spread,
 }
 
@@ -130,7 +130,7 @@ pub(crate) fn measure(protocol: &Ratio, watch: &Watch<'_>) -> Option<Ratios> {
     Some(Ratios { protocol: protocol.clone(), comparisons })
 }
 
-/// A block of cubes that stands on a floor: the shape model, then each arrangement of springs.
+/// A block of cubes on a floor: the shape model, then each arrangement of springs.
 fn block(side: u32) -> Scene {
     let mut text = format!(
         "gravity = [0, -9.8, 0]
@@ -154,7 +154,7 @@ fn block(side: u32) -> Scene {
 }
 
 impl Ratios {
-    /// The table for people.
+    /// The table as text.
     fn text(&self) -> String {
         let Ratio { threads, rounds, .. } = self.protocol;
         let mut text = format!(

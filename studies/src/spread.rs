@@ -21,7 +21,7 @@ impl Spread {
         let quantile = |quarters: usize| {
             let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
             let (below, rest) = (last * quarters / 4, (last * quarters % 4) as f64 / 4.0);
-            // At an exact position the value above has no weight: it may be NaN.
+            // At an exact position the next value has no weight; it may be NaN.
             if rest == 0.0 {
                 return sorted[below];
             }

@@ -15,7 +15,7 @@ pub(crate) type Watch<'a> = dyn Fn(u64) -> bool + Sync + 'a;
 
 /// A measurement that is ready to be made.
 pub(crate) trait Study: Send + Sync {
-    /// Its name, which its folder and its files have.
+    /// Its name, and that of its folder and files.
     fn name(&self) -> &'static str;
 
     /// The command that repeats it.
@@ -23,7 +23,7 @@ pub(crate) trait Study: Send + Sync {
         format!("localshape-study {}", self.name())
     }
 
-    /// The digest of everything besides the command on which notes of an interrupted study depend.
+    /// The digest of the study's parameters besides the command. Notes of an interrupted study depend on it.
     fn digest(&self) -> &str {
         ""
     }
@@ -33,26 +33,27 @@ pub(crate) trait Study: Send + Sync {
         1
     }
 
-    /// The amount of work, which is the sum of all that [`Self::measure`] reports.
+    /// The amount of work: the sum of the amounts that [`Self::measure`] reports.
     fn work(&self) -> u64;
 
-    /// Measures, with the thread pool of the caller (rayon); `None` if `watch` stops it. Notes are kept until the study is made.
+    /// Measures, with the thread pool of the caller (rayon); `None` if `watch` stops it. Notes are kept until the study
+    /// is finished.
     fn measure(&self, watch: &Watch<'_>, notes: &Notes) -> Option<Findings>;
 }
 
 /// The findings of a study.
 pub(crate) struct Findings {
-    /// For people, as Markdown.
+    /// The Markdown text.
     pub(crate) text: String,
-    /// With all digits, with the names of their CSV files.
+    /// The tables with all digits, each with the name of its CSV file.
     pub(crate) tables: Vec<(&'static str, Table)>,
-    /// With the names of their SVG and PNG files, without extensions.
+    /// The pages, each with the name of its SVG and PNG files, without extensions.
     #[cfg(feature = "render")]
     pub(crate) pages: Vec<(&'static str, crate::page::Page)>,
 }
 
 impl Findings {
-    /// Without pages.
+    /// Findings without pages.
     pub(crate) fn new(text: String, tables: impl Into<Vec<(&'static str, Table)>>) -> Self {
         Self {
             text,
@@ -93,7 +94,7 @@ pub(crate) fn make(study: &dyn Study, options: &Options) -> Result<Status, Failu
     let (name, command) = (study.name(), study.command());
     let path = options.out.clone().unwrap_or_else(|| format!("output/study-{name}").into());
     let folder = Folder::new(path, name, &command, options.overwrite)?;
-    // A missing adapter is told before anything is measured.
+    // A missing adapter is reported before the measurement.
     #[cfg(feature = "render")]
     let gpu = localshape::Gpu::new(&options.adapter).map_err(|error| Failure::adapter(error.to_string()))?;
     let pool = ThreadPoolBuilder::new().num_threads(study.threads()).build();
@@ -103,7 +104,7 @@ pub(crate) fn make(study: &dyn Study, options: &Options) -> Result<Status, Failu
         progress::shown(name, study.work(), options.quiet, |watch| pool.install(|| study.measure(watch, &notes)));
     let Some(Findings { text, tables, .. }) = &found else {
         if !options.quiet && !options.json {
-            let goes_on = if notes.are_kept() { "; the same command goes on from here" } else { "" };
+            let goes_on = if notes.are_kept() { "; the same command continues from here" } else { "" };
             print(&format!("interrupted; {name} was not made{goes_on}\n"))?;
         }
         return Ok(Status::Interrupted);

@@ -10,7 +10,7 @@ pub(crate) enum Cell {
     Empty,
     Text(String),
     Count(u64),
-    /// A parameter, as short as it can be written.
+    /// A parameter, with as few digits as possible.
     Given(f64),
     /// A result, with 17 digits.
     Number(f64),
@@ -83,7 +83,7 @@ impl Table {
         table
     }
 
-    /// As CSV.
+    /// The table as CSV.
     pub(crate) fn csv(&self) -> String {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let mut write = |row: &mut dyn Iterator<Item = String>| writer.write_record(row).expect("writing to memory");
@@ -92,7 +92,7 @@ impl Table {
         String::from_utf8(writer.into_inner().expect("writing to memory")).expect("made of texts")
     }
 
-    /// As Markdown, with the first `left` columns aligned left and the others, numbers, aligned right.
+    /// The table as Markdown, with the first `left` columns aligned left and the others, numbers, aligned right.
     pub(crate) fn markdown(&self, left: usize) -> String {
         let escaped = |cell: &str| cell.replace('|', "\\|");
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
@@ -103,7 +103,7 @@ impl Table {
         text
     }
 
-    /// As a list of objects.
+    /// The table as a list of objects.
     pub(crate) fn json(&self) -> Value {
         let object =
             |row: &Vec<Cell>| self.heads.iter().cloned().zip(row.iter().map(Cell::json)).collect::<Map<_, _>>();

@@ -3,14 +3,14 @@
 use crate::study::Watch;
 use std::time::Instant;
 
-/// The time that a thread spends: its processor time, or wall time if the system does not provide that.
+/// The time of a thread: its processor time, or wall time if the system does not provide it.
 pub(crate) struct Clock {
     wall: Instant,
     processor: Option<f64>,
 }
 
 impl Clock {
-    /// From now on.
+    /// Starts the clock.
     pub(crate) fn start() -> Self {
         Self { wall: Instant::now(), processor: processor_time() }
     }
@@ -29,12 +29,12 @@ impl Clock {
     }
 }
 
-/// Which time [`Clock::seconds`] tells.
+/// The kind of time of [`Clock::seconds`].
 pub(crate) fn kind_of_time() -> &'static str {
     if processor_time().is_some() { "processor" } else { "wall" }
 }
 
-/// The processor time of this thread (s), where the system provides it.
+/// The processor time of this thread (s), if the system provides it.
 fn processor_time() -> Option<f64> {
     #[cfg(unix)]
     {
@@ -45,8 +45,8 @@ fn processor_time() -> Option<f64> {
     None
 }
 
-/// The times of so many turns of each of `count` tasks, which `time` does by their numbers; `None` if `watch`, which is called
-/// after each turn, stops them. The order is rotated, so that no task always follows one other.
+/// The times of a number of turns of each of `count` tasks, which `time` runs by their numbers; `None` if `watch`,
+/// which is called after each turn, stops them. The order is rotated, so that no task always follows the same one.
 pub(crate) fn take_turns(
     count: usize,
     rounds: u32,

@@ -153,7 +153,7 @@ fn wrong_words() {
     let adaptive =
         SMALL.replace("[[run]]\n", "[[run]]\nintegrator = \"dormand-prince\"\n").replace("step = \"T/50\"\n", "");
     place.write("adaptive.toml", &adaptive);
-    place.bad("stability adaptive.toml", 2, &["find their own steps: there is nothing to map"]);
+    place.bad("stability adaptive.toml", 2, &["choose their own steps, so there is nothing to map"]);
     assert_eq!(place.names("."), ["adaptive.toml", "small.toml", "still.toml", "wrong.toml"]);
 }
 

@@ -33,7 +33,7 @@ pub(crate) struct Map {
     pub(crate) axes: [String; 3],
 }
 
-/// The outcome that a cell shows.
+/// The outcome in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tile {
     Whole,
@@ -48,7 +48,8 @@ const ABOVE: f64 = 72.0;
 pub(super) const ROOM: Room = Room { around: [LEFT, ABOVE, RIGHT, 58.0], shape: 0.5, legend: 40.0 };
 /// The size of a square of the legend (px).
 const SQUARE: f64 = 16.0;
-/// The gap between cells, the widths of hatches and of lines at limits, and the gap between a map and the words beside it (px).
+/// The gap between cells, the widths of hatches and of lines at limits, and the gap between a map and the words beside
+/// it (px).
 const GAP: f64 = 1.0;
 const HATCH: f64 = 1.6;
 const LIMIT: f64 = 2.4;
@@ -76,7 +77,7 @@ pub(super) fn legend(diagram: &mut Diagram, top: f64) {
 }
 
 impl Tile {
-    /// Draws it in a rectangle: left, top, width and height (px).
+    /// Draws the tile in a rectangle: left, top, width and height (px).
     fn draw(self, diagram: &mut Diagram, [left, top, wide, high]: [f64; 4]) {
         let colour = match self {
             Self::Whole => WHOLE,
@@ -84,7 +85,7 @@ impl Tile {
             Self::Diverged => SECOND_TEXT,
         };
         diagram.rectangle([left, top, wide, high], colour);
-        // As in pictures of bodies, the hatch stands for the colour in grey prints.
+        // As in pictures of bodies, the hatch replaces the colour in grey prints.
         if self == Self::TurnedOver {
             let inset = 0.2 * wide.min(high);
             let ends = [[left + inset, top + high - inset], [left + wide - inset, top + inset]];
@@ -108,7 +109,7 @@ impl Map {
             return;
         }
         let [column, row] = [(right - left) / columns as f64, (bottom - top) / rows as f64];
-        // To whole pixels, so that all gaps are alike.
+        // Whole pixels make all gaps equal.
         let x = |at: usize| (left + column * at as f64).round();
         let y = |at: usize| (bottom - row * at as f64).round();
         for (number, tile) in self.cells.iter().enumerate() {

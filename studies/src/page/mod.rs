@@ -34,7 +34,7 @@ const fn style(size: f64, is_bold: bool, colour: Colour) -> TextStyle {
     TextStyle { size, is_bold, colour, has_halo: false }
 }
 
-/// How far the middle of small letters lies above their baseline, in parts of the type's size.
+/// The middle of small letters above their baseline, in sizes of type.
 const MIDDLE: f64 = 0.34;
 /// Width of a page in print (mm), and in pixels; its margins, and the gap between its parts (px).
 const WIDE_MM: f64 = 180.0;
@@ -51,7 +51,7 @@ pub(crate) struct Page {
     pub(crate) title: String,
     /// Lines below the title.
     pub(crate) caption: Vec<String>,
-    /// How many parts stand beside each other.
+    /// The number of parts beside each other.
     pub(crate) columns: usize,
     pub(crate) parts: Parts,
 }
@@ -62,8 +62,8 @@ pub(crate) enum Parts {
     Maps(Vec<Map>),
 }
 
-/// The room around each part of a page: left, above, right and below (px); its height in parts of its width, and the height of a legend
-/// above all (px).
+/// The room around each part of a page: left, above, right and below (px); its height relative to its width, and the
+/// height of a legend above all (px).
 struct Room {
     around: [f64; 4],
     shape: f64,
@@ -78,7 +78,7 @@ impl Page {
         }
     }
 
-    /// Where the parts stand, and the height of the page.
+    /// The places of the parts, and the height of the page.
     fn areas(&self) -> (Vec<Area>, f64) {
         let Room { around: [left, above, right, below], shape, legend } = self.room();
         let count = match &self.parts {
@@ -115,7 +115,7 @@ impl Page {
         diagram
     }
 
-    /// Its files: SVG, then PNG.
+    /// The files of the page: SVG, then PNG.
     pub(crate) fn files(&self, gpu: &Gpu) -> Result<[Vec<u8>; 2], Failure> {
         let (diagram, (_, high)) = (self.diagram(), self.areas());
         let page = vector::Page {
@@ -140,7 +140,7 @@ fn write(diagram: &mut Diagram, text: &str, style: TextStyle, share: f64, [x, ba
     diagram.text(text, style, [left, baseline]);
 }
 
-/// A power of ten as one writes it.
+/// A power of ten, typeset.
 pub(crate) fn power_of_ten(power: i32) -> String {
     const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     match power {

@@ -40,7 +40,7 @@ pub(crate) struct Line {
 const NUMBERS: f64 = 58.0;
 const ABOVE: f64 = 54.0;
 pub(super) const ROOM: Room = Room { around: [NUMBERS, ABOVE, 0.0, 62.0], shape: 0.78, legend: 0.0 };
-/// How much a line of words takes up, in parts of the type's size.
+/// The height of a line of words, in sizes of type.
 const HIGH: f64 = 1.08;
 /// Widths of curves, of strong ones, of slopes and of hairlines, and radii of dots (px).
 const CURVE: f64 = 1.8;
@@ -49,7 +49,7 @@ const SLOPE: f64 = 1.2;
 const THIN: f64 = 1.0;
 const DOT: f64 = 3.6;
 const STRONG_DOT: f64 = 5.0;
-/// From a dot to the name beside it (px).
+/// The gap from a dot to the name beside it (px).
 const GAP: f64 = 8.0;
 /// Colours of families of curves, and of lines of known slopes.
 const FAMILIES: [Colour; 6] = [
@@ -61,9 +61,9 @@ const FAMILIES: [Colour; 6] = [
     [0x24, 0x9d, 0xb1],
 ];
 const SLOPES: Colour = [0x7a, 0x84, 0x91];
-/// The largest number of powers of ten that are written upwards.
+/// The largest number of powers of ten along the upward axis.
 const MOST_ROWS: i32 = 7;
-/// How far lines of known slopes reach, in decades to the right.
+/// The reach of lines of known slopes, in decades to the right.
 const REACH: f64 = 0.8;
 
 /// Draws plots, each in its area.
@@ -96,16 +96,16 @@ impl Line {
     }
 }
 
-/// Where a plot stands, and the logarithms at the ends of its axes.
+/// The place of a plot, and the logarithms at the ends of its axes.
 struct Frame {
     area: Area,
     ranges: [[f64; 2]; 2],
 }
 
-/// Points that are joined by a line, whose name is to be written beside one of them (px).
+/// Joined points (px) with a name beside one of them.
 struct Drawn {
     points: Vec<[f64; 2]>,
-    /// The place of the name is beside the points from this one on.
+    /// The first point that the name may stand beside.
     first: usize,
     name: String,
     colour: Colour,
@@ -152,7 +152,7 @@ impl Frame {
         plot.curves.iter().map(drawn).collect()
     }
 
-    /// The lines of known slopes, downwards from where they meet and not beyond the axes; none if they meet outside.
+    /// The lines of known slopes, downwards from their common point and within the axes; none if that point is outside.
     fn slopes(&self, plot: &Plot) -> Vec<Drawn> {
         let Some((meet, slopes)) = &plot.slopes else { return Vec::new() };
         let meet = meet.map(libm::log10);
@@ -198,19 +198,19 @@ impl Frame {
         write(diagram, across, SMALL, 1.0, [right, bottom + 43.0]);
     }
 
-    /// The places of the names of lines. Each name stands beside one of its points, where it covers least. `None` for a line without
-    /// points or name.
+    /// The places of the names of lines. Each name stands beside one of its points, where it covers least. `None` for a
+    /// line without points or name.
     fn names(&self, diagram: &Diagram, lines: &[Drawn]) -> Vec<Option<Area>> {
         let places: Vec<Vec<(Area, f64)>> = lines.iter().map(|line| self.places(diagram, line)).collect();
         let mut chosen: Vec<Option<Area>> = vec![None; lines.len()];
-        // Names of later curves first; then each again, as the others stand.
+        // Names of later curves are placed first. Then each is placed again, with the others in place.
         for at in (0..lines.len()).rev().cycle().take(3 * lines.len()) {
             let others: Vec<Area> = (0..lines.len()).filter(|&other| other != at).filter_map(|at| chosen[at]).collect();
             let cost = |&(area, cost): &(Area, f64)| {
                 let on_names: f64 = others.iter().map(|&other| 60.0 * shared(area, other)).sum();
                 let on_line = |(of, line): (usize, &Drawn)| match of == at {
                     true => 0.6 * covered(area, &line.points),
-                    // Next to a dot of another curve it would seem to be that one's name.
+                    // Next to a dot of another curve, the name would seem to belong to it.
                     false => covered(area, &line.points) + near(area, &line.points),
                 };
                 cost + on_names + lines.iter().enumerate().map(on_line).sum::<f64>()
@@ -257,14 +257,14 @@ fn label(colour: Colour) -> TextStyle {
     TextStyle { is_bold: true, colour, has_halo: true, ..SMALL }
 }
 
-/// The part of the smaller of two areas that both share.
+/// The share of the smaller of two areas that both have in common.
 fn shared(one: Area, other: Area) -> f64 {
     let side = |axis: usize| (one[axis + 2].min(other[axis + 2]) - one[axis].max(other[axis])).max(0.0);
     let size = |area: Area| (area[2] - area[0]) * (area[3] - area[1]);
     side(0) * side(1) / size(one).min(size(other))
 }
 
-/// How many of the dots lie beside an area.
+/// The number of dots beside an area.
 fn near(area: Area, dots: &[[f64; 2]]) -> f64 {
     let is_near = |&&[x, y]: &&[f64; 2]| {
         let beside = (area[0] - x).max(x - area[2]).max(0.0);
@@ -274,7 +274,7 @@ fn near(area: Area, dots: &[[f64; 2]]) -> f64 {
     dots.iter().filter(is_near).count() as f64
 }
 
-/// How much of a line through points an area covers: each dot counts, and each height of a letter along the line.
+/// The cost of covering parts of a line through points: each dot counts, and each height of a letter along the line.
 fn covered(area: Area, line: &[[f64; 2]]) -> f64 {
     let is_in = |[x, y]: [f64; 2], margin: f64| {
         x > area[0] - margin && x < area[2] + margin && y > area[1] - margin && y < area[3] + margin

@@ -8,20 +8,20 @@
 //! observations", J. Astronaut. Sci. 48(2), 2000, p. 359.
 //!
 //! Guarantee: the true optimum from any start. Errors grow with the inverse square of the gap `s₂ ± s₃` of the singular
-//! values; where the divisor, which is the product of the sums of two of them, is too small, the [`optimum`] by
-//! eigenvectors takes over. Cost: some three steps for the root, then matrices and one quaternion, whatever the last rotation.
+//! values. The divisor is the product of the sums of two of them; if it is too small, the [`optimum`] by eigenvectors
+//! is used. Cost: some three steps for the root, then matrices and one quaternion, for any last rotation.
 
 use glam::{DMat3, DQuat};
 use localshape::sim::rotation::davenport1968::optimum;
 
 /// The least divisor, relative to `λ³`; it is 8/27 for a cube at rest.
 const SOUND: f64 = 1e-3;
-/// Newton's method converges in three to seven steps where the divisor is sound, and slowly next to a double root.
+/// Newton's method converges in three to seven steps if the divisor is sound, and slowly next to a double root.
 const MOST_STEPS: u32 = 12;
-/// It has converged where a step is at most this part of the root: the next one would be round-off.
+/// It has converged if a step is at most this part of the root: the next one would be round-off.
 const SHORT: f64 = 1e-9;
 
-/// The optimum; `last` is used where the divisor is too small only.
+/// The optimum; `last` is used only if the divisor is too small.
 pub(super) fn rotation(at_rest: DMat3, last: DQuat) -> DQuat {
     regular(at_rest).unwrap_or_else(|| optimum(at_rest, last))
 }

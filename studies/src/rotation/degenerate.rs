@@ -1,4 +1,4 @@
-//! Elements whose rotation is hardly determined or not at all, and the outcome of solvers for them.
+//! Elements whose rotation is hardly determined or undetermined, and the outcome of solvers for them.
 
 use super::reference::angle;
 use super::sample::Sample;
@@ -7,8 +7,8 @@ use crate::random::Random;
 use glam::{DMat3, DQuat, DVec3};
 use localshape::sim::rotation::davenport1968::optimum;
 
-/// A class of elements, which are cubes that are deformed: its name, the stretches along the axes, and the angle of the half turn or
-/// less from the last rotation to that of the deformation (rad); `None` for any.
+/// A class of elements, which are deformed cubes: its name, the stretches along the axes, and the angle from the last
+/// rotation to that of the deformation (rad), at most a half turn; `None` for any.
 type Class = (&'static str, DVec3, Option<f64>);
 
 /// The classes.
@@ -26,11 +26,11 @@ pub(crate) const CLASSES: [Class; 8] = [
 /// The worst outcome of a solver for the elements of a class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Outcome {
-    /// The optimum; where there are several, the one nearest to the last rotation.
+    /// The optimum; if there are several, the one nearest to the last rotation.
     Nearest,
     /// An optimum, but not the nearest.
     Some,
-    /// A rotation that is no optimum.
+    /// A rotation that is not an optimum.
     Wrong,
     /// No numbers.
     NotANumber,
@@ -48,7 +48,7 @@ impl Outcome {
     }
 }
 
-/// How much less than the optimum counts as wrong, and how far apart rotations are different ones (rad).
+/// An excess over the optimum that counts as wrong, and the distance of rotations that count as different (rad).
 const EQUAL: f64 = 1e-9;
 const NEAR: f64 = 1e-6;
 /// The number of elements of a class.

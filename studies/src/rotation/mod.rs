@@ -1,9 +1,9 @@
-//! The solvers of rotations: the angle error of each against its time for each element, for elements turned by more or
-//! less since the last rotation and strained up to inversion, and the outcome of each for degenerate elements.
+//! The solvers of rotations: the angle error of each against its time for each element, for elements with different
+//! increments since the last rotation and strains up to inversion, and the outcome of each for degenerate elements.
 //!
-//! All solvers are plain code in double precision, called for one element after the other, as the reference code of the
-//! simulation does. They take turns, in an order that is rotated, and each time is the median of its turns: other load of
-//! the machine affects all alike. Processor time is measured, or wall time if the system does not provide it.
+//! All solvers are plain code in double precision, called for one element after another, like the reference code of the
+//! simulation. They take turns, in a rotated order, and each time is the median of its turns: other load of the machine
+//! affects all alike. Processor time is measured, or wall time if the system does not provide it.
 
 mod closed_form;
 mod degenerate;
@@ -41,7 +41,7 @@ pub(crate) struct Rotation {
     pub(crate) increments: Vec<f64>,
     /// The number of elements of each kind.
     pub(crate) elements: usize,
-    /// How often each solver goes through them in a turn.
+    /// The number of times that each solver processes them in a turn.
     pub(crate) repeats: u32,
     /// The number of turns of each solver.
     pub(crate) rounds: u32,

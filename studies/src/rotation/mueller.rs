@@ -9,7 +9,7 @@ use glam::{DMat3, DQuat};
 use localshape::sim::rotation::linearised::rotation_by_length;
 use localshape::sim::rotation::torque;
 
-/// Added to the divisor, in parts of the size of the moments. The paper adds 1e-9 to moments of about 1.
+/// Added to the divisor, relative to the size of the moments. The paper adds 1e-9 to moments of about 1.
 const LEAST: f64 = 1e-9;
 
 /// The rotation after a number of passes.

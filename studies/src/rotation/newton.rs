@@ -1,8 +1,8 @@
 //! Newton's method for the torque: Eq. (15) with the symmetric part of its matrix, `H w = Σ R × r` with
 //! `H = tr(A) I − (A + Aᵀ)/2` and `A = Σ R rᵀ`, and ways to turn `w` into a rotation. `H` is the Hessian of the element's energy.
 //!
-//! Guarantee: cubic convergence near the optimum, that of [`quintic`] of fifth order. All but [`kugelstadt`] go over to the optimum
-//! where `H` is not positive definite.
+//! Guarantee: cubic convergence near the optimum; fifth order for [`quintic`]. All but [`kugelstadt`] switch to the
+//! optimum if `H` is not positive definite.
 
 use glam::{DMat3, DQuat, DVec3};
 use localshape::sim::rotation::linearised::{iterate, rotation_by_arctangent};
@@ -35,12 +35,12 @@ pub(super) fn quintic(at_rest: DMat3, last: DQuat, passes: u32) -> DQuat {
 /// The least determinant of `H` that counts as regular, for stretches of about 1.
 const SINGULAR: f64 = 1e-9;
 
-/// The analytic polar decomposition of T. Kugelstadt, D. Koschier, J. Bender, "Fast corotated FEM using operator splitting", Computer
-/// Graphics Forum 37(8), 2018, p. 149, Algorithm 3: by the angle `4 atan(|w|/4)`. Where the step would go uphill, one of steepest
-/// ascent is taken instead, so that it cannot settle on a minimum but may need many passes. At a half turn the torque is zero, and it
-/// stays there.
+/// The analytic polar decomposition of T. Kugelstadt, D. Koschier, J. Bender, "Fast corotated FEM using operator
+/// splitting", Computer Graphics Forum 37(8), 2018, p. 149, Algorithm 3: by the angle `4 atan(|w|/4)`. If the step
+/// would go uphill, a step of steepest ascent replaces it. So it cannot settle on a minimum, but may need many passes.
+/// At a half turn the torque is zero, and the rotation stays there.
 pub(super) fn kugelstadt(at_rest: DMat3, last: DQuat, passes: u32) -> DQuat {
-    // To stretches of about 1, for which the steps of steepest ascent are meant.
+    // Stretches are scaled to about 1, as steps of steepest ascent require.
     let squares: f64 = at_rest.to_cols_array().iter().map(|entry| entry * entry).sum();
     let scaled = at_rest * (squares / 3.0).sqrt().recip();
     if !scaled.is_finite() {

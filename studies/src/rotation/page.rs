@@ -11,7 +11,7 @@ impl Results {
         const STRAIN: f64 = 0.5;
         /// Errors below this are round-off of the rotation itself (rad).
         const ROUND_OFF: f64 = 1e-16;
-        /// Beyond this increment (rad) most iterations leave it to another solver.
+        /// Beyond this increment (rad) most iterations switch to another solver.
         const QUARTER: f64 = 1.6;
         let error = "worst angle error (rad)".to_owned();
         let solvers: Vec<(usize, &Solver)> = self.solvers.iter().enumerate().collect();

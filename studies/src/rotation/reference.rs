@@ -1,4 +1,4 @@
-//! Rotations that are known better than any solver computes them, and solvers from libraries.
+//! Rotations of higher precision than any solver's, and solvers from libraries.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -9,18 +9,17 @@ pub(super) fn by_svd(at_rest: DMat3) -> Option<DQuat> {
     let a = nalgebra::Matrix3::from_column_slice(&at_rest.transpose().to_cols_array());
     let svd = a.try_svd(true, true, f64::EPSILON, 1000)?;
     let (u, v) = (svd.u?, svd.v_t?);
-    // The smallest singular value, which is the last one, has the sign.
+    // The smallest singular value, which is the last one, gets the sign.
     let sign = nalgebra::Vector3::new(1.0, 1.0, (u * v).determinant().signum());
     let matrix = u * nalgebra::Matrix3::from_diagonal(&sign) * v;
     let rotation = DQuat::from_mat3(&DMat3::from_cols_slice(matrix.as_slice()));
     rotation.is_finite().then(|| rotation.normalize())
 }
 
-/// The optimal rotation, rounded once, where the optimum is unique.
+/// The optimal rotation, rounded once, if the optimum is unique.
 ///
-/// Newton's method from a rotation near it, with the torque in twice the precision. The remaining error is the rounding of
-/// the quaternion (1e-16), while solvers in plain precision have errors of that divided by the gap of the singular
-/// values.
+/// Newton's method from a rotation near it, with the torque in twice the precision. The remaining error is the rounding
+/// of the quaternion (1e-16). Errors of solvers in plain precision are this divided by the gap of the singular values.
 pub(super) fn refined(at_rest: DMat3, near: DQuat) -> DQuat {
     let mut rotation = near;
     for _ in 0..8 {
@@ -38,7 +37,7 @@ pub(super) fn refined(at_rest: DMat3, near: DQuat) -> DQuat {
     rotation
 }
 
-/// `|q|² Σ r × R` for a quaternion that is a unit one up to round-off, correct to the last digits even where all of it
+/// `|q|² Σ r × R` for a quaternion of unit length up to round-off, correct to the last digits even if all of it
 /// cancels.
 fn torque(at_rest: DMat3, q: DQuat) -> DVec3 {
     let DQuat { x, y, z, w } = q;
@@ -92,7 +91,7 @@ impl Double {
     }
 }
 
-/// The angle between two rotations (rad), accurate where it is small.
+/// The angle between two rotations (rad), accurate also if it is small.
 pub(super) fn angle(one: DQuat, other: DQuat) -> f64 {
     let difference = one * other.conjugate();
     2.0 * libm::atan2(difference.xyz().length(), difference.w.abs())

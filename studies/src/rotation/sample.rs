@@ -1,4 +1,4 @@
-//! The random elements that solvers are measured with. They do not depend on the machine.
+//! The random elements for measuring solvers. They do not depend on the machine.
 
 use super::reference::refined;
 use crate::random::Random;
@@ -19,7 +19,8 @@ pub(crate) struct Sample {
 pub(crate) enum Kind {
     /// Cubes with a largest strain, turned by an increment since their last rotation.
     Warm {
-        /// One stretch is 1 plus it, one 1 minus it, the third between them. Beyond 1, elements are turned inside out.
+        /// One stretch is 1 plus the strain, one 1 minus it, the third between them. Beyond 1, elements are turned
+        /// inside out.
         strain: f64,
         /// The angle from the last rotation to the optimum (rad), about any axis.
         increment: f64,
@@ -31,7 +32,7 @@ pub(crate) enum Kind {
 /// The least gap `(s₂ + sign(det) s₃) / s₁` of the singular values of any element.
 pub(crate) const LEAST_GAP: f64 = 1e-3;
 
-/// Elements of a kind, with the rotations sought, rounded once.
+/// Elements of a kind with their optimal rotations, rounded once.
 pub(crate) fn samples(kind: Kind, count: usize) -> Vec<(Sample, DQuat)> {
     let mut random = Random(9);
     let one = || {
@@ -43,7 +44,7 @@ pub(crate) fn samples(kind: Kind, count: usize) -> Vec<(Sample, DQuat)> {
         };
         let (axes, turn) = (DMat3::from_quat(random.rotation()), random.rotation());
         let at_rest = (DMat3::from_quat(turn) * axes * DMat3::from_diagonal(stretch) * axes.transpose()).transpose();
-        // Only the stretch of the smallest size is negative, so this is `turn`, but for the rounding of the moments.
+        // Only the stretch of the smallest size is negative, so this is `turn` up to the rounding of the moments.
         let sought = refined(at_rest, turn);
         let increment = match kind {
             Kind::Warm { increment, .. } => increment,
@@ -68,14 +69,14 @@ fn stretch(kind: Kind, random: &mut Random) -> DVec3 {
         }
         Kind::Cold => {
             let second = libm::exp10(3.0 * (random.next() - 1.0));
-            // The gap has any size.
+            // The gap may have any size.
             let gap = libm::exp10(3.0 * (random.next() - 1.0)) * 2.0 * second;
             DVec3::new(1.0, second, (gap - second).clamp(-second, second))
         }
     }
 }
 
-/// The gap of the singular values, relative to the largest: the optimum is unique where it is positive.
+/// The gap of the singular values, relative to the largest: the optimum is unique if it is positive.
 fn gap(stretch: DVec3) -> f64 {
     let mut sizes = stretch.abs().to_array();
     sizes.sort_by(f64::total_cmp);

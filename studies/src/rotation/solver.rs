@@ -1,5 +1,6 @@
-//! The solvers that are compared: of scenes, others, and of a library. Each is a function of `at_rest` = `Σ R0 rᵀ` (m²),
-//! where `R0` are the corners at rest and `r` the corners now, relative to their means, of the last rotation, and of a number of passes.
+//! The compared solvers: of scenes, of other papers, and of a library. Each is a function of `at_rest` = `Σ R0 rᵀ`
+//! (m²), the last rotation and a number of passes, where `R0` are the corners at rest and `r` the corners now, relative
+//! to their means.
 
 use super::reference::by_svd;
 use super::sample::Sample;
@@ -13,7 +14,7 @@ use std::hint::black_box;
 /// A solver with a number of passes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Solver {
-    /// Its name; that in scenes, if it has one.
+    /// Its name, as in scenes if they have it.
     pub(crate) name: &'static str,
     /// The number of passes; `None` for a solver without passes.
     pub(crate) passes: Option<u32>,
@@ -25,10 +26,10 @@ const PRINTED: &str = "arctangent";
 /// The name of Eq. (16), which makes no rotation.
 const LINEAR: &str = "linear-update";
 
-/// All of them, in the order of their families.
+/// All solvers, in the order of their families.
 pub(crate) fn all() -> Vec<Solver> {
     use RotationReading::{Arctangent, LinearUpdate, Robust, VectorLength};
-    // The library's is not a number where it does not converge.
+    // If the library does not converge, its result is not a number.
     let svd = |at_rest, _, _| by_svd(at_rest).unwrap_or(DQuat::NAN);
     type Row = (&'static str, &'static [u32], fn(DMat3, DQuat, u32) -> DQuat);
     let solvers: [Row; 12] = [
@@ -68,17 +69,17 @@ impl Solver {
         self.name == "robust"
     }
 
-    /// Whether it is the paper's, with so many passes as the paper advises.
+    /// Whether it is the paper's solver, with the number of passes that the paper advises.
     pub(super) fn is_printed(&self) -> bool {
         self.name == PRINTED && self.passes == Some(2)
     }
 
-    /// The rotation of a sample; the one nearest to the result of Eq. (16).
+    /// The rotation of a sample; for Eq. (16), the rotation nearest to its result.
     pub(crate) fn rotation(&self, sample: &Sample) -> DQuat {
         (self.follow)(sample.at_rest, sample.last, self.passes.unwrap_or(0))
     }
 
-    /// Does the work of a simulation, where the result of Eq. (16) stays a matrix.
+    /// Does the work of a simulation, in which the result of Eq. (16) stays a matrix.
     pub(super) fn work(&self) -> impl Fn(&Sample) + use<> {
         let (follow, passes, is_linear) = (self.follow, self.passes.unwrap_or(0), self.name == LINEAR);
         move |sample: &Sample| match is_linear {

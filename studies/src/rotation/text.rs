@@ -6,11 +6,11 @@ use super::{MANY, Measured, Results, Solver};
 use crate::table::{Cell, Table};
 use crate::turns::{kind_of_time, machine};
 
-/// The strain and the largest increment (rad) of elements that a simulation is expected to have.
+/// The strain and the largest increment (rad) of elements in a usual simulation.
 const USUAL: (f64, f64) = (0.5, 0.3);
 
 impl Results {
-    /// The results for people.
+    /// The results as text.
     pub(super) fn text(&self) -> String {
         let (strain, _) = USUAL;
         let error = |one: &Measured| short(one.worst);
@@ -28,10 +28,10 @@ impl Results {
             optimum.\n\n\
             ## Time (ns for each element), with quartiles in parentheses\n\n{}\n\
             ## Degenerate elements, from any last rotation\n\n{}\n\
-            `{nearest}`: the optimum, and where there are several the one nearest to the last rotation; `{other}`: one of \
-            several, but not the nearest; `{wrong}`: a rotation that is no optimum; `{none}`: not a number. Iterations have \
+            `{nearest}`: the optimum, or if there are several, the one nearest to the last rotation; `{other}`: one of \
+            several, but not the nearest; `{wrong}`: a rotation that is not an optimum; `{none}`: not a number. Iterations have \
             {MANY} passes. `arctangent`, `vector-length`, `symmetric`, `cayley` and `quintic` go over to `davenport` where the \
-            Hessian is not positive definite; what `linear-update` makes is no rotation, and the one nearest to it is shown.\n",
+            Hessian is not positive definite; the result of `linear-update` is not a rotation, and the nearest one is shown.\n",
             kind_of_time(),
             machine(),
             self.protocol.rounds,
@@ -43,7 +43,7 @@ impl Results {
         )
     }
 
-    /// The errors and the cost of the default, as far as they decide for it.
+    /// The error and the cost of the default, which justify it.
     fn about_the_default(&self) -> Option<String> {
         let number = self.solvers.iter().position(Solver::is_default)?;
         let printed = self.solvers.iter().position(Solver::is_printed)?;

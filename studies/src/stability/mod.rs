@@ -1,8 +1,9 @@
 //! Outcomes of a scene's runs for stiffnesses over decades and steps up to beyond the predicted limit: a map for each run.
 //!
-//! The stiffness of a run is multiplied, and its damping so that the damping ratio stays. Then the predicted limit goes with `1/√k`,
-//! and a row of the map is the same share of it for every stiffness. Impacts are made faster by multiplying the initial velocities,
-//! and gravity by the square. Outcomes have the same bits on every machine; the cells of a map are simulated in parallel.
+//! The stiffness of a run is multiplied, and its damping so that the damping ratio stays. Then the predicted limit is
+//! proportional to `1/√k`, and a row of the map is the same share of it for every stiffness. Faster impacts have
+//! multiplied initial velocities, and gravity multiplied by the square. Outcomes have the same bits on every machine;
+//! the cells of a map are simulated in parallel.
 
 #[cfg(feature = "render")]
 mod page;
@@ -62,18 +63,18 @@ impl Study for Stability {
 /// The range of parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Protocol {
-    /// By which the stiffness of all runs is multiplied.
+    /// Factors of the stiffness of all runs.
     stiffnesses: Vec<f64>,
     /// Steps, as shares of the predicted limit.
     shares: Vec<f64>,
-    /// By which impacts are made faster.
+    /// Factors of the speed of impacts.
     speeds: Vec<f64>,
-    /// By which the damping ratio is multiplied.
+    /// Factors of the damping ratio.
     dampings: Vec<f64>,
 }
 
 impl Protocol {
-    /// A few minutes for the built-in scene.
+    /// A grid that takes a few minutes for the built-in scene.
     pub(crate) fn usual() -> Self {
         Self::new(4, 12, vec![1.0], vec![1.0])
     }
@@ -102,7 +103,7 @@ impl Protocol {
     }
 }
 
-/// The scene that is studied if none is given: the fall of Fig. 4(b), with three integrators.
+/// The default scene: the fall of Fig. 4(b), with three integrators.
 pub(crate) fn usual() -> Scene {
     let model = |kind: &str| format!("model = {{ kind = '{kind}, stiffness = 1e4, damping_ratio = 0.1 }}");
     let (shape, springs) = (model("shape-based'"), model("mass-spring', springs = 'edges+one-diagonal'"));
@@ -130,7 +131,7 @@ pub(crate) fn usual() -> Scene {
 pub(crate) enum Outcome {
     /// No element is turned over at the end.
     Whole,
-    /// So many are.
+    /// This number of elements is turned over.
     TurnedOver(usize),
     /// It diverged.
     Diverged,
@@ -146,7 +147,7 @@ pub(crate) struct Cell {
     /// The factors of the speed of impacts and of the damping ratio.
     pub(crate) speed: f64,
     pub(crate) damping: f64,
-    /// The step as a share of the predicted limit, or of [`Grid::unit`] where there is none.
+    /// The step as a share of the predicted limit, or of [`Grid::unit`] if there is none.
     pub(crate) share: f64,
     /// Time step (s).
     pub(crate) step: f64,
@@ -160,12 +161,12 @@ pub(crate) struct Grid {
     pub(crate) damping: f64,
     /// `k/m` of the scene (1/s²).
     pub(crate) rate: f64,
-    /// The predicted limit for that (s), or a π-th of the cycle T for integrators that have none: the limit of semi-implicit Euler
-    /// for a single element.
+    /// The predicted limit for this `k/m` (s), or a π-th of the cycle T for integrators without a limit: the limit of
+    /// semi-implicit Euler for a single element.
     pub(crate) unit: f64,
     /// The predicted limit, if there is one, as a share of T.
     pub(crate) limit: Option<f64>,
-    /// The limit for springs however far they are stretched, as a share of the other.
+    /// The limit for arbitrarily stretched springs, as a share of the other one.
     pub(crate) stretched: Option<f64>,
 }
 
@@ -243,7 +244,7 @@ pub(crate) fn measure(
 
 /// Simulates a cell, until it diverges; `None` if `watch` stops it.
 fn outcome(scene: &Scene, cell: &Cell, watch: &Watch<'_>) -> Option<Outcome> {
-    /// Steps between two looks.
+    /// Steps between two checks.
     const STRETCH: u64 = 4096;
     let mut scene = scene.clone();
     scene.gravity *= cell.speed * cell.speed;
@@ -282,7 +283,7 @@ impl Results {
         self.grids.iter().flat_map(|grid| self.protocol.speeds.iter().map(move |&speed| (grid, speed)))
     }
 
-    /// The name of a map, its impacts and damping where the protocol has several, and the model.
+    /// The name of a map, its impacts and damping if the protocol has several, and the model.
     pub(crate) fn words(&self, grid: &Grid, speed: f64) -> [String; 3] {
         let Run { name, model, .. } = &self.scene.runs[grid.run];
         let Protocol { speeds, dampings, .. } = &self.protocol;

@@ -20,7 +20,7 @@ impl Results {
             let tick = |share: f64| (share, [short(share), format!("T/{:.1}", grid.steps_per_cycle(share))]);
             let limit = grid.limit.map(|_| (1.0, "predicted limit"));
             let stretched = grid.stretched.filter(|&share| share < 1.0).map(|share| (share, "with stretched springs"));
-            // The conditions tell several maps of a run apart; the model stands in the tables.
+            // The conditions distinguish several maps of a run; the model is in the tables.
             let [name, conditions, model] = self.words(grid, speed);
             Map {
                 name: [name, if conditions.is_empty() { model } else { conditions }],

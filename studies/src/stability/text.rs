@@ -13,7 +13,7 @@ impl Outcome {
         }
     }
 
-    /// How many elements are turned over at the end.
+    /// The number of elements turned over at the end.
     fn turned_over(self) -> Option<usize> {
         match self {
             Self::Whole => Some(0),
@@ -46,7 +46,7 @@ impl Cell {
 }
 
 impl Results {
-    /// The results for people.
+    /// The results as text.
     pub(super) fn text(&self) -> String {
         let mut text = format!(
             "# Stability: outcomes of each run\n\n\
@@ -73,7 +73,7 @@ impl Results {
         };
         text += &Table::of(self.maps().map(row)).markdown(2);
         for run in self.scene.runs.iter().filter(|run| run.tolerance.is_some()) {
-            text += &format!("\n{} finds its own steps and is left out.\n", run.name);
+            text += &format!("\n{} chooses its own steps and is left out.\n", run.name);
         }
         text
     }

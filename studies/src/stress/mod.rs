@@ -87,7 +87,7 @@ pub(crate) enum Promise {
     Restored(f64),
     /// No element is turned over, and all heights equal the static equilibrium within this part of a side.
     Settled(f64),
-    /// Nothing is said about the shape: the motion is not damped.
+    /// No promise about the shape: the motion is not damped.
     Bounded,
 }
 
@@ -102,14 +102,14 @@ pub(crate) struct Outcome {
     pub(crate) turned_over: usize,
     /// RMS distance of the nodes from the best placement of the rest shape, as a part of a side.
     pub(crate) shape_error: f64,
-    /// The greatest difference of a height from the static equilibrium, as a part of a side; NaN where there is none.
+    /// The greatest difference of a height from the static equilibrium, as a part of a side; NaN if there is none.
     pub(crate) unsettled: f64,
-    /// The greatest total energy over that at the start; NaN where work is done on the body.
+    /// The greatest total energy over that at the start; NaN if work is done on the body.
     pub(crate) energy: f64,
-    /// The change of momentum, and of angular momentum about the centre of mass, over the sums of their sizes at the fastest;
-    /// NaN where a force acts from outside, or damping that brakes rotation.
+    /// The change of momentum, and of angular momentum about the centre of mass, over the sums of their terms at the
+    /// fastest moment; NaN if an external force acts, or damping that brakes rotation.
     pub(crate) momentum: [f64; 2],
-    /// How far the centre of mass crept sideways, as a part of a side; NaN where the body is to move.
+    /// The sideways creep of the centre of mass, as a part of a side; NaN if the body is to move.
     pub(crate) creep: f64,
 }
 
@@ -186,7 +186,7 @@ impl Row {
             demand(change.is_nan() || change <= MOST_CHANGE, format!("momentum changed by {change:.0e}"));
         }
         demand(one.creep.is_nan() || one.creep <= MOST_CREEP, format!("crept by {:.1e}", one.creep));
-        // No model may give numbers that are none.
+        // No model may give NaN or infinite numbers.
         for ((model, _), outcome) in MODELS.iter().zip(&self.outcomes) {
             demand(outcome.is_finite, format!("{model} is not finite"));
         }
@@ -208,7 +208,7 @@ impl Trial {
     }
 
     fn outcome(&self, model: Model) -> Outcome {
-        /// How often the state is looked at.
+        /// The number of checks of the state.
         const LOOKS: u64 = 64;
         let mut world = self.world(model, Integrator::default(), self.damping, self.start.clone());
         let first = Look::of(self, &world);
@@ -216,7 +216,7 @@ impl Trial {
         for look in 0..LOOKS {
             world.advance(self.steps * (look + 1) / LOOKS - self.steps * look / LOOKS);
             let now = Look::of(self, &world);
-            // Unlike the maximum of two numbers, these keep NaN.
+            // Unlike the maximum of two numbers, these comparisons keep NaN.
             most = if now.energy <= most { most } else { now.energy };
             fastest = [0, 1].map(|at| now.sizes[at].max(fastest[at]));
             changed = [0, 1].map(|at| changed[at].max((now.momenta[at] - first.momenta[at]).length()));
@@ -243,15 +243,15 @@ impl Trial {
         }
     }
 
-    /// The greatest difference of a height from the body at rest on its side, as a part of a side. Heights are
-    /// compared in order, so it does not matter on which side of a cube it lies.
+    /// The greatest difference of a height from the body at rest on its side, as a part of a side. Heights are compared
+    /// in order, so a cube may lie on any side.
     fn unsettled(&self, model: Model, state: &State) -> f64 {
         let heights = |state: &State| {
             let mut heights: Vec<_> = state.position.iter().map(|at| at.y).collect();
             heights.sort_by(f64::total_cmp);
             heights
         };
-        // Velocity Verlet comes to rest on a floor completely.
+        // Velocity Verlet comes to complete rest on a floor.
         let mut world =
             self.world(model, Integrator::VelocityVerlet, self.damping, State::at_rest(self.body.rest.clone()));
         world.advance(self.steps.min(20_000));

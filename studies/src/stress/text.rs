@@ -7,7 +7,7 @@ use crate::table::{Cell, Table};
 const RESTORED: f64 = 1e-3;
 
 impl Results {
-    /// The results for people.
+    /// The results as text.
     pub(super) fn text(&self) -> String {
         let mut text = String::from(
             "# Stress\n\n\

@@ -34,9 +34,9 @@ pub(super) struct Trial {
 
 /// Acceleration of gravity (m/s²).
 const GRAVITY: f64 = 9.8;
-/// The side of cubes (m), where it is not the subject.
+/// The side of cubes (m), unless it is varied.
 const SIDE: f64 = 0.1;
-/// `k/m` (1/s²) and ζ, where they are not the subject.
+/// `k/m` (1/s²) and ζ, unless they are varied.
 const USUAL: Elastic = Elastic { over_mass: 1e4, ratio: 0.1 };
 
 /// `k/m` of the lightest node (1/s²), and the damping ratio.
@@ -46,7 +46,7 @@ struct Elastic {
     ratio: f64,
 }
 
-/// All trials, with so many steps of bodies that rest or spin.
+/// All trials, with a number of steps of bodies that rest or spin.
 pub(super) fn trials(steps: u64) -> Vec<Trial> {
     let mut all = Vec::new();
     all.extend(falls());
@@ -67,7 +67,7 @@ fn free(group: &'static str, name: String, body: Body, start: State, elastic: El
     // elements share a node.
     let c = 2.0 * most * elastic.ratio;
     let step = 0.5 * ((c * c + 4.0 * most).sqrt() - c) / most / omega;
-    // Some time constants of the damping: of 1/ζω where it is weak, of ζ/ω where it is strong.
+    // Some time constants of the damping: of 1/ζω if it is weak, of ζ/ω if it is strong.
     let slow = (1.0 / elastic.ratio.max(0.01)).max(4.0 * elastic.ratio);
     Trial {
         group,
@@ -108,7 +108,7 @@ fn falls() -> impl Iterator<Item = Trial> {
         let name = format!("{height} m, k/m = {over_mass:e}");
         let trial = thrown("Falls", name, lattice(3, SIDE, 1.0), DVec3::ZERO, speed, elastic, SIDE);
         let around = Surroundings { gravity: DVec3::Y * -GRAVITY, ..trial.around };
-        // Several rebounds, and then rest.
+        // Several rebounds, then rest.
         let steps = (12.0 / trial.step) as u64;
         Trial { around, steps, promise: Promise::Settled(0.01), ..trial }
     })
@@ -140,8 +140,8 @@ fn pressed() -> Trial {
     Trial { around, steps: (3.0 / trial.step) as u64, has_energy: false, is_free: false, ..trial }
 }
 
-/// Impacts: fast, of every stiffness, damping, distribution of masses, size and place. All but the first are alike but for
-/// units: the floor is met with `ω` sides per second, as after a fall of 5 m with k/m = 1e4.
+/// Impacts: fast, of every stiffness, damping, distribution of masses, size and place. All but the first differ only in
+/// units: the body meets the floor with `ω` sides per second, as after a fall of 5 m with k/m = 1e4.
 fn hits() -> Vec<Trial> {
     let mut all = Vec::new();
     let alike = |name: String, body: Body, at: DVec3, elastic: Elastic, side: f64| {
@@ -176,7 +176,7 @@ fn hits() -> Vec<Trial> {
     all
 }
 
-/// Starts from which all shapes have to be found again.
+/// Starts from which all shapes have to recover.
 fn starts() -> Vec<Trial> {
     type Map = fn(DVec3, &mut Random) -> DVec3;
     let maps: [(&str, Map); 8] = [

@@ -115,7 +115,7 @@ impl Case {
 }
 
 impl Table1 {
-    /// All cases that are measured for each start, sorted by solver, k/m and row.
+    /// All cases for each start, sorted by solver, k/m and row.
     pub(crate) fn cases(&self) -> Vec<Case> {
         let wanted = |stiffness: &usize| STIFFNESSES[*stiffness] <= self.stiffest;
         let mut cases = Vec::new();
@@ -150,7 +150,7 @@ impl Orientation {
         const SEED: u32 = 1;
         let coordinate = |usage: u64| 2.0 * crate::random::unit(SEED, u64::from(number), usage) - 1.0;
         let point = |attempt: u64| DVec4::from_array([0, 1, 2, 3].map(|axis| coordinate(4 * attempt + axis)));
-        // Near the centre directions have few digits.
+        // Near the centre, directions have few digits.
         let usable = |point: &DVec4| (1e-6..=1.0).contains(&point.length_squared());
         let point = (0..).map(point).find(usable).expect("three of ten points lie in the ball");
         let vector = point.xyz();
@@ -179,7 +179,7 @@ pub(crate) struct Results {
     protocol: Table1,
     cases: Vec<Case>,
     orientations: Vec<Orientation>,
-    /// For each start, for each case.
+    /// The statistics of each start in each case.
     statistics: Vec<Statistics>,
 }
 
@@ -205,7 +205,7 @@ pub(crate) fn measure(protocol: &Table1, watch: &Watch<'_>) -> Option<Results> {
     let starts = orientations.par_iter().map(|orientation| watch(0).then(|| start(orientation, &cases)));
     let starts: Vec<Scene> = starts.collect::<Option<_>>()?;
     let crowds: Vec<_> = starts.chunks(CROWD).collect();
-    // The longest first, so that no thread is left with one of them at the end.
+    // The longest tasks come first, so that no thread is left with one of them at the end.
     let mut tasks: Vec<_> = (0..crowds.len() * cases.len()).collect();
     tasks.sort_by_key(|at| Reverse(protocol.evaluations(&cases[at % cases.len()])));
     let of_crowds = tasks.into_iter().par_bridge().map(|at| {
@@ -244,7 +244,7 @@ fn start(orientation: &Orientation, cases: &[Case]) -> Scene {
     for case in cases {
         let (name, rotation, stiffness) = (case.name(), case.solver, case.stiffness_over_mass());
         let passes = case.passes().map_or(String::new(), |passes| format!(", passes = {passes}"));
-        // Chaotic motion would give other numbers with other round-off; without passes α is round-off itself.
+        // With other round-off, chaotic motion would give other numbers. Without passes, α is round-off itself.
         let kernel = if case.passes().is_some() { "reference" } else { "fast" };
         text += &format!(
             "[[run]]
@@ -282,7 +282,7 @@ fn crowd<'a>(starts: impl Iterator<Item = &'a Scene>, first: &Scene) -> Scene {
 fn measure_starts(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch<'_>) -> Option<Vec<Statistics>> {
     /// Number of steps between calls of the watch.
     const SLICE: u64 = 512;
-    // Never one alone: that would be a lattice, whose kernel has different round-off.
+    // Never one cube alone: it would be a lattice, whose kernel has different round-off.
     let cubes = starts.iter().chain(starts).take(starts.len().max(2));
     let mut world = crowd(cubes, &starts[0]).world(case);
     let mut has_landed = vec![false; starts.len()];
@@ -296,7 +296,7 @@ fn measure_starts(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch
         if world.status() != Status::Ok {
             break;
         }
-        // Not needed before the first cube has landed.
+        // They are not needed before the first cube has landed.
         let alphas = if has_landed.contains(&true) { world.residuals(&before) } else { Vec::new() };
         for (at, residuals) in residuals.iter_mut().enumerate() {
             if !has_landed[at] {

@@ -1,6 +1,6 @@
 //! Table 1 of the paper (section 4), as printed.
 
-/// Mean, standard deviation and maximum of α (rad/s²), as printed; `None` where the paper says that it was too small to
+/// Mean, standard deviation and maximum of α (rad/s²), as printed; `None` if the paper reports that it was too small to
 /// be measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Printed {
@@ -55,7 +55,7 @@ pub(crate) const ROWS: [Row; 4] = {
     ]
 };
 
-/// A number of the paper with three digits, or fewer where its six decimals end before.
+/// A number in the paper's format: three digits, or fewer if its six decimals end before.
 pub(super) fn as_printed(number: f64) -> String {
     let short = format!("{number:.2e}");
     let exponent = short.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()).unwrap_or(0);

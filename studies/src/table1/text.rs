@@ -6,7 +6,7 @@ use crate::spread::Spread;
 use crate::table::{Cell, Table, figure};
 
 impl Results {
-    /// The results for people.
+    /// The results as text.
     pub(super) fn text(&self) -> String {
         let Table1 { orientations, duration, .. } = self.protocol;
         let plural = if orientations == 1 { "" } else { "s" };

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Another model, and the number of evaluations. It has the reference code only.
 ///
-/// After `most` evaluations its forces are not numbers, so that the run diverges: an adaptive method with as many substeps as it likes
+/// After `most` evaluations its forces are NaN, so that the run diverges: an adaptive method with unlimited substeps
 /// can be stopped in no other way.
 #[derive(Clone, Debug)]
 pub(super) struct Counting {

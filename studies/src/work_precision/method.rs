@@ -1,4 +1,4 @@
-//! The methods that are compared, and one run of a scene by one of them, with evaluations counted.
+//! The compared methods, and one run of a scene by one of them, with evaluations counted.
 
 use super::Subject;
 use super::count::Counting;
@@ -33,7 +33,7 @@ impl Method {
     pub(crate) const PEFRL: Self = Self::Scene(Integrator::Pefrl);
     pub(crate) const DORMAND_PRINCE: Self = Self::Scene(Integrator::DormandPrince);
 
-    /// All of them.
+    /// All methods.
     pub(crate) const ALL: [Self; 13] = [
         Self::DEFAULT,
         Self::Scene(Integrator::ExplicitEuler),
@@ -50,7 +50,8 @@ impl Method {
         Self::DORMAND_PRINCE,
     ];
 
-    /// The names of the integrator, and of a solver of rotations that is not the default; as in scenes, if they are known there.
+    /// The names of the integrator, and of a solver of rotations that is not the default; as in scenes if they have
+    /// them.
     pub(crate) fn names(self) -> [String; 2] {
         let (integrator, rotation) = match self {
             Self::Scene(integrator) => (typed(&integrator), String::new()),
@@ -68,7 +69,7 @@ impl Method {
         if rotation.is_empty() { integrator } else { format!("{integrator}, {rotation}") }
     }
 
-    /// The evaluations of the forces in a step, or about that.
+    /// The approximate number of evaluations of the forces in a step.
     fn evaluations(self) -> f64 {
         match self {
             Self::Scene(Integrator::Pefrl | Integrator::RungeKutta) => 4.0,
@@ -81,12 +82,12 @@ impl Method {
         }
     }
 
-    /// Whether it finds its steps from a tolerance.
+    /// Whether it chooses its steps by a tolerance.
     pub(crate) fn is_adaptive(self) -> bool {
         self == Self::DORMAND_PRINCE
     }
 
-    /// The integrator of scenes, or one that needs the same of forces together with the composition.
+    /// The integrator of scenes, or one with the same requirements on forces together with the composition.
     fn integrator(self) -> (Integrator, Option<Composition>) {
         match self {
             Self::Scene(integrator) => (integrator, None),
@@ -97,7 +98,7 @@ impl Method {
         }
     }
 
-    /// The model of a run, with the rotations of this method; `None` where there is no choice of them.
+    /// The model of a run, with the rotations of this method; `None` if the model has no choice of them.
     pub(crate) fn model(self, subject: &Subject) -> Option<Arc<dyn ElasticModel>> {
         let model = &subject.scene.runs[subject.run].model;
         let has_choice = subject.scene.body.dimension == Dimension::Space;
@@ -129,7 +130,7 @@ pub(crate) const MOMENTS: usize = 128;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Way {
     pub(super) method: Method,
-    /// The number of steps. An adaptive method has that of the moments, and substeps between them.
+    /// The number of steps. An adaptive method has a step for each moment, with substeps between.
     pub(super) steps: u64,
     pub(super) tolerance: f64,
 }
@@ -144,20 +145,21 @@ pub(crate) enum End {
 }
 
 impl Way {
-    /// A run is given up after so many times the evaluations that it should have. From one tolerance to the next they grow by a factor
-    /// of 2.5 in free motion and 10 in contact, so a series is not cut short by this; but an adaptive method may take millions of
-    /// substeps at its first tolerance, where a body rests on something.
+    /// A run is stopped after this many times the expected evaluations. From one tolerance to the next, evaluations
+    /// grow by a factor of 2.5 in free motion and 10 in contact, so this does not cut a series short. But an adaptive
+    /// method may take millions of substeps at its first tolerance, if a body rests on something.
     const PATIENCE: f64 = 16.0;
 
-    /// With about so many evaluations, or the tolerance of an adaptive method. The number of steps is a power of two, so that all
-    /// states of runs with few steps are at [`MOMENTS`], and runs with many steps have a state at each.
+    /// An attempt with about this many evaluations, or with the tolerance of an adaptive method. The number of steps is
+    /// a power of two: runs with few steps have all their states at [`MOMENTS`], and runs with many steps have a state
+    /// at each.
     pub(super) fn new(method: Method, evaluations: f64, tolerance: f64) -> Self {
         let power = libm::round(libm::log2(evaluations / method.evaluations())).max(0.0);
         let steps = if method.is_adaptive() { MOMENTS as u64 } else { 1 << power as u32 };
         Self { method, steps, tolerance }
     }
 
-    /// Half as many steps again, which is no power of two, and at least one and a half for each moment.
+    /// Half as many steps again, which is not a power of two, and at least one and a half for each moment.
     pub(super) fn finer(self) -> Self {
         let steps = if self.method.is_adaptive() { self.steps } else { self.steps.max(2 * MOMENTS as u64) / 2 * 3 };
         Self { steps, ..self }
@@ -178,8 +180,8 @@ impl Way {
         world
     }
 
-    /// Makes the run and returns its end and the number of evaluations; `most` should suffice. Calls `look` with the number of each
-    /// moment at which the run has a state, and with the positions there (m).
+    /// Makes the run and returns its end and the number of evaluations; `most` should suffice. Calls `look` with the
+    /// number of each moment at which the run has a state, and with the positions there (m).
     pub(super) fn run(
         self,
         subject: &Subject,

@@ -1,10 +1,10 @@
-//! The integrators: the error of positions over the whole time against evaluations of the forces and time, for steps and tolerances
-//! over decades, and that of the paper's readings of rotations.
+//! The integrators: the error of positions over the whole time against evaluations of the forces and time, for steps
+//! and tolerances over decades, and the error of the paper's readings of rotations.
 //!
-//! The error of a run is the largest at any of a set of moments that all runs have in common. The reference is computed by two
-//! different methods with small steps; how far apart they are at most is its own error, and no error below it is told. Evaluations
-//! are counted by a model that counts them; times are of the fastest code of each method. The runs take turns, in an
-//! order that is rotated, and each time is the median of its turns.
+//! The error of a run is the largest at a set of moments that all runs have in common. The reference is computed by two
+//! different methods with small steps; their largest distance is its own error, and smaller errors are not reported. A
+//! model counts evaluations; times are of the fastest code of each method. The runs take turns, in a rotated order, and
+//! each time is the median of its turns.
 
 mod count;
 mod method;
@@ -36,12 +36,12 @@ pub(crate) struct WorkPrecision {
     pub(crate) arguments: String,
 }
 
-/// How much is measured.
+/// The amount of measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Effort {
-    /// The most evaluations in a run, about.
+    /// The approximate limit of evaluations in a run.
     pub(crate) evaluations: u32,
-    /// The longest run (s), about, which limits the evaluations of large bodies.
+    /// The approximate limit of a run's time (s), which limits the evaluations of large bodies.
     pub(crate) seconds: f64,
     /// The number of turns of each run.
     pub(crate) rounds: u32,
@@ -63,7 +63,7 @@ impl Study for WorkPrecision {
         format!("localshape-study work-precision{}", self.arguments)
     }
 
-    /// The turns, if nothing diverges, and one more for each way to advance a run.
+    /// The number of turns if nothing diverges, and one more for each way to advance a run.
     fn work(&self) -> u64 {
         self.subjects.iter().map(|subject| work(self.effort, subject)).sum()
     }
@@ -82,7 +82,7 @@ fn work(effort: Effort, subject: &Subject) -> u64 {
     (subject.methods().len() * STEPS) as u64 * u64::from(effort.rounds + 1)
 }
 
-/// The number of steps that are tried with each method, each half of the one before; tolerances fall by factors of ten.
+/// The number of steps for each method, each half of the one before; tolerances fall by factors of ten.
 const STEPS: usize = 11;
 
 /// A run of a scene.
@@ -110,8 +110,8 @@ pub(crate) struct Measured {
     pub(crate) step: f64,
     /// Evaluations of the forces of the whole body, from the start on.
     pub(crate) evaluations: u64,
-    /// The greatest distance of a node from the reference at any moment, as a share of the body's size; `None` if the run diverges or
-    /// is given up.
+    /// The greatest distance of a node from the reference at any moment, as a share of the body's size; `None` if the
+    /// run diverges or is stopped.
     pub(crate) error: Option<f64>,
     pub(crate) end: End,
     /// Time of the run (s); NaN without an error.
@@ -120,7 +120,7 @@ pub(crate) struct Measured {
     pub(crate) is_fast: bool,
 }
 
-/// The course on which two methods agree.
+/// The reference course, on which two methods agree.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Reference {
     pub(crate) methods: [Method; 2],
@@ -141,7 +141,7 @@ pub(crate) struct Comparison {
     pub(crate) reference: Result<Reference, String>,
     /// The measurements, method by method, from large steps to small ones.
     pub(crate) measured: Vec<Measured>,
-    /// Methods that cannot advance it, and why.
+    /// Methods that cannot advance it, and the reasons.
     pub(crate) refused: Vec<(Method, &'static str)>,
 }
 
@@ -195,7 +195,7 @@ fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Compa
             if !watch(1) {
                 return None;
             }
-            // An error below that of the reference says nothing about the method.
+            // An error below that of the reference is unknown.
             if end == End::Reached && error < own_error {
                 break;
             }
@@ -216,7 +216,7 @@ fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Compa
             }
         }
     }
-    // The runs before have warmed caches.
+    // The earlier runs have warmed the caches.
     let times = take_turns(timed.len(), effort.rounds, watch, |turn| {
         let (_, way, model) = &timed[turn];
         let mut world = way.world(subject, Arc::clone(model));
@@ -228,7 +228,7 @@ fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Compa
     Some(found)
 }
 
-/// The time of an evaluation by the reference code (s), about.
+/// The approximate time of an evaluation by the reference code (s).
 fn seconds_per_evaluation(subject: &Subject, model: &Arc<dyn ElasticModel>) -> f64 {
     let way = Way { steps: 1 << 20, ..Way::new(Method::DEFAULT, 1.0, reference::TOLERANCE) };
     let mut world = way.world(subject, Arc::new(Counting::new(Arc::clone(model), u64::MAX)));
@@ -249,7 +249,7 @@ pub(crate) struct Cost {
 }
 
 impl Comparison {
-    /// The methods that were measured.
+    /// The measured methods.
     pub(crate) fn methods(&self) -> impl Iterator<Item = Method> {
         Method::ALL.into_iter().filter(|&one| self.of(one).next().is_some())
     }
@@ -259,8 +259,8 @@ impl Comparison {
         self.measured.iter().filter(move |one| one.way.method == method)
     }
 
-    /// The cost of an error, interpolated on logarithmic axes. It lies between the coarsest run from which on no error is larger and the
-    /// run before; `None` without such a run.
+    /// The cost of an error, interpolated on logarithmic axes: between the coarsest run from which on no error is
+    /// larger, and the run before; `None` without such runs.
     pub(crate) fn cost(&self, method: Method, error: f64) -> Option<Cost> {
         let runs: Vec<_> = self.of(method).filter_map(|one| Some((one, one.error?))).collect();
         let larger = runs.iter().rposition(|&(_, own)| own > error);
@@ -278,8 +278,8 @@ impl Comparison {
         Some(cost(libm::log(high / error) / libm::log(high / low.max(f64::MIN_POSITIVE)), coarse))
     }
 
-    /// The power of the step with which the error of a method with fixed steps falls, from the three finest runs whose errors are
-    /// neither large nor round-off; `None` if there are fewer, or if the two powers between them differ by more than a half.
+    /// The order of convergence of a method with fixed steps, from the three finest runs whose errors are neither large
+    /// nor round-off; `None` if there are fewer, or if the two orders between them differ by more than a half.
     pub(crate) fn order(&self, method: Method) -> Option<f64> {
         let least = 30.0 * self.reference.as_ref().ok()?.error.max(1e-12);
         let usual = self.of(method).filter_map(|one| Some((one.step, one.error?)));

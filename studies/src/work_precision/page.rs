@@ -47,7 +47,7 @@ impl Results {
 }
 
 impl Method {
-    /// The number of the family of its order.
+    /// The number of the family for its order.
     fn family(self) -> usize {
         match self {
             Self::Scene(Integrator::VelocityVerlet) | Self::Reading(_) => 1,

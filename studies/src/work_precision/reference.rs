@@ -1,4 +1,4 @@
-//! The positions that errors are measured against, at each moment.
+//! The reference positions at each moment.
 
 use super::method::{End, MOMENTS, Method, Way};
 use super::{Reference, Subject};
@@ -7,7 +7,7 @@ use localshape::sim::Integrator;
 use localshape::sim::model::ElasticModel;
 use std::sync::Arc;
 
-/// The tolerance of the reference, and the least that is tried: below, round-off is larger.
+/// The tolerance of the reference, and the least tolerance: with a smaller one, round-off is larger.
 pub(super) const TOLERANCE: f64 = 1e-11;
 /// Two methods that are farther apart than this share of the body's size do not agree.
 const MOST_APART: f64 = 0.03;
@@ -15,13 +15,14 @@ const MOST_APART: f64 = 0.03;
 /// The positions (m) at each moment.
 pub(super) type Course = Vec<Vec<DVec3>>;
 
-/// A course by two different methods; why there is none otherwise. `most` is the number of evaluations of the finest run.
+/// A course by two different methods, or why there is none. `most` is the number of evaluations of the finest run.
 pub(super) fn reference(
     subject: &Subject,
     accepted: &[(Method, Arc<dyn ElasticModel>)],
     most: f64,
 ) -> Result<(Course, Reference), String> {
-    // With obstacles only the adaptive method is of high order, and of the others that with the smallest steps is best.
+    // With obstacles only the adaptive method is of high order, and among the others the one with the smallest steps is
+    // best.
     let best: &[Method] = if subject.scene.obstacles.is_empty() {
         &[Method::BlanesMoan, Method::KahanLi, Method::DORMAND_PRINCE, Method::Scene(Integrator::RungeKutta)]
     } else {
@@ -37,7 +38,7 @@ pub(super) fn reference(
     };
     let apart = one.iter().zip(&other).map(|(one, other)| farthest(one, other));
     let error = apart.fold(0.0, larger) / subject.scene.body.extent();
-    // NaN is no agreement.
+    // NaN is not an agreement.
     if error.is_nan() || error > MOST_APART {
         return Err(format!(
             "{} and {} are {error:.0e} of the body's size apart also with small steps: the motion is chaotic, and there is no finite \
@@ -49,8 +50,8 @@ pub(super) fn reference(
     Ok((one, Reference { methods: [first, second], error }))
 }
 
-/// The course with more than so many evaluations, or the tolerance of an adaptive method that leads to them, which is `None` if the
-/// body diverges; `None` for a method that needs far more evaluations.
+/// The course with more than a number of evaluations, or with the tolerance of an adaptive method that leads to them;
+/// its inner `None` means that the body diverges. `None` for a method that needs far more evaluations.
 fn finest(subject: &Subject, model: &Arc<dyn ElasticModel>, method: Method, most: f64) -> Option<Option<Course>> {
     let mut tolerance = if method.is_adaptive() { 1e-4 } else { TOLERANCE };
     let mut before = None;

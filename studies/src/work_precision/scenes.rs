@@ -1,4 +1,4 @@
-//! The scenes that are measured if none is given.
+//! The default scenes.
 
 use super::Subject;
 use glam::DVec3;

@@ -9,7 +9,7 @@ use crate::turns::{kind_of_time, machine};
 const WANTED: [f64; 7] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9];
 
 impl Results {
-    /// The results for people.
+    /// The results as text.
     pub(super) fn text(&self) -> String {
         let mut text = format!(
             "# Integrators: error against work\n\n\
@@ -76,7 +76,7 @@ impl Comparison {
         text
     }
 
-    /// A row for each error that some method reaches.
+    /// A row for each error that a method reaches.
     fn recommendations(&self) -> Table {
         let own = self.reference.as_ref().map_or(f64::INFINITY, |reference| reference.error);
         let wanted = WANTED.into_iter().filter(|&error| error > own);

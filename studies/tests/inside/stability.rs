@@ -24,7 +24,7 @@ fn steps_below_the_limit_are_stable_and_steps_above_are_not() {
     let (protocol, scene) = small();
     let results = measure(protocol.clone(), &scene, &|_| None, &|_| (), &|_| true).expect("it is never stopped");
     assert_eq!(results.cells.len() as u64, protocol.work(&scene));
-    assert!(results.text().ends_with("\nown finds its own steps and is left out.\n"));
+    assert!(results.text().ends_with("\nown chooses its own steps and is left out.\n"));
     for cell in results.cells.iter().filter(|cell| cell.run == 0) {
         assert_eq!(cell.outcome == Outcome::Diverged, cell.share > 1.0, "{cell:?}");
     }
