@@ -36,14 +36,14 @@ pub(super) struct Facts<'a> {
     pub(super) centred: &'a [DVec3],
 }
 
-/// An element has turned over if its signed volume is below minus this fraction of that at rest.
+/// An element has turned over if its signed volume is below minus this fraction of the volume at rest.
 ///
 /// The sign of a volume nearer to zero says nothing. For an element pressed exactly flat it is round-off. For one that lies
 /// pressed flat on a floor it changes every few steps: in a step gravity moves nodes by g Δt² before contact moves them
 /// back, with steps of T/50 by 1/63 of m g / k. That is a ten-thousandth of the height of the cubes of `scenes/springs.toml`.
 const NO_SIGN: f64 = 1e-3;
 
-/// An element is flat if its volume is below this fraction of that at rest and it has not turned over.
+/// An element is flat if its volume is below this fraction of the volume at rest and it has not turned over.
 const FLAT: f64 = 0.01;
 
 /// Whether an element with a volume at rest has lost it.
@@ -242,7 +242,7 @@ diagnostics! { facts:
     TurnedOver, turned_over: usize, "turned over", "", Summaries =
         facts.turned_over().filter(|&turned| turned).count();
 
-    /// Total signed volume divided by that at rest; in the plane, area.
+    /// Total signed volume divided by the volume at rest; in the plane, area.
     VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries = facts.volumes.iter().sum::<f64>() / facts.volume_at_rest;
 
     /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
@@ -251,8 +251,8 @@ diagnostics! { facts:
     /// Total energy (J): kinetic, elastic and gravitational.
     Energy, energy: f64, "total energy", "J", Frames = kinetic + elastic + gravitational;
 
-    /// Number of rotations since the start that took the global solver: of elements that are pressed flat, turned
-    /// inside out, or have turned far in one step.
+    /// Number of rotations since the start that needed the global solver, because the element was pressed flat, turned
+    /// inside out, or turned far in one step.
     GlobalRotations, global_rotations: f64, "global rotations", "", Frames = facts.global_rotations;
 }
 

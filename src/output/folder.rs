@@ -29,7 +29,7 @@ pub(super) fn frame_number(name: &str) -> Option<u64> {
 /// The scene to which results belong.
 #[derive(Clone, Debug)]
 pub(crate) struct Whose {
-    /// Digest of the scene's contents.
+    /// Digest of the scene's meaning.
     pub digest: String,
     pub title: String,
     /// Its file, as a full path.

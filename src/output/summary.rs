@@ -50,7 +50,7 @@ pub(crate) struct SceneSummary {
     /// The file relative to the folder of `run.json`; set by [`Summary::write`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub relative_file: Option<String>,
-    /// Digest of the scene's contents.
+    /// Digest of the scene's meaning.
     pub digest: String,
     /// The period T of the lightest node and the stiffest run (s), the unit of steps such as `T/70`.
     pub cycle: f64,
