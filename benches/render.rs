@@ -1,8 +1,8 @@
-//! What a frame costs, by stage: `cargo bench --bench render`, and `benches/README.md` how to read it.
+//! The cost of a frame, by stage: `cargo bench --bench render`. `benches/README.md` explains the numbers.
 //!
-//! The program itself draws scenes into a temporary folder, a short and a long sequence of frames in turns, from states that it
-//! simulated once: else the simulation's noise would hide what drawing costs. What the longer one takes more, over the number of
-//! frames that it has more, is the cost of a frame; the median counts.
+//! The program itself draws scenes into a temporary folder, a short and a long sequence of frames in turn. The states
+//! are simulated once, because the simulation's noise would hide the cost of drawing. The additional time of the longer
+//! sequence, over its number of additional frames, is the cost of a frame. The median counts.
 
 use serde_json::Value;
 use std::path::Path;
@@ -15,9 +15,9 @@ const RATE: u32 = 60;
 /// Blocks of cubes, by the triangles of their surface: cubes along each edge, and frames beyond the first one.
 const CASES: [(u32, [u32; 3], u32); 3] =
     [(588, [7, 7, 7], 60), (20_172, [41, 41, 41], 12), (300_300, [273, 1, 273], 4)];
-/// How often each sequence is rendered.
+/// The number of times that each sequence is rendered.
 const TURNS: usize = 3;
-/// What `run.json` calls the stages.
+/// The names of the stages in `run.json`.
 const STAGES: [&str; 3] = ["compose", "draw", "encode"];
 
 /// Two panels with floor, shadow, lines and words.
@@ -54,10 +54,10 @@ labels = ["letters", "name", "model", "clock", "count", "number", "scale-bar", "
 struct Rendered {
     /// Processor time of each stage (s).
     stages: [f64; 3],
-    /// From its start to its end, and to the first frame on disk (s).
+    /// The times from its start to its end, and to the first frame on disk (s).
     wall: f64,
     first: f64,
-    /// The most memory it had (MiB); 0 where the system does not tell.
+    /// Its peak memory (MiB); 0 if the system does not provide it.
     peak: f64,
 }
 
@@ -68,7 +68,7 @@ fn program(command: &str, scene: &Path, folder: &Path) -> Command {
     program
 }
 
-/// Renders the first frame of a scene and so many more, from states if there are any.
+/// Renders the first frame of a scene and `more` further ones, from states if there are any.
 fn render(scene: &Path, states: Option<&Path>, more: u32, folder: &Path) -> Rendered {
     let start = Instant::now();
     let mut command = program("render", scene, folder);
@@ -97,7 +97,7 @@ fn render(scene: &Path, states: Option<&Path>, more: u32, folder: &Path) -> Rend
     Rendered { stages, wall, first: first.unwrap_or(wall), peak }
 }
 
-/// The most memory that a process has had so far (MiB).
+/// The peak memory of a process so far (MiB).
 fn peak_mib(status: &str) -> Option<f64> {
     let text = std::fs::read_to_string(status).ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -1,7 +1,8 @@
-//! What a step costs, beside the floor of the machine: `cargo bench --bench step`, and `benches/README.md` how to read it.
+//! The cost of a step, beside the floor of the machine: `cargo bench --bench step`. `benches/README.md` explains the
+//! numbers.
 //!
-//! Everything of one size is measured in turns, so that whatever else the machine does meets all alike, and the best of
-//! many short samples counts. `-- 3 10 40` measures these sizes alone.
+//! All cases of one size are measured in turn, so that other load of the machine affects all alike, and the best of
+//! many short samples counts. `-- 3 10 40` measures only these sizes.
 
 use localshape::internals::multiply_adds;
 use localshape::internals::{lanes, limit_lanes};
@@ -11,16 +12,16 @@ use rayon::ThreadPoolBuilder;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Multiply-adds of one lane that a box and step needs at least.
+/// The least number of multiply-adds of one lane for a box and step.
 const FLOOR: f64 = 320.0;
-/// Elements times steps in one sample: so many steps that what happens once a call, as once a frame, is a small part.
+/// Elements times steps in one sample: many steps, so that work once per call, as once per frame, is a small part.
 const WORK: u64 = 3_000_000;
-/// Steps in one sample at least, for the same reason: each call keeps a copy of the state.
+/// The least number of steps in one sample, for the same reason: each call keeps a copy of the state.
 const LEAST: u64 = 8;
 /// Cells along an edge.
 const SIZES: [u64; 6] = [3, 10, 20, 40, 80, 160];
 
-/// One thing to be timed.
+/// A timed case.
 struct Case {
     name: &'static str,
     world: World,
@@ -43,7 +44,7 @@ impl Case {
     fn sample(&mut self) {
         let Self { world, steps, .. } = self;
         if self.threads > 1 {
-            // Threads that have slept need some milliseconds until each has a processor to itself.
+            // Threads that have slept need some milliseconds until each has a processor.
             world.advance(*steps);
         }
         let start = Instant::now();
@@ -62,7 +63,7 @@ impl Case {
     }
 }
 
-/// A body on a floor, with the models that are compared.
+/// A body on a floor, with the compared models.
 fn scene(body: &str, dimension: &str, runs: &[(&str, &str)]) -> Scene {
     let mut text = format!(
         "gravity = [0, -9.8{dimension}]
@@ -78,14 +79,14 @@ fn scene(body: &str, dimension: &str, runs: &[(&str, &str)]) -> Scene {
     Scene::parse(&text, "step", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The floor on the spot: nanoseconds a box and step.
+/// The present floor of the machine: nanoseconds per box and step.
 fn floor() -> f64 {
     let start = Instant::now();
     let count = black_box(multiply_adds(20_000));
     start.elapsed().as_secs_f64() * 1e9 / count as f64 * FLOOR
 }
 
-/// Something done in vectors of so many doubles at most.
+/// Calls `work` with vectors of at most `most` doubles.
 fn in_lanes<T>(most: usize, work: impl FnOnce() -> T) -> T {
     let widest = lanes();
     limit_lanes(most);
@@ -94,7 +95,7 @@ fn in_lanes<T>(most: usize, work: impl FnOnce() -> T) -> T {
     done
 }
 
-/// Bytes a nanosecond of reading two and writing one array that fit no cache.
+/// The rate (bytes per nanosecond) of reading two arrays and writing one that do not fit into a cache.
 fn bandwidth() -> f64 {
     let count = 1 << 24;
     let (mut to, one, two) = (vec![0.0f64; count], vec![1.0f64; count], vec![2.0f64; count]);
@@ -109,7 +110,7 @@ fn bandwidth() -> f64 {
     (0..5).map(|_| pass(&mut to)).fold(0.0, f64::max)
 }
 
-/// Times all cases and the floor in turns; the latter, too, in vectors of four doubles.
+/// Times all cases and the floor in turn; the floor also with vectors of four doubles.
 fn measure(cases: &mut [Case], samples: usize) -> [f64; 2] {
     let mut least = [f64::INFINITY; 2];
     for _ in 0..samples {
@@ -132,7 +133,7 @@ fn find<'a>(cases: &'a [Case], name: &str) -> &'a Case {
 
 fn main() {
     let asked: Vec<u64> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
-    // What is not vectorised works on one thread, too.
+    // Code without vectors also runs on one thread.
     ThreadPoolBuilder::new().num_threads(1).build_global().expect("a thread");
     println!("floor: {FLOOR} multiply-adds a cube; memory {:.1} GB/s", bandwidth());
     println!("ns per element and step: best, median, best over floor\n");

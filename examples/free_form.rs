@@ -13,7 +13,7 @@ use std::fs::File;
 use std::io::{self, Write};
 use zip::write::{SimpleFileOptions, ZipWriter};
 
-/// Middle (m) and radius (m) of the balls that make the shape together.
+/// Middle (m) and radius (m) of the balls whose union is the shape.
 const BEAR: [(DVec3, f64); 8] = [
     (DVec3::new(0.0, 0.22, 0.0), 0.155),
     (DVec3::new(0.0, 0.44, 0.0), 0.115),
@@ -25,9 +25,9 @@ const BEAR: [(DVec3, f64); 8] = [
     (DVec3::new(0.1, 0.075, 0.045), 0.08),
 ];
 
-/// How often the seeds are moved to the middles of their cells: short edges and thin cells become rare.
+/// The number of times that seeds are moved to the middles of their cells, which makes short edges and thin cells rare.
 const RELAXATIONS: usize = 30;
-/// Corners of neighbouring cells nearer to each other than this are one (m).
+/// Corners of neighbouring cells closer than this are one (m).
 const SAME: f64 = 1e-7;
 
 /// Distance from the shape's surface (m), negative inside, and the direction out.
@@ -85,7 +85,7 @@ fn seeds(spacing: f64, is_flat: bool) -> Vec<DVec3> {
     seeds
 }
 
-/// Points around the shape, at about the distance at which the outermost seeds lie within it: cells end half-way.
+/// Points around the shape, at about the distance that the outermost seeds have inside it: cells end half-way.
 fn ghosts(spacing: f64, is_flat: bool) -> Vec<DVec3> {
     // Distance from the surface, and from each other, in spacings.
     const OFF: f64 = 0.4;
@@ -161,7 +161,7 @@ fn clip(cell: &Cell, point: DVec3, normal: DVec3, is_flat: bool) -> Cell {
                 clipped.push(a);
             }
             if (ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0) {
-                // The same bits from both faces that share the edge.
+                // The order gives the same bits from both faces of the edge.
                 let (low, high, hl, hh) = if ha < hb { (a, b, ha, hb) } else { (b, a, hb, ha) };
                 let crossing = low + (high - low) * (hl / (hl - hh));
                 clipped.push(crossing);
@@ -210,7 +210,7 @@ fn centroid(cell: &Cell) -> DVec3 {
     origin + sum / weight
 }
 
-/// Nodes and elements as the scene format has them.
+/// Nodes and elements in the scene format.
 struct Body {
     nodes: Vec<DVec3>,
     elements: Vec<Vec<i32>>,
@@ -221,7 +221,7 @@ impl Body {
     fn new(cells: &[Cell], is_flat: bool) -> Self {
         let mut nodes: Vec<DVec3> = Vec::new();
         let mut places: HashMap<[i64; 3], Vec<i32>> = HashMap::new();
-        // Cells of twice the tolerance: what is the same lies in the same or in a neighbouring one.
+        // The cells of this grid are twice the tolerance: equal corners lie in one cell or in neighbouring ones.
         let key = |point: DVec3| (point / (2.0 * SAME)).floor().to_array().map(|at| at as i64);
         let mut place = |point: DVec3| {
             let [x, y, z] = key(point);
@@ -252,7 +252,7 @@ impl Body {
                 element.extend(&corners);
                 let mut sorted = corners.clone();
                 sorted.sort_unstable();
-                // Each face once, whichever of its two cells comes first.
+                // Each face once, from either of its two cells.
                 if !is_flat && known.insert(sorted, ()).is_none() {
                     faces.push(corners);
                 }
@@ -308,7 +308,7 @@ fn divided(polygon: Vec<i32>, number: usize, nodes: &[DVec3]) -> Vec<Vec<i32>> {
     if cut == 0 || polygon.len() < cut + 3 {
         return vec![polygon];
     }
-    // Begin where the smaller part comes out largest: no slivers.
+    // The cut makes the smaller part as large as possible, to avoid slivers.
     let area = |part: &[i32]| {
         let [first, rest @ ..] = part else { return 0.0 };
         let from = nodes[*first as usize];

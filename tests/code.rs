@@ -23,7 +23,7 @@ fn assert_same(made: SceneBuilder, file: &str) {
     let parsed = Scene::parse(file, "scene.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}\n{file}"));
     let made = made.build(&Limits::default()).unwrap_or_else(|error| panic!("{error}\n{file}"));
     assert!(!made.digest.is_empty());
-    // Titles are compared by their digest; names, which are those of files, are not compared.
+    // Digests cover titles. Names are not compared, as files have their own.
     let [made, parsed] = [made, parsed].map(|scene| format!("{:#?}", Scene { name: String::new(), ..scene }));
     assert_eq!(made, parsed, "{file}");
 }
@@ -184,7 +184,7 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
     assert_same(made, text);
 }
 
-/// Position, what was found, what was expected, what to do: as for a file, without lines of its text.
+/// Messages have position, finding, expectation and remedy like those about a file, but no lines of its text.
 #[test]
 fn mistakes_in_code_are_told_as_those_in_files() {
     let triangle = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
@@ -290,7 +290,7 @@ fn mistakes_in_code_are_told_as_those_in_files() {
     assert!(differences.is_empty(), "{}", differences.join("\n"));
 }
 
-/// Warnings about what is allowed but probably not intended.
+/// Warnings about allowed but probably unintended values.
 #[test]
 fn warnings_name_the_setting() {
     let scene = Scene::builder("drop", BodyBuilder::polygon(3, 1.0)).run("One", shape(1.0)).frames_per_second(0.1);
@@ -299,7 +299,7 @@ fn warnings_name_the_setting() {
     assert_eq!((warnings[0].line, warnings[0].place.as_str()), (0, "time.frames_per_second"));
 }
 
-/// A model that exerts no forces and says what a test wants of itself.
+/// A model without forces, with the properties that a test needs.
 #[derive(Clone, Debug)]
 struct Idle {
     stiffness: f64,
@@ -339,7 +339,7 @@ impl ForceModel for Idle {
     }
 }
 
-/// It is checked by what it says of itself, and not as if it were a model of this crate.
+/// A model is checked by the properties that it reports, and not as if it belonged to this crate.
 #[test]
 fn models_of_the_caller_are_checked_by_their_own_words() {
     let idle = |stiffness| Idle { stiffness, springs: Vec::new(), turns: false };

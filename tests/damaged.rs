@@ -15,7 +15,7 @@ impl Noise {
     }
 }
 
-/// What damages take the place of bytes: ends of ranges, and what means something in some format.
+/// Bytes that damages insert: ends of ranges, and bytes with a meaning in some format.
 const HOSTILE: [&[u8]; 18] = [
     b"0",
     b"-1",
@@ -92,7 +92,7 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
     }
 }
 
-/// Scenes and figures that name bodies and scenes by whole paths, to be read from any folder.
+/// Scenes and figures with whole paths of bodies and scenes, which can be read from any folder.
 fn with_whole_paths(texts: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").display().to_string();
     let whole = |text: Vec<u8>| {
@@ -134,7 +134,7 @@ fn no_damage_ends_the_program() {
     }
 }
 
-/// Nothing is allocated for numbers that are not in the file.
+/// Nothing is allocated for numbers that the file does not have.
 #[cfg(feature = "render")]
 #[test]
 fn states_that_unfold_to_more_than_their_file_are_refused() {

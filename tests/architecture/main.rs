@@ -37,7 +37,7 @@ fn offenders(room: &str, words: &[&str]) -> Vec<String> {
     lines
 }
 
-/// The modules of the crate that a module uses; also itself, if it does so by a full path.
+/// The modules of the crate that a module uses; also itself, if it uses itself by a full path.
 fn rooms_named_by(room: &str) -> BTreeSet<String> {
     let mut rooms = BTreeSet::new();
     for (_, text) in sources(room) {
@@ -76,7 +76,7 @@ fn one_place_narrows() {
 
 #[test]
 fn nothing_flows_back() {
-    // A macro of its own names `reading`.
+    // A macro of `reading` names `reading`.
     assert_eq!(rooms_named_by("reading"), BTreeSet::from(["reading", "sim"].map(str::to_owned)));
     assert_eq!(rooms_named_by("look"), BTreeSet::from(["colour", "reading", "sim"].map(str::to_owned)));
     assert_eq!(
@@ -88,9 +88,9 @@ fn nothing_flows_back() {
     assert_eq!(offenders("render", &["crate::sim", "crate::scene", "crate::output", "crate::cli"]), [""; 0]);
     assert_eq!(offenders("gpu", &["crate::sim", "crate::scene", "crate::picture", "crate::render"]), [""; 0]);
     assert_eq!(offenders("output", &["crate::cli"]), [""; 0]);
-    // Of `output` it uses the encoder of PNG only, of `reading` what escapes words.
+    // It uses only the encoder of PNG of `output`, and of `reading` the escaping of words.
     assert_eq!(rooms_named_by("vector"), BTreeSet::from(["colour", "output", "picture", "reading"].map(str::to_owned)));
-    // It is given pictures; of `picture` it uses fonts only.
+    // Pictures are its input; of `picture` it uses only fonts.
     let outside = ["crate::sim", "crate::scene", "crate::gpu", "crate::render", "crate::cli"];
     assert_eq!(offenders("animation", &outside), [""; 0]);
     for file in ["history", "moments"] {
@@ -99,7 +99,7 @@ fn nothing_flows_back() {
     }
 }
 
-/// The simulation does not depend on pictures: bodies, motions, obstacles, grips and steps, as read and resolved.
+/// The simulation, as read and resolved, does not depend on pictures: bodies, motions, obstacles, grips and steps.
 #[test]
 fn the_physics_of_a_scene_knows_no_drawing() {
     let files = ["file/body", "file/motion", "file/obstacle", "resolve/body", "resolve/elements", "resolve/grips"];

@@ -19,7 +19,7 @@ fn pixels(number: u64, [width, height]: [u32; 2]) -> Vec<u8> {
 }
 
 fn tags(number: u64) -> Tags {
-    // At the end of a step, like those of scenes.
+    // The times are ends of steps, like those of scenes.
     frame_tags(number, number as f64 / 30.0 + if number % 2 == 1 { 1e-3 } else { 0.0 })
 }
 
@@ -125,7 +125,7 @@ fn a_gif_looks_like_its_frames_and_keeps_their_times() {
     }
     let delays: Vec<_> = frames.iter().map(|(_, delay)| *delay).collect();
     assert_eq!(delays, [3, 4, 3, 3, 4, 3, 3, 4, 3, 3, 4, 3]);
-    // Twice as fast there are more frames than hundredths of a second.
+    // At twice the speed there are more frames than hundredths of a second.
     let ran = place.run("animate in -o out.gif --speed 2").good();
     assert!(ran.out.contains("6 pictures of 12 frames in 0.20 s"), "{}", ran.out);
     let (frames, repeat) = decode_gif(&place.path("out.gif"));
@@ -157,7 +157,7 @@ impl Reel for Drawn {
     }
 }
 
-/// By the library, as the comment of a file has the command, and with it the number of threads.
+/// The library is called, as the comment of a file has the command, and with it the number of threads.
 #[test]
 fn any_number_of_threads_makes_the_same_bytes() {
     let place = Place::new();
@@ -188,7 +188,7 @@ fn any_number_of_threads_makes_the_same_bytes() {
     }
 }
 
-/// The animation is the same whether its frames are kept or not.
+/// The animation is the same with frames kept or not.
 #[test]
 fn rendering_makes_animations_meanwhile() {
     let Some(place) = crate::render::place_to_draw() else { return };
@@ -260,7 +260,7 @@ fn speed_rate_and_pauses() {
     assert_eq!(times("--frames 1,2,8").0, [(1, 0.0333), (2, 0.2), (8, 0.2)]);
 }
 
-/// However long a frame is held, in formats whose delays have 16 bits.
+/// A frame may be held for any time, in formats whose delays have 16 bits.
 #[test]
 fn a_long_hold_keeps_its_duration() {
     let place = with_frames();
@@ -377,7 +377,7 @@ fn an_interrupted_film_leaves_nothing() {
     use crate::support::Running;
     for script in [
         "echo > started; cat > /dev/null",
-        // It reads no pictures; nor does its child process.
+        // It reads no pictures, and neither does its child process.
         "echo > started; exec sleep 60",
         "echo > started; sleep 60",
         // It has read all pictures and does not end.
@@ -410,7 +410,7 @@ fn films_and_all_else_are_read_by_other_programs() {
     for (file, size) in [("a.mp4", [64, 48]), ("a.webm", [64, 48]), ("a.gif", [63, 47]), ("a.apng", [63, 47])] {
         let ran = place.run(&format!("animate odd -o {file}")).good();
         assert!(ran.out.starts_with(&format!("{file}  {}×{}, 12 pictures in 0.40 s", size[0], size[1])), "{}", ran.out);
-        // It is recognised as our own file, and replaced.
+        // The file is recognised as one of this program, and replaced.
         place.run(&format!("animate odd -o {file} --frames 0-3")).good();
         place.run(&format!("animate odd -o {file}")).good();
         let mut decoder = Command::new("ffmpeg");
@@ -428,7 +428,7 @@ fn films_and_all_else_are_read_by_other_programs() {
             assert!(apart < 3.0, "{file}, frame {number}: {apart}");
         }
         if size != [63, 47] {
-            // Four pixels share a colour, but each has its own luma: here that of the background.
+            // Four pixels share a colour, but each has its own luma: here the luma of the background.
             let corner = &frames[0][frames[0].len() - 3 * width..][..3];
             let brightness =
                 0.2126 * f64::from(corner[0]) + 0.7152 * f64::from(corner[1]) + 0.0722 * f64::from(corner[2]);
@@ -561,7 +561,7 @@ fn wrong_options_are_told() {
         ("mine.mp4", "....ftypisom. It was not made by localshape 0.1.0"),
         ("mine.webm", "made by localshape 0.1.0"),
     ] {
-        // Each letter one byte.
+        // One byte for each letter.
         let bytes: Vec<u8> = text.chars().map(|letter| letter as u8).collect();
         std::fs::write(place.path(name), &bytes).unwrap();
         bad(&place, &format!("in -o {name}"), &[&format!("{name} exists and was not made"), "--overwrite"]);

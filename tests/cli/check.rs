@@ -68,7 +68,7 @@ fn says_that_a_body_leaves_its_panel() {
     assert_eq!([warnings(0), warnings(1)], [Some(0), Some(1)]);
 }
 
-/// Runs with the reference kernel are reported, and `kernel = "fast"` is refused where there are no vectorised steps.
+/// Runs with the reference kernel are reported, and `kernel = "fast"` is refused if there are no vectorised steps.
 #[test]
 fn says_which_runs_take_the_plain_code() {
     let place = Place::with_small();
@@ -107,7 +107,7 @@ fn warns_of_what_is_probably_not_meant() {
     assert_eq!(document["scenes"][0]["warnings"][0]["help"], "use at least 10 to show the end");
 }
 
-/// What the pictures of a scene have no room for is told, without a mistake.
+/// Words without room in the pictures of a scene are reported, but are not mistakes.
 #[cfg(feature = "render")]
 #[test]
 fn tells_what_finds_no_room() {
@@ -156,7 +156,7 @@ fn a_mesh_written_with_numpy() {
 #[test]
 fn a_scene_that_cannot_be_read() {
     let place = Place::new();
-    // A link to itself cannot be followed by any user.
+    // No user can follow a link to itself.
     std::os::unix::fs::symlink("loop.toml", place.path("loop.toml")).unwrap();
     place.run("check loop.toml").bad(4, &["loop.toml", "cannot be read"]);
 }

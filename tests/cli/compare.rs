@@ -38,7 +38,7 @@ fn two_pictures() {
     assert_eq!((told["passes"].as_bool(), told["verdict"].as_str()), (Some(false), Some("state moved")));
     assert_eq!(told["pictures"][0]["verdict"], "state moved");
     assert_eq!(told["pictures"][0]["runs"][0], "Local shape");
-    // The expected moment is reported, not only that the state differs.
+    // The expected moment is reported, not only the difference.
     place.write("late.png", &picture("one", "2", 6, &GREY));
     let late = place.run("compare a.png late.png");
     assert_eq!(late.out, "late.png: state moved: Local shape; it shows frame 6 instead of frame 0\n");
@@ -154,7 +154,7 @@ fn a_report_is_one_file() {
         run(std::process::Command::new("mkfifo").arg(place.path("pipe"))).good();
         place.run("compare a.png c.png --report pipe/page.html -q").bad(4, &["pipe is a pipe, not a folder"]);
     }
-    // An earlier page is replaced, and nothing else.
+    // Only an earlier page is replaced.
     assert_eq!(place.run("compare a.png c.png --report page.html -q").status, Some(1));
     place.write("precious.toml", "body = 7");
     for name in ["precious.toml", "a.png", "."] {
@@ -329,7 +329,7 @@ fn wrong_words() {
     place.run("compare a.png").bad(2, &["<ACTUAL>"]);
 }
 
-/// The picture with most pixels that differ is the first on the page.
+/// The picture with most differing pixels is the first on the page.
 #[test]
 fn a_report_begins_with_the_worst_picture() {
     let place = Place::new();

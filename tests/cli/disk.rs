@@ -5,8 +5,8 @@ use crate::support::{Place, Ran, lasting, run};
 use localshape::internals::skipped;
 use std::process::Command;
 
-/// Runs the program with its output in `out`, on a temporary disk of `size`, and then `after` in a shell.
-/// `None` if this machine does not permit it.
+/// Runs the program with its output in `out`, on a temporary disk of `size`, and then `after` in a shell. `None` if
+/// this machine does not permit it.
 fn on_small_disk(place: &Place, size: &str, arguments: &str, after: &str) -> Option<Ran> {
     std::fs::create_dir_all(place.path("out")).unwrap();
     let program = env!("CARGO_BIN_EXE_localshape");
@@ -20,7 +20,7 @@ fn on_small_disk(place: &Place, size: &str, arguments: &str, after: &str) -> Opt
         return None;
     }
     let mut ran = run(&mut command);
-    // A slow machine comes to a checkpoint before.
+    // A slow machine writes a checkpoint before.
     ran.err = ran.err.split_inclusive('\n').filter(|line| !line.starts_with("warning: no checkpoint")).collect();
     if ran.status == Some(99) || ran.err.starts_with("unshare:") {
         skipped(&format!("no disk could be made for the test: {}", ran.err));
@@ -39,7 +39,7 @@ fn simulate_on_a_full_disk() {
     let lines: Vec<_> = ran.out.lines().collect();
     assert_eq!(lines[..2], ["diagnostics.csv", "run.json"], "{ran:?}");
     assert!(lines[2].starts_with("Mass-spring,") && lines[2].ends_with(",ok"), "whole rows of whole frames: {ran:?}");
-    // The final summary may not fit; then the one from the start remains.
+    // The final summary may not fit; then the initial one remains.
     assert!(["\"outcome\": \"failed\",", "\"outcome\": \"unfinished\","].contains(&lines[3].trim()), "{ran:?}");
 }
 
@@ -54,7 +54,7 @@ fn states_on_a_full_disk() {
     assert_eq!(ran.out.lines().collect::<Vec<_>>(), ["diagnostics.csv", "run.json"]);
 }
 
-/// When there is room again, the same command goes on.
+/// With enough room again, the same command continues.
 #[test]
 fn after_a_full_disk_it_goes_on() {
     let place = Place::new();
@@ -94,7 +94,7 @@ fn animations_on_a_full_disk() {
     use crate::support::{frame_file, frame_tags};
     let place = Place::new();
     for number in 0..4 {
-        // Noise, which does not compress.
+        // Noise is incompressible.
         let noise = (0..3 * 320 * 240_u32).map(|at| {
             let mixed = (at + number * 1_000_003).wrapping_mul(0x9e37_79b9);
             ((mixed ^ mixed >> 15).wrapping_mul(0x85eb_ca6b) >> 24) as u8
@@ -107,7 +107,7 @@ fn animations_on_a_full_disk() {
     for name in ["a.gif", "a.apng"] {
         let arguments = format!("animate in -o out/{name}");
         let Some(ran) = on_small_disk(&place, "64k", &arguments, "ls -A out") else { return };
-        let ran = ran.bad(4, &[&format!("cannot write out/{name}"), "disk is full", "nothing of this file is left"]);
+        let ran = ran.bad(4, &[&format!("cannot write out/{name}"), "disk is full", "this file is removed"]);
         assert_eq!(ran.out, "", "{name}: nothing is left");
     }
 }

@@ -21,7 +21,7 @@ fn place_to_draw() -> Option<Place> {
     can_draw().then(place)
 }
 
-/// Warnings of a scene are also reported for figures and goldens with it.
+/// Warnings of a scene are also reported for figures and goldens of it.
 #[test]
 fn scenes_are_warned_of() {
     let place = place();
@@ -67,7 +67,7 @@ fn the_numbers_behind_a_figure_are_told() {
     assert_eq!(place.names("all"), ["fig1.png", "mine.png"]);
     let before = std::fs::read(place.path("all/mine.png")).unwrap();
     assert!(!before.windows(4).any(|bytes| bytes == b"tIME"));
-    // Again with another number of threads: the same bytes, and nothing is refused.
+    // Repeated with another number of threads: the bytes are the same, and nothing is refused.
     place.run("figure mine.toml -o all --size 320x200 --threads 2 -q").good();
     assert_eq!(std::fs::read(place.path("all/mine.png")).unwrap(), before);
     let dark = place.run("figure mine.toml -o dark --size 320x200 --theme dark -q").good();
@@ -111,14 +111,14 @@ fn files_of_others_are_kept() {
     place.run("figure mine.toml -o file/below").bad(4, &["file"]);
 }
 
-/// What a program reads first: the pixels of a metre in a PNG file.
+/// The resolution in a PNG file, pixels per metre, as programs read it first.
 fn pixels_a_metre(path: &std::path::Path) -> Option<u32> {
     let file = std::io::BufReader::new(std::fs::File::open(path).expect("a picture"));
     let reader = png::Decoder::new(file).read_info().expect("a PNG picture");
     reader.info().pixel_dims.map(|dims| dims.xppu)
 }
 
-/// Vectors of what is flat need no device.
+/// Vectors of flat bodies need no device.
 #[test]
 fn a_file_name_chooses_the_format() {
     let place = place();
@@ -163,7 +163,7 @@ fn figures_for_print_have_their_size_and_no_small_type() {
     place.run("figure large.toml -o large.svg").good();
     if can_draw() {
         place.run("figure print.toml -o print.png").good();
-        // 300 to an inch.
+        // 300 pixels per inch.
         assert_eq!(pixels_a_metre(&place.path("print.png")), Some(11811));
         place.run("figure fig2 --scale 0.25 -o fig2.png").good();
         assert_eq!(pixels_a_metre(&place.path("fig2.png")), None);
@@ -177,6 +177,6 @@ fn what_has_no_room_is_told() {
     let names: Vec<_> = (0..12).map(|at| format!("'{at}.toml'")).collect();
     names.iter().for_each(|name| place.write(name.trim_matches('\''), SMALL));
     place.write("tall.toml", &format!("[forces]\nscenes = [{}]", names.join(", ")));
-    place.run("figure tall.toml --size 320x200").bad(2, &["tall: at 320×200 there is no room"]);
+    place.run("figure tall.toml --size 320x200").bad(2, &["tall: at 320×200 the figure is too small for its contents"]);
     assert_eq!(place.names("output/figures"), [""; 0]);
 }

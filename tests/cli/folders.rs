@@ -13,7 +13,7 @@ fn the_same_scene_replaces_its_files() {
     assert_eq!(place.names("output/small"), ["diagnostics.csv", "notes.txt", "run.json"]);
 }
 
-/// The states of a scene are right, whichever command has written them.
+/// The states of a scene are right, with any command that writes them.
 #[test]
 fn results_of_the_same_scene_stay_unless_they_are_made_again() {
     let place = Place::with_small();
@@ -48,7 +48,7 @@ fn another_scene_is_refused_unless_told() {
     assert_eq!(place.read("out/diagnostics.csv").lines().count(), 1 + 2 * 4);
 }
 
-/// A user who edits a scene and runs it again wants it replaced, without being asked each time.
+/// A user who edits a scene and runs it again wants its results replaced, without a question each time.
 #[test]
 fn a_folder_named_after_its_scene_follows_the_file() {
     let place = Place::with_small();
@@ -73,7 +73,7 @@ fn a_folder_named_after_its_scene_follows_the_file() {
     place.write("elsewhere/small.toml", crate::support::SMALL);
     let other = place.run("simulate elsewhere/small.toml");
     other.bad(2, &["output/small holds the results of another scene (“Two cubes”, ", file.to_str().unwrap()]);
-    // So is one of unknown origin, and one with another value of a key is another version.
+    // A scene of unknown origin is another scene, too. A scene with another value of a key is another version.
     place.write("small.toml", crate::support::SMALL);
     let summary = place.read("output/small/run.json");
     let nameless: String = summary.lines().filter(|line| !line.contains("file\":")).collect();
@@ -104,7 +104,7 @@ fn a_project_that_has_moved_is_the_same() {
     place.run("simulate after/small.toml -o below/results").bad(2, &["another version of small.toml"]);
 }
 
-/// Results put aside with `-o` may be needed for comparison with later versions.
+/// Results in another folder (`-o`) may be needed for comparison with later versions.
 #[test]
 fn a_folder_named_by_its_user_keeps_another_version() {
     let place = Place::with_small();
@@ -130,7 +130,7 @@ fn files_of_others_under_our_names_are_refused_unless_told() {
     place.run("simulate small.toml -o out").bad(2, &words);
     assert_eq!(place.names("out"), ["diagnostics.csv", "frame_00003.png", "frame_3.png"]);
 
-    // Only what is written anew is replaced.
+    // Only files that are written anew are replaced.
     place.run("simulate small.toml -o out --overwrite").good();
     assert_eq!(place.read("out/frame_00003.png"), "mine");
     assert_eq!(place.read("out/frame_3.png"), "mine");
@@ -205,7 +205,7 @@ fn a_link_to_nothing_is_a_file_of_others() {
         let words = [&format!("{folder} holds {name}, which was not written by localshape"), "--overwrite"];
         place.run(&format!("simulate small.toml -o {folder}")).bad(2, &words);
         place.run(&format!("simulate small.toml -o {folder} --overwrite")).good();
-        // Only what is written anew is replaced.
+        // Only files that are written anew are replaced.
         assert_eq!(link.is_symlink(), name != "run.json");
     }
 }

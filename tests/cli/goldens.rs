@@ -44,7 +44,7 @@ fn a_golden_is_made_and_passes_until_the_state_moves() {
     place.run("compare other small.toml").bad(2, &["other is not a golden", "notes.txt"]);
     assert_eq!(place.names("other"), ["notes.txt"]);
 
-    // What moved is told, and accepted with the same words.
+    // Moved states are reported, and accepted with the same words.
     place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.2"));
     let moved = place.run("compare golden small.toml --json");
     assert_eq!(moved.status, Some(1));
@@ -68,8 +68,8 @@ fn a_golden_is_made_and_passes_until_the_state_moves() {
     place.run("compare golden small.toml").good();
 }
 
-/// The keys that changed are named, also where states moved for another reason than a key of their own: `step = "T/50"` is a
-/// fraction of the cycle of the stiffest run.
+/// Changed keys are named, even if states moved because of another run's key: `step = "T/50"` is a fraction of the
+/// cycle of the stiffest run.
 #[test]
 fn changed_keys_are_named() {
     let Some(place) = with_golden() else { return };
@@ -86,17 +86,17 @@ fn changed_keys_are_named() {
     let document = place.run("compare golden small.toml --json").json();
     assert_eq!(document["keys"][0]["key"], "run[1].model.stiffness");
     assert_eq!(document["keys"][0]["after"], "20000");
-    // A key that changes nothing is told, and no failure.
+    // A key without an effect is reported, but is not a failure.
     place.write("small.toml", &(SMALL.to_owned() + "theme = 'light'\n"));
     let same = place.run("compare golden small.toml").good();
     assert!(same.out.starts_with("changed: view.theme: not given → \"light\"\n"), "{same:?}");
-    // Another file is told, too.
+    // Another file is reported, too.
     place.write("other.toml", SMALL);
     let other = place.run("compare golden other.toml").good();
     assert!(other.out.contains("the golden is of small.toml, and this is other.toml\n"), "{other:?}");
 }
 
-/// Positions of at least ten frames are recorded, from the first to the last, whatever frames are drawn.
+/// Positions of at least ten frames are recorded, from the first to the last, for any drawn frames.
 #[test]
 fn positions_are_known_all_the_way() {
     let Some(place) = place() else { return };
@@ -135,7 +135,7 @@ fn drawing_is_never_taken_for_physics() {
     place.write("small.toml", &(SMALL.to_owned() + "theme = 'dark'\n"));
     let dark = place.run("compare golden small.toml");
     assert!(dark.out.contains("drawn differently") && dark.out.contains("14 states are the same"), "{dark:?}");
-    // Also where the body is lighter by 3 of 255.
+    // A body lighter by 3 of 255 also fails.
     place.write("small.toml", &(SMALL.to_owned() + "colours = { body = '#96a8bd' }\n"));
     let lighter = place.run("compare golden small.toml");
     assert!(lighter.out.contains("drawn differently: 0 pixels differ by more than 16 of 255"), "{lighter:?}");
@@ -166,7 +166,7 @@ fn only_what_failed_is_rewritten() {
     assert!(damaged.out.contains("frame_00004.png: unreadable: golden/frame_00004.png: "), "{damaged:?}");
     place.run("compare --bless golden small.toml").good();
     assert_eq!(names.map(made), before);
-    // One that the scene does not have is removed, and nothing outside the golden is touched.
+    // A picture that the scene does not have is removed, and files outside the golden are kept.
     place.write("golden/frame_00003.png", &whole);
     let strange = place.run("compare golden small.toml");
     assert!(strange.status == Some(1) && strange.out.contains("frame_00003.png: missing"), "{strange:?}");
@@ -188,13 +188,13 @@ fn whatever_is_lost_is_no_pass() {
     let moved = place.run("compare golden small.toml");
     assert!(moved.status == Some(1) && moved.out.contains("state moved: Mass-spring, first at frame 5"), "{moved:?}");
     place.write("golden/golden.toml", &record);
-    // A picture in the place of another one.
+    // A picture replaced by another one.
     std::fs::copy(place.path("golden/frame_00002.png"), place.path("golden/frame_00004.png")).unwrap();
     let other = place.run("compare golden small.toml");
     let told = "frame_00004.png: state moved: Local shape, Mass-spring; it shows frame 4 instead of frame 2\n";
     assert!(other.status == Some(1) && other.out.contains(told), "{other:?}");
     place.run("compare --bless golden small.toml").good();
-    // A record of another version, which is renewed with the pictures as they are.
+    // A record of another version is renewed, with the pictures kept.
     place.write("golden/golden.toml", &record.replace("format = 2", "format = 1"));
     place
         .run("compare golden small.toml")
@@ -203,7 +203,7 @@ fn whatever_is_lost_is_no_pass() {
     assert!(accepted.out.starts_with("golden/golden.toml cannot be read: it has the format 1"), "{accepted:?}");
     assert!(accepted.out.ends_with("\naccepted golden/golden.toml\n"), "{accepted:?}");
     assert_eq!(place.read("golden/golden.toml"), record);
-    // And one without its record.
+    // A golden without a record is renewed, too.
     std::fs::remove_file(place.path("golden/golden.toml")).unwrap();
     place.run("compare golden small.toml").bad(2, &["golden is not a golden"]);
     place.run("compare --bless golden small.toml").bad(2, &["golden is not a golden"]);

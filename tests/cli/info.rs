@@ -22,7 +22,7 @@ fn information_works_without_any_driver() {
     }
 }
 
-/// The one answer is what the kernels take, and not what the compiler was allowed to.
+/// The width is that of the kernels, not the one for which the compiler optimised.
 #[test]
 fn the_vectors_are_those_of_the_kernels() {
     let expected = match () {
@@ -97,7 +97,7 @@ fn a_closed_pipe_is_no_failure() {
         let ran = Running::start_into(&mut command, writer).wait();
         assert_eq!((ran.status, ran.err.as_str()), (Some(0), ""), "{arguments}");
     }
-    // The work is done all the same.
+    // The work is done nevertheless.
     assert_eq!(place.names("output/other"), ["diagnostics.csv", "run.json"]);
 }
 
@@ -112,7 +112,7 @@ fn results_that_cannot_be_written() {
     }
 }
 
-/// Programs may be started without any standard output or error.
+/// Programs may be started without standard output and error.
 #[cfg(unix)]
 #[test]
 fn closed_outputs() {

@@ -1,4 +1,4 @@
-//! Signals: files are complete, whenever the program is stopped.
+//! Signals: files are complete at any time of the interruption.
 #![cfg(unix)]
 
 use crate::support::{Place, Ran, Running, lasting, run};
@@ -14,7 +14,7 @@ fn place_for_long() -> Place {
     place
 }
 
-/// Starts the program with default signal handling, whatever that of this test, and waits until a file exists.
+/// Starts the program with default signal handling, independent of this test's, and waits until a file exists.
 pub(crate) fn start(place: &Place, arguments: &str, sign: &str) -> Running {
     start_ignoring(&[], place, arguments, sign)
 }
@@ -58,7 +58,7 @@ pub(crate) fn signal(running: &Running, names: &[&str]) {
     assert_eq!(run(Command::new("sh").args(["-c", &line])).status, Some(0), "{line}");
 }
 
-/// The names in a folder but those of hidden files, with which another command goes on.
+/// The names in a folder, except for the hidden files for the next command.
 pub(crate) fn results(place: &Place, folder: &str) -> Vec<String> {
     place.names(folder).into_iter().filter(|name| !name.starts_with(".localshape-")).collect()
 }
@@ -107,7 +107,7 @@ fn what_is_ignored_stays_ignored_and_the_rest_is_heard() {
     let arguments = "simulate long.toml --states -o out";
     let mut running = start_ignoring(&[SIGINT, SIGHUP], &place, arguments, "out/run.json");
     signal(&running, &["INT", "HUP"]);
-    // By this time it would have been stopped.
+    // Without `nohup` it would have stopped by now.
     std::thread::sleep(Duration::from_millis(200));
     assert!(running.is_running());
     assert_eq!(place.json("out/run.json")["outcome"], "unfinished");
@@ -157,7 +157,7 @@ fn later_scenes_are_not_begun() {
 fn killed() {
     let place = place_for_long();
     let mut running = start(&place, "simulate long.toml", "output/long/run.json");
-    // The summary is written before the diagnostics are begun; wait until some of these are on disk.
+    // The summary is written before the diagnostics; the test waits until a part of these is on disk.
     running.until("diagnostics", |_| place.names("output/long").len() == 2);
     running.kill();
     let names = place.names("output/long");

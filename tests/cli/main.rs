@@ -1,4 +1,4 @@
-//! Every command as a user runs it: the program itself, its files, its words and its exit status.
+//! Every command as a user runs it: the program, its files, its words and its exit status.
 
 #[cfg(feature = "render")]
 mod animate;

@@ -1,4 +1,4 @@
-//! Sequences that are drawn in parts: again after an interruption and from stored states.
+//! Sequences drawn in parts: after an interruption, and from stored states.
 
 use crate::render::{can_draw, place_to_draw};
 use crate::support::{Place, Ran, SMALL, lasting, run};
@@ -11,13 +11,13 @@ pub(crate) fn files(place: &Place, folder: &str) -> BTreeMap<String, Vec<u8>> {
     names.map(|name| (name.clone(), std::fs::read(place.path(folder).join(name)).unwrap())).collect()
 }
 
-/// The numbers of frames that were drawn and that were there already.
+/// The numbers of drawn and of kept frames.
 pub(crate) fn drawn_and_kept(place: &Place, folder: &str) -> [u64; 2] {
     let frames: &Value = &place.json(&format!("{folder}/run.json"))["frames"];
     [&frames["written"], &frames["kept"]].map(|count| count.as_u64().unwrap_or(0))
 }
 
-/// Which pictures need the course of the scene decides how far it is simulated, and never `--only`.
+/// The pictures of the whole scene determine how far it is simulated, not `--only`.
 #[test]
 fn only_a_scene_whose_pictures_show_its_course_is_simulated_to_its_end() {
     let Some(place) = place_to_draw() else { return };
@@ -34,7 +34,7 @@ fn only_a_scene_whose_pictures_show_its_course_is_simulated_to_its_end() {
     assert_eq!(drawn_and_kept(&place, "output/still"), [7, 0]);
 }
 
-/// A killed program leaves whole frames, and drawing the others gives the bytes of one that was not killed.
+/// A killed program leaves whole frames, and drawing the others gives the bytes of an uninterrupted program.
 #[cfg(unix)]
 #[test]
 fn resumed_frames_are_those_of_a_run_without_interruption() {
@@ -61,7 +61,7 @@ fn resumed_frames_are_those_of_a_run_without_interruption() {
     }
 }
 
-/// A frame stays only if it is what would be drawn.
+/// A frame is kept only if it equals the frame that would be drawn.
 #[test]
 fn resuming_draws_again_what_is_not_the_same() {
     let Some(place) = place_to_draw() else { return };
@@ -73,7 +73,7 @@ fn resuming_draws_again_what_is_not_the_same() {
         drawn_and_kept(&place, "output/small")
     };
     assert_eq!(resume(""), [0, 7]);
-    // Missing, of another moment, and cut off.
+    // A missing frame, a frame of another moment, and a truncated one.
     std::fs::remove_file(place.path(frame(1))).unwrap();
     std::fs::copy(place.path(frame(3)), place.path(frame(2))).unwrap();
     let bytes = std::fs::read(place.path(frame(4))).unwrap();
@@ -90,7 +90,7 @@ fn resuming_draws_again_what_is_not_the_same() {
     assert_eq!(drawn_and_kept(&place, "output/small"), [7, 0]);
 }
 
-/// An animation has all frames, whoever has drawn them.
+/// An animation has all frames, drawn by this process or another.
 #[test]
 fn an_animation_of_resumed_frames_is_the_same() {
     let Some(place) = place_to_draw() else { return };
@@ -104,8 +104,8 @@ fn an_animation_of_resumed_frames_is_the_same() {
     place.run("render small.toml --resume --frames 1 -o one.png").bad(2, &["one.png gets one frame", "--resume"]);
 }
 
-/// The small scene with all that pictures show beyond its states: a course, paths, forces that act for a while,
-/// a field that comes from the model, and a run that diverges.
+/// The small scene with everything that pictures show beyond states: a course, paths, forces that act for a while, a
+/// field from the model, and a run that diverges.
 pub(crate) fn rich() -> String {
     let wild = "[[run]]\nname = \"Wild\"\nmodel = { kind = \"mass-spring\", stiffness = 1e4, springs = \"edges\" }\nstep = \"T/2\"\n";
     let grab = "[[grab]]\nnodes = [0]\npath = { keys = [{ time = 0.02 }, { time = 0.3, shift = [0, 0.2, 0] }] }\n";
@@ -120,7 +120,7 @@ pub(crate) fn rich() -> String {
         .replace("duration = 0.1", "duration = 1.0")
 }
 
-/// Steps that each run of the last command has taken.
+/// The steps of each run in the last command.
 fn steps(place: &Place, folder: &str) -> Vec<u64> {
     let runs = place.json(&format!("{folder}/run.json"))["runs"].as_array().unwrap().clone();
     runs.iter().map(|run| run["steps"].as_u64().unwrap()).collect()
@@ -162,7 +162,7 @@ fn frames_of_stored_states_are_those_of_a_simulation() {
     assert_eq!(place.json("last/run.json")["runs"][2]["status"], "diverged");
 }
 
-/// The states that `render` writes serve as well, and so do those of some frames up to the last.
+/// States written by `render` serve as well, and so do states of some frames up to the last.
 #[test]
 fn states_of_some_frames_are_drawn() {
     let Some(place) = place_to_draw() else { return };
@@ -225,7 +225,7 @@ fn states_that_do_not_fit_are_refused() {
     place.run("simulate small.toml --states --only Mass-spring -o states --overwrite").good();
     refused(2, &["states.npz has no states of “Local shape”, only of “Mass-spring”; choose among these with --only"]);
 
-    // One bit of one position in frame 3 is another: earlier frames are drawn, and the files are whole.
+    // With one changed bit in frame 3, earlier frames are drawn, and their files are whole.
     let position = |frame: usize| {
         let at = states.windows(24).position(|bytes| bytes == b"Local shape.position.npy").unwrap();
         let start = at + states[at..].windows(6).position(|bytes| bytes == b"\x93NUMPY").unwrap();
@@ -242,7 +242,7 @@ fn states_that_do_not_fit_are_refused() {
     assert_eq!(place.names("out"), names);
 }
 
-/// What other programs write from it is no longer what this one wrote.
+/// A file rewritten by another program is not accepted.
 #[test]
 fn states_that_numpy_has_written_are_refused() {
     let (Some(place), Some(python)) = (place_to_draw(), crate::support::numpy()) else { return };

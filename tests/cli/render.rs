@@ -111,7 +111,7 @@ fn frames_for_print_say_their_resolution_and_refuse_small_type() {
     assert!(!place.path("output/tiny").exists());
 }
 
-/// A theme is a value of the scene, so that frames of two are never mixed.
+/// A theme is a value of the scene, so that frames of two themes are never mixed.
 #[test]
 fn another_theme_is_told_and_drawn() {
     let Some(place) = place_to_draw() else { return };
@@ -156,7 +156,7 @@ fn frames_of_another_size_or_with_other_runs_are_refused_unless_told() {
     assert_eq!(place.names("output/small").len(), 2 + 4);
     place.run("render small.toml --frames 1 --size 80x60 --overwrite").good();
     assert_eq!(place.names("output/small"), ["diagnostics.csv", "frame_00001.png", "run.json"]);
-    // Numbers can be beside any frames of the scene.
+    // Numbers may stand beside any frames of the scene.
     place.run("simulate small.toml").good();
 }
 
@@ -384,18 +384,18 @@ fn a_frame_that_cannot_be_written() {
     let Some(place) = place_to_draw() else { return };
     place.write("long.toml", &lasting("10"));
     let running = crate::interrupt::start(&place, "render long.toml -o out", "out/run.json");
-    // A folder cannot be replaced by a file; this fails early.
+    // A folder in the place of a file fails early.
     place.write("out/frame_00300.png/notes.txt", "mine");
     running.wait().bad(4, &["cannot write out/frame_00300.png"]);
     assert_eq!(place.json("out/run.json")["outcome"], "failed");
     assert!(read_tags(&place.path("out/frame_00299.png")).unwrap().is_some());
     assert!(place.read("out/diagnostics.csv").lines().count() > 2 * 300);
-    // A slow machine has written a checkpoint until then.
+    // A slow machine has written a checkpoint before.
     let is_unfinished = |name: &&String| name.starts_with('.') && *name != ".localshape-checkpoint.partial";
     assert_eq!(place.names("out").iter().filter(is_unfinished).count(), 0);
 }
 
-/// A name in another format of pictures is hardly meant for a folder.
+/// A name with the ending of another picture format is hardly meant for a folder.
 #[test]
 fn formats_that_are_not_written_are_refused() {
     let place = Place::new();
@@ -406,7 +406,7 @@ fn formats_that_are_not_written_are_refused() {
     }
 }
 
-/// Pictures cannot outline a run that is left out; simulating needs no other run.
+/// Pictures cannot outline a run that is left out; a simulation needs no other run.
 #[test]
 fn runs_that_are_outlined_over_others_cannot_be_left_out() {
     let place = Place::new();

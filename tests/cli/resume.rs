@@ -1,4 +1,4 @@
-//! `--resume`: what an interrupted command has left out, with the bytes of one without interruption.
+//! `--resume`: completes the results of an interrupted command, with the bytes of an uninterrupted one.
 #![cfg(unix)]
 
 use crate::interrupt::{results, signal, start};
@@ -13,12 +13,12 @@ fn files(place: &Place, folder: &str) -> BTreeMap<String, Vec<u8>> {
     names.map(|name| (name.clone(), std::fs::read(place.path(folder).join(name)).unwrap())).collect()
 }
 
-/// Steps of the first run that the last command has simulated.
+/// The steps of the first run in the last command.
 fn steps(place: &Place, folder: &str) -> u64 {
     place.json(&format!("{folder}/run.json"))["runs"][0]["steps"].as_u64().unwrap()
 }
 
-/// Starts a command that makes a folder, and ends it by a signal after a while, at the earliest when a file exists.
+/// Starts a command that makes a folder, and ends it by a signal after a while, but not before a file exists.
 fn stopped(place: &Place, arguments: &str, sign: &str, name: &str) -> Ran {
     let running = start(place, arguments, sign);
     signal(&running, &[name]);
@@ -54,7 +54,7 @@ fn after_ctrl_c_it_goes_on_from_there() {
     let ran = place.run("simulate scene.toml -o out --resume");
     ran.bad(2, &["to go on from it, type that command with --resume: ", "simulate scene.toml --states -o out"]);
     let before = steps(&place, "out");
-    // Again, on the way.
+    // A second interruption, on the way.
     let typed = format!("{typed} --resume");
     let running = again(&place, &typed);
     signal(&running, &["TERM"]);
@@ -69,7 +69,7 @@ fn after_ctrl_c_it_goes_on_from_there() {
     assert_eq!(place.names("out"), ["diagnostics.csv", "run.json", "states.npz"], "nothing else is left");
 }
 
-/// What was found out before an interruption is not simulated again, and not forgotten.
+/// Findings before an interruption are neither simulated again nor forgotten.
 #[test]
 fn causes_of_divergences_are_kept() {
     let place = Place::new();
@@ -91,7 +91,7 @@ fn after_a_kill_it_goes_on_from_the_last_checkpoint() {
     let ran = stopped(&place, typed, &format!("out/{CHECKPOINT}"), "KILL");
     assert_eq!(ran.status, None, "killed");
     assert_eq!(place.json("out/run.json")["outcome"], "unfinished");
-    // The lock has gone with its process; while another one runs it holds.
+    // The lock has gone with its process; a running process holds it.
     let running = again(&place, &format!("{typed} --resume"));
     place.run(&format!("{typed} --resume")).bad(2, &["out is in use: process ", "is writing there"]);
     running.wait().good();
@@ -101,7 +101,7 @@ fn after_a_kill_it_goes_on_from_the_last_checkpoint() {
     assert_eq!(place.names("out"), ["diagnostics.csv", "run.json", "states.npz"], "nothing else is left");
 }
 
-/// With charts and cameras that follow, which wait for the end of the simulation, and without.
+/// With and without charts and cameras that follow, which wait for the end of the simulation.
 #[cfg(feature = "render")]
 #[test]
 fn pictures_go_on_too() {
@@ -175,7 +175,7 @@ fn a_checkpoint_of_something_else_is_refused() {
     assert_eq!(place.names("output/scene"), ["diagnostics.csv", "run.json"], "another command begins anew");
 }
 
-/// A frame that has been removed since cannot be drawn from a later state. All stays until the user decides.
+/// A frame that was removed later cannot be drawn from a later state. All files stay until the user decides.
 #[cfg(feature = "render")]
 #[test]
 fn without_its_frames_a_checkpoint_is_refused() {

@@ -34,7 +34,7 @@ fn shards_at_once_are_the_whole() {
     assert_eq!(place.read("made/run.json"), before, "that of the command which wrote the tables");
 }
 
-/// `simulate` may come before, between and after shards, which simulate for themselves if there are no states.
+/// `simulate` may run before, between and after shards, which simulate the scene if there are no states.
 #[test]
 fn the_order_does_not_matter() {
     let Some(place) = place_to_draw() else { return };
@@ -69,7 +69,7 @@ fn other_scenes_and_sizes_are_refused() {
     place.write("other.toml", &SMALL.replace("Two cubes", "Others"));
     place.run("render other.toml --shard 2/2 -o out").bad(2, &["the results of another scene (“Two cubes”"]);
     assert_eq!(place.names("out").len(), 4 + 1);
-    // A folder that is named after the scene follows its file, and one with `--overwrite` any.
+    // The folder named after the scene follows its file; a folder with `--overwrite` follows any.
     place.run(shard).good();
     place.run("simulate small.toml --states").good();
     place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.6"));
@@ -80,8 +80,8 @@ fn other_scenes_and_sizes_are_refused() {
     assert_eq!(place.names("out"), ["frame_00001.png", "frame_00003.png", "frame_00005.png", "run.json"]);
 }
 
-/// Shards leave the checkpoint of an interrupted simulation, and none of their own. Other shards may draw beside them, and no other
-/// command.
+/// Shards keep the checkpoint of an interrupted simulation, and write none. Other shards may draw beside them, but no
+/// other command.
 #[cfg(unix)]
 #[test]
 fn checkpoints_are_left_alone() {
@@ -125,7 +125,7 @@ fn wrong_shards() {
     assert_eq!(place.names("."), ["small.toml"]);
 }
 
-/// The lines of `docs/clusters.md` that begin with some words, up to the end of their block, for another scene.
+/// The lines of `docs/clusters.md` from the one with this beginning to the end of its block, for another scene.
 #[cfg(unix)]
 fn documented(beginning: &str) -> String {
     let page = include_str!("../../docs/clusters.md");
@@ -145,7 +145,7 @@ fn script(place: &Place, lines: &str) -> Command {
     command
 }
 
-/// The tasks of the array, one after the other; that Slurm runs them was tried on a cluster of two nodes.
+/// The tasks of the array, one after another. Slurm itself was tried on a cluster of two nodes.
 #[cfg(unix)]
 #[test]
 fn the_tasks_of_slurm_draw_the_whole() {

@@ -151,7 +151,7 @@ fn some_frames_of_one_run() {
     assert_eq!(rows(&some), wanted);
 }
 
-/// Nothing is simulated that was not asked for: neither other runs nor what comes after the last frame.
+/// Nothing else is simulated: neither other runs nor the time after the last frame.
 #[test]
 fn only_what_was_asked_for_is_simulated() {
     let place = Place::with_small();
@@ -189,7 +189,7 @@ fn json_is_one_document() {
     assert_eq!(place.names("both/other"), ["diagnostics.csv", "run.json"]);
 }
 
-/// Finished files are reported, and the failure after them.
+/// Finished files are reported, and then the failure.
 #[cfg(unix)]
 #[test]
 fn json_is_one_document_also_when_a_later_scene_fails() {
@@ -198,14 +198,14 @@ fn json_is_one_document_also_when_a_later_scene_fails() {
     place.write("third.toml", SMALL);
     let arguments = "simulate small.toml other.toml third.toml -o out --json";
     let running = crate::interrupt::start(&place, arguments, "out/other/run.json");
-    // A folder cannot be replaced by a file; this fails early.
+    // A folder in the place of a file fails early.
     place.write("out/other/diagnostics.csv/notes.txt", "mine");
     let ran = running.wait().bad(4, &["cannot write", "diagnostics.csv"]);
     let document = ran.json();
     let outcomes: Vec<_> = document["scenes"].as_array().unwrap().iter().map(|scene| &scene["outcome"]).collect();
     assert_eq!(outcomes, ["done", "failed"]);
     assert_eq!(document["scenes"][1]["files"], serde_json::json!([]));
-    // The same on the disk.
+    // The files on the disk are the same.
     assert_eq!(place.json("out/small/run.json")["outcome"], "done");
     assert_eq!(place.json("out/other/run.json")["outcome"], "failed");
     assert!(!place.path("out/third").exists());
@@ -260,7 +260,7 @@ fn everything_in_the_files_is_documented() {
     place.run("simulate small.toml --states").too_large_steps();
     let heads: Vec<_> = HEADS.split(',').collect();
     assert_eq!(documented("diagnostics.csv"), heads);
-    // The page gives for each diagnostic the meaning in the table of the code.
+    // Each diagnostic has the same meaning on the page as in the table of the code.
     for &diagnostic in Diagnostic::ALL {
         let (unit, sentence) = (diagnostic.unit(), diagnostic.meaning().trim_end_matches('.'));
         let meaning = sentence.replace(&format!(" ({unit})"), "");
@@ -293,7 +293,7 @@ fn everything_in_the_files_is_documented() {
     arrays.dedup();
     assert_eq!(told, arrays);
 
-    // A run that diverges has more keys, and so have pictures, and bodies that leave their panels.
+    // A run that diverges has more keys, and so do pictures, and bodies that leave their panels.
     place.write("wild.toml", &SMALL.replace("step = \"T/50\"", "step = \"T/2\"").replace("0.1\n", "5.0\n"));
     place.run("simulate wild.toml").too_large_steps();
     let mut run = place.json("output/wild/run.json");
@@ -324,7 +324,7 @@ fn array(place: &Place, file: &str, name: &str) -> (String, Vec<f64>) {
     (head, numbers.into_iter().map(f64::from_le_bytes).collect())
 }
 
-/// The same with eight bytes for each number.
+/// An array of numbers with eight bytes each.
 fn raw(place: &Place, file: &str, name: &str) -> (String, Vec<[u8; 8]>) {
     let file = std::fs::File::open(place.path(file)).expect("an archive");
     let mut archive = zip::ZipArchive::new(file).expect("a whole archive");

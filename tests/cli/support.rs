@@ -37,7 +37,7 @@ friction = 0.3
 size = [96, 64]
 "#;
 
-/// The metadata of a frame of a scene with one run, drawn by no adapter that there is.
+/// The metadata of a frame of a scene with one run, drawn by a fictitious adapter.
 pub(crate) fn frame_tags(frame: u64, time: f64) -> Tags {
     Tags {
         shows: Shown::Frame { frame, time },
@@ -56,14 +56,15 @@ pub(crate) fn frame_file(size: [u32; 2], pixels: &[u8], tags: &Tags) -> Vec<u8> 
 /// The number of frames of [`SMALL`].
 pub(crate) const SMALL_FRAMES: usize = 7;
 
-/// [`SMALL`] with another duration (s), and so another scene. Its camera stands still, so that it is not simulated ahead.
+/// [`SMALL`] with another duration (s), which makes it another scene. Its camera is fixed, so that it is not simulated
+/// ahead.
 pub(crate) fn lasting(duration: &str) -> String {
     SMALL
         .replace("duration = 0.1", &format!("duration = {duration}"))
         .replace("[view]", "[view]\ncamera.follow = false")
 }
 
-/// A folder of its own to run the program in; gone when dropped.
+/// A folder for running the program; removed when dropped.
 pub(crate) struct Place(TempDir);
 
 impl Place {
@@ -152,7 +153,7 @@ impl Running {
         running
     }
 
-    /// Starts a command whose standard output goes elsewhere.
+    /// Starts a command with another standard output.
     #[track_caller]
     pub(crate) fn start_into(command: &mut Command, out: impl Into<Stdio>) -> Self {
         let err = tempfile::tempfile().expect("a file");
@@ -259,7 +260,7 @@ pub(crate) fn documented(file: &str) -> Vec<String> {
     cells.flat_map(|cell| cell.split(", ")).map(|name| name.trim_matches('`').to_owned()).collect()
 }
 
-/// Whether there is an `ffmpeg`, with a notice if there is none. With `LOCALSHAPE_REQUIRE_FFMPEG=1` there must be one.
+/// Whether there is an `ffmpeg`, with a notice if there is none. With `LOCALSHAPE_REQUIRE_FFMPEG=1` this is a failure.
 #[cfg(feature = "render")]
 pub(crate) fn has_ffmpeg() -> bool {
     let is_there = Command::new("ffmpeg").arg("-version").output().is_ok();
@@ -276,17 +277,17 @@ pub(crate) fn numpy() -> Option<impl Fn(&Path, &str) -> String> {
     python("numpy")
 }
 
-/// What runs a script in a folder by a Python that has a package, `numpy` or `PIL`, and returns what it prints; `None`,
-/// with a notice, if there is no such Python. With `LOCALSHAPE_REQUIRE_PYTHON=1` there must be one.
+/// A function that runs a script in a folder by a Python with a package, `numpy` or `PIL`, and returns its output;
+/// `None`, with a notice, if there is no such Python. With `LOCALSHAPE_REQUIRE_PYTHON=1` this is a failure.
 pub(crate) fn python(package: &str) -> Option<impl Fn(&Path, &str) -> String + use<>> {
-    // By way of a shell, which says so if there is no Python at all.
+    // A shell reports a missing Python.
     let run_by = |python: &str, folder: &Path, script: &str| {
         let mut command = Command::new("sh");
         command.args(["-c", "exec $0 -c \"$1\"", python, script]).current_dir(folder).stdin(Stdio::null());
         run(&mut command)
     };
     let has_package = |python: &&str| run_by(python, Path::new("."), &format!("import {package}")).status == Some(0);
-    // The first may be one of the user's own, without the packages of the system.
+    // The first Python may belong to the user, without the packages of the system.
     let Some(python) = ["python3", "/usr/bin/python3"].into_iter().find(has_package) else {
         let missing = format!("there is no Python with {package}: `apt install python3-{}`", package.to_lowercase());
         assert!(std::env::var_os("LOCALSHAPE_REQUIRE_PYTHON").is_none_or(|value| value != "1"), "{missing}");

@@ -1,11 +1,11 @@
 //! This project's own goldens: every primitive of drawing, every shipped scene and every shipped figure.
 //!
-//! Each has a folder `NAME/` here with small pictures and `golden.toml`, a record of all its states: so a failure
+//! Each has a folder `NAME/` here with small pictures and `golden.toml`, a record of all its states. So a failure
 //! reports whether the physics changed, at which node and from which frame on, or only the drawing. Primitives are the
 //! scenes beside their goldens in `primitives/`.
 //!
-//! `UPDATE_GOLDENS=1 cargo test --release --test golden` makes and renews goldens, and tells what it accepts; then look at
-//! every picture that changed.
+//! `UPDATE_GOLDENS=1 cargo test --release --test golden` makes and renews goldens, and lists accepted changes; then
+//! look at every changed picture.
 #![cfg(feature = "render")]
 
 mod suite;
@@ -20,7 +20,7 @@ const USUAL: &str = "llvmpipe";
 
 /// Greatest size of all goldens together (bytes).
 const LARGEST: u64 = 2 * 1024 * 1024;
-/// Greatest size of one of them (bytes).
+/// Greatest size of one golden (bytes).
 const LARGEST_GOLDEN: u64 = 96 * 1024;
 
 fn root() -> &'static Path {
@@ -78,8 +78,8 @@ fn figures() {
     check("tests/golden/figures", None);
 }
 
-/// With other adapters of this machine, such as a GPU, states have the same bits, and pictures are within the tolerance
-/// for such adapters.
+/// With other adapters of this machine, such as a GPU, states have the same bits, and pictures are within the
+/// tolerance.
 #[test]
 fn other_adapters() {
     if std::env::var_os("UPDATE_GOLDENS").is_some() {

@@ -1,4 +1,4 @@
-//! The golden suite as a test of another project uses it: its output, its files, and what it refuses.
+//! The golden suite as used in a test of another project: its output, its files, and its refusals.
 
 use localshape::golden::Suite;
 use localshape::gpu::{AdapterChoice, Gpu};
@@ -17,7 +17,7 @@ const SCENE: &str = "
     model = { kind = 'shape-based', stiffness = 1e4 }
 ";
 
-/// A test as in another project. It runs in a separate process, as it is configured by environment variables.
+/// A test as in another project. It runs in a separate process, as environment variables configure it.
 #[test]
 #[ignore = "started by the tests below"]
 fn of_another_project() {
@@ -80,14 +80,14 @@ fn a_golden_is_missed_made_kept_renewed_and_guarded() {
     assert!(passed && text.contains("drop: accepted goldens/drop/frame_00002.png"), "{text}");
     assert!(run(&place, "drop.toml", "").0);
 
-    // Drawn differently: renewed on request.
+    // Changed drawing is renewed on request.
     write(&place, "drop.toml", &SCENE.replace("view.size", "view.theme = 'dark'\nview.size"));
     let (passed, text) = run(&place, "drop.toml", "");
     assert!(!passed && text.contains("drawn differently") && text.contains("see reports/drop.html"), "{text}");
     assert!(place.path().join("reports/drop.html").exists());
     assert!(run(&place, "drop.toml", "1").0 && run(&place, "drop.toml", "").0);
 
-    // The state changed: what is accepted is told, also by a test that passes and keeps its output.
+    // A changed state is reported when it is accepted, even by a passing test that captures its output.
     write(&place, "drop.toml", &SCENE.replace("0.1, 0, 0]", "0.2, 0, 0]"));
     let (passed, text) = run(&place, "drop.toml", "");
     assert!(!passed && text.contains("state moved: Local shape, first at frame 0: "), "{text}");

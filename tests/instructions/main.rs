@@ -1,5 +1,5 @@
-//! How many instructions a step takes, counted by valgrind at the width that it knows (AVX2): a guard against slower code that
-//! needs no quiet machine. `LOCALSHAPE_REQUIRE_VALGRIND` makes it fail, not skip, where there is none.
+//! The number of instructions of a step, counted by valgrind with vectors that it knows (AVX2): a test against slower
+//! code that needs no quiet machine. Without valgrind it is skipped, or fails with `LOCALSHAPE_REQUIRE_VALGRIND`.
 
 use localshape::scene::{Limits, Scene};
 use std::path::Path;
@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 const CELLS: u64 = 12;
 
 /// Options of the lattice, options of the model, and the greatest number of instructions per element and step: a tenth
-/// more than when it was set.
+/// more than measured.
 const CASES: [(&str, &str, u64); 5] = [
     ("", "kind = 'shape-based'", 294),
     ("", "kind = 'shape-based', rotation = 'arctangent'", 420),
@@ -31,14 +31,14 @@ fn scene((lattice, model, _): (&str, &str, u64)) -> Scene {
 
 /// Counted in a separate process.
 #[test]
-#[ignore = "for the other test"]
+#[ignore = "started by the other test"]
 fn steps() {
     let number = |name: &str| std::env::var(name).ok().and_then(|value| value.parse::<usize>().ok());
     let (Some(case), Some(steps)) = (number("CASE"), number("STEPS")) else { return };
     scene(CASES[case]).world(0).advance(steps as u64);
 }
 
-/// Instructions of a process that takes so many steps.
+/// The number of instructions of a process with a number of steps.
 fn instructions(folder: &Path, case: usize, steps: u64) -> u64 {
     let out = format!("--callgrind-out-file={}", folder.join("out").display());
     let valgrind = Command::new("valgrind")
@@ -60,7 +60,7 @@ fn a_step_takes_no_more_instructions_than_it_did() {
     let is_there = Command::new("valgrind").arg("--version").stdout(Stdio::null()).status().is_ok();
     if !is_there || !cfg!(target_arch = "x86_64") {
         assert!(std::env::var_os("LOCALSHAPE_REQUIRE_VALGRIND").is_none(), "valgrind is not there");
-        localshape::internals::skipped("valgrind is not there");
+        localshape::internals::skipped("valgrind is not installed");
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! Energies are computed only for whoever asks.
+//! Energies are computed only on request.
 
 use glam::DVec3;
 use localshape::runner::Runner;
@@ -88,7 +88,7 @@ fn pictures_ask_for_energies_only_where_they_show_them() {
         let mut runner = Runner::new(&scene, &[0, 1]).with_diagnostics(&scene.frame_diagnostics());
         let frame = runner.frame(4);
         assert_eq!(reports.swap(0, Ordering::Relaxed), asked, "{view}");
-        // By default all are there.
+        // By default all energies are there.
         let all = Runner::new(&scene, &[0, 1]).frame(4);
         assert_eq!(reports.load(Ordering::Relaxed), 2);
         for (some, all) in frame.runs.iter().zip(&all.runs) {

@@ -1,4 +1,4 @@
-//! A simulation that goes on in another process, wherever the first one stopped, has the bits of one that never stopped.
+//! A simulation that another process continues, from any point, has the bits of an uninterrupted one.
 
 use localshape::runner::history::History;
 use localshape::runner::{Frames, Next, Progress, Runner};
@@ -6,7 +6,7 @@ use localshape::scene::{Limits, Scene};
 use localshape::sim::Diagnostic;
 use std::fs::File;
 
-/// Runs with different steps, the third of which diverges, with a path and forces that act for a while.
+/// Runs with different steps, with a path and forces that act for a while. The third run diverges.
 const SCENE: &str = "
     gravity = [0, -9.8, 0]
     time = { duration = 0.3, frames_per_second = 20 }
@@ -30,7 +30,7 @@ const SCENE: &str = "
     step = 'T/2'
 ";
 
-/// What is taken from frames: their texts, the time series, and what pictures show of the run that diverges.
+/// The results of frames: their texts, the time series, and the drawn state of the run that diverges.
 #[derive(Default, PartialEq)]
 struct Taken {
     frames: Vec<String>,
@@ -42,12 +42,12 @@ fn frames<'a>(scene: &'a Scene, numbers: &[u64], waiting: Option<File>) -> Frame
     Frames::new(runner, numbers, waiting)
 }
 
-/// Takes all that is left, or what comes within a number of calls.
+/// Takes all remaining results, or those of a number of calls.
 fn take(frames: &mut Frames<'_>, slice: u64, calls: usize, taken: &mut Taken) {
     for _ in 0..calls {
         match frames.next(slice).expect("a file") {
             Next::Working => {}
-            // Not a number is not equal to itself, so texts are compared.
+            // NaN is not equal to itself, so texts are compared.
             Next::TimeSeries(history) => taken.history = Some(format!("{history:?}")),
             Next::Frame(frame) => taken.frames.push(format!("{frame:?}")),
             Next::Done => return,
@@ -83,7 +83,7 @@ fn wherever_it_stops_it_goes_on_with_the_same_bits() {
             second.resume(through_a_file(&progress)).unwrap();
             take(&mut second, 11, usize::MAX, &mut taken);
             assert!(taken == whole, "ahead: {ahead}, after {calls} calls");
-            // Time series that were returned with the frames are no longer there.
+            // Time series that were returned with the frames are not stored.
             assert_eq!(format!("{:?}", second.take_history()), format!("{series:?}"), "after {calls} calls");
             let total: Vec<_> = (0..3).map(|run| scene.frame_step(run, 6)).collect();
             let both: Vec<_> = second.simulated().iter().zip(&before).map(|(one, other)| one + other).collect();
@@ -110,7 +110,7 @@ fn progress_of_another_kind_is_refused() {
     refused(frames(&scene, &[0, 2, 6], None), progress(&mut frames(&scene, &[0, 2, 6], store()), 4));
     refused(Frames::new(Runner::new(&scene, &[0, 1, 2]), &[0, 2, 6], None), early());
     refused(Frames::new(Runner::new(&scene, &[0, 1]), &[0, 2, 6], None), early());
-    // It has gone beyond the next of these frames.
+    // It has passed the next of these frames.
     refused(frames(&scene, &[0, 1, 2, 3], None), progress(&mut frames(&scene, &[3, 6], None), 3));
     let other = Scene::parse(&SCENE.replace("[2, 1, 1]", "[2, 2, 1]"), "small.toml", &Limits::default()).unwrap();
     refused(frames(&other, &[0, 2, 6], None), early());

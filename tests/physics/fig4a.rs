@@ -4,7 +4,7 @@ use super::support::{after, shipped};
 use localshape::scene::Scene;
 use localshape::sim::Snapshot;
 
-/// Signed area of the triangle with the largest obtuse angle, divided by that at rest.
+/// Signed area of the triangle with the largest obtuse angle, divided by its area at rest.
 fn obtuse(scene: &Scene, snapshot: &Snapshot) -> f64 {
     let nodes = &scene.body.elements[5];
     let area = |at: &[glam::DVec3]| {

@@ -1,4 +1,4 @@
-//! Starts from which a body of the shape model recovers its shape and one of springs does not: the figure `restore`.
+//! Starts from which the body recovers its shape with the shape model and not with springs: the figure `restore`.
 
 use super::support::{after, shipped};
 use localshape::sim::Status;

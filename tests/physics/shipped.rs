@@ -1,4 +1,4 @@
-//! What the shipped scenes and others show, as their comments say.
+//! The results of shipped and other scenes, as their comments describe them.
 
 use super::support::{after, shipped};
 use glam::DVec3;
@@ -49,7 +49,8 @@ fn a_bar_that_is_stretched_and_let_go_comes_back_with_the_shape_model() {
     }
 }
 
-/// A step and a damping ratio that are stable together stay so if a node is ten thousand times lighter than the others.
+/// A step and a damping ratio that are stable together stay stable if a node is ten thousand times lighter than the
+/// others.
 #[test]
 fn the_default_step_serves_any_contrast_of_masses() {
     for lightest in ["1", "0.01", "0.0001"] {

@@ -14,8 +14,8 @@ fn predicted(scene: &Scene) -> Stability {
     scene.stability(0)
 }
 
-/// `ω_max/ω` of the free lattice of 3×3×3 cubes, from dense matrices of an independent program, and of the bounds for stretched
-/// springs.
+/// `ω_max/ω` of the free lattice of 3×3×3 cubes from dense matrices of an independent program, and the bounds for
+/// stretched springs.
 #[test]
 fn eigenvalues_of_the_lattice() {
     let of = |model: &str| {
@@ -43,7 +43,7 @@ fn eigenvalues_of_the_lattice() {
     }
 }
 
-/// Whether small displacements of all nodes stay small for so many steps (s).
+/// Whether small displacements of all nodes stay small for a number of steps (s).
 fn stays(scene: &Scene, step: f64, steps: u64) -> bool {
     let run = &scene.runs[0];
     let small = 1e-9 * scene.body.extent();
@@ -78,7 +78,7 @@ const MASSES: &str = "body = { nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 
 const PLANE: &str = "body = { nodes = [[0, 0], [1, 0], [1.3, 0.9], [0.5, 1.6], [-0.3, 0.9]], elements = [[0, 1, 2, 3], [0, 3, 4], [0, 1]] }";
 const HELD: &str = "body = { lattice = { cells = [3, 1, 1], side = 0.1 } }\nhold = [{ nodes = [0, 4, 8, 12] }]";
 
-/// 1 % below the limit a run stays where it is, 1 % above it departs.
+/// 1 % below the limit a run stays in place, 1 % above it departs.
 #[test]
 fn runs_stay_just_below_and_depart_just_above() {
     let shape = "kind = 'shape-based', stiffness = 100";
@@ -102,7 +102,7 @@ fn runs_stay_just_below_and_depart_just_above() {
                 );
                 let scene = scene(&text);
                 let Stability { largest, .. } = predicted(&scene);
-                // Where damping has modes of its own, the limit is a lower bound.
+                // If damping has modes of its own, the limit is a lower bound.
                 let is_exact = damping.is_empty() || model == springs || integrator == "semi-implicit-euler";
                 for (share, stable) in [(0.99, true), (if is_exact { 1.01 } else { 1.12 }, false)] {
                     if stays(&scene, share * largest, 4000) != stable {
@@ -126,7 +126,7 @@ fn implicit_and_adaptive_methods_have_no_limit_and_explicit_euler_has_no_stable_
     }
 }
 
-/// What is certain without eigenvalues is not more than the limit.
+/// The bound without eigenvalues does not exceed the limit.
 #[test]
 fn certain_steps_are_stable() {
     for (body, damping) in [CUBES, MASSES, PLANE].into_iter().flat_map(|body| [0.0, 0.3].map(|damping| (body, damping)))

@@ -1,4 +1,5 @@
-//! Cameras that follow, over the whole course of all shipped scenes, by the numbers in their pictures: no device needed.
+//! Cameras that follow, over the whole course of all shipped scenes, tested by the numbers in their pictures. No device
+//! is needed.
 
 use super::compose;
 use localshape::picture::{Composer, Panel, Picture};
@@ -24,14 +25,14 @@ fn parse(text: &str) -> Scene {
     Scene::parse(text, "camera.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Whether a scene asks for a camera that follows, and so for one scale, where it need not.
+/// Whether a scene requests a camera that follows, and so one scale, without needing it.
 fn asks_for_one_scale(path: &Path) -> bool {
     let text = std::fs::read_to_string(path).expect("a scene");
     let scene: toml::Table = text.parse().expect("the shipped scene is sound");
     scene["view"].get("camera").and_then(|camera| camera.get("follow")).is_some()
 }
 
-/// A composer that knows the whole course, and every so many frames of the scene.
+/// A composer that knows the whole course, and frames of the scene at an interval.
 fn film(scene: &Scene, every: u64) -> Vec<(u64, Picture)> {
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let composer = Composer::new(scene, &History::new(scene, &runs));
@@ -63,7 +64,7 @@ fn every_shipped_scene_fills_its_panels_and_cuts_nothing_off() {
     for path in shipped() {
         let scene = load(&path);
         let name = &scene.name;
-        // Obstacles along a course are shown from a camera that stands still.
+        // Obstacles along a course are shown from a fixed camera.
         if !scene.view.camera.follow {
             assert_eq!(name, "obstacles");
             continue;
@@ -87,7 +88,7 @@ fn every_shipped_scene_fills_its_panels_and_cuts_nothing_off() {
         let found =
             format!("{name}: width at most {widest:.3}, height at most {highest:.3}, area at least {smallest:.3}");
         println!("{found}");
-        // A scene that says so itself shows bodies that are thin or shrink at the scale of their widest moment.
+        // A scene that requests it shows bodies that are thin or shrink at the scale of their widest moment.
         let least = match name.as_str() {
             _ if !asks_for_one_scale(&path) => 0.10,
             "chain" | "stretch" => 0.02,
@@ -110,7 +111,7 @@ fn a_frame_drawn_alone_is_that_of_its_sequence() {
     }
 }
 
-/// The wall of a course of obstacles is as large in all panels and frames, wherever bodies are.
+/// The wall of a course of obstacles has the same size in all panels and frames.
 #[test]
 fn plates_are_drawn_alike_in_all_panels_and_frames() {
     let scene = load(&shipped().into_iter().find(|path| path.ends_with("obstacles.toml")).expect("a scene"));

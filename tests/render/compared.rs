@@ -44,7 +44,7 @@ fn a_ghost_has_the_colour_of_its_run_and_is_not_in_its_own_panel() {
                 let panel = picture.panels[of(curve).expect("in a panel")].viewport;
                 assert!(curve.points.iter().all(|&point| inside(panel, point)));
             }
-            // The key says whose outline it is.
+            // The key names the run of the outline.
             let name = if let Ghost::Run(run) = ghost { &scene.runs[run].name } else { "rest shape" };
             let straight = picture.curves.iter().filter(|curve| curve.points.len() == 2 && curve.colour == colour);
             let height = straight.map(|curve| curve.points[0][1]).fold(0.0, f32::max);
@@ -113,7 +113,7 @@ fn paths_end_where_bodies_are_and_begin_where_they_started() {
             let of_run: Vec<_> = picture.curves.iter().filter(here).collect();
             let (dots, lines): (Vec<_>, Vec<_>) = of_run.into_iter().partition(|curve| curve.points.len() == 1);
             assert_eq!(dots.len(), 2);
-            // The dot of the node lies on a corner of the body, that of the centre inside of all corners.
+            // The dot of the node lies on a corner of the body, the dot of the centre inside of all corners.
             let vertices = panel.sound.vertices.iter().chain(&panel.turned_over.vertices);
             let pixels: Vec<_> = vertices.map(|vertex| seen(panel, vertex.position)).collect();
             let off = |[x, y]: [f32; 2]| {
@@ -138,7 +138,7 @@ fn paths_end_where_bodies_are_and_begin_where_they_started() {
         assert_eq!(alone.compose(frame), picture);
     }
     assert!(longest > 10, "{longest}");
-    // Without the time series there are none.
+    // Without the time series there are no paths.
     assert_eq!(unknown(&scene).compose(&frames[1]).curves.len(), 0);
 }
 
@@ -173,7 +173,7 @@ fn bodies_of_bars_have_ghosts() {
     let frame = Runner::new(&scene, &[0]).frame(0);
     let picture = unknown(&scene).compose(&frame);
     let is_ghost = |curve: &&Curve| curve.colour == picture.palette.second_text && curve.dash.len() == 2;
-    // Eight bars, as far as they are in the panel, the weight at their end, and the sample of the key.
+    // Eight bars within the panel, the weight at their end, and the sample of the key.
     let count = picture.curves.iter().filter(is_ghost).count();
     assert!((5..=10).contains(&count), "{count}");
 }

@@ -69,7 +69,7 @@ fn corners_stand_on_the_scale_where_their_values_do() {
     assert_eq!(picture.ramp.len(), SHADES);
     let mesh = &picture.panels[0].sound;
     assert_eq!(mesh.shades.len(), mesh.vertices.len());
-    // The corners of the surface that are nodes have the value of their node.
+    // Corners of the surface at nodes have the value of their node.
     for (node, &at) in frame.runs[0].snapshot.position.iter().enumerate() {
         let origin = scene.view.camera.target;
         let expected = ((node as f32 - 2.0) / 4.0).clamp(0.0, 1.0);
@@ -157,7 +157,7 @@ fn a_point_says_that_values_lie_beyond_the_scale() {
     for (range, points) in [([0.0, 1e9], 0), ([0.0, 1e-3], 1), ([5.0, 1e9], 1), ([5.0, 6.0], 2)] {
         let (scene, frame) = with_field(Field::Speed, range, 4);
         let drawn = marks(&compose(&scene, &frame), MarkShape::Point);
-        // Each with an outline.
+        // Each node has an outline.
         assert_eq!(drawn.len(), 2 * points, "{range:?}");
     }
 }
@@ -179,7 +179,7 @@ fn springs_are_those_of_the_model() {
     assert!(
         compose(&scene, &frame).panels.iter().all(|panel| panel.sound.triangles.is_empty() && panel.lines.is_empty())
     );
-    // Without either, both do.
+    // Without both, both models show edges.
     scene.view.visible = Visible { nodes: true, ..NOTHING };
     assert_eq!(counts(&scene), [edges, edges + 9 * 12]);
 }
@@ -221,7 +221,7 @@ fn many_nodes_are_drawn_when_asked_for() {
 
 #[test]
 fn arrows_end_at_their_nodes() {
-    // In space arrows of nodes that face the viewer; in the plane all that are long enough.
+    // In space, nodes that face the viewer have arrows; in the plane, all with long enough displacements.
     let (mut scene, frame) = fig4b(4);
     scene.view.visible.displacements = true;
     let (flat, flat_frame) = plane("show = ['surfaces', 'displacements']");
@@ -288,7 +288,7 @@ fn the_key_arrow_is_as_long_as_it_says() {
     assert!(said.windows(2).all(|two| two[0] == two[1]), "{said:?}");
 }
 
-/// The boxes of all texts and marks of the legend and of the panels, without what is on bodies (px).
+/// The boxes of all texts and marks of the legend and of the panels, without marks on bodies (px).
 fn boxes(picture: &Picture) -> Vec<([f32; 4], String)> {
     let words = picture.words.iter().map(|run| {
         let top = run.baseline - 0.74 * run.size;
@@ -306,7 +306,7 @@ fn boxes(picture: &Picture) -> Vec<([f32; 4], String)> {
         let top = if mark.along[0] < 0.0 { top - height } else { top };
         ([left, top, left + width, top + height], format!("{:?}", mark.shape))
     });
-    // Below all panels the only arrow is that of the legend.
+    // The only arrow below all panels is that of the legend.
     let lowest = picture.panels.iter().map(|panel| panel.viewport[1] + panel.viewport[3]).max().unwrap_or(0) as f32;
     let key = picture.marks.iter().filter(|mark| mark.shape == MarkShape::Arrow && mark.rectangle[1] > lowest);
     let key = key.map(|arrow| {
@@ -427,7 +427,7 @@ fn light_keeps_the_colours_of_the_key() {
             assert!(colours.len() > 800, "{map:?} {theme:?} {at}: {}", colours.len());
             let most = colours.iter().map(|&colour| difference(colour, key, Vision::Normal)).fold(0.0, f64::max);
             assert!(most <= 5.0, "{map:?} {theme:?} {at}: {most} from {key:x?}");
-            // Faces are told from each other nevertheless.
+            // Faces are distinguishable nevertheless.
             let lightness = colours.iter().map(|&colour| oklab(colour).0[0]);
             let (least, most) = lightness.fold((1.0, 0.0), |(a, b): (f64, f64), at| (a.min(at), b.max(at)));
             assert!(most / least > 1.03, "{map:?} {theme:?} {at}: {least} {most}");

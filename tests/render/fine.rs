@@ -7,12 +7,12 @@ use localshape::scene::{Limits, Scene};
 
 /// The scale of the reference pictures.
 const TIMES: u32 = 4;
-/// A channel that differs by more than this is visible. This fraction of channels may: where several lines share a
-/// pixel, and where stripes are so fine that they are omitted on purpose.
+/// A larger difference of a channel is visible. This fraction of channels may differ visibly: where several lines share
+/// a pixel, and where stripes are too fine and omitted.
 const SEEN: u8 = 64;
 const PART: f64 = 3e-4;
-/// The greatest root mean square difference of channels: that of four samples a pixel, with which each pixel on a border differs
-/// by up to an eighth of the step between its sides, which is 32.
+/// The greatest root mean square difference of channels. It is that of four samples per pixel, with which each pixel on
+/// a border differs by up to an eighth of the step between its sides, which is 32.
 const MEAN: f64 = 4.5;
 
 /// The same picture with every length scaled: lines, marks and glyphs, too.
@@ -68,7 +68,7 @@ fn encoded(light: f64) -> f64 {
 }
 
 /// For each channel of the small picture, the mean of the larger one's pixels, in linear light and in sRGB. The first
-/// is right for bodies and their lines, the second for marks and text, which are blended in sRGB.
+/// is right for bodies and their lines; the second for marks and text, which are blended in sRGB.
 fn means(large: &RgbImage, light: &[f64; 256]) -> Vec<[u8; 2]> {
     let [width, height] = [large.width() / TIMES, large.height() / TIMES];
     let mut means = Vec::with_capacity((3 * width * height) as usize);

@@ -41,7 +41,7 @@ fn fig_1_says_the_forces_and_how_far_three_springs_are_off() {
 fn fig_2_says_that_one_diagonal_spring_prefers_a_direction() {
     let picture = picture("fig2", [1280, 576]);
     assert_eq!(counts(&picture, &["0.141", "0.495", "0.243", "1.051", "0.040", "0.061"]), [2; 6]);
-    // Outward where it should be inward.
+    // The force points outward instead of inward.
     assert_eq!(counts(&picture, &["180° off"]), [2]);
 }
 
@@ -49,7 +49,7 @@ fn fig_2_says_that_one_diagonal_spring_prefers_a_direction() {
 fn fig_3_shows_both_vectors_and_the_centre_in_the_plane_and_in_space() {
     let picture = picture("fig3", [1280, 720]);
     assert_eq!(counts(&picture, &["r", "R", "c"]), [2; 3]);
-    // An arrow for each node of the pentagon and of the cube, and that of the legend.
+    // An arrow for each node of the pentagon and of the cube, and the legend's arrow.
     assert_eq!(picture.marks.iter().filter(|mark| mark.shape == MarkShape::Arrow).count(), 5 + 8 + 1);
 }
 
@@ -116,7 +116,7 @@ fn a_body_at_rest_has_no_forces_and_floors_that_are_not_drawn_cut_nothing() {
     let figure = Figure::load(&path, &localshape::scene::Limits::default()).unwrap_or_else(|error| panic!("{error}"));
     let picture = compose_figure(&figure, &Moments::new(&figure)).expect("room");
     assert_eq!(counts(&picture, &["no forces"]), [1]);
-    // Of 27 nodes, the one in the middle and those that faces hide are faint, or not drawn.
+    // Of 27 nodes, the inner one and those hidden by faces are faint, or not drawn.
     let nodes = |opaque: bool| {
         let is_one =
             |mark: &&localshape::picture::Mark| mark.shape == MarkShape::Node && (mark.opacity == 255) == opaque;

@@ -1,4 +1,4 @@
-//! The inside of a body, and what is behind it.
+//! The inside of a body, and objects behind it.
 
 use super::{compose, draw, fig4b, gpu, parse, renderer};
 use glam::Vec3;
@@ -16,7 +16,7 @@ fn middle_turned_over() -> (Scene, Frame) {
     (scene, frame)
 }
 
-/// How orange an image is: the excess of red over blue in each pixel, above that of the light on grey.
+/// The orange of an image: the excess of red over blue in each pixel, above the excess in the light on grey.
 fn orange(image: &RgbImage) -> u64 {
     let excess = |[red, _, blue]: [u8; 3]| u64::from(red.saturating_sub(blue).saturating_sub(40));
     image.pixels().map(|pixel| excess(pixel.0)).sum()

@@ -55,7 +55,7 @@ fn without_edges_outlines_and_turned_over_elements_stay() {
     assert_eq!(kinds(&compose(&scene, &frame)), [usual[0], usual[1], 0, usual[3]]);
 }
 
-/// A picture of nothing but its bodies' surfaces.
+/// A picture of only its bodies' surfaces.
 fn surfaces_alone(mut picture: Picture) -> Picture {
     for panel in &mut picture.panels {
         (panel.floor, panel.obstacles) = (None, Obstacles::default());
@@ -70,14 +70,14 @@ fn surfaces_alone(mut picture: Picture) -> Picture {
     picture
 }
 
-/// The same without sound elements.
+/// The picture without sound elements.
 fn turned_over_alone(picture: &Picture) -> Picture {
     let mut picture = surfaces_alone(picture.clone());
     picture.panels.iter_mut().for_each(|panel| panel.sound = Mesh::default());
     picture
 }
 
-/// The pixels within a set that is drawn alone, but for a border of a pixel.
+/// The pixels of a set that is drawn alone, without a border of a pixel.
 fn inside(alone: &RgbImage, background: [u8; 3]) -> Vec<(u32, u32)> {
     let is_set = |x: u32, y: u32| alone.get_pixel(x, y).0 != background;
     let all = (1..alone.height() - 1).flat_map(|y| (1..alone.width() - 1).map(move |x| (x, y)));

@@ -1,4 +1,4 @@
-//! Tests that need a device: pictures are drawn, identically each time, in every size.
+//! Tests that need a device: pictures of every size are drawn, identically each time.
 //!
 //! Without a graphics adapter these tests are skipped with a message. `LOCALSHAPE_REQUIRE_GPU=1` makes that a failure.
 
@@ -46,7 +46,7 @@ fn gpu(test: &str) -> Option<&'static Gpu> {
     GPU.as_ref()
 }
 
-/// The scene of Fig. 4(b) with a view that sets only its size, its clock and a camera that stands still.
+/// The scene of Fig. 4(b) with a view that sets only its size, its clock and a fixed camera.
 fn plain() -> String {
     let text = include_str!("../../scenes/fig4b.toml");
     let (world, view) = text.split_once("[view]").expect("a view");
@@ -72,12 +72,12 @@ fn frame(scene: &Scene, index: u64) -> Frame {
     Runner::new(scene, &all(scene)).frame(index)
 }
 
-/// The picture of a frame, as if nothing were known of the course of its scene.
+/// The picture of a frame, without the course of its scene.
 fn compose(scene: &Scene, frame: &Frame) -> Picture {
     unknown(scene).compose(frame)
 }
 
-/// A composer of frames, as if nothing were known of the course of their scene.
+/// A composer of frames, without the course of their scene.
 fn unknown(scene: &Scene) -> Composer<'_> {
     Composer::new(scene, &History::default())
 }
@@ -91,7 +91,7 @@ fn renderer(gpu: &Gpu, size: [u32; 2]) -> Renderer {
     Renderer::new(gpu, size).expect("a size that can be drawn")
 }
 
-/// A picture drawn by a renderer of its own.
+/// A picture drawn by a new renderer.
 fn draw(gpu: &Gpu, picture: &Picture) -> RgbImage {
     renderer(gpu, picture.size).draw(picture).expect("the device works")
 }

@@ -23,7 +23,7 @@ const SPHERE: &str = "[[obstacle]]\nkind = 'sphere'\ncentre = [0.4, 0.5, 0]\nrad
 const MOVING: &str = "path = { keys = [{ time = 0 }, { time = 1, shift = [0, 0.4, 0] }], ease = 'linear' }\n";
 const PLATE: &str = "[[obstacle]]\nkind = 'plate'\npoint = [0, 0.8, 0]\nnormal = [0, -1, 0]\n";
 
-/// A scene with a camera that stands still.
+/// A scene with a fixed camera.
 fn scene(parts: &[&str]) -> Scene {
     let text = parts.concat();
     let mut scene = following(&text);
@@ -65,7 +65,7 @@ fn middle(points: impl ExactSizeIterator<Item = [f32; 3]>) -> Vec3 {
     points.map(Vec3::from).sum::<Vec3>() / count
 }
 
-/// A point of the world in units of sides from the panel's origin, at which a camera that does not follow looks.
+/// A point of the world in sides from the panel's origin, for a camera that does not follow.
 fn seen(scene: &Scene, point: [f64; 3]) -> Vec3 {
     ((DVec3::from(point) - scene.view.camera.target) / scene.view.side).as_vec3()
 }
@@ -320,12 +320,12 @@ fn the_camera_shows_what_comes_near_and_nothing_else() {
         localshape::look::Camera { near: Vec::new(), ..camera }
     };
     let alone = camera(&[]);
-    // What is in the picture anyway, or far away, does not move the camera.
+    // Visible and distant obstacles do not move the camera.
     let small = "[[obstacle]]\nkind = 'sphere'\ncentre = [0.15, 0.1, 0]\nradius = 0.02\n";
     let far = "[[obstacle]]\nkind = 'sphere'\ncentre = [9, 0.1, 0]\nradius = 0.2\n";
     assert_eq!(camera(&[small]), alone);
     assert_eq!(camera(&[far]), alone);
-    // What comes near is shown from any direction, and the body stays large.
+    // Nearby obstacles are shown from any direction, and the body stays large.
     let near = "path = { keys = [{ time = 0 }, { time = 0.5, shift = [-8.7, 0, 0] }, { time = 1 }] }\n";
     let shown = camera(&[far, near]);
     assert!(shown.target.x > alone.target.x + 0.01 && shown.distance > alone.distance, "{shown:?}");
@@ -345,7 +345,7 @@ fn following_the_body_lets_the_grid_scroll_below() {
     let body = following(&[WORLD, &body, FLOOR].concat());
     let composer = unknown(&body);
     let eye = |picture: &Picture| picture.panels[0].sight.eye;
-    // Any frame by itself, and in any order.
+    // Any frame alone, in any order.
     let [late, early] = [25, 0].map(|index| composer.compose(&frame(&body, index)));
     // The camera has the same position relative to the body, and the grid has moved as far as the body.
     assert!(eye(&late).distance(eye(&early)) < 1e-3);
@@ -404,7 +404,7 @@ fn the_ground_takes_no_light_twice_and_plates_do() {
     assert!(picture(&scene(&[WORLD, CUBE, FLOOR]), 0).panels[0].obstacles.occluders.is_empty());
     let plate = below("kind = 'plate'\npoint = [0, 0.25, 0]\nnormal = [0, -1, 0]");
     assert!(matches!(plate.obstacles.occluders[..], [Occluder { is_clear: true, .. }]));
-    // Of any number, this many count, and they are the nearest.
+    // Only this many of any number count, and they are the nearest.
     let ball = |at: i32| {
         let height = 0.41 + 0.005 * f64::from(at);
         format!("[[obstacle]]\nkind = 'sphere'\ncentre = [0, {height}, 0]\nradius = 0.1\n")
@@ -428,7 +428,7 @@ fn a_rod_that_touches_darkens_the_body_below_it_and_one_that_does_not_leaves_it_
         let view = "[view]\nsize = [320, 240]\nlabels = []\n\
                     camera = { target = [0, 0.2, 0], distance = 2, azimuth = 0, elevation = 1.2 }\n";
         let mut picture = picture(&scene(&[WORLD, block, FLOOR, &rod, view]), 0);
-        // Only the shadow of the rod is left.
+        // Only the shadow of the rod remains.
         picture.panels[0].obstacles.solids.clear();
         picture.panels[0].lines.clear();
         let image = Renderer::new(gpu, picture.size).and_then(|mut renderer| renderer.draw(&picture)).expect("drawn");
@@ -444,7 +444,7 @@ fn a_rod_that_touches_darkens_the_body_below_it_and_one_that_does_not_leaves_it_
     assert!(touching < 0.85 && (hovering - 1.0).abs() < 0.05, "{touching} {hovering}");
 }
 
-/// The more, the farther the obstacle leaves, so that nothing changes at once.
+/// Fading increases with the part of the obstacle that leaves, so that nothing changes suddenly.
 #[test]
 fn obstacles_fade_where_they_leave_their_panel() {
     let alone = scene(&[WORLD, CUBE, FLOOR]);
@@ -460,16 +460,16 @@ fn obstacles_fade_where_they_leave_their_panel() {
         assert!(panel.obstacles.fade.is_none_or(|fade| is_within(fade.room)), "{x}");
         strengths.push(panel.obstacles.fade.map_or(0.0, |fade| fade.strength[0]));
     }
-    // Neither where it is whole nor where nothing of it is seen.
+    // Not where it is whole, and not where it is invisible.
     let [first, last] = [strengths.iter().position(|&at| at > 0.0), strengths.iter().rposition(|&at| at > 0.0)];
     let (first, last) = (first.expect("it leaves"), last.expect("it leaves"));
     assert!(first > 5 && last < 79 && strengths[last] == 1.0, "{strengths:?}");
     assert!(strengths[..=last].windows(2).all(|two| two[0] <= two[1]), "{strengths:?}");
-    // It does not fade wholly within one step of 10 mm.
+    // It does not fade completely within one step of 10 mm.
     assert!(strengths[first] < 1.0, "{strengths:?}");
 }
 
-/// The ground comes through what fades, and bodies stay as they are.
+/// The ground shows through fading obstacles, and bodies do not change.
 #[test]
 fn what_fades_lets_the_ground_through() {
     let Some(gpu) = gpu("what_fades_lets_the_ground_through") else { return };
@@ -489,7 +489,7 @@ fn what_fades_lets_the_ground_through() {
         let pixels = range.flat_map(|y| one.get_pixel(x, y).0.into_iter().zip(fading.get_pixel(x, y).0));
         pixels.map(|(one, other)| one.abs_diff(other)).max().expect("pixels")
     };
-    // Nothing of it is left at the sides, all of it in the middle, and between them some.
+    // At the sides it is invisible, in the middle opaque, and between them translucent.
     let side = [3, 316].map(|x| [off(&bare, x, 0..240), off(&whole, x, 40..200)]);
     assert!(side.iter().all(|&[bare, whole]| bare <= 2 && whole > 30), "{side:?}");
     assert_eq!((off(&whole, 160, 0..240), off(&whole, 100, 0..200)), (0, 0));

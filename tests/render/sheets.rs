@@ -28,7 +28,7 @@ fn own(text: &str) -> Figure {
     Figure::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Sheets with other layouts than those of the paper.
+/// Sheets with other layouts than the paper's.
 fn others() -> Vec<Figure> {
     let moments = |count: usize| (0..count).map(|at| format!("{}", at as f64 * 0.07)).collect::<Vec<_>>().join(", ");
     let rows = |count: usize| {
@@ -58,7 +58,7 @@ fn others() -> Vec<Figure> {
     .collect()
 }
 
-/// Figures with what they show, simulated once for all tests.
+/// Figures with their simulated states, shared by all tests.
 type Shown = Vec<(Figure, Moments)>;
 
 fn show(figures: impl IntoIterator<Item = Figure>) -> Shown {
@@ -69,7 +69,7 @@ fn show(figures: impl IntoIterator<Item = Figure>) -> Shown {
     figures.into_iter().map(shown).collect()
 }
 
-/// Those of [`SHEETS`].
+/// The figures of [`SHEETS`].
 static PAPER: LazyLock<Shown> = LazyLock::new(|| show(SHEETS.iter().filter_map(|name| Figure::built_in(name))));
 
 fn all() -> impl Iterator<Item = &'static (Figure, Moments)> {
@@ -95,7 +95,7 @@ fn no_words_overlap_and_all_can_be_read() {
         let mut figure = figure.clone();
         for (at, size) in SIZES.into_iter().enumerate() {
             figure.size = size;
-            // Every figure at every size, and both of them with type of every size.
+            // Every figure at every size, and two figures with type of every size.
             let times = [1.0, 1.5, 3.0][(number + at) % 3];
             figure.look.text_scale = times;
             let picture = compose_figure(&figure, moments).expect("room");
@@ -129,7 +129,7 @@ fn type_is_as_many_times_larger_as_a_figure_says() {
         let times = large_sizes[word] / plain_sizes[word];
         assert!((times - 1.5).abs() < 1e-4, "“{word}” is {times} times larger");
     }
-    // The bodies have the space that texts leave, which is most of it.
+    // The bodies have the space without texts, which is most of it.
     let heights = [&plain, &large].map(|picture| picture.panels[0].viewport[3] as f32);
     assert!(heights[1] > 0.8 * heights[0], "{heights:?}");
     assert_eq!(picture(&format!("text_scale = 1\n{usual}")), plain);
@@ -279,11 +279,11 @@ fn a_body_without_width_is_drawn_as_a_line_or_a_dot() {
     let figure = Figure::built_in("restore").expect("a figure of the program");
     let picture = compose_figure(&figure, &Moments::new(&figure)).expect("room");
     let lengths: Vec<_> = picture.curves.iter().map(|curve| curve.points.len()).collect();
-    // The point, the line, and both once more for the springs.
+    // The point, the line, and both again for the springs.
     assert_eq!(lengths, [1, 2, 1, 2]);
 }
 
-/// A sheet of a scene with eight runs of one model, and what it shows.
+/// A sheet of a scene with eight runs of one model, and its states.
 fn of_alike(runs: usize, sheet: &str) -> (Figure, Moments) {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).expect("a file");
@@ -307,7 +307,7 @@ fn runs_of_one_model_are_told_apart_and_named_at_the_ends_of_their_curves() {
     for runs in [2, 3, 8, 10] {
         let text = "[sheet]\nscene = 'alike.toml'\nmoments = [0, 0.4]\nstrips = ['energy', 'shape_error']\n";
         let (mut figure, moments) = of_alike(runs, text);
-        // In the second one there is too little room for many names.
+        // The second sheet has too little room for many names.
         for size in [[1200, 675], [1200, 360], [400, 300]] {
             figure.size = size;
             let picture = compose_figure(&figure, &moments).expect("room");
@@ -372,7 +372,7 @@ fn runs_of_one_name_have_one_line_in_all_scenes_of_a_figure() {
         ["k = 1500", "k = 1000", "k = 2000"]
     );
     let palette = &figure.look.palette();
-    // Runs that the first scene does not have get lines of their own.
+    // Runs that the first scene does not have get new lines.
     let text = "[sheet]\n[[sheet.column]]\nscene = 'others.toml'\ntime = 0\n[[sheet.column]]\nscene = 'alike.toml'\ntime = 0\n\
                 [[sheet.row]]\nrun = 'k = 1000'\n[[sheet.row]]\nrun = 'k = 1500'\n";
     let (lacking, _) = of_alike(4, text);
@@ -408,7 +408,8 @@ fn a_sheet_colours_all_its_scenes_by_one_field() {
     assert!(picture.words.iter().any(|run| run.text == "displacement"));
 }
 
-/// Of several scenes, too, of which one has too many elements in a layer for squares; and the key says what is drawn.
+/// Sheets of several scenes also have a tally. One scene has too many elements in a layer for squares, and the key
+/// explains the tally.
 #[test]
 fn tallies_of_a_sheet_have_one_style() {
     let column = |scene: &str| format!("[[sheet.column]]\nscene = '{scene}.toml'\ntime = 0\n");

@@ -103,7 +103,7 @@ fn words_keep_inside_their_panels_and_apart() {
             let picture = compose(&scene, &frame);
             let top = picture.panels.iter().map(|panel| panel.viewport[1]).min().expect("panels") as f32;
             for run in &picture.words {
-                // A clock that has no room beside the name stands above the panels.
+                // A clock without room beside the name stands above the panels.
                 let above = run.baseline < top + 14.0 && run.span[0] >= 0.0 && run.span[1] <= size[0] as f32;
                 let inside = above
                     || picture.panels.iter().any(|panel| {
@@ -238,7 +238,7 @@ fn a_picture_is_the_same_in_any_unit_of_length() {
             for (a, b) in panel.lines.iter().zip(&expected.lines) {
                 let apart = |a: [f32; 3], b: [f32; 3]| glam::Vec3::from(a).distance(glam::Vec3::from(b));
                 assert!(a.kind == b.kind && apart(a.from, b.from).max(apart(a.to, b.to)) < 1e-4, "{factor}: {a:?}");
-                // What is compared with the near plane is in front of it.
+                // The compared point is in front of the near plane.
                 let distance = |point: [f32; 3]| (panel.sight.clip * glam::Vec3::from(point).extend(1.0)).w;
                 assert!(distance(a.from) > panel.sight.near && distance(a.to) > panel.sight.near, "{factor}");
             }
@@ -400,7 +400,7 @@ fn an_element_without_faces_is_drawn_from_its_middle() {
     assert!(panel.region[2] > 50 && panel.region[3] > 50);
 }
 
-/// Of the only turned-over triangle of Fig. 4(a) nothing is hidden: its sign stands beside the body and points to it.
+/// The only turned-over triangle of Fig. 4(a) is fully visible: its sign stands beside the body and points to it.
 #[test]
 fn a_sign_that_would_hide_its_element_stands_beside_the_body() {
     let text = include_str!("../../scenes/fig4a.toml")
@@ -452,7 +452,7 @@ fn contours_are_closed_chains() {
             let lines = picture.panels[0].lines.iter().filter(|line| line.kind == LineKind::Contour);
             let ends: Vec<_> = lines.flat_map(|line| [line.from, line.to]).map(glam::Vec3::from).collect();
             for end in &ends {
-                // Much nearer than the pieces of a patch are long.
+                // The distance is much smaller than the pieces of a patch.
                 let meeting = ends.iter().filter(|other| end.distance(**other) < 4e-4).count();
                 assert!(meeting % 2 == 0, "{index} {azimuth}: {meeting} contours meet at {end}");
             }
@@ -485,7 +485,7 @@ fn a_run_that_diverged_is_grey_and_stands_still_as_it_fitted_last() {
     assert!(said.contains(&when.as_str()), "{said:?}");
     assert!(said.iter().any(|text| text.ends_with(" times wider than shown")), "{said:?}");
     let when = when.replace("diverged", "diverges");
-    // Alone it has the scale bar, which measures what is shown.
+    // Alone it has the scale bar, which measures the shown body.
     let alone = Runner::new(&scene, &[2]).frame(119);
     let picture = unknown(&scene).compose(&alone);
     let shown = &alone.runs[0].last_fit.as_ref().expect("it diverged").snapshot.position;
@@ -558,7 +558,7 @@ fn the_more_strained_springs_lie_above_and_have_the_colours_of_the_key() {
     let springs = scene.runs[1].model.springs().len();
     let first = strokes.iter().position(|stroke| full(stroke.colours[0])).expect("some are strained so far");
     let above = &strokes[first..springs];
-    // Of those that are in the same step of strain.
+    // These springs are in the same step of strain.
     let count = above.iter().filter(|stroke| full(stroke.colours[0])).count();
     assert!(above.len() < 2 * count && count > 20, "{count} of {}", above.len());
 }
@@ -584,7 +584,7 @@ fn springs_show_their_own_strain_without_its_sign_unless_the_range_has_one() {
         let of = |end: [u8; 3]| picture.panels[1].strokes.iter().filter(|stroke| stroke.colours[0] == end).count();
         assert!(of(ramp[0]) >= low && of(ramp[ramp.len() - 1]) >= high && high > 0, "{range:?}");
         assert!(range[0] == 0.0 || low > 0);
-        // The other model has no springs, and its edges the strain of elements.
+        // The other model has no springs, and its edges show the strain of elements.
         assert!(picture.words.iter().any(|word| word.text.starts_with("of springs: change of length")));
     }
 }

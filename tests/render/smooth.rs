@@ -55,7 +55,7 @@ fn assert_smooth(image: &RgbImage, x: std::ops::Range<u32>, y: u32, name: &str) 
     row.truncate(darkest + 1);
     assert!(row.windows(2).all(|two| two[0] >= two[1]), "{name}: {row:?}");
     row.dedup();
-    // Both sides and what lies between them.
+    // Both sides and the values between them.
     assert!(row.len() >= 7, "{name}: {row:?}");
 }
 
@@ -183,8 +183,8 @@ fn obstacles_are_drawn_alike_every_time() {
     assert_eq!(one, other);
 }
 
-/// Means of 8×8 pixels are between two bytes where the shadow changes slowly: there are no bands of one byte each. The plain
-/// background is left alone.
+/// Means of 8×8 pixels are between two bytes where the shadow changes slowly: there are no bands of one byte each. The
+/// plain background does not change.
 #[test]
 fn a_wide_shadow_has_no_bands() {
     let Some(gpu) = gpu("a_wide_shadow_has_no_bands") else { return };
@@ -211,14 +211,14 @@ fn a_wide_shadow_has_no_bands() {
     assert!(all > 200 && between * 10 > all * 8, "{between} of {all}");
 }
 
-/// Neighbours are cut differently, and still have the same points along their edge.
+/// Neighbours are cut differently, but have the same points along their edge.
 #[test]
 fn surfaces_of_bent_faces_have_no_gaps() {
     let (scene, frame) = fig4b(4);
     let picture = compose(&scene, &frame);
     for panel in &picture.panels {
         let mesh = &panel.sound;
-        // Weights of the corners round differently from both sides of an edge.
+        // Weights of the corners round differently on both sides of an edge.
         let place = |at: u32| mesh.vertices[at as usize].position.map(|part| (f64::from(part) * 1e4).round() as i64);
         let mut pieces: HashMap<_, i32> = HashMap::new();
         for [a, b, c] in mesh.triangles.iter().map(|corners| corners.map(place)) {

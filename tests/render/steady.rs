@@ -8,25 +8,25 @@ use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
 use localshape::sim::{Dimension, Frame};
 
-/// Frames of a film in which the fastest point moves by one pixel, and so past all of a pixel.
+/// Frames of a film in which the fastest point moves by one pixel, and so through all positions in a pixel.
 const FRAMES: u64 = 21;
 /// Motion between two frames (px).
 const SLOW: f64 = 0.05;
 
-/// Changes of the worst pixels of a film, relative to the step from black to white, in linear light. Lines
-/// are tested for visibility at four places, so one of these that changes sides is a quarter at most.
+/// Changes of the worst pixels of a film, relative to the step from black to white, in linear light. The visibility of
+/// lines is tested at four places, so a place that changes sides is a quarter at most.
 #[derive(Debug, Default)]
 struct Unrest {
     /// The largest change from one frame to the next.
     jump: f64,
-    /// The largest oscillation. A pixel's series has a swing from each turning point to the next; something thin that
-    /// passes causes two large ones. So this is the third largest swing of the pixel where that is largest.
+    /// The largest oscillation. A pixel's series has a swing from each turning point to the next; a thin passing object
+    /// causes two large ones. So this is the third largest swing, at the pixel where it is largest.
     fro: f64,
 }
 
-/// The bounds. A place that changes sides on a white background is .24, and a line that begins or ends there adds to that;
-/// where elements are a few pixels large, two places may change at once. Oscillations are less than one of them: an edge that
-/// stands still within the 1/256 px to which corners are rounded.
+/// The bounds. A place that changes sides on a white background is .24, and the end of a line there adds to it; if
+/// elements are a few pixels large, two places may change at once. Oscillations are smaller than one change: a fixed
+/// edge moves within the 1/256 px to which corners are rounded.
 const MOST: Unrest = Unrest { jump: 0.30, fro: 0.24 };
 
 fn unrest(film: &[RgbImage]) -> Unrest {
@@ -34,7 +34,7 @@ fn unrest(film: &[RgbImage]) -> Unrest {
     let mut worst = Unrest::default();
     let film: Vec<&[u8]> = film.iter().map(|image| &image.as_raw()[..]).collect();
     for at in 0..film[0].len() {
-        // Most of a picture stands still.
+        // Most of a picture does not move.
         if film.iter().all(|image| image[at] == film[0][at]) {
             continue;
         }
@@ -53,7 +53,7 @@ fn unrest(film: &[RgbImage]) -> Unrest {
     worst
 }
 
-/// Frames between two others, a small fraction of the motion apart. Turned-over elements stay so.
+/// Frames between two others, a small fraction of the motion apart. Turned-over elements stay turned over.
 fn between([from, to]: [&Frame; 2], part: f64) -> Vec<Frame> {
     (0..FRAMES)
         .map(|at| {
@@ -74,7 +74,7 @@ fn between([from, to]: [&Frame; 2], part: f64) -> Vec<Frame> {
         .collect()
 }
 
-/// Draws frames without text, some of which is numbers.
+/// Draws frames without text, which contains changing numbers.
 struct Camera(Renderer);
 
 impl Camera {
@@ -139,7 +139,7 @@ fn nothing_flickers_in_slow_motion() {
             scene.view.size = [320, 180];
         }
         scene.view.strip = None;
-        // All of the motion is in the picture.
+        // The whole motion is in the picture.
         scene.view.camera.follow = false;
         let mut runner = Runner::new(&scene, &all(&scene));
         let [from, to] = [index, index + 1].map(|index| runner.frame(index));

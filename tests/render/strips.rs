@@ -124,7 +124,7 @@ fn a_short_story_has_a_scale_of_its_own_and_its_events_recur_in_the_panels() {
     let (scene, frames) = with_strip(Diagnostic::TurnedOver, [0, 4]);
     let [before, after] = pictures(&scene, &frames);
     let said = |text: &str| before.words.iter().filter(|word| word.text == text).collect::<Vec<_>>();
-    // All happens in the first 102 ms of 3 s.
+    // All changes are in the first 102 ms of 3 s.
     assert!(said("150 ms").len() == 1 && said("3 s").len() == 1, "two scales of time");
     // Solid steps on both scales, of both runs.
     assert!(series(&before).len() == 4 && series(&before).iter().all(|curve| curve.dash.is_empty()));
@@ -136,7 +136,7 @@ fn a_short_story_has_a_scale_of_its_own_and_its_events_recur_in_the_panels() {
         assert!(panel.span[1] < words.span[0] && words.span[0] > 640.0, "in the panel of the springs");
         assert!(chart.baseline > 560.0);
     }
-    // What has happened is filled.
+    // Rings of past events are filled.
     let ring = |picture: &Picture, number: &str| {
         let is_flag = |word: &&TextRun| word.text == number && word.weight == Weight::SemiBold;
         let word = picture.words.iter().find(is_flag).expect("a number").clone();
@@ -153,7 +153,7 @@ fn a_short_story_has_a_scale_of_its_own_and_its_events_recur_in_the_panels() {
     assert_ne!(ring(&after, "1"), ground);
 }
 
-/// Where panels have no room for what a number means, there is no number in the chart, either.
+/// If panels have no room to explain a number, the chart does not have it either.
 #[test]
 fn flags_are_those_that_panels_explain() {
     let (mut scene, _) = with_strip(Diagnostic::TurnedOver, [0]);
@@ -207,7 +207,7 @@ fn the_present_moment_is_at_its_pixel() {
         let column = x.floor() as u32;
         let rows = (top as u32 + 2)..(bottom as u32 - 1);
         let seen = |column: u32| rows.clone().filter(|&row| off(column, row) > 150).count();
-        // Two neighbours share a line between them; elsewhere only curves are crossed.
+        // Two neighbours share a line between them; elsewhere lines cross only curves.
         let here = rows.clone().filter(|&row| (column - 1..=column + 1).map(|x| off(x, row)).sum::<u32>() > 300);
         assert!(here.count() > rows.len() / 2, "{theme:?}");
         for beside in [column - 12, column + 12] {
@@ -221,7 +221,7 @@ fn a_frame_composed_alone_has_the_same_strips() {
     let (scene, frames) = with_strip(Diagnostic::TurnedOver, [0, 9]);
     let pictures = pictures(&scene, &frames);
     assert_eq!(compose(&scene, &frames[1]), pictures[1]);
-    // Of one run only, without the other and with its own scale.
+    // Only one run, without the other and with its own scale.
     let alone = Frame { runs: vec![frames[1].runs[0].clone()], ..frames[1].clone() };
     let picture = compose(&scene, &alone);
     assert!(picture.curves.len() == 3 && series(&picture)[0].dash.is_empty() && circles(&picture).len() == 1);
@@ -271,7 +271,7 @@ fn what_a_model_does_not_have_is_said() {
     let (scene, [frame]) = with_strip(Diagnostic::Residual, [4]);
     let picture = compose(&scene, &frame);
     assert!(picture.words.iter().any(|run| run.text == "rad/s²"));
-    // Only the curve that there is has a name.
+    // Only the existing curve has a name.
     let colour = scene.runs[0].line(&picture.palette).colour;
     assert!(series(&picture).iter().all(|curve| curve.colour == colour) && circles(&picture).len() == 1);
     let named = |name: &str| picture.words.iter().filter(|run| run.text == name).count();
@@ -300,20 +300,20 @@ fn a_run_that_blows_up_ends_with_a_cross() {
     let middle = |curve: &Curve| (curve.points[0][0] + curve.points[1][0]) / 2.0;
     let of_calm: Vec<_> = series(&picture).into_iter().filter(|one| one.colour != arms[0].colour).collect();
     assert_eq!(middle(arms[0]), middle(arms[1]));
-    // The time of the divergence: as a fraction of the width, which the line of the present moment now shows.
+    // The time of the divergence as a fraction of the width, which the line of the present moment now shows.
     let now = moments(&picture)[0].points[0];
     let start = of_calm[0].points[0][0];
     let expected = start + (now[0] - start) * (divergence.time / frame.time) as f32;
     assert!((middle(arms[0]) - expected).abs() < 0.5, "{} for {expected}", middle(arms[0]));
     assert!(picture.words.iter().any(|word| word.text.starts_with("diverged at ")), "a flag says it");
-    // The other run's curve is not compressed, and only that one has a value now.
+    // The other run's curve is not compressed, and only that run has a value now.
     assert_eq!(circles(&picture).len(), 1);
     let height = moments(&picture)[0].points[1][1] - of_calm[0].points[0][1];
     assert!(height > 10.0, "the calm curve is {height} px high");
     assert!(picture.curves.iter().flat_map(|curve| &curve.points).all(|[_, y]| (0.0..=840.0).contains(y)));
 }
 
-/// A curve of any number of pieces looks like one.
+/// A curve of many pieces looks like one.
 #[test]
 fn joints_do_not_show() {
     let Some(gpu) = gpu("joints_do_not_show") else { return };
@@ -396,13 +396,13 @@ fn eight_runs_of_one_model_are_told_apart() {
             });
             assert_eq!(sample.expect("a sample beside it").colour, line.colour);
         }
-        // All names stand at the ends of the curves, in words that can be read, clear of each other.
+        // All names stand at the ends of the curves, legible and apart from each other.
         for run in &scene.runs {
             let names: Vec<_> = picture.words.iter().filter(|word| word.text == run.name).collect();
             assert_eq!(names.len(), 2, "{}", run.name);
         }
         assert_words_are_clear(&picture, theme);
-        // And clear of the present values, which are now at the end.
+        // They are also apart from the present values, which are now at the end.
         for circle in circles(&picture) {
             let [x, y] = middle(circle);
             let radius = circle.points[0][0] - x + circle.width / 2.0;
@@ -450,7 +450,7 @@ fn what_stands_for_more_than_eight_runs_differs_in_colour_or_dashes() {
     each_differs(&scene.runs.iter().map(|run| run.line(&scene.view.look.palette())).collect::<Vec<_>>());
 }
 
-/// What is drawn otherwise than as a curve is explained, and samples look like their curves.
+/// Bands and the like are explained, and samples look like their curves.
 #[test]
 fn bands_are_explained_and_samples_of_counts_are_solid() {
     let text = include_str!("../../scenes/springs.toml");

@@ -1,5 +1,4 @@
-//! Pictures as SVG and PDF: text stays text in fonts that are embedded, what is flat is made of paths, and what is lit is an
-//! image.
+//! Pictures as SVG and PDF: text stays text in embedded fonts, flat bodies are paths, and lit bodies are images.
 
 use super::{compose, fig4b, frame, parse};
 use base64::Engine;
@@ -71,7 +70,7 @@ fn text_stays_text() {
     }
 }
 
-/// The fonts of the page have the characters that it shows, with the outlines of the whole font, and hardly more.
+/// The fonts of the page have the characters of the page, with the outlines of the whole font, and hardly more.
 #[test]
 fn fonts_are_embedded_with_the_glyphs_in_use() {
     let picture = figure("fig2", Theme::Light);
@@ -116,7 +115,7 @@ fn panels_in_the_plane_are_paths_alone() {
     assert!(svg != dark && svg.matches("<path").count() == dark.matches("<path").count());
 }
 
-/// Of a lit panel the part with anything in it becomes an image; words, marks and curves stay vectors.
+/// The non-empty part of a lit panel becomes an image; words, marks and curves stay vectors.
 #[test]
 fn lit_bodies_are_images_without_words() {
     let (scene, frame) = fig4b(0);
@@ -138,7 +137,7 @@ fn lit_bodies_are_images_without_words() {
     assert!(String::from_utf8_lossy(&pdf).contains("/Width 3"));
 }
 
-/// In strips inside the obstacle, which reach across its room's left side.
+/// Strips inside the obstacle extend across the left side of its room.
 #[test]
 fn obstacles_that_leave_their_panel_fade() {
     let mut scene = parse(

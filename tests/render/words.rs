@@ -7,7 +7,7 @@ use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::Scene;
 
-/// All texts, in a scene that diverges, beside one that does not.
+/// All texts, in a scene with a run that diverges and one that does not.
 const ALL: &str = r#"
 title = 'Everything that can be written'
 gravity = [0, -9.8, 0]
@@ -47,7 +47,7 @@ fn scenes() -> Vec<Scene> {
     let shows = ["'surfaces'", "'springs'", "'springs', 'displacements'", "'surfaces', 'springs', 'displacements'"];
     for (number, show) in shows.into_iter().enumerate() {
         for (at, size) in sizes.into_iter().enumerate() {
-            // Any two of them once at least.
+            // Each pair of values occurs at least once.
             let more = arrangements[(number + at) % 3];
             scenes.push(parse(&format!("{ALL}\nsize = {size:?}\nshow = [{show}]\n{more}\n")));
         }
@@ -101,7 +101,7 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_size_of_type() {
                 let mut scene =
                     parse(&format!("{}\n{strip}\n{shown}text_scale = {text_scale}\n{view}\n", text.join("\n")));
                 scene.view.labels.legend = !view.contains("no legend");
-                // Any two of type, view and size once at least.
+                // Each pair of type, view and size occurs at least once.
                 for size in [0, 1, 2, 3].map(|next| sizes[(number + at + next) % 5]) {
                     scene.view.size = size;
                     let picture = compose(&scene, &Runner::new(&scene, &[0, 1, 2]).frame(3));
@@ -160,7 +160,7 @@ fn the_scale_bar_stays_when_its_run_blows_up() {
     assert_eq!(bar(&frames[0]), bar(&frames[1]));
 }
 
-/// Tallies of many elements become shorter rather than that a scale bar is left out.
+/// Tallies of many elements become shorter before a scale bar is left out.
 #[test]
 fn the_scale_bar_finds_room_beside_shorter_tallies() {
     let run = |name: &str| format!("{{ name = '{name}', model = {{ kind = 'shape-based', stiffness = 2e3 }} }}");
@@ -212,7 +212,7 @@ fn everything_is_written_where_there_is_room() {
     }
 }
 
-/// What is too small for words of the least size has fewer words.
+/// Panels too small for words of the least size have fewer words.
 #[test]
 fn no_type_is_smaller_than_the_least() {
     for (size, columns) in [([1280, 720], 3), ([1600, 1000], 3), ([1920, 1080], 1), ([1280, 720], 2)] {

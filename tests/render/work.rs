@@ -1,4 +1,4 @@
-//! What the device is told to do: nothing that a picture does not need, and nothing twice.
+//! The commands to the device: none that a picture does not need, and none twice.
 
 use super::{compose, draw, fig4b, gpu, renderer};
 use localshape::gpu::{AdapterChoice, Gpu, GpuError, Work};
@@ -6,7 +6,7 @@ use localshape::picture::Picture;
 use localshape::render::RenderError;
 use std::collections::BTreeSet;
 
-/// A device whose work no other test adds to.
+/// A device whose work log no other test shares.
 fn own_gpu(test: &str) -> Option<Gpu> {
     gpu(test).map(|_| Gpu::new(&AdapterChoice::Auto).expect("as before"))
 }
@@ -28,7 +28,7 @@ fn pictures(work: &[Work]) -> usize {
     work.iter().filter(|&&work| work == Work::Picture).count()
 }
 
-/// What a renderer of its own does for a picture.
+/// The work of a new renderer for a picture.
 fn work_for(gpu: &Gpu, picture: &Picture) -> Vec<Work> {
     gpu.take_work();
     draw(gpu, picture);
@@ -60,16 +60,16 @@ fn only_what_a_picture_holds_is_drawn_and_has_pipelines() {
     let of_all = set(&[&LINES, &BODY, &floor[..1], &words]);
     assert!(drawn(&work).is_subset(&of_all), "{:?}", drawn(&work));
     assert!(set(&[&LINES, &BODY, &["glyph_colour"]]).is_subset(&drawn(&work)), "{:?}", drawn(&work));
-    // Those of surfaces and of the ground are made together.
+    // The pipelines of surfaces and of the ground are made together.
     let together = set(&[&LINES, &BODY, &floor, &words, &["turned over", "sound, before others"]]);
     assert!(made(&work).is_subset(&together), "{:?}", made(&work));
 
-    // With turned-over elements, of which one panel has some.
+    // One panel has turned-over elements.
     let (_, later) = fig4b(32);
     let work = work_for(&gpu, &compose(&scene, &later));
     assert!(set(&[&TURNED_OVER, &["sound, before others"], &floor]).is_subset(&drawn(&work)), "{:?}", drawn(&work));
 
-    // Surfaces alone.
+    // Only surfaces.
     let mut bare = still;
     for panel in &mut bare.panels {
         (panel.floor, panel.lines, panel.borders) = (None, Vec::new(), Vec::new());
@@ -101,12 +101,12 @@ fn only_what_changed_is_uploaded() {
     let (work, again) = work_for(&picture);
     assert_eq!((uploads(&work), made(&work), pictures(&work)), (Vec::new(), BTreeSet::new(), 1));
     assert!(again == first);
-    // A body that moves a little keeps its triangles, as do words, glyphs and the floor.
+    // A body that moves a little keeps its triangles, and words, glyphs and the floor stay.
     picture.panels[1].sound.vertices[0].position[0] += 0.01;
     let (work, moved) = work_for(&picture);
     assert!(matches!(uploads(&work)[..], [("vertices", size)] if size <= 4096), "{:?}", uploads(&work));
     assert_eq!(moved, draw(&gpu, &picture), "as drawn alone");
-    // A new letter: its own rows of the texture.
+    // A new letter gets new rows of the texture.
     picture.words[0].size *= 1.5;
     let (work, larger) = work_for(&picture);
     let labels: BTreeSet<_> = uploads(&work).iter().map(|(label, _)| *label).collect();

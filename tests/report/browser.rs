@@ -12,18 +12,18 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// So long anything may take, on a slow machine that has other things to do.
+/// The time limit of any step, on a slow and busy machine.
 const PATIENCE: Duration = Duration::from_secs(30);
 /// Interval at which conditions are polled.
 const BETWEEN: Duration = Duration::from_millis(25);
 
-/// The names that a browser goes by, if `LOCALSHAPE_BROWSER` names none.
+/// The names of browser programs, unless `LOCALSHAPE_BROWSER` names one.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 
 /// A browser with one page.
 pub(crate) struct Browser {
     process: Child,
-    /// `None` when it is to go.
+    /// `None` when it is to end.
     orders: Option<ChildStdin>,
     answers: Receiver<Value>,
     last_order: u64,
@@ -32,7 +32,7 @@ pub(crate) struct Browser {
     folder: TempDir,
 }
 
-/// Keys with a code of their own; all others are letters and signs.
+/// Keys with special codes; all others are letters and signs.
 const NAMED_KEYS: [(&str, u32, &str); 9] = [
     ("ArrowLeft", 37, ""),
     ("ArrowUp", 38, ""),
@@ -46,7 +46,7 @@ const NAMED_KEYS: [(&str, u32, &str); 9] = [
 ];
 
 impl Browser {
-    /// A browser, or `None` with a line on the standard error output if there is none and none is required.
+    /// A browser. Without one, `None` with a line on standard error, or a failure if one is required.
     pub(crate) fn start() -> Option<Self> {
         let Some(program) = program() else {
             let missing = "there is no Chromium: `apt install chromium`, or name one in LOCALSHAPE_BROWSER";
@@ -95,7 +95,7 @@ impl Browser {
         Some(browser)
     }
 
-    /// What the browser answers to an order.
+    /// The browser's answer to a command.
     pub(crate) fn order(&mut self, method: &str, parameters: Value) -> Value {
         self.last_order += 1;
         let mut message = json!({ "id": self.last_order, "method": method, "params": parameters });
@@ -121,12 +121,12 @@ impl Browser {
         }
     }
 
-    /// What the browser wrote on its standard error output.
+    /// The browser's output on standard error.
     fn log(&self) -> String {
         std::fs::read_to_string(self.folder.path().join("log")).unwrap_or_default()
     }
 
-    /// Opens a page that is written to a file of its own, and returns its address.
+    /// Writes a page to a new file, opens it, and returns its address.
     pub(crate) fn open(&mut self, page: &str) -> String {
         let path = self.folder.path().join("report.html");
         std::fs::write(&path, page).expect("a file for the page");
@@ -160,7 +160,7 @@ impl Browser {
         value.as_str().unwrap_or_else(|| panic!("{expression} is {value}")).to_owned()
     }
 
-    /// The number that an expression in the page is.
+    /// The numeric value of an expression in the page.
     pub(crate) fn number(&mut self, expression: &str) -> f64 {
         let value = self.value(expression);
         value.as_f64().unwrap_or_else(|| panic!("{expression} is {value}"))
@@ -215,7 +215,7 @@ impl Browser {
         self.mouse("mouseReleased", to, 0);
     }
 
-    /// Left, top, width and height of what a selector finds, after scrolling to it (px in the window).
+    /// Left, top, width and height of the element of a selector, after scrolling to it (px in the window).
     pub(crate) fn place(&mut self, selector: &str) -> [f64; 4] {
         let found = self.value(&format!(
             "(() => {{ const found = document.querySelector({}); found.scrollIntoView({{ block: 'center' }}); \
@@ -225,7 +225,7 @@ impl Browser {
         std::array::from_fn(|at| found[at].as_f64().unwrap_or_else(|| panic!("{selector} is nowhere")))
     }
 
-    /// The colour in the middle of each of some places in the window, as it is on the screen.
+    /// The colours at the middles of some places in the window, as on the screen.
     pub(crate) fn colours<const COUNT: usize>(&mut self, places: [[f64; 2]; COUNT]) -> [[u8; 3]; COUNT] {
         let shot = self.order("Page.captureScreenshot", json!({ "format": "png" }));
         let file = BASE64_STANDARD.decode(shot["data"].as_str().expect("a picture")).expect("base64");
@@ -246,7 +246,7 @@ impl Browser {
         requests.map(|event| event["params"]["request"]["url"].as_str().unwrap_or_default().to_owned()).collect()
     }
 
-    /// What went wrong in the page since it was opened: exceptions, errors that it or the browser reported.
+    /// Errors in the page since it was opened: exceptions, and errors reported by it or the browser.
     pub(crate) fn complaints(&mut self) -> Vec<String> {
         self.value("1");
         let is_complaint = |event: &&Value| match event["method"].as_str() {
@@ -261,7 +261,7 @@ impl Browser {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        // Without anyone to listen to the browser ends by itself, with all its processes; it is not waited for long.
+        // Without a listener the browser ends by itself, with all its processes; the test does not wait for it.
         self.orders = None;
         let start = Instant::now();
         while start.elapsed() < Duration::from_secs(3) {

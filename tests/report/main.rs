@@ -1,4 +1,4 @@
-//! What a browser shows: the page of a comparison, whose slider works by pointer and by keys, and animations.
+//! Pages in a browser: the page of a comparison, whose slider works by pointer and by keys, and animations.
 
 mod browser;
 #[cfg(feature = "render")]
@@ -12,7 +12,7 @@ use browser::Browser;
 use localshape::internals::{Page, PicturePair};
 use serde_json::json;
 
-/// Pictures are so large (px). A square of `INK` lies at the left of the expected ones, at the right of the actual ones.
+/// The size of pictures (px). A square of `INK` is at the left of expected pictures, at the right of actual ones.
 const SIZE: [u32; 2] = [64, 48];
 const SQUARE: u32 = 16;
 const INK: [u8; 3] = [20, 28, 40];
@@ -31,7 +31,7 @@ fn png(size: [u32; 2], pixel: impl Fn(u32, u32) -> [u8; 3]) -> Vec<u8> {
     file
 }
 
-/// A light gradient with a dark square whose upper left corner is given.
+/// A light gradient with a dark square at an upper left corner.
 fn square_at([left, top]: [u32; 2]) -> Vec<u8> {
     png(SIZE, |x, y| {
         let is_inside = (left..left + SQUARE).contains(&x) && (top..top + SQUARE).contains(&y);
@@ -52,7 +52,7 @@ fn pair(name: &str, passes: bool) -> PicturePair {
     }
 }
 
-/// Five pictures of which three failed, the worst first.
+/// Five pictures, three of them failed, the worst first.
 fn report() -> Page {
     Page {
         title: "two cubes".into(),
@@ -68,7 +68,7 @@ fn report() -> Page {
 /// Whether all pictures in view are loaded.
 const LOADED: &str = "[...document.images].every((image) => image.complete && image.naturalWidth > 0)";
 
-/// A browser with a page open, or `None` where there is no browser.
+/// A browser with a page open, or `None` without a browser.
 fn browser_with(report: &Page) -> Option<(Browser, String)> {
     let mut browser = Browser::start()?;
     let address = browser.open(&report.html());
@@ -76,7 +76,7 @@ fn browser_with(report: &Page) -> Option<(Browser, String)> {
     Some((browser, address))
 }
 
-/// Waits until the slider shows the expected square or not, and the actual one or not.
+/// Waits until the slider shows or hides the expected square, and the actual one.
 fn until_seen(browser: &mut Browser, wanted: [bool; 2]) {
     let [left, top, width, _] = browser.place(".slider div");
     let scale = width / f64::from(SIZE[0]);
@@ -89,7 +89,7 @@ fn until_seen(browser: &mut Browser, wanted: [bool; 2]) {
     }
 }
 
-/// Text, style and script stay so small that they can be read.
+/// Text, style and script are small enough to be read.
 #[test]
 fn the_page_is_small() {
     let lines = include_str!("../../src/golden/page/page.html").lines().count();
@@ -107,14 +107,14 @@ fn a_page_needs_nothing_else_and_shows_everything_without_scripts() {
         assert!(page.contains(told), "{told}");
     }
     assert_eq!((page.matches("<h2>✕").count(), page.matches("<img").count()), (3, 15));
-    // The pictures are there as they came.
+    // The pictures are in their original order.
     assert!(page.contains(&format!("data:image/png;base64,{}", BASE64_STANDARD.encode(square_at(RIGHT)))));
 }
 
 const HOSTILE: &str =
     "</script><script>window.broken=1</script><!--\u{2028}<img src=x onerror=window.broken=1>{{pictures}}&\"'";
 
-/// A report in which everything that is typed is hostile.
+/// A report in which every typed text is hostile.
 fn hostile() -> Page {
     let mut report = report();
     (report.title, report.verdict, report.accept) = (HOSTILE.into(), HOSTILE.into(), Some(HOSTILE.into()));
@@ -143,7 +143,7 @@ fn nothing_is_fetched_and_nothing_hostile_runs() {
     let foreign: Vec<_> = requests.iter().filter(|url| **url != address && !url.starts_with("data:")).collect();
     assert!(foreign.is_empty(), "{foreign:?}");
     assert_eq!(browser.complaints(), [""; 0]);
-    // Nor could anything be fetched: a picture from elsewhere is refused by the page itself.
+    // Nothing can be fetched either: the page refuses a picture from elsewhere.
     let refused = "new Promise((done) => { document.addEventListener('securitypolicyviolation', (event) => \
                    done(event.effectiveDirective)); new Image().src = 'http://127.0.0.1:9/x.png'; })";
     assert_eq!(browser.text(refused), "img-src");
@@ -162,7 +162,7 @@ fn the_slider_works_by_pointer_and_by_keys() {
     until_seen(&mut browser, [true, false]);
     browser.drag(at(0.99), at(0.01));
     until_seen(&mut browser, [false, true]);
-    // The divider is where the pointer is.
+    // The divider is at the pointer.
     browser.drag(at(0.01), at(0.25));
     assert!((browser.text(divider).parse::<f64>().expect("a number") - 25.0).abs() <= 1.0);
     let line = format!("parseFloat(getComputedStyle(document.querySelector('.slider div'), '::after').left) / {width}");
@@ -173,7 +173,7 @@ fn the_slider_works_by_pointer_and_by_keys() {
     until_seen(&mut browser, [false, true]);
     (0..3).for_each(|_| browser.press("ArrowRight"));
     assert_eq!(browser.text(divider), "1.5");
-    // Every picture has its own, which the keys reach.
+    // Every picture has a slider, and keys reach it.
     assert_eq!(browser.value("document.querySelectorAll('.slider input').length"), 5);
     browser.press("Tab");
     assert_eq!(browser.value("[...document.querySelectorAll('.slider input')].indexOf(document.activeElement)"), 1);

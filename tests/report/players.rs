@@ -1,4 +1,4 @@
-//! Animations in the browser's own players: what they show first and last.
+//! Animations in the browser's own players: their first and last pictures.
 
 use crate::browser::Browser;
 use localshape::internals::{Compression, Shown, Tags, encode};
@@ -11,17 +11,17 @@ const SIZE: [u32; 2] = [64, 48];
 const COUNT: u64 = 12;
 const INK: [u8; 3] = [200, 60, 30];
 const GROUND: [u8; 3] = [230, 236, 240];
-/// Where only the first frame has the square, and where only the last one has it.
+/// The places of the square in the first frame only, and in the last frame only.
 const PLACES: [[f64; 2]; 2] = [[8.0, 24.0], [52.0, 24.0]];
-/// What is seen there.
+/// The colours at these places.
 const FIRST: [[u8; 3]; 2] = [INK, GROUND];
 const LAST: [[u8; 3]; 2] = [GROUND, INK];
 /// Films blur colours, and a GIF has few of them.
 const NEAR: u8 = 16;
-/// So long an animation may take to show what it should, on a slow machine that has other things to do.
+/// The time limit for an animation to show a picture, on a slow and busy machine.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Frames of a square that wanders from left to right, thirty a second.
+/// Frames of a square that moves from left to right, thirty per second.
 fn put_frames(folder: &Path) {
     std::fs::create_dir(folder).expect("a folder");
     for number in 0..COUNT {
@@ -74,7 +74,7 @@ fn first_and_last_frames_are_shown() {
     let image = |file: &str| page(&format!("<img src=\"file://{}\">", folder.join(file).display()));
     for ending in ["gif", "apng"] {
         let file = &format!("slow.{ending}");
-        // The first frame for half a minute.
+        // The first frame lasts half a minute.
         animate(folder, file, &["--speed", "0.001"]);
         browser.open(&image(file));
         is_shown(&mut browser, file, FIRST);

@@ -5,10 +5,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 const SIZE: [u32; 2] = [1280, 576];
-/// What may differ where nothing changes nearby.
+/// The tolerance in uniform areas.
 const NEAR: u8 = 3;
 
-/// Draws a figure; whether there is a device for it.
+/// Draws a figure, if there is a device for it.
 fn draw(folder: &Path, file: &str) -> bool {
     let mut command = Command::new(env!("CARGO_BIN_EXE_localshape"));
     command.current_dir(folder).args(["figure", "fig2", "-q", "--scale", "0.5", "-o", file]).stdin(Stdio::null());
@@ -51,7 +51,7 @@ fn a_browser_shows_the_same_as_the_png_file() {
     browser.open(&image);
     browser.until("the picture", "document.images[0].complete && document.images[0].naturalWidth > 0");
 
-    // Where nothing changes nearby, colours are equal: bodies, ghosts, arrows, ground.
+    // In uniform areas colours are equal: bodies, ghosts, arrows, ground.
     let places: [[u32; 2]; 60 * 27] =
         std::array::from_fn(|at| [10 + 21 * (at as u32 % 60), 10 + 21 * (at as u32 / 60)]);
     let seen = browser.colours(places.map(|[x, y]| [f64::from(x), f64::from(y)]));
@@ -69,7 +69,7 @@ fn a_browser_shows_the_same_as_the_png_file() {
         std::array::from_fn(|at| [NAME[0] + at as u32 % NAME[2], NAME[1] + at as u32 / NAME[2]].map(f64::from));
     let seen = browser.colours(places);
     let ink = |colour: [u8; 3]| f64::from(255 - colour[1]) / 255.0;
-    // Over ten columns at once, for borders are smoothed in other ways.
+    // Ten columns together, because borders are smoothed differently.
     let mut columns = [[0.0; 13]; 2];
     for (&[x, y], seen) in places.iter().zip(seen) {
         let column = (x as u32 - NAME[0]) as usize / 10;

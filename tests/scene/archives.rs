@@ -264,7 +264,7 @@ fn heads_of_every_length_and_version() {
         }
         zip.finish().unwrap().into_inner()
     };
-    // Padded to a length, with `told` as the length in the header.
+    // Padded to a length; the header has the length `told`.
     let file = |version: u8, length: usize, told: u32| {
         let Array { descr, shape, bytes, .. } = &square()[0];
         let head = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}");
@@ -290,7 +290,7 @@ fn heads_of_every_length_and_version() {
         }
     }
     for version in [2, 3] {
-        // Longer than any file, by the third and the fourth byte alone.
+        // Lengths beyond any file, by the third and by the fourth byte alone.
         for told in [118 + (1 << 16), 118 + (1 << 24)] {
             wrong(&file(version, 118, told), &["`body.npz: nodes` has no complete header"]);
         }
@@ -364,7 +364,7 @@ fn elements_that_are_all_wrong_in_one_way_have_one_mistake() {
         good(&row_of_cubes(|_| order), &SCENE.replace("file =", "convex = true\nfile ="));
         assert_eq!(order.map(|place| order[place]), right);
     }
-    // Of some of the elements the first few are named.
+    // Among wrong elements, the first few are named.
     wrong(
         &row_of_cubes(|cube| if cube == 3 { right } else { turned }),
         &["11 of 12 elements of `body.npz: elements` are turned inside out at rest: 0, 1, 2, 4, 5 and 6 more \
@@ -390,7 +390,7 @@ fn nodes_counted_from_one_are_told_and_nothing_that_follows() {
     );
 }
 
-/// Parts of a ring have some volume of either sign with another program's order, so that inverting them seems to help.
+/// With another program's order, parts of a ring have some volume of either sign, so that inverting them seems to help.
 #[test]
 fn hexahedra_in_the_order_of_other_programs_are_told_from_turned_ones() {
     let ring = |order: [usize; 8]| {

@@ -29,7 +29,7 @@ model = {{ kind = 'mass-spring', stiffness = 1e4, damping_ratio = 0.1, springs =
 /// The number of elements for each number of nodes.
 type Sizes = &'static [(usize, usize)];
 
-/// Bodies of every generator, with the number of elements for each number of nodes, where that is not random.
+/// Bodies of every generator, with the number of elements for each number of nodes unless it is random.
 const BODIES: [(&str, Dimension, Sizes); 13] = [
     ("lattice = { cells = [3, 2], side = 0.1 }", Dimension::Plane, &[(4, 6)]),
     ("lattice = { cells = [3, 2], side = [0.1, 0.2], elements = 'triangles' }", Dimension::Plane, &[(3, 12)]),
@@ -67,7 +67,7 @@ fn every_rule_makes_the_body_that_it_says() {
         if !expected.is_empty() {
             assert_eq!(sizes(&scene), expected, "{body}");
         }
-        // Each stands on the level of the origin, and all nodes belong to elements.
+        // Each body stands at the level of the origin, and all nodes belong to elements.
         let lowest = scene.body.rest.iter().map(|node| node.y).fold(f64::INFINITY, f64::min);
         assert!(lowest.abs() < 1e-15, "{body}: {lowest}");
         let mut nodes: Vec<u32> = scene.body.elements.indices().to_vec();
@@ -131,7 +131,7 @@ fn the_seed_chooses_the_body_and_one_is_the_default() {
     assert!(two.0 != one.0 && two.1 != one.1 && two.2 != one.2);
 }
 
-/// The corners of an element: the node and those that span its area or volume with it.
+/// The corners of an element: a node and the nodes that span its area or volume with it.
 fn corners(nodes: usize, dimension: Dimension) -> Vec<Vec<usize>> {
     match (dimension, nodes) {
         (Dimension::Plane, 4) => (0..4).map(|at| vec![at, (at + 1) % 4, (at + 3) % 4]).collect(),
@@ -147,8 +147,8 @@ fn corners(nodes: usize, dimension: Dimension) -> Vec<Vec<usize>> {
     }
 }
 
-/// Where random displacements of nodes would make an element flat or invert it, they are reduced: each corner keeps a
-/// tenth of what it spans in the regular block. Without that, one in ten thousand corners does not.
+/// Random displacements that would make an element flat or invert it are reduced: each corner keeps a tenth of its
+/// regular volume. Without that, one in ten thousand corners does not.
 #[test]
 fn irregular_blocks_have_no_element_that_is_nearly_flat() {
     for (cells, elements) in [

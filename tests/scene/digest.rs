@@ -1,4 +1,4 @@
-//! The digest depends on the meaning of a scene only.
+//! The digest depends only on the meaning of a scene.
 
 use super::{WORLD, good, shipped};
 
@@ -74,8 +74,7 @@ fn whatever_changes_the_scene_changes_the_digest() {
     assert_eq!(digests.len(), all);
 }
 
-/// The scene of Fig. 4(b) from before views could have titles, letters and strips, and before the default solver
-/// changed.
+/// The scene of Fig. 4(b) before views could have titles, letters and strips, and before the default solver changed.
 fn plain() -> String {
     let text = shipped("fig4b.toml").replace(", rotation = \"arctangent\"", "");
     let (world, view) = text.split_once("[view]").expect("a view");
@@ -83,13 +82,13 @@ fn plain() -> String {
     format!("{world}[view]\nsize = [1280, 720]{}\n", view.lines().filter(had).collect::<Vec<_>>().join("\n"))
 }
 
-/// Protects stored results: if this number changes, all frames made before count as those of another scene.
+/// Protects stored results: if this digest changes, all earlier frames count as those of another scene.
 #[test]
 fn the_digest_of_a_shipped_scene_stays() {
     assert_eq!(good(&plain()).digest, "1cc51747824f6dca33dd90fc360fd5fcc270e8e4ef93188d27b787211e0bf96b");
 }
 
-/// Lists are hashed from where they are, in the order of their keys among the others.
+/// Lists are hashed in place, in the order of their keys among the others.
 #[test]
 fn the_digest_of_listed_nodes_stays() {
     let text = "

@@ -7,7 +7,7 @@ use localshape::scene::figure::{Content, Figure, Sheet};
 use localshape::scene::{Limits, Scene, SceneError};
 use std::path::Path;
 
-/// Reads a figure beside a scene `fig4b.toml` of 3 s, one of the plane and one without a run `Mass-spring`.
+/// Reads a figure beside the scene `fig4b.toml` of 3 s, a scene in the plane and one without a run `Mass-spring`.
 fn load(text: &str) -> Result<Figure, SceneError> {
     let folder = tempfile::tempdir().expect("a folder");
     let lone = "time.duration = 1\nbody.lattice = { cells = [1, 1, 1], side = 1 }\n\
@@ -153,7 +153,7 @@ fn figures_of_the_program_are_those_in_the_folder() {
         let there = Figure::load(&folder.join(name).with_extension("toml"), &Limits::default());
         let there = there.unwrap_or_else(|error| panic!("{error}"));
         let within = Figure::built_in(name).expect("one of the names");
-        // Everything that is resolved, except positions in the file. NaN is not equal to itself, so texts are compared.
+        // All resolved values, except positions in the file. NaN is not equal to itself, so texts are compared.
         let [there, within] = [there, within].map(|figure| {
             let files = figure.scenes().iter().filter_map(|scene| scene.file.clone());
             let text = format!("{figure:?}");
@@ -165,7 +165,7 @@ fn figures_of_the_program_are_those_in_the_folder() {
     }
 }
 
-/// A caption repeats numbers of its scenes; they must be the same.
+/// A caption repeats numbers of its scenes; they must agree.
 #[test]
 fn captions_say_what_the_scenes_are() {
     for name in ["fig4a", "fig4b", "fig4c", "restore"] {

@@ -38,7 +38,7 @@ fn the_shipped_cubes_are_those_of_figure_4b() {
     assert_eq!((scene.view.columns, scene.view.side, scene.view.look.theme), (None, 0.1, Theme::Light));
 }
 
-/// Warnings are for what is probably not intended.
+/// Warnings are for probably unintended values.
 #[test]
 fn shipped_scenes_have_no_warnings() {
     let mut read = 0;
@@ -46,7 +46,7 @@ fn shipped_scenes_have_no_warnings() {
         for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
             if path.extension().is_some_and(|ending| ending == "toml") {
                 let warnings = Scene::load(&path, &Limits::default()).unwrap().warnings;
-                // Two scenes diverge because they are meant to.
+                // Two scenes diverge on purpose.
                 let expected =
                     usize::from(["diverged.toml", "explicit-euler.toml"].iter().any(|name| path.ends_with(name)));
                 assert_eq!(warnings.len(), expected, "{}: {warnings:?}", path.display());
@@ -177,14 +177,14 @@ fn a_falling_body_is_looked_at_where_it_starts_and_where_it_will_stand() {
     let camera = &scene.view.camera;
     assert_eq!((camera.target, camera.rise), (DVec3::new(3.0, 4.5, 0.0), 12.0));
     assert!(camera.distance > 40.0, "{}", camera.distance);
-    // It follows unless it is told where to stand.
+    // It follows unless the scene fixes it.
     for (view, follows) in
         [("", true), ("follow = false", false), ("target = [0, 0, 0]", false), ("distance = 9", false)]
     {
         let scene = good(&format!("{WORLD}{body}{floor}\n[view]\ncamera = {{ {view} }}"));
         assert_eq!(scene.view.camera.follow, follows, "{view}");
     }
-    // What is in the picture anyway does not move the camera, nor does a body that falls for ever.
+    // Visible obstacles do not move the camera, and neither does a body that falls for ever.
     let low = body.replace("lowest = 10", "lowest = -1.9");
     let scene = good(&format!("{WORLD}{low}{floor}"));
     assert_eq!((scene.view.camera.target, scene.view.camera.distance), (DVec3::new(3.0, -1.5, 0.0), 8.5));
@@ -236,12 +236,12 @@ fn files_that_are_no_scenes_are_told_apart() {
     let missing = load(&folder.path().join("cube.toml"));
     assert!(matches!(&missing, SceneError::Missing { nearest: Some(near), .. } if near.ends_with("cubes.toml")));
     assert!(missing.to_string().contains("cubes.toml?"), "{missing}");
-    // As shells complete the name of a folder.
+    // The name of a folder as completed by shells.
     let slash = load(&folder.path().join("cubes.toml/")).to_string();
     assert!(slash.contains("there is no such file") && slash.ends_with("/cubes.toml?"), "{slash}");
     assert!(matches!(load(&folder.path().join("cubes")), SceneError::Missing { nearest: Some(_), .. }));
     assert!(matches!(load(&folder.path().join("zzz")), SceneError::Missing { nearest: None, .. }));
-    // A file of this name in a folder beside, of the kind that is wanted.
+    // A file of this name and kind in a folder beside.
     for (name, text) in [("figures", "sheet = {}"), ("scenes", "body = {}")] {
         std::fs::create_dir(folder.path().join(name)).unwrap();
         put(&format!("{name}/drop.toml"), text.as_bytes());
@@ -251,7 +251,7 @@ fn files_that_are_no_scenes_are_told_apart() {
         assert!(missing.ends_with("scenes/drop.toml?"), "{missing}");
     }
     assert!(matches!(load(&folder.path().join("no/such/drop.toml")), SceneError::Missing { nearest: None, .. }));
-    // A file extension that all have does not make names equal.
+    // A common file extension does not make names similar.
     put("e.toml", b"");
     assert!(matches!(load(&folder.path().join("nope.toml")), SceneError::Missing { nearest: None, .. }));
     assert!(matches!(load(&folder.path().join("e.tml")), SceneError::Missing { nearest: Some(_), .. }));

@@ -69,7 +69,7 @@ fn runs_have_their_places_colours_or_their_own() {
     assert_ne!(digest("colour = 'royalblue'"), digest(""));
 }
 
-/// The least difference of the colours of a scene's runs, for any colour vision, except of runs with the same chosen
+/// The least difference of the colours of a scene's runs, for any colour vision, except for runs with the same chosen
 /// colour.
 fn least_apart(scene: &Scene) -> f64 {
     let colours: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette()).colour).collect();
@@ -98,7 +98,7 @@ fn colours_of_runs_step_aside_for_chosen_ones() {
     }
     let scene = good(&of_runs("", &["", "colour = 'teal'", ""]));
     assert!(least_apart(&scene) >= 15.0, "{}", least_apart(&scene));
-    // Where colours are the same, dashes distinguish runs.
+    // Runs of the same colour have different dashes.
     let navy = "colour = 'navy'";
     let scene = good(&of_runs("", &[navy, navy, navy]));
     let lines: Vec<_> = scene.runs.iter().map(|run| run.line(&scene.view.look.palette()).dash).collect();
@@ -215,7 +215,7 @@ fn mistakes_of_colours() {
     view("colours = { turnedover = 'red' }", "20:13 did you mean `turned_over`?");
     view("colours = ['red']", "20:11 `view.colours` is an array of 1; expected a table");
     view("color = 'red'", "20:1 unknown key `color` in `view` did you mean `colour`?");
-    // All of them at once.
+    // All colours at once.
     view("colours = { body = 'x', turned_over = 'y' }", "20:20 `view.colours.body`\n20:39 `view.colours.turned_over`");
 }
 
@@ -248,7 +248,7 @@ fn sizes_for_print() {
     assert_eq!(coarse.size, [709, 398]);
     for dpi in [100, 300] {
         let view = good(&with(&format!("size = {{ mm = [180, 101], dpi = {dpi} }}\ntext_scale = {{ pt = 8 }}"))).view;
-        // 720 lines of the reference picture are 101 mm high, and most type has 16 of them.
+        // 720 lines of the reference picture are 101 mm high, and most type has 16 lines.
         let points = 16.0 * view.look.text_scale * f64::from(view.size[1]) / 720.0 * 72.0 / f64::from(dpi);
         assert!((points - 8.0).abs() < 1e-9, "{points}");
     }
@@ -386,7 +386,7 @@ fn fonts_may_lie_in_a_folder_of_their_own() {
     assert!(place.load("regular = 'fonts/sans.otf'").is_ok());
 }
 
-/// What bodies are compared with.
+/// Runs to compare bodies with.
 #[test]
 fn ghosts_name_runs() {
     let named = |view: &str| good(&PLANE.replace("[view]\n", &format!("[view]\n{view}\n"))).view;
@@ -415,7 +415,7 @@ fn mistakes_of_ghosts() {
     case(&same, "size = [640, 360]", "ghost = 'rest'", "20:9 means the rest shape, but `run[1]` has this name, too");
 }
 
-/// A chart without a curve says nothing.
+/// A chart without a curve would show nothing.
 #[test]
 fn charts_of_what_no_run_has_are_refused() {
     let other = "which no run has only shape-based models in space count them; plot another diagnostic";

@@ -3,14 +3,14 @@
 use super::{bad, expect, good};
 use glam::DVec3;
 
-/// Two cubes' worth of nodes with their middle over the origin, 0.1 m above it.
+/// The nodes of two cubes, with their middle over the origin, 0.1 m above it.
 const WORLD: &str = "\
 time = { duration = 1 }
 run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e4 } }]
 body = { lattice = { cells = [2, 1, 1], side = 0.1 }, offset = [0, 0.1, 0] }
 ";
 
-/// The same in the plane.
+/// A world in the plane.
 const PLANE: &str = "\
 time = { duration = 1 }
 run = [{ name = 'one', model = { kind = 'shape-based', stiffness = 1e4 } }]
@@ -194,7 +194,7 @@ fn obstacles_that_start_inside_the_body() {
     // Straight through it, between all nodes.
     let rod = "[[obstacle]]\nkind = 'capsule'\nfrom = [0.05, 0.15, -1]\nto = [0.05, 0.15, 1]\nradius = 0.01";
     case(WORLD, rod, "1:1 this capsule starts inside the body, at [0.05, 0.15, ");
-    // A path that starts elsewhere counts as well, and so does a floor that is just touched.
+    // A path that starts elsewhere is accepted, and so is contact with a floor.
     let away = "path.keys = [{ time = 0, shift = [0, 9, 0] }]";
     good(&format!("{WORLD}{touching}\n{away}"));
     good(&format!("{WORLD}[[obstacle]]\nkind = 'floor'\nheight = 0.1"));
@@ -211,7 +211,7 @@ fn nodes_in_two_hands_at_once() {
     );
     let twice = "[[hold]]\nnodes = [1]\n[[hold]]\nnodes = { low = [-1, -1, -1], high = [1, 1, 1] }\n";
     case(WORLD, twice, "4:9 node 1 is held by `hold[0]` and held by `hold[1]` at once, from 0 s on");
-    // One after the other is correct.
+    // Consecutive holds are correct.
     let scene = good(&format!("{WORLD}{}", both.replace("nodes = [1, 2]", "nodes = [1, 2]\nuntil = 0.2")));
     assert_eq!(scene.grips.iter().map(|grip| (grip.from, grip.until)).collect::<Vec<_>>(), [(0.0, 0.2), (0.2, 0.5)]);
 }
@@ -255,7 +255,7 @@ fn regions_hold_the_nodes_that_start_in_them() {
     assert_eq!(scene.grips[1].nodes, [0, 6]);
 }
 
-/// Coordinates of a lattice are sums, such as ±0.30000000000000004 m and thirds, which are not typed in full.
+/// Coordinates of a lattice are sums, such as ±0.30000000000000004 m, and thirds, which are not typed in full.
 #[test]
 fn nodes_on_the_border_of_a_region_are_in_it() {
     let held = |body: &str, region: &str| {
@@ -285,7 +285,7 @@ fn nodes_on_the_border_of_a_region_are_in_it() {
     assert_eq!(held(thirds, &format!("low = [{low}], high = [{high}]")).0, 27);
 }
 
-/// Grips in any number, one after the other, and one that begins too early.
+/// Any number of consecutive grips, and one that begins too early.
 #[test]
 fn many_hands_in_turn() {
     let turns = 20_000;

@@ -1,4 +1,4 @@
-//! Every mistake that a scene can have: its position and its message.
+//! Every possible mistake in a scene: its position and its message.
 
 use super::{bad, expect};
 use localshape::scene::{Limits, Scene, SceneError};
@@ -27,7 +27,7 @@ restitution = 0.5
 size = [640, 360]
 ";
 
-/// The same with one cube in space.
+/// The scene with one cube in space.
 const SPACE: &str = "\
 gravity = [0, -9.8, 0]
 [time]
@@ -46,14 +46,14 @@ pub(crate) fn case(scene: &str, from: &str, to: &str, expected: &str) {
     expect(&bad(&scene.replacen(from, to, 1)), 0, expected);
 }
 
-/// The limit is reported before any pairs are compared, for any number of elements.
+/// The limit is reported before pairs are compared, for any number of elements.
 #[test]
 fn more_runs_than_there_may_be() {
     let run = "[[run]]\nname = 'Local shape'\nmodel = { kind = 'shape-based', stiffness = 1e4 }\n";
     let error = bad(&format!("{SPACE}{}", run.repeat(100_000)));
     let [limit, rest @ ..] = error.mistakes() else { panic!("{error}") };
     assert_eq!((limit.line, limit.message.as_str()), (6, "`run` has 100001 entries; expected 1 to 256"));
-    // Those that are within the limit are checked.
+    // Elements within the limit are checked.
     assert_eq!(rest.len(), 255, "{error}");
     assert!(rest[254].message.starts_with("two runs are called"), "{error}");
     let error = bad(&format!("{SPACE}{}", run.replace("name", "nam").repeat(100_000)));
@@ -86,7 +86,7 @@ fn unknown_keys() {
     );
     case(PLANE, "mass = 1", "colour = 1", "9:1 `colour` belongs to `run` or `view`; known");
     case(PLANE, "mass = 1", "friction = 1", "9:1 `friction` belongs to `obstacle`");
-    // Another kind of the same table comes before similar keys and other tables.
+    // Another kind of the same table takes precedence over similar keys and other tables.
     let (shape, springs) = ("kind = 'shape-based', ", "kind = 'mass-spring', ");
     let words = "`springs` belongs to kind = \"mass-spring\" or `body`; known here: kind, stiffness";
     case(PLANE, shape, &format!("{shape}springs = 'all', "), &format!("12:33 {words}"));
@@ -531,7 +531,7 @@ fn syntax_errors_have_their_place() {
     }
     let whole = "12:59 `run[0].model.passes` is the string \"2.5\"; expected a whole number Number of";
     case(PLANE, "stiffness = 1e4", "stiffness = 1e4, passes = '2.5'", whole);
-    // Not in a text that is not closed.
+    // Not in an unclosed text.
     let mistakes = bad(&PLANE.replacen("name = 'Local shape'", "name = \"e = 0,5", 1)).to_string();
     assert!(!mistakes.contains("decimal comma"), "{mistakes}");
     case(PLANE, "duration = 3", "duration = 3\nduration = 4", "4:1 `duration` is given a second time");
@@ -573,7 +573,7 @@ fn bodies_that_no_rule_makes() {
     let plane = |to: &str, expected: &str| {
         case(&SPACE.replace("[0, -9.8, 0]", "[0, -9.8]"), lattice, to, expected);
     };
-    // Exactly one of them.
+    // Exactly one of the generators.
     body(
         "polygon = { sides = 6, radius = 1 }\nlattice = { cells = [1, 1, 1], side = 0.1 }",
         "6:1 `body` has both `lattice` and `polygon`, which exclude each other keep one",
@@ -621,7 +621,7 @@ fn bodies_that_no_rule_makes() {
         "disc = { radius = 1, rings = 0, sectors = 2 }",
         "5:30 `body.disc.rings` is 0\n5:43 `body.disc.sectors` is 2",
     );
-    // They are in the plane, and so is everything else.
+    // They are in the plane, so the other coordinates must be, too.
     body(
         "polygon = { sides = 6, radius = 1 }",
         "1:11 `gravity` has 3 coordinates; expected 2, because the body is in the plane",

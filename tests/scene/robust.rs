@@ -15,7 +15,7 @@ impl Numbers {
     }
 }
 
-/// Small enough that a mutated count does not make a case slow.
+/// The limits are small enough for a mutated count not to make a case slow.
 const SMALL: Limits = Limits { nodes: 5000, corners: 50_000, springs: 100_000, file: 1 << 20 };
 
 const EXPLICIT: &str = include_str!("explicit.toml");

@@ -1,1 +1,1 @@
-//! A project of somebody else: whatever it does, `tests/goldens.rs` watches over its scene.
+//! A project of another user. `tests/goldens.rs` tests its scene.

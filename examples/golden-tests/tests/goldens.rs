@@ -1,4 +1,4 @@
-//! All that a project needs to test its scenes against goldens; `UPDATE_GOLDENS=1 cargo test` makes those that are missing.
+//! A complete test of a project's scenes against goldens. `UPDATE_GOLDENS=1 cargo test` makes missing goldens.
 
 use localshape::golden::Suite;
 
