@@ -125,10 +125,17 @@ struct OfScene {
     full: bool,
 }
 
+/// A word of a command, in single quotes where a shell would not take it as it is.
+fn quoted(word: &str) -> String {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "-_./+".contains(letter);
+    if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+}
+
 impl OfScene {
     /// The arguments that repeat it.
     fn arguments(&self) -> String {
-        let scene = self.scene.as_ref().map_or_else(String::new, |path| format!(" {}", path.display()));
+        let scene =
+            self.scene.as_ref().map_or_else(String::new, |path| format!(" {}", quoted(&path.to_string_lossy())));
         format!("{scene}{}", if self.full { " --full" } else { "" })
     }
 
@@ -160,23 +167,32 @@ impl Threads {
 }
 
 impl Name {
+    fn threads(&self) -> usize {
+        match self {
+            Self::Rotation | Self::WorkPrecision { .. } => 1,
+            Self::Stability { threads, .. } | Self::Stress { threads } | Self::Table1 { threads, .. } => {
+                threads.count()
+            }
+            Self::Ratio { threads } => (*threads).into(),
+        }
+    }
+
     fn study(self) -> Result<Box<dyn Study>, Failure> {
         Ok(match self {
             Self::Rotation => Box::new(Rotation::default()),
             Self::WorkPrecision { only, of } => {
                 let mut arguments = of.arguments();
-                only.iter().for_each(|run| arguments += &format!(" --only \"{run}\""));
+                only.iter().for_each(|run| arguments += &format!(" --only {}", quoted(run)));
                 let effort = if of.full { Effort::FULL } else { Effort::USUAL };
                 let subjects =
                     of.load()?.map_or_else(|| Ok(work_precision::usual()), |scene| subjects(&scene, &only))?;
                 Box::new(WorkPrecision { effort, subjects, arguments })
             }
-            Self::Stability { of, threads } => {
+            Self::Stability { of, .. } => {
                 let study = Stability {
                     arguments: of.arguments(),
                     protocol: if of.full { Protocol::full() } else { Protocol::usual() },
                     scene: of.load()?.unwrap_or_else(stability::usual),
-                    threads: threads.count(),
                 };
                 if study.work() == 0 {
                     return Err(Failure::usage(format!(
@@ -186,8 +202,8 @@ impl Name {
                 }
                 Box::new(study)
             }
-            Self::Stress { threads } => Box::new(Stress { steps: Stress::STEPS, threads: threads.count() }),
-            Self::Table1 { orientations, threads } => Box::new(Table1::new(orientations, threads.count())),
+            Self::Stress { .. } => Box::new(Stress { steps: stress::STEPS }),
+            Self::Table1 { orientations, .. } => Box::new(Table1::new(orientations)),
             Self::Ratio { threads } => Box::new(Ratio::new(threads.into())),
         })
     }
@@ -216,5 +232,6 @@ fn subjects(scene: &Scene, only: &[String]) -> Result<Vec<Subject>, Failure> {
 
 fn main() -> ExitCode {
     let Cli { name, options } = Cli::parse();
-    name.study().and_then(|study| study::make(study.as_ref(), &options)).unwrap_or_else(Failure::report).into()
+    let threads = name.threads();
+    name.study().and_then(|study| study::make(study.as_ref(), threads, &options)).unwrap_or_else(Failure::report).into()
 }

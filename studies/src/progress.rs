@@ -1,7 +1,6 @@
 //! The progress of a study, on standard error: a bar in a terminal, else a line every few seconds.
 
 use crate::failure::Status;
-use crate::study::Watch;
 use indicatif::{ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
@@ -11,6 +10,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
+
+/// Called with the amount of work just done, from any thread; `false` stops the measurement.
+pub(crate) type Watch<'a> = dyn Fn(u64) -> bool + Sync + 'a;
 
 /// The time between two lines.
 const EVERY: Duration = Duration::from_secs(5);
@@ -26,8 +28,7 @@ pub(crate) fn interrupt() -> Arc<AtomicBool> {
     asked
 }
 
-/// Calls `measure` with a function that takes the amount of work just done, of `work` in all, and returns whether to
-/// continue. Shows the progress unless `is_quiet`.
+/// Calls `measure` with a watch, and shows the progress of `work` in all unless `is_quiet`.
 pub(crate) fn shown<T>(name: &str, work: u64, is_quiet: bool, measure: impl FnOnce(&Watch<'_>) -> T) -> T {
     let asked = interrupt();
     let goes_on = || !asked.load(Ordering::SeqCst);

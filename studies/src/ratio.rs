@@ -8,8 +8,9 @@
 //! time.
 
 use crate::folder::Notes;
+use crate::progress::Watch;
 use crate::spread::Spread;
-use crate::study::{Findings, Study, Watch};
+use crate::study::{Findings, Study};
 use crate::table::{Table, figure, typed};
 use crate::turns::{Clock, kind_of_time, take_turns};
 use localshape::sim::Springs;
@@ -54,10 +55,6 @@ impl Study for Ratio {
     fn command(&self) -> String {
         let threads = if self.threads == 1 { String::new() } else { format!(" --threads {}", self.threads) };
         format!("localshape-study ratio{threads}")
-    }
-
-    fn threads(&self) -> usize {
-        self.threads
     }
 
     fn work(&self) -> u64 {

@@ -2,16 +2,13 @@
 
 use crate::failure::{Failure, Status};
 use crate::folder::{Folder, Notes};
-use crate::progress;
+use crate::progress::{self, Watch};
 use crate::table::Table;
 use clap::{Args, ValueHint};
 use rayon::ThreadPoolBuilder;
 use serde_json::{Map, Value, json};
 use std::io::{self, ErrorKind, Write};
 use std::path::PathBuf;
-
-/// Called with the amount of work just done, from any thread; `false` stops the measurement.
-pub(crate) type Watch<'a> = dyn Fn(u64) -> bool + Sync + 'a;
 
 /// A measurement that is ready to be made.
 pub(crate) trait Study: Send + Sync {
@@ -26,11 +23,6 @@ pub(crate) trait Study: Send + Sync {
     /// The digest of the study's parameters besides the command. Notes of an interrupted study depend on it.
     fn digest(&self) -> &str {
         ""
-    }
-
-    /// The number of threads.
-    fn threads(&self) -> usize {
-        1
     }
 
     /// The amount of work: the sum of the amounts that [`Self::measure`] reports.
@@ -64,6 +56,10 @@ impl Findings {
     }
 }
 
+/// The studies whose findings have no pages, so that no graphics device is needed.
+#[cfg(feature = "render")]
+const WITHOUT_PAGES: [&str; 2] = ["ratio", "stress"];
+
 /// Options of all studies.
 #[derive(Args, Debug)]
 pub(crate) struct Options {
@@ -89,15 +85,17 @@ pub(crate) struct Options {
     pub(crate) adapter: localshape::AdapterChoice,
 }
 
-/// Makes a study: measures, writes its files, and prints its text.
-pub(crate) fn make(study: &dyn Study, options: &Options) -> Result<Status, Failure> {
+/// Makes a study: measures with a number of threads, writes its files, and prints its text.
+pub(crate) fn make(study: &dyn Study, threads: usize, options: &Options) -> Result<Status, Failure> {
     let (name, command) = (study.name(), study.command());
     let path = options.out.clone().unwrap_or_else(|| format!("output/study-{name}").into());
     let folder = Folder::new(path, name, &command, options.overwrite)?;
-    // A missing adapter is reported before the measurement.
+    // A missing adapter is told before anything is measured.
     #[cfg(feature = "render")]
-    let gpu = localshape::Gpu::new(&options.adapter).map_err(|error| Failure::adapter(error.to_string()))?;
-    let pool = ThreadPoolBuilder::new().num_threads(study.threads()).build();
+    let gpu = (!WITHOUT_PAGES.contains(&name)).then(|| localshape::Gpu::new(&options.adapter)).transpose();
+    #[cfg(feature = "render")]
+    let gpu = gpu.map_err(|error| Failure::adapter(error.to_string()))?;
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Failure::files(format!("cannot start threads: {error}")))?;
     let notes = folder.notes(study.digest());
     let found =
@@ -113,8 +111,8 @@ pub(crate) fn make(study: &dyn Study, options: &Options) -> Result<Status, Failu
     let mut files = vec![(format!("{name}.md"), text.clone().into_bytes())];
     files.extend(tables.iter().map(|(name, table)| (format!("{name}.csv"), table.csv().into_bytes())));
     #[cfg(feature = "render")]
-    for (name, page) in found.iter().flat_map(|found| &found.pages) {
-        let [svg, png] = page.files(&gpu)?;
+    for ((name, page), gpu) in found.iter().flat_map(|found| &found.pages).zip(gpu.iter().cycle()) {
+        let [svg, png] = page.files(gpu)?;
         files.extend([(format!("{name}.svg"), svg), (format!("{name}.png"), png)]);
     }
     folder.write(&files)?;

@@ -1,6 +1,6 @@
 //! Times of tasks that take turns, so that other load of the machine affects all alike.
 
-use crate::study::Watch;
+use crate::progress::Watch;
 use std::time::Instant;
 
 /// The time of a thread: its processor time, or wall time if the system does not provide it.

@@ -184,6 +184,21 @@ fn maps_the_stability_of_a_scene() {
     assert_eq!(place.read("begun/stability.unfinished"), notes);
 }
 
+/// The command in the Markdown file can be pasted into a shell.
+#[test]
+fn commands_are_quoted() {
+    if !can_study() {
+        return;
+    }
+    let place = Place::new();
+    place.write("my scenes/it's.toml", &SMALL.replace("0.1\nstep", "0.02\nstep").replace("Mass-spring", "$HOME"));
+    let mut command = place.command("work-precision --only $HOME -o out -q");
+    let ran = command.arg("my scenes/it's.toml").output().expect("the program runs");
+    assert!(ran.status.success(), "{ran:?}");
+    let mark = "<!-- localshape-study work-precision 'my scenes/it'\\''s.toml' --only '$HOME' -->\n";
+    assert!(place.read("out/work-precision.md").starts_with(mark), "{}", place.read("out/work-precision.md"));
+}
+
 /// One start of Table 1: a second or two.
 #[test]
 fn table1_is_the_same_for_any_number_of_threads() {
@@ -264,7 +279,8 @@ fn folders_that_cannot_be_written_to_are_told_before_anything_is_measured() {
     }
 }
 
-/// Nothing is written of an interrupted measurement, and how far it was is told without a terminal.
+/// Nothing is written of an interrupted measurement, and how far it was is told without a terminal. Studies without plots open no
+/// graphics device, so that they do not look for one.
 #[cfg(unix)]
 #[test]
 fn interrupted() {
@@ -272,7 +288,8 @@ fn interrupted() {
         return;
     }
     let place = Place::new();
-    for (signal, study) in [("INT", "table1 --orientations 10000"), ("TERM", "ratio")] {
+    let ratio = if cfg!(feature = "render") { "ratio --adapter none-such" } else { "ratio" };
+    for (signal, study) in [("INT", "table1 --orientations 10000"), ("TERM", ratio)] {
         let folder = format!("out-{signal}");
         let mut command = place.command(&format!("{study} -o {folder}"));
         let mut running = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");

@@ -20,8 +20,9 @@ mod solver_tests;
 mod text;
 
 use crate::folder::Notes;
+use crate::progress::Watch;
 use crate::spread::Spread;
-use crate::study::{Findings, Study, Watch};
+use crate::study::{Findings, Study};
 use crate::turns::{Clock, take_turns};
 use degenerate::{CLASSES, Outcome};
 use glam::DQuat;

@@ -10,7 +10,8 @@ mod page;
 mod text;
 
 use crate::folder::Notes;
-use crate::study::{Findings, Study, Watch};
+use crate::progress::Watch;
+use crate::study::{Findings, Study};
 use localshape::scene::Run;
 use localshape::sim::stability::Stability as Limit;
 use localshape::sim::{Diagnostic, Status};
@@ -24,7 +25,6 @@ pub(crate) struct Stability {
     pub(crate) scene: Scene,
     /// The arguments that repeat it.
     pub(crate) arguments: String,
-    pub(crate) threads: usize,
 }
 
 impl Study for Stability {
@@ -38,10 +38,6 @@ impl Study for Stability {
 
     fn digest(&self) -> &str {
         &self.scene.digest
-    }
-
-    fn threads(&self) -> usize {
-        self.threads
     }
 
     fn work(&self) -> u64 {
@@ -229,12 +225,10 @@ pub(crate) fn measure(
         }
     }
     cells.par_iter_mut().with_max_len(1).try_for_each(|cell| {
-        let found = known(cell);
-        cell.outcome = match found {
-            Some(outcome) => outcome,
-            None => outcome(scene, cell, watch)?,
-        };
-        if found.is_none() {
+        if let Some(found) = known(cell) {
+            cell.outcome = found;
+        } else {
+            cell.outcome = outcome(scene, cell, watch)?;
             done(cell);
         }
         watch(1).then_some(())

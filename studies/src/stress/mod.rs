@@ -7,7 +7,8 @@ mod text;
 mod trials;
 
 use crate::folder::Notes;
-use crate::study::{Findings, Study, Watch};
+use crate::progress::Watch;
+use crate::study::{Findings, Study};
 use glam::DVec3;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::mass_spring::MassSpring;
@@ -21,21 +22,14 @@ use trials::{Trial, trials};
 pub(crate) struct Stress {
     /// Steps of bodies that rest or spin.
     pub(crate) steps: u64,
-    pub(crate) threads: usize,
 }
 
-impl Stress {
-    /// The usual number of steps.
-    pub(crate) const STEPS: u64 = 1_000_000;
-}
+/// The usual number of steps.
+pub(crate) const STEPS: u64 = 1_000_000;
 
 impl Study for Stress {
     fn name(&self) -> &'static str {
         "stress"
-    }
-
-    fn threads(&self) -> usize {
-        self.threads
     }
 
     fn work(&self) -> u64 {
@@ -142,14 +136,11 @@ const MOST_CREEP: f64 = 1e-3;
 pub(crate) fn measure(steps: u64, watch: &Watch<'_>) -> Option<Results> {
     let trials = trials(steps);
     let pairs: Vec<_> = trials.iter().flat_map(|trial| MODELS.map(|(_, model)| (trial, model))).collect();
-    let outcomes: Option<Vec<_>> = pairs
-        .par_iter()
-        .map(|(trial, model)| {
-            let outcome = trial.outcome(*model);
-            watch(1).then_some(outcome)
-        })
-        .collect();
-    let mut outcomes = outcomes?.into_iter();
+    let outcome = |(trial, model): &(&Trial, Model)| {
+        let outcome = trial.outcome(*model);
+        watch(1).then_some(outcome)
+    };
+    let mut outcomes = pairs.par_iter().map(outcome).collect::<Option<Vec<_>>>()?.into_iter();
     let row = |trial: Trial| Row {
         group: trial.group,
         name: trial.name,

@@ -12,8 +12,9 @@ mod printed;
 mod text;
 
 use crate::folder::Notes;
+use crate::progress::Watch;
 use crate::spread::Spread;
-use crate::study::{Findings, Study, Watch};
+use crate::study::{Findings, Study};
 use glam::{DVec3, DVec4, Vec4Swizzles};
 use localshape::sim::model::Report;
 use localshape::sim::{Body, Dimension, IndexLists, Solids, State, Status};
@@ -35,7 +36,6 @@ pub(crate) struct Table1 {
     pub(crate) duration: f64,
     /// The largest k/m that is measured (1/s²).
     pub(crate) stiffest: f64,
-    pub(crate) threads: usize,
 }
 
 impl Table1 {
@@ -43,8 +43,8 @@ impl Table1 {
     pub(crate) const ORIENTATIONS: u32 = 51;
 
     /// The paper's 10 s and all its values of k/m.
-    pub(crate) fn new(orientations: u32, threads: usize) -> Self {
-        Self { orientations, duration: 10.0, stiffest: f64::INFINITY, threads }
+    pub(crate) fn new(orientations: u32) -> Self {
+        Self { orientations, duration: 10.0, stiffest: f64::INFINITY }
     }
 }
 
@@ -55,10 +55,6 @@ impl Study for Table1 {
 
     fn command(&self) -> String {
         format!("localshape-study table1 --orientations {}", self.orientations)
-    }
-
-    fn threads(&self) -> usize {
-        self.threads
     }
 
     fn work(&self) -> u64 {

@@ -17,8 +17,9 @@ mod text;
 pub(crate) use scenes::usual;
 
 use crate::folder::Notes;
+use crate::progress::Watch;
 use crate::spread::Spread;
-use crate::study::{Findings, Study, Watch};
+use crate::study::{Findings, Study};
 use crate::turns::{Clock, take_turns};
 use count::Counting;
 use localshape::Scene;

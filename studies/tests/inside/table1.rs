@@ -5,7 +5,7 @@ use crate::reading::{documented, markdown_rows, numbers, records, same};
 use localshape::sim::World;
 
 /// Some starts at the smallest k/m. The paper's 10 s, as rebounds add energy at ΔT = T/10, and errors grow with it.
-const SHORT: Table1 = Table1 { orientations: 9, duration: 10.0, stiffest: 1e4, threads: 1 };
+const SHORT: Table1 = Table1 { orientations: 9, duration: 10.0, stiffest: 1e4 };
 
 fn on_threads(threads: usize) -> Results {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
@@ -117,7 +117,7 @@ fn orientations_are_evenly_spread() {
 
 #[test]
 fn rows_are_those_printed() {
-    let cases = Table1::new(51, 1).cases();
+    let cases = Table1::new(51).cases();
     assert_eq!(cases.len(), 12 + 6);
     assert_eq!(cases.iter().filter(|case| case.printed().is_some()).count(), 12);
     // "ΔT is fixed at 1/10 of the cycle of elastic oscillation", in row B at 1/100.
