@@ -8,7 +8,7 @@ use super::{animate, interrupt};
 use crate::animation::Format;
 use crate::gpu::{Gpu, GpuError, Pending};
 use crate::output::{
-    Clock, FrameWriter, PixelFrame, Shard, Spent, Summary, Tags, Texts, Timings, frame_file_name, is_drawn, read_tags,
+    Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Texts, Timings, frame_file_name, is_drawn, read_tags,
     temporary_folder,
 };
 use crate::picture::{Composer, Picture};
@@ -30,8 +30,6 @@ pub(super) struct Device {
     pub(super) keep: bool,
     /// Whether frames of an earlier command are kept.
     pub(super) resume: bool,
-    /// The shard of the frames, unless all are drawn.
-    pub(super) shard: Option<Shard>,
     /// The files of animations, and the command that makes them.
     pub(super) films: Vec<(Format, PathBuf)>,
     pub(super) words: Vec<OsString>,
@@ -109,7 +107,7 @@ impl<'a> Drawing<'a> {
             repeated: 0,
             drawn_before: device.resume.then(|| folder.to_owned()),
             kept: 0,
-            writer: FrameWriter::new(folder, device.shard, writers),
+            writer: FrameWriter::new(folder, writers),
             device: Arc::clone(device),
             frames: frames.to_vec(),
             folder: folder.to_owned(),

@@ -1,6 +1,5 @@
 //! The options `--frames`, `--at` and `--shard`: which frames are requested.
 
-use crate::output::Shard;
 use crate::reading::words::short;
 use std::str::FromStr;
 
@@ -85,6 +84,15 @@ impl FromStr for FrameRanges {
     fn from_str(typed: &str) -> Result<Self, String> {
         typed.split(',').map(|part| span(part.trim())).collect::<Result<_, _>>().map(Self)
     }
+}
+
+/// One of several equal shares of the frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Shard {
+    /// Counted from 1.
+    number: usize,
+    /// How many there are.
+    of: usize,
 }
 
 impl Shard {

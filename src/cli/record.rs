@@ -91,7 +91,7 @@ fn record(
     let Job { scene, runs, frames, all, folder, stored } = job;
     let begin = || -> Result<_, Failure> {
         let mut first = summary.clone();
-        if folder.shard().is_some() {
+        if folder.is_shard() {
             (first.outcome, first.frames.asked) = (Outcome::Shards, all);
         }
         let folder = folder.prepare(&first)?;
@@ -163,7 +163,7 @@ impl<'a> Recording<'a> {
             }
             None => (None, None, None),
         };
-        let is_shard = self.folder.shard().is_some();
+        let is_shard = self.folder.is_shard();
         let diagnostics = match rows {
             _ if is_shard => None,
             Some(rows) => Some(DiagnosticsWriter::resume(folder, scene, rows).map_err(|error| self.unusable(&error))?),
@@ -279,10 +279,10 @@ impl<'a> Recording<'a> {
                 runner = runner.with_time_series(wanted);
             }
             let length = progress.as_ref().map_or(0, Progress::waiting_length);
-            let open = || match self.folder.shard() {
+            let open = || match self.folder.is_shard() {
                 // This file is not continued after an interruption.
-                Some(_) => tempfile::tempfile_in(folder),
-                None => open_growing(&waiting_states(folder), length),
+                true => tempfile::tempfile_in(folder),
+                false => open_growing(&waiting_states(folder), length),
             };
             let waiting = ahead.then(open).transpose();
             let frames = waiting.and_then(|waiting| {
@@ -319,7 +319,7 @@ impl<'a> Recording<'a> {
         }
         // Frames that are not kept cannot be continued, and states that are read need no checkpoint.
         let can_resume = simulation.read_from.is_none()
-            && self.folder.shard().is_none()
+            && !self.folder.is_shard()
             && (results.pictures.is_none() || self.summary.frames.size.is_some());
         let mut pace = Pace::new();
         while !interrupt::requested() {

@@ -4,7 +4,7 @@ use super::console;
 use super::drawing::{Device, Drawing};
 use super::failure::{Failure, Status};
 use super::film::replaceable;
-use super::frames::Moments;
+use super::frames::{Moments, Shard};
 use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, ThemeOption, size};
 use super::record::{self, Begin};
@@ -15,7 +15,7 @@ use super::still::{
 use crate::animation::Format;
 use crate::look::Ghost;
 use crate::output::shell;
-use crate::output::{AtomicFile, FolderLock, OutputError, Shard, StoredStates, Tags, folder_of};
+use crate::output::{AtomicFile, FolderLock, OutputError, StoredStates, Tags, folder_of};
 use crate::picture::Composer;
 use crate::reading::beside::similar;
 use crate::reading::words::short;
@@ -86,7 +86,7 @@ pub(super) struct Render {
 
     /// Draw only a share of the frames: 2/4 the second one and every fourth one after it. Processes with other shares may draw into the
     /// same folder at the same time; `simulate` writes the tables
-    #[arg(long, value_name = "I/N", conflicts_with_all = ["animate", "states"])]
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["animate", "overwrite", "states"])]
     shard: Option<Shard>,
 
     /// Also print how long each stage took
@@ -126,7 +126,6 @@ impl Render {
             threads: self.options.threads.count(),
             keep: !self.no_frames,
             resume: self.options.resume,
-            shard: self.shard,
             films,
             words: words.to_vec(),
         });

@@ -1,6 +1,8 @@
 //! Files that are written completely or not at all.
 
-use super::{OutputError, Shard};
+use super::OutputError;
+use super::frame_name::frame_number;
+use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -9,7 +11,6 @@ use tempfile::NamedTempFile;
 use tempfile::TempDir;
 
 const PREFIX: &str = ".localshape-";
-const SHARDS: &str = ".localshape-shard-";
 const SUFFIX: &str = ".partial";
 
 /// A file with a hidden name until [`Self::commit`] renames it. If it is dropped before that, it is removed.
@@ -23,15 +24,10 @@ impl AtomicFile {
     /// Creates the file for `path`, whose folder exists. If the folder is not locked ([`super::FolderLock`]), another
     /// process may remove it as a leftover.
     pub(crate) fn create(path: &Path) -> Result<Self, OutputError> {
-        Self::create_for(path, None)
-    }
-
-    /// Creates a file of a shard. Only a process with the same shard removes its leftovers.
-    pub(super) fn create_for(path: &Path, shard: Option<Shard>) -> Result<Self, OutputError> {
         let folder = folder_of(path);
         // `File::create` gives results the usual permissions; files made by tempfile can be read by their owner only.
         let open = |hidden: &Path| File::options().read(true).write(true).create_new(true).open(hidden);
-        let made = tempfile::Builder::new().prefix(&prefix(shard)).suffix(SUFFIX).make_in(folder, open);
+        let made = tempfile::Builder::new().prefix(&prefix(path)).suffix(SUFFIX).make_in(folder, open);
         Ok(Self { path: path.to_owned(), temporary: made.map_err(OutputError::writing(path))? })
     }
 
@@ -75,19 +71,20 @@ impl AtomicFile {
 /// # Errors
 /// If it cannot be written; an earlier file of that name is then unchanged.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
-    write_whole_for(path, bytes, None)
-}
-
-/// Writes a whole file of a shard.
-pub(super) fn write_whole_for(path: &Path, bytes: &[u8], shard: Option<Shard>) -> Result<(), OutputError> {
-    let mut file = AtomicFile::create_for(path, shard)?;
+    let mut file = AtomicFile::create(path)?;
     file.append(bytes)?;
     file.commit()
 }
 
-/// The beginning of the hidden names of files, of a shard or of the whole.
-fn prefix(shard: Option<Shard>) -> String {
-    shard.map_or(PREFIX.to_owned(), |Shard { number, of }| format!("{SHARDS}{number}-of-{of}-"))
+/// The beginning of the hidden name of a file. That of a frame says which one it is.
+fn prefix(path: &Path) -> String {
+    let frame = path.file_name().and_then(OsStr::to_str).filter(|name| frame_number(name).is_some());
+    frame.map_or(PREFIX.to_owned(), |name| format!("{PREFIX}{name}-"))
+}
+
+/// The frame whose unfinished file has a hidden name.
+fn frame_of(hidden: &str) -> Option<u64> {
+    frame_number(hidden.strip_prefix(PREFIX)?.split_once('-')?.0)
 }
 
 /// Opens a growing file with a fixed hidden name in a folder. It outlives its process, so that another one can continue
@@ -121,16 +118,16 @@ pub(super) fn sync_folder(folder: &Path) {
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
 
-/// Removes the unfinished files of killed processes from a folder: those of one shard, or those of no shard. No other
-/// process may be writing the same files.
+/// Removes the unfinished files of killed processes from a folder: those of some frames, and if this process is `alone`,
+/// all that are not of frames. Other frames may be drawn on machines that do not see the lock.
 ///
 /// # Errors
 /// If the folder cannot be read or a leftover cannot be removed.
-pub(super) fn remove_leftovers(folder: &Path, shard: Option<Shard>) -> Result<(), OutputError> {
+pub(super) fn remove_leftovers(folder: &Path, frames: &[u64], alone: bool) -> Result<(), OutputError> {
     for entry in fs::read_dir(folder).map_err(OutputError::reading(folder))? {
         let entry = entry.map_err(OutputError::reading(folder))?;
-        let is_meant = |name: &str| name.starts_with(&prefix(shard)) && (shard.is_some() || !name.starts_with(SHARDS));
-        let hidden = |name: &str| is_meant(name) && name.ends_with(SUFFIX);
+        let is_meant = |name: &str| frame_of(name).map_or(alone, |frame| frames.contains(&frame));
+        let hidden = |name: &str| name.starts_with(PREFIX) && name.ends_with(SUFFIX) && is_meant(name);
         if entry.file_name().to_str().is_some_and(hidden) {
             match entry.file_type() {
                 Ok(found) if found.is_dir() => {
@@ -161,6 +158,7 @@ pub(crate) fn folder_of(path: &Path) -> &Path {
 
 #[cfg(test)]
 mod tests {
+    use super::super::frame_name::frame_file_name;
     use super::*;
 
     #[test]
@@ -188,13 +186,14 @@ mod tests {
         fs::write(frames.join("frame_00000.png"), "").unwrap();
         fs::write(&leftover, "").unwrap();
         fs::write(&other, "").unwrap();
-        let shards = [1, 11].map(|number| Shard { number, of: 12 });
-        let of_shards = shards.map(|shard| folder.path().join(format!("{}x{SUFFIX}", prefix(Some(shard)))));
-        of_shards.iter().for_each(|path| fs::write(path, "").unwrap());
-        remove_leftovers(folder.path(), None).unwrap();
-        assert!(!leftover.exists() && !frames.exists() && other.exists() && of_shards.iter().all(|path| path.exists()));
-        remove_leftovers(folder.path(), Some(shards[0])).unwrap();
-        assert_eq!(of_shards.map(|path| path.exists()), [false, true]);
+        let drawn =
+            [3, 30].map(|frame| folder.path().join(format!("{}x{SUFFIX}", prefix(Path::new(&frame_file_name(frame))))));
+        drawn.iter().for_each(|path| fs::write(path, "").unwrap());
+        remove_leftovers(folder.path(), &[3], false).unwrap();
+        assert!(leftover.exists() && frames.exists());
+        assert_eq!(drawn.each_ref().map(|path| path.exists()), [false, true]);
+        remove_leftovers(folder.path(), &[], true).unwrap();
+        assert!(!leftover.exists() && !frames.exists() && other.exists() && drawn[1].exists());
     }
 
     #[cfg(unix)]

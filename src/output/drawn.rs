@@ -1,6 +1,6 @@
 //! Frames in folders, and compressed pixels that are used again: for drawing only.
 
-use super::folder::frame_number;
+use super::frame_name::frame_number;
 use super::png::{file, header, pixel_dims, texts_of};
 use super::{
     Compression, DiagnosticsWriter, FrameFolder, OutputError, Tags, encode_print, frame_file_name, write_whole,

@@ -3,7 +3,7 @@
 use super::atomic::{remove, remove_leftovers};
 use super::checkpoint::{Checkpoint, Plan};
 use super::error::kind_of;
-use super::lock::in_use;
+use super::frame_name::frame_number;
 use super::{
     DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, Summary, is_folder, read_file, read_tags,
 };
@@ -11,20 +11,6 @@ use crate::scene::Scene;
 use std::fs;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
-
-/// The file name of frame `index`: `frame_00000.png`.
-pub(crate) fn frame_file_name(index: u64) -> String {
-    format!("frame_{index:05}.png")
-}
-
-/// The pattern of all frame names, for `run.json`.
-pub(crate) const FRAME_FILES: &str = "frame_*.png";
-
-/// The frame number from a file name.
-pub(super) fn frame_number(name: &str) -> Option<u64> {
-    let index = name.strip_prefix("frame_")?.strip_suffix(".png")?.parse().ok()?;
-    (frame_file_name(index) == name).then_some(index)
-}
 
 /// The scene to which results belong.
 #[derive(Clone, Debug)]
@@ -58,16 +44,7 @@ pub(crate) struct Access {
     /// Continues from a checkpoint in the folder.
     pub resume: bool,
     /// Only adds the frames of a shard, while other processes may add theirs.
-    pub shard: Option<Shard>,
-}
-
-/// One of several equal shares of the frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Shard {
-    /// Counted from 1.
-    pub number: usize,
-    /// How many there are.
-    pub of: usize,
+    pub shard: bool,
 }
 
 /// A folder for the output of one scene, inspected but not yet changed.
@@ -104,8 +81,12 @@ impl Folder {
 
     /// The results in the folder, if they do not prevent its use.
     fn find(&self) -> Result<Found, OutputError> {
-        let found = Found::in_folder(&self.path, &self.scene, &self.plan)?;
-        let may_replace = self.access.overwrite || self.access.follows && found.is_other_version;
+        let mut found = Found::in_folder(&self.path, &self.scene, &self.plan)?;
+        let Access { overwrite, follows, resume, shard } = self.access;
+        if found.hindrance.is_none() && !resume && !shard && Checkpoint::is_in(&self.path) {
+            found.hindrance = Some("the checkpoint of an interrupted command, from which --resume goes on".to_owned());
+        }
+        let may_replace = !shard && (overwrite || follows && found.is_other_version);
         match &found.hindrance {
             Some(what) if !may_replace => Err(OutputError::Occupied { path: self.path.clone(), what: what.clone() }),
             _ => Ok(found),
@@ -121,8 +102,8 @@ impl Folder {
         (&self.plan, &self.scene)
     }
 
-    /// The shard of the frames that is written, unless all are.
-    pub(crate) fn shard(&self) -> Option<Shard> {
+    /// Whether only the frames of a shard are written.
+    pub(crate) fn is_shard(&self) -> bool {
         self.access.shard
     }
 
@@ -141,8 +122,8 @@ impl Folder {
     /// [`Self::inspect`], which is repeated because the folder may have changed before it was locked.
     pub(crate) fn prepare(self, summary: &Summary) -> Result<Claimed, OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
-        if let Some(shard) = self.access.shard {
-            return self.prepare_shared(shard, summary);
+        if self.access.shard {
+            return self.prepare_shared(summary);
         }
         let lock = FolderLock::alone(&self.path)?;
         let read = || Checkpoint::read(&self.path, &self.scene, &self.plan);
@@ -151,37 +132,27 @@ impl Folder {
         if checkpoint.is_none() {
             // First, so that no checkpoint is left without its files.
             Checkpoint::remove(&self.path)?;
-            remove_leftovers(&self.path, None)?;
+            self.remove_leftovers()?;
         }
         found.remove()?;
         summary.write(&self.path)?;
         Ok(Claimed { folder: self, checkpoint, _lock: lock })
     }
 
-    /// Prepares the folder for a shard, beside processes with other shards. Only a process that is alone replaces
-    /// results. The summary is that of the first process.
-    fn prepare_shared(self, shard: Shard, summary: &Summary) -> Result<Claimed, OutputError> {
-        let path = &self.path;
-        let lock = FolderLock::shared(path)?;
-        let found = self.find()?;
-        if !found.stale.is_empty() || !found.has_summary {
-            let is_alone = lock.becomes_alone();
-            let found = self.find()?;
-            if !found.stale.is_empty() {
-                if !is_alone {
-                    return Err(in_use(path));
-                }
-                Checkpoint::remove(path)?;
-                found.remove()?;
-            }
-            if !found.has_summary {
-                summary.write(path)?;
-            }
-            lock.becomes_shared(path)?;
+    /// Prepares the folder for a shard, beside processes with other shards. The summary is that of the first process.
+    fn prepare_shared(self, summary: &Summary) -> Result<Claimed, OutputError> {
+        let lock = FolderLock::shared(&self.path)?;
+        if !self.find()?.has_summary {
+            summary.write(&self.path)?;
         }
-        // Other processes may be writing, also on machines that do not see the lock.
-        remove_leftovers(path, Some(shard))?;
+        self.remove_leftovers()?;
         Ok(Claimed { folder: self, checkpoint: None, _lock: lock })
+    }
+
+    /// Removes leftovers of killed processes that wrote the same files.
+    fn remove_leftovers(&self) -> Result<(), OutputError> {
+        let Plan { frames, size, .. } = &self.plan;
+        remove_leftovers(&self.path, if size.is_some() { frames } else { &[] }, !self.access.shard)
     }
 }
 
@@ -211,9 +182,9 @@ impl Claimed {
 /// Without a checkpoint, unfinished files are of no use.
 impl Drop for Claimed {
     fn drop(&mut self) {
-        if self.access.shard.is_none() && !Checkpoint::is_in(self.path()) {
+        if !self.access.shard && !Checkpoint::is_in(self.path()) {
             // The next command tries again.
-            let _ = remove_leftovers(self.path(), None);
+            let _ = self.remove_leftovers();
         }
     }
 }
@@ -365,17 +336,5 @@ mod tests {
             assert!(message.contains("the results of another scene (“one”)"), "{message}");
         }
         inspect(&other, Access { overwrite: true, ..Access::default() }).unwrap();
-    }
-
-    #[test]
-    fn frame_names() {
-        assert_eq!(frame_file_name(7), "frame_00007.png");
-        assert_eq!(frame_file_name(123_456), "frame_123456.png");
-        for name in ["frame_00000.png", "frame_99999.png", "frame_100000.png"] {
-            assert!(frame_number(name).is_some(), "{name}");
-        }
-        for name in ["frame_0.png", "frame_000000.png", "frame_.png", "frame_+0001.png", "frame_00000.jpg", "a.png"] {
-            assert_eq!(frame_number(name), None, "{name}");
-        }
     }
 }

@@ -1,7 +1,6 @@
 //! Compresses and writes frames on separate threads, in parallel to drawing.
 
-use super::atomic::write_whole_for;
-use super::{Clock, Compression, OutputError, Shard, Spent, Texts, encode_like, encode_print, frame_file_name};
+use super::{Clock, Compression, OutputError, Spent, Texts, encode_like, encode_print, frame_file_name, write_whole};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -32,7 +31,6 @@ pub(crate) struct FrameWriter {
     frames: Arc<Mutex<Option<Receiver<PixelFrame>>>>,
     last: Arc<Last>,
     folder: PathBuf,
-    shard: Option<Shard>,
     /// Greatest number of threads.
     most: usize,
     threads: Vec<JoinHandle<Written>>,
@@ -48,9 +46,8 @@ struct Written {
 }
 
 impl FrameWriter {
-    /// A writer with up to `most` threads (at least one) that write to `folder`, which exists. The frames may be a `shard` of
-    /// all.
-    pub(crate) fn new(folder: &Path, shard: Option<Shard>, most: usize) -> Self {
+    /// A writer with up to `most` threads (at least one) that write to `folder`, which exists.
+    pub(crate) fn new(folder: &Path, most: usize) -> Self {
         // The channel has no buffer: a frame is passed to a free thread, or `write` blocks until one is free.
         let (queue, frames) = sync_channel(0);
         let frames = Arc::new(Mutex::new(Some(frames)));
@@ -59,7 +56,6 @@ impl FrameWriter {
             frames,
             last: Arc::default(),
             folder: folder.to_owned(),
-            shard,
             most: most.max(1),
             threads: Vec::new(),
             written: Written::default(),
@@ -79,8 +75,8 @@ impl FrameWriter {
         // A thread costs buffers of its own, so another one starts only when none is free.
         if self.threads.len() < self.most {
             let (folder, frames) = (self.folder.clone(), Arc::clone(&self.frames));
-            let (last, shard) = (Arc::clone(&self.last), self.shard);
-            let work = move || write_frames(&folder, shard, &frames, &last);
+            let last = Arc::clone(&self.last);
+            let work = move || write_frames(&folder, &frames, &last);
             self.threads.push(std::thread::spawn(work));
         }
         if queue.send(frame).is_ok() { Ok(()) } else { self.wait() }
@@ -133,19 +129,14 @@ fn compressed(frame: &PixelFrame, last: &Last) -> Arc<Vec<u8>> {
 }
 
 /// Writes frames until there are no more or one fails. After a failure the channel is closed, so that no sender blocks.
-fn write_frames(
-    folder: &Path,
-    shard: Option<Shard>,
-    queue: &Mutex<Option<Receiver<PixelFrame>>>,
-    last: &Last,
-) -> Written {
+fn write_frames(folder: &Path, queue: &Mutex<Option<Receiver<PixelFrame>>>, last: &Last) -> Written {
     let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
     let mut written = Written::default();
     loop {
         let Some(frame) = lock().as_ref().and_then(|frames| frames.recv().ok()) else { return written };
         let clock = Clock::thread();
         let bytes = compressed(&frame, last);
-        let result = write_whole_for(&folder.join(frame_file_name(frame.frame)), &bytes, shard);
+        let result = write_whole(&folder.join(frame_file_name(frame.frame)), &bytes);
         written.spent += clock.spent();
         match result {
             Ok(()) => written.frames += 1,
@@ -169,7 +160,7 @@ mod tests {
     #[test]
     fn all_frames_are_written() {
         let folder = tempfile::tempdir().unwrap();
-        let mut writer = FrameWriter::new(folder.path(), None, 3);
+        let mut writer = FrameWriter::new(folder.path(), 3);
         (0..20).for_each(|index| writer.write(frame(index)).unwrap());
         let (count, spent, result) = writer.finish();
         result.unwrap();
@@ -181,7 +172,7 @@ mod tests {
     #[test]
     fn a_failure_is_told_and_nobody_waits() {
         let folder = tempfile::tempdir().unwrap();
-        let mut writer = FrameWriter::new(&folder.path().join("absent"), None, 2);
+        let mut writer = FrameWriter::new(&folder.path().join("absent"), 2);
         let failure = (0..100).find_map(|index| writer.write(frame(index)).err()).expect("it fails before the end");
         assert!(failure.to_string().contains("frame_"));
         let (count, _, result) = writer.finish();

@@ -36,20 +36,7 @@ impl FolderLock {
     /// If a process has locked it for exclusive use.
     pub(super) fn shared(path: &Path) -> Result<Self, OutputError> {
         let lock = Self::open(path);
-        lock.becomes_shared(path).map(|()| lock)
-    }
-
-    /// Tries to make a shared lock exclusive. It is no longer shared in either case.
-    pub(super) fn becomes_alone(&self) -> bool {
-        self.take(true)
-    }
-
-    /// Makes a lock shared.
-    ///
-    /// # Errors
-    /// If another process has locked the folder exclusively in the meantime.
-    pub(super) fn becomes_shared(&self, path: &Path) -> Result<(), OutputError> {
-        if self.take(false) { Ok(()) } else { Err(in_use(path)) }
+        if lock.take(false) { Ok(lock) } else { Err(in_use(path)) }
     }
 
     /// Locks an existing folder for writing single files beside those of other processes. Leftovers are kept, as they
@@ -87,7 +74,7 @@ impl FolderLock {
 }
 
 /// The error for a folder to which another process writes.
-pub(super) fn in_use(path: &Path) -> OutputError {
+fn in_use(path: &Path) -> OutputError {
     let process = holder(path).map_or("another process".to_owned(), |id| format!("process {id}"));
     OutputError::InUse { path: path.to_owned(), what: format!("{process} is writing there").into() }
 }
@@ -136,6 +123,15 @@ mod tests {
         drop(several);
         FolderLock::alone(path).unwrap();
         FolderLock::check(&path.join("absent")).unwrap();
+    }
+
+    #[test]
+    fn work_of_others_is_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let leftover = folder.path().join(".localshape-abc123.partial");
+        std::fs::write(&leftover, "").unwrap();
+        drop(FolderLock::beside_others(folder.path()));
+        assert!(leftover.exists());
     }
 
     /// Otherwise another process could remove its files as leftovers.

@@ -13,6 +13,7 @@ mod drawn;
 mod error;
 mod folder;
 mod frame_folder;
+mod frame_name;
 #[cfg(feature = "render")]
 mod frames;
 mod lock;
@@ -28,8 +29,9 @@ pub(crate) use checkpoint::{Checkpoint, Plan, waiting_states};
 pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub(crate) use digest::state_digest;
 pub(crate) use error::{OutputError, is_folder, read_file};
-pub(crate) use folder::{Access, Claimed, FRAME_FILES, Folder, Shard, Whose};
+pub(crate) use folder::{Access, Claimed, Folder, Whose};
 pub use frame_folder::FrameFolder;
+pub(crate) use frame_name::FRAME_FILES;
 pub(crate) use lock::FolderLock;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
 pub(crate) use states::{STATES_FILE, StatesWriter};
@@ -41,7 +43,7 @@ pub use timing::{Spent, Timings};
 pub(crate) use {
     atomic::temporary_folder,
     drawn::{encode_like, frame_files, is_drawn, packed},
-    folder::frame_file_name,
+    frame_name::frame_file_name,
     frames::{FrameWriter, PixelFrame},
     png::{Texts, encode_print},
 };

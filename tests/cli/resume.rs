@@ -171,7 +171,11 @@ fn a_checkpoint_of_something_else_is_refused() {
     let ran = place.run("simulate scene.toml --resume");
     ran.bad(2, &["the checkpoint in output/scene cannot be used (", "diagnostics.csv", "leave out --resume"]);
     assert_eq!(std::fs::read(&path).unwrap(), bytes, "it stays");
-    place.run("simulate scene.toml --frames 0-1").good();
+    let ran = place.run("simulate scene.toml --frames 0-1 -o output/scene");
+    ran.bad(2, &["output/scene holds the checkpoint of an interrupted command, from which --resume", "--overwrite"]);
+    assert_eq!(std::fs::read(&path).unwrap(), bytes, "it stays");
+    let ran = place.run("simulate scene.toml --frames 0-1").good();
+    assert!(ran.out.starts_with("output/scene: replacing the checkpoint of an interrupted command"), "{ran:?}");
     assert_eq!(place.names("output/scene"), ["diagnostics.csv", "run.json"], "another command begins anew");
 }
 

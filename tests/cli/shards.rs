@@ -57,6 +57,20 @@ fn the_order_does_not_matter() {
     }
 }
 
+/// Whoever draws a frame removes what a killed process left of it. Others may be at work, also where no lock is seen.
+#[test]
+fn leftovers_go_with_their_frames() {
+    let Some(place) = place_to_draw() else { return };
+    place.run("render small.toml --shard 1/2 -o out").good();
+    let left = [1, 4].map(|frame| format!(".localshape-frame_0000{frame}.png-abc.partial"));
+    left.iter().for_each(|name| place.write(&format!("out/{name}"), "cut"));
+    place.run("simulate small.toml -o out").good();
+    place.run("render small.toml --shard 1/3 --frames 0-2 -o out").good();
+    assert_eq!(place.names("out").iter().filter(|name| name.starts_with('.')).count(), 2);
+    place.run("render small.toml --shard 2/3 -o out").good();
+    assert_eq!(place.names("out")[..2], ["diagnostics.csv".to_owned(), "frame_00000.png".to_owned()]);
+}
+
 #[test]
 fn other_scenes_and_sizes_are_refused() {
     let Some(place) = place_to_draw() else { return };
@@ -69,15 +83,22 @@ fn other_scenes_and_sizes_are_refused() {
     place.write("other.toml", &SMALL.replace("Two cubes", "Others"));
     place.run("render other.toml --shard 2/2 -o out").bad(2, &["the results of another scene (“Two cubes”"]);
     assert_eq!(place.names("out").len(), 4 + 1);
-    // The folder named after the scene follows its file; a folder with `--overwrite` follows any.
+    // Shards only add frames. `simulate` replaces the results of other versions and scenes.
     place.run(shard).good();
-    place.run("simulate small.toml --states").good();
     place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.6"));
-    let ran = place.run(shard).good();
+    let words =
+        ["output/small holds the results of another version of small.toml, and a shard only adds frames; choose"];
+    place.run(shard).bad(2, &words);
+    assert_eq!(place.names("output/small").len(), 4 + 1, "nothing is removed");
+    let ran = place.run("simulate small.toml").good();
     assert!(ran.out.starts_with("output/small: replacing the results of another version of small.toml\n"), "{ran:?}");
-    assert_eq!(place.names("output/small").len(), 4 + 1);
-    place.run("render other.toml --shard 2/2 -o out --overwrite").good();
-    assert_eq!(place.names("out"), ["frame_00001.png", "frame_00003.png", "frame_00005.png", "run.json"]);
+    place.run(shard).good();
+    assert_eq!(place.names("output/small").len(), 4 + 2);
+    place.run("render other.toml --shard 2/2 -o out --overwrite").bad(2, &["--shard", "--overwrite"]);
+    place.run("simulate other.toml -o out --overwrite").good();
+    place.run("render other.toml --shard 2/2 -o out").good();
+    let names = ["diagnostics.csv", "frame_00001.png", "frame_00003.png", "frame_00005.png", "run.json"];
+    assert_eq!(place.names("out"), names);
 }
 
 /// Shards keep the checkpoint of an interrupted simulation, and write none. Other shards may draw beside them, but no
@@ -102,7 +123,7 @@ fn checkpoints_are_left_alone() {
     place.run(shard).good();
     let running = crate::interrupt::start(&place, "render scene.toml --shard 1/2 -o made", "made/frame_00012.png");
     place.run("render scene.toml --frames 0-9 --shard 2/2 -o made --resume").good();
-    place.run(simulate).bad(2, &["made is in use"]);
+    place.run(&format!("{simulate} --resume")).bad(2, &["made is in use"]);
     crate::interrupt::signal(&running, &["TERM"]);
     let ran = running.wait();
     assert!(ran.status == Some(130) && ran.out.contains("render --resume scene.toml --shard 1/2 -o made"), "{ran:?}");
