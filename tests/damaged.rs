@@ -79,6 +79,15 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
     };
     match name {
         "scene" => with_whole_paths([files("scenes", "toml"), files("scenes/elements", "toml")].concat()),
+        "setting" => [
+            "run[0].model.stiffness=2e4",
+            "run[\"springs\"].step=T/60",
+            "obstacle[0].restitution = 0.5",
+            "body.spin={ axis = [0, 1, 0], rate = 3 }",
+            "view.labels=[\"letters\"]",
+        ]
+        .map(|text| text.as_bytes().to_vec())
+        .into(),
         "figure" => with_whole_paths(files("figures", "toml")),
         "body" => files("tests/cli", "npz"),
         "font" => files("assets/fonts", "otf"),

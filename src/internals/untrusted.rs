@@ -5,6 +5,7 @@
 
 use crate::golden::{Pixels, is_record};
 use crate::output::{Access, Folder, Plan, StoredStates, Whose, read_tags};
+use crate::reading::setting::Setting;
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene};
@@ -21,8 +22,9 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 10] = [
+pub const READERS: [Reader; 11] = [
     Reader { name: "scene", read: scene },
+    Reader { name: "setting", read: setting },
     Reader { name: "figure", read: figure },
     Reader { name: "body", read: body },
     Reader { name: "font", read: font },
@@ -77,6 +79,14 @@ fn begin<E>(scene: Result<Scene, E>) -> bool {
         world.snapshot();
     }
     true
+}
+
+/// Reads [`SCENE`] with an option `--set` of these bytes.
+fn setting(bytes: &[u8]) -> bool {
+    let setting = std::str::from_utf8(bytes).ok().and_then(|text| text.parse::<Setting>().ok());
+    setting.is_some_and(|setting| {
+        in_folder("scene.toml", SCENE.as_bytes(), |path| begin(Scene::load_with(path, &[setting], &LIMITS)))
+    })
 }
 
 fn figure(bytes: &[u8]) -> bool {

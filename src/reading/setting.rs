@@ -157,23 +157,23 @@ fn in_array<'s, 't>(
         |entry: &Spanned<DeValue<'_>>| entry.get_ref().as_table()?.get("name")?.get_ref().as_str().map(str::to_owned);
     let names: Vec<_> = entries.iter().filter_map(named).collect();
     let count = entries.len();
-    let index = match part {
-        Part::Index(index) => *index,
-        Part::Named(name) => entries.iter().position(|entry| named(entry).as_ref() == Some(name)).ok_or_else(|| {
-            let message = format!(
-                "no entry of `{here}` has the name {}; their names are {}",
-                quoted(name),
-                list(&names, "and", quoted)
-            );
-            let names: Vec<_> = names.iter().map(String::as_str).collect();
-            (message, nearest(name, &names).map(|near| format!("did you mean {}?", quoted(near))))
-        })?,
-        Part::Key(_) => unreachable!("the caller tells keys from entries"),
-    };
     let entries_are = match count {
         0 => "has no entries".to_owned(),
         1 => "has one entry, number 0".to_owned(),
         _ => format!("has {count} entries, numbers 0 to {}", count - 1),
+    };
+    let index = match part {
+        Part::Index(index) => *index,
+        Part::Named(name) => entries.iter().position(|entry| named(entry).as_ref() == Some(name)).ok_or_else(|| {
+            let rest = match &names[..] {
+                [] => format!("`{here}` {entries_are}"),
+                names => format!("their names are {}", list(names, "and", quoted)),
+            };
+            let names: Vec<_> = names.iter().map(String::as_str).collect();
+            let help = nearest(name, &names).map(|near| format!("did you mean {}?", quoted(near)));
+            (format!("no entry of `{here}` has the name {}; {rest}", quoted(name)), help)
+        })?,
+        Part::Key(_) => unreachable!("the caller tells keys from entries"),
     };
     entries.get_mut(index).ok_or_else(|| (format!("there is no `{here}[{index}]`; `{here}` {entries_are}"), None))
 }

@@ -22,13 +22,27 @@ pub fn schema() -> Value {
 /// The schema, made once.
 pub(super) static SCHEMA: LazyLock<Value> = LazyLock::new(|| schema_of::<SceneFile>("Scene file of localshape"));
 
-/// The schema of scenes made in code, whose runs may have models of the caller's own.
+/// The schema of scenes made in code, whose runs may have models of the caller's own. Messages do not explain keys there: the
+/// builders are documented.
 pub(super) static SCHEMA_OF_CODE: LazyLock<Value> = LazyLock::new(|| {
     let mut schema = schema();
     let required = schema["properties"]["run"]["items"]["required"].as_array_mut();
     required.expect("keys that a run needs").retain(|key| key != "model");
+    undescribe(&mut schema);
     schema
 });
+
+/// Removes all descriptions.
+fn undescribe(schema: &mut Value) {
+    match schema {
+        Value::Array(items) => items.iter_mut().for_each(undescribe),
+        Value::Object(table) => {
+            table.retain(|key, value| key != "description" || !value.is_string());
+            table.values_mut().for_each(undescribe);
+        }
+        _ => {}
+    }
+}
 
 /// The schema of a file's type.
 pub(super) fn schema_of<T: JsonSchema>(title: &str) -> Value {

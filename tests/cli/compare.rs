@@ -299,7 +299,13 @@ fn wrong_words() {
     let place = Place::new();
     place.write("a.png", &picture("one", "1", 0, &GREY));
     std::fs::create_dir(place.path("none")).unwrap();
-    place.run("compare a.png b.png").bad(4, &["b.png does not exist"]);
+    // A mistyped path is told alike on both sides.
+    for (words, absent) in
+        [("a.png b.png", "b.png"), ("b.png a.png", "b.png"), ("none below", "below"), ("below none", "below")]
+    {
+        let message = format!("{absent} does not exist; expected a picture or a folder of pictures");
+        place.run(&format!("compare {words}")).bad(4, &[&message]);
+    }
     if cfg!(feature = "render") {
         place.run("compare a.png a.png --adapter cpu").bad(2, &["--adapter is for scenes and figures"]);
     }

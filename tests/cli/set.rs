@@ -67,6 +67,8 @@ fn mistakes_have_the_option_as_their_place() {
         ("time.integrator=perfl", "did you mean \"pefrl\"?"),
         ("run[2].step=1", "there is no `run[2]`; `run` has 2 entries, numbers 0 to 1"),
         ("hold[0].from=1", "there is no `hold[0]`; `hold` has no entries"),
+        ("hold[\"a\"].from=1", "no entry of `hold` has the name \"a\"; `hold` has no entries"),
+        ("obstacle[a].friction=1", "no entry of `obstacle` has the name \"a\"; `obstacle` has one entry, number 0"),
         ("body.lattice.cells[3]=1", "there is no `body.lattice.cells[3]`; `body.lattice.cells` has 3 entries"),
         (
             "run[\"Local shap\"].step=1",

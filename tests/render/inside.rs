@@ -45,6 +45,20 @@ fn a_dotted_body_shows_nothing_of_what_was_turned_over_before() {
     assert_eq!(orange(&after), 0, "nothing has turned over");
 }
 
+/// One renderer keeps nothing of the picture before.
+#[test]
+fn turned_over_plain_and_turned_over_again() {
+    let Some(gpu) = gpu("turned_over_plain_and_turned_over_again") else { return };
+    let (scene, over) = middle_turned_over();
+    let mut plain = over.clone();
+    plain.runs[0].snapshot.turned_over[13] = false;
+    let mut renderer = renderer(gpu, scene.view.size);
+    for frame in [&over, &plain, &over] {
+        let picture = compose(&scene, frame);
+        assert!(renderer.draw(&picture).expect("the device works") == draw(gpu, &picture));
+    }
+}
+
 #[test]
 fn lines_that_reach_far_beyond_the_picture_are_drawn_like_those_that_end_at_it() {
     let Some(gpu) = gpu("lines_that_reach_far_beyond_the_picture_are_drawn_like_those_that_end_at_it") else { return };
