@@ -44,7 +44,7 @@
 //! [`Scene::load`](scene::Scene::load) reads the same from a file. Models have the parameters of scene files: the shape model
 //! ([`shape_based::Parameters`](sim::model::shape_based::Parameters)) `damping` or `damping_ratio`, `damping_of`, and the
 //! solver of its rotations, such as `rotation: Some(RotationReading::Arctangent)` with `passes: Some(2)` for the paper's.
-//! [`RunBuilder`] sets time step and integrator of a run, [`View`](look::View) what pictures show.
+//! [`RunBuilder`] sets time step and integrator of a run, [`View`](look::View) the contents of pictures.
 //!
 //! # Modules
 //!
@@ -52,9 +52,9 @@
 //! scene file or builder ─▶ Scene ─▶ Runner ─▶ Frame of Snapshots ─▶ Picture ─▶ image
 //! ```
 //!
-//! [`scene`] makes scenes, in code or from files: a body, models on it, and what acts on them. [`runner`] advances the runs
-//! of a scene side by side and returns frames. [`sim`] is what it advances, in double precision: states, diagnostics, the
-//! elastic models, and the traits for models of your own ([`sim::model`]). [`look`] says what pictures show, `picture`
+//! [`scene`] makes scenes, in code or from files: a body, models on it, and their surroundings. [`runner`] advances the runs
+//! of a scene side by side and returns frames. [`sim`] simulates a run in double precision: states, diagnostics, the
+//! elastic models, and the traits for models of your own ([`sim::model`]). [`look`] has the view, `picture`
 //! lays out a frame, `render` draws it on the device of `gpu`, and `animation` makes one file of many images. [`golden`]
 //! tests scenes of your own against stored results in `cargo test`. [`paper`] maps the paper's equations to this crate.
 //!
@@ -114,7 +114,7 @@ pub fn compose(scene: &Scene, frame: &sim::Frame) -> picture::Picture {
     picture::Composer::new(scene, &runner::History::for_pictures(scene, &runs)).compose(frame)
 }
 
-// Tests of what is inside, as large as other crates.
+// Tests of the inside, as large as other crates.
 #[cfg(test)]
 #[path = "../tests/physics/mod.rs"]
 mod physics_tests;

@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Says that the calling test is skipped, and how many were skipped so far in this program. `cargo test` holds back what is printed by
-/// macros, so this is written to standard error directly.
+/// Reports that the calling test is skipped, and the number skipped so far in this program. `cargo test` captures the
+/// output of macros, so this is written to standard error directly.
 pub fn skipped(why: &str) {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed) + 1;

@@ -92,8 +92,7 @@ pub(crate) struct CameraFile {
     /// and moved nodes near the body into the picture.
     pub(crate) target: Option<Coordinates>,
     /// Distance of a fixed camera from its target (m). In the plane it gives the scale together with `field_of_view`.
-    /// Default: 8.5 times the longest side of the bounding box at the start, and more if the body starts higher than
-    /// that shows. Without a `target` the picture also shows all parts of plates, spheres, capsules, boxes and moved
+    /// Default: 8.5 times the longest side of the bounding box at the start, and more if the body starts above that picture. Without a `target` the picture also shows all parts of plates, spheres, capsules, boxes and moved
     /// nodes that come within 1.25 body sizes of the body's start or stand.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) distance: Option<f64>,

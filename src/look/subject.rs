@@ -1,4 +1,4 @@
-//! The subject of a view: a body, its runs and what is around it.
+//! The subject of a view: a body, its runs and its surroundings.
 
 use crate::sim::Body;
 

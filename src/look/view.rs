@@ -92,7 +92,7 @@ pub struct View {
     pub floor: FloorStyle,
     /// The lines on surfaces.
     pub edges: EdgeStyle,
-    /// The camera. Default: one that shows the body and what comes near it.
+    /// The camera. Default: a camera that shows the body and objects near it.
     #[serde(serialize_with = "open")]
     #[schemars(with = "CameraFile")]
     pub camera: Camera,

@@ -21,16 +21,14 @@ pub enum OutputError {
     States { path: PathBuf, what: Box<str> },
     #[error("the checkpoint in {} {what}; to begin anew, leave out --resume and add --overwrite", path.display())]
     Checkpoint { path: PathBuf, what: Box<str> },
-    #[error("{} holds {what}; choose another folder with -o, or replace what is there with --overwrite", path.display())]
+    #[error("{} holds {what}; choose another folder with -o, or replace its contents with --overwrite", path.display())]
     Occupied { path: PathBuf, what: String },
 }
 
 /// An addition to the message if the disk is full.
 fn hint(source: &io::Error) -> &'static str {
     match source.kind() {
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            ": the disk is full; what was finished before is kept"
-        }
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ": the disk is full; finished files are kept",
         _ => "",
     }
 }

@@ -73,7 +73,7 @@ fn course(npz: &mut Npz, scene: &Scene) -> Result<Course, String> {
             array.and_then(fits).map_err(|what| format!("`{COURSE}` {what}"))?
         }
     };
-    let damaged = |_| format!("is damaged: `{COURSE}` is not what this program writes; {again}");
+    let damaged = |_| format!("is damaged: `{COURSE}` was not written by this program; {again}");
     let (origin, rest): (Origin, _) = postcard::take_from_bytes(bytes.bytes()).map_err(damaged)?;
     if let Some(why) = origin.refusal(&scene.digest, &scene.title) {
         return Err(format!("{why}; {again}"));

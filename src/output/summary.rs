@@ -1,4 +1,4 @@
-//! `run.json`: what was made, how, and with what outcome.
+//! `run.json`: the command, its files and its outcome.
 
 use super::{OutputError, Timings, state_digest, write_whole};
 use crate::runner::cause::Cause;

@@ -72,7 +72,7 @@ const DESCENT: f32 = 0.22;
 #[derive(Clone, Debug)]
 pub(crate) struct Fonts {
     faces: Arc<[Face]>,
-    /// The letters of ASCII, of which most text consists, in each weight.
+    /// The letters of ASCII, the most frequent ones, in each weight.
     ascii: Arc<[Vec<Letter>; 2]>,
 }
 

@@ -22,7 +22,7 @@ const fn value(key: &'static str, value: &'static str, instead: &'static str) ->
 
 /// For parts of pictures that became words in the list of labels. A list replaces the usual one.
 const ALL_LABELS: &str = "write `labels = [\"letters\", \"name\", \"model\", \"clock\", \"count\", \"number\", \"scale-bar\", \
-                          \"legend\"]` without the words for what is not shown";
+                          \"legend\"]` without the words for parts that are not shown";
 
 #[rustfmt::skip]
 const GONE: &[Gone] = &[

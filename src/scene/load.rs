@@ -32,7 +32,7 @@ impl Scene {
     /// Reads a scene from a file, with other values of some keys.
     ///
     /// # Errors
-    /// As [`Self::load`]. A mistake in a setting is told like one in the file.
+    /// As [`Self::load`]. A mistake in a setting is reported like one in the file.
     pub(crate) fn load_with(path: &Path, settings: &[Setting], limits: &Limits) -> Result<Self, SceneError> {
         let text = text_of(path, limits, FIGURE)?;
         let folder = path.parent().unwrap_or(Path::new(""));

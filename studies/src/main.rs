@@ -41,7 +41,7 @@ use work_precision::{Effort, Subject, WorkPrecision};
 const EXAMPLES: &str = "\
 Examples:
   localshape-study rotation                    solvers of rotations in output/study-rotation/
-  localshape-study rotation -o rotations       the same elsewhere
+  localshape-study rotation -o rotations       the same study in another folder
   localshape-study work-precision              integrators in output/study-work-precision/
   localshape-study work-precision scenes/fig4b.toml  on a scene
   localshape-study stability                   the largest stable steps in output/study-stability/

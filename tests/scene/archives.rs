@@ -344,14 +344,14 @@ fn elements_that_are_all_wrong_in_one_way_have_one_mistake() {
     wrong(
         &row_of_cubes(|_| turned),
         &["all 12 elements of `body.npz: elements` are turned inside out at rest write convex = true in [body] \
-           for nodes in any order, or reorder those of each: hexahedra as [4, 5, 6, 7, 0, 1, 2, 3] of what they are now"],
+           for nodes in any order, or take the nodes of each in the order [4, 5, 6, 7, 0, 1, 2, 3] for hexahedra"],
     );
     wrong(
         &row_of_cubes(|_| around),
         &[
             "all 12 elements of `body.npz: elements` list their corners around their sides, as VTK, Gmsh and Abaqus do; \
-           expected x fastest, then y, then z reorder those of each: [0, 1, 3, 2, 4, 5, 7, 6] of what they are \
-           now; or write convex = true in [body]",
+           expected x fastest, then y, then z take the nodes of each in the order [0, 1, 3, 2, 4, 5, 7, 6]; or \
+           write convex = true in [body]",
         ],
     );
     wrong(
@@ -368,7 +368,7 @@ fn elements_that_are_all_wrong_in_one_way_have_one_mistake() {
     wrong(
         &row_of_cubes(|cube| if cube == 3 { right } else { turned }),
         &["11 of 12 elements of `body.npz: elements` are turned inside out at rest: 0, 1, 2, 4, 5 and 6 more \
-           write convex = true in [body] for nodes in any order, or reorder those of each: hexahedra as"],
+           write convex = true in [body] for nodes in any order, or take the nodes of each in the order ["],
     );
     wrong(
         &row_of_cubes(|cube| if cube < 2 { turned } else { right }),

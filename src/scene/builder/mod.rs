@@ -180,10 +180,10 @@ impl SceneBuilder {
         self
     }
 
-    /// Checks all settings and resolves the scene. The camera shows the body and what comes near it.
+    /// Checks all settings and resolves the scene. The camera shows the body and objects near it.
     ///
     /// [`Scene::view`] has the other settings of pictures, to be changed before they are composed: title, caption and
-    /// labels, what is drawn of the body, edges, text scale, and every number of the camera.
+    /// labels, the drawn parts of the body, edges, text scale, and every number of the camera.
     ///
     /// ```
     /// # use localshape::scene::{BodyBuilder, Limits, Scene};
@@ -249,7 +249,7 @@ fn tree<'t>(value: toml::Value, digits: &mut impl Iterator<Item = &'t String>) -
         toml::Value::Boolean(truth) => DeValue::Boolean(truth),
         toml::Value::Datetime(date) => DeValue::Datetime(date),
         toml::Value::Integer(_) | toml::Value::Float(_) => {
-            let digits = digits.next().expect("those of each number");
+            let digits = digits.next().expect("digits of each number");
             DeValue::parse(digits).expect("a number").into_inner()
         }
         toml::Value::Array(entries) => DeValue::Array(entries.into_iter().map(|entry| tree(entry, digits)).collect()),

@@ -26,10 +26,10 @@ pub(super) struct FigureFile {
     /// Scale of all text, or for print the size of most text, such as `{ pt = 7 }`. Text without room, or too small to
     /// read, is left out; type below 5 pt is refused in figures for print. Default: that of the first scene.
     pub(super) text_scale: Option<TextScaleFile>,
-    /// A contact sheet: runs of scenes as rows, moments as columns. Either this or `forces`.
+    /// A contact sheet: runs of scenes as rows, moments as columns. Either `sheet` or `forces`.
     pub(super) sheet: Option<SheetFile>,
     /// A diagram of the forces of each run's model on the nodes at the start. Scenes with several runs are rows, with
-    /// one column for each run. Scenes with one run stand side by side. Either this or `sheet`.
+    /// one column for each run. Scenes with one run stand side by side. Either `forces` or `sheet`.
     pub(super) forces: Option<ForcesFile>,
 }
 

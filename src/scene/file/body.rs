@@ -27,16 +27,16 @@ use std::mem::swap;
 ))]
 pub(in crate::scene) struct BodyFile {
     /// A block of equal cells: `{ cells = [3, 3, 3], side = 0.1 }` for cubes, `cells = [3, 3]` for squares in the
-    /// plane. It stands on y = 0, centred on x = 0 and z = 0. Nodes are numbered with x fastest, then y, then z.
+    /// plane. The block stands on y = 0, centred on x = 0 and z = 0. Nodes are numbered with x fastest, then y, then z.
     pub(in crate::scene) lattice: Option<Lattice>,
-    /// A regular polygon in the plane as one element: `{ sides = 6, radius = 1.0 }`. It stands with a side on y = 0,
+    /// A regular polygon in the plane as one element: `{ sides = 6, radius = 1.0 }`. The polygon stands with a side on y = 0,
     /// its centre above the origin. Corners are numbered counter-clockwise from the left end of that side.
     pub(in crate::scene) polygon: Option<PolygonFile>,
     /// A regular polygon in the plane, cut into triangles around a node in its centre: `{ sides = 6, radius = 1.0 }`.
-    /// It stands like a `polygon`. The central node comes first.
+    /// The fan stands like a `polygon`. The central node comes first.
     pub(in crate::scene) fan: Option<PolygonFile>,
-    /// A disc in the plane: `{ radius = 1.0, rings = 3, sectors = 12 }`. It stands like a `polygon` with as many sides
-    /// as sectors. Nodes are numbered from the centre outwards, in each ring like those of a polygon.
+    /// A disc in the plane: `{ radius = 1.0, rings = 3, sectors = 12 }`. The disc stands like a `polygon` with as many sides
+    /// as sectors. Nodes are numbered from the centre outwards, in each ring like the corners of a polygon.
     pub(in crate::scene) disc: Option<DiscFile>,
     /// A chain of two-node elements that begins at the origin: `{ count = 8, length = 0.1, direction = [1, 0] }`.
     pub(in crate::scene) bars: Option<BarsFile>,

@@ -30,7 +30,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct SceneFile {
-    /// What the scene shows. Default: the file's name.
+    /// The subject of the scene. Default: the file's name.
     #[schemars(length(max = 200))]
     pub(in crate::scene) title: Option<String>,
     /// Acceleration of gravity (m/s²), such as `[0, -9.8, 0]`. Default: none.
@@ -76,8 +76,7 @@ pub(in crate::scene) struct TimeFile {
     #[schemars(extend("default" = "T/50"))]
     pub(in crate::scene) step: Option<StepFile>,
     /// The error allowed in each step of `integrator = "dormand-prince"`, as a share of the size of the body, in place
-    /// of `step`. Below 1e-11 round-off is larger. On a body that rests on something each tenth of it takes three times
-    /// as long. Default: 1e-6.
+    /// of `step`. Below 1e-11 round-off is larger. For a body at rest on an obstacle, a tenth of the tolerance takes three times as long. Default: 1e-6.
     #[schemars(range(min = 1e-11, max = 0.1))]
     pub(in crate::scene) tolerance: Option<f64>,
     /// Frames per second of simulated time (1/s).

@@ -55,7 +55,7 @@ pub struct Swing {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct HoldFile {
-    /// The nodes: a list, or all nodes that start in a ball or an axis-aligned box. Nodes on its border belong to it,
+    /// The nodes: a list, or all nodes that start in a ball or an axis-aligned box. Nodes on the border belong to the region,
     /// to 1e-9 of the body's longest side. `localshape check` prints where the body starts.
     pub(in crate::scene) nodes: NodesFile,
     /// Start (s).
@@ -71,7 +71,7 @@ pub(in crate::scene) struct HoldFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct GrabFile {
-    /// The nodes: a list, or all nodes that start in a ball or an axis-aligned box. Nodes on its border belong to it,
+    /// The nodes: a list, or all nodes that start in a ball or an axis-aligned box. Nodes on the border belong to the region,
     /// to 1e-9 of the body's longest side. `localshape check` prints where the body starts.
     pub(in crate::scene) nodes: NodesFile,
     /// The path along which the nodes are dragged. They are grabbed at the time of the first key, wherever they are.

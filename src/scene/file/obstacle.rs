@@ -22,7 +22,7 @@ pub(in crate::scene) struct ObstacleFile {
     /// The motion that friction acts on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in crate::scene) friction_of: Option<FrictionOf>,
-    /// The point about which `path` and `swing` rotate (m). Default: the one named for this kind.
+    /// The point about which `path` and `swing` rotate (m). Default: the point named for this kind.
     pub(in crate::scene) about: Option<Coordinates>,
     /// Keyframes along which the obstacle moves. Not together with `swing`.
     pub(in crate::scene) path: Option<MotionPath>,

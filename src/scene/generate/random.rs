@@ -9,7 +9,7 @@ pub(super) fn hash(seed: u32, index: u64, usage: u64) -> u64 {
 
 /// A number from 0 to below 1; see [`hash`].
 pub(super) fn unit(seed: u32, index: u64, usage: u64) -> f64 {
-    // The upper 53 bits are what a double holds.
+    // A double holds the upper 53 bits.
     (hash(seed, index, usage) >> 11) as f64 / (1u64 << 53) as f64
 }
 

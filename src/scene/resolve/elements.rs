@@ -168,7 +168,7 @@ fn in_common(lists: &Lists, wrong: Wrong, found: &[(usize, ElementKind)], is_all
         }
         (Wrong::Around, _) => (
             "list their corners around their sides, as VTK, Gmsh and Abaqus do; expected x fastest, then y, then z",
-            Some(format!("reorder those of each: {AROUND:?} of what they are now; or {CONVEX}")),
+            Some(format!("take the nodes of each in the order {AROUND:?}; or {CONVEX}")),
         ),
         (Wrong::Turned, Dimension::Space) => {
             let mut orders: Vec<String> = Vec::new();
@@ -179,13 +179,13 @@ fn in_common(lists: &Lists, wrong: Wrong, found: &[(usize, ElementKind)], is_all
                     ElementKind::Wedge => ("wedges", 6),
                     _ => ("hexahedra", 8),
                 };
-                let order = format!("{name} as {:?}", mended(kind, &Vec::from_iter(0..nodes)).1);
+                let order = format!("{:?} for {name}", mended(kind, &Vec::from_iter(0..nodes)).1);
                 if !orders.contains(&order) {
                     orders.push(order);
                 }
             }
             let orders = list(&orders, "and", str::to_owned);
-            let help = format!("{CONVEX}, or reorder those of each: {orders} of what they are now");
+            let help = format!("{CONVEX}, or take the nodes of each in the order {orders}");
             ("are turned inside out at rest", Some(help))
         }
     };
