@@ -4,7 +4,7 @@ use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::{FrameRanges, Moments, Shard};
 use super::options::{RunOptions, SceneOptions};
 use crate::output::shell;
-use crate::output::{Access, Folder, OutputError, Plan, StoredStates, Whose};
+use crate::output::{Access, Folder, Manifest, OutputError, StoredStates, Whose};
 use crate::scene::{Limits, Scene, SceneError};
 use std::collections::HashMap;
 use std::ffi::OsString;
@@ -122,10 +122,10 @@ impl RunOptions {
         }
         let names = runs.iter().map(|&run| scene.runs[run].name.clone()).collect();
         let size = pictures.then_some(scene.view.size);
-        let plan = Plan { runs: names, frames: frames.clone(), states: self.states, size };
+        let manifest = Manifest { runs: names, frames: frames.clone(), states: self.states, size };
         let resume = self.resume && !from_states && shard.is_none();
         let access = Access { overwrite: self.overwrite, follows: self.out.is_none(), resume, shard: shard.is_some() };
-        let folder = Folder::inspect(path, Whose::of(&scene), plan, access).map_err(|error| match error {
+        let folder = Folder::inspect(path, Whose::of(&scene), manifest, access).map_err(|error| match error {
             OutputError::Occupied { path, what } if shard.is_some() => Failure::usage(format!(
                 "{} holds {what}, and a shard only adds frames; choose another folder with -o, or empty this one",
                 path.display()

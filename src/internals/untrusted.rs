@@ -4,7 +4,7 @@
 //! of the file allow.
 
 use crate::golden::{Pixels, is_record};
-use crate::output::{Access, Folder, Plan, StoredStates, Whose, read_tags};
+use crate::output::{Access, Folder, Manifest, StoredStates, Whose, read_tags};
 use crate::reading::setting::Setting;
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::figure::Figure;
@@ -141,9 +141,9 @@ fn checkpoint(bytes: &[u8]) -> bool {
 fn summary(bytes: &[u8]) -> bool {
     in_folder("run.json", bytes, |path| {
         let scene = Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound");
-        let plan = Plan { runs: vec!["shape".to_owned()], frames: vec![0], states: false, size: None };
+        let manifest = Manifest { runs: vec!["shape".to_owned()], frames: vec![0], states: false, size: None };
         let folder = path.parent().expect("a folder");
-        Folder::inspect(folder, Whose::of(&scene), plan, Access::default()).is_ok()
+        Folder::inspect(folder, Whose::of(&scene), manifest, Access::default()).is_ok()
     })
 }
 

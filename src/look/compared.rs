@@ -3,15 +3,15 @@
 use super::file::{PathFile, PathPointFile};
 use super::subject::Subject;
 use super::view::{Ghost, Traced};
-use crate::reading::report::{Report, Way};
+use crate::reading::collector::{Collector, Segment};
 use crate::reading::words::{list, nearest, quoted, short};
 
 /// The name for a ghost of the rest shape.
 const REST: &str = "rest";
 
 /// The outline over each body; `None` also after a mistake.
-pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<Ghost> {
-    let path = [Way::Key("view"), Way::Key("ghost")];
+pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &mut Collector<'_>) -> Option<Ghost> {
+    let path = [Segment::Key("view"), Segment::Key("ghost")];
     let run = scene.runs.iter().position(|(known, _)| *known == name);
     match run {
         Some(at) if name == REST => {
@@ -32,15 +32,15 @@ pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &mut Report<'_>) ->
 }
 
 /// The points with paths; empty also after a mistake.
-pub(super) fn paths(paths: &[PathFile], scene: &Subject<'_>, report: &mut Report<'_>) -> Vec<Traced> {
+pub(super) fn paths(paths: &[PathFile], scene: &Subject<'_>, report: &mut Collector<'_>) -> Vec<Traced> {
     if let Some(at) = (1..paths.len()).find(|&at| paths[..at].contains(&paths[at])) {
-        let path = [Way::Key("view"), Way::Key("paths"), Way::Index(at)];
+        let path = [Segment::Key("view"), Segment::Key("paths"), Segment::Index(at)];
         report.at(&path, "this path is listed a second time".to_owned(), "remove it".to_owned());
     }
     let one = |(at, path): (usize, &PathFile)| match *path {
         PathFile::Point(PathPointFile::Centre) => Some(Traced::Centre),
         PathFile::Node(node) => {
-            let path = [Way::Key("view"), Way::Key("paths"), Way::Index(at)];
+            let path = [Segment::Key("view"), Segment::Key("paths"), Segment::Index(at)];
             known_node(node, &path, scene, report).map(Traced::Node)
         }
     };
@@ -48,7 +48,7 @@ pub(super) fn paths(paths: &[PathFile], scene: &Subject<'_>, report: &mut Report
 }
 
 /// A node, or `None` after reporting that the body has no such node.
-fn known_node(node: u32, path: &[Way<'_>], scene: &Subject<'_>, report: &mut Report<'_>) -> Option<u32> {
+fn known_node(node: u32, path: &[Segment<'_>], scene: &Subject<'_>, report: &mut Collector<'_>) -> Option<u32> {
     let nodes = scene.body.len();
     if (node as usize) < nodes {
         return Some(node);
@@ -59,7 +59,13 @@ fn known_node(node: u32, path: &[Way<'_>], scene: &Subject<'_>, report: &mut Rep
 }
 
 /// Reports an unknown run, unless there are mistakes in the runs themselves.
-fn unknown<T>(name: &str, more: &[&str], path: &[Way<'_>], scene: &Subject<'_>, report: &mut Report<'_>) -> Option<T> {
+fn unknown<T>(
+    name: &str,
+    more: &[&str],
+    path: &[Segment<'_>],
+    scene: &Subject<'_>,
+    report: &mut Collector<'_>,
+) -> Option<T> {
     if scene.runs.is_empty() {
         return None;
     }
@@ -73,7 +79,7 @@ fn unknown<T>(name: &str, more: &[&str], path: &[Way<'_>], scene: &Subject<'_>, 
 }
 
 /// Reports runs with different steps: their frames show different moments.
-fn other_steps(runs: [usize; 2], path: &[Way<'_>], scene: &Subject<'_>, report: &mut Report<'_>) {
+fn other_steps(runs: [usize; 2], path: &[Segment<'_>], scene: &Subject<'_>, report: &mut Collector<'_>) {
     let [(one, step), (other, other_step)] = runs.map(|run| scene.runs[run]);
     let message = format!(
         "{} has a time step of {} s, {} one of {} s: their frames are not at the same moments",

@@ -3,23 +3,23 @@
 use super::palette::Palette;
 use super::view::Colours;
 use crate::colour::{Colour, LINE_CONTRAST, Vision, contrast, difference, readable, written};
-use crate::reading::report::{Report, Way};
+use crate::reading::collector::{Collector, Segment};
 use std::fmt;
 
 /// The least difference of turned-over elements from others, for any colour vision (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
 
-fn way(role: &str) -> [Way<'_>; 3] {
-    [Way::Key("view"), Way::Key("colours"), Way::Key(role)]
+fn path(role: &str) -> [Segment<'_>; 3] {
+    [Segment::Key("view"), Segment::Key("colours"), Segment::Key(role)]
 }
 
 /// Checks the chosen colours of runs: their contrast with the background, and their difference from turned-over
 /// elements.
-pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &mut Report<'_>) {
+pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &mut Collector<'_>) {
     let like_alarm = |colour| TooLike::find([(colour, ())], palette.alarm);
     for (at, &colour) in chosen.iter().enumerate() {
         let Some(colour) = colour else { continue };
-        let path = [Way::Key("run"), Way::Index(at), Way::Key("colour")];
+        let path = [Segment::Key("run"), Segment::Index(at), Segment::Key("colour")];
         let found = contrast(colour, palette.background);
         if found < LINE_CONTRAST {
             let message = format!(
@@ -47,7 +47,7 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
 }
 
 /// Checks the difference of turned-over elements from others.
-pub(super) fn check_alarm(typed: &Colours, palette: &Palette, report: &mut Report<'_>) {
+pub(super) fn check_alarm(typed: &Colours, palette: &Palette, report: &mut Collector<'_>) {
     let (key, other) = match (typed.turned_over, typed.body) {
         (Some(_), _) => ("turned_over", "the body's"),
         (None, Some(_)) => ("body", "the colour of turned-over elements,"),
@@ -57,7 +57,7 @@ pub(super) fn check_alarm(typed: &Colours, palette: &Palette, report: &mut Repor
     let Some(found) = TooLike::find(sound, palette.alarm) else { return };
     let opposite = written(if key == "body" { palette.alarm } else { found.colour });
     let message = format!("`view.colours.{key}` is too similar to {other} {opposite} {}: {found}", found.place);
-    report.at(&way(key), message, "choose another hue, or make one of them much lighter than the other".to_owned());
+    report.at(&path(key), message, "choose another hue, or make one of them much lighter than the other".to_owned());
 }
 
 /// A colour that may be mistaken for the colour of turned-over elements.

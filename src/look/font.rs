@@ -3,7 +3,7 @@
 use super::typed::FontFile;
 use super::view::FontFiles;
 use crate::reading::beside::bytes;
-use crate::reading::report::{Report, Way};
+use crate::reading::collector::{Collector, Segment};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 use std::sync::Arc;
@@ -15,11 +15,11 @@ const ENDINGS: [&str; 3] = ["ttf", "otf", "ttc"];
 const EXPECTED: &str = "expected a TrueType or OpenType font (.ttf, .otf, .ttc)";
 
 /// The fonts of a scene, searched in its folder, or `None` after reporting mistakes in them.
-pub(crate) fn read(folder: &Path, typed: &FontFile, report: &mut Report<'_>) -> Option<FontFiles> {
+pub(crate) fn read(folder: &Path, typed: &FontFile, report: &mut Collector<'_>) -> Option<FontFiles> {
     let mut one = |key: &str, name: &str| {
         let found = bytes(&folder.join(name), &ENDINGS, LONGEST, "a font", EXPECTED);
         let found = found.and_then(|bytes| check(&bytes).map(|()| Arc::from(bytes)).map_err(|message| (message, None)));
-        let path = [Way::Key("view"), Way::Key("font"), Way::Key(key)];
+        let path = [Segment::Key("view"), Segment::Key("font"), Segment::Key(key)];
         found.map_err(|(message, help)| report.at(&path, format!("`{name}` {message}"), help)).ok()
     };
     let regular = one("regular", &typed.regular);

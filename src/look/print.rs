@@ -1,6 +1,6 @@
 //! Pictures for print: sizes in millimetres and type in points.
 
-use crate::reading::report::{Report, Way};
+use crate::reading::collector::{Collector, Segment};
 use crate::sim::words::rounded;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -82,12 +82,12 @@ impl Print {
 }
 
 impl SizeFile {
-    /// Width and height (px), and the size in print if it was typed. `way` leads to the key.
+    /// Width and height (px), and the size in print if it was typed. `path` leads to the key.
     pub(crate) fn resolve(
         self,
         least: u32,
-        way: &[Way<'_>],
-        report: &mut Report<'_>,
+        path: &[Segment<'_>],
+        report: &mut Collector<'_>,
     ) -> Option<([u32; 2], Option<Print>)> {
         let PrintFile { mm, dpi } = match self {
             Self::Pixels(size) => return Some((size, None)),
@@ -100,22 +100,22 @@ impl SizeFile {
                 "a picture of {wide} × {high} mm has {width} × {height} pixels at {dpi} dpi; expected {least} to \
                  {MOST_PIXELS} a side"
             );
-            report.at(way, message, "change `mm` or `dpi`".to_owned());
+            report.at(path, message, "change `mm` or `dpi`".to_owned());
             return None;
         }
-        Some((sides.map(|side| side as u32), Some(Print { mm, dpi, file: String::new(), at: report.position(way) })))
+        Some((sides.map(|side| side as u32), Some(Print { mm, dpi, file: String::new(), at: report.position(path) })))
     }
 }
 
 impl TextScaleFile {
-    /// The scale of type, in a picture with a number of pixels per pixel of the reference picture. `way` leads to the
+    /// The scale of type, in a picture with a number of pixels per pixel of the reference picture. `path` leads to the
     /// key.
     pub(crate) fn resolve(
         self,
         print: Option<&Print>,
         unit: f64,
-        way: &[Way<'_>],
-        report: &mut Report<'_>,
+        path: &[Segment<'_>],
+        report: &mut Collector<'_>,
     ) -> Option<f64> {
         let TypeSizeFile { pt } = match self {
             Self::Times(times) => return Some(times),
@@ -123,7 +123,7 @@ impl TextScaleFile {
         };
         let Some(print) = print else {
             let message = format!("type of {pt} pt needs a size in print, but this picture has one in pixels");
-            report.at(way, message, "give `size` in millimetres, such as { mm = [180, 101] }".to_owned());
+            report.at(path, message, "give `size` in millimetres, such as { mm = [180, 101] }".to_owned());
             return None;
         };
         let usual = print.points(TYPE * unit);
@@ -131,7 +131,7 @@ impl TextScaleFile {
         if !(least..=most).contains(&times) {
             let [low, high] = SCALES.map(|scale| rounded(scale * usual, 1));
             let message = format!("type of {pt} pt does not fit a picture of this size; expected {low} to {high} pt");
-            report.at(way, message, "change `pt` or `size`".to_owned());
+            report.at(path, message, "change `pt` or `size`".to_owned());
             return None;
         }
         Some(times)

@@ -9,8 +9,8 @@ use super::print::{SizeFile, TextScaleFile, unit};
 use super::subject::Subject;
 use super::typed::TypedColour;
 use super::view::{Camera, ColourScale, FontFiles, View, Visible};
+use crate::reading::collector::{Collector, Segment, key_path};
 use crate::reading::coordinates::vector;
-use crate::reading::report::{Report, Way, way};
 use crate::sim::Dimension;
 use crate::sim::geometry::is_inside;
 use crate::sim::words::rounded;
@@ -24,14 +24,14 @@ const LEAST_SIDE: u32 = 16;
 pub(crate) type TypedView = Map<String, Json>;
 
 /// A value as typed, if there is one.
-fn get<T: DeserializeOwned>(typed: &TypedView, key: &str, report: &mut Report<'_>) -> Option<T> {
+fn get<T: DeserializeOwned>(typed: &TypedView, key: &str, report: &mut Collector<'_>) -> Option<T> {
     let read = T::deserialize(typed.get(key)?);
     // The structure of the value is right, so an error is unexpected.
-    read.map_err(|error| report.at(&way!["view", key], error.to_string(), None)).ok()
+    read.map_err(|error| report.at(&key_path!["view", key], error.to_string(), None)).ok()
 }
 
 /// Sets a field to the typed value, if there is one.
-fn set<T: DeserializeOwned>(place: &mut T, typed: &TypedView, key: &str, report: &mut Report<'_>) {
+fn set<T: DeserializeOwned>(place: &mut T, typed: &TypedView, key: &str, report: &mut Collector<'_>) {
     if let Some(value) = get(typed, key, report) {
         *place = value;
     }
@@ -43,21 +43,21 @@ impl View {
         typed: &TypedView,
         scene: &Subject<'_>,
         font: FontFiles,
-        report: &mut Report<'_>,
+        report: &mut Collector<'_>,
     ) -> Option<Self> {
         let (body, panels, known) = (scene.body, scene.models.len(), report.total());
         let mut view = Self { side: scene.side, has_cells: scene.has_cells, ..Self::default() };
         view.camera = camera(&get(typed, "camera", report).unwrap_or_default(), scene, report)?;
         let size = get(typed, "size", report).unwrap_or(SizeFile::Pixels(view.size));
-        (view.size, view.print) = size.resolve(LEAST_SIDE, &way!["view", "size"], report)?;
+        (view.size, view.print) = size.resolve(LEAST_SIDE, &key_path!["view", "size"], report)?;
         view.columns = get(typed, "panels", report).map(|arranged| match arranged {
             PanelsFile::Columns(columns) => columns as usize,
             PanelsFile::Along(ArrangementFile::Row) => panels.max(1),
             PanelsFile::Along(ArrangementFile::Column) => 1,
         });
         if let Some(typed) = get::<ColourFile>(typed, "colour", report) {
-            let way = way!["view", "colour", "range"];
-            view.colour = Some(colour(&typed, std::slice::from_ref(scene), &way, report)?);
+            let path = key_path!["view", "colour", "range"];
+            view.colour = Some(colour(&typed, std::slice::from_ref(scene), &path, report)?);
         }
         view.visible = match get::<Vec<ShowFile>>(typed, "show", report) {
             Some(shown) => Visible {
@@ -76,7 +76,8 @@ impl View {
         }
         let panel = [view.size[0] / usual as u32, view.size[1] / panels.div_ceil(usual).max(1) as u32];
         let unit = unit(view.size, panel);
-        view.look.text_scale = text_scale.resolve(view.print.as_ref(), unit, &way!["view", "text_scale"], report)?;
+        view.look.text_scale =
+            text_scale.resolve(view.print.as_ref(), unit, &key_path!["view", "text_scale"], report)?;
         view.look.background = get::<TypedColour>(typed, "background", report).map(|colour| colour.0);
         set(&mut view.look.theme, typed, "theme", report);
         view.look.theme = Palette::theme_on(view.look.background, view.look.theme);
@@ -104,15 +105,15 @@ impl View {
 }
 
 /// The camera of a view, or `None` after a mistake in its target.
-fn camera(typed: &CameraFile, scene: &Subject<'_>, report: &mut Report<'_>) -> Option<Camera> {
+fn camera(typed: &CameraFile, scene: &Subject<'_>, report: &mut Collector<'_>) -> Option<Camera> {
     let dimension = scene.body.dimension;
     let given = [("azimuth", typed.azimuth), ("elevation", typed.elevation)];
     for (key, _) in given.iter().filter(|(_, value)| dimension == Dimension::Plane && value.is_some()) {
         let message = format!("`view.camera.{key}` is given, but a body in the plane is seen from the front");
-        report.at_key(&way!["view", "camera", *key], message, format!("remove `{key}`"));
+        report.at_key(&key_path!["view", "camera", *key], message, format!("remove `{key}`"));
     }
     let target = match &typed.target {
-        Some(target) => Some(vector(target, dimension, &way!["view", "camera", "target"], report)?),
+        Some(target) => Some(vector(target, dimension, &key_path!["view", "camera", "target"], report)?),
         None => None,
     };
     let chosen = framing::camera(typed, target, scene);
@@ -121,7 +122,7 @@ fn camera(typed: &CameraFile, scene: &Subject<'_>, report: &mut Report<'_>) -> O
         let [x, y, z] = chosen.eye().to_array().map(|length| rounded(length, 3));
         let message = format!("the camera is at [{x}, {y}, {z}], inside the body at its start");
         let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
-        report.at(&way!["view", "camera"], message, help);
+        report.at(&key_path!["view", "camera"], message, help);
     }
     Some(chosen)
 }
@@ -133,27 +134,27 @@ const NARROWEST: f64 = 1e-9;
 pub(crate) fn colour(
     typed: &ColourFile,
     scenes: &[Subject<'_>],
-    way: &[Way<'_>; 3],
-    report: &mut Report<'_>,
+    path: &[Segment<'_>; 3],
+    report: &mut Collector<'_>,
 ) -> Option<ColourScale> {
     let range = match typed.range {
-        Some(range) => rising(range, way, report)?,
+        Some(range) => rising(range, path, report)?,
         None => [0.0, scenes.iter().fold(0.0, |most: f64, scene| most.max(scene.largest(typed.by)))],
     };
     Some(ColourScale { field: typed.by, range, map: typed.map })
 }
 
 /// The ends of a scale, if they rise and differ enough.
-fn rising([low, high]: [f64; 2], way: &[Way<'_>; 3], report: &mut Report<'_>) -> Option<[f64; 2]> {
-    let keys = way.iter().filter_map(|step| if let Way::Key(key) = step { Some(*key) } else { None });
+fn rising([low, high]: [f64; 2], path: &[Segment<'_>; 3], report: &mut Collector<'_>) -> Option<[f64; 2]> {
+    let keys = path.iter().filter_map(|step| if let Segment::Key(key) = step { Some(*key) } else { None });
     let name = keys.collect::<Vec<_>>().join(".");
     if low >= high {
-        report.at(way, format!("`{name}` runs from {low} to {high}; expected a rising range"), None);
+        report.at(path, format!("`{name}` runs from {low} to {high}; expected a rising range"), None);
         return None;
     }
     if high - low < NARROWEST * low.abs().max(high.abs()) {
         let message = format!("`{name}` from {low} to {high} is too narrow for its numbers");
-        report.at(way, message, "move its ends apart".to_owned());
+        report.at(path, message, "move its ends apart".to_owned());
         return None;
     }
     Some([low, high])

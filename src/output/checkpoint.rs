@@ -23,7 +23,7 @@ const ANY_MARK: &[u8] = b"localshape checkpoint ";
 
 /// The output of a command in the folder of a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub(crate) struct Plan {
+pub(crate) struct Manifest {
     /// Names of the runs, in the scene's order.
     pub runs: Vec<String>,
     /// Numbers of the frames, rising.
@@ -39,8 +39,8 @@ pub(crate) struct Plan {
 pub(crate) struct Checkpoint {
     /// The command line.
     pub(crate) command: Vec<String>,
-    /// Digest of the plan.
-    plan: [u8; 32],
+    /// Digest of the manifest.
+    manifest: [u8; 32],
     /// The simulation.
     pub(crate) progress: Progress,
     /// The known cause of the divergence of each run.
@@ -52,9 +52,9 @@ pub(crate) struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// The checkpoint of a command with a plan.
-    pub(crate) fn new(command: Vec<String>, plan: &Plan, progress: Progress) -> Self {
-        Self { command, plan: digest(plan), progress, causes: Vec::new(), rows: None, course: None }
+    /// The checkpoint of a command with a manifest.
+    pub(crate) fn new(command: Vec<String>, manifest: &Manifest, progress: Progress) -> Self {
+        Self { command, manifest: digest(manifest), progress, causes: Vec::new(), rows: None, course: None }
     }
 
     /// Writes the checkpoint into a folder, replacing an earlier one. The files that it refers to must be on the disk.
@@ -74,14 +74,14 @@ impl Checkpoint {
     ///
     /// # Errors
     /// If it cannot be read, is damaged, or belongs to another version, scene or command.
-    pub(super) fn read(folder: &Path, whose: &Whose, plan: &Plan) -> Result<Option<Self>, OutputError> {
+    pub(super) fn read(folder: &Path, whose: &Whose, manifest: &Manifest) -> Result<Option<Self>, OutputError> {
         let path = folder.join(CHECKPOINT_FILE);
         let Some(bytes) = read_file(&path)? else { return Ok(None) };
-        let found = Self::parse(&bytes, whose, plan);
+        let found = Self::parse(&bytes, whose, manifest);
         found.map(Some).map_err(|what| OutputError::Checkpoint { path: folder.to_owned(), what: what.into() })
     }
 
-    fn parse(bytes: &[u8], whose: &Whose, plan: &Plan) -> Result<Self, String> {
+    fn parse(bytes: &[u8], whose: &Whose, manifest: &Manifest) -> Result<Self, String> {
         let damaged = || "is damaged or cut short".to_owned();
         if bytes.starts_with(ANY_MARK) && bytes.len() > MARK.len() && !bytes.starts_with(MARK) {
             return Err("was written by another version of localshape".to_owned());
@@ -96,7 +96,7 @@ impl Checkpoint {
             return Err(why);
         }
         let found: Self = postcard::from_bytes(rest).map_err(|_| damaged())?;
-        if found.plan != digest(plan) {
+        if found.manifest != digest(manifest) {
             return Err(format!(
                 "belongs to a command with other frames, runs, states or size; to go on from it, type that command with --resume: {}",
                 super::shell::line(&found.command)
@@ -124,8 +124,8 @@ pub(crate) fn waiting_states(folder: &Path) -> PathBuf {
     folder.join(".localshape-frames.partial")
 }
 
-fn digest(plan: &Plan) -> [u8; 32] {
-    Sha256::digest(postcard::to_allocvec(plan).expect("plain data")).into()
+fn digest(manifest: &Manifest) -> [u8; 32] {
+    Sha256::digest(postcard::to_allocvec(manifest).expect("plain data")).into()
 }
 
 #[cfg(test)]
@@ -136,31 +136,31 @@ mod tests {
         Whose { digest: "ab".repeat(32), title: "Cubes".to_owned(), file: None }
     }
 
-    fn plan() -> Plan {
-        Plan { runs: vec!["one".to_owned()], frames: vec![0, 1, 2], states: false, size: None }
+    fn manifest() -> Manifest {
+        Manifest { runs: vec!["one".to_owned()], frames: vec![0, 1, 2], states: false, size: None }
     }
 
     #[test]
     fn it_comes_back_and_is_refused_when_cut_short_or_changed() {
         let folder = tempfile::tempdir().unwrap();
-        let read = || Checkpoint::read(folder.path(), &whose(), &plan());
+        let read = || Checkpoint::read(folder.path(), &whose(), &manifest());
         assert!(read().unwrap().is_none());
         let words = vec!["localshape".to_owned(), "render".to_owned()];
-        Checkpoint::new(words.clone(), &plan(), Progress::default()).write(folder.path(), &whose()).unwrap();
+        Checkpoint::new(words.clone(), &manifest(), Progress::default()).write(folder.path(), &whose()).unwrap();
         assert_eq!(read().unwrap().expect("a checkpoint").command, words);
         let path = folder.path().join(CHECKPOINT_FILE);
         let bytes = std::fs::read(&path).unwrap();
         for cut in 0..bytes.len() {
-            assert!(Checkpoint::parse(&bytes[..cut], &whose(), &plan()).unwrap_err().contains("damaged"), "{cut}");
+            assert!(Checkpoint::parse(&bytes[..cut], &whose(), &manifest()).unwrap_err().contains("damaged"), "{cut}");
         }
         for at in 0..bytes.len() {
             let mut changed = bytes.clone();
             changed[at] ^= 1;
             let is_version = (ANY_MARK.len()..MARK.len()).contains(&at);
             let words = if is_version { "another version of localshape" } else { "damaged" };
-            assert!(Checkpoint::parse(&changed, &whose(), &plan()).unwrap_err().contains(words), "{at}");
+            assert!(Checkpoint::parse(&changed, &whose(), &manifest()).unwrap_err().contains(words), "{at}");
         }
-        let other = Plan { frames: vec![0, 1], ..plan() };
+        let other = Manifest { frames: vec![0, 1], ..manifest() };
         let what = Checkpoint::parse(&bytes, &whose(), &other).unwrap_err();
         assert!(what.starts_with("belongs to a command with other frames, runs, states or size; to go on"), "{what}");
         assert!(what.ends_with("with --resume: localshape render"), "{what}");
@@ -172,7 +172,7 @@ mod tests {
     fn one_of_another_version_or_scene_is_refused() {
         let of = |origin: Origin| {
             let rest = postcard::to_allocvec(&origin).unwrap();
-            Checkpoint::parse(&[MARK, &Sha256::digest(&rest), &rest].concat(), &whose(), &plan()).unwrap_err()
+            Checkpoint::parse(&[MARK, &Sha256::digest(&rest), &rest].concat(), &whose(), &manifest()).unwrap_err()
         };
         let older = Origin { version: "0.0.1".to_owned(), ..Origin::of(&whose()) };
         assert!(of(older).starts_with("was written by localshape 0.0.1, and this is "));

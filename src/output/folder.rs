@@ -1,7 +1,7 @@
 //! Ownership of output folders: a folder belongs to one scene, and files of other programs are never removed.
 
 use super::atomic::{remove, remove_leftovers};
-use super::checkpoint::{Checkpoint, Plan};
+use super::checkpoint::{Checkpoint, Manifest};
 use super::error::kind_of;
 use super::frame_name::frame_number;
 use super::{
@@ -52,7 +52,7 @@ pub(crate) struct Access {
 pub(crate) struct Folder {
     path: PathBuf,
     scene: Whose,
-    plan: Plan,
+    manifest: Manifest,
     access: Access,
     /// The results that are replaced without `--overwrite`, in words.
     replaced: Option<String>,
@@ -67,12 +67,12 @@ impl Folder {
     ///
     /// # Errors
     /// If the folder cannot be read, is refused or is not a folder.
-    pub(crate) fn inspect(path: &Path, scene: Whose, plan: Plan, access: Access) -> Result<Self, OutputError> {
-        let mut folder = Self { path: path.to_owned(), scene, plan, access, replaced: None };
+    pub(crate) fn inspect(path: &Path, scene: Whose, manifest: Manifest, access: Access) -> Result<Self, OutputError> {
+        let mut folder = Self { path: path.to_owned(), scene, manifest, access, replaced: None };
         if is_folder(path)? {
             FolderLock::check(path)?;
             if access.resume {
-                Checkpoint::read(path, &folder.scene, &folder.plan)?;
+                Checkpoint::read(path, &folder.scene, &folder.manifest)?;
             }
             folder.replaced = folder.find()?.hindrance.filter(|_| !access.overwrite);
         }
@@ -81,7 +81,7 @@ impl Folder {
 
     /// The results in the folder, if they do not prevent its use.
     fn find(&self) -> Result<Found, OutputError> {
-        let mut found = Found::in_folder(&self.path, &self.scene, &self.plan)?;
+        let mut found = Found::in_folder(&self.path, &self.scene, &self.manifest)?;
         let Access { overwrite, follows, resume, shard } = self.access;
         if found.hindrance.is_none() && !resume && !shard && Checkpoint::is_in(&self.path) {
             found.hindrance = Some("the checkpoint of an interrupted command, from which --resume goes on".to_owned());
@@ -98,8 +98,8 @@ impl Folder {
     }
 
     /// The planned output, and its scene.
-    pub(crate) fn contents(&self) -> (&Plan, &Whose) {
-        (&self.plan, &self.scene)
+    pub(crate) fn contents(&self) -> (&Manifest, &Whose) {
+        (&self.manifest, &self.scene)
     }
 
     /// Whether only the frames of a shard are written.
@@ -118,7 +118,7 @@ impl Folder {
     /// checkpoint to continue from and its files.
     ///
     /// # Errors
-    /// If the folder cannot be created or written to, or its checkpoint does not belong to the plan; and the errors of
+    /// If the folder cannot be created or written to, or its checkpoint does not belong to the manifest; and the errors of
     /// [`Self::inspect`], which is repeated because the folder may have changed before it was locked.
     pub(crate) fn prepare(self, summary: &Summary) -> Result<Claimed, OutputError> {
         fs::create_dir_all(&self.path).map_err(OutputError::writing(&self.path))?;
@@ -126,7 +126,7 @@ impl Folder {
             return self.prepare_shared(summary);
         }
         let lock = FolderLock::alone(&self.path)?;
-        let read = || Checkpoint::read(&self.path, &self.scene, &self.plan);
+        let read = || Checkpoint::read(&self.path, &self.scene, &self.manifest);
         let checkpoint = if self.access.resume { read()? } else { None };
         let found = self.find()?;
         if checkpoint.is_none() {
@@ -151,7 +151,7 @@ impl Folder {
 
     /// Removes leftovers of killed processes that wrote the same files.
     fn remove_leftovers(&self) -> Result<(), OutputError> {
-        let Plan { frames, size, .. } = &self.plan;
+        let Manifest { frames, size, .. } = &self.manifest;
         remove_leftovers(&self.path, if size.is_some() { frames } else { &[] }, !self.access.shard)
     }
 }
@@ -203,7 +203,7 @@ struct Found {
 }
 
 impl Found {
-    fn in_folder(path: &Path, scene: &Whose, plan: &Plan) -> Result<Self, OutputError> {
+    fn in_folder(path: &Path, scene: &Whose, manifest: &Manifest) -> Result<Self, OutputError> {
         let owner = Owner::read(&path.join(SUMMARY_FILE))?;
         let version = owner.as_ref().filter(|owner| !scene.owns(&owner.digest) && owner.is_of_file(scene, path));
         let (mut others, mut versions, mut foreign) = (Vec::new(), Vec::new(), Vec::new());
@@ -239,7 +239,7 @@ impl Found {
                 Some(_) => {
                     let Some((size, tags)) = frame else { continue };
                     let runs = tags.states.iter().map(|(_, run)| run);
-                    if plan.size.is_some_and(|own| own != size || !runs.clone().eq(&plan.runs)) {
+                    if manifest.size.is_some_and(|own| own != size || !runs.clone().eq(&manifest.runs)) {
                         let runs: Vec<_> = runs.map(|run| format!("“{run}”")).collect();
                         unlike_words = format!("{}×{} pixels with {}", size[0], size[1], runs.join(", "));
                         unlike.push(path);
@@ -327,8 +327,8 @@ mod tests {
         };
         let (one, other) = (scene("one", 1.0), scene("other", 2.0));
         let place = tempfile::tempdir().unwrap();
-        let plan = Plan { runs: Vec::new(), frames: Vec::new(), states: false, size: None };
-        let inspect = |scene, access| Folder::inspect(place.path(), Whose::of(scene), plan.clone(), access);
+        let manifest = Manifest { runs: Vec::new(), frames: Vec::new(), states: false, size: None };
+        let inspect = |scene, access| Folder::inspect(place.path(), Whose::of(scene), manifest.clone(), access);
         let summary = Summary::new(&one, &[0], 0, &[]);
         inspect(&one, Access::default()).unwrap().prepare(&summary).unwrap();
         for follows in [false, true] {

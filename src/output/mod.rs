@@ -25,7 +25,7 @@ mod summary;
 mod timing;
 
 pub(crate) use atomic::{AtomicFile, folder_of, open_growing, write_whole};
-pub(crate) use checkpoint::{Checkpoint, Plan, waiting_states};
+pub(crate) use checkpoint::{Checkpoint, Manifest, waiting_states};
 pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
 pub(crate) use digest::state_digest;
 pub(crate) use error::{OutputError, is_folder, read_file};

@@ -18,12 +18,12 @@ pub(crate) struct StoredStates {
     path: PathBuf,
     npz: Npz,
     course: Course,
-    runs: Vec<Place>,
+    runs: Vec<RunArrays>,
 }
 
 /// The arrays of a run.
 #[derive(Debug)]
-struct Place {
+struct RunArrays {
     /// Its index in the course.
     run: usize,
     /// Positions, velocities and memory.
@@ -82,7 +82,7 @@ fn course(npz: &mut Npz, scene: &Scene) -> Result<Course, String> {
 }
 
 /// The arrays of a run of the scene.
-fn place(npz: &mut Npz, course: &Course, scene: &Scene, run: usize) -> Result<Place, String> {
+fn place(npz: &mut Npz, course: &Course, scene: &Scene, run: usize) -> Result<RunArrays, String> {
     let name = &scene.runs[run].name;
     let Some(run) = course.runs.iter().position(|stored| stored.name == *name) else {
         let names: Vec<_> = course.runs.iter().map(|run| format!("“{}”", run.name)).collect();
@@ -107,7 +107,7 @@ fn place(npz: &mut Npz, course: &Course, scene: &Scene, run: usize) -> Result<Pl
     if stored.digests.len() != course.frames.len() {
         return Err(format!("is damaged: its entry for “{name}” does not fit its frames"));
     }
-    Ok(Place { run, arrays })
+    Ok(RunArrays { run, arrays })
 }
 
 /// Refuses frames that the course does not have.
@@ -131,7 +131,7 @@ fn only(history: &mut History, runs: &[usize]) {
 impl Stored for StoredStates {
     fn state(&mut self, place: usize, frame: u64, steps: u64) -> io::Result<State> {
         let Self { npz, course, runs, .. } = self;
-        let Place { run, arrays } = &runs[place];
+        let RunArrays { run, arrays } = &runs[place];
         let stored = &course.runs[*run];
         let damaged = |what: &str| {
             io::Error::new(io::ErrorKind::InvalidData, format!("frame {frame} of “{}” {what}", stored.name))

@@ -1,6 +1,6 @@
 //! Points and vectors as typed.
 
-use super::report::{Report, Way, written};
+use super::collector::{Collector, Segment, written};
 use crate::sim::Dimension;
 use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
@@ -33,8 +33,8 @@ impl From<DVec3> for Coordinates {
 pub(crate) fn vector(
     typed: &Coordinates,
     dimension: Dimension,
-    path: &[Way<'_>],
-    report: &mut Report<'_>,
+    path: &[Segment<'_>],
+    report: &mut Collector<'_>,
 ) -> Option<DVec3> {
     match (typed.0.as_slice(), dimension) {
         (&[x, y, z], Dimension::Space) => Some(DVec3::new(x, y, z)),
@@ -52,7 +52,7 @@ pub(crate) fn vector(
 }
 
 /// A vector scaled to unit length. A zero vector is a mistake.
-pub(crate) fn direction(vector: DVec3, path: &[Way<'_>], report: &mut Report<'_>) -> Option<DVec3> {
+pub(crate) fn direction(vector: DVec3, path: &[Segment<'_>], report: &mut Collector<'_>) -> Option<DVec3> {
     // The largest coordinate is divided out first: squares of very small or large numbers leave the range of double
     // precision.
     let largest = vector.abs().max_element();

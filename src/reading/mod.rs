@@ -1,9 +1,9 @@
 //! Reading files: mistakes with line and column, words for messages, files beside a scene.
 
 pub(crate) mod beside;
+pub(crate) mod collector;
 pub(crate) mod coordinates;
 mod mistake;
-pub(crate) mod report;
 pub(crate) mod setting;
 pub(crate) mod source;
 pub(crate) mod words;

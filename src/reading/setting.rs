@@ -1,6 +1,6 @@
 //! Values that a command sets in place of values in a file: `run[0].model.stiffness=1e4`.
 
-use super::report::Report;
+use super::collector::Collector;
 use super::words::{found, list, nearest, quoted, shortened};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -110,7 +110,7 @@ pub(crate) struct Wrong {
 
 impl Wrong {
     /// Reports the mistake, unless one in the same setting is known, such as an unknown key.
-    pub(crate) fn report(self, report: &mut Report<'_>) {
+    pub(crate) fn report(self, report: &mut Collector<'_>) {
         if !report.has_mistake_in_line_of(self.span.start) {
             report.at_span(self.span, &[], self.message, self.help);
         }

@@ -2,13 +2,13 @@
 
 use super::error::SceneError;
 use super::limits::Limits;
-use super::resolve::Parts;
+use super::resolve::SceneParts;
 use super::schema::SCHEMA;
-use super::structure::Checked;
+use super::structure::ValidFile;
 use super::{Scene, structure};
 use crate::reading::Mistakes;
 use crate::reading::beside::{in_folders, similar};
-use crate::reading::report::{Report, mistake, way};
+use crate::reading::collector::{Collector, key_path, mistake};
 use crate::reading::setting::{Setting, Wrong};
 use crate::reading::source::Source;
 use crate::reading::words::quoted;
@@ -72,7 +72,7 @@ impl Scene {
     pub(super) fn read(document: Document<'_>, folder: &Path, limits: &Limits) -> Result<Self, SceneError> {
         let name = stem(Path::new(document.name)).unwrap_or_else(|| "scene".into());
         checked(document, &SCHEMA, FIGURE, |checked, report| {
-            Ok(Parts::new(&checked, folder, limits, report).scene(&name, limits, report))
+            Ok(SceneParts::new(&checked, folder, limits, report).scene(&name, limits, report))
         })
     }
 }
@@ -121,7 +121,7 @@ pub(super) fn checked<T>(
     document: Document<'_>,
     schema: &Value,
     other: Other,
-    resolve: impl FnOnce(Checked, &mut Report<'_>) -> Result<Option<T>, SceneError>,
+    resolve: impl FnOnce(ValidFile, &mut Collector<'_>) -> Result<Option<T>, SceneError>,
 ) -> Result<T, SceneError> {
     let Document { text, name, settings } = document;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -138,9 +138,9 @@ pub(super) fn checked<T>(
     settings.iter().for_each(|setting| whole.to_mut().extend(["\n", OPTION, setting.text()]));
     let source = Source::with_settings(&whole, text.len());
     let (root, wrong) = set(root, settings, &whole, text.len());
-    let mut report = Report::new(&source, root.get_ref());
+    let mut report = Collector::new(&source, root.get_ref());
     if let Some(key) = other.keys.iter().find(|key| root.get_ref().contains_key(**key)) {
-        report.at_key(&way![*key], other.message, None);
+        report.at_key(&key_path![*key], other.message, None);
         return Err(SceneError::Mistakes(report.finish(name)));
     }
     let checked = structure::check(schema, root.get_ref(), &mut report);

@@ -56,10 +56,6 @@ impl Findings {
     }
 }
 
-/// The studies whose findings have no pages, so that no graphics device is needed.
-#[cfg(feature = "render")]
-const WITHOUT_PAGES: [&str; 2] = ["ratio", "stress"];
-
 /// Options of all studies.
 #[derive(Args, Debug)]
 pub(crate) struct Options {
@@ -90,9 +86,9 @@ pub(crate) fn make(study: &dyn Study, threads: usize, options: &Options) -> Resu
     let (name, command) = (study.name(), study.command());
     let path = options.out.clone().unwrap_or_else(|| format!("output/study-{name}").into());
     let folder = Folder::new(path, name, &command, options.overwrite)?;
-    // A missing adapter is told before anything is measured.
+    // A missing adapter is reported before the measurement. These two studies draw no pages.
     #[cfg(feature = "render")]
-    let gpu = (!WITHOUT_PAGES.contains(&name)).then(|| localshape::Gpu::new(&options.adapter)).transpose();
+    let gpu = (!["ratio", "stress"].contains(&name)).then(|| localshape::Gpu::new(&options.adapter)).transpose();
     #[cfg(feature = "render")]
     let gpu = gpu.map_err(|error| Failure::adapter(error.to_string()))?;
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();

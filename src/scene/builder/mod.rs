@@ -23,14 +23,14 @@ use super::file::{
     BodyFile, Coordinates, GrabFile, HoldFile, ModelFile, MotionPath, NodesFile, RegionFile, RunFile, SceneFile,
     StepFile, TimeFile,
 };
-use super::resolve::Parts;
+use super::resolve::SceneParts;
 use super::resolve::lists::check_unwritten;
 use super::schema::SCHEMA_OF_CODE;
 use super::step::NamedStep;
 use super::{Limits, Scene, structure};
 use crate::look::typed::TypedColour;
 use crate::look::{Colour, Theme, TypedView};
-use crate::reading::report::Report;
+use crate::reading::collector::Collector;
 use crate::reading::source::Source;
 use crate::reading::{Mistake, Mistakes};
 use crate::sim::model::{ElasticModel, ModelParameters};
@@ -210,7 +210,7 @@ impl SceneBuilder {
         let tree = tree(values, &mut digits.iter());
         let DeValue::Table(root) = tree.into_inner() else { unreachable!("a scene is a table") };
         let source = Source::new("");
-        let mut report = Report::new(&source, &root);
+        let mut report = Collector::new(&source, &root);
         let checked = structure::check(&SCHEMA_OF_CODE, &root, &mut report);
         let before = report.total();
         if lists.nodes.is_some() {
@@ -218,7 +218,7 @@ impl SceneBuilder {
             check_unwritten(&file.body, &mut report);
         }
         let is_flawed = report.total() > before;
-        match Parts::of(file, &checked, is_flawed).scene(&name, limits, &mut report) {
+        match SceneParts::of(file, &checked, is_flawed).scene(&name, limits, &mut report) {
             Some(scene) if report.total() == 0 => {
                 let warnings = scene.warnings.into_iter().map(Mistake::without_text).collect();
                 Ok(Scene { warnings, ..scene })

@@ -4,9 +4,9 @@ use super::file::{ColumnFile, FigureFile, ForcesFile, NumbersFile, RowFile, Shee
 use super::{Column, Content, Figure, Forces, Row, Sheet};
 use crate::look::print::{unit, unit_of_sheet};
 use crate::look::{self, Subject};
-use crate::reading::report::{Report, Way, way};
+use crate::reading::collector::{Collector, Segment, key_path};
 use crate::reading::words::{list, quoted};
-use crate::scene::structure::Checked;
+use crate::scene::structure::ValidFile;
 use crate::scene::{Scene, SceneError};
 use crate::sim::Diagnostic;
 use crate::sim::words::typed;
@@ -22,11 +22,11 @@ type Reader<'a> = &'a dyn Fn(&Path) -> Result<Scene, SceneError>;
 
 /// The figure of a checked file.
 pub(super) fn resolve(
-    checked: Checked,
+    checked: ValidFile,
     name: &str,
     folder: &Path,
     scene: Reader<'_>,
-    report: &mut Report<'_>,
+    report: &mut Collector<'_>,
 ) -> Result<Option<Figure>, SceneError> {
     if report.total() > 0 {
         return Ok(None);
@@ -49,11 +49,11 @@ pub(super) fn resolve(
     let first = match &content {
         Content::Sheet(Sheet { scenes, .. }) | Content::Forces(Forces { scenes, .. }) => &scenes[0],
     };
-    let Some((size, print)) = file.size.resolve(LEAST_SIDE, &way!["size"], report) else { return Ok(None) };
+    let Some((size, print)) = file.size.resolve(LEAST_SIDE, &key_path!["size"], report) else { return Ok(None) };
     if size.iter().any(|&side| side < LEAST_SIDE) {
         let [width, height] = size;
         let message = format!("`size` is {width} × {height}; expected {LEAST_SIDE} to 16384 pixels a side");
-        report.at(&way!["size"], message, None);
+        report.at(&key_path!["size"], message, None);
         return Ok(None);
     }
     let unit = match &content {
@@ -64,7 +64,7 @@ pub(super) fn resolve(
         }
     };
     let text_scale = match file.text_scale {
-        Some(typed) => match typed.resolve(print.as_ref(), unit, &way!["text_scale"], report) {
+        Some(typed) => match typed.resolve(print.as_ref(), unit, &key_path!["text_scale"], report) {
             None => return Ok(None),
             times => times,
         },
@@ -86,14 +86,14 @@ pub(super) fn resolve(
 struct Scenes<'a, 'r, 't> {
     folder: &'a Path,
     read: Reader<'a>,
-    report: &'r mut Report<'t>,
+    report: &'r mut Collector<'t>,
     scenes: Vec<Scene>,
     places: HashMap<PathBuf, usize>,
 }
 
 impl Scenes<'_, '_, '_> {
     /// The index of the scene named at `path` in the file; `None` after reporting a mistake.
-    fn scene(&mut self, named: &str, path: &[Way<'_>]) -> Result<Option<usize>, SceneError> {
+    fn scene(&mut self, named: &str, path: &[Segment<'_>]) -> Result<Option<usize>, SceneError> {
         let file = self.folder.join(named);
         if let Some(&place) = self.places.get(&file) {
             return Ok(Some(place));
@@ -114,7 +114,7 @@ impl Scenes<'_, '_, '_> {
     }
 
     fn sheet(mut self, file: SheetFile) -> Result<Option<Sheet>, SceneError> {
-        let at = |key: &'static str| way!["sheet", key];
+        let at = |key: &'static str| key_path!["sheet", key];
         let before = self.report.total();
         let are_moments = file.moments.is_some();
         let columns = match file.moments {
@@ -141,7 +141,7 @@ impl Scenes<'_, '_, '_> {
         };
         let mut resolved = Vec::new();
         for (index, column) in columns.into_iter().enumerate() {
-            let path = way!["sheet", "column", index, "scene"];
+            let path = key_path!["sheet", "column", index, "scene"];
             let scene = match (&column.scene, &file.scene) {
                 (Some(named), _) => self.scene(named, &path)?,
                 (None, Some(_)) => usual,
@@ -171,12 +171,12 @@ impl Scenes<'_, '_, '_> {
         for (index, strip) in file.strips.iter().enumerate() {
             if let Some(why) = self.scenes.iter().map(|scene| scene.lacks(*strip)).reduce(Option::and).flatten() {
                 let message = format!("`sheet.strips[{index}]` is {}, which no run has", quoted(&typed(strip)));
-                self.report.at(&way!["sheet", "strips", index], message, why);
+                self.report.at(&key_path!["sheet", "strips", index], message, why);
             }
         }
         self.check_times(&file.strips, file.from, file.split, &resolved);
         if let Some(index) = rows.iter().position(|row| row.time.is_some()).filter(|_| !file.strips.is_empty()) {
-            let path = way!["sheet", "row", index, "time"];
+            let path = key_path!["sheet", "row", index, "time"];
             let message = "strips mark the moments of columns, but here a row has one of its own";
             self.report.at_key(&path, message, "leave out `sheet.strips`, or give the moments of columns");
         }
@@ -191,8 +191,8 @@ impl Scenes<'_, '_, '_> {
         share_lines(&mut scenes);
         if let Some(typed) = &file.colour {
             let subjects: Vec<_> = scenes.iter().map(subject).collect();
-            let way = way!["sheet", "colour", "range"];
-            let scale = look::colour(typed, &subjects, &way, report);
+            let path = key_path!["sheet", "colour", "range"];
+            let scale = look::colour(typed, &subjects, &path, report);
             scenes.iter_mut().for_each(|scene| scene.view.colour = scale);
         }
         let sheet = Sheet {
@@ -209,7 +209,7 @@ impl Scenes<'_, '_, '_> {
 
     /// Whether the time axis includes its start, the change of its scale, and the moments of columns.
     fn check_times(&mut self, strips: &[Diagnostic], from: Option<f64>, split: Option<f64>, columns: &[Column]) {
-        let at = |key: &'static str| way!["sheet", key];
+        let at = |key: &'static str| key_path!["sheet", key];
         for (key, _) in [("from", from), ("split", split)].iter().filter(|(_, time)| time.is_some()) {
             if strips.is_empty() {
                 self.report.at_key(&at(key), format!("`sheet.{key}` is about strips, but there are none"), None);
@@ -235,7 +235,7 @@ impl Scenes<'_, '_, '_> {
     /// Whether each cell has a run and a moment.
     fn check_cells(&mut self, rows: &[RowFile], columns: &[Column], are_moments: bool) {
         for (index, row) in rows.iter().enumerate() {
-            let path = |key: &'static str| way!["sheet", "row", index, key];
+            let path = |key: &'static str| key_path!["sheet", "row", index, key];
             for scene in &self.scenes {
                 if !scene.runs.iter().any(|run| run.name == row.run) {
                     let (message, help) = scene.no_run(&row.run);
@@ -248,16 +248,16 @@ impl Scenes<'_, '_, '_> {
         }
         let timed = rows.iter().position(|row| row.time.is_some());
         if let Some(index) = timed.filter(|_| columns.iter().any(|column| column.time.is_some())) {
-            let path = way!["sheet", "row", index, "time"];
+            let path = key_path!["sheet", "row", index, "time"];
             let message = "both a row and a column give the moment of the same picture";
             self.report.at_key(&path, message, "keep the moments of either rows or columns");
         }
         let timeless = rows.iter().find(|row| row.time.is_none());
         for (index, column) in columns.iter().enumerate() {
             let scene = &self.scenes[column.scene];
-            let path = |key: &'static str| way!["sheet", "column", index, key];
+            let path = |key: &'static str| key_path!["sheet", "column", index, key];
             if column.time.is_some_and(|time| time > end(scene)) {
-                let moments = way!["sheet", "moments", index];
+                let moments = key_path!["sheet", "moments", index];
                 let place: &[_] = if are_moments { &moments } else { &path("time") };
                 self.report.at(place, too_late(scene), None);
             }
@@ -270,7 +270,7 @@ impl Scenes<'_, '_, '_> {
 
     fn forces(mut self, file: ForcesFile) -> Result<Option<Forces>, SceneError> {
         let before = self.report.total();
-        let path = |index: usize| way!["forces", "scenes", index];
+        let path = |index: usize| key_path!["forces", "scenes", index];
         for (index, named) in file.scenes.iter().enumerate() {
             if self.scene(named, &path(index))?.is_some_and(|place| place < index) {
                 self.report.at(&path(index), "this scene is named a second time", None);
@@ -295,17 +295,17 @@ impl Scenes<'_, '_, '_> {
             let place = runs.iter().position(|run| *run == name);
             if place.is_none() {
                 let (message, help) = self.scenes[0].no_run(&name);
-                self.report.at(&way!["forces", "compare"], message, help);
+                self.report.at(&key_path!["forces", "compare"], message, help);
             }
             place
         });
         if file.notes.len() > runs.len() {
             let message = format!("there are more notes ({}) than runs ({})", file.notes.len(), runs.len());
-            self.report.at(&way!["forces", "notes"], message, "expected one for each at most");
+            self.report.at(&key_path!["forces", "notes"], message, "expected one for each at most");
         }
         if runs.len() == 1 && compare.is_some() {
             let message = "there is a single run, and nothing to compare it with";
-            self.report.at_key(&way!["forces", "compare"], message, None);
+            self.report.at_key(&key_path!["forces", "compare"], message, None);
         }
         let stiffness = self.scenes[0].runs[0].model.stiffness();
         for (index, scene) in self.scenes.iter().enumerate() {
@@ -322,7 +322,7 @@ impl Scenes<'_, '_, '_> {
         if file.vectors && (file.numbers == NumbersFile::Force || runs.len() > 1) {
             let message = "vectors are drawn for one run, and without numbers";
             let help = "leave one run in the scenes, and write `numbers = \"none\"`".to_owned();
-            self.report.at_key(&way!["forces", "vectors"], message, help);
+            self.report.at_key(&key_path!["forces", "vectors"], message, help);
         }
         let side = self.scenes[0].view.side;
         if let Some(index) = self

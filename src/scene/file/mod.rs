@@ -15,7 +15,6 @@ pub use motion::{MotionPath, Swing};
 pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};
 
 use super::step::NamedStep;
-use super::structure::LARGEST;
 use crate::look::typed::TypedColour;
 use crate::look::{TypedView, View};
 pub use crate::reading::coordinates::Coordinates;
@@ -25,6 +24,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// The largest accepted magnitude of a number (SI). Squares and volumes of larger ones leave the range of double
+/// precision.
+pub(super) const LARGEST: f64 = 1e30;
 
 /// A scene: one body, one world, and several runs with one elastic model each.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]

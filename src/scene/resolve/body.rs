@@ -3,7 +3,7 @@
 use super::lists::{Lists, check_count, check_exclusive};
 use super::motion::axis;
 use super::{direction, elements, vector};
-use crate::reading::report::{Report, Way, way};
+use crate::reading::collector::{Collector, Segment, key_path};
 use crate::reading::words::quoted;
 use crate::scene::file::{BodyFile, Cells, Coordinates, Lattice, RunFile, SideFile, StartShape};
 use crate::scene::generate::{Generator, Made, brought_to_start};
@@ -44,7 +44,7 @@ pub(super) fn resolve(
     flawed: bool,
     runs: &[Option<RunFile>],
     limits: &Limits,
-    report: &mut Report<'_>,
+    report: &mut Collector<'_>,
 ) -> Option<ResolvedBody> {
     match Generator::of(file) {
         Some(generator) => generated(file, generator, runs, limits, report),
@@ -63,17 +63,17 @@ fn generated(
     generator: Generator<'_>,
     runs: &[Option<RunFile>],
     limits: &Limits,
-    report: &mut Report<'_>,
+    report: &mut Collector<'_>,
 ) -> Option<ResolvedBody> {
     let before = report.total();
     let dimension = generator.dimension();
     let along = check_generator(generator, report);
     let (path, less) = match generator {
-        Generator::Lattice(_) => (way!["body", "lattice", "cells"].to_vec(), "use fewer cells"),
-        Generator::Polygon(_) => (way!["body", "polygon", "sides"].to_vec(), "use fewer sides"),
-        Generator::Fan(_) => (way!["body", "fan", "sides"].to_vec(), "use fewer sides"),
-        Generator::Disc(_) => (way!["body", "disc"].to_vec(), "use fewer rings or sectors"),
-        Generator::Bars(_) => (way!["body", "bars", "count"].to_vec(), "use fewer bars"),
+        Generator::Lattice(_) => (key_path!["body", "lattice", "cells"].to_vec(), "use fewer cells"),
+        Generator::Polygon(_) => (key_path!["body", "polygon", "sides"].to_vec(), "use fewer sides"),
+        Generator::Fan(_) => (key_path!["body", "fan", "sides"].to_vec(), "use fewer sides"),
+        Generator::Disc(_) => (key_path!["body", "disc"].to_vec(), "use fewer rings or sectors"),
+        Generator::Bars(_) => (key_path!["body", "bars", "count"].to_vec(), "use fewer bars"),
     };
     if let Some(Excess { message, help, run }) = generator.size().beyond(runs, limits, less) {
         match run {
@@ -97,8 +97,8 @@ fn generated(
 
 /// Checks of a generator that the schema cannot express. Returns the direction of bars; that of other generators has no
 /// meaning.
-fn check_generator(generator: Generator<'_>, report: &mut Report<'_>) -> Option<DVec3> {
-    let at = |key, inner| way!["body", key, inner];
+fn check_generator(generator: Generator<'_>, report: &mut Collector<'_>) -> Option<DVec3> {
+    let at = |key, inner| key_path!["body", key, inner];
     match generator {
         Generator::Lattice(Lattice { cells, side, elements, .. }) => {
             let axes = cells.len();
@@ -141,7 +141,7 @@ fn listed(
     flawed: bool,
     runs: &[Option<RunFile>],
     limits: &Limits,
-    report: &mut Report<'_>,
+    report: &mut Collector<'_>,
 ) -> Option<ResolvedBody> {
     let before = report.total();
     let mut elements = BTreeMap::new();
@@ -151,9 +151,9 @@ fn listed(
     if let Some(Excess { message, help, run }) = size.beyond(runs, limits, "use fewer nodes") {
         match (run, &file.file) {
             (Some(run), _) => report.at(&springs_of(run), message, help),
-            (None, None) => report.at_key(&way!["body", "nodes"], message, help),
+            (None, None) => report.at_key(&key_path!["body", "nodes"], message, help),
             (None, Some(name)) => {
-                report.at(&way!["body", "file"], format!("`{name}`: {message}"), help);
+                report.at(&key_path!["body", "file"], format!("`{name}`: {message}"), help);
             }
         }
         return None;
@@ -191,8 +191,8 @@ fn solids(file: &BodyFile) -> Solids {
 }
 
 /// The place of a run's springs.
-fn springs_of(run: usize) -> [Way<'static>; 4] {
-    way!["run", run, "model", "springs"]
+fn springs_of(run: usize) -> [Segment<'static>; 4] {
+    key_path!["run", run, "model", "springs"]
 }
 
 /// The initial positions and velocities of the body, from its listed positions (m) and velocities (m/s), if any.
@@ -201,7 +201,7 @@ fn start(
     mut position: Vec<DVec3>,
     velocities: Option<Vec<DVec3>>,
     dimension: Dimension,
-    report: &mut Report<'_>,
+    report: &mut Collector<'_>,
 ) -> State {
     let (shape, turn, spin, offset, velocity) = check_start(file, dimension, report);
     if let Some((shape, direction, seed)) = shape {
@@ -231,11 +231,11 @@ fn start(
 fn check_start(
     file: &BodyFile,
     dimension: Dimension,
-    report: &mut Report<'_>,
+    report: &mut Collector<'_>,
 ) -> (Option<(StartShape, DVec3, u32)>, Option<(DVec3, f64)>, Option<DVec3>, DVec3, DVec3) {
     let shape = file.start.as_ref().and_then(|typed| {
         check_use(typed.shape, report);
-        let path = way!["body", "start", "direction"];
+        let path = key_path!["body", "start", "direction"];
         let along = match &typed.direction {
             // Reported above.
             Some(_) if !typed.shape.has_direction() => DVec3::X,
@@ -245,28 +245,28 @@ fn check_start(
         Some((typed.shape, along, typed.seed))
     });
     let turn = file.rotation.as_ref().and_then(|typed| {
-        let path = way!["body", "rotation"];
+        let path = key_path!["body", "rotation"];
         Some((axis(typed.axis.as_ref(), dimension, &path, report)?, typed.angle))
     });
     let spin = file.spin.as_ref().and_then(|typed| {
-        let path = way!["body", "spin"];
+        let path = key_path!["body", "spin"];
         Some(axis(typed.axis.as_ref(), dimension, &path, report)? * typed.rate)
     });
     let mut optional = |typed: &Option<Coordinates>, key| match typed {
-        Some(typed) => vector(typed, dimension, &way!["body", key], report).unwrap_or_default(),
+        Some(typed) => vector(typed, dimension, &key_path!["body", key], report).unwrap_or_default(),
         None => DVec3::ZERO,
     };
     (shape, turn, spin, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
 }
 
 /// Reports keys of a start that do not belong to its shape.
-fn check_use(shape: StartShape, report: &mut Report<'_>) {
+fn check_use(shape: StartShape, report: &mut Collector<'_>) {
     let about = [
         ("direction", shape.has_direction(), "lines, planes and mirror images"),
         ("seed", shape.is_random(), "clouds"),
     ];
     for (key, used, about) in about {
-        let path = way!["body", "start", key];
+        let path = key_path!["body", "start", key];
         if !used && report.is_typed(&path) {
             let message = format!("`body.start.{key}` is about {about}, but the shape is {}", quoted(&typed(&shape)));
             report.at_key(&path, message, "remove it, or use another shape");

@@ -1,7 +1,7 @@
 //! Checks of elements, springs and faces that a body lists.
 
 use super::lists::{ListSource, Lists};
-use crate::reading::report::Report;
+use crate::reading::collector::Collector;
 use crate::reading::words::{count, list};
 use crate::sim::geometry::{Alike, bounds, kind, volume_by_faces};
 use crate::sim::{Body, Dimension, ElementKind, Solids};
@@ -13,7 +13,7 @@ const FLAT: f64 = 1e-12;
 
 /// Reports every wrong index, repeated node, repeated element or spring, degenerate or inverted element, and every node
 /// without element or spring. If there were mistakes before (`flawed`), their consequences are not reported.
-pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Report<'_>) {
+pub(super) fn check(lists: &Lists, solids: Solids, flawed: bool, report: &mut Collector<'_>) {
     let Lists { source, nodes, elements, springs, faces, .. } = lists;
     let node_count = nodes.len();
     let mut held = vec![false; node_count];
@@ -64,7 +64,7 @@ impl Lists {
         element: &[u32],
         solids: Solids,
         disorder: &mut Disorder,
-        report: &mut Report<'_>,
+        report: &mut Collector<'_>,
     ) {
         let corners: Vec<DVec3> = element.iter().map(|&node| self.nodes[node as usize]).collect();
         let (low, high) = bounds(&corners);
@@ -138,7 +138,7 @@ struct Disorder {
 
 impl Disorder {
     /// Reports each kind of mistake in one message.
-    fn report(self, lists: &Lists, report: &mut Report<'_>) {
+    fn report(self, lists: &Lists, report: &mut Collector<'_>) {
         for wrong in [Wrong::Flat, Wrong::Around, Wrong::Turned] {
             let found: Vec<_> = self.found.iter().filter(|one| one.1 == wrong).map(|one| (one.0, one.2)).collect();
             let (at, (message, help)) = match found[..] {
@@ -265,7 +265,7 @@ fn check_indices(
     at: usize,
     list: &[u32],
     nodes: usize,
-    report: &mut Report<'_>,
+    report: &mut Collector<'_>,
 ) -> bool {
     /// Up to this length, comparing all pairs is faster than sorting.
     const FEW: usize = 16;
@@ -300,7 +300,7 @@ fn repeated<'l>(
     at: usize,
     list: impl Fn(usize) -> &'l [u32],
     known: &mut Alike,
-    report: &mut Report<'_>,
+    report: &mut Collector<'_>,
 ) -> bool {
     let first = known.find(list(at), &list).unwrap_or(at);
     if first == at {

@@ -2,7 +2,7 @@
 
 use super::body::ResolvedBody;
 use super::{motion, vector};
-use crate::reading::report::{Report, Way, way, written};
+use crate::reading::collector::{Collector, Segment, key_path, written};
 use crate::reading::words::{count, fine};
 use crate::scene::file::{GrabFile, HoldFile, NodesFile, RegionFile};
 use crate::scene::summary::corners;
@@ -16,18 +16,18 @@ pub(super) fn resolve(
     holds: &[Option<HoldFile>],
     grabs: &[Option<GrabFile>],
     body: &ResolvedBody,
-    report: &mut Report<'_>,
+    report: &mut Collector<'_>,
 ) -> Option<Vec<Grip>> {
-    let mut named: Vec<(String, Vec<Way<'_>>, Grip)> = Vec::new();
+    let mut named: Vec<(String, Vec<Segment<'_>>, Grip)> = Vec::new();
     let layers = OnceCell::new();
     for (at, typed) in holds.iter().enumerate() {
         let Some(typed) = typed else { continue };
-        let path = way!["hold", at].to_vec();
+        let path = key_path!["hold", at].to_vec();
         let until = typed.until.unwrap_or(f64::INFINITY);
         let nodes = nodes(&typed.nodes, body, &layers, &path, report);
         if until <= typed.from {
             let message = format!("`hold[{at}]` ends at {until} s, not later than it begins at {} s", typed.from);
-            report.at(&way![path; "until"], message, None);
+            report.at(&key_path![path; "until"], message, None);
         } else if let Some(nodes) = nodes {
             let grip = Grip { nodes, from: typed.from, until, motion: Motion::Still };
             named.push((format!("held by `hold[{at}]`"), path, grip));
@@ -35,21 +35,21 @@ pub(super) fn resolve(
     }
     for (at, typed) in grabs.iter().enumerate() {
         let Some(typed) = typed else { continue };
-        let path = way!["grab", at].to_vec();
+        let path = key_path!["grab", at].to_vec();
         let nodes = nodes(&typed.nodes, body, &layers, &path, report);
-        let way = way![path; "path"];
+        let path = key_path![path; "path"];
         if typed.path.repeat {
             let message = format!("`grab[{at}].path` repeats, so the nodes would never be released");
-            report.at_key(&way![way; "repeat"], message, "remove `repeat`".to_owned());
+            report.at_key(&key_path![path; "repeat"], message, "remove `repeat`".to_owned());
             continue;
         }
-        let motion = motion::keys(&typed.path, body.body.dimension, &way, report);
+        let motion = motion::keys(&typed.path, body.body.dimension, &path, report);
         let [from, until] =
             [typed.path.keys.first(), typed.path.keys.last()].map(|key| key.map_or(0.0, |key| key.time));
         if typed.path.keys.len() == 1 {
             let message =
                 format!("`grab[{at}].path` has a single key: nodes grabbed at {from} s would be released at once");
-            report.at(&way, message, "add a key, or write [[hold]] for nodes that stay where they are");
+            report.at(&path, message, "add a key, or write [[hold]] for nodes that stay where they are");
         } else if let (Some(nodes), Some(motion)) = (nodes, motion) {
             named.push((format!("grabbed by `grab[{at}]`"), path, Grip { nodes, from, until, motion }));
         }
@@ -59,23 +59,28 @@ pub(super) fn resolve(
 }
 
 /// Reports constraints that are shorter than a time step (s), which would have no effect.
-pub(super) fn check_steps(holds: &[Option<HoldFile>], grabs: &[Option<GrabFile>], step: f64, report: &mut Report<'_>) {
+pub(super) fn check_steps(
+    holds: &[Option<HoldFile>],
+    grabs: &[Option<GrabFile>],
+    step: f64,
+    report: &mut Collector<'_>,
+) {
     for (at, hold) in holds.iter().enumerate() {
         let until = hold.as_ref().and_then(|hold| Some((hold.until?, hold.from)));
         if let Some((until, from)) = until.filter(|(until, from)| (0.0..step).contains(&(until - from))) {
             let message = format!("`hold[{at}]` lasts {:.3e} s, but a time step takes {step:.3e} s", until - from);
             let help = "make it longer, or it holds nothing".to_owned();
-            report.at(&way!["hold", at, "until"], message, help);
+            report.at(&key_path!["hold", at, "until"], message, help);
         }
     }
     for (at, grab) in grabs.iter().enumerate() {
-        let path = way!["grab", at, "path"];
+        let path = key_path!["grab", at, "path"];
         grab.iter().for_each(|grab| motion::check_steps(&grab.path, step, &path, report));
     }
 }
 
 /// Reports nodes in two constraints at the same time.
-fn check_overlaps(named: &[(String, Vec<Way<'_>>, Grip)], report: &mut Report<'_>) {
+fn check_overlaps(named: &[(String, Vec<Segment<'_>>, Grip)], report: &mut Collector<'_>) {
     let mut holders: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (at, (_, _, grip)) in named.iter().enumerate() {
         grip.nodes.iter().for_each(|&node| holders.entry(node).or_default().push(at));
@@ -102,7 +107,7 @@ fn check_overlaps(named: &[(String, Vec<Way<'_>>, Grip)], report: &mut Report<'_
         let until = if until.is_finite() { format!("until {until} s") } else { "on".into() };
         let message = format!("node {node} is {other} and {words} at once, from {from} s {until}");
         let help = "assign each node to one of them at a time".to_owned();
-        report.at(&way![path; "nodes"], message, help);
+        report.at(&key_path![path; "nodes"], message, help);
     }
 }
 
@@ -111,21 +116,21 @@ fn nodes(
     typed: &NodesFile,
     body: &ResolvedBody,
     layers: &OnceCell<Vec<Layers>>,
-    path: &[Way<'_>],
-    report: &mut Report<'_>,
+    path: &[Segment<'_>],
+    report: &mut Collector<'_>,
 ) -> Option<Vec<u32>> {
-    let path = way![path; "nodes"];
+    let path = key_path![path; "nodes"];
     match typed {
         NodesFile::List(list) => listed(list, body.body.len(), &path, report),
         NodesFile::Region(region) => within(region, body, layers, &path, report),
     }
 }
 
-fn listed(list: &[u32], count: usize, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Vec<u32>> {
+fn listed(list: &[u32], count: usize, path: &[Segment<'_>], report: &mut Collector<'_>) -> Option<Vec<u32>> {
     let before = report.total();
     let mut first = HashMap::new();
     for (place, &node) in list.iter().enumerate() {
-        let at = way![path; place];
+        let at = key_path![path; place];
         if node as usize >= count {
             report.at(&at, format!("there is no node {node}; the body has nodes 0 to {}", count - 1), None);
         } else if first.insert(node, place).is_some() {
@@ -141,11 +146,11 @@ fn within(
     region: &RegionFile,
     body: &ResolvedBody,
     layers: &OnceCell<Vec<Layers>>,
-    path: &[Way<'_>],
-    report: &mut Report<'_>,
+    path: &[Segment<'_>],
+    report: &mut Collector<'_>,
 ) -> Option<Vec<u32>> {
     let dimension = body.body.dimension;
-    let mut point = |typed, key| vector(typed, dimension, &way![path; key], report);
+    let mut point = |typed, key| vector(typed, dimension, &key_path![path; key], report);
     let position = &body.initial.position;
     // The end of a lattice may be at -0.30000000000000004 m, but is typed as -0.3.
     let close = ROUND_OFF * body.body.extent();
@@ -159,7 +164,7 @@ fn within(
             let (low, high) = (low?, high?);
             if low.cmpgt(high).any() {
                 let message = format!("`{}.low` does not lie below `high` along every axis", written(path));
-                report.at(&way![path; "low"], message, None);
+                report.at(&key_path![path; "low"], message, None);
                 return None;
             }
             let is_inside = |at: &DVec3| at.cmpge(low - close).all() && at.cmple(high + close).all();
@@ -216,8 +221,8 @@ fn warn_of_rest(
     layers: &[Layers],
     position: &[DVec3],
     dimension: Dimension,
-    path: &[Way<'_>],
-    report: &mut Report<'_>,
+    path: &[Segment<'_>],
+    report: &mut Collector<'_>,
 ) {
     let taken = layers.iter().map(|layers| {
         let mut taken = vec![0; layers.sizes.len()];

@@ -2,12 +2,12 @@
 
 use super::vector;
 use crate::reading::beside::{missing, similar};
-use crate::reading::report::{Help, Report, Way, way, written};
+use crate::reading::collector::{Collector, Help, Segment, key_path, written};
 use crate::reading::words::{count, list, nearest};
+use crate::scene::file::LARGEST;
 use crate::scene::file::{BodyFile, Coordinates, Positive};
 use crate::scene::limits::Limits;
 use crate::scene::npz::{Array, Npz, Values};
-use crate::scene::structure::LARGEST;
 use crate::sim::{Dimension, IndexLists};
 use glam::DVec3;
 use sha2::{Digest, Sha256};
@@ -33,11 +33,11 @@ impl ListSource {
     }
 
     /// Reports a mistake in an entry of a list.
-    pub(super) fn report(&self, report: &mut Report<'_>, key: &str, at: &[usize], message: String, help: impl Help) {
+    pub(super) fn report(&self, report: &mut Collector<'_>, key: &str, at: &[usize], message: String, help: impl Help) {
         match self {
             Self::Scene => {
-                let indices = at.iter().map(|&index| Way::Index(index));
-                let path: Vec<_> = way!["body", key].into_iter().chain(indices).collect();
+                let indices = at.iter().map(|&index| Segment::Index(index));
+                let path: Vec<_> = key_path!["body", key].into_iter().chain(indices).collect();
                 report.at(&path, message, help);
             }
             Self::File(_) => self.report_in_file(report, key, at, message, help.text()),
@@ -45,18 +45,25 @@ impl ListSource {
     }
 
     /// Reports a mistake about a whole list.
-    pub(super) fn report_key(&self, report: &mut Report<'_>, key: &str, message: String) {
+    pub(super) fn report_key(&self, report: &mut Collector<'_>, key: &str, message: String) {
         match self {
-            Self::Scene => report.at_key(&way!["body", key], message, None),
+            Self::Scene => report.at_key(&key_path!["body", key], message, None),
             Self::File(_) => self.report_in_file(report, key, &[], message, None),
         }
     }
 
     /// Reports at the file's name in the scene, so the message names list and entry.
-    fn report_in_file(&self, report: &mut Report<'_>, key: &str, at: &[usize], message: String, help: Option<String>) {
+    fn report_in_file(
+        &self,
+        report: &mut Collector<'_>,
+        key: &str,
+        at: &[usize],
+        message: String,
+        help: Option<String>,
+    ) {
         let named = message.contains(&format!("`{}", self.name(key, &at[..at.len().min(1)])));
         let message = if named { message } else { format!("`{}`: {message}", self.name(key, at)) };
-        report.at(&way!["body", "file"], message, help);
+        report.at(&key_path!["body", "file"], message, help);
     }
 }
 
@@ -80,13 +87,13 @@ pub(super) struct Lists {
 
 impl Lists {
     /// The lists of a scene with nodes. Points with another number of coordinates are reported.
-    pub(super) fn typed(file: &BodyFile, report: &mut Report<'_>) -> Option<Self> {
+    pub(super) fn typed(file: &BodyFile, report: &mut Collector<'_>) -> Option<Self> {
         let nodes = file.nodes.as_ref()?;
         let dimension = if nodes.first()?.0.len() == 2 { Dimension::Plane } else { Dimension::Space };
         let mut points = |typed: &Option<Vec<Coordinates>>, key| {
             let mut points = Vec::new();
             for (at, coordinates) in typed.as_ref()?.iter().enumerate() {
-                let path = way!["body", key, at];
+                let path = key_path!["body", key, at];
                 points.push(vector(coordinates, dimension, &path, report).unwrap_or_default());
             }
             Some(points)
@@ -107,10 +114,10 @@ impl Lists {
     }
 
     /// The lists of a file, or `None` after reporting its mistakes.
-    pub(super) fn read(folder: &Path, name: &str, limits: &Limits, report: &mut Report<'_>) -> Option<Self> {
+    pub(super) fn read(folder: &Path, name: &str, limits: &Limits, report: &mut Collector<'_>) -> Option<Self> {
         let path = folder.join(name);
-        let whole = |report: &mut Report<'_>, message: String, help: Option<String>| {
-            report.at(&way!["body", "file"], format!("`{name}` {message}"), help);
+        let whole = |report: &mut Collector<'_>, message: String, help: Option<String>| {
+            report.at(&key_path!["body", "file"], format!("`{name}` {message}"), help);
         };
         if !path.exists() {
             whole(report, missing(&path), similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?")));
@@ -187,7 +194,7 @@ fn beyond(number: f64) -> Option<String> {
 }
 
 /// Reports numbers out of range and too short lists in scenes made in code. In files the schema finds them.
-pub(in crate::scene) fn check_unwritten(file: &BodyFile, report: &mut Report<'_>) {
+pub(in crate::scene) fn check_unwritten(file: &BodyFile, report: &mut Collector<'_>) {
     let mut say = |key: &str, at: &[usize], message: String| {
         ListSource::Scene.report(report, key, at, format!("`{}` {message}", ListSource::Scene.name(key, at)), None);
     };
@@ -225,7 +232,7 @@ struct Reader<'a, 't> {
     npz: Npz,
     source: ListSource,
     limits: &'a Limits,
-    report: &'a mut Report<'t>,
+    report: &'a mut Collector<'t>,
 }
 
 impl Reader<'_, '_> {
@@ -276,7 +283,7 @@ impl Reader<'_, '_> {
         if found.is_none() {
             let ListSource::File(file) = &self.source else { return None };
             let message = format!("`{file}` has no array `{key}`");
-            self.report.at(&way!["body", "file"], message, None);
+            self.report.at(&key_path!["body", "file"], message, None);
         }
         found.flatten()
     }
@@ -446,7 +453,7 @@ impl Reader<'_, '_> {
 }
 
 /// Reports a list without exactly one entry for each node.
-pub(super) fn check_count(source: &ListSource, key: &str, length: usize, nodes: usize, report: &mut Report<'_>) {
+pub(super) fn check_count(source: &ListSource, key: &str, length: usize, nodes: usize, report: &mut Collector<'_>) {
     if length != nodes {
         let (name, entries) = (source.name(key, &[]), if length == 1 { "entry" } else { "entries" });
         let message = format!("`{name}` has {length} {entries}, and the body has {nodes} nodes; expected one for each");
@@ -455,9 +462,9 @@ pub(super) fn check_count(source: &ListSource, key: &str, length: usize, nodes: 
 }
 
 /// Reports a key of the scene that conflicts with an array of the file.
-pub(super) fn check_exclusive(lists: &Lists, typed: bool, key: &str, array: &str, report: &mut Report<'_>) {
+pub(super) fn check_exclusive(lists: &Lists, typed: bool, key: &str, array: &str, report: &mut Collector<'_>) {
     if typed {
-        let path = way!["body", key];
+        let path = key_path!["body", key];
         let message = format!("`{}` and `{}` exclude each other", written(&path), lists.source.name(array, &[]));
         report.at_key(&path, message, "keep one");
     }

@@ -13,11 +13,11 @@ use super::digest::{FileDigests, digest};
 use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, SceneFile, TimeFile};
 use super::generate::Generator;
 use super::limits::Limits;
-use super::structure::Checked;
+use super::structure::ValidFile;
 use super::{Run, Scene};
 use crate::look::{self, FontFiles, TypedView, View, font};
+use crate::reading::collector::{Collector, Segment, key_path};
 use crate::reading::coordinates::{direction, vector};
-use crate::reading::report::{Report, Way, way};
 use crate::reading::words::{count, quoted, short};
 use crate::sim::words::typed;
 use crate::sim::{Grip, Obstacle};
@@ -33,7 +33,7 @@ use std::sync::Arc;
 
 /// The parts of a scene file without mistakes in their structure.
 #[derive(Debug, Serialize)]
-pub(super) struct Parts {
+pub(super) struct SceneParts {
     title: Option<String>,
     gravity: Option<Coordinates>,
     time: Option<TimeFile>,
@@ -58,9 +58,9 @@ pub(super) struct Parts {
     font: Option<FontFiles>,
 }
 
-impl Parts {
+impl SceneParts {
     /// The valid parts of a checked file. A body's own file is searched in `folder`.
-    pub(super) fn new(checked: &Checked, folder: &Path, limits: &Limits, report: &mut Report<'_>) -> Self {
+    pub(super) fn new(checked: &ValidFile, folder: &Path, limits: &Limits, report: &mut Collector<'_>) -> Self {
         let file = &checked.valid;
         let body: Option<BodyFile> = part(file, "body", report).map(|mut body: BodyFile| {
             // Lists beside a generator or a file are a mistake, which was reported.
@@ -76,7 +76,7 @@ impl Parts {
             if file.contains_key("view") { part(file, "view", report) } else { Some(TypedView::default()) };
         let font = match view.as_ref().and_then(|view| view.get("font")) {
             Some(typed) => {
-                read(typed, &way!["view", "font"], report).and_then(|typed| font::read(folder, &typed, report))
+                read(typed, &key_path!["view", "font"], report).and_then(|typed| font::read(folder, &typed, report))
             }
             None => Some(FontFiles::default()),
         };
@@ -98,8 +98,8 @@ impl Parts {
 
     /// The valid parts of a scene made in code. Its long lists were checked separately; `flawed` tells whether they had
     /// a mistake.
-    pub(super) fn of(file: SceneFile, checked: &Checked, flawed: bool) -> Self {
-        fn entries<T>(entries: Vec<T>, key: &str, checked: &Checked) -> Vec<Option<T>> {
+    pub(super) fn of(file: SceneFile, checked: &ValidFile, flawed: bool) -> Self {
+        fn entries<T>(entries: Vec<T>, key: &str, checked: &ValidFile) -> Vec<Option<T>> {
             let is_sound = |at: usize| !checked.valid.get(key).is_some_and(|valid| valid[at].is_null());
             entries.into_iter().enumerate().map(|(at, entry)| Some(entry).filter(|_| is_sound(at))).collect()
         }
@@ -122,7 +122,7 @@ impl Parts {
     }
 
     /// The scene, or `None` after any mistake.
-    pub(super) fn scene(mut self, name: &str, limits: &Limits, report: &mut Report<'_>) -> Option<Scene> {
+    pub(super) fn scene(mut self, name: &str, limits: &Limits, report: &mut Collector<'_>) -> Option<Scene> {
         let has_own_models = self.runs.iter().flatten().any(|run| run.model.is_own());
         let has_digest = report.total() == 0 && !has_own_models;
         let digest = if has_digest { self.digest() } else { String::new() };
@@ -145,16 +145,16 @@ impl Parts {
     }
 }
 
-fn part<T: DeserializeOwned>(file: &Map<String, Json>, key: &str, report: &mut Report<'_>) -> Option<T> {
-    read(file.get(key)?, &way![key], report)
+fn part<T: DeserializeOwned>(file: &Map<String, Json>, key: &str, report: &mut Collector<'_>) -> Option<T> {
+    read(file.get(key)?, &key_path![key], report)
 }
 
-fn several<T: DeserializeOwned>(file: &Map<String, Json>, key: &str, report: &mut Report<'_>) -> Vec<Option<T>> {
+fn several<T: DeserializeOwned>(file: &Map<String, Json>, key: &str, report: &mut Collector<'_>) -> Vec<Option<T>> {
     let entries = file.get(key).and_then(Json::as_array).into_iter().flatten().enumerate();
-    entries.map(|(at, entry)| read(entry, &way![key, at], report)).collect()
+    entries.map(|(at, entry)| read(entry, &key_path![key, at], report)).collect()
 }
 
-fn read<T: DeserializeOwned>(json: &Json, path: &[Way<'_>], report: &mut Report<'_>) -> Option<T> {
+fn read<T: DeserializeOwned>(json: &Json, path: &[Segment<'_>], report: &mut Collector<'_>) -> Option<T> {
     if json.is_null() {
         return None;
     }
@@ -183,7 +183,13 @@ struct Physics {
 }
 
 /// The scene, or `None` after any mistake: first the physics, then the view.
-fn resolve(mut parts: Parts, name: &str, digest: &str, limits: &Limits, report: &mut Report<'_>) -> Option<Scene> {
+fn resolve(
+    mut parts: SceneParts,
+    name: &str,
+    digest: &str,
+    limits: &Limits,
+    report: &mut Collector<'_>,
+) -> Option<Scene> {
     let beside = parts.beside.take();
     let physics = physics(&parts, beside, limits, report);
     let view = view(&parts, &physics, report);
@@ -216,19 +222,19 @@ fn resolve(mut parts: Parts, name: &str, digest: &str, limits: &Limits, report: 
     scene.place_runs();
     if let Some((strip, why)) = scene.view.strip.and_then(|strip| Some((strip, scene.lacks(strip)?))) {
         let message = format!("`view.strip` is {}, which no run has", quoted(&typed(&strip)));
-        report.at(&way!["view", "strip"], message, why);
+        report.at(&key_path!["view", "strip"], message, why);
     }
     warn_of_time(&scene, report);
     warn_of_steps(&scene, report);
     Some(scene)
 }
 
-fn physics(parts: &Parts, beside: Option<Lists>, limits: &Limits, report: &mut Report<'_>) -> Physics {
+fn physics(parts: &SceneParts, beside: Option<Lists>, limits: &Limits, report: &mut Collector<'_>) -> Physics {
     let dimension = parts.body.as_ref().and_then(|file| body::dimension(file, beside.as_ref()));
     let read_body = |file| body::resolve(file, beside, parts.flawed.contains("body"), &parts.runs, limits, report);
     let body = parts.body.as_ref().and_then(read_body);
     let gravity = match (&parts.gravity, dimension) {
-        (Some(typed), Some(dimension)) => vector(typed, dimension, &way!["gravity"], report),
+        (Some(typed), Some(dimension)) => vector(typed, dimension, &key_path!["gravity"], report),
         _ => Some(DVec3::ZERO),
     };
     let obstacles = obstacles::resolve(&parts.obstacles, dimension, body.as_ref(), report);
@@ -241,7 +247,7 @@ fn physics(parts: &Parts, beside: Option<Lists>, limits: &Limits, report: &mut R
 }
 
 /// The view, which `look` resolves.
-fn view(parts: &Parts, physics: &Physics, report: &mut Report<'_>) -> Option<View> {
+fn view(parts: &SceneParts, physics: &Physics, report: &mut Collector<'_>) -> Option<View> {
     let Physics { gravity, body, obstacles, grips, runs } = physics;
     let (body, obstacles) = (body.as_ref()?, obstacles.as_ref()?);
     let around = look::Subject {
@@ -263,7 +269,7 @@ fn view(parts: &Parts, physics: &Physics, report: &mut Report<'_>) -> Option<Vie
 }
 
 /// Warns of a scene with one frame, and of a very long computation.
-fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
+fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
     /// Computation time for one corner of an element and one step (s), measured on one cube.
     const CORNER: f64 = 3e-8;
     const LONG: f64 = 7200.0;
@@ -272,7 +278,7 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
         let (duration, rate) = (short(scene.duration), short(scene.frames_per_second));
         let message = format!("at {rate} frames per second, {duration} s have only one frame, the start");
         report.warn(
-            &way!["time", "frames_per_second"],
+            &key_path!["time", "frames_per_second"],
             message,
             format!("use at least {} to show the end", short(1.0 / scene.duration)),
         );
@@ -294,27 +300,27 @@ fn warn_of_time(scene: &Scene, report: &mut Report<'_>) {
             if elements == 1 { "" } else { "s" }
         );
         let help = "make `duration` shorter, `step` larger or the body smaller, unless you can wait".to_owned();
-        report.warn(&way!["time", "duration"], message, help);
+        report.warn(&key_path!["time", "duration"], message, help);
     }
 }
 
 /// Warns of steps near or above the largest stable one, and of integrators that are never stable.
-fn warn_of_steps(scene: &Scene, report: &mut Report<'_>) {
+fn warn_of_steps(scene: &Scene, report: &mut Collector<'_>) {
     for run in 0..scene.runs.len() {
         if let Some((_, [message, help])) = scene.near_limit(run) {
-            let own = way!["run", run, "step"];
-            let path = if report.is_typed(&own) { own.to_vec() } else { way!["time", "step"].to_vec() };
+            let own = key_path!["run", run, "step"];
+            let path = if report.is_typed(&own) { own.to_vec() } else { key_path!["time", "step"].to_vec() };
             report.warn(&path, message, help);
         }
         if let Some([message, help]) = scene.never_stable(run) {
-            let own = way!["run", run, "integrator"];
-            let path = if report.is_typed(&own) { &own[..] } else { &way!["time", "integrator"] };
+            let own = key_path!["run", run, "integrator"];
+            let path = if report.is_typed(&own) { &own[..] } else { &key_path!["time", "integrator"] };
             report.warn(path, message, help);
         }
     }
 }
 
-fn check_frames(time: &TimeFile, report: &mut Report<'_>) {
+fn check_frames(time: &TimeFile, report: &mut Collector<'_>) {
     let frames = time.duration * time.frames_per_second;
     if frames > MOST_FRAMES {
         let message = format!(
@@ -324,6 +330,6 @@ fn check_frames(time: &TimeFile, report: &mut Report<'_>) {
             count(MOST_FRAMES as u128)
         );
         let help = "make `duration` or `frames_per_second` smaller".to_owned();
-        report.at(&way!["time", "duration"], message, help);
+        report.at(&key_path!["time", "duration"], message, help);
     }
 }

@@ -1,7 +1,7 @@
 //! Rotations and paths.
 
 use super::{direction, vector};
-use crate::reading::report::{Report, Way, way, written};
+use crate::reading::collector::{Collector, Segment, key_path, written};
 use crate::scene::file::{Coordinates, MotionPath, Rotation, Swing};
 use crate::sim::{Dimension, Key, Motion, Offset};
 use glam::DVec3;
@@ -10,11 +10,11 @@ use glam::DVec3;
 pub(super) fn axis(
     typed: Option<&Coordinates>,
     dimension: Dimension,
-    path: &[Way<'_>],
-    report: &mut Report<'_>,
+    path: &[Segment<'_>],
+    report: &mut Collector<'_>,
 ) -> Option<DVec3> {
     let rotation = written(path);
-    let path = way![path; "axis"];
+    let path = key_path![path; "axis"];
     match (typed, dimension) {
         (None, Dimension::Plane) => Some(DVec3::Z),
         (Some(_), Dimension::Plane) => {
@@ -38,16 +38,16 @@ fn offset(
     shift: Option<&Coordinates>,
     rotation: Option<&Rotation>,
     dimension: Dimension,
-    path: &[Way<'_>],
-    report: &mut Report<'_>,
+    path: &[Segment<'_>],
+    report: &mut Collector<'_>,
 ) -> Option<Offset> {
     let shift = match shift {
-        Some(typed) => vector(typed, dimension, &way![path; "shift"], report),
+        Some(typed) => vector(typed, dimension, &key_path![path; "shift"], report),
         None => Some(DVec3::ZERO),
     };
     let rotation = match rotation {
         Some(typed) => {
-            let axis = axis(typed.axis.as_ref(), dimension, &way![path; "rotation"], report);
+            let axis = axis(typed.axis.as_ref(), dimension, &key_path![path; "rotation"], report);
             axis.map(|axis| axis * typed.angle)
         }
         None => Some(DVec3::ZERO),
@@ -59,19 +59,19 @@ fn offset(
 pub(super) fn keys(
     typed: &MotionPath,
     dimension: Dimension,
-    path: &[Way<'_>],
-    report: &mut Report<'_>,
+    path: &[Segment<'_>],
+    report: &mut Collector<'_>,
 ) -> Option<Motion> {
     let mut keys = Vec::with_capacity(typed.keys.len());
     let mut in_order = true;
     for (at, key) in typed.keys.iter().enumerate() {
-        let path = way![path; "keys", at];
+        let path = key_path![path; "keys", at];
         if let Some(before) =
             at.checked_sub(1).map(|before| typed.keys[before].time).filter(|&before| before >= key.time)
         {
             let message =
                 format!("`{}` is at {} s, not later than the key before it at {before} s", written(&path), key.time);
-            report.at(&way![path; "time"], message, "list the keys in rising order of time".to_owned());
+            report.at(&key_path![path; "time"], message, "list the keys in rising order of time".to_owned());
             in_order = false;
         }
         let offset = offset(key.shift.as_ref(), key.rotation.as_ref(), dimension, &path, report);
@@ -90,7 +90,7 @@ pub(super) fn keys(
             let message =
                 format!("`{}` repeats, but does not end where it begins, so the motion would jump", written(path));
             let help = "give the last key the first one's `shift`, and its `rotation` up to whole turns".to_owned();
-            report.at(&way![path; "keys", keys.len() - 1], message, help);
+            report.at(&key_path![path; "keys", keys.len() - 1], message, help);
             return None;
         }
     }
@@ -107,7 +107,12 @@ fn same(one: Offset, other: Offset) -> bool {
 }
 
 /// An oscillation.
-pub(super) fn swing(typed: &Swing, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Motion> {
+pub(super) fn swing(
+    typed: &Swing,
+    dimension: Dimension,
+    path: &[Segment<'_>],
+    report: &mut Collector<'_>,
+) -> Option<Motion> {
     if typed.shift.is_none() && typed.rotation.is_none() {
         let message = format!("`{}` has neither `shift` nor `rotation`: nothing would move", written(path));
         report.at(path, message, "such as shift = [0.1, 0, 0]");
@@ -118,16 +123,16 @@ pub(super) fn swing(typed: &Swing, dimension: Dimension, path: &[Way<'_>], repor
 }
 
 /// Reports keys that are closer to each other than a time step (s).
-pub(super) fn check_steps(typed: &MotionPath, step: f64, path: &[Way<'_>], report: &mut Report<'_>) {
+pub(super) fn check_steps(typed: &MotionPath, step: f64, path: &[Segment<'_>], report: &mut Collector<'_>) {
     for (at, pair) in typed.keys.windows(2).enumerate() {
         let apart = pair[1].time - pair[0].time;
         if apart > 0.0 && apart < step {
-            let key = way![path; "keys", at + 1];
+            let key = key_path![path; "keys", at + 1];
             let message = format!(
                 "`{}` is {apart:.3e} s after the key before it, but a time step takes {step:.3e} s: the motion would jump",
                 written(&key)
             );
-            report.at(&way![key; "time"], message, "leave more time between them".to_owned());
+            report.at(&key_path![key; "time"], message, "leave more time between them".to_owned());
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::body::ResolvedBody;
 use super::motion::{self, axis};
 use super::{direction, vector};
-use crate::reading::report::{Report, Way, way};
+use crate::reading::collector::{Collector, Segment, key_path};
 use crate::scene::file::{Coordinates, ObstacleFile, ShapeFile};
 use crate::sim::geometry::{bounds, is_inside};
 use crate::sim::words::{quantity, rounded};
@@ -15,13 +15,13 @@ pub(super) fn resolve(
     typed: &[Option<ObstacleFile>],
     dimension: Option<Dimension>,
     body: Option<&ResolvedBody>,
-    report: &mut Report<'_>,
+    report: &mut Collector<'_>,
 ) -> Option<Vec<Obstacle>> {
     let dimension = dimension?;
     let mut obstacles = Vec::new();
     for (at, obstacle) in typed.iter().enumerate() {
         let Some(typed) = obstacle else { continue };
-        let path = way!["obstacle", at];
+        let path = key_path!["obstacle", at];
         let Some(obstacle) = one(typed, dimension, &path, report) else { continue };
         if let Some(body) = body {
             check_start(&obstacle, body, &path, report);
@@ -31,17 +31,22 @@ pub(super) fn resolve(
     (obstacles.len() == typed.len()).then_some(obstacles)
 }
 
-fn one(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Obstacle> {
+fn one(
+    typed: &ObstacleFile,
+    dimension: Dimension,
+    path: &[Segment<'_>],
+    report: &mut Collector<'_>,
+) -> Option<Obstacle> {
     let shape = shape(&typed.shape, dimension, path, report);
     let motion = match (&typed.path, &typed.swing) {
-        (Some(typed), _) => motion::keys(typed, dimension, &way![path; "path"], report),
-        (None, Some(typed)) => motion::swing(typed, dimension, &way![path; "swing"], report),
+        (Some(typed), _) => motion::keys(typed, dimension, &key_path![path; "path"], report),
+        (None, Some(typed)) => motion::swing(typed, dimension, &key_path![path; "swing"], report),
         (None, None) => Some(Motion::Still),
     };
-    let about = typed.about.as_ref().map(|typed| vector(typed, dimension, &way![path; "about"], report));
-    if typed.friction_of.is_some() && !report.is_typed(&way![path; "friction"]) {
+    let about = typed.about.as_ref().map(|typed| vector(typed, dimension, &key_path![path; "about"], report));
+    if typed.friction_of.is_some() && !report.is_typed(&key_path![path; "friction"]) {
         report.at_key(
-            &way![path; "friction_of"],
+            &key_path![path; "friction_of"],
             "`friction_of` needs `friction`",
             "give `friction`, or remove `friction_of`",
         );
@@ -61,20 +66,20 @@ fn one(typed: &ObstacleFile, dimension: Dimension, path: &[Way<'_>], report: &mu
     })
 }
 
-fn shape(typed: &ShapeFile, dimension: Dimension, path: &[Way<'_>], report: &mut Report<'_>) -> Option<Shape> {
-    let way = |key| way![path; key];
-    let mut point = |typed: &Coordinates, key| vector(typed, dimension, &way(key), report);
+fn shape(typed: &ShapeFile, dimension: Dimension, path: &[Segment<'_>], report: &mut Collector<'_>) -> Option<Shape> {
+    let path = |key| key_path![path; key];
+    let mut point = |typed: &Coordinates, key| vector(typed, dimension, &path(key), report);
     match typed {
         ShapeFile::Floor { normal, height } => {
             let normal = match normal {
                 None => DVec3::Y,
-                Some(typed) => direction(point(typed, "normal")?, &way("normal"), report)?,
+                Some(typed) => direction(point(typed, "normal")?, &path("normal"), report)?,
             };
             Some(Shape::Floor { normal, height: *height })
         }
         ShapeFile::Plate { point: surface, normal } => {
             let [surface, normal] = [(surface, "point"), (normal, "normal")].map(|(typed, key)| point(typed, key));
-            Some(Shape::Plate { point: surface?, normal: direction(normal?, &way("normal"), report)? })
+            Some(Shape::Plate { point: surface?, normal: direction(normal?, &path("normal"), report)? })
         }
         ShapeFile::Sphere { centre, radius } => {
             Some(Shape::Sphere { centre: point(centre, "centre")?, radius: *radius })
@@ -87,7 +92,7 @@ fn shape(typed: &ShapeFile, dimension: Dimension, path: &[Way<'_>], report: &mut
             let [centre, size] = [(centre, "centre"), (size, "size")].map(|(typed, key)| point(typed, key));
             let rotation = match rotation {
                 Some(typed) => {
-                    let axis = axis(typed.axis.as_ref(), dimension, &way("rotation"), report)?;
+                    let axis = axis(typed.axis.as_ref(), dimension, &path("rotation"), report)?;
                     let (sine, cosine) = libm::sincos(0.5 * typed.angle);
                     DQuat::from_xyzw(axis.x * sine, axis.y * sine, axis.z * sine, cosine)
                 }
@@ -106,7 +111,7 @@ fn shape(typed: &ShapeFile, dimension: Dimension, path: &[Way<'_>], report: &mut
 const TOUCHING: f64 = 1e-9;
 
 /// Reports obstacles that contain nodes at the start, and obstacles that start inside the body.
-fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Way<'_>], report: &mut Report<'_>) {
+fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Segment<'_>], report: &mut Collector<'_>) {
     let placed = obstacle.at(0.0, 1.0);
     let name = match obstacle.shape {
         Shape::Floor { .. } => "floor",
@@ -181,17 +186,17 @@ fn inner_points(shape: &Shape, dimension: Dimension) -> Vec<DVec3> {
 }
 
 /// Reports motions that are too fast for the time step, so that the obstacle would jump.
-pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mut Report<'_>) {
+pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mut Collector<'_>) {
     for (at, obstacle) in typed.iter().enumerate() {
         let Some(obstacle) = obstacle else { continue };
-        let path = way!["obstacle", at];
+        let path = key_path!["obstacle", at];
         if let Some(typed) = &obstacle.path {
-            motion::check_steps(typed, step, &way![path; "path"], report);
+            motion::check_steps(typed, step, &key_path![path; "path"], report);
         }
         if let Some(swing) = obstacle.swing.as_ref().filter(|swing| swing.period < LEAST_STEPS * step) {
             let message = format!("one oscillation takes {} s, but a time step takes {step:.3e} s", swing.period);
             let help = format!("use a period of at least {LEAST_STEPS} steps, or shorter steps");
-            report.at(&way![path; "swing", "period"], message, help);
+            report.at(&key_path![path; "swing", "period"], message, help);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The runs: models, steps and integrators.
 
 use super::body::ResolvedBody;
-use crate::reading::report::{Report, Way, way};
+use crate::reading::collector::{Collector, Segment, key_path};
 use crate::reading::words;
 use crate::scene::Run;
 use crate::scene::file::{RunFile, StepFile, TimeFile};
@@ -20,7 +20,7 @@ pub(super) fn resolve(
     time: Option<&TimeFile>,
     body: Option<&ResolvedBody>,
     grips: Option<&[Grip]>,
-    report: &mut Report<'_>,
+    report: &mut Collector<'_>,
 ) -> Option<Vec<Run>> {
     check_names(typed, report);
     let body = body?;
@@ -29,7 +29,7 @@ pub(super) fn resolve(
         .map(|(at, run)| {
             let run = run.as_ref()?;
             let model = run.model.resolve(&body.body, body.springs.as_deref());
-            let path = |key| way!["run", at, "model", key];
+            let path = |key| key_path!["run", at, "model", key];
             model.map_err(|misfit| report.at(&path(misfit.key), misfit.message, None)).ok()
         })
         .collect();
@@ -45,7 +45,7 @@ pub(super) fn resolve(
             report.at(&path, message, hint);
             return None;
         }
-        let (own, shared) = (way!["run", at, "step"], way!["time", "step"]);
+        let (own, shared) = (key_path!["run", at, "step"], key_path!["time", "step"]);
         let (step, path) = match &run.step {
             Some(step) => (step, &own[..]),
             None => (time.step.as_ref().unwrap_or(&StepFile::DEFAULT), &shared[..]),
@@ -90,8 +90,8 @@ pub(super) fn resolve(
         }
         if let Some(reason) = integrator.refusal(|| model.prepare(&Arc::new(body.body.clone()))) {
             let path = match run.integrator {
-                Some(_) => way!["run", at, "integrator"].to_vec(),
-                None => way!["time", "integrator"].to_vec(),
+                Some(_) => key_path!["run", at, "integrator"].to_vec(),
+                None => key_path!["time", "integrator"].to_vec(),
             };
             let message = format!("{} {reason}", words::quoted(&crate::sim::words::typed(&integrator)));
             report.at(&path, message, None);
@@ -101,7 +101,7 @@ pub(super) fn resolve(
         let fastest = Kernel::of(model.as_ref(), integrator);
         let kernel = run.kernel.unwrap_or(fastest);
         if kernel == Kernel::Fast && fastest != Kernel::Fast {
-            let path = way!["run", at, "kernel"];
+            let path = key_path!["run", at, "kernel"];
             let message = format!(
                 "`run[{at}].kernel` is \"fast\", but this `integrator`, `model.rotation` or `model.damping_of` has no vectorised steps"
             );
@@ -120,9 +120,9 @@ fn misplaced(
     run: &RunFile,
     time: &TimeFile,
     integrator: Integrator,
-) -> Option<(Vec<Way<'static>>, String, String)> {
-    let own = |key| way!["run", at, key].to_vec();
-    let common = |key| way!["time", key].to_vec();
+) -> Option<(Vec<Segment<'static>>, String, String)> {
+    let own = |key| key_path!["run", at, key].to_vec();
+    let common = |key| key_path!["time", key].to_vec();
     let name = words::quoted(&crate::sim::words::typed(&integrator));
     if integrator.is_adaptive() {
         let path = if run.step.is_some() { own("step") } else { common("step") };
@@ -189,10 +189,10 @@ fn no_limit(run: &RunFile, integrator: Integrator, limit: f64) -> (String, Strin
 }
 
 /// Reports duplicate names, and names that cannot be used in files.
-fn check_names(typed: &[Option<RunFile>], report: &mut Report<'_>) {
+fn check_names(typed: &[Option<RunFile>], report: &mut Collector<'_>) {
     for (at, run) in typed.iter().enumerate() {
         let Some(run) = run else { continue };
-        let path = way!["run", at, "name"];
+        let path = key_path!["run", at, "name"];
         let quoted = words::quoted(&run.name);
         let unfit = |c: char| matches!(c, '/' | '\\') || c.is_control();
         if run.name.trim() != run.name || run.name.contains(unfit) {

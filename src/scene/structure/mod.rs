@@ -6,11 +6,12 @@
 pub(super) mod expect;
 mod keys;
 
+use super::file::LARGEST;
 use super::gone::instead;
 use super::schema::{choices, variants};
 use super::step::NamedStep;
 use crate::look::typed::TypedColour;
-use crate::reading::report::{Report, Way, written};
+use crate::reading::collector::{Collector, Segment, written};
 use crate::reading::words::{self, list, nearest, quoted};
 use expect::{expected, first_sentence, range};
 use serde_json::{Map, Value as Json};
@@ -19,13 +20,9 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The largest accepted magnitude of a number (SI). Squares and volumes of larger ones leave the range of double
-/// precision.
-pub(super) const LARGEST: f64 = 1e30;
-
 /// A file without the parts that have mistakes.
 #[derive(Debug)]
-pub(super) struct Checked {
+pub(super) struct ValidFile {
     /// The file as JSON, without top-level keys that have mistakes. Array entries and other values with mistakes are
     /// null.
     pub(super) valid: Map<String, Json>,
@@ -34,14 +31,14 @@ pub(super) struct Checked {
 }
 
 /// Checks a whole file.
-pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) -> Checked {
+pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Collector<'_>) -> ValidFile {
     let mut walk = Walk { schema, report, path: Vec::new() };
     walk.table_rules(schema, root, 0..0);
     let (mut valid, mut flawed) = (Map::new(), BTreeSet::new());
     for (key, value) in root.iter() {
         let name = key.get_ref().as_ref();
         let before = walk.report.total();
-        walk.path.push(Way::Key(name));
+        walk.path.push(Segment::Key(name));
         let part = match (schema["properties"].get(name), value.get_ref()) {
             (None, _) => {
                 walk.unknown_key(schema, name, key.span(), &[]);
@@ -64,14 +61,14 @@ pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Report<'_>) 
         }
         valid.insert(name.to_owned(), part);
     }
-    Checked { valid, flawed }
+    ValidFile { valid, flawed }
 }
 
 struct Walk<'r, 't, 'p> {
     /// The schema of the whole file.
     schema: &'r Json,
-    report: &'r mut Report<'t>,
-    path: Vec<Way<'p>>,
+    report: &'r mut Collector<'t>,
+    path: Vec<Segment<'p>>,
 }
 
 impl<'p> Walk<'_, '_, 'p> {
@@ -85,7 +82,7 @@ impl<'p> Walk<'_, '_, 'p> {
 
     /// The first sentence of the description of a key; `None` for an entry of an array.
     fn meaning(&self, schema: &Json) -> Option<String> {
-        let keyed = matches!(self.path.last(), Some(Way::Key(_)));
+        let keyed = matches!(self.path.last(), Some(Segment::Key(_)));
         schema.get("description").and_then(Json::as_str).filter(|_| keyed).map(|text| first_sentence(text).into())
     }
 
@@ -101,7 +98,7 @@ impl<'p> Walk<'_, '_, 'p> {
         let inner = schema.get("items").unwrap_or(&nothing);
         let mut entries = Vec::with_capacity(items.len());
         for (index, item) in items.iter().enumerate() {
-            self.path.push(Way::Index(index));
+            self.path.push(Segment::Index(index));
             entries.push(self.guarded(inner, item));
             self.path.pop();
         }
@@ -139,7 +136,7 @@ impl<'p> Walk<'_, '_, 'p> {
 
     fn wrong_type(&mut self, schema: &Json, value: &Spanned<DeValue<'_>>) -> Json {
         let mut help = self.meaning(schema);
-        if let [Way::Key(key)] = self.path[..] {
+        if let [Segment::Key(key)] = self.path[..] {
             match (schema["type"].as_str(), value.get_ref()) {
                 (Some("array"), DeValue::Table(_)) => {
                     help = Some(format!("write [[{key}]], with double brackets: there may be several"));
@@ -292,7 +289,7 @@ impl<'p> Walk<'_, '_, 'p> {
         let mut json = Map::new();
         for (key, value) in table.iter() {
             let name = key.get_ref().as_ref();
-            self.path.push(Way::Key(name));
+            self.path.push(Segment::Key(name));
             match schema["properties"].get(name) {
                 None => self.unknown_key(schema, name, key.span(), kinds),
                 Some(inner) => {

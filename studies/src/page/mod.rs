@@ -53,11 +53,11 @@ pub(crate) struct Page {
     pub(crate) caption: Vec<String>,
     /// The number of parts beside each other.
     pub(crate) columns: usize,
-    pub(crate) parts: Parts,
+    pub(crate) panels: Panels,
 }
 
 /// The parts of a page.
-pub(crate) enum Parts {
+pub(crate) enum Panels {
     Plots(Vec<Plot>),
     Maps(Vec<Map>),
 }
@@ -72,18 +72,18 @@ struct Room {
 
 impl Page {
     fn room(&self) -> &'static Room {
-        match self.parts {
-            Parts::Plots(_) => &plot::ROOM,
-            Parts::Maps(_) => &map::ROOM,
+        match self.panels {
+            Panels::Plots(_) => &plot::ROOM,
+            Panels::Maps(_) => &map::ROOM,
         }
     }
 
     /// The places of the parts, and the height of the page.
     fn areas(&self) -> (Vec<Area>, f64) {
         let Room { around: [left, above, right, below], shape, legend } = self.room();
-        let count = match &self.parts {
-            Parts::Plots(plots) => plots.len(),
-            Parts::Maps(maps) => maps.len(),
+        let count = match &self.panels {
+            Panels::Plots(plots) => plots.len(),
+            Panels::Maps(maps) => maps.len(),
         };
         let (columns, rows) = (self.columns as f64, count.div_ceil(self.columns) as f64);
         let wide = (WIDE - 2.0 * MARGIN - columns * (left + right) - (columns - 1.0) * BETWEEN) / columns;
@@ -105,9 +105,9 @@ impl Page {
         for (at, line) in self.caption.iter().enumerate() {
             write(&mut diagram, line, USUAL, 0.0, [MARGIN, CAPTION_AT + LINE * at as f64]);
         }
-        match &self.parts {
-            Parts::Plots(plots) => plot::draw(plots, &areas, &mut diagram),
-            Parts::Maps(maps) => {
+        match &self.panels {
+            Panels::Plots(plots) => plot::draw(plots, &areas, &mut diagram),
+            Panels::Maps(maps) => {
                 map::legend(&mut diagram, CAPTION_AT + LINE * self.caption.len() as f64);
                 maps.iter().zip(areas).for_each(|(map, area)| map.draw(&mut diagram, area));
             }

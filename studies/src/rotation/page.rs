@@ -2,7 +2,7 @@
 
 use super::sample::Kind;
 use super::{Measured, Results, Solver};
-use crate::page::{Line, Page, Parts, Plot};
+use crate::page::{Line, Page, Panels, Plot};
 use crate::turns::machine;
 
 impl Results {
@@ -58,7 +58,7 @@ impl Results {
                 format!("Times on one thread of {}.", machine()),
             ],
             columns: 2,
-            parts: Parts::Plots([order].into_iter().chain(by_time).collect()),
+            panels: Panels::Plots([order].into_iter().chain(by_time).collect()),
         }
     }
 

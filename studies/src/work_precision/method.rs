@@ -128,7 +128,7 @@ pub(crate) const MOMENTS: usize = 128;
 
 /// One method with one step or tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Way {
+pub(crate) struct Attempt {
     pub(super) method: Method,
     /// The number of steps. An adaptive method has a step for each moment, with substeps between.
     pub(super) steps: u64,
@@ -144,7 +144,7 @@ pub(crate) enum End {
     GivenUp,
 }
 
-impl Way {
+impl Attempt {
     /// A run is stopped after this many times the expected evaluations. From one tolerance to the next, evaluations
     /// grow by a factor of 2.5 in free motion and 10 in contact, so this does not cut a series short. But an adaptive
     /// method may take millions of substeps at its first tolerance, if a body rests on something.

@@ -24,7 +24,7 @@ use crate::turns::{Clock, take_turns};
 use count::Counting;
 use localshape::Scene;
 use localshape::sim::model::ElasticModel;
-use method::{End, Method, Way};
+use method::{Attempt, End, Method};
 use reference::{farthest, larger, reference};
 use std::sync::Arc;
 
@@ -106,7 +106,7 @@ impl Subject {
 /// One method with one step or tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Measured {
-    pub(crate) way: Way,
+    pub(crate) attempt: Attempt,
     /// Time step (s), or the tolerance of an adaptive method.
     pub(crate) step: f64,
     /// Evaluations of the forces of the whole body, from the start on.
@@ -188,9 +188,9 @@ fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Compa
     for (method, model) in &methods {
         for at in 0..STEPS {
             let tolerance = libm::pow(10.0, -1.0 - at as f64);
-            let way = Way::new(*method, most / f64::from(1 << (STEPS - 1 - at)), tolerance);
+            let attempt = Attempt::new(*method, most / f64::from(1 << (STEPS - 1 - at)), tolerance);
             let mut error = 0.0;
-            let (end, evaluations) = way.run(subject, model, most, |moment, positions| {
+            let (end, evaluations) = attempt.run(subject, model, most, |moment, positions| {
                 error = larger(error, farthest(positions, &exact[moment]) / size);
             });
             if !watch(1) {
@@ -201,11 +201,11 @@ fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Compa
                 break;
             }
             if end == End::Reached {
-                timed.push((found.measured.len(), way, model));
+                timed.push((found.measured.len(), attempt, model));
             }
             found.measured.push(Measured {
-                way,
-                step: if method.is_adaptive() { tolerance } else { scene.duration / way.steps as f64 },
+                attempt,
+                step: if method.is_adaptive() { tolerance } else { scene.duration / attempt.steps as f64 },
                 evaluations,
                 error: (end == End::Reached).then_some(error),
                 end,
@@ -219,10 +219,10 @@ fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Compa
     }
     // The earlier runs have warmed the caches.
     let times = take_turns(timed.len(), effort.rounds, watch, |turn| {
-        let (_, way, model) = &timed[turn];
-        let mut world = way.world(subject, Arc::clone(model));
+        let (_, attempt, model) = &timed[turn];
+        let mut world = attempt.world(subject, Arc::clone(model));
         let clock = Clock::start();
-        world.advance(way.steps);
+        world.advance(attempt.steps);
         clock.seconds()
     })?;
     timed.iter().zip(times).for_each(|(&(at, ..), times)| found.measured[at].time = Spread::of(times));
@@ -231,8 +231,8 @@ fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Compa
 
 /// The approximate time of an evaluation by the reference code (s).
 fn seconds_per_evaluation(subject: &Subject, model: &Arc<dyn ElasticModel>) -> f64 {
-    let way = Way { steps: 1 << 20, ..Way::new(Method::DEFAULT, 1.0, reference::TOLERANCE) };
-    let mut world = way.world(subject, Arc::new(Counting::new(Arc::clone(model), u64::MAX)));
+    let attempt = Attempt { steps: 1 << 20, ..Attempt::new(Method::DEFAULT, 1.0, reference::TOLERANCE) };
+    let mut world = attempt.world(subject, Arc::new(Counting::new(Arc::clone(model), u64::MAX)));
     world.advance(1);
     let clock = Clock::start();
     world.advance(100);
@@ -257,7 +257,7 @@ impl Comparison {
 
     /// The measurements of a method.
     pub(crate) fn of(&self, method: Method) -> impl Iterator<Item = &Measured> {
-        self.measured.iter().filter(move |one| one.way.method == method)
+        self.measured.iter().filter(move |one| one.attempt.method == method)
     }
 
     /// The cost of an error, interpolated on logarithmic axes: between the coarsest run from which on no error is

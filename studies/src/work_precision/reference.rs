@@ -1,6 +1,6 @@
 //! The reference positions at each moment.
 
-use super::method::{End, MOMENTS, Method, Way};
+use super::method::{Attempt, End, MOMENTS, Method};
 use super::{Reference, Subject};
 use glam::DVec3;
 use localshape::sim::Integrator;
@@ -57,8 +57,8 @@ fn finest(subject: &Subject, model: &Arc<dyn ElasticModel>, method: Method, most
     let mut before = None;
     loop {
         let mut course = vec![Vec::new(); MOMENTS];
-        let way = Way::new(method, most, tolerance).finer();
-        let (end, count) = way.run(subject, model, most, |at, positions| course[at] = positions.to_vec());
+        let attempt = Attempt::new(method, most, tolerance).finer();
+        let (end, count) = attempt.run(subject, model, most, |at, positions| course[at] = positions.to_vec());
         match end {
             End::Reached => {}
             End::Diverged => return Some(None),

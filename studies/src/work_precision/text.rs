@@ -30,7 +30,7 @@ impl Results {
     pub(super) fn table(&self) -> Table {
         let rows = self.comparisons.iter().flat_map(|one| one.measured.iter().map(move |run| (one, run)));
         let row = |(comparison, run): (&Comparison, &Measured)| {
-            let (is_adaptive, [integrator, rotation]) = (run.way.method.is_adaptive(), run.way.method.names());
+            let (is_adaptive, [integrator, rotation]) = (run.attempt.method.is_adaptive(), run.attempt.method.names());
             [
                 ("scene", comparison.name.as_str().into()),
                 ("integrator", integrator.into()),

@@ -1,6 +1,6 @@
 //! Plots, whatever their numbers.
 
-use super::super::{Page, Parts};
+use super::super::{Page, Panels};
 use super::*;
 
 fn plots(points: Vec<[f64; 2]>) -> Vec<Plot> {
@@ -61,7 +61,7 @@ fn all_is_on_the_page_whatever_the_numbers() {
             }
         }
         let (title, caption) = ("Title".to_owned(), vec!["Words".to_owned()]);
-        let page = Page { title, caption, columns: 2, parts: Parts::Plots(plots) };
+        let page = Page { title, caption, columns: 2, panels: Panels::Plots(plots) };
         page.diagram();
     }
 }

@@ -72,15 +72,16 @@ fn an_error_is_the_largest_over_the_whole_time() {
     let subject = &subjects(DAMPED)[0];
     let (methods, model) = (subject.methods(), Method::VERLET.model(subject).expect("its own"));
     let (exact, _) = reference(subject, &methods, 65_536.0).expect("there is one");
-    let way = Way::new(Method::VERLET, 512.0, 1.0);
+    let attempt = Attempt::new(Method::VERLET, 512.0, 1.0);
     let (mut last, mut largest, size) = (0.0, 0.0, subject.scene.body.extent());
-    way.run(subject, &model, 1e6, |moment, positions| {
+    attempt.run(subject, &model, 1e6, |moment, positions| {
         last = farthest(positions, &exact[moment]) / size;
         largest = larger(largest, last);
     });
     assert!(largest > 10.0 * last, "{largest:e} {last:e}");
     let results = measure(QUICK, &subjects(DAMPED), &|_| true).expect("it is never stopped");
-    let same = results.comparisons[0].of(Method::VERLET).find(|one| one.way.steps == way.steps).expect("it is tried");
+    let same =
+        results.comparisons[0].of(Method::VERLET).find(|one| one.attempt.steps == attempt.steps).expect("it is tried");
     let error = same.error.expect("it does not diverge");
     assert!((error / largest - 1.0).abs() < 0.01, "{error:e} {largest:e}");
 }
@@ -99,7 +100,7 @@ fn no_error_is_below_that_of_the_reference() {
 /// A comparison with one method and these errors, with steps that are halved.
 fn with_errors(method: Method, errors: &[f64]) -> Comparison {
     let measured = errors.iter().enumerate().map(|(at, &error)| Measured {
-        way: Way::new(method, 1.0, 1.0),
+        attempt: Attempt::new(method, 1.0, 1.0),
         step: 0.5f64.powi(at as i32),
         evaluations: 1 << at,
         error: Some(error),
