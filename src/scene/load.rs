@@ -317,6 +317,7 @@ fn as_text<'b>(bytes: &'b [u8], file: &str) -> Result<&'b str, SceneError> {
 /// The scene files in a folder, in order.
 fn scenes_in(folder: &Path) -> Vec<PathBuf> {
     // Folders of results can have very many files; folders of scenes have few.
+    #[expect(clippy::disallowed_methods, reason = "a scene names files beside it")]
     let entries = fs::read_dir(folder).into_iter().flatten().flatten().take(10_000).map(|entry| entry.path());
     let mut scenes: Vec<_> = entries.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
     scenes.sort();
