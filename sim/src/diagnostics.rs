@@ -127,7 +127,7 @@ impl From<DVec3> for Value {
 
 /// Where a diagnostic is written, besides `diagnostics.csv` and charts over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Reach {
+pub enum Scope {
     /// Nowhere else.
     Frames,
     /// Also to summaries of single states: `run.json`, and the JSON of figures.
@@ -136,11 +136,11 @@ pub enum Reach {
 
 /// Defines a field of [`Diagnostics`] and a variant of [`Diagnostic`] for each entry. An entry has its meaning, with
 /// the unit in parentheses; its name in code, its key in files and its type; its name in captions; its unit; its
-/// [`Reach`]; and its formula, which can use the facts and the entries before it.
+/// [`Scope`]; and its formula, which can use the facts and the entries before it.
 macro_rules! diagnostics {
     ($facts:ident: $(
         $(#[doc = $meaning:literal])+
-        $variant:ident, $key:ident: $type:ty, $name:literal, $unit:literal, $reach:ident = $value:expr;
+        $variant:ident, $key:ident: $type:ty, $name:literal, $unit:literal, $scope:ident = $value:expr;
     )+) => {
         /// Numbers that describe a state, in SI units; in the plane volumes are areas. A number that the model or the
         /// body does not have is NaN: the elastic energy, `residual` and `global_rotations` of some models, the volume ratio of a cloth.
@@ -207,9 +207,9 @@ macro_rules! diagnostics {
             }
 
             /// Where it is written.
-            pub(crate) fn reach(self) -> Reach {
+            pub(crate) fn scope(self) -> Scope {
                 match self {
-                    $(Self::$variant => Reach::$reach,)+
+                    $(Self::$variant => Scope::$scope,)+
                 }
             }
         }
@@ -263,8 +263,8 @@ impl Diagnostic {
     }
 
     /// Those that are written at least so widely.
-    pub fn within(reach: Reach) -> impl Iterator<Item = Self> {
-        Self::ALL.iter().copied().filter(move |diagnostic| diagnostic.reach() >= reach)
+    pub fn within(scope: Scope) -> impl Iterator<Item = Self> {
+        Self::ALL.iter().copied().filter(move |diagnostic| diagnostic.scope() >= scope)
     }
 }
 
@@ -274,8 +274,8 @@ pub struct Chosen(Vec<(Diagnostic, Value)>);
 
 impl Chosen {
     /// Those that are written at least so widely.
-    pub fn within(reach: Reach, all: &Diagnostics) -> Self {
-        Self(Diagnostic::within(reach).map(|diagnostic| (diagnostic, diagnostic.value(all))).collect())
+    pub fn within(scope: Scope, all: &Diagnostics) -> Self {
+        Self(Diagnostic::within(scope).map(|diagnostic| (diagnostic, diagnostic.value(all))).collect())
     }
 
     /// Each with its value.
@@ -323,7 +323,7 @@ mod tests {
     #[test]
     fn chosen_diagnostics_are_a_table() {
         let all = Diagnostics { kinetic: 0.1, turned_over: 3, volume_ratio: f64::NAN, ..Diagnostics::default() };
-        let json = serde_json::to_string(&Chosen::within(Reach::Summaries, &all)).expect("plain data");
+        let json = serde_json::to_string(&Chosen::within(Scope::Summaries, &all)).expect("plain data");
         assert_eq!(json, r#"{"turned_over":3,"volume_ratio":null,"shape_error":0.0}"#);
     }
 }

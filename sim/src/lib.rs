@@ -1,6 +1,18 @@
-//! The simulation: double precision, no files, no clock, no device, and it cannot fail.
+//! Deformable bodies that keep their local shapes (Miyazaki et al.), beside mass-spring models, for your own engine.
+//!
+//! A [`Body`] has nodes, masses and elements at rest. A [`World`] moves it by a model of [`model`] and a method of
+//! [`integrate`], among [`Obstacle`]s and [`Grip`]s. Read positions from [`World::state`], or a [`Snapshot`] with diagnostics.
+//! Numbers are in SI units and double precision, with the same bits on every machine and for any number of threads. A world that
+//! diverges stops and reports it as its [`Status`]. The crate uses no files, no clock and no device.
+//!
+//! ```
+#![doc = include_str!("../examples/own_engine.rs")]
+//! ```
+//!
+//! Eq. (15), the rotation of an element, is in [`rotation::linearised`]; Eq. (4), its forces, in [`model::shape_based`].
 
-#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
+#![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod alike;
 mod body;
@@ -35,7 +47,7 @@ mod world;
 pub use body::Body;
 pub use contact::{Contact, FrictionOf, Obstacle, Placed, Shape};
 pub use crew::Crew;
-pub use diagnostics::{Chosen, Diagnostic, Diagnostics, Reach, Value};
+pub use diagnostics::{Chosen, Diagnostic, Diagnostics, Scope, Value};
 pub use element::{Dimension, ElementKind, Solids};
 pub use field::{Field, Support};
 pub use grip::Grip;

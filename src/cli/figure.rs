@@ -15,7 +15,7 @@ use crate::runner::moments::{Forces, Moments, Taking};
 use crate::scene::figure::built_in::NAMES;
 use crate::scene::figure::{Content, Figure};
 use crate::scene::{Limits, Scene, SceneError};
-use crate::sim::{self, Chosen, Reach, RunFrame, Snapshot};
+use crate::sim::{self, Chosen, RunFrame, Scope, Snapshot};
 use clap::{Args, ValueHint};
 use serde_json::{Value, json};
 use std::collections::VecDeque;
@@ -252,7 +252,7 @@ impl FigureCommand {
 
     /// Simulates the states that a figure shows; `None` if it was interrupted.
     fn take(&self, figure: &Figure) -> Option<Moments> {
-        let mut taking = Taking::new(figure, Reach::Summaries);
+        let mut taking = Taking::new(figure, Scope::Summaries);
         let slice = figure.scenes().iter().map(|scene| record::slice(&scene.body)).min().unwrap_or(1);
         let bar = self.printing.progress(&figure.name, 0);
         while !interrupt::requested()
@@ -335,7 +335,7 @@ fn numbers(figure: &Figure, moments: &Moments) -> Value {
                     "run": sheet.scenes[scene].runs[run].name,
                     "time": time,
                 });
-                let described = json!(Chosen::within(Reach::Summaries, diagnostics));
+                let described = json!(Chosen::within(Scope::Summaries, diagnostics));
                 let both = cell.as_object_mut().zip(described.as_object());
                 both.into_iter().for_each(|(cell, described)| cell.extend(described.clone()));
                 cell

@@ -13,7 +13,7 @@ use crate::runner::moments::Taking;
 use crate::runner::{Frames, Next, Runner};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene, SceneError, is_figure_file};
-use crate::sim::{Divergence, Reach, Snapshot, Status};
+use crate::sim::{Divergence, Scope, Snapshot, Status};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -163,7 +163,7 @@ fn draw_figure(
 ) -> Result<Option<Drawn>, DrawError> {
     let mut figure = figure.clone();
     figure.size = size(figure.size, golden);
-    let mut taking = Taking::new(&figure, Reach::Summaries);
+    let mut taking = Taking::new(&figure, Scope::Summaries);
     while taking.advance(SLICE).is_some() {
         if !go_on() {
             return Ok(None);

@@ -3,7 +3,7 @@
 use super::{OutputError, Timings, state_digest, write_whole};
 use crate::runner::cause::Cause;
 use crate::scene::Scene;
-use crate::sim::{Chosen, Frame, Reach, Status};
+use crate::sim::{Chosen, Frame, Scope, Status};
 use serde::Serialize;
 use std::path::{Component, Path, PathBuf};
 
@@ -192,7 +192,7 @@ impl Summary {
             summary.last = Some(LastState {
                 frame: frame.index,
                 time: snapshot.time,
-                diagnostics: Chosen::within(Reach::Summaries, &snapshot.diagnostics),
+                diagnostics: Chosen::within(Scope::Summaries, &snapshot.diagnostics),
                 global_rotations: Some(snapshot.diagnostics.global_rotations)
                     .filter(|count| count.is_finite())
                     .map(|count| count as u64),

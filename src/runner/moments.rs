@@ -5,7 +5,7 @@ use crate::runner::Runner;
 use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::scene::figure::{Content, Figure, Sheet};
-use crate::sim::{Diagnostic, Moment, Reach, RunFrame, Snapshot};
+use crate::sim::{Diagnostic, Moment, RunFrame, Scope, Snapshot};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -37,7 +37,7 @@ impl Moments {
     ///
     /// It uses the rayon thread pool of the caller; the result has the same bits for any number of threads.
     pub fn new(figure: &Figure) -> Self {
-        let mut taking = Taking::new(figure, Reach::Frames);
+        let mut taking = Taking::new(figure, Scope::Frames);
         while taking.advance(u64::MAX).is_some() {}
         taking.finish()
     }
@@ -111,10 +111,10 @@ struct Part<'a> {
 }
 
 impl<'a> Taking<'a> {
-    /// The simulations of a figure at their start. The states have the diagnostics that are written at this `reach` or
+    /// The simulations of a figure at their start. The states have the diagnostics that are written at this `scope` or
     /// wider, and those that the figure shows.
-    pub(crate) fn new(figure: &'a Figure, reach: Reach) -> Self {
-        let wanted = Diagnostic::within(reach);
+    pub(crate) fn new(figure: &'a Figure, scope: Scope) -> Self {
+        let wanted = Diagnostic::within(scope);
         match &figure.content {
             Content::Sheet(sheet) => Self::of_sheet(figure, sheet, wanted.chain(sheet.number).collect()),
             Content::Forces(_) => Self { figure, wanted: wanted.collect(), parts: Vec::new(), series: Vec::new() },
@@ -256,7 +256,7 @@ mod tests {
         let Content::Sheet(sheet) = &figure.content else { panic!("a contact sheet") };
         let whole = Moments::new(&figure);
         assert_eq!((whole.cells.len(), whole.cells[0].len()), (sheet.rows.len(), sheet.columns.len()));
-        let mut taking = Taking::new(&figure, Reach::Frames);
+        let mut taking = Taking::new(&figure, Scope::Frames);
         while let Some([done, all]) = taking.advance(17) {
             assert!(done < all);
         }

@@ -1,11 +1,11 @@
 //! Kernels as [`Dynamics`]: the choice of the kernel for a model and a body, and contact and grips between steps.
 
 use super::general::{Constants, General};
-use super::lattice::{self, Lattice};
+use super::lattice::{self, LatticeStepper};
 use super::report::{Elastic, Energy};
 use super::springs::Stencil;
-use super::stepper::{Scheme, Stepper, Way};
-use super::{Around, Place, Rotation};
+use super::stepper::{Rollback, Scheme, Stepper};
+use super::{Around, PlaceNode, Rotation};
 use crate::body::Body;
 use crate::contact::{Bound, Floor, Obstacle, Placed};
 use crate::crew::Crew;
@@ -24,7 +24,7 @@ use std::sync::Arc;
 
 /// A kernel that advances a simulation.
 pub(crate) struct ByKernel {
-    way: Way,
+    rollback: Rollback,
     energy: Energy,
     /// The memory of the constraints, while the kernel has the state.
     constraints: Option<Vec<f64>>,
@@ -50,7 +50,7 @@ impl ByKernel {
             }
         };
         let energy = Energy { set: Set::best(), body: Arc::clone(body), stiffness, of };
-        Self { way: Way::new(stepper, scheme), energy, constraints: None, margin: MARGIN * body.extent() }
+        Self { rollback: Rollback::new(stepper, scheme), energy, constraints: None, margin: MARGIN * body.extent() }
     }
 }
 
@@ -73,7 +73,7 @@ fn shape_based(
 ) -> Box<dyn Stepper> {
     let &ShapeBased { stiffness, damping, .. } = model;
     let parameters = lattice::Parameters { stiffness, damping, rotation, gravity, step };
-    if let Some(lattice) = Lattice::new(body, parameters, scheme, Set::best()) {
+    if let Some(lattice) = LatticeStepper::new(body, parameters, scheme, Set::best()) {
         return Box::new(lattice);
     }
     Box::new(General::new(body, rotation, Constants { stiffness, damping, gravity, step }, Set::best()))
@@ -99,28 +99,28 @@ impl Dynamics for ByKernel {
     ) -> Result<(), Runaway> {
         /// Steps for which moving obstacles are placed at a time.
         const STRETCH: u64 = 256;
-        let Self { way, constraints, margin, .. } = self;
+        let Self { rollback, constraints, margin, .. } = self;
         let constraints = constraints.get_or_insert_with(|| {
-            way.load(state.steps, &state.position, &state.velocity, &state.memory.model);
+            rollback.load(state.steps, &state.position, &state.velocity, &state.memory.model);
             state.memory.constraints.clone()
         });
         let obstacles = system.contact.obstacles().unwrap_or_default();
         let is_still = obstacles.iter().all(Obstacle::is_still);
-        let target = way.steps() + count;
-        while way.steps() < target {
-            let begin = way.steps();
+        let target = rollback.steps() + count;
+        while rollback.steps() < target {
+            let begin = rollback.steps();
             let mut taken = None;
             if system.takes(begin, constraints) {
                 let (end, memory) = (system.interval(begin).end, taken.insert(constraints.clone()));
                 system.change_grips(memory, |grip, memory| {
-                    grip.reach(end, memory, |node| way.stepper.node(node as usize).0);
+                    grip.reach(end, memory, |node| rollback.stepper.node(node as usize).0);
                 });
             }
             let memory = taken.as_ref().unwrap_or(constraints);
             // Grips become active and inactive between stretches, and no step is repeated with other grips.
             let is_new = |step: u64| system.takes(step, memory) || system.holds(step) != system.holds(step - 1);
             if taken.is_some() || begin > 0 && is_new(begin) {
-                way.arrive();
+                rollback.arrive();
             }
             // Moving obstacles are placed in advance, for this many steps at a time.
             let until = match is_still && system.grips.is_empty() {
@@ -130,8 +130,8 @@ impl Dynamics for ByKernel {
                     (begin + 1..last).find(|&step| is_new(step)).unwrap_or(last)
                 }
             };
-            let met = Met::new(obstacles, system, way.earliest()..until, *margin);
-            let place = |step: u64, share: f64, place: &mut Place<'_>| {
+            let met = Met::new(obstacles, system, rollback.earliest()..until, *margin);
+            let place = |step: u64, share: f64, place: &mut PlaceNode<'_>| {
                 for (grip, memory) in system.grips(memory) {
                     grip.moved_by(system.interval(step), share, memory)
                         .for_each(|(node, to, speed)| place(node, to, speed));
@@ -149,8 +149,8 @@ impl Dynamics for ByKernel {
                 grips: if system.holds(begin) { Some(&place) } else { None },
                 speed_limit: &|step| limit.at(system.interval(step).end),
             };
-            let outcome = way.advance(until, &around, crew);
-            if let Some(taken) = taken.filter(|_| way.steps() > begin) {
+            let outcome = rollback.advance(until, &around, crew);
+            if let Some(taken) = taken.filter(|_| rollback.steps() > begin) {
                 *constraints = taken;
             }
             outcome?;
@@ -161,11 +161,11 @@ impl Dynamics for ByKernel {
     fn settle(&mut self, state: &mut State) {
         if let Some(known) = &self.constraints {
             let State { position, velocity, memory: Memory { model, constraints, integrator }, steps, .. } = state;
-            self.way.stepper.store(position, velocity, model);
+            self.rollback.stepper.store(position, velocity, model);
             constraints.clone_from(known);
             // Only the reference code has a memory of the integrator.
             integrator.clear();
-            *steps = self.way.steps();
+            *steps = self.rollback.steps();
         }
     }
 
@@ -174,7 +174,7 @@ impl Dynamics for ByKernel {
     }
 
     fn steps(&self, state: &State) -> u64 {
-        self.constraints.as_ref().map_or(state.steps, |_| self.way.steps())
+        self.constraints.as_ref().map_or(state.steps, |_| self.rollback.steps())
     }
 
     fn restart(&mut self) {

@@ -11,12 +11,12 @@ pub mod floor;
 pub(crate) mod general;
 pub(crate) mod lattice;
 mod memory;
-pub(crate) mod motion;
 mod report;
 mod rotation;
 pub(crate) mod springs;
 pub(crate) mod stepper;
 mod tally;
+pub(crate) mod update;
 
 #[cfg(test)]
 mod tests;
@@ -46,11 +46,11 @@ pub(crate) enum Rotation {
 pub(crate) type Resolve<'a> = dyn Fn(u64, &mut DVec3, &mut DVec3, DVec3) + Sync + 'a;
 
 /// Called with a node, its position (m) and its velocity (m/s).
-pub(crate) type Place<'a> = dyn FnMut(usize, DVec3, DVec3) + 'a;
+pub(crate) type PlaceNode<'a> = dyn FnMut(usize, DVec3, DVec3) + 'a;
 
 /// Calls its argument for each node that grips hold at the end of a step of this number, with its position after a share
 /// of the step.
-pub(crate) type Held<'a> = dyn Fn(u64, f64, &mut Place<'_>) + Sync + 'a;
+pub(crate) type Held<'a> = dyn Fn(u64, f64, &mut PlaceNode<'_>) + Sync + 'a;
 
 /// What acts on the nodes besides elements and gravity. Its functions take the number of a step.
 #[derive(Clone, Copy)]

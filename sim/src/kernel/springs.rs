@@ -15,8 +15,8 @@
 
 use super::general::{Constants, NONE, first_of};
 use super::memory::Aligned;
-use super::motion::{Motion, Nodes, Stage};
 use super::stepper::{Pass, Passes, Stepper};
+use super::update::{NodeUpdate, Nodes, Stage};
 use super::{Around, Lost};
 use crate::crew::Crew;
 use crate::lanes::{Lanes, Set, Work, each};
@@ -271,7 +271,7 @@ impl Arrays {
 
     /// Moves the nodes from `at` on.
     #[inline(always)]
-    unsafe fn advance<L: Lanes>(&self, motion: &Motion<'_, L>, stage: Stage, at: usize, force: [L; 3]) -> u32 {
+    unsafe fn advance<L: Lanes>(&self, update: &NodeUpdate<'_, L>, stage: Stage, at: usize, force: [L; 3]) -> u32 {
         // SAFETY: the caller's.
         unsafe {
             let zero = [L::splat(0.0); 3];
@@ -281,7 +281,7 @@ impl Arrays {
                 acceleration: if stage.loads_acceleration() { self.load(ACCELERATION, at) } else { zero },
             };
             let inverse_mass = L::load(self.state.add(INVERSE_MASS * self.stride + at));
-            let lost = motion.advance(&mut nodes, force, inverse_mass);
+            let lost = update.advance(&mut nodes, force, inverse_mass);
             self.store(0, at, nodes.position);
             self.store(VELOCITY, at, nodes.velocity);
             if stage.stores_acceleration() {
@@ -292,7 +292,7 @@ impl Arrays {
     }
 }
 
-/// The springs that begin in a slab, and the motion of its nodes.
+/// The springs that begin in a slab, and the update of its nodes.
 struct OneSlab<'a> {
     springs: &'a Stencil,
     slab: usize,
@@ -318,7 +318,7 @@ impl OneSlab<'_> {
         let Self { springs, slab: at, pass: Pass { stage, number, .. }, around } = self;
         let slab = &springs.slabs[at];
         let (arrays, pulls, width, start) = (springs.arrays(), slab.pulls.pointer(), slab.stride, slab.first * CHUNK);
-        let motion = Motion::<L>::new(stage, springs.constants.step, springs.constants.gravity, number, around);
+        let update = NodeUpdate::<L>::new(stage, springs.constants.step, springs.constants.gravity, number, around);
         let (k, d, one, zero) =
             (L::splat(springs.constants.stiffness), L::splat(springs.constants.damping), L::splat(1.0), L::splat(0.0));
         let all_tensions = springs.tensions.pointer().cast_const();
@@ -381,7 +381,7 @@ impl OneSlab<'_> {
                         each!(3, axis => force[axis].store(place(axis)));
                     } else {
                         each!(3, axis => zero.store(place(axis)));
-                        lost = first_of(lost, arrays.advance(&motion, stage, i, force), |lane| (i + lane) as u32);
+                        lost = first_of(lost, arrays.advance(&update, stage, i, force), |lane| (i + lane) as u32);
                     }
                 }
             }
@@ -390,7 +390,7 @@ impl OneSlab<'_> {
     }
 }
 
-/// The motion of the first nodes of a slab.
+/// The update of the first nodes of a slab.
 struct Deferred<'a> {
     springs: &'a Stencil,
     slab: usize,
@@ -405,7 +405,7 @@ impl Work for Deferred<'_> {
     fn run<L: Lanes>(self) -> u32 {
         let Self { springs, slab: at, pass: Pass { stage, number, .. }, around } = self;
         let (before, slab) = (&springs.slabs[at - 1], &springs.slabs[at]);
-        let motion = Motion::<L>::new(stage, springs.constants.step, springs.constants.gravity, number, around);
+        let update = NodeUpdate::<L>::new(stage, springs.constants.step, springs.constants.gravity, number, around);
         let (arrays, zero) = (springs.arrays(), L::splat(0.0));
         let mut lost = NONE;
         let start = slab.first * CHUNK;
@@ -420,7 +420,7 @@ impl Work for Deferred<'_> {
                     zero.store(halo(axis));
                     zero.store(place(axis));
                 }
-                lost = first_of(lost, arrays.advance(&motion, stage, i, force), |lane| (i + lane) as u32);
+                lost = first_of(lost, arrays.advance(&update, stage, i, force), |lane| (i + lane) as u32);
             }
         }
         lost

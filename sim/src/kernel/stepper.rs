@@ -1,6 +1,6 @@
-//! Steps as passes over all nodes, and [`Way`], which advances a body by them.
+//! Steps as passes over all nodes, and [`Rollback`], which finds the step in which a run diverges.
 
-use super::motion::Stage;
+use super::update::Stage;
 use super::{Around, Lost};
 use crate::crew::Crew;
 use crate::dynamics::Runaway;
@@ -137,8 +137,8 @@ pub(crate) trait Stepper: Send + Sync {
     fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost>;
 }
 
-/// A body with its stepper and its number of steps.
-pub(crate) struct Way {
+/// A stepper with a copy of an earlier state, to which it goes back when a node has become too fast.
+pub(crate) struct Rollback {
     pub(crate) stepper: Box<dyn Stepper>,
     scheme: Scheme,
     /// Steps taken.
@@ -147,7 +147,7 @@ pub(crate) struct Way {
     kept: Option<u64>,
 }
 
-impl Way {
+impl Rollback {
     /// Number of steps between copies of the state. A copy costs a small part of that many steps.
     const KEPT: u64 = 32;
 
@@ -171,7 +171,7 @@ impl Way {
         self.kept.filter(|kept| self.steps < kept + Self::KEPT).unwrap_or(self.steps)
     }
 
-    /// Ensures that no step taken so far is repeated.
+    /// Drops the copy, so that no step taken so far is repeated.
     pub(crate) fn arrive(&mut self) {
         self.kept = None;
     }

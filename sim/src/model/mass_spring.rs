@@ -132,7 +132,7 @@ impl ElasticModel for MassSpring {
 
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
         let length = |&[i, j]: &[u32; 2]| (body.rest[i as usize] - body.rest[j as usize]).length();
-        Box::new(Lattice {
+        Box::new(SpringForces {
             natural_length: self.springs.iter().map(length).collect(),
             gather: blocks::SignedGather::new(body.len(), &self.springs),
             model: self.clone(),
@@ -141,7 +141,7 @@ impl ElasticModel for MassSpring {
 }
 
 /// The springs of a body, prepared for evaluation.
-struct Lattice {
+struct SpringForces {
     model: MassSpring,
     /// `L_ij` of each spring (m).
     natural_length: Vec<f64>,
@@ -149,7 +149,7 @@ struct Lattice {
     gather: blocks::SignedGather,
 }
 
-impl ForceModel for Lattice {
+impl ForceModel for SpringForces {
     fn add_forces(
         &self,
         at: Nodes<'_>,

@@ -244,6 +244,12 @@ impl Solver {
 }
 
 impl ShapeBased {
+    /// An undamped model with this elastic constant (N/m) and exact rotations.
+    pub fn new(stiffness: f64) -> Self {
+        let (rotation, damping_of) = (RotationReading::Robust, DampingReading::RelativeMotion);
+        Self { stiffness, damping: 0.0, passes: 2, rotation, damping_of }
+    }
+
     /// Whether the last number of the memory is that of the rotations that the global solver has computed.
     pub fn counts_global(&self, body: &Body) -> bool {
         self.solver(body.dimension).counts()

@@ -71,7 +71,7 @@ pub(crate) struct General {
     /// For each thread the sums of the part at which it is, which so stay in the caches; zeros between parts.
     sums: Vec<Aligned>,
     /// The record of each node. If several parts share it, the part is [`NONE`], and the record its number in `shared`.
-    places: Vec<Place>,
+    places: Vec<RecordAddress>,
     /// Number of elements.
     elements: usize,
     tally: Tally,
@@ -79,7 +79,7 @@ pub(crate) struct General {
 
 /// A record: the part, and its number there.
 #[derive(Clone, Copy)]
-struct Place {
+struct RecordAddress {
     part: u32,
     record: u32,
 }
@@ -95,7 +95,8 @@ struct Part {
     sums: Aligned,
     /// Of the nodes of this part only, block by block, coordinate by coordinate.
     accelerations: Aligned,
-    kept: [Aligned; 2],
+    /// A copy of the records. Accelerations need none: the first pass of a run computes them.
+    kept: Aligned,
     classes: Vec<Class>,
 }
 
@@ -121,9 +122,8 @@ struct Shared {
     index: Vec<u32>,
     /// The start of the places of each node.
     starts: Vec<u32>,
-    places: Vec<Place>,
+    places: Vec<RecordAddress>,
     accelerations: Aligned,
-    kept: Aligned,
 }
 
 impl General {
@@ -155,8 +155,8 @@ impl General {
                 valence[node] += u32::from(law != Law::Spring);
             }
         }
-        let mut places = vec![Place { part: 0, record: 0 }; rest.len()];
-        let mut shared_places: Vec<(u32, Place)> = Vec::new();
+        let mut places = vec![RecordAddress { part: 0, record: 0 }; rest.len()];
+        let mut shared_places: Vec<(u32, RecordAddress)> = Vec::new();
         let mut made = Vec::with_capacity(parts.len());
         let mut record = vec![NONE; rest.len()];
         for (part, own) in (0u32..).zip(&parts) {
@@ -176,14 +176,14 @@ impl General {
             index.resize(alone.next_multiple_of(MOST), 0);
             let whole = index.len();
             for (at, &node) in (0..).zip(&index[..alone]) {
-                places[node as usize] = Place { part, record: at };
+                places[node as usize] = RecordAddress { part, record: at };
                 record[node as usize] = at;
             }
             for (at, &node) in (whole as u32..).zip(&of_others) {
                 record[node as usize] = at;
-                shared_places.push((node, Place { part, record: at }));
+                shared_places.push((node, RecordAddress { part, record: at }));
                 if first[node as usize] == part {
-                    places[node as usize] = Place { part, record: at };
+                    places[node as usize] = RecordAddress { part, record: at };
                 }
             }
             index.extend(&of_others);
@@ -209,7 +209,7 @@ impl General {
                 records,
                 sums: Aligned::zeros(of_others.len() * SUM),
                 accelerations: Aligned::zeros(whole * 3),
-                kept: [Aligned::zeros((index.len() + 1) * RECORD), Aligned::zeros(whole * 3)],
+                kept: Aligned::zeros((index.len() + 1) * RECORD),
                 classes: counts.into_iter().map(class).collect(),
                 index,
             });
@@ -219,19 +219,14 @@ impl General {
         }
         // In the order of the first part, so that nodes moved one after the other are neighbours in memory.
         shared_places.sort_by_key(|&(node, place)| {
-            let Place { part, record } = places[node as usize];
+            let RecordAddress { part, record } = places[node as usize];
             (part, record, place.part)
         });
-        let mut shared = Shared {
-            index: Vec::new(),
-            starts: Vec::new(),
-            places: Vec::new(),
-            accelerations: Aligned::zeros(0),
-            kept: Aligned::zeros(0),
-        };
+        let mut shared =
+            Shared { index: Vec::new(), starts: Vec::new(), places: Vec::new(), accelerations: Aligned::zeros(0) };
         for of_node in shared_places.chunk_by(|a, b| a.0 == b.0) {
             let node = of_node[0].0;
-            places[node as usize] = Place { part: NONE, record: shared.index.len() as u32 };
+            places[node as usize] = RecordAddress { part: NONE, record: shared.index.len() as u32 };
             shared.index.push(node);
             shared.starts.push(shared.places.len() as u32);
             shared.places.extend(of_node.iter().map(|(_, place)| place));
@@ -240,7 +235,6 @@ impl General {
         shared.index.resize(whole, 0);
         shared.starts.resize(whole + 1, shared.places.len() as u32);
         shared.accelerations = Aligned::zeros(whole * 3);
-        shared.kept = Aligned::zeros(whole * 3);
         let (elements, tally) = (elements.len(), Tally::default());
         Self { set, law, constants, parts: made, shared, sums: Vec::new(), places, elements, tally }
     }
@@ -268,7 +262,7 @@ impl Law {
 
 impl Shared {
     /// All places of the node with this number.
-    fn of(&self, number: usize) -> &[Place] {
+    fn of(&self, number: usize) -> &[RecordAddress] {
         &self.places[self.starts[number] as usize..self.starts[number + 1] as usize]
     }
 }
@@ -427,8 +421,8 @@ impl Stepper for General {
     }
 
     fn node(&mut self, node: usize) -> (DVec3, DVec3) {
-        let Place { part, record } = match self.places[node] {
-            Place { part: NONE, record } => self.shared.of(record as usize)[0],
+        let RecordAddress { part, record } = match self.places[node] {
+            RecordAddress { part: NONE, record } => self.shared.of(record as usize)[0],
             place => place,
         };
         let records = self.parts[part as usize].records.as_mut_slice();
@@ -440,12 +434,12 @@ impl Stepper for General {
     fn set_node(&mut self, node: usize, position: DVec3, velocity: DVec3) {
         let values = [position.x, position.y, velocity.x, velocity.y, position.z, velocity.z];
         let Self { parts, shared, places, .. } = self;
-        let mut put = |place: Place| {
+        let mut put = |place: RecordAddress| {
             let record = &mut parts[place.part as usize].records.as_mut_slice()[place.record as usize * RECORD..];
             record[..values.len()].copy_from_slice(&values);
         };
         match places[node] {
-            Place { part: NONE, record } => shared.of(record as usize).iter().for_each(|&place| put(place)),
+            RecordAddress { part: NONE, record } => shared.of(record as usize).iter().for_each(|&place| put(place)),
             place => put(place),
         }
     }
@@ -456,23 +450,17 @@ impl Stepper for General {
 
     fn keep(&mut self) {
         for part in &mut self.parts {
-            let [records, accelerations] = &mut part.kept;
-            records.copy_from(&mut part.records);
-            accelerations.copy_from(&mut part.accelerations);
+            part.kept.copy_from(&mut part.records);
             part.classes.iter_mut().for_each(|class| class.kept.copy_from(&mut class.turns));
         }
-        self.shared.kept.copy_from(&mut self.shared.accelerations);
         self.tally.keep();
     }
 
     fn restore(&mut self) {
         for part in &mut self.parts {
-            let [records, accelerations] = &mut part.kept;
-            part.records.copy_from(records);
-            part.accelerations.copy_from(accelerations);
+            part.records.copy_from(&mut part.kept);
             part.classes.iter_mut().for_each(|class| class.turns.copy_from(&mut class.kept));
         }
-        self.shared.accelerations.copy_from(&mut self.shared.kept);
         self.tally.restore();
     }
 

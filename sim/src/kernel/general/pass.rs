@@ -1,16 +1,16 @@
-//! One pass: the elements of a part and the motion of its nodes, then the motion of the nodes of several parts.
+//! One pass: the elements of a part and the update of its nodes, then the update of the nodes of several parts.
 
 use super::elements::Elements;
-use super::{Constants, General, Law, NONE, Place, RECORD, SUM, first_of};
+use super::{Constants, General, Law, NONE, RECORD, RecordAddress, SUM, first_of};
 use crate::kernel::memory::Aligned;
-use crate::kernel::motion::{Motion, Nodes, Stage};
 use crate::kernel::rotation::{Arctangent, Optimum};
 use crate::kernel::stepper::Pass;
+use crate::kernel::update::{NodeUpdate, Nodes, Stage};
 use crate::kernel::{Around, Rotation};
 use crate::lanes::{Lanes, MOST, Work, each};
 use std::ops::Range;
 
-/// The elements of a part, and the motion of the nodes of this part only.
+/// The elements of a part, and the update of the nodes of this part only.
 pub(super) struct OnePart<'a> {
     pub(super) body: &'a General,
     pub(super) part: usize,
@@ -50,8 +50,8 @@ impl Work for OnePart<'_> {
             }
         }
         let Constants { step, gravity, .. } = self.body.constants;
-        let motion = Motion::<L>::new(stage, step, gravity, number, self.around);
-        let own = Own { motion, stage, constants: &self.body.constants };
+        let update = NodeUpdate::<L>::new(stage, step, gravity, number, self.around);
+        let own = Own { update, stage, constants: &self.body.constants };
         let (records, sums) = (part.records.pointer(), self.sums.pointer());
         let mut lost = NONE;
         for first in (0..part.own * MOST).step_by(L::WIDTH) {
@@ -91,9 +91,9 @@ unsafe fn sums_of<L: Lanes>(row: impl Fn(usize) -> *mut f64) -> [L; 4] {
     }
 }
 
-/// The motion of nodes by their records.
+/// The update of nodes by their records.
 struct Own<'a, L> {
-    motion: Motion<'a, L>,
+    update: NodeUpdate<'a, L>,
     stage: Stage,
     constants: &'a Constants,
 }
@@ -118,7 +118,7 @@ impl<L: Lanes> Own<'_, L> {
                 acceleration = each!(3, axis => L::load(accelerations.add(axis * MOST)));
             }
             let mut nodes = Nodes { position, velocity, acceleration };
-            let lost = self.motion.advance(&mut nodes, force, inverse_mass);
+            let lost = self.update.advance(&mut nodes, force, inverse_mass);
             if self.stage.stores_acceleration() {
                 each!(3, axis => nodes.acceleration[axis].store(accelerations.add(axis * MOST)));
             }
@@ -129,7 +129,7 @@ impl<L: Lanes> Own<'_, L> {
     }
 }
 
-/// The motion of the nodes that belong to several parts.
+/// The update of the nodes that belong to several parts.
 pub(super) struct SharedNodes<'a> {
     pub(super) body: &'a General,
     pub(super) blocks: Range<usize>,
@@ -145,12 +145,13 @@ impl Work for SharedNodes<'_> {
         let Self { body, blocks, pass, around } = self;
         let General { shared, parts, constants, .. } = body;
         let Pass { stage, number, .. } = pass;
-        let motion = Motion::<L>::new(stage, constants.step, constants.gravity, number, around);
-        let own = Own { motion, stage, constants };
+        let update = NodeUpdate::<L>::new(stage, constants.step, constants.gravity, number, around);
+        let own = Own { update, stage, constants };
         let is_large = body.is_large();
-        let record =
-            |place: &Place| parts[place.part as usize].records.pointer().wrapping_add(place.record as usize * RECORD);
-        let sum = |place: &Place| {
+        let record = |place: &RecordAddress| {
+            parts[place.part as usize].records.pointer().wrapping_add(place.record as usize * RECORD)
+        };
+        let sum = |place: &RecordAddress| {
             let part = &parts[place.part as usize];
             part.sums.pointer().wrapping_add((place.record as usize - part.own * MOST) * SUM)
         };

@@ -155,7 +155,7 @@ const MEAN: usize = 9;
 const TURN: usize = 12;
 
 /// The steps of a lattice of equal boxes.
-pub(crate) struct Lattice {
+pub(crate) struct LatticeStepper {
     set: Set,
     grid: Grid,
     parameters: Parameters,
@@ -232,7 +232,7 @@ struct Signal {
     shared: AtomicU64,
 }
 
-impl Lattice {
+impl LatticeStepper {
     /// `None` if the body is not a full lattice of equal boxes, numbered x fastest.
     pub(crate) fn new(body: &Body, parameters: Parameters, scheme: Scheme, set: Set) -> Option<Self> {
         let grid = Grid::of(body)?;
@@ -268,7 +268,7 @@ impl Lattice {
     }
 }
 
-impl Stepper for Lattice {
+impl Stepper for LatticeStepper {
     fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
         for (node, (&position, &velocity)) in position.iter().zip(velocity).enumerate() {
             self.set_node(node, position, velocity);

@@ -4,7 +4,7 @@ use super::*;
 use crate::contact::{Bound, Obstacle, Shape};
 use crate::dynamics::Runaway;
 use crate::element::Solids;
-use crate::kernel::stepper::Way;
+use crate::kernel::stepper::Rollback;
 use crate::kernel::tests::{FREE, PEFRL, Random, rotations, shape_based, stepped_by_reference};
 use crate::lists::IndexLists;
 use crate::model::shape_based::ShapeBased;
@@ -86,21 +86,21 @@ fn run_by(
     set: Set,
     [calls, steps]: [u64; 2],
 ) -> (State, Vec<f64>) {
-    let (mut way, mut memory) = (way(body, parameters, scheme, set), rotations(body, state));
-    way.load(0, &state.position, &state.velocity, &memory);
+    let (mut rollback, mut memory) = (rollback(body, parameters, scheme, set), rotations(body, state));
+    rollback.load(0, &state.position, &state.velocity, &memory);
     let floor = floor();
     let resolve = |_: u64, p: &mut DVec3, v: &mut DVec3, a: DVec3| floor.at(0.0, STEP).rebound(p, v, a);
     let around = Around { bounds: &[bound(&floor)], row: &|_| 0..1, resolve: &resolve, ..FREE };
     for call in 1..=calls {
-        way.advance(call * steps, &around, &mut Crew::new(threads)).expect("no runaway");
+        rollback.advance(call * steps, &around, &mut Crew::new(threads)).expect("no runaway");
     }
     let mut state = state.clone();
-    way.stepper.store(&mut state.position, &mut state.velocity, &mut memory);
+    rollback.stepper.store(&mut state.position, &mut state.velocity, &mut memory);
     (state, memory)
 }
 
-fn way(body: &Body, parameters: Parameters, scheme: Scheme, set: Set) -> Way {
-    Way::new(Box::new(Lattice::new(body, parameters, scheme, set).expect("a lattice")), scheme)
+fn rollback(body: &Body, parameters: Parameters, scheme: Scheme, set: Set) -> Rollback {
+    Rollback::new(Box::new(LatticeStepper::new(body, parameters, scheme, set).expect("a lattice")), scheme)
 }
 
 fn reference(scheme: Scheme, body: &Arc<Body>, state: &State, parameters: Parameters, steps: u64) -> State {
@@ -227,14 +227,14 @@ fn before_a_runaway_the_state_is_that_of_the_step_before() {
     let memory = rotations(&body, &state);
     for scheme in SCHEMES {
         let make = || {
-            let mut way = way(&body, parameters, scheme, Set::best());
-            way.load(0, &state.position, &state.velocity, &memory);
-            way
+            let mut rollback = rollback(&body, parameters, scheme, Set::best());
+            rollback.load(0, &state.position, &state.velocity, &memory);
+            rollback
         };
-        let read = |way: &mut Way| {
+        let read = |rollback: &mut Rollback| {
             let (mut state, mut memory) = (state.clone(), memory.clone());
-            way.stepper.store(&mut state.position, &mut state.velocity, &mut memory);
-            (way.steps(), state, memory)
+            rollback.stepper.store(&mut state.position, &mut state.velocity, &mut memory);
+            (rollback.steps(), state, memory)
         };
         let mut one = make();
         let runaway = one.advance(1000, &around, &mut Crew::new(1)).expect_err("unstable");
@@ -260,11 +260,13 @@ fn what_is_no_number_is_lost_at_once() {
     let body = lattice([3, 2, 2], DVec3::splat(0.5));
     let state = start(&body, 0.0);
     let parameters = parameters(0.1, Rotation::Optimum);
-    let mut way = way(&body, parameters, Scheme::SemiImplicitEuler, Set::best());
-    way.load(0, &state.position, &state.velocity, &rotations(&body, &state));
-    way.stepper.set_node(17, DVec3::new(0.0, f64::NAN, 0.0), DVec3::ZERO);
-    assert!(matches!(way.advance(3, &FREE, &mut Crew::new(1)), Err(Runaway { .. })) && way.steps() == 0);
-    assert!(way.stepper.node(17).0.y.is_nan() && way.stepper.node(0) == (state.position[0], state.velocity[0]));
+    let mut rollback = rollback(&body, parameters, Scheme::SemiImplicitEuler, Set::best());
+    rollback.load(0, &state.position, &state.velocity, &rotations(&body, &state));
+    rollback.stepper.set_node(17, DVec3::new(0.0, f64::NAN, 0.0), DVec3::ZERO);
+    assert!(matches!(rollback.advance(3, &FREE, &mut Crew::new(1)), Err(Runaway { .. })) && rollback.steps() == 0);
+    assert!(
+        rollback.stepper.node(17).0.y.is_nan() && rollback.stepper.node(0) == (state.position[0], state.velocity[0])
+    );
 }
 
 #[test]

@@ -6,7 +6,7 @@ mod surroundings;
 
 use super::general::{Constants, General};
 use super::springs::Stencil;
-use super::stepper::{Scheme, Stepper, Way};
+use super::stepper::{Rollback, Scheme, Stepper};
 use super::{Around, Rotation};
 use crate::body::Body;
 use crate::contact::{Bound, Obstacle, Shape};
@@ -152,13 +152,13 @@ fn constants(damping: f64) -> Constants {
 type Whole = (State, Vec<f64>);
 
 /// A kernel advancing from a state, with its threads.
-struct Moving(Way, Crew);
+struct Moving(Rollback, Crew);
 
 impl Moving {
     fn new(kernel: impl Stepper + 'static, start: &Whole, scheme: Scheme, threads: usize) -> Self {
-        let mut way = Way::new(Box::new(kernel), scheme);
-        way.load(0, &start.0.position, &start.0.velocity, &start.1);
-        Self(way, Crew::new(threads))
+        let mut rollback = Rollback::new(Box::new(kernel), scheme);
+        rollback.load(0, &start.0.position, &start.0.velocity, &start.1);
+        Self(rollback, Crew::new(threads))
     }
 
     fn advance(&mut self, steps: u64, around: Around<'_>) -> Result<(), Runaway> {

@@ -2,13 +2,13 @@
 
 mod plane;
 
-use super::{Chunk, Grid, Lattice, Parameters, Signal, Slab, slot};
+use super::{Chunk, Grid, LatticeStepper, Parameters, Signal, Slab, slot};
 use crate::crew::{Crew, wait_until};
 use crate::kernel::memory::Aligned;
-use crate::kernel::motion::Motion;
 use crate::kernel::rotation::{Arctangent, Optimum, Solver};
 use crate::kernel::stepper::{Pass, Passes, Scheme};
 use crate::kernel::tally::Tally;
+use crate::kernel::update::NodeUpdate;
 use crate::kernel::{Around, Lost, Rotation};
 use crate::lanes::{Lanes, MOST, Work};
 use glam::DVec3;
@@ -20,13 +20,14 @@ use std::sync::{Mutex, PoisonError};
 /// Executes some of the passes; see [`Stepper::run`](super::Stepper::run). Uses at most as many threads of the crew as
 /// there are planes of boxes along z.
 pub(super) fn run(
-    lattice: &mut Lattice,
+    lattice: &mut LatticeStepper,
     passes: Passes,
     some: Range<u64>,
     around: &Around<'_>,
     crew: &mut Crew,
 ) -> Option<Lost> {
-    let Lattice { set, grid, parameters, parts, nodes, turns, pattern, slabs, signals, tally, kept: _ } = lattice;
+    let LatticeStepper { set, grid, parameters, parts, nodes, turns, pattern, slabs, signals, tally, kept: _ } =
+        lattice;
     if some.is_empty() {
         return None;
     }
@@ -195,14 +196,14 @@ impl Sweep<'_> {
         let [first, end] = self.some;
         for pass in 0..end - first {
             let Pass { stage, number, commit, .. } = self.passes.get(first + pass);
-            let motion = Motion::<L>::new(stage, self.step, self.gravity, number, *self.around);
+            let update = NodeUpdate::<L>::new(stage, self.step, self.gravity, number, *self.around);
             // SAFETY: the arrays belong to a lattice, all to this grid, and are accessed by no one but the other
             // threads.
             let bad = unsafe {
                 if stage.has_forces() {
-                    self.pass::<L, S, DAMPED>(pass, &motion, solver, commit)
+                    self.pass::<L, S, DAMPED>(pass, &update, solver, commit)
                 } else {
-                    self.coast::<L>(pass, &motion)
+                    self.coast::<L>(pass, &update)
                 }
             };
             if let Some(node) = bad {
@@ -237,13 +238,13 @@ impl Sweep<'_> {
 
     /// Moves the nodes of this thread without evaluating forces, in a pass of this number.
     #[inline(always)]
-    unsafe fn coast<L: Lanes>(&self, pass: u64, motion: &Motion<'_, L>) -> Option<usize> {
+    unsafe fn coast<L: Lanes>(&self, pass: u64, update: &NodeUpdate<'_, L>) -> Option<usize> {
         let planes = self.grid.cells[2];
         let first = planes * self.member / self.members;
         let end = planes * (self.member + 1) / self.members + usize::from(self.member + 1 == self.members);
         for plane in first..end {
             // SAFETY: planes from `first` on belong to this thread and are moved before the others may read them.
-            let bad = unsafe { self.nodes_between::<L, false>(plane, motion, |_| (L::splat(0.0), L::splat(0.0))) };
+            let bad = unsafe { self.nodes_between::<L, false>(plane, update, |_| (L::splat(0.0), L::splat(0.0))) };
             if bad.is_some() {
                 return bad;
             }
@@ -258,7 +259,7 @@ impl Sweep<'_> {
     unsafe fn pass<L: Lanes, S: Solver, const DAMPED: bool>(
         &self,
         pass: u64,
-        motion: &Motion<'_, L>,
+        update: &NodeUpdate<'_, L>,
         solver: S,
         commit: bool,
     ) -> Option<usize> {
@@ -281,14 +282,14 @@ impl Sweep<'_> {
                 }
                 let above = memory(if is_end { self.slab.highest } else { self.slab.below });
                 let is_shared = plane == first && self.member > 0;
-                if let Some(node) = self.plane::<L, S, DAMPED>(plane, motion, solver, commit, above, is_shared) {
+                if let Some(node) = self.plane::<L, S, DAMPED>(plane, update, solver, commit, above, is_shared) {
                     return Some(node);
                 }
             }
             self.signals[self.member].pulled.store(pass + 1, Ordering::Release);
             if is_last {
                 let below = memory(self.slab.below);
-                let bad = self.nodes_between::<L, DAMPED>(planes, motion, |at| (L::load(below.add(at)), L::splat(0.0)));
+                let bad = self.nodes_between::<L, DAMPED>(planes, update, |at| (L::load(below.add(at)), L::splat(0.0)));
                 if bad.is_some() {
                     return bad;
                 }
@@ -301,7 +302,7 @@ impl Sweep<'_> {
                 let below = memory(self.slab.highest).sub(self.slab.end);
                 let lowest = memory(self.slab.lowest);
                 let bad = self
-                    .nodes_between::<L, DAMPED>(first, motion, |at| (L::load(below.add(at)), L::load(lowest.add(at))));
+                    .nodes_between::<L, DAMPED>(first, update, |at| (L::load(below.add(at)), L::load(lowest.add(at))));
                 if bad.is_some() {
                     return bad;
                 }

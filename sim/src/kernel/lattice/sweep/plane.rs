@@ -1,9 +1,9 @@
-//! One plane of boxes and the nodes below it: gather, moments, rotations, forces and motion in lanes.
+//! One plane of boxes and the nodes below it: gather, moments, rotations, forces and update in lanes.
 
 use super::Sweep;
 use crate::kernel::lattice::{ACCELERATION, CHUNK, INVERSE_MASS, MEAN, TURN, VELOCITY, slot};
-use crate::kernel::motion::{Motion, Nodes};
 use crate::kernel::rotation::{Moments, Solver, choose, matrix, turn, turned_back};
+use crate::kernel::update::{NodeUpdate, Nodes};
 use crate::lanes::{Lanes, MOST, each, thrice};
 
 impl Sweep<'_> {
@@ -13,7 +13,7 @@ impl Sweep<'_> {
     pub(super) unsafe fn plane<L: Lanes, S: Solver, const DAMPED: bool>(
         &self,
         plane: usize,
-        motion: &Motion<'_, L>,
+        update: &NodeUpdate<'_, L>,
         solver: S,
         commit: bool,
         above: *mut f64,
@@ -61,7 +61,7 @@ impl Sweep<'_> {
                 }
                 if !is_shared {
                     let force = |at: usize| each!(3, axis => L::load(self.work.add(axis * CHUNK + at % CHUNK)));
-                    if let Some(node) = self.update::<L, DAMPED>(plane, [chunk, end], motion, force) {
+                    if let Some(node) = self.update::<L, DAMPED>(plane, [chunk, end], update, force) {
                         return Some(node);
                     }
                 }
@@ -75,7 +75,7 @@ impl Sweep<'_> {
     pub(super) unsafe fn nodes_between<L: Lanes, const DAMPED: bool>(
         &self,
         plane: usize,
-        motion: &Motion<'_, L>,
+        update: &NodeUpdate<'_, L>,
         pulls: impl Fn(usize) -> (L, L),
     ) -> Option<usize> {
         let force = |at: usize| {
@@ -85,13 +85,13 @@ impl Sweep<'_> {
             })
         };
         // SAFETY: these are the nodes of a plane.
-        unsafe { self.update::<L, DAMPED>(plane, [0, self.grid.layer()], motion, force) }
+        unsafe { self.update::<L, DAMPED>(plane, [0, self.grid.layer()], update, force) }
     }
 
-    /// The place in a ring buffer that is `way` after another.
+    /// The place in a ring buffer `steps` after another.
     #[inline(always)]
-    fn next(&self, place: usize, way: usize) -> usize {
-        let next = place + way;
+    fn next(&self, place: usize, steps: usize) -> usize {
+        let next = place + steps;
         if next >= self.ring { next - self.ring } else { next }
     }
 
@@ -367,12 +367,12 @@ impl Sweep<'_> {
         &self,
         plane: usize,
         [first, end]: [usize; 2],
-        motion: &Motion<'_, L>,
+        update: &NodeUpdate<'_, L>,
         force: impl Fn(usize) -> [L; 3],
     ) -> Option<usize> {
         let planes = if plane == 0 || plane == self.grid.cells[2] { 1.0 } else { 2.0 };
         let (stiffness, damping) = (L::splat(planes * self.stiffness), L::splat(planes * self.damping));
-        let stage = motion.stage();
+        let stage = update.stage();
         let zero = L::splat(0.0);
         let mut near = 0;
         // SAFETY: a stride has all nodes of a plane in whole vectors.
@@ -392,11 +392,11 @@ impl Sweep<'_> {
                         total[axis] = nodes.velocity[axis].neg_mul_add(damping, total[axis]);
                     }
                 });
-                let lost = motion.go(&mut nodes, total, inverse_mass(to));
+                let lost = update.go(&mut nodes, total, inverse_mass(to));
                 if lost != 0 {
                     return Some(plane * self.grid.layer() + at + lost.trailing_zeros() as usize);
                 }
-                near |= motion.near(&nodes);
+                near |= update.near(&nodes);
                 thrice!(axis => {
                     nodes.position[axis].store(to.add(axis * MOST));
                     nodes.velocity[axis].store(to.add((VELOCITY + axis) * MOST));
@@ -412,7 +412,7 @@ impl Sweep<'_> {
                 let to = self.nodes(plane, at);
                 let acceleration = if stage.keeps_acceleration() { load(to, ACCELERATION) } else { [zero; 3] };
                 let mut nodes = Nodes { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
-                motion.meet(&mut nodes, inverse_mass(to));
+                update.meet(&mut nodes, inverse_mass(to));
                 thrice!(axis => {
                     nodes.position[axis].store(to.add(axis * MOST));
                     nodes.velocity[axis].store(to.add((VELOCITY + axis) * MOST));

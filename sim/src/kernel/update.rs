@@ -1,4 +1,4 @@
-//! The motion of nodes in lanes, with known forces: Eqs. (2) and (3) and alternatives, the test of the speed limit, and
+//! The update of velocities and positions in lanes, from known forces: Eqs. (2) and (3) and alternatives, the test of the speed limit, and
 //! contact.
 
 use super::{Around, Resolve};
@@ -56,9 +56,9 @@ impl Stage {
     }
 }
 
-/// The motion of nodes in one pass.
+/// How one pass updates velocities and positions.
 #[derive(Clone, Copy)]
-pub(crate) struct Motion<'a, L> {
+pub(crate) struct NodeUpdate<'a, L> {
     stage: Stage,
     step: L,
     half: L,
@@ -78,7 +78,7 @@ pub(crate) struct Nodes<L> {
     pub(crate) acceleration: [L; 3],
 }
 
-impl<'a, L: Lanes> Motion<'a, L> {
+impl<'a, L: Lanes> NodeUpdate<'a, L> {
     #[inline(always)]
     pub(crate) fn new(stage: Stage, step: f64, gravity: DVec3, number: u64, around: Around<'a>) -> Self {
         let limits = match stage {
@@ -115,7 +115,7 @@ impl<'a, L: Lanes> Motion<'a, L> {
         lost
     }
 
-    /// The first half of [`Self::advance`]: the motion.
+    /// The first half of [`Self::advance`]: velocities and positions.
     #[inline(always)]
     pub(crate) fn go(&self, nodes: &mut Nodes<L>, force: [L; 3], inverse_mass: L) -> u32 {
         let zero = L::splat(0.0);
@@ -318,7 +318,7 @@ mod tests {
     use super::*;
     use crate::contact::{Obstacle, Shape};
     use crate::lanes::{Set, Work};
-    use crate::motion::Motion as Path;
+    use crate::motion::Motion;
 
     struct Bounce<'a>(&'a Floor, [DVec3; MOST], [DVec3; MOST]);
 
@@ -353,7 +353,7 @@ mod tests {
             let shape = Shape::Floor { normal, height };
             let obstacle = Obstacle {
                 shape,
-                motion: Path::Still,
+                motion: Motion::Still,
                 pivot: DVec3::ZERO,
                 restitution,
                 friction,
