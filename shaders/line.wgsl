@@ -35,26 +35,14 @@ const STRENGTH_BITS = 8u;
 // earlier pictures.
 const HIDDEN_ALPHA = 0.16000003;
 const ALARM_HIDDEN_ALPHA = 0.62;
-// Opacities of visible lines.
+// The opacity of visible edges.
 const EDGE_ALPHA = 0.80;
-const FLAT_EDGE_ALPHA = 0.75;
-const ALARM_EDGE_ALPHA = 0.95;
-const BAR_ALPHA = 0.85;
 
-// Widths of lines (px in the reference picture).
+// Widths of edges and contours in space (px in the reference picture). `measures.rs` has those in the plane.
 const EDGE_WIDTH = 1.15;
-const FLAT_EDGE_WIDTH = 1.5;
-const ALARM_EDGE_WIDTH = 1.5;
 const CONTOUR_WIDTH = 2.2;
-const FLAT_CONTOUR_WIDTH = 2.5;
 // A line lies this much in front of its surface, relative to the distance.
 const OFFSET = 0.0016;
-// Width of the lines of an element without faces (px in the reference picture).
-const BAR_WIDTH = 2.2;
-// Elements smaller than this (px) get fainter edges, or edges would cover everything.
-const SMALL_ELEMENT = 26.0;
-// Edges fade out towards this size (px), because close edges would flicker.
-const SMALLEST_ELEMENT = vec2<f32>(4.0, 8.0);
 // Folds inside the turned-over set of elements smaller than this (px) are fainter.
 const SMALL_FOLDED = 8.0;
 
@@ -128,7 +116,7 @@ fn beside(segment: Segment) -> Beside {
 
 // The opacity of edges, before the factor for their elements.
 fn edge_strength() -> f32 {
-    return min(1.0, panel.element / SMALL_ELEMENT) * smoothstep(SMALLEST_ELEMENT.x, SMALLEST_ELEMENT.y, panel.element);
+    return min(1.0, panel.element / SMALL_ELEMENT) * smoothstep(SMALLEST_ELEMENT, FADING_ELEMENT, panel.element);
 }
 
 // The tested visibility of lines, line after line: see `visibility.wgsl`.

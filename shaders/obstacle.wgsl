@@ -22,9 +22,6 @@ fn unpack_solid(corner: SolidCorner) {
     panel.sound = unpack_shared(array(corner.shared_0, corner.shared_1, corner.shared_2, corner.shared_3));
 }
 
-// Width of the rim (px in the reference picture).
-const RIM_WIDTH = 2.0;
-
 @vertex
 fn solid_corner(
     @location(0) position: vec3<f32>,

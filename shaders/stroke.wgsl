@@ -23,11 +23,6 @@ const CASED_LINE = 3u;
 const NEARER = 0.02;
 // A line lies this much in front of its surface, relative to the distance.
 const OFFSET = 0.0016;
-// The width of a casing relative to the line's, and the least (px).
-const CASING = 0.24;
-const LEAST_CASING = 0.6;
-// The rim of a disc, relative to its radius.
-const RIM = 0.32;
 // A disc is cut off by depths in front of a ball this much larger. It fades over half of that in front and behind:
 // depths of a sheet seen nearly from its side change too much within a pixel for a step.
 const FRONT = 2.0;
@@ -103,7 +98,7 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
             shown += disc_share(middle, pixel, before, nearness, tap) / f32(TAPS);
         }
         shown = max(shown, panel.flatness);
-        let colour = mix(stroke.second.rgb, stroke.first.rgb, saturate(inward - RIM * stroke.size + 0.5));
+        let colour = mix(stroke.second.rgb, stroke.first.rgb, saturate(inward - BEAD_RIM * stroke.size + 0.5));
         return vec4(decoded(colour), saturate(inward + 0.5) * shown);
     }
     // Lines thinner than a pixel are fainter instead.

@@ -59,17 +59,8 @@ const KEY_TAKEN = 0.8;
 const NEARER = 0.02;
 // A face turned away is this much farther back, relative to the distance.
 const BACK_FACE = 1e-5;
-// The dark share of a stripe's period, and its darkness.
+// The dark share of a stripe's period, in space.
 const STRIPE = 0.2;
-const STRIPE_ALPHA = 0.62;
-// A flat body's hatch moves with the body. It has this period (px in the reference picture) and this dark share.
-const FLAT_PERIOD = 9.0;
-const FLAT_STRIPE = 0.19;
-// Dots of flat elements move with the body, too: their distance and radius (px in the reference picture), and their
-// darkness.
-const DOTS_APART = 7.0;
-const DOT = 1.3;
-const DOT_ALPHA = 0.6;
 // From this depth (soft units) behind the visible surface on, a turned-over element is equally visible.
 const THROUGH_DEPTH = 0.6;
 // The brightness of a surface without lighting.
@@ -144,7 +135,7 @@ fn light_left(position: vec3<f32>, facing: vec3<f32>, left: f32) -> Light {
     return Light(mix(KEY * key + around, vec3(1.0), panel.flatness), gloss * (1.0 - panel.flatness));
 }
 
-// The part of a pixel that the stripes of the hatch cover.
+// The part of a pixel that the stripes of the hatch cover. In the plane they move with the body, like dots.
 fn stripes(hatch: f32, place: vec2<f32>) -> f32 {
     let from_body = place + panel.place.xy - panel.place.zw;
     let flat_hatch = (from_body.x + from_body.y) * 0.70710678 / (FLAT_PERIOD * panel.line_scale);

@@ -31,10 +31,15 @@ pub fn linear(colour: Colour) -> [f64; 3] {
 
 /// Linear light as the nearest sRGB bytes; values out of range are clamped.
 pub(crate) fn encoded(linear: [f64; 3]) -> Colour {
+    encoded_exactly(linear).map(|byte| byte.round() as u8)
+}
+
+/// Linear light as sRGB, from 0 to 255, without rounding; values out of range are clamped.
+pub(crate) fn encoded_exactly(linear: [f64; 3]) -> [f64; 3] {
     linear.map(|light| {
         let light = light.clamp(0.0, 1.0);
         let encoded = if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * libm::pow(light, 1.0 / 2.4) - 0.055 };
-        (255.0 * encoded).round() as u8
+        255.0 * encoded
     })
 }
 

@@ -27,6 +27,7 @@ mod ghost;
 mod grip;
 mod layout;
 mod legend;
+pub(crate) mod measures;
 mod members;
 mod narrow;
 mod number;

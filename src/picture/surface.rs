@@ -5,6 +5,7 @@ use super::camera::Lens;
 use super::cut::{Cuts, Grid, Grids};
 use super::ears::Ears;
 use super::field::Shades;
+use super::measures::SMALLEST_ELEMENT;
 use super::narrow::{narrow, narrow_point};
 use super::shell::Side;
 use super::{Line, LineKind, Mesh, Vertex};
@@ -28,8 +29,6 @@ const VERY_MANY_FACES: usize = 12_000;
 
 /// Faces with a greater cosine of their normals are lit so alike that no border is visible between them.
 const SMOOTH: f64 = 0.995;
-/// Edges of elements smaller than this (px) would be invisible and are left out. The shader has the same constant.
-const SMALLEST_ELEMENT: f64 = 4.0;
 /// Edges of elements smaller than this (px) are not visible through the body: their opacity would be less than 1 %.
 const SEEN_THROUGH: f64 = 7.2;
 /// The data for turning faces into the parts of a panel.
@@ -265,7 +264,8 @@ impl Surroundings<'_> {
             LineKind::Edge => self.edges,
             _ => [true; 2],
         };
-        let is_large = self.element > if is_hidden { SEEN_THROUGH } else { SMALLEST_ELEMENT };
+        // Smaller ones would be invisible.
+        let is_large = self.element > if is_hidden { SEEN_THROUGH } else { SMALLEST_ELEMENT.into() };
         if is_large && if is_hidden { behind } else { in_front } {
             lines.drawn.push(self.line(start, end, kinds.edge, if behind { 1.0 } else { 0.0 }));
         }

@@ -1,6 +1,7 @@
 //! Short forms for making pipelines and bindings.
 
 use crate::gpu::{Gpu, Work};
+use crate::picture::measures;
 
 /// The format of bodies: square roots of linear colours, multiplied with alpha.
 pub(super) const BODY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -152,11 +153,16 @@ pub(super) fn for_instances<T>(attributes: &[wgpu::VertexAttribute]) -> wgpu::Ve
     wgpu::VertexBufferLayout { step_mode: wgpu::VertexStepMode::Instance, ..for_vertices::<T>(attributes) }
 }
 
+/// The text of a shader from its parts, in order, after the measures that all share.
+pub(super) fn joined(parts: &[&str]) -> String {
+    measures::WGSL.to_owned() + &parts.concat()
+}
+
 /// A shader from its parts, in order.
 pub(super) fn shader(gpu: &Gpu, label: &str, parts: &[&str]) -> wgpu::ShaderModule {
     gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),
-        source: wgpu::ShaderSource::Wgsl(parts.concat().into()),
+        source: wgpu::ShaderSource::Wgsl(joined(parts).into()),
     })
 }
 

@@ -11,7 +11,7 @@ use crate::picture::MOST_OCCLUDERS;
 use std::mem::offset_of;
 
 fn parse(parts: &[&str]) -> naga::Module {
-    let text = parts.concat();
+    let text = super::pipeline::joined(parts);
     let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
     let (flags, capabilities) = (naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
     naga::valid::Validator::new(flags, capabilities)

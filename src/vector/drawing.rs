@@ -35,9 +35,9 @@ pub(super) enum Item<'a> {
     Image(Image),
     /// A line of text.
     Text(&'a TextRun),
-    /// Limits the next items to the inside of a path, until [`Item::Unclip`]. Clips do not nest.
+    /// Limits the next items to the inside of a path, and inside of the clips before, until [`Item::Unclip`].
     Clip(Path),
-    /// Ends a clip.
+    /// Ends the last clip.
     Unclip,
 }
 
@@ -124,9 +124,13 @@ impl Path {
 
     pub(super) fn circle(middle: Vec2, radius: f32) -> Self {
         let mut path = Self::default();
-        path.add_arc(middle, radius, [0.0, TAU], true);
-        path.0.push(Step::Close);
+        path.add_circle(middle, radius);
         path
+    }
+
+    pub(super) fn add_circle(&mut self, middle: Vec2, radius: f32) {
+        self.add_arc(middle, radius, [0.0, TAU], true);
+        self.0.push(Step::Close);
     }
 
     /// Adds a closed polygon.

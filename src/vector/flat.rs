@@ -1,38 +1,21 @@
 //! Panels in the plane as paths. Colours, widths and opacities are those of the shaders for flat panels.
 
 use super::drawing::{Item, Paint, Path, Pen};
-use super::marks::winding;
-use crate::colour::{encoded, linear};
+use super::marks::{ends_of, winding};
+use crate::colour::{encoded, encoded_exactly, linear, luminance};
+use crate::look::Palette;
+use crate::picture::measures::*;
 use crate::picture::{Bead, Colour, Fading, Line, LineKind, Mesh, Panel, Picture, Second, Solid, Stroke};
 use glam::{Vec2, Vec3, Vec4Swizzles};
 
-/// The hatch of turned-over elements: period (px in the reference picture), dark share of it, and strength.
-const PERIOD: f32 = 9.0;
-const STRIPE: f32 = 0.19;
-const STRIPE_ALPHA: f32 = 0.62;
-/// Widths (px in the reference picture) and opacities of the edges of sound elements, of turned-over ones, of bars and
-/// of contours.
-const EDGE: [f32; 2] = [1.5, 0.75];
-const ALARM_EDGE: [f32; 2] = [1.5, 0.95];
-const BAR: [f32; 2] = [2.2, 0.85];
-const CONTOUR: [f32; 2] = [2.5, 1.0];
-/// Edges of elements smaller than this (px) are fainter, and fade out towards the second size.
-const SMALL_ELEMENT: f32 = 26.0;
-const SMALLEST_ELEMENT: [f32; 2] = [1.5, 4.0];
-/// Width of the rim of obstacles (px in the reference picture).
-const RIM_WIDTH: f32 = 2.0;
-/// The rim of a disc, relative to its radius.
-const BEAD_RIM: f32 = 0.32;
-/// The width of a casing relative to the line's, and the least (px).
-const CASING: f32 = 0.24;
-const LEAST_CASING: f32 = 0.6;
 /// The number of pieces of a line of changing colour.
 const PIECES: u32 = 8;
 
 /// One panel with its picture.
-struct Flat<'a> {
+struct PlanePanel<'a> {
     picture: &'a Picture,
     panel: &'a Panel,
+    palette: Palette,
 }
 
 /// Adds a panel in the plane to a page.
@@ -41,21 +24,19 @@ pub(super) fn panel(picture: &Picture, panel: &Panel, items: &mut Vec<Item<'_>>)
     if width < 1.0 || height < 1.0 {
         return;
     }
-    let flat = Flat { picture, panel };
-    let room = || Item::Clip(Path::rectangle(Vec2::new(left, top), Vec2::new(width, height)));
-    items.push(room());
-    panel.obstacles.solids.iter().for_each(|solid| flat.solid(solid, items));
+    let palette = if panel.greyed { picture.palette.greyed() } else { picture.palette };
+    let flat = PlanePanel { picture, panel, palette };
+    items.push(Item::Clip(Path::rectangle(Vec2::new(left, top), Vec2::new(width, height))));
+    // The first one lies in front.
+    panel.obstacles.solids.iter().rev().for_each(|solid| flat.solid(solid, items));
     if let Some(fading) = panel.obstacles.fade {
-        items.push(Item::Unclip);
         flat.fade(fading, [left, top, left + width, top + height], items);
-        items.push(room());
     }
     flat.surface(&panel.sound, items);
+    flat.dots(items);
     flat.surface(&panel.turned_over, items);
     if !panel.turned_over.triangles.is_empty() {
-        items.push(Item::Unclip);
         flat.hatch([left, top, width, height], items);
-        items.push(room());
     }
     flat.lines(items);
     flat.strokes(items);
@@ -63,7 +44,7 @@ pub(super) fn panel(picture: &Picture, panel: &Panel, items: &mut Vec<Item<'_>>)
     items.push(Item::Unclip);
 }
 
-impl Flat<'_> {
+impl PlanePanel<'_> {
     fn pixel(&self, point: [f32; 3]) -> Vec2 {
         let [left, top, width, height] = self.panel.viewport.map(|length| length as f32);
         let at = self.panel.sight.clip * Vec3::from(point).extend(1.0);
@@ -98,35 +79,31 @@ impl Flat<'_> {
     }
 
     /// Fades obstacles out at the sides of their room, before the body is drawn: covers them with the background, in
-    /// strips of a pixel within the region (left, top, right and bottom, px).
+    /// steps of a pixel within the region (left, top, right and bottom, px).
     fn fade(&self, Fading { room, distance, strength }: Fading, region: [f32; 4], items: &mut Vec<Item<'_>>) {
-        let solids = self.panel.obstacles.solids.iter();
-        let triangles = solids.flat_map(|solid| self.triangles(&solid.mesh, |at| solid.mesh.vertices[at].hatch));
+        let background = self.picture.palette.background;
+        let solids = &self.panel.obstacles.solids;
+        let below = solids.first().map_or(background, |solid| solid.colour);
+        let triangles = solids.iter().flat_map(|solid| self.triangles(&solid.mesh, |at| solid.mesh.vertices[at].hatch));
         items.push(Item::Clip(path_of(triangles.map(|triangle| triangle.map(|(at, _)| at).to_vec()))));
-        let cover = |[left, top, right, bottom]: [f32; 4], alpha: f32, items: &mut Vec<Item<'_>>| {
-            let [from, to] = [Vec2::new(left, top), Vec2::new(right, bottom)];
-            let [from, to] =
-                [from, to].map(|at| at.clamp(Vec2::new(region[0], region[1]), Vec2::new(region[2], region[3])));
-            if alpha > 0.002 && to.cmpgt(from).all() {
-                let colour = self.picture.palette.background;
-                items.push(Item::Fill { path: Path::rectangle(from, to - from), paint: Paint { colour, alpha } });
-            }
-        };
         for side in 0..4 {
-            // First from the side of the region to the side of the room, then inwards.
-            let strip = |from: f32, to: f32| {
-                let mut strip = region;
-                let inwards = if side < 2 { 1.0 } else { -1.0 };
-                let [one, other] = [from, to].map(|depth| room[side] + inwards * depth);
-                (strip[side % 2], strip[side % 2 + 2]) = (one.min(other), one.max(other));
-                strip
-            };
-            cover(strip(-region[2].max(region[3]), 0.0), strength[side], items);
             let far = distance[side % 2];
-            for depth in 0..far.ceil() as u32 {
-                let share = ((depth as f32 + 0.5) / far).min(1.0);
-                let left = 1.0 - share * share * (3.0 - 2.0 * share);
-                cover(strip(depth as f32, depth as f32 + 1.0), strength[side] * left, items);
+            let mut covered = 0.0;
+            // Each strip reaches to the side of the region and lies over the strips before: side by side they would have seams.
+            for depth in (0..=far.ceil() as u32).rev().map(|depth| depth as f32) {
+                let share = ((depth - 0.5) / far).clamp(0.0, 1.0);
+                let gone = strength[side] * (1.0 - share * share * (3.0 - 2.0 * share));
+                let more = (self.alpha(gone, background, below) - covered) / (1.0 - covered).max(1e-3);
+                // As exact as files are, so that errors of many strips do not add up.
+                let alpha = (1000.0 * more).round() / 1000.0;
+                let mut strip = region;
+                strip[(side + 2) % 4] = room[side] + if side < 2 { depth } else { -depth };
+                let [from, to] = [Vec2::new(strip[0], strip[1]), Vec2::new(strip[2], strip[3])];
+                if alpha > 0.0 && to.cmpgt(from).all() {
+                    covered += alpha * (1.0 - covered);
+                    let paint = Paint { colour: background, alpha };
+                    items.push(Item::Fill { path: Path::rectangle(from, to - from), paint });
+                }
             }
         }
         items.push(Item::Unclip);
@@ -137,15 +114,14 @@ impl Flat<'_> {
         if mesh.triangles.is_empty() {
             return;
         }
-        let palette = &self.picture.palette;
-        let is_alarm = std::ptr::eq(mesh, &self.panel.turned_over);
+        let palette = &self.palette;
+        let is_alarm = self.is_alarm(mesh);
         let has_field = !mesh.shades.is_empty() && self.picture.ramp.len() > 1;
         let plain = if is_alarm && !has_field { palette.alarm } else { palette.sound_flat };
+        items.push(Item::Fill { path: self.whole(mesh), paint: plain.into() });
         if !has_field {
-            items.push(Item::Fill { path: self.whole(mesh), paint: plain.into() });
             return;
         }
-        items.push(Item::Fill { path: self.whole(mesh), paint: plain.into() });
         let ramp = &self.picture.ramp;
         let bands = ramp.len() - 1;
         let triangles = self.triangles(mesh, |at| mesh.shades[at] * bands as f32);
@@ -183,16 +159,68 @@ impl Flat<'_> {
         }
     }
 
+    fn is_alarm(&self, mesh: &Mesh) -> bool {
+        std::ptr::eq(mesh, &self.panel.turned_over)
+    }
+
+    /// The mean colour of the corners of a surface.
+    fn mean_colour(&self, mesh: &Mesh) -> Colour {
+        let plain =
+            if self.is_alarm(mesh) && mesh.shades.is_empty() { self.palette.alarm } else { self.palette.sound_flat };
+        let ramp = &self.picture.ramp;
+        if mesh.shades.is_empty() || ramp.is_empty() {
+            return plain;
+        }
+        let colour = |&shade: &f32| if shade < -0.5 { plain } else { ramp[(shade * (ramp.len() - 1) as f32) as usize] };
+        let sum = mesh
+            .shades
+            .iter()
+            .map(colour)
+            .fold([0; 3], |sum: [usize; 3], one| std::array::from_fn(|at| sum[at] + usize::from(one[at])));
+        sum.map(|sum| (sum / mesh.shades.len()) as u8)
+    }
+
+    /// PlanePanel elements: grey, unless a field colours them, with dots that are fixed to the body.
+    fn dots(&self, items: &mut Vec<Item<'_>>) {
+        let (mesh, sight) = (&self.panel.sound, &self.panel.sight);
+        let is_flat = |triangle: &&[u32; 3]| mesh.vertices[triangle[0] as usize].hatch > 0.5;
+        let triangles: Vec<_> = mesh.triangles.iter().filter(is_flat).copied().collect();
+        if !self.panel.dotted || triangles.is_empty() {
+            return;
+        }
+        let flat = self.whole(&Mesh { triangles, ..mesh.clone() });
+        let mut ground = self.mean_colour(mesh);
+        if mesh.shades.is_empty() {
+            ground = encoded([luminance(ground); 3]);
+            items.push(Item::Fill { path: flat.clone(), paint: ground.into() });
+        }
+        // Rows at 45°.
+        let apart = DOTS_APART * sight.line_scale;
+        let turn = Vec2::splat(std::f32::consts::FRAC_1_SQRT_2);
+        let back = Vec2::new(turn.x, -turn.y);
+        let points = ends_of(&flat).into_iter().map(|at| back.rotate(at - Vec2::from(sight.middle)) / apart);
+        let (low, high) = points.fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
+        let mut path = Path::default();
+        for row in low.y.floor() as i32 - 1..=high.y.ceil() as i32 {
+            for column in low.x.floor() as i32 - 1..=high.x.ceil() as i32 {
+                let at = turn.rotate(Vec2::new(column as f32 + 0.5, row as f32 + 0.5) * apart);
+                path.add_circle(Vec2::from(sight.middle) + at, DOT * sight.line_scale);
+            }
+        }
+        let colour = self.palette.edge;
+        let paint = Paint { colour, alpha: self.alpha(DOT_ALPHA, colour, ground) };
+        items.extend([Item::Clip(flat), Item::Fill { path, paint }, Item::Unclip]);
+    }
+
     /// The stripes on turned-over elements, fixed to the body.
     fn hatch(&self, [left, top, width, height]: [f32; 4], items: &mut Vec<Item<'_>>) {
-        let palette = &self.picture.palette;
-        let sight = &self.panel.sight;
+        let (palette, sight) = (&self.palette, &self.panel.sight);
         // On the colours of a field, vermilion stands out more.
         let (colour, alpha) = match self.panel.turned_over.shades.is_empty() {
             true => (palette.alarm_line, self.alpha(STRIPE_ALPHA, palette.alarm_line, palette.alarm)),
             false => (palette.alarm, 1.0),
         };
-        let period = PERIOD * sight.line_scale;
+        let period = FLAT_PERIOD * sight.line_scale;
         let slant = Vec2::splat(std::f32::consts::FRAC_1_SQRT_2);
         let middle = Vec2::from(sight.middle);
         let room = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
@@ -210,34 +238,33 @@ impl Flat<'_> {
             path.add_line(&[across - reach, across + reach]);
         }
         items.push(Item::Clip(self.whole(&self.panel.turned_over)));
-        let pen = Pen { round: false, ..Pen::solid(STRIPE * period) };
+        let pen = Pen { round: false, ..Pen::solid(FLAT_STRIPE * period) };
         items.push(Item::Stroke { path, pen, paint: Paint { colour, alpha } });
         items.push(Item::Unclip);
     }
 
     /// Edges and contours. Lines of one kind are one path, so that joints are even.
     fn lines(&self, items: &mut Vec<Item<'_>>) {
-        let (palette, sight) = (&self.picture.palette, &self.panel.sight);
-        let element = sight.element;
-        let [low, high] = SMALLEST_ELEMENT;
-        let share = ((element - low) / (high - low)).clamp(0.0, 1.0);
-        let strength = (element / SMALL_ELEMENT).min(1.0) * share * share * (3.0 - 2.0 * share);
-        let body = palette.sound_flat;
+        let (palette, sight) = (&self.palette, &self.panel.sight);
+        let share = ((sight.element - SMALLEST_ELEMENT) / (FADING_ELEMENT - SMALLEST_ELEMENT)).clamp(0.0, 1.0);
+        let strength = (sight.element / SMALL_ELEMENT).min(1.0) * share * share * (3.0 - 2.0 * share);
+        let [body, alarm_body] = [&self.panel.sound, &self.panel.turned_over].map(|mesh| self.mean_colour(mesh));
         let is_plain = self.picture.ramp.is_empty();
         let alarm = if is_plain { palette.alarm_line } else { palette.alarm };
+        let alarm_width = ALARM_EDGE_WIDTH * sight.contour_share;
         let kinds: [(&[LineKind], [f32; 2], Colour, Colour); 5] = [
-            (&[LineKind::Edge, LineKind::ObstacleEdge], [EDGE[0], EDGE[1] * strength], palette.edge, body),
-            (&[LineKind::Bar], BAR, palette.edge, palette.background),
             (
-                &[LineKind::AlarmEdge],
-                [ALARM_EDGE[0] * sight.contour_share, ALARM_EDGE[1] * strength],
-                alarm,
-                palette.alarm,
+                &[LineKind::Edge, LineKind::ObstacleEdge],
+                [FLAT_EDGE_WIDTH, FLAT_EDGE_ALPHA * strength],
+                palette.edge,
+                body,
             ),
-            (&[LineKind::AlarmContour], CONTOUR, alarm, palette.alarm),
+            (&[LineKind::Bar], [BAR_WIDTH, BAR_ALPHA], palette.edge, palette.background),
+            (&[LineKind::AlarmEdge], [alarm_width, ALARM_EDGE_ALPHA * strength], alarm, alarm_body),
+            (&[LineKind::AlarmContour], [FLAT_CONTOUR_WIDTH, 1.0], alarm, alarm_body),
             (
                 &[LineKind::Contour, LineKind::ObstacleContour],
-                [CONTOUR[0], palette.outline_alpha],
+                [FLAT_CONTOUR_WIDTH, palette.outline_alpha],
                 palette.outline,
                 body,
             ),
@@ -260,17 +287,15 @@ impl Flat<'_> {
         if !self.panel.strokes.iter().any(|stroke| on_body(&stroke)) {
             return;
         }
-        let [left, top, width, height] = self.panel.region.map(|length| length as f32);
         for mesh in [&self.panel.sound, &self.panel.turned_over] {
             if !mesh.triangles.is_empty() {
-                items.extend([Item::Unclip, Item::Clip(self.whole(mesh))]);
+                items.push(Item::Clip(self.whole(mesh)));
                 for stroke in self.panel.strokes.iter().filter(on_body) {
                     if let Second::OnBody(colour) = stroke.second {
                         self.stroke(stroke, [colour; 2], items);
                     }
                 }
-                let room = Path::rectangle(Vec2::new(left, top), Vec2::new(width, height));
-                items.extend([Item::Unclip, Item::Clip(room)]);
+                items.push(Item::Unclip);
             }
         }
     }
@@ -308,9 +333,9 @@ impl Flat<'_> {
 
     /// The opacity that looks the same in blended bytes as a given opacity in blended light.
     fn alpha(&self, alpha: f32, above: Colour, below: Colour) -> f32 {
-        let seen = mixed(below, above, alpha);
-        let [whole, part] = [above, seen].map(|colour| {
-            colour.iter().zip(below).map(|(&one, other)| (f32::from(one) - f32::from(other)).abs()).sum::<f32>()
+        let seen = encoded_exactly(mixed_light(below, above, alpha));
+        let [whole, part] = [above.map(f64::from), seen].map(|colour| {
+            colour.iter().zip(below).map(|(&one, other)| (one - f64::from(other)).abs()).sum::<f64>() as f32
         });
         if whole > 0.0 { (part / whole).clamp(0.0, 1.0) } else { alpha }
     }
@@ -348,6 +373,10 @@ fn part(triangle: &[(Vec2, f32); 3], low: f32, high: f32) -> Vec<Vec2> {
 
 /// A mix of two colours, as light mixes.
 fn mixed(from: Colour, to: Colour, share: f32) -> Colour {
+    encoded(mixed_light(from, to, share))
+}
+
+fn mixed_light(from: Colour, to: Colour, share: f32) -> [f64; 3] {
     let ([a, b], share) = ([from, to].map(linear), f64::from(share));
-    encoded(std::array::from_fn(|at| a[at] + (b[at] - a[at]) * share))
+    std::array::from_fn(|at| a[at] + (b[at] - a[at]) * share)
 }

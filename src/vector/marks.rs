@@ -29,13 +29,13 @@ const SHADOW: f32 = 0.42;
 const HALF: f32 = 0.5;
 
 /// The place of a mark on the page.
-struct Place {
+struct TurnedRectangle {
     corner: Vec2,
     size: Vec2,
     along: Vec2,
 }
 
-impl Place {
+impl TurnedRectangle {
     /// A point of the mark (px from its left upper corner, before it is turned).
     fn at(&self, x: f32, y: f32) -> Vec2 {
         self.corner + x * self.along + y * self.along.perp()
@@ -77,7 +77,8 @@ pub(super) fn mark<'a>(mark: &Mark, next: Option<&Mark>, items: &mut Vec<Item<'a
     if width <= 0.0 || height <= 0.0 || mark.opacity == 0 {
         return;
     }
-    let place = Place { corner: Vec2::new(left, top), size: Vec2::new(width, height), along: Vec2::from(mark.along) };
+    let place =
+        TurnedRectangle { corner: Vec2::new(left, top), size: Vec2::new(width, height), along: Vec2::from(mark.along) };
     let opacity = f32::from(mark.opacity) / 255.0;
     let paint = Paint { colour: mark.colour, alpha: opacity };
     let second = |part: f32| Paint { colour: mark.second, alpha: part * opacity };
@@ -180,7 +181,7 @@ pub(super) fn winding(points: &[Vec2]) -> f32 {
 }
 
 /// The points of a path.
-fn ends_of(path: &Path) -> Vec<Vec2> {
+pub(super) fn ends_of(path: &Path) -> Vec<Vec2> {
     use super::drawing::Step;
     let end = |step: &Step| match *step {
         Step::Move(at) | Step::Line(at) | Step::Cubic([_, _, at]) => Some(at),
@@ -189,7 +190,7 @@ fn ends_of(path: &Path) -> Vec<Vec2> {
     path.0.iter().filter_map(end).collect()
 }
 
-fn arrow(place: &Place, paint: Paint, halo: Paint, items: &mut Vec<Item<'_>>) {
+fn arrow(place: &TurnedRectangle, paint: Paint, halo: Paint, items: &mut Vec<Item<'_>>) {
     let wide = place.size.y / (1.0 + 2.0 * ARROW_HALO);
     let pad = wide * ARROW_HALO;
     let tip = place.size.x - 2.0 * pad;

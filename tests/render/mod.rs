@@ -2,6 +2,9 @@
 //!
 //! Without a graphics adapter these tests are skipped with a message. `LOCALSHAPE_REQUIRE_GPU=1` makes that a failure.
 
+#[expect(dead_code, reason = "tests of the report use the rest")]
+#[path = "../report/browser.rs"]
+mod browser;
 mod camera;
 mod compared;
 mod fields;
@@ -11,6 +14,7 @@ mod inside;
 mod look;
 mod obstacles;
 mod pictures;
+mod printed;
 mod sheets;
 mod shown;
 mod smooth;

@@ -227,16 +227,19 @@ impl Browser {
 
     /// The colours at the middles of some places in the window, as on the screen.
     pub(crate) fn colours<const COUNT: usize>(&mut self, places: [[f64; 2]; COUNT]) -> [[u8; 3]; COUNT] {
+        let (width, pixels) = self.pixels();
+        places.map(|[x, y]| pixels[y as usize * width + x as usize])
+    }
+
+    /// The width of the window (px), and the colours of its pixels as they are on the screen, in rows from the top left.
+    pub(crate) fn pixels(&mut self) -> (usize, Vec<[u8; 3]>) {
         let shot = self.order("Page.captureScreenshot", json!({ "format": "png" }));
         let file = BASE64_STANDARD.decode(shot["data"].as_str().expect("a picture")).expect("base64");
         let mut reader = png::Decoder::new(Cursor::new(file)).read_info().expect("a PNG picture");
         let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
         let info = reader.next_frame(&mut bytes).expect("a whole picture");
-        let channels = info.color_type.samples();
-        places.map(|[x, y]| {
-            let at = (y as usize * info.width as usize + x as usize) * channels;
-            [bytes[at], bytes[at + 1], bytes[at + 2]]
-        })
+        let pixels = bytes.chunks_exact(info.color_type.samples());
+        (info.width as usize, pixels.map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect())
     }
 
     /// All requests since the page was opened.

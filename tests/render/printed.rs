@@ -1,0 +1,135 @@
+//! Panels in the plane look the same in SVG files, as a browser shows them, and in PNG files.
+
+use super::browser::Browser;
+use super::{compose, draw, frame, gpu, parse};
+use localshape::look::{Style, Theme};
+use localshape::picture::Picture;
+use localshape::sim::{Divergence, Frame, LastFit, Status};
+use localshape::vector::{Format, Page, write};
+
+/// Colours are compared as means of squares of so many pixels: borders are smoothed in other ways.
+const SQUARE: usize = 8;
+const SIZE: [u32; 2] = [720, 480];
+
+/// Draws a picture without its words in both ways: the colours of all pixels.
+fn both(browser: &mut Browser, mut picture: Picture) -> [Vec<[u8; 3]>; 2] {
+    assert_eq!(picture.size, SIZE);
+    picture.words.clear();
+    let gpu = gpu("printed").expect("tried before");
+    let drawn = draw(gpu, &picture).pixels().map(|pixel| pixel.0).collect();
+    let svg = write(&Page::new(&picture), Format::Svg).expect("a page");
+    let svg = String::from_utf8(svg).expect("text");
+    browser.resize(SIZE);
+    browser.open(&format!("<!doctype html><meta charset=\"utf-8\"><body style=\"margin: 0\">{svg}"));
+    let (width, seen) = browser.pixels();
+    assert_eq!(width, SIZE[0] as usize);
+    [drawn, seen]
+}
+
+/// The largest difference of a colour channel between the means of equal squares, with the place of the square (px), and the mean
+/// difference of all squares.
+fn differences([one, other]: &[Vec<[u8; 3]>; 2]) -> (f64, [usize; 2], f64) {
+    let [width, height] = SIZE.map(|length| length as usize);
+    let mean = |pixels: &[[u8; 3]], [left, top]: [usize; 2]| {
+        let mut sums = [0.0; 3];
+        for y in top..top + SQUARE {
+            for pixel in &pixels[y * width + left..][..SQUARE] {
+                (0..3).for_each(|channel| sums[channel] += f64::from(pixel[channel]));
+            }
+        }
+        sums.map(|sum| sum / (SQUARE * SQUARE) as f64)
+    };
+    let places = (0..height / SQUARE).flat_map(|y| (0..width / SQUARE).map(move |x| [x * SQUARE, y * SQUARE]));
+    let (mut most, mut at, mut sum) = (0.0, [0; 2], 0.0);
+    for place in places {
+        let (a, b) = (mean(one, place), mean(other, place));
+        let off = (0..3).map(|channel| (a[channel] - b[channel]).abs()).fold(0.0, f64::max);
+        sum += off;
+        if off > most {
+            (most, at) = (off, place);
+        }
+    }
+    (most, at, sum / ((width / SQUARE) * (height / SQUARE)) as f64)
+}
+
+const BLOCK: &str = "body = { lattice = { cells = [4, 3], side = 0.2 }, lowest = 0.1, rotation = { angle = 0.2 } }";
+const MANY: &str = "body = { lattice = { cells = [30, 22], side = 0.2 }, lowest = 0.1, rotation = { angle = 0.2 } }";
+/// Obstacles that leave the panel at each of its sides.
+const CROSS: &str = "body = { nodes = [[0, 1], [1, 1], [0.5, 1.8]], elements = [[0, 1, 2]] }
+    [[obstacle]]
+    kind = 'capsule'
+    from = [-9, 0.7]
+    to = [9, 0.5]
+    radius = 0.1
+    [[obstacle]]
+    kind = 'capsule'
+    from = [1.4, -9]
+    to = [1.2, 9]
+    radius = 0.1";
+const FIELD: &str = "colour = { by = 'speed', range = [0, 3] }";
+
+fn diverged(frame: &mut Frame) {
+    let snapshot = &mut frame.runs[0].snapshot;
+    snapshot.status = Status::Diverged(Divergence { time: 0.0, step: 0, part: 0, element: None });
+    let snapshot = snapshot.clone();
+    frame.runs[0].last_fit = Some(Box::new(LastFit { snapshot, times_wider: 1.0 }));
+}
+
+fn turned_over(frame: &mut Frame) {
+    (0..3).for_each(|element| frame.runs[0].snapshot.turned_over[element] = true);
+}
+
+fn flat(frame: &mut Frame) {
+    (2..7).for_each(|element| frame.runs[0].snapshot.flat[element] = true);
+}
+
+fn speeds(frame: &mut Frame) {
+    let snapshot = &mut frame.runs[0].snapshot;
+    snapshot.field = (0..snapshot.position.len()).map(|node| node as f64 % 4.0).collect();
+}
+
+/// Changes a frame.
+type Change = fn(&mut Frame);
+
+#[test]
+fn a_browser_shows_flat_panels_as_they_are_drawn() {
+    if gpu("a_browser_shows_flat_panels_as_they_are_drawn").is_none() {
+        return;
+    }
+    let Some(mut browser) = Browser::start() else { return };
+    let cases: [(&str, &str, &[Change]); 9] = [
+        (BLOCK, "", &[turned_over]),
+        (BLOCK, "", &[diverged]),
+        (BLOCK, "", &[flat]),
+        (BLOCK, "", &[flat, diverged]),
+        (MANY, "", &[]),
+        (BLOCK, FIELD, &[speeds, turned_over]),
+        (BLOCK, FIELD, &[speeds, flat]),
+        (BLOCK, "ghost = 'rest'", &[]),
+        (CROSS, "", &[]),
+    ];
+    for (case, (world, view, changes)) in cases.into_iter().enumerate() {
+        for theme in [Theme::Light, Theme::Dark] {
+            let mut scene = parse(&format!(
+                "time = {{ duration = 1, step = 'T/50', frames_per_second = 50 }}
+                run = [{{ name = 'one', model = {{ kind = 'shape-based', stiffness = 1e3 }} }}]
+                view = {{ size = {SIZE:?}, camera = {{ follow = false }}, {view} }}
+                {world}"
+            ));
+            scene.view.look = Style::of(theme);
+            let mut frame = frame(&scene, 0);
+            changes.iter().for_each(|change| change(&mut frame));
+            let pictures = both(&mut browser, compose(&scene, &frame));
+            let (most, at, mean) = differences(&pictures);
+            assert!(most < 20.0 && mean < 0.2, "case {case}, {theme:?}: {most:.2} at {at:?}, {mean:.3} in the mean");
+            if changes.contains(&(diverged as Change)) {
+                let body = |y: usize| (y * 720 + 300)..(y * 720 + 400);
+                for pixel in pictures.iter().flat_map(|pixels| (190..280).flat_map(|y| &pixels[body(y)])) {
+                    let spread = pixel.iter().max().unwrap() - pixel.iter().min().unwrap();
+                    // Dark grounds are bluish, but less than bodies.
+                    assert!(spread < 14, "case {case}, {theme:?}: {pixel:?} is not grey");
+                }
+            }
+        }
+    }
+}
