@@ -156,11 +156,12 @@ impl Still<'_> {
                 Ok(Drawn::Pixels { size: picture.size, pixels, tags: self.tags.to_vec(), dpi })
             }
             Format::Vector(format) => {
-                let bodies = vector::bodies(picture).map(|lit| draw(gpu, &lit)).transpose()?;
+                let size_mm = self.print.map(|print| print.mm);
+                let bodies = vector::bodies(picture, size_mm).map(|lit| draw(gpu, &lit)).transpose()?;
                 let page = Page {
                     picture,
                     bodies: bodies.as_deref(),
-                    size_mm: self.print.map(|print| print.mm),
+                    size_mm,
                     title: self.title,
                     maker: &format!("{}{}", film::MARK, env!("CARGO_PKG_VERSION")),
                     tags: self.tags,

@@ -14,7 +14,7 @@ mod marks;
 mod pdf;
 mod svg;
 
-use crate::picture::{Panel, Picture, TextRun};
+use crate::picture::{Panel, Picture, Rectangle, TextRun};
 use drawing::{Image, Item, Path, Pen};
 use glam::Vec2;
 
@@ -43,8 +43,8 @@ impl Format {
 pub struct Page<'a> {
     /// The picture.
     pub picture: &'a Picture,
-    /// The pixels of the picture's lit panels, as [`bodies`] asks for them: red, green and blue of each, or these and
-    /// opacity, in rows from the top left; `None` without lit panels.
+    /// The pixels of the picture's lit panels, as [`bodies`] asks for them: red, green and blue of each, in rows from the top
+    /// left; `None` without lit panels.
     pub bodies: Option<&'a [u8]>,
     /// Width and height (mm). By default a pixel is 1/96 of an inch.
     pub size_mm: Option<[f64; 2]>,
@@ -75,8 +75,27 @@ pub enum VectorError {
 /// Half the width of the halo around words over bodies, in sizes of type.
 const HALO: f32 = 0.14;
 
-/// The part of a picture that the renderer draws for a page: lit panels without flat items; `None` if there are none.
-pub fn bodies(picture: &Picture) -> Option<Picture> {
+/// Pixels of an inch in bodies of pages whose size is in pixels, and those pixels.
+const DPI: [f32; 2] = [300.0, 96.0];
+/// Bodies of pages have at most so many pixels a side, unless their pictures have more.
+const MOST_PIXELS: f32 = 8192.0;
+
+/// Pixels of lit bodies for one of their picture.
+fn fineness(picture: &Picture, size_mm: Option<[f64; 2]>) -> f32 {
+    let longest = picture.size[0].max(picture.size[1]) as f32;
+    if size_mm.is_some() { 1.0 } else { (DPI[0] / DPI[1]).min(MOST_PIXELS / longest).max(1.0) }
+}
+
+/// A rectangle in a picture that is larger by a factor.
+fn enlarged([left, top, width, height]: Rectangle, times: f32) -> Rectangle {
+    let [left, top, right, bottom] =
+        [left, top, left + width, top + height].map(|side| (side as f32 * times).round() as u32);
+    [left, top, right - left, bottom - top]
+}
+
+/// The part of a picture that the renderer draws for a page of a size (mm): lit panels without flat items; `None` if there are
+/// none. Without a size it is drawn with 300 pixels to an inch, that is, larger.
+pub fn bodies(picture: &Picture, size_mm: Option<[f64; 2]>) -> Option<Picture> {
     let lit = |panel: &Panel| !panel.sight.flat;
     if !picture.panels.iter().any(lit) {
         return None;
@@ -84,6 +103,22 @@ pub fn bodies(picture: &Picture) -> Option<Picture> {
     let mut bodies = picture.clone();
     bodies.panels.retain(lit);
     (bodies.marks, bodies.curves, bodies.words) = Default::default();
+    let times = fineness(picture, size_mm);
+    let [_, _, width, height] = enlarged([0, 0, picture.size[0], picture.size[1]], times);
+    bodies.size = [width, height];
+    for panel in &mut bodies.panels {
+        (panel.viewport, panel.region) = (enlarged(panel.viewport, times), enlarged(panel.region, times));
+        // The opacity of edges stays that of the picture.
+        panel.sight.line_scale *= times;
+        panel.sight.focal *= times;
+        panel.floor.iter_mut().for_each(|floor| floor.fade_above *= times);
+        if let Some(fade) = &mut panel.obstacles.fade {
+            fade.room = fade.room.map(|side| times * side);
+            fade.distance = fade.distance.map(|length| times * length);
+        }
+        panel.strokes.iter_mut().for_each(|stroke| stroke.width *= times);
+        panel.beads.iter_mut().for_each(|bead| bead.radius *= times);
+    }
     Some(bodies)
 }
 
@@ -113,7 +148,7 @@ fn items<'a>(page: &Page<'a>) -> Vec<Item<'a>> {
     for panel in &picture.panels {
         match (panel.sight.flat, page.bodies) {
             (true, _) => flat::panel(picture, panel, &mut items),
-            (false, Some(pixels)) => items.extend(image(picture, panel, pixels).map(Item::Image)),
+            (false, Some(pixels)) => items.extend(image(page, panel, pixels).map(Item::Image)),
             (false, None) => {}
         }
     }
@@ -130,9 +165,11 @@ fn items<'a>(page: &Page<'a>) -> Vec<Item<'a>> {
 }
 
 /// The part of a lit panel that is not empty.
-fn image(picture: &Picture, panel: &Panel, pixels: &[u8]) -> Option<Image> {
-    let width = picture.size[0] as usize;
-    let [left, top, wide, high] = panel.viewport.map(|length| length as usize);
+fn image(page: &Page<'_>, panel: &Panel, pixels: &[u8]) -> Option<Image> {
+    let picture = page.picture;
+    let times = fineness(picture, page.size_mm);
+    let width = enlarged([0, 0, picture.size[0], 0], times)[2] as usize;
+    let [left, top, wide, high] = enlarged(panel.viewport, times).map(|length| length as usize);
     let row = |y: usize| &pixels[3 * (y * width + left)..][..3 * wide];
     let is_empty = |pixel: &[u8]| pixel == picture.palette.background;
     let (mut low, mut far) = ([wide, high], [0, 0]);
@@ -148,7 +185,7 @@ fn image(picture: &Picture, panel: &Panel, pixels: &[u8]) -> Option<Image> {
     let pixels = rows.copied().collect();
     let size = [far[0] - low[0], far[1] - low[1]];
     let corner = Vec2::new((left + low[0]) as f32, (top + low[1]) as f32);
-    let place = [corner, Vec2::new(size[0] as f32, 0.0), Vec2::new(0.0, size[1] as f32)];
+    let place = [corner, Vec2::new(size[0] as f32, 0.0), Vec2::new(0.0, size[1] as f32)].map(|at| at / times);
     Some(Image { size: size.map(|length| length as u32), pixels, place })
 }
 

@@ -1,10 +1,11 @@
 //! Pictures as SVG and PDF: text stays text in embedded fonts, flat bodies are paths, and lit bodies are images.
 
-use super::{compose, fig4b, frame, parse};
+use super::{compose, draw, fig4b, frame, gpu, parse};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use image::RgbImage;
 use localshape::look::Theme;
-use localshape::picture::{Picture, compose_figure};
+use localshape::picture::{Curve, Mark, MarkShape, Picture, compose_figure};
 use localshape::runner::moments::Moments;
 use localshape::scene::figure::Figure;
 use localshape::vector::{Format, Page, bodies, write};
@@ -70,6 +71,83 @@ fn text_stays_text() {
     }
 }
 
+/// Each piece of text begins where the layout has its first glyph, and its font then leads to the places of the others.
+#[test]
+fn glyphs_stand_where_the_layout_has_them() {
+    let picture = figure("fig2", Theme::Light);
+    let svg = svg(&picture);
+    let mut pieces = 0;
+    for (element, word) in svg.split("<text ").skip(1).zip(&picture.words) {
+        let mut glyphs = word.glyphs.iter();
+        for piece in element[..element.find("</text>").expect("its end")].split(" x=\"").skip(1) {
+            let (place, rest) = piece.split_once('"').expect("its end");
+            let text = rest.split_once('>').expect("its text").1.split('<').next().expect("its text");
+            let mut place: f32 = place.parse().expect("a number");
+            for glyph in glyphs.by_ref().take(text.replace("&amp;", "&").chars().count()) {
+                assert!((place - glyph.x).abs() < 0.2, "{:?}: {text:?} at {place} for {}", word.text, glyph.x);
+                let font = ttf_parser::Face::parse(picture.fonts.face(glyph.face).bytes(), 0).expect("a font");
+                let advance = font.glyph_hor_advance(ttf_parser::GlyphId(glyph.id)).expect("a glyph");
+                place += f32::from(advance) / f32::from(font.units_per_em()) * word.size;
+            }
+            pieces += 1;
+        }
+        assert!(glyphs.next().is_none(), "{:?}", word.text);
+    }
+    assert!(pieces > picture.words.len(), "some glyphs are kerned");
+}
+
+/// The operators of a page and their operands.
+fn operations(picture: &Picture) -> Vec<Vec<String>> {
+    let pdf = write(&page(picture, None), Format::Pdf).expect("a page");
+    let is_page = |part: &&Vec<u8>| part.windows(4).any(|four| four == b" cm\n");
+    let content = streams(&pdf).iter().find(is_page).map(|part| String::from_utf8_lossy(part).into_owned());
+    content.expect("the page").lines().map(|line| line.split(' ').map(str::to_owned).collect()).collect()
+}
+
+/// PDF has one opacity for fills and for lines, and the end of a clip restores what was before it.
+#[test]
+fn opacities_and_colours_are_set_again_where_pdf_has_others() {
+    let mut picture = figure("fig1", Theme::Light);
+    (picture.under, picture.marks, picture.words) = Default::default();
+    let panels = std::mem::take(&mut picture.panels);
+    let curve = |points: &[[f32; 2]], alpha| Curve {
+        points: points.to_vec(),
+        width: 4.0,
+        dash: vec![],
+        colour: [1, 2, 3],
+        alpha,
+    };
+    let [from, to] = [[10.0, 10.0], [50.0, 40.0]];
+    picture.curves = vec![curve(&[from], 0.5), curve(&[from, to], 1.0), curve(&[to], 0.5)];
+    let states = |picture: &Picture| -> Vec<String> {
+        operations(picture)
+            .into_iter()
+            .filter(|words| words.last().is_some_and(|last| last == "gs"))
+            .map(|words| words[0].clone())
+            .collect()
+    };
+    assert_eq!(states(&picture)[1..], ["/G500", "/G1000", "/G500"], "after the background");
+
+    // The body of a panel in the plane is drawn in a clip.
+    picture.curves.clear();
+    picture.panels = panels[..1].to_vec();
+    let panel = &mut picture.panels[0];
+    (panel.lines, panel.obstacles) = Default::default();
+    let colour = picture.palette.sound_flat;
+    picture.marks = vec![Mark {
+        rectangle: [0.0, 0.0, 9.0, 9.0],
+        along: [1.0, 0.0],
+        colour,
+        second: colour,
+        opacity: 255,
+        shape: MarkShape::Filled,
+    }];
+    let fill = colour.map(|byte| f32::from(byte) / 255.0).map(|part| format!("{part}"));
+    let sets =
+        operations(&picture).iter().filter(|words| words.len() == 4 && words[3] == "rg" && words[..3] == fill).count();
+    assert_eq!(sets, 2, "inside and after the clip");
+}
+
 /// The fonts of the page have the characters of the page, with the outlines of the whole font, and hardly more.
 #[test]
 fn fonts_are_embedded_with_the_glyphs_in_use() {
@@ -104,7 +182,7 @@ fn fonts_are_embedded_with_the_glyphs_in_use() {
 #[test]
 fn panels_in_the_plane_are_paths_alone() {
     let picture = figure("fig1", Theme::Light);
-    assert!(picture.panels.iter().all(|panel| panel.sight.flat) && bodies(&picture).is_none());
+    assert!(picture.panels.iter().all(|panel| panel.sight.flat) && bodies(&picture, None).is_none());
     let svg = svg(&picture);
     assert!(!svg.contains("<image") && svg.matches("<path").count() > 40);
     let [begun, ended] = ["<g ", "</g>"].map(|mark| svg.matches(mark).count());
@@ -120,7 +198,7 @@ fn panels_in_the_plane_are_paths_alone() {
 fn lit_bodies_are_images_without_words() {
     let (scene, frame) = fig4b(0);
     let picture = compose(&scene, &frame);
-    let lit = bodies(&picture).expect("lit panels");
+    let lit = bodies(&picture, Some([180.0, 90.0])).expect("lit panels");
     assert_eq!(lit.panels, picture.panels);
     assert!(lit.words.is_empty() && lit.marks.is_empty() && lit.curves.is_empty());
     let [width, height] = picture.size;
@@ -135,6 +213,34 @@ fn lit_bodies_are_images_without_words() {
     assert_eq!(texts(&svg).len(), picture.words.len());
     let pdf = write(&page(&picture, Some(&pixels)), Format::Pdf).expect("a page");
     assert!(String::from_utf8_lossy(&pdf).contains("/Width 3"));
+}
+
+/// On a page without millimetres, a pixel of the picture is 1/96 of an inch, and bodies have 300 pixels to an inch.
+#[test]
+fn lit_bodies_of_pages_are_fine_enough_for_print() {
+    let (scene, frame) = fig4b(0);
+    let picture = compose(&scene, &frame);
+    let lit = bodies(&picture, None).expect("lit panels");
+    assert_eq!(lit.size, [4000, 2250]);
+    let pixels = [0].repeat(3 * 4000 * 2250);
+    let page = Page { bodies: Some(&pixels), ..Page::new(&picture) };
+    let pdf = String::from_utf8_lossy(&write(&page, Format::Pdf).expect("a page")).into_owned();
+    // Two panels that fill the picture.
+    assert_eq!(pdf.matches("/Width 2000").count(), 2);
+    let svg = String::from_utf8(write(&page, Format::Svg).expect("a page")).expect("text");
+    assert!(svg.contains("<image width=\"2000\" height=\"2250\"") && svg.contains("matrix(0.32 0 0 0.32 640 0)"));
+    let Some(gpu) = gpu("lit_bodies_of_pages_are_fine_enough_for_print") else { return };
+    // The same look, finer: means of larger squares are those of pixels.
+    let [plain, fine] = [bodies(&picture, Some([1.0; 2])), Some(lit)].map(|lit| draw(gpu, &lit.expect("lit panels")));
+    let square = |image: &RgbImage, [x, y]: [u32; 2], side: u32| {
+        let pixels = (0..side * side).map(|at| f64::from(image.get_pixel(x + at % side, y + at / side)[1]));
+        pixels.sum::<f64>() / f64::from(side * side)
+    };
+    let places = (0..90 * 160).map(|at| [at % 160, at / 160]);
+    let off = places.map(|at| square(&plain, at.map(|x| 8 * x), 8) - square(&fine, at.map(|x| 25 * x), 25));
+    let off: Vec<_> = off.map(f64::abs).collect();
+    let (most, mean) = (off.iter().copied().fold(0.0, f64::max), off.iter().sum::<f64>() / off.len() as f64);
+    assert!(most < 20.0 && mean < 0.5, "{most} {mean}");
 }
 
 /// Strips inside the obstacle extend across the left side of its room.
@@ -153,7 +259,8 @@ fn obstacles_that_leave_their_panel_fade() {
     let strips = |picture: &Picture| svg(picture).matches("fill-opacity").count();
     let with = strips(&picture);
     picture.panels[0].obstacles.fade = None;
-    assert!((with - strips(&picture)).abs_diff(fading.distance[0] as usize) < 4, "{with}");
+    let drawn = with - strips(&picture);
+    assert!(drawn > 20 && drawn <= fading.distance[0] as usize + 1, "{drawn}");
 }
 
 #[test]
