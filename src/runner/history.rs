@@ -82,11 +82,18 @@ pub(crate) struct NearObstacles(pub(crate) Vec<Option<[DVec3; 2]>>);
 impl NearObstacles {
     /// Nodes are near a plate or a wall up to this distance (sizes of the body).
     const NEAR: f64 = 0.6;
+    /// A body that has grown more than this many times is about to diverge, and does not count.
+    const MOST_GROWTH: f64 = 10.0;
 
     /// Adds nodes at positions (m) at a time (s).
     pub(crate) fn add(&mut self, scene: &Scene, time: f64, position: &[DVec3]) {
         self.0.resize(scene.obstacles.len(), None);
-        let near = Self::NEAR * scene.body.extent();
+        let extent = scene.body.extent();
+        let (low, high) = geometry::bounds(position);
+        if (high - low).max_element() > Self::MOST_GROWTH * extent {
+            return;
+        }
+        let near = Self::NEAR * extent;
         let ground = geometry::ground(&scene.obstacles, time);
         for (obstacle, reached) in scene.obstacles.iter().zip(&mut self.0) {
             let (normal, height) = match obstacle.shape {

@@ -3,9 +3,10 @@
 use super::{compose, fig4b, frame, gpu, parse, renderer, unknown};
 use glam::{DVec3, Vec3};
 use localshape::picture::{
-    LineKind, MOST_OCCLUDERS, Mark, MarkShape, Mesh, Obstacles, Occluder, Panel, Picture, compose_figure,
+    Composer, LineKind, MOST_OCCLUDERS, Mark, MarkShape, Mesh, Obstacles, Occluder, Panel, Picture, compose_figure,
 };
 use localshape::render::Renderer;
+use localshape::runner::history::History;
 use localshape::runner::moments::Moments;
 use localshape::scene::Scene;
 use localshape::scene::figure::{Content, Figure};
@@ -147,6 +148,28 @@ fn a_plate_is_transparent_behind_its_surface_and_says_where_it_goes() {
         assert_eq!(found.len(), arrows);
         assert!(found.iter().all(|arrow| arrow.along[1] < -0.99), "upwards");
     }
+}
+
+/// However far a body slides, it does not leave what is drawn of the plate below it.
+#[test]
+fn a_plate_reaches_as_far_as_bodies_slide_on_it() {
+    let slope = "gravity = [0, -9.8, 0]\n[[obstacle]]\nkind = 'plate'\npoint = [0, 0, 0]\nnormal = [0.5, 0.866, 0]\nrestitution = 0\n";
+    let cube = "body = { lattice = { cells = [1, 1, 1], side = 0.2 }, lowest = 0.02, rotation = { axis = [0, 0, 1], angle = -0.5236 } }\n";
+    let scene = following(&[&WORLD.replace("duration = 1", "duration = 2"), cube, slope].concat());
+    let composer = Composer::new(&scene, &History::new(&scene, &[0]));
+    for index in [0, 30, scene.last_frame()] {
+        let panel = &composer.compose(&frame(&scene, index)).panels[0];
+        let range = |points: &mut dyn Iterator<Item = [f32; 3]>| {
+            let down = points.map(|[x, y, _]| 0.866 * x - 0.5 * y);
+            down.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
+        };
+        let body = range(&mut panel.sound.vertices.iter().map(|vertex| vertex.position));
+        let corners = panel.obstacles.slabs.iter().flat_map(|slab| &slab.panes).flat_map(|pane| &pane.corners);
+        let plate = range(&mut corners.map(|corner| corner.position));
+        assert!(plate[0] < body[0] && body[1] < plate[1], "{index}: {body:?} {plate:?}");
+    }
+    let way = frame(&scene, scene.last_frame()).runs[0].snapshot.position[0].x;
+    assert!(way > 8.0 * scene.body.extent(), "{way}");
 }
 
 #[test]

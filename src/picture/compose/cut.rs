@@ -48,7 +48,10 @@ impl Draft<'_> {
         // Plates extend behind words, too; walls have a fading of their own.
         let slabs = obstacles.slabs.iter().filter_map(|slab| {
             let panes = slab.panes.iter().filter(|pane| !pane.grid);
-            self.bounds(panes.flat_map(|pane| &pane.corners).map(|corner| place(corner.position)))
+            let corners = || panes.clone().flat_map(|pane| &pane.corners).map(|corner| place(corner.position));
+            // One that goes on behind the camera leaves on all sides.
+            let is_before = corners().all(|corner| self.lens.project(corner).is_some());
+            if is_before { self.bounds(corners()) } else { Some([DVec2::NEG_INFINITY, DVec2::INFINITY]) }
         });
         self.cover_plates(sides(self.viewport.map(f64::from)), slabs, marks);
     }

@@ -16,7 +16,7 @@ use std::f64::consts::{PI, TAU};
 const PLATE: f64 = 0.85;
 const THICKNESS: f64 = 0.042;
 /// The margins of a plate around the start of the body, unless the start is farther away than the last one, and around
-/// all places where nodes come near it at any time in any run (body sizes).
+/// all places where nodes come near it at any time in any run, however far away (body sizes).
 const START_MARGIN: f64 = 0.25;
 const MARGIN: f64 = 0.12;
 const FARTHEST_EDGE: f64 = 4.0;
@@ -78,8 +78,8 @@ impl Staging<'_> {
         if let Some(reached) = self.reach.of(at) {
             let [from, to] = around(reached, &Pose::NONE);
             let margin = MARGIN * self.site.extent;
-            low = low.min((from - margin).max(DVec2::splat(-farthest)));
-            high = high.max((to + margin).min(DVec2::splat(farthest)));
+            low = low.min(from - margin);
+            high = high.max(to + margin);
         }
         let middle = low.midpoint(high);
         (pose.apply(pivot, pivot + middle.x * first + middle.y * second), 0.5 * (high - low))
