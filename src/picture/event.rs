@@ -48,7 +48,10 @@ pub(super) fn events(diagnostic: Diagnostic, series: &[Series], extent: f64, end
             own.extend(first.map(|&[time, _]| event(one, time, "first turned over".to_owned(), "at")));
             let last = changes.last().filter(|[time, _]| changes.len() > 1 && *time <= (1.0 - SETTLED) * end);
             let last = last.filter(|_| one.diverged.is_none());
-            own.extend(last.map(|&[time, count]| event(one, time, format!("settles at {count}"), "after")));
+            // Elements that no longer count may be flat.
+            let settled =
+                |count: f64| if count == 0.0 { "none turned over".to_owned() } else { format!("settles at {count}") };
+            own.extend(last.map(|&[time, count]| event(one, time, settled(count), "after")));
         } else if let (Some(&[_, start]), Some(&[_, last])) = (one.points.first(), one.points.last()) {
             let apart = |value: f64, other: f64| (value - other).abs();
             let extreme = one.points.iter().max_by(|a, b| apart(a[1], start).total_cmp(&apart(b[1], start)));
@@ -137,6 +140,9 @@ mod tests {
         // A run that changes at the end has not settled, and one that never changes has no events.
         let restless = series(0, true, &[[0.0, 0.0], [1.0, 1.0], [2.9, 2.0]]);
         assert_eq!(words(Diagnostic::TurnedOver, &[restless]), ["first turned over at 1.00 s"]);
+        let flat = series(0, true, &[[0.0, 0.0], [0.02, 8.0], [0.1, 0.0], [3.0, 0.0]]);
+        let told = words(Diagnostic::TurnedOver, &[flat]);
+        assert_eq!(told, ["first turned over at 20 ms", "none turned over after 100 ms"]);
         let many: Vec<_> = (0..20).map(|run| Series { run, ..springs.clone() }).collect();
         assert_eq!(words(Diagnostic::TurnedOver, &many), vec!["first turned over at 20 ms"; MOST]);
     }

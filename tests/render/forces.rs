@@ -1,6 +1,6 @@
 //! Diagrams of forces: the numbers of Figs. 1 and 2, and legibility.
 
-use localshape::picture::{MarkShape, Picture, TextRun, compose_figure};
+use localshape::picture::{Mark, MarkShape, Picture, TextRun, compose_figure};
 use localshape::runner::moments::Moments;
 use localshape::scene::figure::Figure;
 
@@ -45,12 +45,25 @@ fn fig_2_says_that_one_diagonal_spring_prefers_a_direction() {
     assert_eq!(counts(&picture, &["180° off"]), [2]);
 }
 
+/// Nodes hide no arrow: the short ones of the third model lie above them.
+#[test]
+fn short_arrows_can_be_seen() {
+    let picture = picture("fig2", [1280, 576]);
+    let figure = Figure::built_in("fig2").expect("a figure of the paper");
+    let own = figure.scenes()[0].runs[2].line(&picture.palette).colour;
+    let nodes = picture.marks.iter().rposition(|mark| mark.shape == MarkShape::Node).expect("nodes");
+    let arrows = picture.marks[nodes..].iter().filter(|mark| mark.colour == own);
+    // A shaft and a head for each.
+    assert_eq!(arrows.count(), 4 * 2);
+}
+
 #[test]
 fn fig_3_shows_both_vectors_and_the_centre_in_the_plane_and_in_space() {
     let picture = picture("fig3", [1280, 720]);
     assert_eq!(counts(&picture, &["r", "R", "c"]), [2; 3]);
+    let is_head = |mark: &&Mark| matches!(mark.shape, MarkShape::Arrow | MarkShape::Point);
     // An arrow for each node of the pentagon and of the cube, and the legend's arrow.
-    assert_eq!(picture.marks.iter().filter(|mark| mark.shape == MarkShape::Arrow).count(), 5 + 8 + 1);
+    assert_eq!(picture.marks.iter().filter(is_head).count(), 5 + 8 + 1);
 }
 
 /// Left, top, right and bottom of a word (px).
@@ -118,8 +131,7 @@ fn a_body_at_rest_has_no_forces_and_floors_that_are_not_drawn_cut_nothing() {
     assert_eq!(counts(&picture, &["no forces"]), [1]);
     // Of 27 nodes, the inner one and those hidden by faces are faint, or not drawn.
     let nodes = |opaque: bool| {
-        let is_one =
-            |mark: &&localshape::picture::Mark| mark.shape == MarkShape::Node && (mark.opacity == 255) == opaque;
+        let is_one = |mark: &&Mark| mark.shape == MarkShape::Node && (mark.opacity == 255) == opaque;
         picture.marks.iter().filter(is_one).count()
     };
     assert_eq!((nodes(true), nodes(false)), (19, 0));

@@ -28,6 +28,9 @@ const NODE: f64 = 5.2;
 const CENTRE: f64 = 3.4;
 /// Half of an arrow's width, for labels (px in the reference picture).
 const ARROW: f64 = 5.0;
+/// Arrows shorter than this (radii of a node) are drawn above nodes, whose radius is then a part of their length.
+const LONG: f64 = 2.5;
+const SMALL_NODE: f64 = 0.3;
 /// Arrows shorter than this are not drawn (px in the reference picture).
 const SHORTEST: f64 = 3.0;
 /// An arrow that is closer than this to both sides of a corner (rad) has no halo there.
@@ -189,7 +192,11 @@ impl<'a> Drawn<'a> {
         }
         let mut order: Vec<usize> = (0..arrows.len()).filter(|&at| shown(&arrows[at])).collect();
         order.sort_by(|&a, &b| seen[a].total_cmp(&seen[b]));
-        for &at in &order {
+        // Nodes would hide short arrows, which lie above smaller nodes instead.
+        let length = |at: usize| arrows[at][0].distance(arrows[at][1]);
+        let is_short = |&at: &usize| length(at) < LONG * NODE * scale.line();
+        let (short, long): (Vec<_>, Vec<_>) = order.iter().copied().partition(is_short);
+        for at in long {
             if self.is_in_corner(at, arrows[at]) {
                 above.extend(bare(arrows[at], scale.line(), own));
                 continue;
@@ -197,11 +204,16 @@ impl<'a> Drawn<'a> {
             let whole = arrow(arrows[at], scale.line(), own, palette.background);
             above.extend(whole.faded(HIDDEN + (1.0 - HIDDEN) * seen[at]));
         }
-        for (&at, &seen) in position.iter().zip(&seen) {
+        for (node, (&at, &seen)) in position.iter().zip(&seen).enumerate() {
             if seen > 0.0 {
-                let disc = Mark::around(self.pixel(at), NODE * scale.line(), MarkShape::Node, palette.node);
+                let radius = if short.contains(&node) { SMALL_NODE * length(node) } else { NODE * scale.line() };
+                let disc = Mark::around(self.pixel(at), radius, MarkShape::Node, palette.node);
                 above.extend(Mark { second: palette.edge, ..disc }.faded(seen));
             }
+        }
+        for at in short {
+            let parts = bare(arrows[at], scale.line(), own).into_iter();
+            above.extend(parts.filter_map(|part| part.faded(HIDDEN + (1.0 - HIDDEN) * seen[at])));
         }
         if order.is_empty() {
             let text = if cell.ways.iter().all(|way| way.length() < NONE * cell.scene.view.side) {
