@@ -313,6 +313,7 @@ mod tests {
     use crate::look::View;
     use crate::picture::Framing;
     use crate::sim::Dimension;
+    use glam::Vec2;
 
     const ROOM: Rectangle = [0, 0, 640, 640];
 
@@ -374,6 +375,11 @@ mod tests {
         let [tail, tip] = [0, 1].map(|at| curves[0].points[at]);
         assert_eq!((tip, tip[1] < tail[1], curves[0].dash.len()), (curves[1].points[1], true, 0));
         assert!((tip[1] - narrow(POINTER[2])).abs() < 1e-3, "{tip:?}");
+        // Both wings mirror each other about the shaft.
+        let [tail, tip, wing, other] = [tail, tip, curves[1].points[0], curves[1].points[2]].map(Vec2::from);
+        let [shaft, one, other] = [tail, wing, other].map(|end| end - tip);
+        let mirrored = 2.0 * one.project_onto(shaft) - one;
+        assert!(other.distance(mirrored) < 1e-3 && one.perp_dot(shaft).abs() > 1.0, "{one} {other}");
     }
 
     #[test]

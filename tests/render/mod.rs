@@ -20,6 +20,7 @@ mod shown;
 mod smooth;
 mod steady;
 mod strips;
+mod turns;
 mod vectors;
 mod words;
 mod work;

@@ -55,6 +55,22 @@ fn scenes() -> Vec<Scene> {
     scenes
 }
 
+/// A chart takes its height from all rows of panels together, and type has the size that it has without a chart.
+#[test]
+fn a_chart_changes_no_size_of_type() {
+    let text = ALL.replace("strip = 'shape_error'", "").replace("title = 'A title", "#").replace("caption = ", "#");
+    let more = "[[run]]\nname = 'Fourth'\nmodel = { kind = 'shape-based', stiffness = 1e4 }\n[view]";
+    let text = text.replace("[view]", more);
+    let sizes = ["", "strip = 'shape_error'"].map(|strip| {
+        let picture = {
+            let scene = parse(&format!("{text}\nsize = [2000, 800]\npanels = 2\n{strip}\n"));
+            compose(&scene, &frame(&scene, 0))
+        };
+        picture.words.iter().find(|word| word.text.ends_with("Fourth")).expect("the name").size
+    });
+    assert!((sizes[0] / sizes[1] - 1.0).abs() < 0.01, "{sizes:?}");
+}
+
 #[test]
 fn no_words_overlap_and_none_leaves_the_picture() {
     for scene in scenes() {
