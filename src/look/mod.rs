@@ -24,13 +24,13 @@ mod view;
 pub use crate::colour::Colour;
 pub(crate) use camera_box::CameraBox;
 pub(crate) use contrast::check_runs;
+pub use file::ColourMap;
 pub use palette::Theme;
 pub use print::Print;
 pub(crate) use resolve::{TypedView, colour};
 pub(crate) use subject::Subject;
 pub use view::{
-    Camera, ColourMap, ColourScale, Colours, EdgeStyle, FloorStyle, FontFiles, Ghost, Labels, Style, Traced, View,
-    Visible,
+    Camera, ColourScale, Colours, EdgeStyle, FloorStyle, FontFiles, Ghost, Labels, Style, Traced, View, Visible,
 };
 #[cfg(feature = "render")]
 pub(crate) use {drawn::LineStyle, palette::Palette, ramp::SHADES, view::axes};

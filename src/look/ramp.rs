@@ -1,7 +1,7 @@
 //! Colour scales of scalar fields, by name.
 
+use super::file::ColourMap;
 use super::palette::Theme;
-use super::view::ColourMap;
 use crate::colour::{Colour, Oklab, from_oklab};
 use colorous::Gradient;
 

@@ -1,6 +1,6 @@
 //! The view of a scene.
 
-use super::file::{CameraFile, ColourFile, PanelsFile, PathFile, ShowFile};
+use super::file::{CameraFile, ColourFile, ColourMap, PanelsFile, PathFile, ShowFile};
 use super::palette::{Palette, Theme};
 use super::print::{Print, SizeFile, TextScaleFile};
 use super::typed::{FontFile, TypedColour};
@@ -306,29 +306,6 @@ pub struct ColourScale {
     pub range: [f64; 2],
     /// The colours.
     pub map: ColourMap,
-}
-
-/// Named colour maps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ColourMap {
-    /// From pale mint through teal to indigo: far from the vermilion of turned-over elements, with visible edges
-    /// everywhere. Large values are dark in the light theme and light in the dark one.
-    #[default]
-    MintIndigo,
-    /// From dark violet through teal to yellow (matplotlib), in either theme.
-    Viridis,
-    /// From dark blue to yellow, the same with colour blindness (Nuñez, Anderton, Renslow 2018), in either theme.
-    Cividis,
-    /// From purple through crimson to pale yellow, in either theme: matplotlib's without its black end. Its orange
-    /// resembles turned-over elements; `colours.turned_over` can change that.
-    Magma,
-    /// From light to dark grey in the light theme, from dark to light in the dark one.
-    Greys,
-    /// From violet through grey to green, for lines: values near the middle recede, but stay visible.
-    VioletGreen,
-    /// From purple through white to green (ColorBrewer PRGn), in either theme: diverging, for values of both signs.
-    PurpleGreen,
 }
 
 /// The appearance of a picture apart from its content: colours and type.

@@ -57,7 +57,7 @@ const SHADOW_DEPTH: f64 = 16.0;
 type Circle = (DVec2, f64);
 
 /// One panel in the plane.
-pub(super) struct Flat<'a> {
+pub(super) struct PlaneMarks<'a> {
     pub(super) body: &'a Body,
     pub(super) ears: &'a Ears,
     pub(super) position: &'a [DVec3],
@@ -74,7 +74,7 @@ pub(super) struct Flat<'a> {
     pub(super) palette: &'a Palette,
 }
 
-impl Flat<'_> {
+impl PlaneMarks<'_> {
     /// All floors, below the body.
     pub(super) fn floors(&self, obstacles: &[Obstacle], time: f64, marks: &mut Vec<Mark>) {
         for obstacle in obstacles {

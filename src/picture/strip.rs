@@ -140,7 +140,7 @@ impl Strip {
     }
 
     /// Explains bands if a curve has any in a chart and the explanation has room.
-    pub(super) fn explain_bands(&mut self, fonts: &Fonts, parts: &Parts, has_room: impl Fn(&Self) -> bool) {
+    pub(super) fn explain_bands(&mut self, fonts: &Fonts, parts: &SplitChart, has_room: impl Fn(&Self) -> bool) {
         let has_bands = parts.0.iter().any(|&(chart, span)| {
             let (times, values) = (chart.times(fonts, span), self.values_in(chart));
             let has_band = |one: &Series| values.as_ref().is_some_and(|values| one.has_band(chart, [&times, values]));
@@ -163,7 +163,7 @@ impl Strip {
     pub(super) fn draw(
         &self,
         writer: &mut Writer<'_>,
-        parts: &Parts,
+        parts: &SplitChart,
         with_times: bool,
         names: Option<&Ends>,
         between: [f64; 2],
@@ -198,9 +198,9 @@ impl Strip {
 
 /// A chart, or two beside each other for two scales of time, each with its range of time (s).
 #[derive(Clone, Debug)]
-pub(super) struct Parts(Vec<(Chart, [f64; 2])>);
+pub(super) struct SplitChart(Vec<(Chart, [f64; 2])>);
 
-impl Parts {
+impl SplitChart {
     /// A chart over some pixels to the right and down, from a first time to a last one (s); the scale of time may
     /// change between.
     pub(super) fn new(

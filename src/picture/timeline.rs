@@ -8,7 +8,7 @@ use super::event::{self, Event};
 use super::flag::{self, Flag};
 use super::layout::{LEAST_CHART, Rectangle, Scale};
 use super::narrow::narrow;
-use super::strip::{Parts, Strip};
+use super::strip::{SplitChart, Strip};
 use super::text::TextRun;
 use super::{Colour, Curve, Mark};
 use crate::runner::history::History;
@@ -34,7 +34,7 @@ pub(super) struct Timeline {
     strip: Strip,
     events: Vec<Event>,
     /// Its place; `None` if it could not be read.
-    parts: Option<Parts>,
+    parts: Option<SplitChart>,
     /// The parts that do not move.
     marks: Vec<Mark>,
     curves: Vec<Curve>,
@@ -107,7 +107,7 @@ fn still(
     writer: &mut Writer<'_>,
     [left, top, width, height]: [f64; 4],
     (end, have_letters): (f64, bool),
-) -> Option<Parts> {
+) -> Option<SplitChart> {
     let (fonts, scale) = (writer.fonts, writer.scale);
     let unit = scale.type_unit();
     let chart = [(top + ABOVE * unit).round(), (top + height - BELOW * unit).round()];
@@ -121,7 +121,7 @@ fn still(
         let first = (left + numbers + if has_name { name } else { 0.0 }).round();
         let has_room =
             last - first >= LEAST_WIDTH && chart[1] - chart[0] >= LEAST_CHART && Scale::legible(NUMBERS * unit);
-        has_room.then(|| (has_name, [first, last], Parts::new(scale, [first, last], chart, [0.0, end], split)))
+        has_room.then(|| (has_name, [first, last], SplitChart::new(scale, [first, last], chart, [0.0, end], split)))
     };
     // Bands are explained below the name, if there is room.
     let (_, _, parts) = place(strip)?;

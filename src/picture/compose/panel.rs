@@ -199,7 +199,7 @@ impl<'a> Draft<'a> {
             return;
         }
         let visible = self.scene.view.visible;
-        let flat = plane::Flat {
+        let flat = plane::PlaneMarks {
             body: self.body,
             ears: &self.composer.ears,
             position: &self.position,
@@ -238,7 +238,7 @@ impl<'a> Draft<'a> {
             palette: &self.composer.palette,
         };
         if self.flat {
-            let flat = obstacle::Flat { site, line_scale: self.scale.line() };
+            let flat = obstacle::PlaneObstacles { site, line_scale: self.scale.line() };
             flat.arrows(&self.pointers(self.viewport), above);
             return flat.draw();
         }

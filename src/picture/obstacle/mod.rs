@@ -12,7 +12,7 @@ mod solid;
 mod space;
 
 pub(super) use half_space::half_space;
-pub(super) use plane::Flat;
+pub(super) use plane::PlaneObstacles;
 pub(super) use space::Staging;
 
 use super::camera::Lens;

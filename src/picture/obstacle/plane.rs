@@ -19,13 +19,13 @@ const RIM: f64 = 2.0;
 const BORDER: f64 = 0.75;
 
 /// The data for the obstacles of one panel in the plane.
-pub(in crate::picture) struct Flat<'a> {
+pub(in crate::picture) struct PlaneObstacles<'a> {
     pub(in crate::picture) site: Site<'a>,
     /// Thickness of lines, relative to the reference picture.
     pub(in crate::picture) line_scale: f64,
 }
 
-impl Flat<'_> {
+impl PlaneObstacles<'_> {
     /// The arrows of moving plates, on the solid side.
     pub(in crate::picture) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Mark>) {
         for obstacle in self.site.obstacles {

@@ -1,6 +1,6 @@
 //! The text below the bodies of a contact sheet: tallies, counts and diagnostics, and the key of the tallies.
 
-use super::plan::{Plan, TALLY_RAISED};
+use super::sheet_layout::{SheetLayout, TALLY_RAISED};
 use crate::picture::caption::{Writer, diverged, wider};
 use crate::picture::compose::Composer;
 use crate::picture::layout::Scale;
@@ -24,21 +24,21 @@ const NUMBER_GAP: f64 = 18.0;
 const X_MIDDLE: f64 = 0.36;
 
 /// The tallies of all scenes in one style: squares for all, or bars.
-pub(super) fn tallies(scenes: &[Scene], scale: Scale, plan: &Plan) -> Vec<Tally> {
+pub(super) fn tallies(scenes: &[Scene], scale: Scale, layout: &SheetLayout) -> Vec<Tally> {
     let tallies: Vec<_> = scenes.iter().map(|scene| Tally::new(&scene.body, scene.view.side)).collect();
-    let (scale, room) = size_of_tallies(scale, plan);
+    let (scale, room) = size_of_tallies(scale, layout);
     let have_squares = tallies.iter().all(|tally| tally.has_squares(scale, room));
     if have_squares { tallies } else { tallies.iter().map(Tally::as_bar).collect() }
 }
 
 /// The scale and the width of tallies (px).
-fn size_of_tallies(scale: Scale, plan: &Plan) -> (Scale, f64) {
-    (scale.with_unit(TALLY * scale.unit), TALLY_SHARE * plan.words_width(scale))
+fn size_of_tallies(scale: Scale, layout: &SheetLayout) -> (Scale, f64) {
+    (scale.with_unit(TALLY * scale.unit), TALLY_SHARE * layout.words_width(scale))
 }
 
 /// Wordings of the key of turned-over elements, from the longest to the shortest.
-pub(super) fn key(scenes: &[Scene], tallies: &[Tally], scale: Scale, plan: &Plan) -> Vec<String> {
-    let (scale, room) = size_of_tallies(scale, plan);
+pub(super) fn key(scenes: &[Scene], tallies: &[Tally], scale: Scale, layout: &SheetLayout) -> Vec<String> {
+    let (scale, room) = size_of_tallies(scale, layout);
     let kinds: Vec<_> = scenes.iter().flat_map(|scene| elements(&scene.body)).map(|(_, kind)| kind).collect();
     let same = kinds.first().filter(|first| kinds.iter().all(|kind| kind == *first));
     let kind = same.and_then(|kind| kind.strip_suffix('s')).unwrap_or("element");
@@ -72,7 +72,7 @@ impl Below {
     /// The text for a run, with a diagnostic if requested.
     pub(super) fn new(
         writer: &Writer<'_>,
-        plan: &Plan,
+        layout: &SheetLayout,
         composer: &Composer<'_>,
         run: &RunFrame,
         number: Option<Diagnostic>,
@@ -88,7 +88,7 @@ impl Below {
         };
         let (mut tally, mut tally_width) = (Vec::new(), 0.0);
         if !over.is_empty() {
-            let (scale, room) = size_of_tallies(writer.scale, plan);
+            let (scale, room) = size_of_tallies(writer.scale, layout);
             tally_width = composer.tally.draw([over, flat], writer.palette, scale, room, [0.0; 2], &mut tally);
         }
         let count = run.snapshot.diagnostics.turned_over;
@@ -114,26 +114,32 @@ impl Below {
     }
 
     /// Whether the diagnostic has room, too.
-    pub(super) fn has_room(&self, writer: &Writer<'_>, plan: &Plan) -> bool {
+    pub(super) fn has_room(&self, writer: &Writer<'_>, layout: &SheetLayout) -> bool {
         let size = NUMBER * writer.scale.type_unit();
         let number = NUMBER_GAP * writer.scale.type_unit() + writer.fonts.width(&self.number, Weight::Regular, size);
         self.number.is_empty()
-            || Scale::legible(size) && self.counted(writer) + number <= plan.words_width(writer.scale)
+            || Scale::legible(size) && self.counted(writer) + number <= layout.words_width(writer.scale)
     }
 
     /// Writes tally, count and, if it has room in all tiles, the diagnostic; or that the run diverged.
-    pub(super) fn write(self, writer: &mut Writer<'_>, plan: &Plan, [row, column]: [usize; 2], with_number: bool) {
+    pub(super) fn write(
+        self,
+        writer: &mut Writer<'_>,
+        layout: &SheetLayout,
+        [row, column]: [usize; 2],
+        with_number: bool,
+    ) {
         let (scale, palette, fonts) = (writer.scale, writer.palette, writer.fonts);
         let size = scale.caption();
-        if !plan.has_tally || !Scale::legible(size) {
+        if !layout.has_tally || !Scale::legible(size) {
             return;
         }
-        let [left, top, width, height] = plan.tile(row, column).map(f64::from);
+        let [left, top, width, height] = layout.tile(row, column).map(f64::from);
         let (middle, bottom) = (left + 0.5 * width, top + height - TALLY_RAISED * scale.unit);
         let baseline = bottom - 0.5 * TALLY * tally::HEIGHT * scale.type_unit() + X_MIDDLE * size;
         if !self.diverged.is_empty() {
             let wide = |text: &str| fonts.width(text, Weight::SemiBold, size);
-            let Some(text) = self.diverged.iter().find(|text| wide(text) <= plan.words_width(scale)) else { return };
+            let Some(text) = self.diverged.iter().find(|text| wide(text) <= layout.words_width(scale)) else { return };
             return writer.left(text, Weight::SemiBold, size, palette.text, middle - 0.5 * wide(text), baseline);
         }
         let small = NUMBER * scale.type_unit();

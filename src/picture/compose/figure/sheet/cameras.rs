@@ -1,6 +1,6 @@
 //! The cameras of a sheet: all bodies are seen from the same distance, so that they can be compared, and none is cut.
 
-use super::plan::Plan;
+use super::sheet_layout::SheetLayout;
 use crate::look::Ghost;
 use crate::picture::camera::{Framing, Lens};
 use crate::picture::obstacle::{Site, Staging};
@@ -131,7 +131,7 @@ fn points(scene: &Scene, reach: &NearObstacles, run: &RunFrame, ghost: Vec<DVec3
 }
 
 /// The target and distance of the camera of each tile.
-pub(super) fn framings(scenes: &[Scene], cells: &[Vec<Cell>], plan: &Plan) -> Vec<Vec<Framing>> {
+pub(super) fn framings(scenes: &[Scene], cells: &[Vec<Cell>], layout: &SheetLayout) -> Vec<Vec<Framing>> {
     let mut framings: Vec<Vec<_>> = cells
         .iter()
         .map(|row| row.iter().map(|cell| Framing::still(&scenes[cell.scene].view.camera)).collect())
@@ -144,7 +144,7 @@ pub(super) fn framings(scenes: &[Scene], cells: &[Vec<Cell>], plan: &Plan) -> Ve
         let own: Vec<_> = all.into_iter().filter(|&[row, column]| classes[cells[row][column].scene] == class).collect();
         let Some(&[row, column]) = own.first() else { continue };
         let scene = &scenes[cells[row][column].scene];
-        let camera = TileCamera { scene, plan };
+        let camera = TileCamera { scene, layout };
         // One view for all tiles, for each column, or for each tile.
         let ways: [fn([usize; 2]) -> [usize; 2]; 3] = [|_| [0, 0], |[_, column]| [0, column], |place| place];
         for (at, way) in ways.iter().enumerate() {
@@ -198,14 +198,14 @@ fn classes(scenes: &[Scene]) -> Vec<usize> {
 /// The camera of a tile, independent of the tile's place.
 struct TileCamera<'a> {
     scene: &'a Scene,
-    plan: &'a Plan,
+    layout: &'a SheetLayout,
 }
 
 impl TileCamera<'_> {
     fn lens(&self, framing: &Framing) -> Lens {
-        let [width, height] = self.plan.tile_size().map(f64::from);
+        let [width, height] = self.layout.tile_size().map(f64::from);
         let view = &self.scene.view;
-        Lens::new(view, framing, self.scene.body.dimension, [0.0, 0.0, width, height], self.plan.tile_scale.unit)
+        Lens::new(view, framing, self.scene.body.dimension, [0.0, 0.0, width, height], self.layout.tile_scale.unit)
     }
 
     fn framing(target: DVec3, distance: f64) -> Framing {
@@ -220,7 +220,7 @@ impl TileCamera<'_> {
 
     /// The share of the room for bodies that the body at rest takes at a distance (m).
     fn share(&self, distance: f64) -> f64 {
-        let [left, top, right, bottom] = self.plan.body_room();
+        let [left, top, right, bottom] = self.layout.body_room();
         self.pixels(distance) * self.scene.body.extent() / (right - left).min(bottom - top).max(1.0)
     }
 
@@ -238,7 +238,7 @@ impl TileCamera<'_> {
     /// The nearest framing with all points in the room for bodies.
     fn fit(&self, points: &[DVec3]) -> Framing {
         let mut framing = self.start(points, self.usual());
-        let [left, top, right, bottom] = self.plan.body_room();
+        let [left, top, right, bottom] = self.layout.body_room();
         for _ in 0..STEPS {
             let lens = self.lens(&framing);
             let Some((low, high)) = seen(&lens, points) else {
@@ -273,7 +273,7 @@ impl TileCamera<'_> {
     /// The framing moved so that a box of the picture (px) is in the middle of the room for bodies, or lower if there
     /// is ground.
     fn centred(&self, lens: &Lens, framing: &Framing, (low, high): (DVec2, DVec2)) -> Framing {
-        let [left, top, right, bottom] = self.plan.body_room();
+        let [left, top, right, bottom] = self.layout.body_room();
         let has_ground = geometry::ground(&self.scene.obstacles, 0.0).is_some();
         let below = if has_ground { BELOW_GROUND } else { 0.5 } * ((bottom - top) - (high.y - low.y)).max(0.0);
         let wanted =
@@ -286,13 +286,13 @@ impl TileCamera<'_> {
 /// The ends of a collapsed body as a line in its tile (px), or the same point twice; `None` for other bodies.
 pub(super) fn collapsed(
     scene: &Scene,
-    plan: &Plan,
+    layout: &SheetLayout,
     [row, column]: [usize; 2],
     framing: &Framing,
     run: &RunFrame,
 ) -> Option<[DVec2; 2]> {
-    let [left, top, ..] = plan.tile(row, column).map(f64::from);
-    let lens = TileCamera { scene, plan }.lens(framing);
+    let [left, top, ..] = layout.tile(row, column).map(f64::from);
+    let lens = TileCamera { scene, layout }.lens(framing);
     let nodes = run.shown().position.iter();
     let pixels: Option<Vec<_>> =
         nodes.map(|&node| Some(DVec2::from(lens.project(node)?.0) + DVec2::new(left, top))).collect();

@@ -5,7 +5,7 @@ use crate::picture::chart::NUMBERS;
 use crate::picture::ends::Ends;
 use crate::picture::flag::{self, Flag};
 use crate::picture::layout::{CURVE_NAME, Scale};
-use crate::picture::strip::{Parts, Strip};
+use crate::picture::strip::{SplitChart, Strip};
 use crate::runner::history::History;
 use crate::scene::figure::Sheet;
 
@@ -84,7 +84,7 @@ impl<'a> Charts<'a> {
             return;
         }
         let (sheet, end, count) = (self.sheet, self.end, room.charts.len());
-        let parts = |ends| Parts::new(scale, room.span, ends, [sheet.from, end], sheet.split);
+        let parts = |ends| SplitChart::new(scale, room.span, ends, [sheet.from, end], sheet.split);
         let all = [room.charts[0][0], room.charts[room.charts.len() - 1][1]];
         // A line through all charts at the moment of each column, with the column's letter in a ring above.
         let columns = sheet.columns.iter().enumerate();

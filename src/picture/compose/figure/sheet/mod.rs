@@ -17,8 +17,8 @@ mod below;
 mod cameras;
 mod charts;
 mod headings;
-mod plan;
 mod rows;
+mod sheet_layout;
 
 use super::header;
 use crate::look::{Ghost, Labels, View, print};
@@ -38,8 +38,8 @@ use crate::sim::Frame;
 use below::Below;
 use charts::Charts;
 use glam::DVec2;
-use plan::Plan;
 use rows::RowLabels;
+use sheet_layout::SheetLayout;
 
 /// Width of bodies that are a line or a point (px at the tile's scale).
 const COLLAPSED: [f64; 2] = [3.0, 9.0];
@@ -60,28 +60,28 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let with_sample = has_charts || scenes.iter().any(shows_runs);
     let labels = RowLabels::new(sheet, &fonts, scale, with_sample, f64::from(size[0]));
     let bottom = size[1] - legend.map_or(0, |legend| legend.height.min(size[1] / 2));
-    let plan_below = |header: f64, writer: &Writer<'_>| {
-        Plan::new(sheet, writer, [size[0], bottom], header, labels.width, charts.as_ref())
+    let layout_below = |header: f64, writer: &Writer<'_>| {
+        SheetLayout::new(sheet, writer, [size[0], bottom], header, labels.width, charts.as_ref())
     };
     // The width of tiles does not depend on the header, whose key explains tallies.
-    let plan = plan_below(0.0, &writer);
-    let tallies = below::tallies(&scenes, scale, &plan);
+    let layout = layout_below(0.0, &writer);
+    let tallies = below::tallies(&scenes, scale, &layout);
     let has_flat = moments.cells.iter().flatten().any(|run| run.snapshot.flat.contains(&true));
-    let key = below::key(&scenes, &tallies, scale, &plan);
+    let key = below::key(&scenes, &tallies, scale, &layout);
     let header = header::write(&mut writer, figure, &key, has_flat);
-    let plan = plan_below(header, &writer);
-    labels.write(&mut writer, &plan, sheet);
-    for (column, heading) in plan.headings.iter().enumerate() {
-        let left = f64::from(plan.tile(0, column)[0]);
-        heading.write(&mut writer, [left, plan.headings_baseline]);
+    let layout = layout_below(header, &writer);
+    labels.write(&mut writer, &layout, sheet);
+    for (column, heading) in layout.headings.iter().enumerate() {
+        let left = f64::from(layout.tile(0, column)[0]);
+        heading.write(&mut writer, [left, layout.headings_baseline]);
     }
-    if let (Some(charts), Some(room)) = (&mut charts, &plan.charts) {
+    if let (Some(charts), Some(room)) = (&mut charts, &layout.charts) {
         charts.draw(&mut writer, room);
     }
 
     let reaches = cameras::reaches(&scenes, sheet, moments);
     let cells = cameras::cells(&scenes, &reaches, sheet, moments);
-    let framings = cameras::framings(&scenes, &cells, &plan);
+    let framings = cameras::framings(&scenes, &cells, &layout);
     // The tiles of a scene share data that is computed once.
     let scenes: Vec<_> = scenes.iter().enumerate().map(|(at, scene)| seen(scene, at, sheet, &framings)).collect();
     let traced = |scene: usize| moments.histories.get(scene).map_or_else(Vec::new, |history| history.series.clone());
@@ -97,15 +97,15 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     for (row, cells) in moments.cells.iter().enumerate() {
         for (column, run) in cells.iter().enumerate() {
             let composer = &composers[sheet.columns[column].scene];
-            below.push(([row, column], Below::new(&writer, &plan, composer, run, sheet.number)));
+            below.push(([row, column], Below::new(&writer, &layout, composer, run, sheet.number)));
         }
     }
-    let with_number = below.iter().all(|(_, below)| below.has_room(&writer, &plan));
-    below.into_iter().for_each(|(place, below)| below.write(&mut writer, &plan, place, with_number));
+    let with_number = below.iter().all(|(_, below)| below.has_room(&writer, &layout));
+    below.into_iter().for_each(|(place, below)| below.write(&mut writer, &layout, place, with_number));
     if let Some(legend) = legend.filter(|_| bottom < size[1]) {
         let first = &composers[0];
         let arrow = scenes[0].view.visible.displacements;
-        let arrow = arrow.then(|| first.key_arrow(legend, plan.tile(0, 0), &framings[0][0], plan.tile_scale));
+        let arrow = arrow.then(|| first.key_arrow(legend, layout.tile(0, 0), &framings[0][0], layout.tile_scale));
         let of_first = sheet.columns.iter().enumerate().filter(|(_, column)| column.scene == 0);
         let runs = of_first.flat_map(|(at, _)| moments.cells.iter().map(move |row| row[at].clone())).collect();
         let frame = Frame { index: 0, time: 0.0, runs };
@@ -117,15 +117,15 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     for (row, cells) in moments.cells.iter().enumerate() {
         for (column, run) in cells.iter().enumerate() {
             let (composer, framing) = (&composers[sheet.columns[column].scene], &framings[row][column]);
-            let draft = Draft::new(composer, plan.tile(row, column), run, framing, plan.tile_scale);
+            let draft = Draft::new(composer, layout.tile(row, column), run, framing, layout.tile_scale);
             let [left, top, width, height] = draft.viewport;
-            let room = [left, top, width, height - (plan.below_body.ceil() as u32).min(height)];
+            let room = [left, top, width, height - (layout.below_body.ceil() as u32).min(height)];
             draft.ghost(moments.others[row][column].as_slice(), room, &mut curves);
             draft.paths(&composer.traced, room, &mut curves);
             panels.push(draft.panel(&mut under, &mut marks));
             // Surfaces without width are invisible.
-            let ends = cameras::collapsed(&scenes[sheet.columns[column].scene], &plan, [row, column], framing, run);
-            curves.extend(ends.map(|ends| collapsed(ends, plan.tile_scale, palette.outline)));
+            let ends = cameras::collapsed(&scenes[sheet.columns[column].scene], &layout, [row, column], framing, run);
+            curves.extend(ends.map(|ends| collapsed(ends, layout.tile_scale, palette.outline)));
         }
     }
     marks.extend(above);

@@ -1,6 +1,6 @@
 //! The names and notes of the rows of a sheet.
 
-use super::plan::Plan;
+use super::sheet_layout::SheetLayout;
 use crate::picture::caption::Writer;
 use crate::picture::compose::cut;
 use crate::picture::layout::Scale;
@@ -67,12 +67,12 @@ impl RowLabels {
     }
 
     /// Writes the words beside the middle of their rows' bodies, as far as there is room.
-    pub(super) fn write(&self, writer: &mut Writer<'_>, plan: &Plan, sheet: &Sheet) {
-        let Some([left, _]) = plan.labels else { return };
+    pub(super) fn write(&self, writer: &mut Writer<'_>, layout: &SheetLayout, sheet: &Sheet) {
+        let Some([left, _]) = layout.labels else { return };
         let (scale, palette) = (writer.scale, writer.palette);
         let unit = scale.type_unit();
         for (row, [name, note]) in self.rows.iter().enumerate() {
-            let [_, top, _, height] = plan.tile(row, 0).map(f64::from);
+            let [_, top, _, height] = layout.tile(row, 0).map(f64::from);
             let room = height - 4.0 * scale.unit;
             let heights = |names: usize, with_sample: bool, notes: usize| {
                 let sample = if with_sample { SAMPLE_BELOW } else { 0.0 };
@@ -88,7 +88,7 @@ impl RowLabels {
             ];
             let fitting = choices.into_iter().find(|&(names, sample, notes)| heights(names, sample, notes) <= room);
             let Some((names, with_sample, notes)) = fitting else { continue };
-            let middle = top + 0.5 * (height - plan.below_body);
+            let middle = top + 0.5 * (height - layout.below_body);
             let highest = top + room - heights(names, with_sample, notes);
             let mut baseline = (middle - 0.5 * heights(names, with_sample, notes)).clamp(top, highest) + 15.0 * unit;
             for line in &cut(name.clone(), names) {

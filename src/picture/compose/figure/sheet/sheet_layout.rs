@@ -45,7 +45,7 @@ const CHARTS_SHARE: f64 = 0.58;
 const BELOW_TILES: f64 = 22.0;
 
 /// The places of all parts (px).
-pub(super) struct Plan {
+pub(super) struct SheetLayout {
     /// The left side of the first column, and the top of the first row.
     origin: [u32; 2],
     /// The sizes of a tile.
@@ -64,7 +64,7 @@ pub(super) struct Plan {
     pub(super) charts: Option<ChartsRoom>,
 }
 
-impl Plan {
+impl SheetLayout {
     /// Plans a sheet of a size (px) below the last baseline of a header, with words of a width beside the rows (px).
     pub(super) fn new(
         sheet: &Sheet,
