@@ -157,11 +157,12 @@ pub(super) fn file(
     write: impl FnOnce(&mut png::Writer<&mut Vec<u8>>) -> Result<(), png::EncodingError>,
 ) -> Vec<u8> {
     let [width, height] = size;
-    let expected = 3 * u64::from(width) * u64::from(height);
-    assert_eq!(length as u64, expected, "three bytes for each pixel");
+    let all = u64::from(width) * u64::from(height);
+    assert!([3 * all, 4 * all].contains(&(length as u64)), "{length} bytes for {all} pixels");
+    let colour = if length as u64 == 3 * all { png::ColorType::Rgb } else { png::ColorType::Rgba };
     let mut bytes = Vec::with_capacity(length / 8);
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(colour);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(compression);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);

@@ -1,6 +1,6 @@
 //! Panels in the plane as paths. Colours, widths and opacities are those of the shaders for flat panels.
 
-use super::drawing::{Item, Paint, Path, Pen};
+use super::drawing::{Image, Item, Paint, Path, Pen};
 use super::marks::{ends_of, winding};
 use crate::colour::{encoded, encoded_exactly, linear, luminance};
 use crate::look::Palette;
@@ -78,32 +78,35 @@ impl PlanePanel<'_> {
         }
     }
 
-    /// Fades obstacles out at the sides of their room, before the body is drawn: covers them with the background, in
-    /// steps of a pixel within the region (left, top, right and bottom, px).
+    /// Fades obstacles out at the sides of their room, before the body is drawn: covers them with the background within
+    /// the region (left, top, right and bottom, px).
     fn fade(&self, Fading { room, distance, strength }: Fading, region: [f32; 4], items: &mut Vec<Item<'_>>) {
         let background = self.picture.palette.background;
         let solids = &self.panel.obstacles.solids;
         let below = solids.first().map_or(background, |solid| solid.colour);
         let triangles = solids.iter().flat_map(|solid| self.triangles(&solid.mesh, |at| solid.mesh.vertices[at].hatch));
         items.push(Item::Clip(path_of(triangles.map(|triangle| triangle.map(|(at, _)| at).to_vec()))));
+        let [left, top, right, bottom] = region;
+        let corner = [[left, top], [left, top], [right, top], [left, bottom]].map(Vec2::from);
         for side in 0..4 {
-            let far = distance[side % 2];
-            let mut covered = 0.0;
-            // Each strip reaches to the side of the region and lies over the strips before: side by side they would have seams.
-            for depth in (0..=far.ceil() as u32).rev().map(|depth| depth as f32) {
-                let share = ((depth - 0.5) / far).clamp(0.0, 1.0);
+            // A row of pixels from the side of the region inwards, as wide as that side.
+            let (inwards, far) = (if side < 2 { 1.0 } else { -1.0 }, distance[side % 2]);
+            let outside = inwards * (room[side] - region[side]);
+            let length = (outside + far).ceil().max(0.0) as u32;
+            let pixel = |at: u32| {
+                let share = ((at as f32 + 0.5 - outside) / far).clamp(0.0, 1.0);
                 let gone = strength[side] * (1.0 - share * share * (3.0 - 2.0 * share));
-                let more = (self.alpha(gone, background, below) - covered) / (1.0 - covered).max(1e-3);
-                // As exact as files are, so that errors of many strips do not add up.
-                let alpha = (1000.0 * more).round() / 1000.0;
-                let mut strip = region;
-                strip[(side + 2) % 4] = room[side] + if side < 2 { depth } else { -depth };
-                let [from, to] = [Vec2::new(strip[0], strip[1]), Vec2::new(strip[2], strip[3])];
-                if alpha > 0.0 && to.cmpgt(from).all() {
-                    covered += alpha * (1.0 - covered);
-                    let paint = Paint { colour: background, alpha };
-                    items.push(Item::Fill { path: Path::rectangle(from, to - from), paint });
-                }
+                let [r, g, b] = background;
+                [r, g, b, (255.0 * self.alpha(gone, background, below)).round() as u8]
+            };
+            let (along, across) = (inwards * length as f32, Vec2::new(right - left, bottom - top));
+            let sides = match side % 2 {
+                0 => [along * Vec2::X, across.y * Vec2::Y],
+                _ => [along * Vec2::Y, across.x * Vec2::X],
+            };
+            if strength[side] > 0.0 && length > 0 {
+                let (pixels, place) = ((0..length).flat_map(pixel).collect(), [corner[side], sides[0], sides[1]]);
+                items.push(Item::Image(Image { size: [length, 1], pixels, place }));
             }
         }
         items.push(Item::Unclip);

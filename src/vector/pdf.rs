@@ -183,7 +183,16 @@ impl Writer<'_> {
 
     fn image(&mut self, Image { size, pixels, place }: &Image) {
         let id = self.next.bump();
-        self.pixels(id, *size, pixels);
+        let has_alpha = pixels.len() as u64 == 4 * u64::from(size[0]) * u64::from(size[1]);
+        let mask = has_alpha.then(|| {
+            let mask = self.next.bump();
+            let alpha: Vec<u8> = pixels.chunks_exact(4).map(|pixel| pixel[3]).collect();
+            self.pixels(mask, *size, png::ColorType::Grayscale, &alpha, None);
+            mask
+        });
+        let channels = if has_alpha { 4 } else { 3 };
+        let colours: Vec<u8> = pixels.chunks_exact(channels).flat_map(|pixel| &pixel[..3]).copied().collect();
+        self.pixels(id, *size, png::ColorType::Rgb, &colours, mask);
         let [corner, right, down] = place;
         // The unit square of an image has its first row on top.
         let left_below = *corner + *down;
@@ -197,13 +206,19 @@ impl Writer<'_> {
     }
 
     /// Writes pixels. PDF reads the packed rows of PNG.
-    fn pixels(&mut self, id: Ref, [width, height]: [u32; 2], pixels: &[u8]) {
-        let rows = rows_of_png([width, height], png::ColorType::Rgb, pixels);
+    fn pixels(&mut self, id: Ref, [width, height]: [u32; 2], kind: png::ColorType, pixels: &[u8], mask: Option<Ref>) {
+        let rows = rows_of_png([width, height], kind, pixels);
         let mut image = self.pdf.image_xobject(id, &rows);
         image.filter(Filter::FlateDecode);
         image.width(width as i32).height(height as i32).bits_per_component(8);
-        image.color_space().device_rgb();
-        image.decode_parms().predictor(Predictor::PngOptimum).colors(3).columns(width as i32);
+        match kind {
+            png::ColorType::Grayscale => image.color_space().device_gray(),
+            _ => image.color_space().device_rgb(),
+        };
+        image.decode_parms().predictor(Predictor::PngOptimum).colors(kind.samples() as i32).columns(width as i32);
+        if let Some(mask) = mask {
+            image.s_mask(mask);
+        }
     }
 
     fn run(&mut self, run: &TextRun) {

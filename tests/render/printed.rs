@@ -19,6 +19,9 @@ fn both(browser: &mut Browser, mut picture: Picture) -> [Vec<[u8; 3]>; 2] {
     let drawn = draw(gpu, &picture).pixels().map(|pixel| pixel.0).collect();
     let svg = write(&Page::new(&picture), Format::Svg).expect("a page");
     let svg = String::from_utf8(svg).expect("text");
+    let pdf = write(&Page::new(&picture), Format::Pdf).expect("a page");
+    let masks = String::from_utf8_lossy(&pdf).matches("/SMask").count();
+    assert_eq!(masks, svg.matches("<image").count(), "soft images of PDF are transparent, too");
     browser.resize(SIZE);
     browser.open(&format!("<!doctype html><meta charset=\"utf-8\"><body style=\"margin: 0\">{svg}"));
     let (width, seen) = browser.pixels();
@@ -54,6 +57,9 @@ fn differences([one, other]: &[Vec<[u8; 3]>; 2]) -> (f64, [usize; 2], f64) {
 
 const BLOCK: &str = "body = { lattice = { cells = [4, 3], side = 0.2 }, lowest = 0.1, rotation = { angle = 0.2 } }";
 const MANY: &str = "body = { lattice = { cells = [30, 22], side = 0.2 }, lowest = 0.1, rotation = { angle = 0.2 } }";
+/// On a floor, with a soft shadow.
+const STANDING: &str =
+    "body = { lattice = { cells = [4, 3], side = 0.2 }, lowest = 0.0 }\n[[obstacle]]\nkind = 'floor'";
 /// Obstacles that leave the panel at each of its sides.
 const CROSS: &str = "body = { nodes = [[0, 1], [1, 1], [0.5, 1.8]], elements = [[0, 1, 2]] }
     [[obstacle]]
@@ -97,7 +103,7 @@ fn a_browser_shows_flat_panels_as_they_are_drawn() {
         return;
     }
     let Some(mut browser) = Browser::start() else { return };
-    let cases: [(&str, &str, &[Change]); 9] = [
+    let cases: [(&str, &str, &[Change]); 10] = [
         (BLOCK, "", &[turned_over]),
         (BLOCK, "", &[diverged]),
         (BLOCK, "", &[flat]),
@@ -107,6 +113,7 @@ fn a_browser_shows_flat_panels_as_they_are_drawn() {
         (BLOCK, FIELD, &[speeds, flat]),
         (BLOCK, "ghost = 'rest'", &[]),
         (CROSS, "", &[]),
+        (STANDING, "", &[]),
     ];
     for (case, (world, view, changes)) in cases.into_iter().enumerate() {
         for theme in [Theme::Light, Theme::Dark] {
