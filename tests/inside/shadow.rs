@@ -1,0 +1,107 @@
+//! Tests of `src/picture/shadow.rs`.
+
+use super::*;
+
+/// A box on the floor, with triangles counter-clockwise from outside.
+fn block() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let points =
+        (0..8).map(|at: u32| DVec3::new(f64::from(at & 1) - 0.5, f64::from(at >> 1 & 1), f64::from(at >> 2) - 0.5));
+    let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = faces.iter().flat_map(|&[a, b, c, d]: &[u32; 4]| [[a, b, c], [a, c, d]]).collect();
+    (points.collect(), triangles)
+}
+
+fn value(shade: &Shade, at: DVec2) -> u8 {
+    let corner = DVec2::new(f64::from(shade.corner[0]), f64::from(shade.corner[1]));
+    let cell = ((at - corner) * CELLS as f64 / f64::from(shade.length)).floor();
+    if cell.min_element() < 0.0 || cell.max_element() >= CELLS as f64 {
+        return 0;
+    }
+    shade.cells[cell.y as usize * CELLS + cell.x as usize]
+}
+
+#[test]
+fn a_block_shades_what_lies_behind_it_and_nothing_before_it() {
+    let (points, triangles) = block();
+    let plane = Plane::new(DVec3::Y, 0.0);
+    let key = DVec3::new(-1.0, 1.0, 0.0).normalize();
+    let edges = edges(&triangles);
+    let [of_key, of_sky] = Casters::new(points, &triangles, &edges).shades(&plane, key, DVec2::ZERO, 4.0, 1.0);
+    let on_floor = |x: f64, z: f64| DVec2::new(x * plane.axes[0].x + z * plane.axes[0].z, z * plane.axes[1].z);
+    assert_eq!(value(&of_key, on_floor(0.0, 0.0)), 255);
+    assert!(value(&of_key, on_floor(1.0, 0.0)) > 250);
+    assert_eq!(value(&of_key, on_floor(-1.0, 0.0)), 0);
+    assert_eq!(value(&of_key, on_floor(2.5, 0.0)), 0);
+    let near = value(&of_sky, on_floor(0.7, 0.0));
+    let far = value(&of_sky, on_floor(2.0, 0.0));
+    assert!(near > 60 && far < near / 3, "{near} {far}");
+}
+
+#[test]
+fn outlines_cover_what_triangles_cover() {
+    // Two blocks that share an edge, one of them with a corner pushed right through it.
+    let (mut points, mut triangles) = block();
+    let (others, more) = block();
+    let meets = |point: DVec3| [2, 6].into_iter().find(|&at: &usize| point == DVec3::new(-0.5, 1.0, others[at].z));
+    let moved: Vec<_> = others.iter().map(|&point| point + DVec3::new(-1.0, 1.0, 0.0)).collect();
+    let places: Vec<_> = moved.iter().map(|&point| meets(point).unwrap_or(usize::MAX)).collect();
+    let places: Vec<_> = places
+        .iter()
+        .zip(&moved)
+        .map(|(&place, &point)| match place {
+            usize::MAX => {
+                points.push(point);
+                points.len() as u32 - 1
+            }
+            place => place as u32,
+        })
+        .collect();
+    assert_eq!(points.len(), 14);
+    triangles.extend(more.iter().map(|triangle| triangle.map(|at| places[at as usize])));
+    points[0] = DVec3::new(1.7, 1.9, 0.3);
+    let plane = Plane::new(DVec3::Y, 0.0);
+    let feet: Vec<_> = points.iter().map(|&point| plane.foot(point)).collect();
+    let slants: Vec<_> = (0..AT_ONCE).map(|at| DVec2::from_angle(at as f64) * (0.03 * at as f64)).collect();
+    let edges = edges(&triangles);
+    let turns: Vec<_> = triangles.iter().map(|triangle| Turn::new(triangle.map(|at| feet[at as usize]))).collect();
+    let mut outlines = Outlines::default();
+    outlines.find(&turns, &edges, &slants);
+    for (at, &slant) in slants.iter().enumerate() {
+        let shadow = |end: u32| (feet[end as usize].shadow(slant) + DVec2::new(4.1, 3.9)) * 16.0;
+        let mut cover = Cover::new();
+        outlines.of(at, &edges).for_each(|ends| cover.bound(ends.map(shadow)));
+        cover.count();
+        for (row, column) in (0..CELLS).flat_map(|row| (0..CELLS).map(move |column| (row, column))) {
+            let middle = DVec2::new(column as f64, row as f64) + 0.5;
+            let holds = |triangle: &[u32; 3]| {
+                let [a, b, c] = triangle.map(shadow);
+                let areas = [[a, b], [b, c], [c, a]].map(|[a, b]| (b - a).perp_dot(middle - a));
+                areas.iter().all(|&area| area > 0.0) || areas.iter().all(|&area| area < 0.0)
+            };
+            let count = cover.counts[row / LANES * COLUMNS + column][row % LANES];
+            assert_eq!(count == 1, triangles.iter().any(holds), "{slant} at {middle}");
+        }
+    }
+}
+
+#[test]
+fn floors_at_any_slope_have_right_angled_axes() {
+    for normal in [DVec3::Y, DVec3::X, DVec3::new(1.0, 2.0, 3.0).normalize()] {
+        let plane = Plane::new(normal, 0.0);
+        let [a, b] = plane.axes;
+        assert!(a.dot(b).abs() + a.dot(normal).abs() + b.dot(normal).abs() < 1e-12);
+        assert!((a.length() - 1.0).abs() + (b.length() - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn wild_coordinates_do_no_harm() {
+    let (mut points, triangles) = block();
+    points[3] = DVec3::new(1e300, -1e300, 1e6);
+    points[5] = DVec3::splat(f64::MAX);
+    let plane = Plane::new(DVec3::Y, 0.0);
+    let edges = edges(&triangles);
+    let key = DVec3::new(-0.3, 0.9, 0.1).normalize();
+    let [a, b] = Casters::new(points, &triangles, &edges).shades(&plane, key, DVec2::ZERO, 4.0, 1.0);
+    assert!(a.length.is_finite() && b.length.is_finite() && a.corner.iter().all(|at| at.is_finite()));
+}
