@@ -26,25 +26,28 @@ fn revived(world: &World, mut fresh: World) -> World {
     fresh
 }
 
-/// The same for elements of every kind, models and integrators, with a floor and a grip that becomes active on the way.
+/// Elements of every kind, models and integrators, with a floor; damped with a grip that holds for some of the steps, and undamped
+/// without.
 #[test]
 fn every_model_goes_on_from_what_was_written_with_the_same_bits() {
-    for body in bodies() {
-        let grip = Grip { nodes: vec![0], from: 0.003, until: 0.008, motion: Motion::at(Offset::default()) };
+    // The second half is the first with unequal masses.
+    let bodies = bodies();
+    for body in &bodies[bodies.len() / 2..] {
+        let grip = Grip { nodes: vec![0], from: 0.002, until: 0.006, motion: Motion::at(Offset::default()) };
         let ways = ALL.into_iter().flat_map(|way| [(way, Kernel::Fast), (way, Kernel::Reference)]);
         // The last four have no vectorised steps.
         let ways = ways.filter(|(way, kernel)| *kernel == Kernel::Reference || ALL[..4].contains(way));
         for (integrator, kernel) in ways {
-            for (grips, damping) in [(vec![grip.clone()], 7.0), (vec![], 7.0), (vec![], 0.0)] {
+            for (grips, damping) in [(vec![grip.clone()], 7.0), (vec![], 0.0)] {
                 let around = Surroundings { gravity: DVec3::Y * -9.8, obstacles: vec![floor(0.5, 0.3)], grips };
-                for case in cases(&body, damping) {
+                for case in cases(body, damping) {
                     let start = State::new(body.rest.clone(), vec![DVec3::Y * -3.0; body.len()]);
                     let stepping = Stepping { kernel, ..Stepping::new(integrator, 1e-3) };
-                    let begin = || World::new(&body, start.clone(), case.model.as_ref(), around.clone(), stepping);
+                    let begin = || World::new(body, start.clone(), case.model.as_ref(), around.clone(), stepping);
                     let mut whole = begin();
-                    whole.advance(20);
+                    whole.advance(10);
                     let mut cut = begin();
-                    for steps in [1, 3, 9, 1, 6] {
+                    for steps in [1, 3, 1, 5] {
                         cut.advance(steps);
                         cut = revived(&cut, begin());
                     }

@@ -30,7 +30,7 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
     let around = Surroundings {
         gravity: DVec3::new(0.0, -9.8, 0.0),
         obstacles: vec![floor(0.5, 0.3), swinging],
-        grips: vec![Grip { nodes: vec![2000, 2100], from: 0.01, until: 0.03, motion: Motion::Still }],
+        grips: vec![Grip { nodes: vec![2000, 2100], from: 0.005, until: 0.01, motion: Motion::Still }],
     };
     let shape = shape_based(1e4, 20.0);
     let length = ShapeBased { rotation: RotationReading::VectorLength, ..shape.clone() };
@@ -67,7 +67,7 @@ fn states_have_the_same_bits_for_1_2_and_8_threads() {
                 world.set_crew(Crew::new(threads));
                 // These evaluate forces many times a step.
                 let is_slow = matches!(integrator, Integrator::DormandPrince | Integrator::BackwardEuler);
-                world.advance(if is_slow { 12 } else { 60 });
+                world.advance(if is_slow { 6 } else { 15 });
                 world.state().clone()
             })
         });
