@@ -9,8 +9,11 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
-/// How often a helper polls for work before it sleeps: some tens of microseconds, the time that waking a thread takes.
-const LOOKS: u32 = 20_000;
+/// The number of times that a waiting thread polls before it yields its core after each poll: a few microseconds. Where there
+/// are more threads than cores, another thread needs the core to finish what this one waits for.
+const BUSY: u32 = 100;
+/// The number of times that a helper polls for work before it sleeps: some hundred microseconds on an idle core.
+const LOOKS: u32 = 1000;
 
 /// The work of one thread of a crew, called with the number of the thread.
 type Work<'a> = dyn Fn(usize) + Sync + 'a;
@@ -128,8 +131,8 @@ impl Shared {
         loop {
             let mut looks = 0;
             while looks < LOOKS && self.round.load(Ordering::Acquire) == round {
+                pause(looks);
                 looks += 1;
-                spin_loop();
             }
             let mut work = self.work.lock().unwrap_or_else(PoisonError::into_inner);
             while self.round.load(Ordering::Acquire) == round {
@@ -151,18 +154,18 @@ impl Shared {
     }
 }
 
-/// Spins until a condition holds that another thread is about to meet.
+/// Waits until another thread has met a condition.
 pub(super) fn wait_until(is_so: impl Fn() -> bool) {
-    let mut looks = 0u32;
+    let mut looks = 0;
     while !is_so() {
-        looks += 1;
-        // The other thread may be waiting for this processor.
-        if looks.is_multiple_of(1000) || cfg!(miri) {
-            std::thread::yield_now();
-        } else {
-            spin_loop();
-        }
+        pause(looks);
+        looks = (looks + 1).min(BUSY);
     }
+}
+
+/// Waits for a moment, after this many polls.
+fn pause(looks: u32) {
+    if looks < BUSY && !cfg!(miri) { spin_loop() } else { std::thread::yield_now() }
 }
 
 #[cfg(test)]
@@ -180,6 +183,18 @@ mod tests {
                 });
                 assert!(counts.iter().all(|count| count.load(Ordering::Relaxed) == round));
             }
+        }
+    }
+
+    #[test]
+    fn threads_wait_for_each_other_where_there_are_more_than_cores() {
+        let crew = Crew::new(4 * std::thread::available_parallelism().map_or(1, usize::from));
+        let count = AtomicUsize::new(0);
+        for round in 1..20 {
+            crew.run(&|_| {
+                count.fetch_add(1, Ordering::Relaxed);
+                wait_until(|| count.load(Ordering::Relaxed) == round * crew.threads());
+            });
         }
     }
 
