@@ -7,8 +7,7 @@ use super::failure::note;
 #[cfg(target_os = "linux")]
 const VECTOR_WIDTH: [&str; 2] = ["LP_NATIVE_VECTOR_WIDTH", "256"];
 
-/// The widths that work. With less, the default on processors without wider vectors, Mesa 22.3 writes beyond its
-/// memory.
+/// The widths that work. With less, the default on processors without wide vectors, Mesa 22.3 writes beyond its memory.
 #[cfg(target_os = "linux")]
 const WIDTHS: [&str; 2] = [VECTOR_WIDTH[1], "512"];
 

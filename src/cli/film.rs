@@ -48,8 +48,7 @@ pub(super) fn replaceable(path: &Path) -> Result<(), Failure> {
 
 /// Whether this program made a file with this beginning: its format has the comment in the place where our mark stands.
 fn is_ours(beginning: &[u8]) -> bool {
-    /// For each kind: the position and the value of the bytes that its files begin with, and the bytes before a
-    /// comment.
+    /// For each kind: the position and the value of the first fixed bytes of its files, and the bytes before a comment.
     const KINDS: [(usize, &[u8], &[u8]); 6] = [
         (0, b"GIF89a", b"\x21\xfe"),
         (0, b"\x89PNG\r\n\x1a\n", b"iTXtComment\0"),

@@ -138,8 +138,7 @@ struct Recording<'a> {
 }
 
 impl<'a> Recording<'a> {
-    /// Makes all frames, or the frames after a checkpoint. After an error, the results made until then are finished and
-    /// kept.
+    /// Makes all frames, or those after a checkpoint. After an error, the results until then are finished and kept.
     fn run(
         mut self,
         pool: &ThreadPool,

@@ -54,8 +54,7 @@ impl Results<'_> {
         }
     }
 
-    /// Writes a checkpoint unless the simulation is finished. With `ahead`, everything is simulated before the first
-    /// frame.
+    /// Writes a checkpoint unless the simulation is finished. With `ahead`, it is finished before the first frame.
     ///
     /// # Errors
     /// If frames cannot be drawn or written. A checkpoint that cannot be written is only a warning: a disk without room

@@ -212,8 +212,7 @@ fn frames_with_digests(last: u64, runs: usize, others: &BTreeSet<u64>) -> BTreeS
     (0..=last).step_by(stride).chain(others.iter().copied()).chain(frames_with_positions(last)).collect()
 }
 
-/// The frames of a scene whose positions a record has, evenly spaced from the first to the last and independent of the
-/// drawn frames.
+/// The frames of a scene whose positions a record has: evenly spaced, independent of the drawn frames.
 fn frames_with_positions(last: u64) -> BTreeSet<u64> {
     (0..=SPACES).map(|at| (u128::from(last) * u128::from(at) / u128::from(SPACES)) as u64).collect()
 }

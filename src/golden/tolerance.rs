@@ -53,8 +53,7 @@ impl Distance {
     }
 }
 
-/// Calls `each` for every pixel that is not equal, with its index and its distance ([`outside`]); `None` if the sizes
-/// differ.
+/// Calls `each` for every unequal pixel, with its index and its distance ([`outside`]); `None` if the sizes differ.
 pub(super) fn differences(expected: &Pixels, actual: &Pixels, mut each: impl FnMut(usize, u8)) -> Option<()> {
     if expected.size != actual.size {
         return None;

@@ -13,8 +13,7 @@ fn path(role: &str) -> [Segment<'_>; 3] {
     [Segment::Key("view"), Segment::Key("colours"), Segment::Key(role)]
 }
 
-/// Checks the chosen colours of runs: their contrast with the background, and their difference from turned-over
-/// elements.
+/// Checks the contrast of runs' chosen colours with the background, and their difference from turned-over elements.
 pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &mut Collector<'_>) {
     let like_alarm = |colour| TooLike::find([(colour, ())], palette.alarm);
     for (at, &colour) in chosen.iter().enumerate() {
@@ -70,8 +69,7 @@ struct TooLike<T> {
 }
 
 impl<T: Copy> TooLike<T> {
-    /// The colour that is most similar to the colour of turned-over elements for any colour vision; `None` if all are
-    /// different enough.
+    /// The colour most similar to that of turned-over elements for any colour vision; `None` if all differ enough.
     fn find(colours: impl IntoIterator<Item = (Colour, T)>, alarm: Colour) -> Option<Self> {
         let seen = colours.into_iter().flat_map(|(colour, place)| Vision::ALL.map(|vision| (colour, place, vision)));
         let measured = seen.map(|(colour, place, vision)| {

@@ -24,8 +24,7 @@ pub(crate) struct LineStyle {
 }
 
 impl Palette {
-    /// The colour of signs on sound elements in the plane: that of their edges, a third of the way to the elements'
-    /// own.
+    /// The colour of signs on sound elements in the plane: the edges' colour, a third of the way to the elements'.
     pub(crate) fn sign(&self) -> Colour {
         std::array::from_fn(|at| ((2 * u16::from(self.edge[at]) + u16::from(self.sound_flat[at])) / 3) as u8)
     }

@@ -108,8 +108,7 @@ impl SizeFile {
 }
 
 impl TextScaleFile {
-    /// The scale of type, in a picture with a number of pixels per pixel of the reference picture. `path` leads to the
-    /// key.
+    /// The scale of type, in a picture with a number of pixels per reference pixel. `path` leads to the key.
     pub(crate) fn resolve(
         self,
         print: Option<&Print>,

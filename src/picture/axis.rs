@@ -149,7 +149,7 @@ fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
         let (worth, count) = (all[at].worth, all[at].ticks.len());
         match kind {
             Kind::Colour => (usize::from(worth == count + 2), count, 0),
-            // Among equals, three ticks are preferred to two, and then ticks at the ends: 0, 5, 10 instead of 0, 3, 6,
+            // Among equals, three ticks are better than two, and then ticks at the ends: 0, 5, 10 instead of 0, 3, 6,
             // 9.
             _ => (worth, count.min(3), worth - count),
         }

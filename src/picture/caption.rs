@@ -308,8 +308,8 @@ impl Writer<'_> {
         self.right(explained, Weight::Regular, caption, colour, room.right, room.top + lines.caption);
     }
 
-    /// A scale bar of `pixels` with its length in words, centred between two places (px), if there is room. Returns its
-    /// right end (px).
+    /// A scale bar of `pixels` with its length, centred between two places (px), if it fits. Returns its right end
+    /// (px).
     pub(super) fn scale_bar(&mut self, panel: Rectangle, between: [f64; 2], text: &str, pixels: f64) -> Option<f64> {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let (unit, caption) = (self.scale.unit, self.scale.caption());

@@ -106,8 +106,7 @@ impl Chart {
             writer.marks.push(filled(line, hairline));
         }
         let mut free = f64::INFINITY;
-        // Numbers are written from the last one, which has the unit, backwards. A number that would overlap the next
-        // one is left out.
+        // Numbers are written backwards from the last one, which has the unit. Numbers that would overlap are left out.
         for (at, (&tick, text)) in times.ticks.iter().zip(&times.texts).enumerate().rev() {
             let x = self.x(times, tick);
             let top = (self.bottom + thickness / 2.0).round();

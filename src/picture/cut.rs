@@ -41,8 +41,8 @@ impl Cuts {
         Self { faces: Vec::new(), nodes: Vec::new() }
     }
 
-    /// Pieces of an edge. They depend on its nodes only, so all its faces have the same number, and at least the one
-    /// that they need.
+    /// Pieces of an edge. They depend only on its nodes, so all its faces have the same number, at least the needed
+    /// one.
     pub(super) fn edge(&self, ends: [u32; 2]) -> u8 {
         let [from, to] = ends.map(|node| self.nodes.get(node as usize).copied().unwrap_or(1));
         from.min(to)

@@ -4,8 +4,7 @@ use super::layout::Rectangle;
 use super::plane::sides;
 use glam::DVec2;
 
-/// The distance over which lines fade at the sides of their room (px in the reference picture), and its number of
-/// steps.
+/// The distance over which lines fade at the sides of their room (px in the reference picture), and its steps.
 pub(super) const FADING: f64 = 28.0;
 const STEPS: f64 = 8.0;
 /// The least length of a piece of a line (px).

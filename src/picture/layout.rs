@@ -114,8 +114,8 @@ impl Layout {
             0 => 0,
             lines => rows(around.of_type(TITLE + (lines - 1) as f64 * TITLE_LINE)),
         };
-        // Panels keep at least half of the picture. The rest goes first to the title, then to the clock, the keys and
-        // the caption.
+        // Panels keep at least half of the picture. The rest goes to the title, then the clock, the keys and the
+        // caption.
         let most = size[1] / 2;
         let clock_row = Some(rows(around.of_type(CLOCK_ROW))).filter(|&row| clock && row <= most);
         let left = most - clock_row.unwrap_or(0);

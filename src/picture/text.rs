@@ -198,8 +198,7 @@ impl Fonts {
         known.copied().unwrap_or_else(|| self.look_up(weight, character))
     }
 
-    /// A character looked up in the fonts. All digits move the pen equally far, so that numbers do not jump from frame
-    /// to frame.
+    /// A character from the fonts. All digits move the pen equally far, so that numbers do not jump between frames.
     fn look_up(&self, weight: Weight, character: char) -> Letter {
         let own = |(face, glyph): (u8, GlyphId)| {
             let face = self.face(face);

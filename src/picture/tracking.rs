@@ -123,8 +123,7 @@ impl Tracking {
         let [body, with_near] = self.all;
         let all = [with_near, body].map(|[low, high]| (fit([low, high]).min(following), low.midpoint(high)));
         let standing = all.into_iter().find(|(pixels, _)| *pixels >= least).map(|(pixels, middle)| {
-            // The room above and below bodies is for objects near them. The lowest corner of bodies is their nearest
-            // one.
+            // The room above and below bodies is for objects near them. The lowest corner of bodies is the nearest one.
             let half = 0.5 * (body[1] - body[0]);
             let spare = (0.5 * room[3] * (1.0 / pixels - 2.0 * depth(half)) - half.y).max(0.0);
             (pixels, middle + DVec3::Y * (all[0].1.y - middle.y).clamp(-spare, spare))

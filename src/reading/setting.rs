@@ -68,8 +68,7 @@ impl Setting {
         &self.text
     }
 
-    /// Sets the value in a file. `typed` is the text of this setting, which begins at the byte `start` of a longer
-    /// text.
+    /// Sets the value in a file. `typed`, the text of this setting, begins at the byte `start` of a longer text.
     ///
     /// # Errors
     /// If the key leads nowhere, or the value is not TOML.

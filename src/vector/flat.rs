@@ -129,8 +129,7 @@ impl PlanePanel<'_> {
         let bands = ramp.len() - 1;
         let triangles = self.triangles(mesh, |at| mesh.shades[at] * bands as f32);
         if triangles.iter().all(|[a, b, c]| a.1 == b.1 && b.1 == c.1) {
-            // Each element has one value. Where a body is folded over itself, the renderer shows the triangle that it
-            // draws first.
+            // Each element has one value. Where a body is folded over itself, the renderer shows its first triangle.
             for same in triangles.chunk_by(|one, other| one[0].1 == other[0].1).rev() {
                 let path = path_of(same.iter().map(|triangle| triangle.map(|(at, _)| at).to_vec()));
                 let value = same[0][0].1;

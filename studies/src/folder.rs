@@ -106,8 +106,7 @@ fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     Failure::files(format!("cannot write {}: {error}", path.display()))
 }
 
-/// Notes of a study: a file with a line for each finding so far. After an interruption, the same command continues from
-/// there.
+/// Notes of a study: a file with a line for each finding. After an interruption, the same command continues from it.
 pub(crate) struct Notes {
     path: PathBuf,
     /// The first lines, which name the study.

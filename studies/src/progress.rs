@@ -48,8 +48,7 @@ pub(crate) fn shown<T>(name: &str, work: u64, is_quiet: bool, measure: impl FnOn
     told(name, work, EVERY, &mut io::stderr(), |done| measure(&|more| done(more) && goes_on()))
 }
 
-/// Calls `measure` with a function that takes the amount of work just done and returns true. Writes a line at the start
-/// and then after each interval.
+/// Calls `measure` with a function that takes the work just done and returns true. Writes a line after each interval.
 fn told<T>(
     name: &str,
     work: u64,

@@ -93,8 +93,7 @@ pub(crate) struct Ratios {
     pub(crate) comparisons: Vec<Comparison>,
 }
 
-/// Measures the ratios with the rayon thread pool of the caller; `None` if `watch`, which is called after each turn,
-/// stops the measurement.
+/// Measures with the rayon thread pool of the caller; `None` if `watch`, which is called after each turn, stops it.
 pub(crate) fn measure(protocol: &Ratio, watch: &Watch<'_>) -> Option<Ratios> {
     let mut comparisons = Vec::new();
     for &side in &protocol.sides {

@@ -28,8 +28,8 @@ pub(crate) trait Study: Send + Sync {
     /// The amount of work: the sum of the amounts that [`Self::measure`] reports.
     fn work(&self) -> u64;
 
-    /// Measures, with the thread pool of the caller (rayon); `None` if `watch` stops it. Notes are kept until the study
-    /// is finished.
+    /// Measures, with the caller's thread pool (rayon); `None` if `watch` stops it. Notes are kept until the study is
+    /// done.
     fn measure(&self, watch: &Watch<'_>, notes: &Notes) -> Option<Findings>;
 }
 

@@ -28,8 +28,8 @@ impl Composer<'_> {
         let most = panels.clamp(1, MOST_COLUMNS);
         let chosen = || {
             let mut best = (most, pixels(most).unwrap_or(0.0));
-            // For each number of rows the columns are as even as possible. One row is preferred unless bodies become
-            // much smaller.
+            // For each number of rows the columns are as even as possible. One row is preferred if bodies are nearly as
+            // large.
             for columns in (2..=panels).map(|rows| panels.div_ceil(rows)).filter(|&columns| columns < most) {
                 let pixels = pixels(columns).unwrap_or(0.0);
                 best = if pixels > LARGER * best.1 { (columns, pixels) } else { best };

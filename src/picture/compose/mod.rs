@@ -274,8 +274,8 @@ impl<'a> Composer<'a> {
             if labels.count {
                 let before = (writer.marks.len(), writer.words.len());
                 from = writer.count(viewport, (&self.tally, tally), run.shown());
-                // The shown state of a run that diverges does not have the present number of turned-over elements. Its
-                // room is kept.
+                // The shown state of a run that diverges lacks the present number of turned-over elements. Its room is
+                // kept.
                 if run.shown().status != Status::Ok {
                     writer.marks.truncate(before.0);
                     writer.words.truncate(before.1);

@@ -233,8 +233,7 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
         return Vec::new();
     }
     let columns = composer.columns(&runs);
-    // The arrangement of panels also depends on the course of the scene: it is between that of the start and side by
-    // side.
+    // The course of the scene may change the arrangement, between that of the start and side by side.
     let last = if scene.view.columns.is_none() { runs.len().max(columns) } else { columns };
     let mut told = words.left_out(&runs, columns);
     for columns in columns + 1..=last {

@@ -77,8 +77,7 @@ impl Lists {
         }
         let kind = kind(self.dimension, solids, element.len());
         let whole = match kind {
-            // Elements of two nodes have a length if their box has one. Other elements that are not solids may be flat
-            // or rods.
+            // Elements of two nodes have a length if their box has one. Others that are not solids may be flat or rods.
             ElementKind::Segment => return,
             ElementKind::Triangle | ElementKind::Other => {
                 if element.len() > MOST_IN_HULL {

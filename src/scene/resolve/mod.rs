@@ -96,8 +96,7 @@ impl SceneParts {
         }
     }
 
-    /// The valid parts of a scene made in code. Its long lists were checked separately; `flawed` tells whether they had
-    /// a mistake.
+    /// The valid parts of a scene made in code. `flawed` tells whether its separately checked long lists had a mistake.
     pub(super) fn of(file: SceneFile, checked: &ValidFile, flawed: bool) -> Self {
         fn entries<T>(entries: Vec<T>, key: &str, checked: &ValidFile) -> Vec<Option<T>> {
             let is_sound = |at: usize| !checked.valid.get(key).is_some_and(|valid| valid[at].is_null());

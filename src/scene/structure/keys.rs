@@ -152,8 +152,7 @@ fn misspelt(schema: &Json, table: &DeTable<'_>, name: &str) -> bool {
     unknown.take(1000).any(|key| nearest(key, &known) == Some(name))
 }
 
-/// The tables in which a key is known, as written: `view.camera`. Deeper tables are left out if one near the top has
-/// it.
+/// The tables in which a key is known, such as `view.camera`. Deep ones are left out if one near the top has it.
 fn elsewhere(schema: &Json, name: &str) -> Vec<String> {
     let properties = || tables(schema).filter_map(|table| table["properties"].as_object()).flatten();
     let knows = |inner: &Json| tables(inner).any(|table| table["properties"].get(name).is_some());

@@ -48,8 +48,7 @@ const ABOVE: f64 = 72.0;
 pub(super) const ROOM: Room = Room { around: [LEFT, ABOVE, RIGHT, 58.0], shape: 0.5, legend: 40.0 };
 /// The size of a square of the legend (px).
 const SQUARE: f64 = 16.0;
-/// The gap between cells, the widths of hatches and of lines at limits, and the gap between a map and the words beside
-/// it (px).
+/// The gap between cells, the widths of hatches and of lines at limits, and the gap between a map and its words (px).
 const GAP: f64 = 1.0;
 const HATCH: f64 = 1.6;
 const LIMIT: f64 = 2.4;

@@ -198,8 +198,7 @@ impl Frame {
         write(diagram, across, SMALL, 1.0, [right, bottom + 43.0]);
     }
 
-    /// The places of the names of lines. Each name stands beside one of its points, where it covers least. `None` for a
-    /// line without points or name.
+    /// The place of each line's name beside one of its points, where it covers least; `None` without points or name.
     fn names(&self, diagram: &Diagram, lines: &[Drawn]) -> Vec<Option<Area>> {
         let places: Vec<Vec<(Area, f64)>> = lines.iter().map(|line| self.places(diagram, line)).collect();
         let mut chosen: Vec<Option<Area>> = vec![None; lines.len()];

@@ -37,8 +37,7 @@ pub(super) fn refined(at_rest: DMat3, near: DQuat) -> DQuat {
     rotation
 }
 
-/// `|q|² Σ r × R` for a quaternion of unit length up to round-off, correct to the last digits even if all of it
-/// cancels.
+/// `|q|² Σ r × R` for a nearly unit quaternion, correct to the last digits even if all of it cancels.
 fn torque(at_rest: DMat3, q: DQuat) -> DVec3 {
     let DQuat { x, y, z, w } = q;
     let two = |a: f64, b: f64, c: f64, d: f64| Double::product(2.0 * a, b).plus(Double::product(2.0 * c, d));

@@ -19,8 +19,7 @@ pub(crate) struct Sample {
 pub(crate) enum Kind {
     /// Cubes with a largest strain, turned by an increment since their last rotation.
     Warm {
-        /// One stretch is 1 plus the strain, one 1 minus it, the third between them. Beyond 1, elements are turned
-        /// inside out.
+        /// The stretches are 1 plus the strain, 1 minus it, and one between. Beyond 1, elements are turned inside out.
         strain: f64,
         /// The angle from the last rotation to the optimum (rad), about any axis.
         increment: f64,

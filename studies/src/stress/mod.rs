@@ -124,8 +124,8 @@ pub(crate) struct Results {
     pub(crate) rows: Vec<Row>,
 }
 
-/// The greatest energy over that at the start: semi-implicit Euler oscillates by some per cent at half of its limit, and
-/// rebounds add to it.
+/// The greatest energy over the initial one: semi-implicit Euler oscillates at half of its limit, and rebounds add to
+/// it.
 const MOST_ENERGY: f64 = 1.5;
 /// The greatest relative change of momentum: round-off of a million steps.
 const MOST_CHANGE: f64 = 1e-9;

@@ -1,5 +1,4 @@
-//! Table 1 as plots over k/m: for each row our median between the least and the greatest of all starts, and the paper's
-//! number.
+//! Table 1 as plots over k/m: for each row our median, least and greatest value of all starts, and the paper's number.
 
 use super::printed::{Printed, ROWS};
 use super::{Results, Summary};

@@ -1,7 +1,6 @@
 //! Table 1 of the paper (section 4), as printed.
 
-/// Mean, standard deviation and maximum of α (rad/s²), as printed; `None` if the paper reports that it was too small to
-/// be measured.
+/// Mean, standard deviation and maximum of α (rad/s²), as printed; `None` if it was too small for the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Printed {
     pub(crate) mean: Option<f64>,

@@ -50,8 +50,8 @@ impl Method {
         Self::DORMAND_PRINCE,
     ];
 
-    /// The names of the integrator, and of a solver of rotations that is not the default; as in scenes if they have
-    /// them.
+    /// The names of the integrator and of a solver of rotations that is not the default; as in scenes, if they are
+    /// there.
     pub(crate) fn names(self) -> [String; 2] {
         let (integrator, rotation) = match self {
             Self::Scene(integrator) => (typed(&integrator), String::new()),

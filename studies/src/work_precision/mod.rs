@@ -111,8 +111,7 @@ pub(crate) struct Measured {
     pub(crate) step: f64,
     /// Evaluations of the forces of the whole body, from the start on.
     pub(crate) evaluations: u64,
-    /// The greatest distance of a node from the reference at any moment, as a share of the body's size; `None` if the
-    /// run diverges or is stopped.
+    /// The greatest distance of a node from the reference at any moment, in sizes of the body; `None` without an end.
     pub(crate) error: Option<f64>,
     pub(crate) end: End,
     /// Time of the run (s); NaN without an error.

@@ -21,8 +21,7 @@ pub(super) fn reference(
     accepted: &[(Method, Arc<dyn ElasticModel>)],
     most: f64,
 ) -> Result<(Course, Reference), String> {
-    // With obstacles only the adaptive method is of high order, and among the others the one with the smallest steps is
-    // best.
+    // With obstacles only the adaptive method is of high order. Of the others, the one with the smallest steps is best.
     let best: &[Method] = if subject.scene.obstacles.is_empty() {
         &[Method::BlanesMoan, Method::KahanLi, Method::DORMAND_PRINCE, Method::Scene(Integrator::RungeKutta)]
     } else {

@@ -150,8 +150,7 @@ impl<'a> Drawn<'a> {
         let palette = &self.figure.look.palette();
         let unit = scale.unit;
         let position = &cell.snapshot().position;
-        // In the plane all nodes are visible. In space the nodes of elements without faces are, too, but nodes inside
-        // are not.
+        // In the plane all nodes are visible; in space also nodes of elements without faces, but not nodes inside.
         let mut seen = cell.composer.skin.visible(position, &self.draft.lens);
         let body = &cell.scene.body;
         for node in (0..position.len()).filter(|&node| !cell.composer.skin.holds(node as u32)) {
