@@ -55,7 +55,7 @@ pub(super) struct Animate {
     #[arg(long, value_name = "RATE", value_parser = number_in(0.1, 1000.0), allow_hyphen_values = true)]
     fps: Option<f64>,
 
-    /// How often it plays; 0 for endless (GIF and APNG) [default: 0]
+    /// Number of plays; 0 for endless (GIF and APNG) [default: 0]
     #[arg(long = "loop", value_name = "N", value_parser = plays, allow_hyphen_values = true)]
     plays: Option<u16>,
 

@@ -33,10 +33,10 @@ Examples:
 A golden is a folder with a few small pictures of a scene and golden.toml, a record of the scene's keys and of the states of \
 its frames. The result then names the keys that changed, the first state that moved, the node, and its distance.
 
-Frames record a digest of the state that they show, so a difference is either one of the state (`state moved`) or one of \
-the drawing (`drawn differently`). A pixel differs as far as it lies outside the range of the pixels around its place in the \
+Frames record a digest of the state that they show, so a difference is either of the state (`state moved`) or of the \
+drawing (`drawn differently`). The difference of a pixel is its distance from the range of the pixels around its place in the \
 other picture. Pictures pass if at most 1 % of their pixels differ by more than 2 of 255, and at most 0.03 %, or 8, by more \
-than 16: so much other graphics drivers may differ.";
+than 16, as other graphics drivers may.";
 
 /// Compare pictures, folders of frames, or a scene with its golden
 #[derive(Args, Debug)]

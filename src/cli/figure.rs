@@ -61,8 +61,8 @@ pub(super) struct FigureCommand {
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
 
-    /// Give a key of the figures' scenes another value for this command, such as run[0].model.stiffness=1e4: the key
-    /// as messages write it, the value as in a scene file, where a word needs no quotation marks. Can be repeated
+    /// Change a key of the figures' scenes for this command, such as run[0].model.stiffness=1e4. The key is written as in
+    /// messages, the value as in a scene file; words need no quotation marks. Can be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Setting>,
 

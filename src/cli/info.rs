@@ -9,13 +9,13 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 const NOTE: &str = "\
-If there is no graphics adapter, it says what to install; `simulate` needs none.";
+Without a graphics adapter, it names the packages to install; `simulate` needs none.";
 
 /// Print the version, and the vector instructions and graphics adapters that are used on this machine
 #[derive(Args, Debug)]
 #[command(after_help = NOTE)]
 pub(super) struct Info {
-    /// Print it as one JSON document
+    /// Print one JSON document
     #[arg(long)]
     json: bool,
 }

@@ -49,7 +49,7 @@ use std::process::ExitCode;
 
 const STATUSES: &str = "\
 Exit status:
-    0  done (a run that diverges is a result and recorded as one)
+    0  done, even if a run diverges, which is recorded
     1  a check found a difference
     2  wrong usage, or mistakes in a scene file
     3  no usable graphics adapter

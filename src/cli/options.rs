@@ -23,8 +23,8 @@ pub(super) struct SceneOptions {
     #[arg(value_name = "SCENE", required = true, value_hint = ValueHint::FilePath)]
     pub(super) scenes: Vec<PathBuf>,
 
-    /// Give a key of the scene another value for this command, such as time.duration=2 or run[0].model.stiffness=1e4: the key as
-    /// messages write it, the value as in a scene file, where a word needs no quotation marks. Can be repeated
+    /// Change a key of the scene for this command, such as time.duration=2 or run[0].model.stiffness=1e4. The key is
+    /// written as in messages, the value as in a scene file; words need no quotation marks. Can be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     pub(super) set: Vec<Setting>,
 
@@ -37,8 +37,8 @@ pub(super) struct SceneOptions {
 /// The frames and runs that are made, and their folder.
 #[derive(Args, Clone, Debug)]
 pub(super) struct RunOptions {
-    /// Output folder [default: output/NAME, with NAME from the scene file]; with several scenes, the folder that
-    /// holds one folder NAME for each. With `render`, a name in .png, .svg or .pdf is a file for a single frame
+    /// Output folder [default: output/NAME, with NAME from the scene file]; with several scenes, the
+    /// parent of a folder NAME for each. With `render`, a name ending in .png, .svg or .pdf is the file of a single frame
     #[arg(short, long, value_name = "DIR", value_hint = ValueHint::AnyPath)]
     pub(super) out: Option<PathBuf>,
 
@@ -61,8 +61,8 @@ pub(super) struct RunOptions {
     pub(super) states: bool,
 
     /// Continue after an interruption, from the last checkpoint or, without one, from the start. The results are those
-    /// of an uninterrupted command. Frames that are there already, with the same scene, states, version, adapter and
-    /// size, are not drawn again
+    /// of an uninterrupted command. Existing
+    /// frames with the same scene, states, version, adapter and size are not drawn again
     #[arg(long)]
     pub(super) resume: bool,
 
@@ -95,7 +95,7 @@ impl ThreadOptions {
 /// The output of a command to the terminal.
 #[derive(Args, Clone, Copy, Debug)]
 pub(super) struct PrintOptions {
-    /// Print errors only, neither progress, results nor warnings
+    /// Print only errors: no progress, results or warnings
     #[arg(short, long)]
     pub(super) quiet: bool,
 

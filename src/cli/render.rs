@@ -80,11 +80,11 @@ pub(super) struct Render {
     #[arg(long, requires = "animate", conflicts_with = "resume")]
     no_frames: bool,
 
-    /// Draw states.npz, which `simulate --states` has written for the same scene, and simulate nothing
+    /// Draw states.npz, written by `simulate --states` for the same scene, without simulating
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "states")]
     from_states: Option<PathBuf>,
 
-    /// Draw only a share of the frames: 2/4 the second one and every fourth one after it. Processes with other shares may draw into the
+    /// Draw only a share of the frames: 2/4 draws the second one and every fourth one after it. Processes with other shares may draw into the
     /// same folder at the same time; `simulate` writes the tables
     #[arg(long, value_name = "I/N", conflicts_with_all = ["animate", "overwrite", "states"])]
     shard: Option<Shard>,

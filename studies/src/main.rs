@@ -49,8 +49,8 @@ Examples:
   localshape-study table1 --orientations 200   Table 1 of the paper, from more starts
   localshape-study ratio --threads 4 -o four   the ratio of computation times on four threads
 
-The folder then has the results as Markdown, which is also printed, as CSV with all digits, and most as plots in SVG and PNG. Times \
-are those of this machine, which should be idle otherwise.
+The folder then has the results as Markdown, which is also printed, as CSV with all digits, and mostly as plots in SVG and PNG. \
+Times are those of this machine, which should be otherwise idle.
 
 Exit status:
     0  done

@@ -63,11 +63,11 @@ pub(crate) struct Options {
     #[arg(short, long, global = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) out: Option<PathBuf>,
 
-    /// Write into a folder that has other files, or a study that another command has made
+    /// Write into a folder with other files, or with a study of another command
     #[arg(long, global = true)]
     pub(crate) overwrite: bool,
 
-    /// Print errors only, neither progress nor results
+    /// Print only errors: no progress or results
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
 
