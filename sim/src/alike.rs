@@ -16,7 +16,7 @@ pub struct Alike {
 }
 
 impl Alike {
-    /// A table for about so many lists at a time.
+    /// A table for about this number of lists at a time.
     pub fn new(lists: usize) -> Self {
         Self { last: vec![NONE; lists.max(1).next_power_of_two()], before: Vec::new() }
     }

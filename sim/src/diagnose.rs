@@ -27,7 +27,7 @@ pub(crate) struct Diagnose {
     volumes_at_rest: Vec<f64>,
     /// Their sum.
     volume_at_rest: f64,
-    /// The elements whose volume is not computed from their faces.
+    /// The elements without a volume from faces.
     affine: Vec<Affine>,
     /// Mean of the rest positions (m).
     rest_centre: DVec3,
@@ -59,7 +59,7 @@ impl Diagnose {
         Self { body: Arc::clone(body), volumes_at_rest, volume_at_rest, affine, rest_centre, centred }
     }
 
-    /// What the diagnostics of a state are computed from, each when it is first used. `report` gives energy and residuals.
+    /// The quantities that the diagnostics of a state need, each computed at its first use. `report` gives energy and residuals.
     pub(super) fn facts<'a>(
         &'a self,
         state: Nodes<'a>,
@@ -108,7 +108,7 @@ impl Diagnose {
 const FLAT: f64 = 1e-12;
 
 impl Affine {
-    /// `None` for an element whose volume is computed from its faces, or which is flat.
+    /// `None` for a flat element, and for an element with a volume from its faces.
     fn new(body: &Body, element: usize) -> Option<Self> {
         if body.kinds[element] != ElementKind::Other {
             return None;
@@ -122,7 +122,7 @@ impl Affine {
         (!is_flat).then(|| Self { element, inverse: moments.inverse(), rest })
     }
 
-    /// The volume divided by that at rest.
+    /// The volume divided by the volume at rest.
     fn stretch(&self, body: &Body, position: &[DVec3]) -> f64 {
         let corners: Vec<_> = body.elements[self.element].iter().map(|&node| position[node as usize]).collect();
         let centre = mean(&corners);

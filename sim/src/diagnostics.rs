@@ -27,9 +27,9 @@ pub(super) struct Facts<'a> {
     pub(super) report: Lazy<'a, Report>,
     /// Signed volume of each element (m³, in the plane m²).
     pub(super) volumes: Lazy<'a, Vec<f64>>,
-    /// The same at rest.
+    /// Signed volume of each element at rest (m³, in the plane m²).
     pub(super) volumes_at_rest: &'a [f64],
-    /// Their sum.
+    /// The sum of the volumes at rest.
     pub(super) volume_at_rest: f64,
     pub(super) placement: Lazy<'a, Placement>,
     /// Rest positions relative to their mean (m).

@@ -1,4 +1,4 @@
-//! The interface of whatever advances a state: the reference code with its integrators, and the vectorised kernels.
+//! The interface of the two codes that advance a state: the reference code with its integrators, and the vectorised kernels.
 
 use super::body::Body;
 
@@ -9,7 +9,7 @@ use super::part::Part;
 use super::state::{Nodes, State};
 use super::system::{Surroundings, System};
 
-/// A way of advancing a state. It may keep the nodes in its own arrays between calls.
+/// Advances a state. It may keep the nodes in its own arrays between calls.
 pub(super) trait Dynamics: Send + Sync {
     /// Takes `count` steps from the present state, and counts them. It may use the threads of the crew.
     ///
@@ -36,7 +36,7 @@ pub(super) trait Dynamics: Send + Sync {
         part.forces.report(part.nodes_of(state.nodes()), memory, share.unwrap_or(&mut |_, _, _| {}))
     }
 
-    /// The number of steps taken, which may be ahead of that of the state until [`Self::settle`] is called.
+    /// The number of steps taken. The state may be behind until [`Self::settle`] is called.
     fn steps(&self, state: &State) -> u64 {
         state.steps
     }
@@ -79,7 +79,7 @@ impl SpeedLimit {
         let most = f64::from(elements_of_node.into_iter().max().unwrap_or(1).max(1));
         let Surroundings { gravity, obstacles, grips } = surroundings;
         let pushing = obstacles.iter().map(|obstacle| {
-            // A half-space is infinite: what counts is its rotation near the body.
+            // A half-space is infinite: only its rotation near the body counts.
             let reach = obstacle.shape.reach() + obstacle.shape.middle().distance(obstacle.pivot);
             let near = (low - obstacle.pivot).length().max((high - obstacle.pivot).length());
             (&obstacle.motion, if reach.is_finite() { reach } else { near + extent })

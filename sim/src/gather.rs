@@ -4,8 +4,7 @@ use super::lanes::{Lanes, MOST, each};
 use glam::DVec3;
 use std::ops::Range;
 
-/// Consecutive elements that are alike, one in each lane. Where there are fewer than lanes, the last one fills the
-/// others.
+/// Consecutive elements that are alike, one in each lane. The last element fills the lanes that are left.
 pub(super) struct Group<'a> {
     nodes: [&'a [u32]; MOST],
 }

@@ -19,8 +19,8 @@ pub struct Grip {
 }
 
 impl Grip {
-    /// The displacement since the nodes were gripped, at a time (s), about the mean of the nodes then.
-    pub fn way(&self, time: f64) -> Pose {
+    /// The displacement at a time (s), about the mean of the nodes when they were gripped.
+    pub fn pose(&self, time: f64) -> Pose {
         let (first, now) = (self.motion.pose(self.from), self.motion.pose(time));
         Pose { shift: now.shift - first.shift, rotation: now.rotation * first.rotation.conjugate() }
     }
@@ -80,7 +80,7 @@ impl Grip {
         let is_held = self.moves(end) && memory[0] == 1.0;
         let gripped = memory[1..].as_chunks::<3>().0.iter().map(|&at| DVec3::from_array(at));
         let middle = gripped.clone().sum::<DVec3>() / self.nodes.len().max(1) as f64;
-        let (way, before) = (self.way(end), self.moves(begin).then(|| self.way(begin)));
+        let (way, before) = (self.pose(end), self.moves(begin).then(|| self.pose(begin)));
         let nodes = self.nodes.iter().zip(gripped).take(if is_held { usize::MAX } else { 0 });
         nodes.map(move |(&node, start)| {
             let to = way.apply(middle, start);

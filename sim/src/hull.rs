@@ -14,7 +14,7 @@ use std::collections::HashSet;
 /// tolerances are tried if the hull does not close because distances are close to the first one.
 const TOLERANCES: [f64; 4] = [1e-6, 1e-5, 1e-8, 1e-10];
 
-/// The faces of the elements of kind [`ElementKind::Other`]: those of their convex hulls at rest.
+/// The faces of elements of kind [`ElementKind::Other`]: the faces of their convex hulls at rest.
 ///
 /// Empty, and without cost, for a body without such elements.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -93,7 +93,7 @@ pub(crate) fn faces(points: &[DVec3]) -> Vec<Vec<u32>> {
 /// Points in a box of size one, and the greatest distance from a plane at which a point counts as in it.
 struct Cloud<'p> {
     points: &'p [DVec3],
-    /// Indices of points, without those that coincide with an earlier one.
+    /// Indices of points, without repeated points.
     places: Vec<u32>,
     tolerance: f64,
 }

@@ -41,6 +41,7 @@ pub mod stability;
 mod state;
 mod system;
 mod topology;
+#[doc(hidden)]
 pub mod words;
 mod world;
 

@@ -9,8 +9,8 @@ use super::state::Nodes;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock};
 
-/// Forces that are prepared when they are first used: vectorised steps do without, and prepared ones of large bodies take
-/// several times the memory of a state.
+/// Forces that are prepared at their first use. Vectorised steps need none, and forces of large bodies take several times the memory
+/// of a state.
 pub(crate) type Forces = LazyLock<Box<dyn ForceModel>, Box<dyn FnOnce() -> Box<dyn ForceModel> + Send>>;
 
 /// One body in a simulation, and the ranges of its nodes and its memory in the [`State`](super::State).
@@ -23,7 +23,7 @@ pub(crate) struct Part {
     pub nodes: Range<usize>,
     /// The range of its model's memory in [`Memory::model`](super::state::Memory::model).
     pub memory: Range<usize>,
-    /// Whether the last number of that memory is the one of [`Diagnostics::global_rotations`].
+    /// Whether the last number of that memory is [`Diagnostics::global_rotations`].
     pub(super) counts_global: bool,
     pub(super) diagnose: Diagnose,
 }

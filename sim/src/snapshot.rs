@@ -1,4 +1,4 @@
-//! A [`Snapshot`] of a run: what drawing, diagnostics and files read of a simulation.
+//! A [`Snapshot`] of a run: the view of a simulation for drawing, diagnostics and files.
 
 use super::diagnostics::Diagnostics;
 use glam::{DMat3, DVec3};
@@ -47,7 +47,7 @@ pub struct Snapshot {
     pub placement: Placement,
     /// The values of the requested field, one for each node or each element; empty if no field was requested.
     pub field: Vec<f64>,
-    /// Energies, momenta and measures of shape: those that were requested; the others are zero.
+    /// The requested energies, momenta and measures of shape. The others are zero.
     pub diagnostics: Diagnostics,
     /// Whether the run has diverged.
     pub status: Status,
@@ -90,13 +90,12 @@ pub struct RunFrame {
     pub run: usize,
     /// Its state.
     pub snapshot: Snapshot,
-    /// What pictures show of a run that diverges, from the last state that fits on; `None` before that, and where nothing is
-    /// drawn.
+    /// The last state of a diverging run that fits a picture, from then on; `None` before, and without pictures.
     pub last_fit: Option<Box<LastFit>>,
 }
 
 impl RunFrame {
-    /// A run with a state that is shown as it is.
+    /// A run whose present state is shown.
     pub fn new(run: usize, snapshot: Snapshot) -> Self {
         Self { run, snapshot, last_fit: None }
     }
@@ -107,7 +106,7 @@ impl RunFrame {
     }
 }
 
-/// The last state of a run that diverges in which the body is not much wider than at rest or at the start.
+/// The last state of a diverging run with a body not much wider than at rest or at the start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LastFit {
     /// That state, with its own time and the status at the end.

@@ -1,4 +1,4 @@
-//! What is advanced together: bodies with their models, obstacles and kinematic constraints.
+//! A system that is advanced together: bodies with their models, obstacles and kinematic constraints.
 
 use super::contact::{ContactStage, Obstacle};
 use super::grip::Grip;
@@ -8,7 +8,7 @@ use super::part::Part;
 use super::state::{Memory, Nodes, State};
 use glam::DVec3;
 
-/// What acts on bodies from outside.
+/// Gravity, obstacles and kinematic constraints around bodies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surroundings {
     /// Acceleration of gravity (m/s²).
@@ -19,7 +19,7 @@ pub struct Surroundings {
     pub grips: Vec<Grip>,
 }
 
-/// All parts, and what acts on them.
+/// All parts and their surroundings.
 pub(super) struct System {
     pub(super) parts: Vec<Part>,
     /// Mass of each node (kg).
@@ -104,8 +104,8 @@ impl System {
         }
     }
 
-    /// Applies contact and grips at the end of a step from `before` to `after`. `acceleration` (m/s²) is the constant
-    /// one of each node in the step; `None` if nodes moved at constant velocity.
+    /// Applies contact and grips at the end of a step from `before` to `after`. `acceleration` (m/s²) is
+    /// constant in the step for each node; `None` if nodes moved at constant velocity.
     pub(super) fn constrain(
         &self,
         interval: Interval,

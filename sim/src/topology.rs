@@ -74,7 +74,7 @@ impl Elements<'_> {
     /// its kind.
     pub fn shared_faces(&self) -> Faces {
         let mut faces = Faces::default();
-        // Faces whose other side has not been found yet. An element that is a single face shares it with no other
+        // Faces without an element on their other side so far. An element that is a single face shares it with no other
         // element.
         let mut waiting = Alike::new(self.rest.len());
         for (owner, element) in (0u32..).zip(0..self.nodes.len()) {

@@ -111,7 +111,7 @@ impl World {
     }
 
     /// A world of several bodies, each with its model, which are advanced together. `initial` has the nodes of the
-    /// first body, then those of the second, and so on; grips number nodes in the same order.
+    /// first body, then the nodes of the second, and so on; grips number nodes in this order.
     ///
     /// # Panics
     /// If `initial` has not one position and one velocity per node.
@@ -196,8 +196,8 @@ impl World {
         self.field = field;
     }
 
-    /// Sets the diagnostics that snapshots contain from now on, at first all. The others are zero, and what only they
-    /// need is not computed.
+    /// Sets the diagnostics that snapshots contain from now on, at first all. The others are zero and cost no
+    /// time.
     pub fn want(&mut self, diagnostics: &[Diagnostic]) {
         self.wanted = diagnostics.to_vec();
     }
@@ -251,8 +251,8 @@ impl World {
         }
     }
 
-    /// The first node whose speed was too high in the step in which this world diverged, and the limit (m/s); `None` if it
-    /// has not.
+    /// The first node above the speed limit when this world diverged, and the limit (m/s); `None` for a world that has not
+    /// diverged.
     pub fn runaway(&mut self) -> Option<(usize, f64)> {
         let Status::Diverged(Divergence { step, .. }) = self.state.status else { return None };
         let Self { system, dynamics, crew, limit, state, .. } = self;
@@ -276,8 +276,7 @@ impl World {
         &self.state
     }
 
-    /// Whether a state has the numbers of nodes and of memory of these bodies, and diverged, if it did, where and when they can
-    /// have.
+    /// Whether a state fits these bodies: its numbers of nodes and of memory, and the part, element and step of a divergence.
     pub fn takes(&self, state: &State) -> bool {
         let lengths = |state: &State| {
             let Memory { model, constraints, .. } = &state.memory;
@@ -333,7 +332,7 @@ impl World {
         self.some_diagnostics(Diagnostic::ALL)
     }
 
-    /// The diagnostics in `wanted`; the others are zero, and what only they need is not computed.
+    /// The diagnostics in `wanted`. The others are zero and cost no time.
     pub fn some_diagnostics(&self, wanted: &[Diagnostic]) -> Diagnostics {
         Diagnostics::of(&self.facts(&self.system.parts[0], || self.report(0)), wanted)
     }
@@ -390,7 +389,7 @@ impl World {
     }
 }
 
-/// The forces of a model that vectorised steps take the place of.
+/// The forces of a model with vectorised steps, made at their first use.
 fn prepared_late(model: impl ElasticModel + 'static, body: &Arc<Body>) -> Forces {
     let body = Arc::clone(body);
     Forces::new(Box::new(move || model.prepare(&body)))

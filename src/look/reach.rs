@@ -88,7 +88,7 @@ impl Neighbourhood<'_> {
         let (low, high) = bounds(&start);
         let middle = start.iter().sum::<DVec3>() / start.len().max(1) as f64;
         for time in times(&grip.motion, [grip.from, grip.until.min(self.scene.duration)]) {
-            let way = grip.way(time);
+            let way = grip.pose(time);
             let corner = |at: u32| {
                 let pick = |axis: usize| if at >> axis & 1 == 1 { high[axis] } else { low[axis] };
                 DVec3::new(pick(0), pick(1), pick(2))

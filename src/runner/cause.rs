@@ -76,7 +76,7 @@ impl Cause {
             (format!("obstacle[{number}]"), way(obstacle.pose(begin), obstacle.pose(end), obstacle.pivot))
         });
         let grips = scene.grips.iter().filter(|grip| grip.holds(begin) && grip.holds(end));
-        let grips = grips.map(|grip| ("the grabbed part".to_owned(), way(grip.way(begin), grip.way(end), at)));
+        let grips = grips.map(|grip| ("the grabbed part".to_owned(), way(grip.pose(begin), grip.pose(end), at)));
         let (name, way) = obstacles.chain(grips).max_by(|one, other| one.1.total_cmp(&other.1))?;
         (way > FAR * size).then(|| {
             let [way, size] = [way, size].map(|length| quantity(length, "m"));

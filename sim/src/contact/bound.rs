@@ -1,8 +1,8 @@
-//! What kernels use of obstacles: bounds of where they are, and floors, which kernels treat themselves.
+//! Obstacles as kernels see them: regions of possible contact, and floors, for which kernels compute contact themselves.
 
 use glam::DVec3;
 
-/// A region outside of which no node can be in contact with an obstacle.
+/// A region that contains all points of contact with an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Bound {
     /// All points with `normal · x < height`.

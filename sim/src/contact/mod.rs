@@ -86,7 +86,7 @@ impl ContactStage for Vec<Obstacle> {
     }
 }
 
-/// The ground on which a body can stand at a time (s): unit normal and distance from the origin (m) of the first floor
+/// The ground under a body at a time (s): unit normal and distance from the origin (m) of the first floor
 /// that faces upwards.
 pub fn ground(obstacles: &[Obstacle], time: f64) -> Option<(DVec3, f64)> {
     // Walls are not ground; slopes of up to 60° are.
@@ -267,7 +267,7 @@ impl Placed<'_> {
     }
 }
 
-/// How long a node has touched an obstacle (s), for [`FrictionOf::Path`]; the arguments are those of [`Bounce::new`].
+/// The time (s) since a node touched an obstacle, for [`FrictionOf::Path`], from the arguments of [`Bounce::new`].
 ///
 /// It is counted from the height `e d` to which the node rebounds: `(1 + e) d/v`, or with an acceleration, which it has had since it
 /// met the surface with the speed `√(v² − 2 a d)`, `(1 + e)` times `2 d` over the sum of both speeds. A node that rests on a surface

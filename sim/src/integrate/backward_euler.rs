@@ -14,11 +14,11 @@
 use super::{Evaluation, Method, Nodes, Runaway, Scales, State, Step};
 use glam::DVec3;
 
-/// The most Newton steps. Most steps need three or four, those of many cycles T more.
+/// The most Newton steps. Most time steps need three or four, time steps of many periods T more.
 const MOST_NEWTON: usize = 50;
 /// The most iterations of conjugate gradients in a Newton step.
 const MOST_LINEAR: usize = 100;
-/// The residual of a linear system, as a share of that before.
+/// The final residual of a linear system, as a share of its first.
 const LINEAR: f64 = 1e-3;
 /// Newton's method ends where the residual (m/s) times the step is less than this share of the size of the body.
 const RESIDUAL: f64 = 1e-10;
@@ -26,7 +26,7 @@ const RESIDUAL: f64 = 1e-10;
 const DIFFERENCE: f64 = 1e-7;
 /// How often a Newton step is shortened.
 const MOST_CUTS: usize = 10;
-/// After so many Newton steps that do not halve the residual, what is left is round-off.
+/// After this number of Newton steps that do not halve the residual, only round-off is left.
 const MOST_IDLE: usize = 3;
 
 /// Buffers, and the size of the body.
@@ -70,7 +70,7 @@ impl Method for BackwardEuler {
         for _ in 0..MOST_NEWTON {
             let largest = self.residual.iter().map(|residual| residual.length_squared()).fold(0.0, f64::max);
             let is_solved = largest.sqrt() * step.interval.step <= RESIDUAL * self.scales.length;
-            // What is not a number is found by the check of the speeds.
+            // The check of the speeds finds NaN.
             if is_solved || idle == MOST_IDLE || !size.is_finite() {
                 break;
             }

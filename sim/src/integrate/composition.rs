@@ -1,13 +1,12 @@
 //! Symmetric compositions of drifts, `P += a V ΔT`, and kicks, `V += b F/m ΔT`: symplectic methods of higher order for
 //! forces that depend on positions alone.
 //!
-//! Kinematic constraints place their nodes after every drift. Contact acts at the end of the step: in a step in which a
-//! node rebounds, every method is of first order.
+//! Kinematic constraints place their nodes after every drift. Contact acts at the end of the step: when a node
+//! rebounds, every method is of first order.
 
 use super::{Evaluation, Method, Runaway, State, Step};
 
-/// The shares of the step of drifts and of kicks: two palindromes, of which the first halves are given. The shares of all drifts add
-/// up to 1, and so do those of all kicks.
+/// The shares of the step of drifts and of kicks. Both sequences are palindromes, given by their first halves, and each adds up to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Composition {
     /// With an even number of kicks the middle drift is the last.
@@ -24,7 +23,7 @@ const LAMBDA: f64 = -0.212_341_831_062_605_4;
 const CHI: f64 = -0.066_264_582_669_818_5;
 
 impl Composition {
-    /// The number of kicks in each step, which is that of evaluations of the forces.
+    /// The number of kicks in each step. Each kick needs one evaluation of the forces.
     pub fn evaluations(&self) -> usize {
         self.drifts.len() + self.kicks.len() - 1
     }

@@ -3,7 +3,7 @@
 //!
 //! J. Dormand, P. Prince, Journal of Computational and Applied Mathematics 6, 19 (1980), table 2: RK5(4)7M.
 //!
-//! Each step is divided into substeps with errors within the tolerance, the last of which ends with the step. Contact and
+//! Each step is divided into substeps with errors within the tolerance; the last substep ends with the step. Contact and
 //! kinematic constraints act at the end of each substep. A substep in which a node goes deep into an obstacle is repeated, shorter,
 //! so that it ends when the node is there: rebounds are as exact as the motion between them.
 //!
@@ -12,7 +12,7 @@
 use super::{Evaluation, Interval, Method, Runaway, Scales, State, Step, swap};
 use glam::DVec3;
 
-/// The weights of the stages before each stage. Those of the last stage give the solution.
+/// The weights of the stages before each stage. The weights of the last stage give the solution.
 const STAGES: [[f64; 6]; 7] = [
     [0.0; 6],
     [1.0 / 5.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -33,7 +33,7 @@ const GROWTH: f64 = 5.0;
 /// How often a substep is shortened to find a rebound.
 const MOST_SEARCHES: usize = 8;
 
-/// Buffers, and what errors are measured by.
+/// Buffers, and the scales of errors.
 pub(super) struct DormandPrince {
     scales: Scales,
     /// The error allowed in a substep, as a share of the size of the body.
@@ -121,7 +121,7 @@ impl DormandPrince {
         let accelerations = 3 * state.position.len();
         match state.memory.integrator.split_first() {
             Some((&wish, [])) => (wish, None),
-            // Those of held nodes are not kept.
+            // Accelerations of held nodes are not kept.
             Some((&wish, known)) if known.len() == accelerations => {
                 (wish, step.system.grips.is_empty().then(|| bytemuck::cast_slice(known)))
             }

@@ -94,9 +94,9 @@ impl Integrator {
 /// takes one from another crate.
 ///
 /// # Contract
-/// A step is a function of the state: what a method remembers from one step to the next is in
-/// [`Memory::integrator`](super::Memory::integrator), and what it keeps in itself are buffers. So a run that is continued from a copy
-/// of its state has the same bits. Memory that has another length than a method's own is that of another method.
+/// A step is a function of the state. A method keeps its memory in [`Memory::integrator`](super::Memory::integrator), and only buffers
+/// in itself. So a run that is continued from a copy of its state has the same bits. Memory of an unexpected length belongs to another
+/// method.
 ///
 /// # Example
 /// The midpoint rule, of second order:
@@ -127,7 +127,7 @@ impl Integrator {
 /// ```
 pub trait Method: Send + Sync {
     /// Writes the positions, the velocities and the memory of the models and of the integrator at the end of the step to `next`, which
-    /// has the lengths of `state` and the memory of kinematic constraints already. [`Step::finish`] is the end of most methods.
+    /// has the lengths of `state` and the memory of kinematic constraints already. Most methods end with [`Step::finish`].
     ///
     /// # Errors
     /// When a node would become too fast; see [`Step::check`].
@@ -199,10 +199,10 @@ impl Step<'_> {
         self.system.for_each_held(self.interval, next, each);
     }
 
-    /// Whether no node is faster than what counts as a result.
+    /// Checks that no node is faster than the speed limit.
     ///
     /// # Errors
-    /// With the first node that is, or whose velocity is not a number: the world has diverged, and keeps its last state.
+    /// The first node above the limit, or with a velocity that is NaN: the world has diverged, and keeps its last state.
     pub fn check(&self, next: &State) -> Result<(), Runaway> {
         let limit = self.limit * self.limit;
         // NaN is never within the limit.
@@ -213,15 +213,14 @@ impl Step<'_> {
         }
     }
 
-    /// Applies contact and kinematic constraints at the end of the step. `acceleration` (m/s²) is the constant one of each node in
-    /// the step; `None` if nodes moved at constant velocity.
+    /// Applies contact and kinematic constraints at the end of the step. `acceleration` (m/s²) is constant in the step for each node;
+    /// `None` if nodes moved at constant velocity.
     pub fn constrain(&self, state: &State, next: &mut State, acceleration: Option<&[DVec3]>) {
         self.system.constrain(self.interval, state, next, acceleration);
     }
 
-    /// The end of a step that a method of several evaluations has computed without contact: checks the speeds, applies contact and
-    /// kinematic constraints, and clears the memory of the integrator. A node rebounds as if its mean acceleration in the step had
-    /// been constant.
+    /// Ends the step of a method with several evaluations: checks the speeds, applies contact and kinematic constraints, and clears
+    /// the memory of the integrator. A node rebounds as if its mean acceleration in the step had been constant.
     ///
     /// # Errors
     /// As [`Self::check`].
@@ -234,10 +233,10 @@ impl Step<'_> {
         Ok(())
     }
 
-    /// Like [`Self::finish`]; returns whether a node has met an obstacle: what is known of the steps before then does not continue
-    /// its motion. `before` becomes positions, then velocities, before contact.
+    /// Like [`Self::finish`]. True when a node has met an obstacle, so that earlier accelerations do not continue its motion. `before`
+    /// becomes the positions, then the velocities, before contact.
     fn finish_and_tell(&self, state: &State, next: &mut State, before: &mut Vec<DVec3>) -> Result<bool, Runaway> {
-        // Placed before, a held node counts only if an obstacle moves it, too.
+        // Held nodes are placed first, so that they count only if an obstacle moves them.
         self.place_held(1.0, next);
         before.clear();
         before.extend(next.position.iter().chain(&next.velocity));
@@ -271,14 +270,14 @@ impl Step<'_> {
     }
 }
 
-/// The reference code: evaluates forces, then integrates. Every faster way is tested against it.
+/// The reference code: evaluates forces, then integrates. Every kernel is tested against it.
 pub(super) struct ByForces {
     method: Box<dyn Method>,
     /// The state at the end of the step that is being computed.
     next: State,
 }
 
-/// What is large for a body.
+/// The scales of a body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scales {
     /// The largest extent of a body at rest (m).

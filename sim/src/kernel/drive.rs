@@ -189,7 +189,7 @@ struct Met<'a> {
     /// The bound of each of them.
     bounds: Vec<Bound>,
     first: u64,
-    /// Whether the obstacles of one step are those of all.
+    /// Whether all steps have the same obstacles.
     is_still: bool,
     /// The number of obstacles.
     count: usize,

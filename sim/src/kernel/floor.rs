@@ -1,9 +1,9 @@
-//! The peak arithmetic performance of the machine: how fast it multiplies and adds.
+//! The peak arithmetic performance of the machine, in multiply-adds.
 
 use crate::lanes::{Lanes, Set, WIDEST, Work};
 use std::sync::atomic::Ordering;
 
-/// The number of doubles in the widest vectors of this processor, of those that [`limit_lanes`] allows.
+/// The number of doubles in the widest vectors of this processor that [`limit_lanes`] allows.
 pub fn lanes() -> usize {
     Set::best().lanes()
 }

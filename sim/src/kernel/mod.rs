@@ -70,7 +70,7 @@ pub(crate) struct Around<'a> {
     pub(crate) speed_limit: &'a (dyn Fn(u64) -> f64 + Sync),
 }
 
-/// A node that would have become too fast, or whose velocity is NaN.
+/// A node above the speed limit, or with a velocity that is NaN.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Lost {
     /// The number of the step.

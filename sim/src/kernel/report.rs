@@ -1,10 +1,9 @@
-//! Elastic energy, residuals and strains in lanes: what
-//! [`ForceModel::report`](crate::model::ForceModel::report) and [`Field::Strain`](crate::field::Field::Strain)
-//! say, up to round-off.
+//! Elastic energy, residuals and strains in lanes, tested against [`ForceModel::report`](crate::model::ForceModel::report) and
+//! [`Field::Strain`](crate::field::Field::Strain).
 //!
 //! Lanes are consecutive elements with the same number of corners, or consecutive springs. Nothing is stored from one
-//! report to the next: shapes at rest are those of the body. Sums run within chunks and then over chunks, in order, so
-//! they are the same for every width and number of threads.
+//! report to the next. Sums run within chunks and then over chunks, in order, so that their bits do not depend on the width or on
+//! the number of threads.
 
 use super::Rotation;
 use super::rotation::{self, Matrix, Solver, axial, matrix, turned_back};
@@ -21,9 +20,9 @@ use std::sync::Arc;
 /// Elements or springs in one task of a thread.
 const CHUNK: usize = 1024;
 
-/// What has elastic energy.
+/// The parts of a body that have elastic energy.
 pub(crate) enum Elastic {
-    /// The elements, with Eq. (4). In the plane the rotation is that of Eq. (9).
+    /// The elements, with Eq. (4). In the plane the rotation follows Eq. (9).
     Elements(Rotation),
     /// These springs, with Eq. (1).
     Springs(Arc<[[u32; 2]]>),
@@ -97,7 +96,7 @@ struct Chunk<'a> {
     with_shares: bool,
 }
 
-/// What a chunk has.
+/// The results of a chunk.
 #[derive(Default)]
 struct Found {
     /// (J)

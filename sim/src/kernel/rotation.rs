@@ -15,7 +15,7 @@ pub(super) type Vector<L> = [L; 3];
 /// The columns of a matrix, in every lane.
 pub(super) type Matrix<L> = [[L; 3]; 3];
 
-/// What rotations follow from, besides the last ones.
+/// The input of a rotation, besides the last rotation.
 #[derive(Clone, Copy)]
 pub(super) struct Moments<'a, L> {
     /// `Σ r R0ᵀ`.
@@ -62,21 +62,21 @@ pub(super) trait Solver: Copy + Send + Sync + 'static {
     /// as is known before [`turn`], and the lanes where it is the last pass needed.
     fn pass<L: Lanes>(self, b: &[[L; 3]; 3]) -> ([L; 4], L::Mask, L::Mask);
 
-    /// What remains to be done after these passes, which led to `q`: lanes that are `open` need more passes, lanes that
+    /// Completes the rotations `q` of these passes: lanes that are `open` need more passes, lanes that
     /// have `failed` need the global solver.
     fn go_on<L: Lanes>(self, of: Moments<'_, L>, q: [L; 4], open: u32, failed: u32) -> [L; 4];
 }
 
-/// Eq. (15) as printed, solved in a number of passes, each solution a rotation by `atan |w|`: the same as
-/// [`linearised::iterate`](crate::rotation::linearised::iterate), in lanes.
+/// Eq. (15) as printed, solved in a number of passes, each solution a rotation by `atan |w|`:
+/// [`linearised::iterate`](crate::rotation::linearised::iterate) in lanes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arctangent {
     /// The number of passes.
     pub(super) passes: u32,
 }
 
-/// The optimum to round-off, by passes of ninth order, as many as needed: the same as
-/// [`robust::follow`](crate::rotation::robust::follow), in lanes.
+/// The optimum to round-off, by as many passes of ninth order as needed:
+/// [`robust::follow`](crate::rotation::robust::follow) in lanes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Optimum;
 
@@ -204,7 +204,7 @@ fn cross<L: Lanes>(a: &Vector<L>, b: &Vector<L>) -> Vector<L> {
 /// [`linearised::is_well_posed`](crate::rotation::linearised::is_well_posed).
 #[inline(always)]
 fn is_well_posed<L: Lanes>(b: &[[L; 3]; 3]) -> L::Mask {
-    /// The same as in [`linearised`](crate::rotation::linearised).
+    /// As in [`linearised`](crate::rotation::linearised).
     const WELL_POSED: f64 = 1e-9;
     let (hx, hy, hz) = (b[1][1] + b[2][2], b[0][0] + b[2][2], b[0][0] + b[1][1]);
     let half = L::splat(-0.5);
@@ -288,7 +288,7 @@ pub(super) fn choose<L: Lanes>(mask: L::Mask, a: [L; 4], b: [L; 4]) -> [L; 4] {
     each!(4, part => a[part].select(mask, b[part]))
 }
 
-/// The optimum nearest to `last` in those lanes whose bits are set.
+/// The optimum nearest to `last`, in the lanes whose bits are set.
 #[inline(always)]
 fn global<L: Lanes>(of: Moments<'_, L>, last: [L; 4], lanes: u32) -> [L; 4] {
     let a = each!(3, column => each!(3, row => of.a[column][row].to_array()));

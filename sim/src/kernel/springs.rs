@@ -1,15 +1,15 @@
-//! Eq. (1) in lanes, for springs in families. A family is all pairs of nodes whose indices differ by the same number,
+//! Eq. (1) in lanes, for springs in families. A family is all pairs of nodes with one difference of indices,
 //! as on every lattice.
 //!
 //! Lanes are consecutive nodes. A spring adds its force to the lane of its lower node and, at the offset of the family,
-//! to that of its upper node. As the other ends of a node's springs are either earlier or later nodes, all forces of a
+//! to the lane of its upper node. As the other ends of a node's springs are either earlier or later nodes, all forces of a
 //! node are known when the pass reaches it: one pass evaluates the springs and moves the nodes in place.
 //!
 //! The sum of a node is: the forces from earlier nodes, the farthest first, plus those from later nodes, the farthest
-//! first. It is the same for every width.
+//! first. So its bits do not depend on the width.
 //!
-//! A large body is divided into slabs, which depend on the body only. The first nodes of a slab, which the previous
-//! slab still reads and adds forces to, are moved after all others: their sum has one more term.
+//! A large body is divided into slabs, which depend on the body only. The previous slab still
+//! reads the first nodes of a slab and adds forces to them. So they are moved after all others, and their sum has one more term.
 
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by slabs")]
 
@@ -37,7 +37,7 @@ const ALIKE: f64 = 1e-13;
 struct Family {
     /// The difference of the indices of the two nodes.
     offset: usize,
-    /// `k L` (N) if it is the same for all.
+    /// `k L` (N) if all are equal.
     tension: f64,
     /// Otherwise the start of the family's `k L`, by first node, in the list of all.
     tensions: Option<usize>,

@@ -23,12 +23,12 @@ pub(crate) enum Scheme {
 }
 
 impl Scheme {
-    /// Whether nodes have three more numbers, from one pass to the next.
+    /// Whether nodes keep an acceleration from one pass to the next.
     pub(crate) fn keeps_acceleration(self) -> bool {
         matches!(self, Self::VelocityVerlet | Self::Composition(_))
     }
 
-    /// The scheme of an integrator; `None` for one that has no vectorised steps.
+    /// The scheme of an integrator; `None` for an integrator without vectorised steps.
     pub(crate) fn of(integrator: Integrator) -> Option<Self> {
         match integrator {
             Integrator::SemiImplicitEuler => Some(Self::SemiImplicitEuler),
@@ -132,8 +132,8 @@ pub(crate) trait Stepper: Send + Sync {
     fn keep(&mut self);
     /// Restores the state from the copy.
     fn restore(&mut self);
-    /// Executes some of the passes, until a node becomes too fast. With one thread that is the first such node, with
-    /// more threads any of them. The state is then undefined.
+    /// Executes some of the passes, until a node is too fast. One thread returns the first such node, several threads any of
+    /// them. The state is then undefined.
     fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost>;
 }
 
@@ -143,7 +143,7 @@ pub(crate) struct Rollback {
     scheme: Scheme,
     /// Steps taken.
     steps: u64,
-    /// The number of steps of the copy of the state, if steps since then may be repeated.
+    /// The number of steps of the copy, if steps since then may be repeated.
     kept: Option<u64>,
 }
 

@@ -2,8 +2,8 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The number of rotations that the global solver has computed so far: of those that are stored, so that it does not depend on how
-/// steps are divided into calls. Threads add to it in any order.
+/// The number of stored rotations that the global solver has computed so far. Rotations that are not stored do not count, because
+/// their number depends on how steps are divided into calls. Threads add in any order.
 #[derive(Debug, Default)]
 pub(super) struct Tally {
     now: AtomicU64,
@@ -21,12 +21,12 @@ impl Tally {
         self.now.load(Ordering::Relaxed)
     }
 
-    /// Reads it from the memory of a model, which has it after the rotations of all elements; without it counts from 0.
+    /// Reads the number from the memory of a model, where it stands after all rotations; `None` counts from 0.
     pub(super) fn load(&mut self, after: Option<&f64>) {
         *self.now.get_mut() = after.map_or(0, |&count| count as u64);
     }
 
-    /// Writes it where [`Self::load`] reads it.
+    /// Writes the number where [`Self::load`] reads it.
     pub(super) fn store(&self, after: Option<&mut f64>) {
         if let Some(count) = after {
             *count = self.get() as f64;

@@ -15,7 +15,7 @@ pub(crate) enum Stage {
     ExplicitEuler,
     /// The first half of velocity Verlet: the new position, and the velocity predicted with constant acceleration.
     Drift,
-    /// Its second half, with the acceleration at the new position.
+    /// The second half of velocity Verlet, with the acceleration at the new position.
     Finish,
     /// The second half of one step and the first of the next, where the forces do not depend on velocities.
     FinishDrift,
@@ -25,7 +25,7 @@ pub(crate) enum Stage {
     Leave(f64),
     /// A kick and a drift of a composition, by shares of the step.
     Kick([f64; 2]),
-    /// Its last kick and drift, at whose end contact is computed.
+    /// The last kick and drift of a composition, with contact at the end.
     Arrive([f64; 2]),
 }
 
@@ -174,7 +174,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
         lost | self.lost(nodes, 1)
     }
 
-    /// The lanes inside a bound, whose contact has to be computed; also lanes that have no node.
+    /// The lanes inside a bound, which need contact; also lanes without a node.
     #[inline(always)]
     pub(crate) fn near(&self, nodes: &Nodes<L>) -> u32 {
         if !self.stage.has_contact() {

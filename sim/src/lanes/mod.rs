@@ -46,7 +46,7 @@ pub(crate) trait Lanes:
     /// The number of lanes, a power of two and at most [`MOST`].
     const WIDTH: usize;
 
-    /// The same value in all lanes.
+    /// One value in all lanes.
     fn splat(value: f64) -> Self;
     /// [`Self::WIDTH`] values from memory, of any alignment.
     ///
@@ -292,8 +292,8 @@ macro_rules! operators {
     };
 }
 
-/// Functions of [`Lanes`] that make vectors of vectors, and after two semicolons those that compare them, by what they do with the
-/// values inside.
+/// Functions of [`Lanes`] as operations on the values inside: first functions that make vectors, then, after two semicolons,
+/// comparisons.
 macro_rules! lanewise {
     ($($name:ident($a:ident $(, $b:ident)*) $value:expr;)*; $($test:ident($c:ident, $d:ident) $mask:expr;)*) => {
         $(#[inline(always)]

@@ -87,9 +87,9 @@ trait TypedModel {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct Misfit {
-    /// The key in the scene file.
+    /// The parameter's key in a scene file.
     pub key: &'static str,
-    /// What was found, what was expected and what to do.
+    /// The mistake and its remedy.
     pub message: String,
 }
 
@@ -99,8 +99,8 @@ pub trait ElasticModel: Debug + Send + Sync {
     /// Elastic constant `k` (N/m). Figures divide forces by it to draw them as lengths.
     fn stiffness(&self) -> f64;
 
-    /// The shortest period (s) with which a node of the body oscillates: `T = 2π√(m/k)` of its lightest node. A scene
-    /// can give time steps as a fraction of it.
+    /// The shortest period (s) of a node of the body: `T = 2π√(m/k)` with its lightest node. A scene can give time steps as
+    /// fractions of this period.
     fn shortest_period(&self, body: &Body) -> f64 {
         std::f64::consts::TAU * (body.lightest() / self.stiffness()).sqrt()
     }
@@ -113,7 +113,7 @@ pub trait ElasticModel: Debug + Send + Sync {
         None
     }
 
-    /// The same model with its stiffness and its damping multiplied; `None` for a model that cannot be scaled.
+    /// This model with its stiffness and its damping multiplied; `None` for a model that cannot be scaled.
     #[doc(hidden)]
     fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
         let _ = (stiffness, damping);
@@ -123,7 +123,7 @@ pub trait ElasticModel: Debug + Send + Sync {
     /// A short description for the second line of a picture, such as `27 cubes, k = 10 kN/m, ζ = 0.1`.
     fn describe(&self, body: &Body) -> String;
 
-    /// The same with all choices that change the result, such as the rotation solver.
+    /// This description with all choices that change the result, such as the rotation solver.
     fn describe_fully(&self, body: &Body) -> String {
         self.describe(body)
     }
@@ -241,7 +241,7 @@ impl Scratch {
 /// Energy and residuals of a model in a state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
-    /// Elastic energy (J), of which the elastic forces are the negative gradient; `None` for a model without one.
+    /// Elastic energy (J); its negative gradient is the elastic forces. `None` for a model without energy.
     pub energy: Option<f64>,
     /// The residuals of conditions that the model satisfies only approximately, by name.
     pub residuals: Vec<(&'static str, f64)>,
@@ -258,8 +258,8 @@ impl Report {
 }
 
 /// The damping constant (N s/m), from either parameter: the constant, or the ratio `ζ = D / 2√(km)`; 0 if neither is
-/// given. `m` is the mass of the lightest node, as in the period of which a step is a fraction. So whether a ratio and
-/// a fraction are stable together does not depend on the other masses.
+/// given. `m` is the mass of the lightest node, as in [`ElasticModel::shortest_period`]: the masses of other nodes do not decide
+/// whether a damping ratio and a step in periods are stable together.
 fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Body) -> Result<f64, Misfit> {
     match (constant, ratio) {
         (Some(_), Some(_)) => {

@@ -71,7 +71,7 @@ pub struct ShapeBased {
     pub stiffness: f64,
     /// Damping constant `D_e` of each element (N s/m).
     pub damping: f64,
-    /// Number of passes, each of which solves Eq. (15), at each evaluation.
+    /// Number of passes at each evaluation of the forces. A pass solves Eq. (15) once.
     pub passes: u32,
     /// How the rotation of an element is computed.
     pub rotation: RotationReading,
@@ -163,7 +163,7 @@ impl ElasticModel for ShapeBased {
         text
     }
 
-    /// An element adds no more to a node than `k` and `D`: its forces are those of a projection.
+    /// An element adds at most `k` and `D` to a node, because its forces are a projection of displacements.
     fn bound(&self, body: &Body) -> Option<Mode> {
         let mut elements = vec![0.0; body.len()];
         body.elements.indices().iter().for_each(|&node| elements[node as usize] += 1.0);

@@ -54,8 +54,8 @@ pub fn rotation_by_length(w: DVec3) -> DQuat {
 /// The least value of the leading minors of the Hessian that counts as positive, relative to the size of `A`.
 ///
 /// Below it the three rows of Eq. (15) no longer determine an axis: corners on a line give zero up to round-off
-/// (1e-16), corners in a plane 2 or more. The exact solver that is used instead has no such limit, so the value selects
-/// the method but hardly affects the result.
+/// (1e-16), corners in a plane 2 or more. The exact solver has no such limit, so the value selects the
+/// method but hardly affects the result.
 const WELL_POSED: f64 = 1e-9;
 
 /// Whether Eq. (15) has one solution and it leads to the equilibrium: the Hessian `H = tr(A) I − (A + Aᵀ)/2` of the

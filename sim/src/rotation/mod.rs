@@ -5,7 +5,7 @@
 //! | `R0` | corners at rest, relative to their mean (m) |
 //! | `r` | corners now, relative to their mean (m) |
 //! | `M` | the rotation sought; `R = M R0` is the equilibrium shape |
-//! | `A` | `Σ R rᵀ` (m²), the matrix of which Eq. (15) is made |
+//! | `A` | `Σ R rᵀ` (m²), the moments in Eq. (15) |
 //! | `w` | `θ u`, axis times angle (rad) |
 //!
 //! Rotating the equilibrium shape by `L` turns `A` into `L A`, so the corners are read only once for any number of

@@ -1,4 +1,4 @@
-//! The largest eigenvalue of a symmetric matrix that is known by its products with vectors.
+//! The largest eigenvalue of a symmetric matrix, from its products with vectors.
 //!
 //! C. Lanczos, Journal of Research of the National Bureau of Standards 45, 255 (1950). Vectors are not made orthogonal again: that
 //! would only remove copies of eigenvalues already found.
@@ -10,12 +10,12 @@ use glam::DVec3;
 struct Tridiagonal {
     /// On the diagonal.
     diagonal: Vec<f64>,
-    /// Beside it, and the one that the next step would use.
+    /// Beside the diagonal, with one entry for the next step.
     beside: Vec<f64>,
 }
 
 /// The largest eigenvalue, and an eigenvector of length 1 if `vector`. `product` writes the matrix times its first argument to its
-/// second, `most` limits the number of products, of which `vector` doubles the number. The result is never above the eigenvalue,
+/// second, `most` limits the number of products, which `vector` doubles. The result is never above the eigenvalue,
 /// and has the same bits everywhere.
 pub(super) fn largest(
     start: &[DVec3],
@@ -23,7 +23,7 @@ pub(super) fn largest(
     vector: bool,
     mut product: impl FnMut(&[DVec3], &mut [DVec3]),
 ) -> (f64, Option<Vec<DVec3>>) {
-    /// How much less than this share of the eigenvalue the residual is in the end, where `most` permits.
+    /// The final residual as a share of the eigenvalue, where `most` permits.
     const RESIDUAL: f64 = 3e-4;
     let mut found = Tridiagonal::default();
     let (mut value, mut last) = (0.0, Vec::new());

@@ -1,7 +1,7 @@
 //! The largest stable step of each integrator for one mode of vibration, `d²x/dt² = −a x − c dx/dt`.
 //!
 //! A linear system with symmetric, positive semidefinite stiffness and damping has eigenvectors that obey this equation with their
-//! own Rayleigh quotients `a` and `c`, so a step that is stable for all of these is stable for the system.
+//! own Rayleigh quotients `a` and `c`, so a step that is stable for all eigenvectors is stable for the system.
 
 use crate::integrate::Integrator;
 use crate::mode::Mode;
@@ -36,8 +36,8 @@ impl Mode {
         }
     }
 
-    /// The weights of stiffness and damping by which to find a mode with a smaller limit than this one, which has this step (s):
-    /// across the boundary of the region of stability, outwards.
+    /// The weights of stiffness and damping in the search for a mode with a smaller limit than the `step` (s) of this mode: the
+    /// outward normal of the region of stability.
     pub(super) fn outwards(self, integrator: Integrator, step: f64) -> [f64; 2] {
         let Self { stiffness: a, damping: c } = self;
         // The faster of two roots that do not oscillate: the largest `t` with an eigenvalue 0 of `t² − C t + K`.
@@ -124,7 +124,7 @@ mod tests {
         assert!(!is_stable(PEFRL + 3e-4));
     }
 
-    /// The largest factor by which one step of an integrator of one evaluation lengthens a vector, in the long run.
+    /// The growth of a vector in one step of an integrator with one evaluation, in the long run.
     fn growth(integrator: Integrator, a: f64, c: f64) -> f64 {
         let step = |[x, v]: [f64; 2]| match integrator {
             Integrator::SemiImplicitEuler => {

@@ -1,9 +1,9 @@
 //! The largest stable step of a run, predicted before it starts: from the largest eigenvalue of its stiffness, linearised at rest
 //! and divided by the masses, and from its damping.
 //!
-//! No matrix is stored: its products with vectors are differences of the run's own forces, so any model will do. What holds at
-//! rest holds for a shape-based body that moves, too, up to changes of its stiffness with deformation. A spring that is stretched
-//! also resists across its direction, with a stiffness that approaches its own; a second limit allows for that.
+//! No matrix is stored: its products with vectors are differences of the run's own forces, so any model will do. The limit
+//! at rest also holds for a moving shape-based body, up to changes of its stiffness with deformation. A stretched spring also resists
+//! across its direction, with a stiffness that approaches its own; a second limit allows for this.
 
 mod lanczos;
 mod limits;
@@ -25,20 +25,20 @@ use std::sync::Arc;
 pub struct Stability {
     /// At rest (s): 0 if no step is stable, infinite if all are.
     pub largest: f64,
-    /// The same however far springs are stretched, and whatever their directions; `None` for other models.
+    /// For springs of any stretch and direction (s); `None` for other models.
     pub stretched: Option<f64>,
 }
 
 impl Stability {
     /// The share of [`Self::largest`] that `step = "auto"` takes, at most.
     ///
-    /// In falls, elements are deformed far from where the limit was computed. And what springs add when stretched is less than
-    /// this: averaged over three directions at right angles, the stiffness at rest is a third of the bound, so that the limit at
-    /// rest is at most √3 times the one of stretched springs.
+    /// In falls, elements deform far from rest, for which the limit was computed. Stretched springs are within this share: averaged
+    /// over three directions at right angles, the stiffness at rest is a third of the bound, so that the limit at rest is at most √3
+    /// times the limit of stretched springs.
     pub const SHARE: f64 = 0.5;
 
-    /// Predicts it for a model on a body. Nodes that a grip holds from the start to the end at a time (s) do not vibrate; others
-    /// count as free, which they may become: holding nodes only lowers frequencies.
+    /// Predicts the largest stable step for a model on a body. Nodes that a grip holds from the start to the end at a time (s) do not
+    /// vibrate. All others count as free, because free nodes only raise frequencies.
     pub fn of(
         body: &Arc<Body>,
         model: &dyn ElasticModel,
@@ -82,7 +82,7 @@ fn most_products(corners: usize) -> usize {
     (20_000_000 / corners.max(1)).clamp(LEAST, MOST)
 }
 
-/// A vector from which to search: no symmetry of a body makes it normal to an eigenvector.
+/// A start vector of the search, which no symmetry of a body makes normal to an eigenvector.
 fn start(body: &Body, is_free: &[bool]) -> Vec<DVec3> {
     let mut seed = 1_u64;
     let mut noise = || {
@@ -98,8 +98,8 @@ fn start(body: &Body, is_free: &[bool]) -> Vec<DVec3> {
     is_free.iter().map(&mut vector).collect()
 }
 
-/// Stretched without limit, each spring resists motion in all directions as it does along itself: the stiffness and the damping of
-/// no state exceed these.
+/// The stiffness and damping of springs that are stretched without limit: each resists motion in all directions as along itself. No
+/// state exceeds them.
 fn stretched(body: &Body, model: &MassSpring, is_free: &[bool]) -> Mode {
     let scale: Vec<f64> = body.mass.iter().map(|mass| 1.0 / mass.sqrt()).collect();
     let product = |from: &[DVec3], to: &mut [DVec3]| {

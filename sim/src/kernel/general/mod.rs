@@ -7,7 +7,7 @@
 //! Elements are sorted along a space-filling curve and divided into parts, which depend on the body only. A part has
 //! its own records and sums of all its nodes. Nodes of one part are moved as soon as its elements are done; nodes
 //! shared by several parts are moved after all parts, by the sums of all, in the order of the parts. Sums run block by
-//! block, corner by corner, lane by lane, so they are the same for every width and number of threads.
+//! block, corner by corner, lane by lane, so their bits do not depend on the width or the number of threads.
 
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by parts")]
 
@@ -68,7 +68,7 @@ pub(crate) struct General {
     constants: Constants,
     parts: Vec<Part>,
     shared: Shared,
-    /// For each thread the sums of the part at which it is, which so stay in the caches; zeros between parts.
+    /// For each thread the sums of its present part, which stay in the caches; zeros between parts.
     sums: Vec<Aligned>,
     /// The record of each node. If several parts share it, the part is [`NONE`], and the record its number in `shared`.
     places: Vec<RecordAddress>,
@@ -77,7 +77,7 @@ pub(crate) struct General {
     tally: Tally,
 }
 
-/// A record: the part, and its number there.
+/// Where a record is: its part, and its number there.
 #[derive(Clone, Copy)]
 struct RecordAddress {
     part: u32,

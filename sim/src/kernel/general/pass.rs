@@ -63,8 +63,8 @@ impl Work for OnePart<'_> {
                 lost = first_of(lost, lanes, |lane| part.index[first + lane]);
             }
         }
-        // What the next part must not find, and `SharedNodes` needs. The last row is that of lanes without an element.
-        // SAFETY: the sums are this thread's, and so are those of the part.
+        // Zeros for the next part, and sums for `SharedNodes`. The last row belongs to lanes without an element.
+        // SAFETY: both sums are this thread's.
         unsafe {
             let own = part.own * MOST;
             let (of_shared, count) = (sums.add(own * SUM), (part.index.len() - own) * SUM);

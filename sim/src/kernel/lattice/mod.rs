@@ -175,7 +175,7 @@ pub(crate) struct LatticeStepper {
     signals: Box<[Signal]>,
 }
 
-/// Data that are the same for all planes.
+/// Data that all planes share.
 struct Pattern {
     /// 1 for a box, 0 for the end of a row.
     live: Aligned,

@@ -212,7 +212,7 @@ impl Sweep<'_> {
         let _ = each!(8, part => if part < INVERSE_MASS { L::expect(high.wrapping_add(part * MOST)) });
     }
 
-    /// The rotations of boxes: those of the last step, or those of the previous pass.
+    /// The rotations of boxes, of the last step or of the previous pass.
     #[inline(always)]
     unsafe fn turns<L: Lanes>(&self, plane: usize, at: usize, is_first: bool) -> [L; 4] {
         // SAFETY: the rotations have all boxes of a plane in whole vectors, and `work` those of a chunk.
@@ -343,7 +343,7 @@ impl Sweep<'_> {
                 ([zero; 3], zero)
             };
             self.put(self.slabs.add(self.slab.rows), own, &[each!(3, axis => mean[axis] + v[axis]), u, t]);
-            // From the previous row, of which the first lanes may just have been written.
+            // From the previous row. Its first lanes may just have been written.
             let before = self.next(own, self.ring - self.grid.row());
             let (from, part) = self.ring_place::<L>(before / MOST * MOST, 9);
             let from = self.slabs.add(self.slab.rows + from);
