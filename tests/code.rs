@@ -313,10 +313,6 @@ impl ElasticModel for Idle {
         self.stiffness
     }
 
-    fn describe(&self, _: &Body) -> String {
-        "idle".to_owned()
-    }
-
     fn springs(&self) -> &[[u32; 2]] {
         &self.springs
     }

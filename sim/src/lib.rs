@@ -41,8 +41,6 @@ pub mod stability;
 mod state;
 mod system;
 mod topology;
-#[doc(hidden)]
-pub mod words;
 mod world;
 
 pub use body::Body;

@@ -7,9 +7,9 @@ use super::frames::FrameRanges;
 use crate::gpu::{AdapterChoice, Gpu};
 #[cfg(feature = "render")]
 use crate::look::Theme;
-use crate::reading::setting::Setting;
 #[cfg(feature = "render")]
-use crate::sim::words::typed;
+use crate::reading::captions::typed;
+use crate::reading::setting::Setting;
 #[cfg(feature = "render")]
 use clap::ValueEnum;
 use clap::{Args, ValueHint};

@@ -2,9 +2,9 @@
 
 use super::console::columns;
 use crate::output::{Outcome, RunStatus, RunSummary, Spent, Summary};
+use crate::reading::captions::quantity;
 use crate::reading::words::short;
 use crate::sim::Diagnostic;
-use crate::sim::words::quantity;
 use std::fmt::Write;
 use std::path::Path;
 

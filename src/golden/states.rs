@@ -1,6 +1,6 @@
 //! Known states, exact or rounded, and the differences between two sides.
 
-use crate::sim::words::quantity;
+use crate::reading::captions::quantity;
 use glam::DVec3;
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -6,7 +6,7 @@ use super::print::Print;
 use super::run_lines::DASHES;
 use super::view::{ColourScale, EdgeStyle, Labels};
 use crate::colour::{Colour, LEAST_CONTRAST, LINE_CONTRAST, Oklab, from_oklab, mixed, oklab, readable};
-use crate::sim::words::rounded;
+use crate::reading::captions::rounded;
 
 /// The smallest type that is printed (pt).
 const LEAST_POINTS: f64 = 5.0;

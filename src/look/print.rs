@@ -1,7 +1,7 @@
 //! Pictures for print: sizes in millimetres and type in points.
 
+use crate::reading::captions::rounded;
 use crate::reading::collector::{Collector, Segment};
-use crate::sim::words::rounded;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -9,11 +9,11 @@ use super::print::{SizeFile, TextScaleFile, unit};
 use super::subject::Subject;
 use super::typed::TypedColour;
 use super::view::{Camera, ColourScale, FontFiles, View, Visible};
+use crate::reading::captions::rounded;
 use crate::reading::collector::{Collector, Segment, key_path};
 use crate::reading::coordinates::vector;
 use crate::sim::Dimension;
 use crate::sim::geometry::is_inside;
-use crate::sim::words::rounded;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 

@@ -1,7 +1,7 @@
 //! Round numbers along an axis of a chart or a scale of colours.
 
 use super::number::{self, times_ten, with_minus};
-use crate::sim::words::{prefix, rounded};
+use crate::reading::captions::{prefix, rounded};
 
 /// The quantity along an axis, which determines its division.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! Numbers as text: few digits, a suitable unit, a true minus sign.
 
 use super::text::THIN_SPACE;
+use crate::reading::captions::{prefix as prefix_of, rounded};
 use crate::sim::Diagnostic;
-use crate::sim::words::{prefix as prefix_of, rounded};
 
 /// A time (s): milliseconds below a second, then seconds with two or one decimals.
 pub(super) fn time(seconds: f64) -> String {

@@ -10,10 +10,10 @@ use super::number;
 use super::series::{self, Series};
 use super::text::{Fonts, Weight};
 use crate::look::Palette;
+use crate::reading::captions::elements;
 use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::Diagnostic;
-use crate::sim::words::elements;
 
 /// Size of the unit's type, and the gap from the name to the unit (px in the reference picture).
 const UNIT: f64 = 14.0;

@@ -1,6 +1,7 @@
 //! Reading files: mistakes with line and column, words for messages, files beside a scene.
 
 pub(crate) mod beside;
+pub(crate) mod captions;
 pub(crate) mod collector;
 pub(crate) mod coordinates;
 mod mistake;

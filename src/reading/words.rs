@@ -1,6 +1,6 @@
 //! Words for messages.
 
-use crate::sim::words::rounded;
+use crate::reading::captions::rounded;
 use serde_json::Value as Json;
 use toml::de::{DeInteger, DeValue};
 

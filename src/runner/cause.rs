@@ -1,9 +1,9 @@
 //! The cause of a divergence, found by simulating the steps before it again, also with smaller steps.
 
 use super::last_fit::fits;
+use crate::reading::captions::quantity;
 use crate::scene::{Run, Scene};
 use crate::sim::geometry::bounds;
-use crate::sim::words::quantity;
 use crate::sim::{Crew, Divergence, Integrator, Pose, State, Status, World};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

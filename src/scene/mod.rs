@@ -28,6 +28,7 @@ mod step;
 mod structure;
 mod summary;
 
+pub use crate::reading::captions::description;
 pub use crate::reading::{Mistake, Mistakes};
 pub use builder::{BodyBuilder, NodeSet, ObstacleBuilder, RunBuilder, SceneBuilder};
 pub use error::SceneError;

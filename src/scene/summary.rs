@@ -1,10 +1,10 @@
 //! The contents of a scene in words and numbers, as `check` prints them.
 
 use super::{Scene, stability};
+use crate::reading::captions::{self, description, typed};
 use crate::reading::words::{count, ends, list, short};
 use crate::sim::geometry::bounds;
 use crate::sim::stability::Stability;
-use crate::sim::words::{self, typed};
 use crate::sim::{Dimension, FrictionOf, Grip, Kernel, Motion, Obstacle, Shape};
 use glam::DVec3;
 use serde::Serialize;
@@ -98,7 +98,7 @@ impl Scene {
             let Stability { largest, stretched } = self.stability(at);
             RunSummary {
                 name: run.name.clone(),
-                model: run.model.describe_fully(body),
+                model: description(run.model.as_ref(), body),
                 integrator: typed(&run.integrator),
                 kernel: run.kernel,
                 step: run.step,
@@ -115,7 +115,7 @@ impl Scene {
             digest: self.digest.clone(),
             nodes: body.len(),
             element_count: body.elements.len(),
-            elements: words::elements(body).into_iter().map(of_kind).collect(),
+            elements: captions::elements(body).into_iter().map(of_kind).collect(),
             extent: coordinates(high - low),
             start: corners(&self.initial.position, body.dimension),
             mass: body.mass.iter().sum(),

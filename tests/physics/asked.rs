@@ -27,10 +27,6 @@ impl ElasticModel for Counting {
         self.model.stiffness()
     }
 
-    fn describe(&self, body: &Body) -> String {
-        self.model.describe(body)
-    }
-
     fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
         self.model.start(body, position)
     }

@@ -2,7 +2,7 @@
 
 use super::expect;
 use glam::DVec3;
-use localshape::scene::{Limits, Scene, SceneError};
+use localshape::scene::{Limits, Scene, SceneError, description};
 use localshape::sim::ElementKind;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -137,7 +137,7 @@ fn archives_written_by_numpy_are_read_compressed_or_not() {
         assert_eq!(body.mass[8], 9.0);
         assert_eq!((&body.faces.nodes[0], &body.faces.nodes[1]), (&[4, 5, 7, 6][..], &[4, 5, 8][..]));
         assert_eq!((body.faces.inner[0], body.faces.outer[0]), (Some(0), Some(1)));
-        assert!(scene.runs[1].model.describe(body).starts_with("2 springs,"));
+        assert!(description(scene.runs[1].model.as_ref(), body).starts_with("2 springs,"));
     }
     assert_eq!(good(BY_NUMPY[0], SCENE).digest, good(BY_NUMPY[1], SCENE).digest);
 }

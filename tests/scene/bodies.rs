@@ -3,7 +3,7 @@
 use super::{WORLD, bad, good};
 use glam::DVec3;
 use localshape::runner::Runner;
-use localshape::scene::Scene;
+use localshape::scene::{Scene, description};
 use localshape::sim::{Dimension, ElementKind};
 use std::collections::BTreeMap;
 
@@ -300,7 +300,7 @@ fn every_named_topology_holds_an_element_of_any_shape_together() {
         let scene =
             world(&format!("nodes = {prism}\nelements = [[0,1,2,3,4,5,6,7,8,9]]\nlowest = 0"), Dimension::Space);
         let scene = good(&scene.replace("edges+face-diagonals", springs));
-        let words = scene.runs[1].model.describe(&scene.body);
+        let words = description(scene.runs[1].model.as_ref(), &scene.body);
         assert!(words.starts_with(&format!("{count} springs,")), "{springs}: {words}");
     }
 }

@@ -4,7 +4,7 @@ use super::expect;
 use localshape::look::Theme;
 use localshape::scene::figure::built_in::NAMES;
 use localshape::scene::figure::{Content, Figure, Sheet};
-use localshape::scene::{Limits, Scene, SceneError};
+use localshape::scene::{Limits, Scene, SceneError, description};
 use std::path::Path;
 
 /// Reads a figure beside the scene `fig4b.toml` of 3 s, a scene in the plane and one without a run `Mass-spring`.
@@ -178,7 +178,7 @@ fn captions_say_what_the_scenes_are() {
         };
         for scene in figure.scenes() {
             for run in &scene.runs {
-                let words = run.model.describe(&scene.body);
+                let words = description(run.model.as_ref(), &scene.body);
                 let part =
                     |name: &str| words.split(", ").find_map(|part| part.strip_prefix(name)).expect("a parameter");
                 says(format!("stiffness {},", part("k = ")));

@@ -2,6 +2,7 @@
 
 use super::{bad, expect, good};
 use glam::DVec3;
+use localshape::scene::description;
 
 /// The nodes of two cubes, with their middle over the origin, 0.1 m above it.
 const WORLD: &str = "\
@@ -138,7 +139,7 @@ fn convex_elements_may_list_their_nodes_in_any_order() {
     let octahedron =
         "[body]\nnodes = [[1,0,0],[0,-1,0],[0,0,1],[-1,0,0],[0,1,0],[0,0,-1]]\nelements = [[0,1,2,3,4,5]]\n";
     let scene = good(&format!("{head}{octahedron}convex = true"));
-    assert!(scene.runs[0].model.describe(&scene.body).starts_with("12 springs"));
+    assert!(description(scene.runs[0].model.as_ref(), &scene.body).starts_with("12 springs"));
     assert_eq!(scene.body.faces.nodes.len(), 8);
     let cloth = "[body]\nnodes = [[0,0,0],[1,0,0],[1,1,0],[0,1,0]]\nelements = [[0,1,2,3]]\n";
     assert_eq!(good(&format!("{head}{cloth}convex = true")).body.faces.nodes.len(), 1);

@@ -10,7 +10,6 @@ use crate::body::Body;
 use crate::mode::Mode;
 use crate::state::Nodes;
 use crate::topology::Springs;
-use crate::words;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -63,7 +62,7 @@ impl TypedModel for Parameters {
             (named, _) => body.topology().springs(named.unwrap_or(DEFAULT)),
         };
         if springs.is_empty() {
-            let topology = words::typed(&self.springs.unwrap_or(DEFAULT));
+            let topology = super::typed(&self.springs.unwrap_or(DEFAULT));
             let message = format!(
                 "the topology `{topology}` puts no spring on the body's elements; take `all`, or list the springs in [body]"
             );
@@ -103,10 +102,8 @@ impl ElasticModel for MassSpring {
         Some(Arc::new(MassSpring { stiffness, damping, ..self.clone() }))
     }
 
-    fn describe(&self, body: &Body) -> String {
-        let count = self.springs.len();
-        let springs = format!("{count} spring{}", if count == 1 { "" } else { "s" });
-        super::describe(&springs, self.stiffness, self.damping, body)
+    fn damping(&self) -> f64 {
+        self.damping
     }
 
     fn springs(&self) -> &[[u32; 2]] {

@@ -12,7 +12,6 @@ use super::body::Body;
 #[doc(hidden)]
 pub use super::mode::Mode;
 use super::state::{Nodes, State};
-use super::words;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -120,12 +119,20 @@ pub trait ElasticModel: Debug + Send + Sync {
         None
     }
 
-    /// A short description for the second line of a picture, such as `27 cubes, k = 10 kN/m, ζ = 0.1`.
-    fn describe(&self, body: &Body) -> String;
+    /// Damping constant `D` (N s/m); 0 without damping. Captions show it as a ratio to `2√(km)` of the lightest node.
+    fn damping(&self) -> f64 {
+        0.0
+    }
 
-    /// This description with all choices that change the result, such as the rotation solver.
-    fn describe_fully(&self, body: &Body) -> String {
-        self.describe(body)
+    /// The unusual choices of the model, which captions append to its damping, such as `, exact rotations`.
+    fn unusual_choices(&self, body: &Body) -> String {
+        let _ = body;
+        String::new()
+    }
+
+    /// All choices of the model that change the result, such as `, rotation robust (exact)`.
+    fn choices(&self, body: &Body) -> String {
+        self.unusual_choices(body)
     }
 
     /// The two nodes of each spring; empty for models without springs.
@@ -272,20 +279,7 @@ fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Bod
     }
 }
 
-/// The second line of a picture: the parts of the model, its stiffness and, if it has any, its damping.
-fn describe(parts: &str, stiffness: f64, damping: f64, body: &Body) -> String {
-    let mut text = format!("{parts}, k = {}", words::quantity(stiffness, "N/m"));
-    if damping > 0.0 {
-        let ratio = damping / (2.0 * (stiffness * body.lightest()).sqrt());
-        text.push_str(&format!(", ζ = {}", words::rounded(ratio, 3)));
-    }
-    text
-}
-
-/// The elements of a body in words, such as `27 cubes`.
-fn elements_in_words(body: &Body) -> String {
-    match words::elements(body).as_slice() {
-        [(count, name)] => format!("{count} {name}"),
-        _ => format!("{} elements", body.elements.len()),
-    }
+/// The value of an enum as written in a scene.
+fn typed(choice: &impl Serialize) -> String {
+    serde_json::to_value(choice).ok().and_then(|name| name.as_str().map(String::from)).unwrap_or_default()
 }

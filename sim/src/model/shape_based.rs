@@ -16,7 +16,6 @@ use crate::mode::Mode;
 pub use crate::rotation::RotationReading;
 use crate::rotation::{self, davenport1968, linear_update, planar};
 use crate::state::Nodes;
-use crate::words;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -98,7 +97,7 @@ impl TypedModel for Parameters {
             }
         }
         if let Some(rotation) = self.rotation.filter(|rotation| self.passes.is_some() && !rotation.has_passes()) {
-            let rotation = words::typed(&rotation);
+            let rotation = super::typed(&rotation);
             let message = format!(
                 "`passes` is the number of steps of an iteration, which `rotation = \"{rotation}\"` does without; take it out"
             );
@@ -127,38 +126,37 @@ impl ElasticModel for ShapeBased {
         Some(Arc::new(ShapeBased { stiffness, damping, ..self.clone() }))
     }
 
-    fn describe(&self, body: &Body) -> String {
-        let mut text = super::describe(&super::elements_in_words(body), self.stiffness, self.damping, body);
-        if self.damping > 0.0 && self.damping_of == DampingReading::Deformation {
-            text.push_str(" of deformation");
-        }
-        text.push_str(match self.rotation {
+    fn damping(&self) -> f64 {
+        self.damping
+    }
+
+    fn unusual_choices(&self, body: &Body) -> String {
+        let damping = match self.damping_of {
+            DampingReading::Deformation if self.damping > 0.0 => " of deformation",
+            _ => "",
+        };
+        let rotation = match self.rotation {
             // In the plane there is only one method.
             _ if body.dimension == Dimension::Plane => "",
             RotationReading::Arctangent => "",
             RotationReading::VectorLength => ", θ = |w|",
             RotationReading::LinearUpdate => ", Eq. (16)",
             RotationReading::Robust => ", exact rotations",
-        });
-        text
+        };
+        format!("{damping}{rotation}")
     }
 
-    fn describe_fully(&self, body: &Body) -> String {
-        let mut text = super::describe(&super::elements_in_words(body), self.stiffness, self.damping, body);
-        match (body.dimension, self.rotation) {
-            (Dimension::Plane, _) => text += ", rotations by Eq. (9)",
-            (Dimension::Space, rotation) => {
-                text += &format!(", rotation {}", words::typed(&rotation));
-                if rotation.has_passes() {
-                    let plural = if self.passes == 1 { "" } else { "es" };
-                    text += &format!(" with {} pass{plural}", self.passes);
-                } else {
-                    text += " (exact)";
-                }
+    fn choices(&self, body: &Body) -> String {
+        let mut text = match (body.dimension, self.rotation) {
+            (Dimension::Plane, _) => ", rotations by Eq. (9)".to_owned(),
+            (Dimension::Space, rotation) if rotation.has_passes() => {
+                let plural = if self.passes == 1 { "" } else { "es" };
+                format!(", rotation {} with {} pass{plural}", super::typed(&rotation), self.passes)
             }
-        }
+            (Dimension::Space, rotation) => format!(", rotation {} (exact)", super::typed(&rotation)),
+        };
         if self.damping > 0.0 {
-            text += &format!(", damping of {}", words::typed(&self.damping_of));
+            text += &format!(", damping of {}", super::typed(&self.damping_of));
         }
         text
     }

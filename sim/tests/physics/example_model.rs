@@ -15,10 +15,6 @@ impl ElasticModel for Rods {
         self.stiffness
     }
 
-    fn describe(&self, body: &Body) -> String {
-        format!("{} nodes with rods, k = {} N/m", body.len(), self.stiffness)
-    }
-
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
         let rods = body.topology().springs(Springs::All).into_iter();
         let squared = |[i, j]: [u32; 2]| body.rest[i as usize].distance_squared(body.rest[j as usize]);

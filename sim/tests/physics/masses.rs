@@ -84,6 +84,5 @@ fn a_damping_ratio_is_about_the_lightest_node() {
         let model = parameters.resolve(&body, None).expect("it fits");
         let text = format!("{model:?}");
         assert!(text.contains(&format!("damping: {damping:?}")), "{text}");
-        assert!(model.describe(&body).contains("ζ = 0.3"), "{}", model.describe(&body));
     }
 }

@@ -4,12 +4,12 @@ use super::file::{ColumnFile, FigureFile, ForcesFile, NumbersFile, RowFile, Shee
 use super::{Column, Content, Figure, Forces, Row, Sheet};
 use crate::look::print::{unit, unit_of_sheet};
 use crate::look::{self, Subject};
+use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, Segment, key_path};
 use crate::reading::words::{list, quoted};
 use crate::scene::structure::ValidFile;
 use crate::scene::{Scene, SceneError};
 use crate::sim::Diagnostic;
-use crate::sim::words::typed;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::HashMap;

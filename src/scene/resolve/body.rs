@@ -3,12 +3,12 @@
 use super::lists::{Lists, check_count, check_exclusive};
 use super::motion::axis;
 use super::{direction, elements, vector};
+use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, Segment, key_path};
 use crate::reading::words::quoted;
 use crate::scene::file::{BodyFile, Cells, Coordinates, Lattice, RunFile, SideFile, StartShape};
 use crate::scene::generate::{Generator, Made, brought_to_start};
 use crate::scene::limits::{BodySize, Excess, Limits};
-use crate::sim::words::typed;
 use crate::sim::{Body, Dimension, Solids, State};
 use glam::DVec3;
 use std::collections::BTreeMap;

@@ -3,10 +3,10 @@
 use super::body::ResolvedBody;
 use super::motion::{self, axis};
 use super::{direction, vector};
+use crate::reading::captions::{quantity, rounded};
 use crate::reading::collector::{Collector, Segment, key_path};
 use crate::scene::file::{Coordinates, ObstacleFile, ShapeFile};
 use crate::sim::geometry::{bounds, is_inside};
-use crate::sim::words::{quantity, rounded};
 use crate::sim::{Dimension, Motion, Obstacle, Shape};
 use glam::{DQuat, DVec3};
 

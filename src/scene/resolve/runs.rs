@@ -93,7 +93,7 @@ pub(super) fn resolve(
                 Some(_) => key_path!["run", at, "integrator"].to_vec(),
                 None => key_path!["time", "integrator"].to_vec(),
             };
-            let message = format!("{} {reason}", words::quoted(&crate::sim::words::typed(&integrator)));
+            let message = format!("{} {reason}", words::quoted(&crate::reading::captions::typed(&integrator)));
             report.at(&path, message, None);
             return None;
         }
@@ -123,7 +123,7 @@ fn misplaced(
 ) -> Option<(Vec<Segment<'static>>, String, String)> {
     let own = |key| key_path!["run", at, key].to_vec();
     let common = |key| key_path!["time", key].to_vec();
-    let name = words::quoted(&crate::sim::words::typed(&integrator));
+    let name = words::quoted(&crate::reading::captions::typed(&integrator));
     if integrator.is_adaptive() {
         let path = if run.step.is_some() { own("step") } else { common("step") };
         let is_typed = run.step.is_some() || time.step.is_some() && run.integrator.is_none();
@@ -175,7 +175,7 @@ fn automatic(limit: f64, time: &TimeFile) -> Option<f64> {
 
 /// The message and remedy for a run without a step by `step = "auto"`.
 fn no_limit(run: &RunFile, integrator: Integrator, limit: f64) -> (String, String) {
-    let (name, method) = (words::quoted(&run.name), words::quoted(&crate::sim::words::typed(&integrator)));
+    let (name, method) = (words::quoted(&run.name), words::quoted(&crate::reading::captions::typed(&integrator)));
     match limit > 0.0 {
         true => (
             format!("`step = \"auto\"` finds no limit for {name}: {method} is stable with any step"),

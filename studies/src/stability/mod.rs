@@ -12,7 +12,7 @@ mod text;
 use crate::folder::Notes;
 use crate::progress::Watch;
 use crate::study::{Findings, Study};
-use localshape::scene::Run;
+use localshape::scene::{Run, description};
 use localshape::sim::stability::Stability as Limit;
 use localshape::sim::{Diagnostic, Status};
 use localshape::{Limits, Scene};
@@ -284,7 +284,7 @@ impl Results {
         let speed = (speeds.len() > 1).then(|| format!("impacts {} × as fast", short(speed)));
         let damping = (dampings.len() > 1).then(|| format!("{} × the damping", short(grid.damping)));
         let conditions: Vec<_> = speed.into_iter().chain(damping).collect();
-        [name.clone(), conditions.join(", "), model.describe_fully(&self.scene.body)]
+        [name.clone(), conditions.join(", "), description(model.as_ref(), &self.scene.body)]
     }
 
     /// The largest share up to which every step, with every stiffness, has one of these outcomes; 0 for none.

@@ -23,6 +23,7 @@ use crate::study::{Findings, Study};
 use crate::turns::{Clock, take_turns};
 use count::Counting;
 use localshape::Scene;
+use localshape::scene::description;
 use localshape::sim::model::ElasticModel;
 use method::{Attempt, End, Method};
 use reference::{farthest, larger, reference};
@@ -167,7 +168,7 @@ fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Compa
     let why = |one: Method| Some((one, one.refusal(subject, one.model(subject)?.as_ref())?));
     let mut found = Comparison {
         name: name.clone(),
-        words: usual.describe_fully(&scene.body),
+        words: description(usual.as_ref(), &scene.body),
         duration: scene.duration,
         cycle: scene.cycle(),
         reference: Err(String::new()),

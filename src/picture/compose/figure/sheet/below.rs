@@ -8,8 +8,8 @@ use crate::picture::narrow::narrow;
 use crate::picture::tally::{self, Tally};
 use crate::picture::text::Weight;
 use crate::picture::{Mark, number, series};
+use crate::reading::captions::elements;
 use crate::scene::Scene;
-use crate::sim::words::elements;
 use crate::sim::{Diagnostic, RunFrame, Snapshot, Status};
 
 /// Size of diagnostics (px in the reference picture).

@@ -1,14 +1,38 @@
-//! Names of the parts of a body, of choices and of units, and rounding of numbers, for captions and messages.
+//! Models, elements, choices and quantities in words, for captions and messages.
 
-use super::body::Body;
-
-use super::element::ElementKind;
+use crate::sim::model::ElasticModel;
+use crate::sim::{Body, ElementKind};
 use glam::DVec3;
 use serde::Serialize;
 
+/// A model in short, for the second line of a picture: `27 cubes, k = 10 kN/m, ζ = 0.1`.
+pub(crate) fn short_description(model: &dyn ElasticModel, body: &Body) -> String {
+    parts_and_constants(model, body) + &model.unusual_choices(body)
+}
+
+/// A model with all choices that change the result, such as the rotation solver.
+pub fn description(model: &dyn ElasticModel, body: &Body) -> String {
+    parts_and_constants(model, body) + &model.choices(body)
+}
+
+fn parts_and_constants(model: &dyn ElasticModel, body: &Body) -> String {
+    let parts = match (model.springs().len(), elements(body).as_slice()) {
+        (1, _) => "1 spring".to_owned(),
+        (0, [(count, name)]) => format!("{count} {name}"),
+        (0, _) => format!("{} elements", body.elements.len()),
+        (count, _) => format!("{count} springs"),
+    };
+    let (k, damping) = (model.stiffness(), model.damping());
+    let mut text = format!("{parts}, k = {}", quantity(k, "N/m"));
+    if damping > 0.0 {
+        text += &format!(", ζ = {}", rounded(damping / (2.0 * (k * body.lightest()).sqrt()), 3));
+    }
+    text
+}
+
 /// The number of elements of each kind, with the name of the kind, singular or plural. Polygons are named by their
 /// number of sides; hexahedra are cubes if all of them are, and quadrilaterals are squares if all of them are.
-pub fn elements(body: &Body) -> Vec<(usize, &'static str)> {
+pub(crate) fn elements(body: &Body) -> Vec<(usize, &'static str)> {
     use ElementKind::*;
     // Polygons with more than six sides are one group.
     let group = |nodes: &[u32], kind| if kind == Polygon { (kind, nodes.len().min(7)) } else { (kind, 0) };
@@ -68,7 +92,7 @@ fn is_cube(nodes: &[u32], rest: &[DVec3]) -> bool {
 }
 
 /// The value of an enum as written in a scene.
-pub fn typed(choice: &impl Serialize) -> String {
+pub(crate) fn typed(choice: &impl Serialize) -> String {
     serde_json::to_value(choice).ok().and_then(|name| name.as_str().map(String::from)).unwrap_or_default()
 }
 
@@ -77,13 +101,13 @@ const PREFIXES: [(f64, &str); 7] =
     [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
 
 /// The SI prefix that leaves one to three digits before the decimal point, and its factor.
-pub fn prefix(size: f64) -> (f64, &'static str) {
+pub(crate) fn prefix(size: f64) -> (f64, &'static str) {
     // Rounding may have made the number slightly less than a power of a thousand.
     PREFIXES.into_iter().find(|(factor, _)| size >= 0.999_999 * factor).unwrap_or(PREFIXES[PREFIXES.len() - 1])
 }
 
 /// A quantity with three significant digits and a prefix of its unit: `315 mm`.
-pub fn quantity(value: f64, unit: &str) -> String {
+pub(crate) fn quantity(value: f64, unit: &str) -> String {
     match value.abs() {
         0.0 => format!("0 {unit}"),
         1e-9..1e12 => {
@@ -95,14 +119,16 @@ pub fn quantity(value: f64, unit: &str) -> String {
 }
 
 /// A number rounded to so many significant digits.
-pub fn rounded(value: f64, digits: usize) -> f64 {
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::{Dimension, Solids};
+    use crate::sim::model::mass_spring::MassSpring;
+    use crate::sim::model::shape_based::ShapeBased;
+    use crate::sim::{Dimension, Solids};
 
     fn body(dimension: Dimension, rest: &[[f64; 3]], elements: &[&[u32]]) -> Body {
         let rest: Vec<_> = rest.iter().copied().map(DVec3::from_array).collect();
@@ -126,6 +152,17 @@ mod tests {
         let mut bent = block(0.1);
         bent[7][0] += 0.01;
         assert_eq!(words(&bent), [(1, "hexahedron")]);
+    }
+
+    #[test]
+    fn descriptions_have_parts_constants_and_choices() {
+        let one = body(Dimension::Space, &block(0.1), &[&[0, 1, 2, 3, 4, 5, 6, 7]]);
+        let shape = ShapeBased { damping: 60.0, ..ShapeBased::new(1e4) };
+        assert_eq!(short_description(&shape, &one), "1 cube, k = 10 kN/m, ζ = 0.3, exact rotations");
+        let full = "1 cube, k = 10 kN/m, ζ = 0.3, rotation robust (exact), damping of relative-motion";
+        assert_eq!(description(&shape, &one), full);
+        let spring = MassSpring { stiffness: 50.0, damping: 0.0, springs: [[0, 1]].into() };
+        assert_eq!(description(&spring, &one), "1 spring, k = 50 N/m");
     }
 
     #[test]
