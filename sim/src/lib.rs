@@ -53,7 +53,7 @@ pub use grip::Grip;
 pub use integrate::Integrator;
 /// Measurements of the processor for benchmarks.
 #[doc(hidden)]
-pub use kernel::floor;
+pub use kernel::peak;
 pub use lanes::vectors;
 pub use lists::IndexLists;
 pub use motion::{Ease, Key, Motion, Offset, Pose};

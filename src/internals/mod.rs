@@ -7,7 +7,7 @@ pub use crate::colour::{ciede2000, lab, linear};
 pub use crate::golden::Pixels;
 pub use crate::golden::page::{Page, PicturePair};
 pub use crate::output::{Compression, Shown, Spent, Tags, Timings, encode, read_tags};
-pub use crate::sim::floor::{lanes, limit_lanes, multiply_adds};
+pub use crate::sim::peak::{lanes, limit_lanes, multiply_adds};
 mod skipped;
 pub mod untrusted;
 

@@ -7,10 +7,10 @@
 #![allow(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
 
 mod drive;
-pub mod floor;
 pub(crate) mod general;
 pub(crate) mod lattice;
 mod memory;
+pub mod peak;
 mod report;
 mod rotation;
 pub(crate) mod springs;

@@ -16,7 +16,7 @@
 use super::general::{Constants, NONE, first_of};
 use super::memory::Aligned;
 use super::stepper::{Pass, Passes, Stepper};
-use super::update::{NodeUpdate, Nodes, Stage};
+use super::update::{NodeUpdate, NodeVector, Stage};
 use super::{Around, Lost};
 use crate::crew::Crew;
 use crate::lanes::{Lanes, Set, Work, each};
@@ -275,7 +275,7 @@ impl Arrays {
         // SAFETY: the caller's.
         unsafe {
             let zero = [L::splat(0.0); 3];
-            let mut nodes = Nodes {
+            let mut nodes = NodeVector {
                 position: self.load(0, at),
                 velocity: self.load(VELOCITY, at),
                 acceleration: if stage.loads_acceleration() { self.load(ACCELERATION, at) } else { zero },

@@ -72,7 +72,7 @@ pub(crate) struct NodeUpdate<'a, L> {
 
 /// A vector of nodes.
 #[derive(Clone, Copy)]
-pub(crate) struct Nodes<L> {
+pub(crate) struct NodeVector<L> {
     pub(crate) position: [L; 3],
     pub(crate) velocity: [L; 3],
     pub(crate) acceleration: [L; 3],
@@ -109,7 +109,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
     /// Moves nodes by their forces (N) and inverse masses (1/kg; zero in lanes without a node), and computes contact.
     /// Returns one bit for each lane that exceeds the speed limit.
     #[inline(always)]
-    pub(crate) fn advance(&self, nodes: &mut Nodes<L>, force: [L; 3], inverse_mass: L) -> u32 {
+    pub(crate) fn advance(&self, nodes: &mut NodeVector<L>, force: [L; 3], inverse_mass: L) -> u32 {
         let lost = self.go(nodes, force, inverse_mass);
         self.meet(nodes, inverse_mass);
         lost
@@ -117,7 +117,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
 
     /// The first half of [`Self::advance`]: velocities and positions.
     #[inline(always)]
-    pub(crate) fn go(&self, nodes: &mut Nodes<L>, force: [L; 3], inverse_mass: L) -> u32 {
+    pub(crate) fn go(&self, nodes: &mut NodeVector<L>, force: [L; 3], inverse_mass: L) -> u32 {
         let zero = L::splat(0.0);
         let alive = zero.lt(inverse_mass);
         // The acceleration (m/s²).
@@ -176,7 +176,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
 
     /// The lanes inside a bound, which need contact; also lanes without a node.
     #[inline(always)]
-    pub(crate) fn near(&self, nodes: &Nodes<L>) -> u32 {
+    pub(crate) fn near(&self, nodes: &NodeVector<L>) -> u32 {
         if !self.stage.has_contact() {
             return 0;
         }
@@ -190,7 +190,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
     /// The second half of [`Self::advance`]: contact at the end of a step. It does nothing where no lane is
     /// [near](Self::near).
     #[inline(always)]
-    pub(crate) fn meet(&self, nodes: &mut Nodes<L>, inverse_mass: L) {
+    pub(crate) fn meet(&self, nodes: &mut NodeVector<L>, inverse_mass: L) {
         let zero = L::splat(0.0);
         let inside = self.near(nodes) & L::bits(zero.lt(inverse_mass));
         if inside == 0 {
@@ -211,7 +211,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
 
     /// `V += A ΔT` for a share of the step.
     #[inline(always)]
-    fn kick(&self, nodes: &mut Nodes<L>, acceleration: [L; 3], share: f64) {
+    fn kick(&self, nodes: &mut NodeVector<L>, acceleration: [L; 3], share: f64) {
         let step = self.step * L::splat(share);
         for axis in 0..3 {
             nodes.velocity[axis] = acceleration[axis].mul_add(step, nodes.velocity[axis]);
@@ -220,7 +220,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
 
     /// `P += V ΔT` for a share of the step.
     #[inline(always)]
-    fn shift(&self, nodes: &mut Nodes<L>, share: f64) {
+    fn shift(&self, nodes: &mut NodeVector<L>, share: f64) {
         let step = self.step * L::splat(share);
         for axis in 0..3 {
             nodes.position[axis] = nodes.velocity[axis].mul_add(step, nodes.position[axis]);
@@ -229,7 +229,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
 
     /// The new position of velocity Verlet, and the velocity predicted with constant acceleration.
     #[inline(always)]
-    fn drift(&self, nodes: &mut Nodes<L>) {
+    fn drift(&self, nodes: &mut NodeVector<L>) {
         for axis in 0..3 {
             let predicted = nodes.acceleration[axis].mul_add(self.step, nodes.velocity[axis]);
             nodes.position[axis] = (nodes.velocity[axis] + predicted).mul_add(self.half, nodes.position[axis]);
@@ -239,7 +239,7 @@ impl<'a, L: Lanes> NodeUpdate<'a, L> {
 
     /// The lanes that exceed the speed limit or are NaN.
     #[inline(always)]
-    fn lost(&self, nodes: &Nodes<L>, at: usize) -> u32 {
+    fn lost(&self, nodes: &NodeVector<L>, at: usize) -> u32 {
         let [x, y, z] = nodes.velocity;
         let squared = z.mul_add(z, y.mul_add(y, x * x));
         !L::bits(squared.le(self.limits[at])) & L::ALL
@@ -270,8 +270,8 @@ fn touch(
 /// The rebound from a floor of nodes that moved at constant velocity: the operations of `Obstacle::push_out` in the
 /// same order and with the same rounding.
 #[inline(always)]
-fn rebound<L: Lanes>(floor: &Floor, nodes: &mut Nodes<L>, inside: L::Mask) {
-    let Nodes { position, velocity, .. } = nodes;
+fn rebound<L: Lanes>(floor: &Floor, nodes: &mut NodeVector<L>, inside: L::Mask) {
+    let NodeVector { position, velocity, .. } = nodes;
     let dot = |a: [L; 3], b: [L; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let (zero, one, e) = (L::splat(0.0), L::splat(1.0), L::splat(floor.restitution));
     let normal = each!(3, axis => L::splat(floor.normal[axis]));
@@ -330,7 +330,7 @@ mod tests {
             let Self(floor, position, velocity) = self;
             let lanes = |of: [DVec3; MOST]| each!(3, axis => L::from_array(of.map(|vector| vector[axis])));
             let acceleration = each!(3, _axis => L::splat(0.0));
-            let mut nodes = Nodes { position: lanes(position), velocity: lanes(velocity), acceleration };
+            let mut nodes = NodeVector { position: lanes(position), velocity: lanes(velocity), acceleration };
             rebound(floor, &mut nodes, L::mask(L::ALL));
             let arrays = |of: [L; 3]| each!(3, axis => of[axis].to_array());
             (L::WIDTH, arrays(nodes.position), arrays(nodes.velocity))

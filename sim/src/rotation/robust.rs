@@ -14,7 +14,7 @@
 //! rotation where there are several. It is never NaN, and a unit quaternion to round-off.
 //!
 //! Cost: one division and one square root for each pass; one pass for increments up to 1/80 rad, two up to about 0.3.
-//! `Optimum` in `sim/kernel/rotation.rs` is the same in lanes.
+//! `Optimum` in `sim/src/kernel/rotation.rs` is this method in lanes.
 
 use super::{Followed, torque, trace};
 use glam::{DMat3, DQuat, DVec3};

@@ -5,7 +5,7 @@ use super::{Constants, General, Law, NONE, RECORD, RecordAddress, SUM, first_of}
 use crate::kernel::memory::Aligned;
 use crate::kernel::rotation::{Arctangent, Optimum};
 use crate::kernel::stepper::Pass;
-use crate::kernel::update::{NodeUpdate, Nodes, Stage};
+use crate::kernel::update::{NodeUpdate, NodeVector, Stage};
 use crate::kernel::{Around, Rotation};
 use crate::lanes::{Lanes, MOST, Work, each};
 use std::ops::Range;
@@ -117,7 +117,7 @@ impl<L: Lanes> Own<'_, L> {
             if self.stage.loads_acceleration() {
                 acceleration = each!(3, axis => L::load(accelerations.add(axis * MOST)));
             }
-            let mut nodes = Nodes { position, velocity, acceleration };
+            let mut nodes = NodeVector { position, velocity, acceleration };
             let lost = self.update.advance(&mut nodes, force, inverse_mass);
             if self.stage.stores_acceleration() {
                 each!(3, axis => nodes.acceleration[axis].store(accelerations.add(axis * MOST)));

@@ -3,7 +3,7 @@
 use super::Sweep;
 use crate::kernel::lattice::{ACCELERATION, CHUNK, INVERSE_MASS, MEAN, TURN, VELOCITY, slot};
 use crate::kernel::rotation::{Moments, Solver, choose, matrix, turn, turned_back};
-use crate::kernel::update::{NodeUpdate, Nodes};
+use crate::kernel::update::{NodeUpdate, NodeVector};
 use crate::lanes::{Lanes, MOST, each, thrice};
 
 impl Sweep<'_> {
@@ -384,7 +384,7 @@ impl Sweep<'_> {
                 let valence = L::load(self.valence.add(at));
                 let (stiffness, damping) = (stiffness * valence, damping * valence);
                 let acceleration = if stage.loads_acceleration() { load(to, ACCELERATION) } else { [zero; 3] };
-                let mut nodes = Nodes { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
+                let mut nodes = NodeVector { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
                 let mut total = force(at);
                 thrice!(axis => {
                     total[axis] = nodes.position[axis].neg_mul_add(stiffness, total[axis]);
@@ -411,7 +411,7 @@ impl Sweep<'_> {
             for at in (first..end).step_by(L::WIDTH) {
                 let to = self.nodes(plane, at);
                 let acceleration = if stage.keeps_acceleration() { load(to, ACCELERATION) } else { [zero; 3] };
-                let mut nodes = Nodes { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
+                let mut nodes = NodeVector { position: load(to, 0), velocity: load(to, VELOCITY), acceleration };
                 update.meet(&mut nodes, inverse_mass(to));
                 thrice!(axis => {
                     nodes.position[axis].store(to.add(axis * MOST));
