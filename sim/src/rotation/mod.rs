@@ -9,11 +9,11 @@
 //! | `w` | `θ u`, axis times angle (rad) |
 //!
 //! Rotating the equilibrium shape by `L` turns `A` into `L A`, so the corners are read only once for any number of
-//! passes. Except for [`rotation_by_length`], for comparison, no function here uses a sine, a cosine or an arctangent: square
+//! passes. Except for [`linearised::rotation_by_length`], for comparison, no function here uses a sine, a cosine or an arctangent: square
 //! roots and divisions are rounded identically on every machine.
 //!
 //! All methods in space are behind [`RotationReading::follow`]. The program `localshape-study rotation` measures their errors and
-//! their cost; `docs/accuracy.md` has the results, and why [`robust`](mod@robust) is the default.
+//! their cost; `docs/accuracy.md` has the results, and why [`robust`] is the default.
 
 pub mod davenport1968;
 pub mod linear_update;
@@ -22,11 +22,7 @@ pub(crate) mod planar;
 mod reading;
 pub mod robust;
 
-pub use davenport1968::optimum;
-pub use linear_update::update as linear_update;
-pub use linearised::{is_well_posed, iterate, rotation_by_arctangent, rotation_by_length, solve};
 pub use reading::RotationReading;
-pub use robust::follow as robust;
 
 use super::element::Dimension;
 use glam::{DMat3, DQuat, DVec2, DVec3};
@@ -43,7 +39,7 @@ pub struct Followed {
 impl Followed {
     /// The optimum nearest to the `last` rotation, by the global solver. `at_rest` is `Σ R0 rᵀ` (m²).
     fn global(at_rest: DMat3, last: DQuat) -> Self {
-        Self { rotation: optimum(at_rest, last), is_global: true }
+        Self { rotation: davenport1968::optimum(at_rest, last), is_global: true }
     }
 }
 
@@ -71,7 +67,7 @@ pub fn moment(shape: &[DVec3], now: impl IntoIterator<Item = DVec3>) -> DMat3 {
 pub(crate) fn best(dimension: Dimension, at_rest: DMat3) -> DMat3 {
     match dimension {
         Dimension::Plane => planar::matrix(planar::solve(at_rest, DVec2::X)),
-        Dimension::Space => DMat3::from_quat(optimum(at_rest, DQuat::IDENTITY)),
+        Dimension::Space => DMat3::from_quat(davenport1968::optimum(at_rest, DQuat::IDENTITY)),
     }
 }
 
