@@ -57,7 +57,8 @@ fn is_ours(beginning: &[u8]) -> bool {
         (4, b"ftyp", b"data\0\0\0\x01"),
         (0, b"\x1a\x45\xdf\xa3", b"\x44\x87"),
     ];
-    /// The length and the language of a comment stand between these bytes and the comment; this is their most (bytes).
+    /// The greatest length of the comment's length and language, which stand between these bytes and the comment
+    /// (bytes).
     const BETWEEN: usize = 8;
     let after = |at: usize| beginning.get(at..).unwrap_or_default();
     KINDS.iter().any(|&(at, magic, before)| {

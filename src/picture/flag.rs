@@ -16,7 +16,7 @@ const RIM: f64 = 1.3;
 const LETTER: f64 = 14.0;
 const BESIDE_LETTER: f64 = 4.0;
 const RINGS_APART: f64 = 3.0;
-/// The most of the margin that crowded rings take at each end.
+/// The largest share of the margin for crowded rings at each end.
 const BEYOND: f64 = 0.35;
 /// The height above the charts at which the lines become upright, their width (px in the reference picture), and their
 /// opacity.

@@ -40,12 +40,12 @@ const BELOW_CHART: f64 = 18.0;
 pub(super) const CAPTION_LINE: f64 = 22.0;
 const ABOVE_CAPTION: f64 = 8.0;
 const BELOW_CAPTION: f64 = 30.0;
-/// The most of a panel for the text above and below a body: with second lines, without them, and with the margins.
+/// The largest shares of a panel for the text above and below a body: with second lines, without, and with margins.
 const MOST_WORDS: [f64; 3] = [0.34, 0.45, 0.8];
 /// The room of a chart besides its curves (px in the reference picture), and the lowest chart (px).
 const LEAST_CHART_ROOM: f64 = 54.0;
 pub(super) const LEAST_CHART: f64 = 14.0;
-/// The most of the height of panels and chart that the chart takes.
+/// The largest share of the height of panels and chart for the chart.
 const CHART_SHARE: f64 = 0.34;
 /// The distance of names at the ends of curves, the height of their room in a chart of the usual height (px in the
 /// reference picture), and the most names that make a chart higher.
@@ -311,7 +311,7 @@ impl Scale {
         Self { type_factor: view.look.text_scale, ..self }
     }
 
-    /// The sizes for a part of the picture of a scene, whose type is no smaller than its least one.
+    /// The sizes for a part of the picture of a scene, whose type is not smaller than the picture's smallest type.
     fn within(self, view: &View) -> Self {
         Self { least: LEAST_TYPE * whole(view) * view.look.text_scale.min(1.0), ..self.with(view) }
     }

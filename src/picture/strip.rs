@@ -22,7 +22,7 @@ const UNIT_BELOW: f64 = 19.0;
 const BAND: [&[&str]; 2] = [&["band: least to most"], &["band:", "least to most"]];
 /// The gap between the name and the numbers beside the chart (px in the reference picture).
 const BESIDE_NAME: f64 = 14.0;
-/// The most that the first time extends left of the chart (px in the reference picture).
+/// The largest extent of the first time left of the chart (px in the reference picture).
 const BEFORE_TIMES: f64 = 5.0;
 /// The share of the width before a change of the scale of time, and the gap (px in the reference picture).
 const BEFORE: f64 = 0.8;

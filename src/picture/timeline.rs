@@ -18,11 +18,11 @@ use crate::sim::{Diagnostic, Frame, Status};
 /// The heights from the top of the room to the middle of the rings, and to the chart (px in the reference picture).
 const RINGS: f64 = 11.0;
 const ABOVE: f64 = 33.0;
-/// The narrowest chart (px), and the most of the room for its name and for the names at the ends of curves.
+/// The narrowest chart (px), and the largest shares of the room for its name and for the names at the ends of curves.
 const LEAST_WIDTH: f64 = 40.0;
 const NAME: f64 = 0.3;
 const NAMES: f64 = 0.22;
-/// The most that these names extend above the chart (px in the reference picture).
+/// The largest extent of these names above the chart (px in the reference picture).
 const NAMES_ABOVE: f64 = 8.0;
 /// Radius of the circles around present values and width of their line (px in the reference picture), and their corners.
 const CIRCLE: [f64; 2] = [4.5, 1.6];

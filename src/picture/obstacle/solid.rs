@@ -14,7 +14,7 @@ const FLATNESS: f64 = 0.12;
 /// The least and the largest number of segments of a round outline, and their number for shadows only.
 const SEGMENTS: [usize; 2] = [16, 128];
 const SHADOW_SEGMENTS: usize = 20;
-/// The size of cells of surfaces near the body (soft units), and their most along a side of a box.
+/// The size of cells of surfaces near the body (soft units), and their largest number along a side of a box.
 const CELL: f64 = 0.3;
 const MOST_CELLS: f64 = 64.0;
 /// Balls larger than this (body sizes) are cut finely where the body is, and coarsely elsewhere.

@@ -13,7 +13,7 @@ use crate::scene::figure::Figure;
 const TITLE_BASELINE: f64 = 60.0;
 const FIRST_BASELINE: f64 = 54.0;
 const BELOW_TITLE: f64 = 27.0;
-/// The most lines of captions, and the most of the picture that the header takes.
+/// The largest number of lines of captions, and the largest share of the picture for the header.
 const MOST_LINES: usize = 3;
 const MOST_HEIGHT: f64 = 0.34;
 /// Side of the key's square, gap between the square and its words, and gap between caption and key (px in the reference

@@ -14,7 +14,7 @@ use crate::sim::{Diagnostic, RunFrame, Snapshot, Status};
 
 /// Size of diagnostics (px in the reference picture).
 const NUMBER: f64 = 14.0;
-/// The size of tallies relative to those of panels, the most of a tile's width that they take, and the gap between
+/// The size of tallies relative to those of panels, their largest share of a tile's width, and the gap between
 /// tally, count and number (px in the reference picture).
 const TALLY: f64 = 0.54;
 const TALLY_SHARE: f64 = 0.6;

@@ -9,8 +9,8 @@ use crate::picture::strip::{SplitChart, Strip};
 use crate::runner::history::History;
 use crate::scene::figure::Sheet;
 
-/// The most of the picture's width for names at the ends of curves, and half of the gap between names of two charts (px
-/// in the reference picture).
+/// The largest share of the picture's width for names at the ends of curves, and half of the gap between names of
+/// two charts (px in the reference picture).
 const NAMES: f64 = 0.16;
 const NAMES_APART: f64 = 3.0;
 

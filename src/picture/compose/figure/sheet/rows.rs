@@ -11,8 +11,7 @@ use crate::picture::wrap::wrapped;
 use crate::scene::Scene;
 use crate::scene::figure::{Row, Sheet};
 
-/// The largest width of names and notes relative to the picture, or the second one for long words, and their most
-/// lines.
+/// The largest width of names and notes relative to the picture, for long words the second one, and their most lines.
 const WIDEST: [f64; 2] = [0.125, 0.25];
 const NAME_LINES: usize = 2;
 const NOTE_LINES: usize = 3;

@@ -39,7 +39,7 @@ const BETWEEN_CHARTS: [f64; 2] = [40.0, 26.0];
 const BELOW_CHARTS: f64 = 44.0;
 /// The least, usual and largest height of a chart (px in the reference picture).
 const CHART: [f64; 3] = [32.0, 68.0, 150.0];
-/// The most of the height of tiles and charts that the charts take.
+/// The largest share of the height of tiles and charts for the charts.
 const CHARTS_SHARE: f64 = 0.58;
 /// The gap below the tiles if there are no charts (px in the reference picture).
 const BELOW_TILES: f64 = 22.0;
