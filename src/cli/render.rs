@@ -34,7 +34,7 @@ Examples:
   localshape render scenes/fig4b.toml --animate fig4b.gif --no-frames
   localshape render scenes/fig4b.toml --only Mass-spring --frames 30 -o one
   localshape render scenes/fig4b.toml --resume             continues after an interruption
-  localshape render scenes/fig4b.toml --set run[0].model.stiffness=1e5 -o stiff    with another value in the scene
+  localshape render scenes/fig4b.toml --set 'run[0].model.stiffness=1e5' -o stiff    with another value in the scene
   localshape render scenes/fig4b.toml --at 0.5s -o frame.pdf     one frame for print, with text that can be searched
 
 With --shard, many processes draw a scene into one folder: docs/clusters.md has a script for them.

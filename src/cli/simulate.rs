@@ -12,7 +12,7 @@ Examples:
   localshape simulate scenes/fig4b.toml
   localshape simulate scenes/fig4b.toml --states -o results
   localshape simulate scenes/*.toml --json > results.json
-  localshape simulate scenes/fig4b.toml --set run[0].model.stiffness=1e5 -o stiff    with another value in the scene
+  localshape simulate scenes/fig4b.toml --set 'run[0].model.stiffness=1e5' -o stiff    with another value in the scene
   localshape render scenes/fig4b.toml --from-states results/states.npz -o pictures   draws the states of the second example
 
 The folder then has diagnostics.csv (energies, momenta, turned-over elements and more, for each run and frame), run.json \

@@ -76,7 +76,7 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), OutputError> 
     file.commit()
 }
 
-/// The beginning of the hidden name of a file. That of a frame says which one it is.
+/// The beginning of the hidden name of a file. The name for a frame has its number.
 fn prefix(path: &Path) -> String {
     let frame = path.file_name().and_then(OsStr::to_str).filter(|name| frame_number(name).is_some());
     frame.map_or(PREFIX.to_owned(), |name| format!("{PREFIX}{name}-"))

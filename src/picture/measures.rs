@@ -4,14 +4,14 @@
 macro_rules! measures {
     ($($(#[$about:meta])* $name:ident = $value:literal;)*) => {
         $($(#[$about])* pub(crate) const $name: f32 = $value;)*
-        /// All of them as constants of WGSL.
+        /// All measures as constants of WGSL.
         pub(crate) const WGSL: &str = concat!($("const ", stringify!($name), " = ", $value, ";\n"),*);
     };
 }
 
 // Widths and distances in pixels of the reference picture.
 measures! {
-    /// Edges of elements in the plane, of those that have turned over, elements without faces, contours in the plane.
+    /// Edges of sound elements in the plane, of turned-over ones, elements without faces, contours in the plane.
     FLAT_EDGE_WIDTH = 1.5;
     FLAT_EDGE_ALPHA = 0.75;
     ALARM_EDGE_WIDTH = 1.5;
@@ -24,7 +24,7 @@ measures! {
     /// Between these sizes of elements (px) edges fade out, because so close together they would flicker.
     SMALLEST_ELEMENT = 4.0;
     FADING_ELEMENT = 8.0;
-    /// The stripes of turned-over elements: opacity, and in the plane their distance and the share of it that is dark.
+    /// The stripes of turned-over elements: opacity, and in the plane their distance and their dark share.
     STRIPE_ALPHA = 0.62;
     FLAT_PERIOD = 9.0;
     FLAT_STRIPE = 0.19;
@@ -34,9 +34,9 @@ measures! {
     DOT_ALPHA = 0.6;
     /// The width of the rim of an obstacle in the plane.
     RIM_WIDTH = 2.0;
-    /// The width of a casing, in parts of the line's, and the least (px).
+    /// The width of a casing relative to the line's, and the least (px).
     CASING = 0.24;
     LEAST_CASING = 0.6;
-    /// The rim of a node in space, in parts of its radius.
+    /// The rim of a node in space, relative to its radius.
     BEAD_RIM = 0.32;
 }

@@ -182,7 +182,7 @@ impl PlanePanel<'_> {
         sum.map(|sum| (sum / mesh.shades.len()) as u8)
     }
 
-    /// PlanePanel elements: grey, unless a field colours them, with dots that are fixed to the body.
+    /// Flat elements: grey, unless a field colours them, with dots that are fixed to the body.
     fn dots(&self, items: &mut Vec<Item<'_>>) {
         let (mesh, sight) = (&self.panel.sound, &self.panel.sight);
         let is_flat = |triangle: &&[u32; 3]| mesh.vertices[triangle[0] as usize].hatch > 0.5;

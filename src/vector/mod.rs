@@ -43,8 +43,8 @@ impl Format {
 pub struct Page<'a> {
     /// The picture.
     pub picture: &'a Picture,
-    /// The pixels of the picture's lit panels, as [`bodies`] asks for them: red, green and blue of each, in rows from the top
-    /// left; `None` without lit panels.
+    /// The pixels of the picture that [`bodies`] returns: red, green and blue of each, in rows from the top left; `None`
+    /// without lit panels.
     pub bodies: Option<&'a [u8]>,
     /// Width and height (mm). By default a pixel is 1/96 of an inch.
     pub size_mm: Option<[f64; 2]>,
@@ -75,12 +75,12 @@ pub enum VectorError {
 /// Half the width of the halo around words over bodies, in sizes of type.
 const HALO: f32 = 0.14;
 
-/// Pixels of an inch in bodies of pages whose size is in pixels, and those pixels.
+/// Pixels per inch of bodies on pages with a size in pixels, and of these pixels.
 const DPI: [f32; 2] = [300.0, 96.0];
-/// Bodies of pages have at most so many pixels a side, unless their pictures have more.
+/// The largest number of pixels of a side for bodies on pages, unless their picture has more.
 const MOST_PIXELS: f32 = 8192.0;
 
-/// Pixels of lit bodies for one of their picture.
+/// Pixels of lit bodies per pixel of their picture.
 fn fineness(picture: &Picture, size_mm: Option<[f64; 2]>) -> f32 {
     let longest = picture.size[0].max(picture.size[1]) as f32;
     if size_mm.is_some() { 1.0 } else { (DPI[0] / DPI[1]).min(MOST_PIXELS / longest).max(1.0) }

@@ -125,7 +125,7 @@ struct OfScene {
     full: bool,
 }
 
-/// A word of a command, in single quotes where a shell would not take it as it is.
+/// A word of a command, in single quotes if a shell requires them.
 fn quoted(word: &str) -> String {
     let is_plain = |letter: char| letter.is_alphanumeric() || "-_./+".contains(letter);
     if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }

@@ -279,8 +279,8 @@ fn folders_that_cannot_be_written_to_are_told_before_anything_is_measured() {
     }
 }
 
-/// Nothing is written of an interrupted measurement, and how far it was is told without a terminal. Studies without plots open no
-/// graphics device, so that they do not look for one.
+/// An interrupted measurement writes nothing, and reports its progress without a terminal. Studies without plots open no
+/// graphics device.
 #[cfg(unix)]
 #[test]
 fn interrupted() {

@@ -57,7 +57,7 @@ fn the_order_does_not_matter() {
     }
 }
 
-/// Whoever draws a frame removes what a killed process left of it. Others may be at work, also where no lock is seen.
+/// A process that draws a frame removes its leftovers of killed processes. Others may be at work without a visible lock.
 #[test]
 fn leftovers_go_with_their_frames() {
     let Some(place) = place_to_draw() else { return };

@@ -49,7 +49,7 @@ impl Draft<'_> {
         let slabs = obstacles.slabs.iter().filter_map(|slab| {
             let panes = slab.panes.iter().filter(|pane| !pane.grid);
             let corners = || panes.clone().flat_map(|pane| &pane.corners).map(|corner| place(corner.position));
-            // One that goes on behind the camera leaves on all sides.
+            // An obstacle that extends behind the camera leaves on all sides.
             let is_before = corners().all(|corner| self.lens.project(corner).is_some());
             if is_before { self.bounds(corners()) } else { Some([DVec2::NEG_INFINITY, DVec2::INFINITY]) }
         });
