@@ -85,7 +85,7 @@ impl Timeline {
         self
     }
 
-    /// With at most so many pictures per second: halved as often as needed, so that the remaining ones are evenly
+    /// With at most `most` pictures per second: halved as often as needed, so that the remaining ones are evenly
     /// spaced.
     pub(super) fn at_most(&self, most: f64) -> Self {
         let own = self.own_rate();

@@ -1,4 +1,4 @@
-//! Frames in rising order: simulated as they are asked for, all simulated before the first one, or read from stored
+//! Frames in rising order: simulated on request, all simulated before the first one, or read from stored
 //! states. The progress can be saved, so that another process continues.
 
 use super::last_fit::Fitting;

@@ -1,4 +1,4 @@
-//! The program as its users meet it: files, messages and exit statuses.
+//! The program as its users see it: files, messages and exit statuses.
 
 use std::fs;
 use std::path::PathBuf;
@@ -29,7 +29,7 @@ restitution = 0.5
 friction = 0.3
 "#;
 
-/// A folder of its own to run the program in.
+/// A folder for running the program.
 struct Place(TempDir);
 
 impl Place {
@@ -95,7 +95,7 @@ impl Place {
     }
 }
 
-/// Says that a test is skipped, on standard error itself: `cargo test` holds back what macros print.
+/// Reports a skipped test on standard error directly: `cargo test` captures the output of macros.
 fn skipped(why: &str) {
     use std::io::Write;
     let _ = writeln!(std::io::stderr(), "SKIPPED {}: {why}", std::thread::current().name().unwrap_or("a test"));
@@ -111,7 +111,7 @@ fn can_study() -> bool {
     true
 }
 
-/// The names of files with the names of plots.
+/// The names of files, including plots.
 fn with_plots(names: &[&str], plots: &[&str]) -> Vec<String> {
     let plots = plots.iter().filter(|_| cfg!(feature = "render"));
     let plots = plots.flat_map(|plot| ["svg", "png"].map(|ending| format!("{plot}.{ending}")));
@@ -177,7 +177,7 @@ fn maps_the_stability_of_a_scene() {
     place.good(&format!("{command} --threads 1"));
     assert_eq!(place.read("maps/stability.csv"), table, "for any number of threads");
     place.bad(&format!("{command} --full"), 2, &["maps", "stability small.toml"]);
-    // The notes of another command that was interrupted are not lost.
+    // The notes of another interrupted command are not lost.
     let notes = "<!-- localshape-study stability other.toml -->\n0.1.0 ab\n";
     place.write("begun/stability.unfinished", notes);
     place.bad("stability small.toml -o begun", 2, &["`localshape-study stability other.toml`", "--overwrite"]);
@@ -293,7 +293,7 @@ fn interrupted() {
         let folder = format!("out-{signal}");
         let mut command = place.command(&format!("{study} -o {folder}"));
         let mut running = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
-        // The first line tells that the measurement has begun.
+        // The first line reports that the measurement has begun.
         let mut lines = std::io::BufReader::new(running.stderr.take().expect("a pipe"));
         let mut line = String::new();
         std::io::BufRead::read_line(&mut lines, &mut line).expect("a line");

@@ -299,7 +299,7 @@ fn wrong_words() {
     let place = Place::new();
     place.write("a.png", &picture("one", "1", 0, &GREY));
     std::fs::create_dir(place.path("none")).unwrap();
-    // A mistyped path is told alike on both sides.
+    // A mistyped path gets the same message on both sides.
     for (words, absent) in
         [("a.png b.png", "b.png"), ("b.png a.png", "b.png"), ("none below", "below"), ("below none", "below")]
     {

@@ -7,7 +7,7 @@ fn simulate(place: &Place, words: &[&str]) -> crate::support::Ran {
     run(&mut place.command([&["simulate", "small.toml"], words].concat()))
 }
 
-/// The command makes what the edited file would, and says so.
+/// The command gives the results of an edited file, and records the settings.
 #[test]
 fn a_set_value_is_that_of_an_edited_file() {
     let place = Place::with_small();
@@ -50,7 +50,7 @@ fn a_set_value_is_that_of_an_edited_file() {
     }
 }
 
-/// Each mistake is that of the file, with the option as its place.
+/// Each mistake is reported like one in the file, with the option as its place.
 #[test]
 fn mistakes_have_the_option_as_their_place() {
     let place = Place::with_small();
@@ -79,7 +79,7 @@ fn mistakes_have_the_option_as_their_place() {
         ("time.duration.end=1", "`time.duration` is the number 0.1; expected a table"),
         ("view.labels=[name]", "`[name]` is not TOML; in a shell, quotation marks need others around the whole"),
         ("view.camera.follow=[false, 1]", "`view.camera.follow` is an array of 2; expected true or false"),
-        // What is wrong with the scene as a whole, at the value that is to blame.
+        // Mistakes in the scene as a whole, at the value that causes them.
         ("body.velocity=[1, 2]", "`body.velocity` has 2 coordinates"),
     ] {
         simulate(&place, &["--set", setting]).bad(2, &[&format!("error: small.toml: --set {setting}: "), words]);
@@ -121,7 +121,7 @@ fn check_and_resuming_repeat_the_option() {
     }
 }
 
-/// For a figure it holds in all of its scenes.
+/// In a figure, a setting holds for all scenes.
 #[cfg(feature = "render")]
 #[test]
 fn figures_are_drawn_with_other_values() {

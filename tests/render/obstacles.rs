@@ -150,7 +150,7 @@ fn a_plate_is_transparent_behind_its_surface_and_says_where_it_goes() {
     }
 }
 
-/// However far a body slides, it does not leave what is drawn of the plate below it.
+/// A body that slides any distance stays on the drawn part of the plate below it.
 #[test]
 fn a_plate_reaches_as_far_as_bodies_slide_on_it() {
     let slope = "gravity = [0, -9.8, 0]\n[[obstacle]]\nkind = 'plate'\npoint = [0, 0, 0]\nnormal = [0.5, 0.866, 0]\nrestitution = 0\n";

@@ -104,7 +104,7 @@ fn operations(picture: &Picture) -> Vec<Vec<String>> {
     content.expect("the page").lines().map(|line| line.split(' ').map(str::to_owned).collect()).collect()
 }
 
-/// PDF has one opacity for fills and for lines, and the end of a clip restores what was before it.
+/// PDF has one opacity for fills and for lines, and the end of a clip restores the values before it.
 #[test]
 fn opacities_and_colours_are_set_again_where_pdf_has_others() {
     let mut picture = figure("fig1", Theme::Light);
@@ -230,7 +230,7 @@ fn lit_bodies_of_pages_are_fine_enough_for_print() {
     let svg = String::from_utf8(write(&page, Format::Svg).expect("a page")).expect("text");
     assert!(svg.contains("<image width=\"2000\" height=\"2250\"") && svg.contains("matrix(0.32 0 0 0.32 640 0)"));
     let Some(gpu) = gpu("lit_bodies_of_pages_are_fine_enough_for_print") else { return };
-    // The same look, finer: means of larger squares are those of pixels.
+    // The look is the same, but finer: means of larger squares equal pixels.
     let [plain, fine] = [bodies(&picture, Some([1.0; 2])), Some(lit)].map(|lit| draw(gpu, &lit.expect("lit panels")));
     let square = |image: &RgbImage, [x, y]: [u32; 2], side: u32| {
         let pixels = (0..side * side).map(|at| f64::from(image.get_pixel(x + at % side, y + at / side)[1]));

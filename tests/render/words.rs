@@ -279,7 +279,7 @@ fn words_stay_where_they_are() {
             assert_eq!(picture.words.len(), first.words.len(), "words come or go in frame {frame}");
             for (now, before) in picture.words.iter().zip(&first.words) {
                 assert_eq!((now.baseline, now.size), (before.baseline, before.size), "{}", now.text);
-                // Numbers keep one end, whatever their length; all other texts keep both.
+                // Numbers of any length keep one end; all other texts keep both.
                 let kept = [0, 1].map(|end| (now.span[end] - before.span[end]).abs() < 1e-3);
                 let is_number = now.text.starts_with(|c: char| c.is_ascii_digit() || c == '−');
                 let stays = if is_number { kept.contains(&true) } else { kept == [true; 2] };

@@ -50,7 +50,7 @@ impl Results {
 }
 
 impl Grid {
-    /// The cycle T as so many steps, for a share of the unit.
+    /// The cycle T in steps, for a share of the unit.
     fn steps_per_cycle(&self, share: f64) -> f64 {
         1.0 / (share * self.limit.unwrap_or(std::f64::consts::FRAC_1_PI))
     }

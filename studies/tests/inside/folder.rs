@@ -15,7 +15,7 @@ fn findings_are_found_again() {
     for (key, found) in [("a 0.2", "9"), ("a 0.4", "9"), ("b 0.8", "diverged")] {
         made.add(key, found);
     }
-    // As if the program was killed while it wrote.
+    // The program was killed during a write.
     let path = place.path().join("study.unfinished");
     let text = fs::read_to_string(&path).expect("findings");
     fs::write(&path, &text[..text.len() - 3]).expect("to cut it");

@@ -1,4 +1,4 @@
-//! Pages: where their parts stand.
+//! Pages: the places of their parts.
 
 use super::*;
 

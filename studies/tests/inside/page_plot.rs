@@ -1,4 +1,4 @@
-//! Plots, whatever their numbers.
+//! Plots of any numbers.
 
 use super::super::{Page, Panels};
 use super::*;
@@ -28,7 +28,7 @@ fn a_decade_is_equally_long_everywhere_and_plots_share_their_axes() {
     let dots = &frames[0].curves(&plots[0])[0].points;
     assert!((dots[1][0] - dots[0][0] - (dots[2][0] - dots[1][0])).abs() < 1e-9);
     assert!((dots[1][1] - dots[0][1] - (dots[2][1] - dots[1][1])).abs() < 1e-9 && dots[1][1] < dots[0][1]);
-    // 3e5 is outside the first plot's own range, which it widens.
+    // 3e5 is outside the range of the first plot, and widens it.
     assert!(dots[2][0] < 400.0 && frames[1].curves(&plots[1])[0].points[0][0] > 1100.0);
     assert_eq!(frames[0].ranges, frames[1].ranges);
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Also where nothing is done for a long time.
+/// Lines appear even if nothing is done for a long time.
 #[test]
 fn lines_come_without_a_terminal() {
     let mut lines = Vec::new();

@@ -29,7 +29,7 @@ fn the_clock_is_said() {
     }
 }
 
-/// After a divergence steps would take no time.
+/// After a divergence, steps would take no time.
 #[test]
 fn no_block_diverges_while_it_is_timed() {
     let Ratio { sides, rounds, turn, .. } = Ratio::new(1);

@@ -1,4 +1,4 @@
-//! Tables are read again, and compared with the document of their columns.
+//! Tables are read back, and compared with the documentation of their columns.
 
 use std::collections::BTreeMap;
 

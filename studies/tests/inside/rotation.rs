@@ -30,7 +30,7 @@ fn all_solvers_agree_on_well_shaped_elements_that_have_turned_a_little() {
     for increment in [1e-3, 0.03, 0.3] {
         for (sample, sought) in samples(Kind::Warm { strain: 0.5, increment }, 100) {
             for solver in solver::all() {
-                // Eq. (16) makes no rotation, and relaxation converges linearly.
+                // The result of Eq. (16) is not a rotation, and relaxation converges linearly.
                 let (passes, tolerance) = match solver.name {
                     "linear-update" => (1, 0.2 * increment * increment),
                     "mueller" => (100, 1e-12),
@@ -67,7 +67,7 @@ fn moments(random: &mut Random) -> DMat3 {
     let mut stretch = DVec3::from_array(std::array::from_fn(|axis| {
         if axis < rank { sign(random) * libm::exp10(-6.0 * random.next() * random.next()) } else { 0.0 }
     }));
-    // Equal sizes are where optima stop being unique.
+    // With equal sizes, optima are no longer unique.
     if random.next() < 0.3 {
         stretch.y = sign(random) * stretch.x;
     }

@@ -72,7 +72,7 @@ fn columns_are_documented() {
     assert_eq!(results.table().rows.len(), results.cells.len());
 }
 
-/// All rows up to the largest good share are good; a bad cell counts whatever its column, and so does its own row.
+/// All rows up to the largest good share are good. A bad cell in any column excludes its row.
 #[test]
 fn the_largest_share_is_below_every_bad_cell() {
     let (protocol, scene) = small();

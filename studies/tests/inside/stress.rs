@@ -11,7 +11,7 @@ fn the_shape_model_keeps_what_it_promises_and_no_model_gives_nan() {
     let broken: Vec<_> =
         broken.iter().map(|row| format!("{}, {}: {}", row.group, row.name, row.broken().join("; "))).collect();
     assert!(broken.is_empty(), "{broken:#?}\n{}", results.text());
-    // The point of the paper: from a mirror image springs do not come back.
+    // The paper's point: from a mirror image, springs do not recover.
     let mirrored = results.rows.iter().find(|row| row.name == "a mirror image").expect("it is a trial");
     assert!(mirrored.outcomes[2..].iter().all(|springs| springs.turned_over == mirrored.elements), "{mirrored:?}");
     let table = results.table();

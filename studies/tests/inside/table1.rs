@@ -49,8 +49,8 @@ fn each_row_is_as_far_from_the_others_as_in_the_paper() {
     }
 }
 
-/// In row A rebounds add energy, and the solver is not the cause: with exact rotations they do so, too. With ten times
-/// shorter steps, as in row B, they add little, as stated in `docs/paper.md`.
+/// In row A rebounds add energy. The solver is not the cause: exact rotations gain energy, too. With ten times shorter
+/// steps, as in row B, rebounds add little, as stated in `docs/paper.md`.
 #[test]
 fn rebounds_feed_energy_where_a_cycle_has_ten_steps() {
     let gained = |number: u32, step: f64| {
@@ -108,8 +108,8 @@ fn orientations_are_evenly_spread() {
     let mean = all.iter().map(|one| one.axis).sum::<DVec3>() / f64::from(count);
     assert!(mean.length() < 0.05, "{mean}");
     assert!(all.iter().all(|one| (one.axis.length() - 1.0).abs() < 1e-15 && one.angle >= 0.0));
-    // Of uniformly distributed rotations the fraction (θ − sin θ)/π has an angle below θ; angles beyond half a turn
-    // are those of the opposite axis.
+    // The fraction (θ − sin θ)/π of uniformly distributed rotations has an angle below θ. Angles beyond half a turn
+    // belong to the opposite axis.
     let below = all.iter().filter(|one| one.angle.min(std::f64::consts::TAU - one.angle) < 2.0).count();
     let expected = (2.0 - 2f64.sin()) / std::f64::consts::PI;
     assert!((below as f64 / f64::from(count) - expected).abs() < 0.03, "{below}");

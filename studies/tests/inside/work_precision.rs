@@ -66,7 +66,7 @@ fn errors_fall_with_evaluations_and_the_reference_knows_its_own() {
     assert!(measure(QUICK, &subjects(FREE), &|_| false).is_none());
 }
 
-/// At the end of a damped motion little is left of an error: that of the whole time counts.
+/// At the end of a damped motion the error is small. The error over the whole time counts.
 #[test]
 fn an_error_is_the_largest_over_the_whole_time() {
     let subject = &subjects(DAMPED)[0];
@@ -86,7 +86,7 @@ fn an_error_is_the_largest_over_the_whole_time() {
     assert!((error / largest - 1.0).abs() < 0.01, "{error:e} {largest:e}");
 }
 
-/// Two methods of low order are far from each other, and a third may be nearer to one of them than they are.
+/// Two methods of low order may be far from each other, and a third one near one of them.
 #[test]
 fn no_error_is_below_that_of_the_reference() {
     let results = measure(QUICK, &subjects(DROP), &|_| true).expect("it is never stopped");
