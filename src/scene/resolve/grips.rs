@@ -35,9 +35,9 @@ pub(super) fn resolve(
     }
     for (at, typed) in grabs.iter().enumerate() {
         let Some(typed) = typed else { continue };
-        let path = key_path!["grab", at].to_vec();
-        let nodes = nodes(&typed.nodes, body, &layers, &path, report);
-        let path = key_path![path; "path"];
+        let grab = key_path!["grab", at].to_vec();
+        let nodes = nodes(&typed.nodes, body, &layers, &grab, report);
+        let path = key_path![grab; "path"];
         if typed.path.repeat {
             let message = format!("`grab[{at}].path` repeats, so the nodes would never be released");
             report.at_key(&key_path![path; "repeat"], message, "remove `repeat`".to_owned());
@@ -51,7 +51,7 @@ pub(super) fn resolve(
                 format!("`grab[{at}].path` has a single key: nodes grabbed at {from} s would be released at once");
             report.at(&path, message, "add a key, or write [[hold]] for nodes that stay where they are");
         } else if let (Some(nodes), Some(motion)) = (nodes, motion) {
-            named.push((format!("grabbed by `grab[{at}]`"), path, Grip { nodes, from, until, motion }));
+            named.push((format!("grabbed by `grab[{at}]`"), grab, Grip { nodes, from, until, motion }));
         }
     }
     check_overlaps(&named, report);
