@@ -3,7 +3,7 @@
 use super::drawing::{Image, Item, Paint, Path, Pen};
 use crate::picture::{Curve, Mark, MarkShape};
 use glam::Vec2;
-use std::f32::consts::TAU;
+use std::f32::consts::{SQRT_2, TAU};
 
 /// The ring arrow, relative to its mark's radius: radius and thickness, start and end of its line (rad,
 /// counter-clockwise from the right), length and half width of its head.
@@ -129,11 +129,11 @@ pub(super) fn mark<'a>(mark: &Mark, next: Option<&Mark>, items: &mut Vec<Item<'a
         MarkShape::Point => fill(place.polygon([[0.0, 0.0], [width, 0.5 * height], [0.0, height]]), paint),
         MarkShape::Pin => {
             let [x, y] = [width, height].map(|length| 0.5 * length);
-            let reach = 0.74 * radius;
-            let diamond = place.polygon([[x - reach, y], [x, y - reach], [x + reach, y], [x, y + reach]]);
-            let pen = Pen::solid(2.0 * 0.17 * radius);
-            items.push(Item::Stroke { path: diamond.clone(), pen, paint: second(HALO_ALPHA) });
-            items.push(Item::Fill { path: diamond, paint });
+            // The halo has sharp corners, too.
+            for (reach, paint) in [(0.74 + 0.17 * SQRT_2, second(HALO_ALPHA)), (0.74, paint)] {
+                let reach = reach * radius;
+                fill(place.polygon([[x - reach, y], [x, y - reach], [x + reach, y], [x, y + reach]]), paint);
+            }
         }
         MarkShape::Hand => {
             let middle = place.middle();
