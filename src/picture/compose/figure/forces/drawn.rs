@@ -28,9 +28,10 @@ const NODE: f64 = 5.2;
 const CENTRE: f64 = 3.4;
 /// Half of an arrow's width, for labels (px in the reference picture).
 const ARROW: f64 = 5.0;
-/// Arrows shorter than this (radii of a node) are drawn above nodes, whose radius is then a part of their length.
+/// Arrows shorter than this (radii of a node) are drawn above smaller nodes: the radius in lengths of the arrow, and the
+/// least one in usual radii.
 const LONG: f64 = 2.5;
-const SMALL_NODE: f64 = 0.3;
+const SMALL_NODE: [f64; 2] = [0.3, 0.55];
 /// Arrows shorter than this are not drawn (px in the reference picture).
 const SHORTEST: f64 = 3.0;
 /// An arrow that is closer than this to both sides of a corner (rad) has no halo there.
@@ -205,7 +206,9 @@ impl<'a> Drawn<'a> {
         }
         for (node, (&at, &seen)) in position.iter().zip(&seen).enumerate() {
             if seen > 0.0 {
-                let radius = if short.contains(&node) { SMALL_NODE * length(node) } else { NODE * scale.line() };
+                let usual = NODE * scale.line();
+                let [part, least] = SMALL_NODE;
+                let radius = if short.contains(&node) { (part * length(node)).max(least * usual) } else { usual };
                 let disc = Mark::around(self.pixel(at), radius, MarkShape::Node, palette.node);
                 above.extend(Mark { second: palette.edge, ..disc }.faded(seen));
             }
