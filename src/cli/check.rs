@@ -18,7 +18,7 @@ Examples:
   localshape check scenes/fig4b.toml
   localshape check scenes/*.toml --quiet && echo all right";
 
-/// Why pages cannot be printed.
+/// Why a scene cannot be printed in its size.
 #[cfg(feature = "render")]
 fn too_small(scene: &Scene) -> Option<String> {
     super::still::too_small(scene, &(0..scene.runs.len()).collect::<Vec<_>>())
