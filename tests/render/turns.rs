@@ -23,10 +23,13 @@ fn flat(frame: &mut Frame) {
 
 fn none(_: &mut Frame) {}
 
-/// Pictures of two sizes of the body, so that textures are replaced, and none of them shows the same as another.
+/// The parts of a scene, keys of its view, and a change of its frame.
+type Case<'a> = (&'a [&'a str], &'a str, fn(&mut Frame));
+
+/// Pictures of two sizes of the body, so that textures are replaced. No picture equals another one.
 fn pictures() -> Vec<Picture> {
     let lines = "show = ['springs', 'nodes'], colour = { by = 'strain', range = [0, 0.1] }";
-    let cases: [(&[&str], &str, fn(&mut Frame)); 11] = [
+    let cases: [Case<'_>; 11] = [
         (&[CUBES, FLOOR], "", none),
         (&[CUBES, FLOOR], "", over),
         (&[CUBES, FLOOR], "", flat),
