@@ -9,6 +9,9 @@
 #![doc = include_str!("../examples/own_engine.rs")]
 //! ```
 //!
+//! Optimise this crate in debug builds, too: `[profile.dev.package.localshape-sim]` with `opt-level = 1`. Otherwise steps are slow, and
+//! with AVX-512 one frame of a kernel fills most of the stack of a thread.
+//!
 //! Eq. (15), the rotation of an element, is in [`rotation::linearised`]; Eq. (4), its forces, in [`model::shape_based`].
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]

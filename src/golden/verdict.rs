@@ -196,8 +196,9 @@ mod tests {
     fn each_verdict_from_a_constructed_pair() {
         let golden = pixels(&["0", "1"], |_| ());
         assert_eq!(told(&golden, &golden), (Verdict::Identical, "identical".to_owned()));
-        let dots = |count: usize| pixels(&["0", "1"], move |bytes| (0..count).for_each(|at| bytes[30 * at] = 0));
-        let words = "within tolerance: 8 pixels differ by more than 16 of 255 (8 may), 8 by more than 2 (12 may)";
+        let dots = |count: usize| pixels(&["0", "1"], move |bytes| (0..count).for_each(|at| bytes[3 * 97 * at] = 0));
+        let words = "within tolerance: 8 pixels differ by more than 16 of 255 (8 may), 8 by more than 2 (12 may), the mean of \
+                     16×16 pixels by 1.2 (1.5 may)";
         assert_eq!(told(&golden, &dots(8)), (Verdict::WithinTolerance, words.to_owned()));
         let (verdict, words) = told(&golden, &dots(9));
         assert!(verdict == Verdict::DrawnDifferently && words.starts_with("drawn differently: 9 pixels"), "{words}");

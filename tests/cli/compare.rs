@@ -30,7 +30,8 @@ fn two_pictures() {
     assert_eq!(place.run("compare a.png a.png").good().out, "a.png: identical\n");
     let drawn = place.run("compare a.png b.png");
     assert_eq!((drawn.status, drawn.err.as_str()), (Some(1), ""));
-    let told = "b.png: drawn differently: 10 pixels differ by more than 16 of 255 (8 may), 10 by more than 2 (8 may)\n";
+    let told = "b.png: drawn differently: 10 pixels differ by more than 16 of 255 (8 may), 10 by more than 2 (8 may), the mean of \
+                16×16 pixels by 9.4 (1.5 may)\n";
     assert_eq!(drawn.out, told);
     let moved = place.run("compare a.png c.png --json");
     assert_eq!(moved.status, Some(1));
