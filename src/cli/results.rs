@@ -70,11 +70,11 @@ impl Results<'_> {
         if let Some(pictures) = pictures {
             pictures.flush()?;
         }
-        let ((plan, whose), path) = (folder.contents(), folder.path());
+        let ((manifest, whose), path) = (folder.contents(), folder.path());
         let failed = |error| OutputError::writing(path)(error);
         let mut write = || {
             let Some(progress) = frames.progress().map_err(failed)? else { return Ok(()) };
-            let mut checkpoint = Checkpoint::new(summary.command.clone(), plan, progress);
+            let mut checkpoint = Checkpoint::new(summary.command.clone(), manifest, progress);
             checkpoint.causes = summary.runs.iter().map(|run| run.cause.clone()).collect();
             if !ahead {
                 checkpoint.rows = diagnostics.as_mut().map(DiagnosticsWriter::sync).transpose().map_err(failed)?;

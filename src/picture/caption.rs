@@ -6,7 +6,9 @@ use super::text::{Fonts, TextRun, Weight};
 use super::{Curve, Mark, MarkShape, number};
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette};
-use crate::sim::{Divergence, RunFrame, Snapshot, Status};
+use crate::reading::captions::parts_and_constants;
+use crate::sim::model::ElasticModel;
+use crate::sim::{Body, Divergence, RunFrame, Snapshot, Status};
 
 /// The text in place of a number for a run that diverged.
 const DIVERGED: &str = "diverged";
@@ -26,6 +28,11 @@ const SAMPLE: [f64; 2] = [40.0, 2.6];
 /// The height of the scale bar above the baseline of counts, and the length of its ticks (px in the reference picture).
 const BAR_HEIGHT: f64 = 7.0;
 const BAR_TICK: f64 = 9.0;
+
+/// A model in short, for the second line of a picture: `27 cubes, k = 10 kN/m, ζ = 0.1`.
+pub(super) fn short_description(model: &dyn ElasticModel, body: &Body) -> String {
+    parts_and_constants(model, body) + &model.unusual_choices(body)
+}
 
 /// Collects the text and the flat marks of a picture.
 pub(crate) struct Writer<'a> {
@@ -419,6 +426,17 @@ pub(super) fn number(extent: f64, snapshot: &Snapshot, area_ratio: Option<f64>) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{BodyBuilder, Lattice, Limits, Scene};
+    use crate::sim::model::shape_based;
+
+    #[test]
+    fn captions_name_unusual_choices() {
+        let body = BodyBuilder::lattice(Lattice::new([1; 3], 0.1)).mass(1.0);
+        let shape = shape_based::Parameters { damping: Some(60.0), ..shape_based::Parameters::new(1e4) };
+        let scene = Scene::builder("cube", body).run("shape", shape).build(&Limits::default()).expect("a scene");
+        let caption = short_description(scene.runs[0].model.as_ref(), &scene.body);
+        assert_eq!(caption, "1 cube, k = 10 kN/m, ζ = 0.3, exact rotations");
+    }
 
     #[test]
     fn letters_go_on_after_the_last() {

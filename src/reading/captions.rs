@@ -5,17 +5,13 @@ use crate::sim::{Body, ElementKind};
 use glam::DVec3;
 use serde::Serialize;
 
-/// A model in short, for the second line of a picture: `27 cubes, k = 10 kN/m, ζ = 0.1`.
-pub(crate) fn short_description(model: &dyn ElasticModel, body: &Body) -> String {
-    parts_and_constants(model, body) + &model.unusual_choices(body)
-}
-
 /// A model with all choices that change the result, such as the rotation solver.
 pub fn description(model: &dyn ElasticModel, body: &Body) -> String {
     parts_and_constants(model, body) + &model.choices(body)
 }
 
-fn parts_and_constants(model: &dyn ElasticModel, body: &Body) -> String {
+/// The parts of a body in a model, and the constants of the model: `27 cubes, k = 10 kN/m, ζ = 0.1`.
+pub(crate) fn parts_and_constants(model: &dyn ElasticModel, body: &Body) -> String {
     let parts = match (model.springs().len(), elements(body).as_slice()) {
         (1, _) => "1 spring".to_owned(),
         (0, [(count, name)]) => format!("{count} {name}"),

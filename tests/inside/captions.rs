@@ -32,7 +32,7 @@ fn a_cube_is_a_hexahedron_with_equal_sides_and_right_angles() {
 fn descriptions_have_parts_constants_and_choices() {
     let one = body(Dimension::Space, &block(0.1), &[&[0, 1, 2, 3, 4, 5, 6, 7]]);
     let shape = ShapeBased { damping: 60.0, ..ShapeBased::new(1e4) };
-    assert_eq!(short_description(&shape, &one), "1 cube, k = 10 kN/m, ζ = 0.3, exact rotations");
+    assert_eq!(parts_and_constants(&shape, &one), "1 cube, k = 10 kN/m, ζ = 0.3");
     let full = "1 cube, k = 10 kN/m, ζ = 0.3, rotation robust (exact), damping of relative-motion";
     assert_eq!(description(&shape, &one), full);
     let spring = MassSpring { stiffness: 50.0, damping: 0.0, springs: [[0, 1]].into() };

@@ -32,7 +32,6 @@ use super::{Framing, Picture};
 use crate::colour::Colour;
 use crate::look::Palette;
 use crate::look::ramp::ramp;
-use crate::reading::captions::short_description;
 use crate::runner::history::{History, NearObstacles, TimeSeries};
 use crate::scene::Scene;
 use crate::sim::geometry::bounds;
@@ -118,8 +117,11 @@ impl<'a> Composer<'a> {
         };
         let extent = body.extent().max(f64::MIN_POSITIVE);
         let tally = Tally::new(body, scene.view.side);
-        let descriptions =
-            scene.runs.iter().map(|run| number::counted(short_description(run.model.as_ref(), body))).collect();
+        let descriptions = scene
+            .runs
+            .iter()
+            .map(|run| number::counted(caption::short_description(run.model.as_ref(), body)))
+            .collect();
         let ears = Ears::new(body);
         let skin = Skin::new(body, &ears);
         let throws_shadow = scene.view.shadow && body.dimension == Dimension::Space;
