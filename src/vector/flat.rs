@@ -3,9 +3,8 @@
 use super::drawing::{Image, Item, Paint, Path, Pen};
 use super::marks::{ends_of, winding};
 use crate::colour::{encoded, encoded_exactly, linear, luminance};
-use crate::look::Palette;
 use crate::picture::measures::*;
-use crate::picture::{Bead, Colour, Fading, Line, LineKind, Mesh, Panel, Picture, Second, Solid, Stroke};
+use crate::picture::{Bead, Colour, Fading, Line, LineKind, Mesh, Palette, Panel, Picture, Second, Solid, Stroke};
 use glam::{Vec2, Vec3, Vec4Swizzles};
 
 /// The number of pieces of a line of changing colour.
