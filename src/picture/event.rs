@@ -48,10 +48,11 @@ pub(super) fn events(diagnostic: Diagnostic, series: &[Series], extent: f64, end
             own.extend(first.map(|&[time, _]| event(one, time, "first turned over".to_owned(), "at")));
             let last = changes.last().filter(|[time, _]| changes.len() > 1 && *time <= (1.0 - SETTLED) * end);
             let last = last.filter(|_| one.diverged.is_none());
-            // Elements that no longer count may be flat.
-            let settled =
-                |count: f64| if count == 0.0 { "none turned over".to_owned() } else { format!("settles at {count}") };
-            own.extend(last.map(|&[time, count]| event(one, time, settled(count), "after")));
+            own.extend(last.map(|&[time, count]| {
+                // Elements that are no longer turned over may be flat.
+                let words = if count == 0.0 { "none turned over".to_owned() } else { format!("settles at {count}") };
+                event(one, time, words, "after")
+            }));
         } else if let (Some(&[_, start]), Some(&[_, last])) = (one.points.first(), one.points.last()) {
             let apart = |value: f64, other: f64| (value - other).abs();
             let extreme = one.points.iter().max_by(|a, b| apart(a[1], start).total_cmp(&apart(b[1], start)));

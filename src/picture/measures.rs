@@ -1,5 +1,5 @@
-//! Sizes and opacities that shaders, vector files and the composition share. Shaders get them as the text [`WGSL`], so that no number
-//! is written twice.
+//! Sizes and opacities that shaders, vector files and the composition share. Shaders get them as the text [`WGSL`], so
+//! that no number is written twice.
 
 macro_rules! measures {
     ($($(#[$about:meta])* $name:ident = $value:literal;)*) => {
