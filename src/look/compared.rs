@@ -3,7 +3,7 @@
 use super::file::{PathFile, PathPointFile};
 use super::subject::Subject;
 use super::view::{Ghost, Traced};
-use crate::reading::collector::{Collector, Segment};
+use crate::reading::collector::{Collector, PathPart};
 use crate::reading::words::{list, nearest, quoted, short};
 
 /// The name for a ghost of the rest shape.
@@ -11,7 +11,7 @@ const REST: &str = "rest";
 
 /// The outline over each body; `None` also after a mistake.
 pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &mut Collector<'_>) -> Option<Ghost> {
-    let path = [Segment::Key("view"), Segment::Key("ghost")];
+    let path = [PathPart::Key("view"), PathPart::Key("ghost")];
     let run = scene.runs.iter().position(|(known, _)| *known == name);
     match run {
         Some(at) if name == REST => {
@@ -34,13 +34,13 @@ pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &mut Collector<'_>)
 /// The points with paths; empty also after a mistake.
 pub(super) fn paths(paths: &[PathFile], scene: &Subject<'_>, report: &mut Collector<'_>) -> Vec<Traced> {
     if let Some(at) = (1..paths.len()).find(|&at| paths[..at].contains(&paths[at])) {
-        let path = [Segment::Key("view"), Segment::Key("paths"), Segment::Index(at)];
+        let path = [PathPart::Key("view"), PathPart::Key("paths"), PathPart::Index(at)];
         report.at(&path, "this path is listed a second time".to_owned(), "remove it".to_owned());
     }
     let one = |(at, path): (usize, &PathFile)| match *path {
         PathFile::Point(PathPointFile::Centre) => Some(Traced::Centre),
         PathFile::Node(node) => {
-            let path = [Segment::Key("view"), Segment::Key("paths"), Segment::Index(at)];
+            let path = [PathPart::Key("view"), PathPart::Key("paths"), PathPart::Index(at)];
             known_node(node, &path, scene, report).map(Traced::Node)
         }
     };
@@ -48,7 +48,7 @@ pub(super) fn paths(paths: &[PathFile], scene: &Subject<'_>, report: &mut Collec
 }
 
 /// A node, or `None` after reporting that the body has no such node.
-fn known_node(node: u32, path: &[Segment<'_>], scene: &Subject<'_>, report: &mut Collector<'_>) -> Option<u32> {
+fn known_node(node: u32, path: &[PathPart<'_>], scene: &Subject<'_>, report: &mut Collector<'_>) -> Option<u32> {
     let nodes = scene.body.len();
     if (node as usize) < nodes {
         return Some(node);
@@ -62,7 +62,7 @@ fn known_node(node: u32, path: &[Segment<'_>], scene: &Subject<'_>, report: &mut
 fn unknown<T>(
     name: &str,
     more: &[&str],
-    path: &[Segment<'_>],
+    path: &[PathPart<'_>],
     scene: &Subject<'_>,
     report: &mut Collector<'_>,
 ) -> Option<T> {
@@ -79,7 +79,7 @@ fn unknown<T>(
 }
 
 /// Reports runs with different steps: their frames show different moments.
-fn other_steps(runs: [usize; 2], path: &[Segment<'_>], scene: &Subject<'_>, report: &mut Collector<'_>) {
+fn other_steps(runs: [usize; 2], path: &[PathPart<'_>], scene: &Subject<'_>, report: &mut Collector<'_>) {
     let [(one, step), (other, other_step)] = runs.map(|run| scene.runs[run]);
     let message = format!(
         "{} has a time step of {} s, {} one of {} s: their frames are not at the same moments",

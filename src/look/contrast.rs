@@ -3,14 +3,14 @@
 use super::palette::Palette;
 use super::view::Colours;
 use crate::colour::{Colour, LINE_CONTRAST, Vision, contrast, difference, readable, written};
-use crate::reading::collector::{Collector, Segment};
+use crate::reading::collector::{Collector, PathPart};
 use std::fmt;
 
 /// The least difference of turned-over elements from others, for any colour vision (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
 
-fn path(role: &str) -> [Segment<'_>; 3] {
-    [Segment::Key("view"), Segment::Key("colours"), Segment::Key(role)]
+fn path(role: &str) -> [PathPart<'_>; 3] {
+    [PathPart::Key("view"), PathPart::Key("colours"), PathPart::Key(role)]
 }
 
 /// Checks the contrast of runs' chosen colours with the background, and their difference from turned-over elements.
@@ -18,7 +18,7 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
     let like_alarm = |colour| TooLike::find([(colour, ())], palette.alarm);
     for (at, &colour) in chosen.iter().enumerate() {
         let Some(colour) = colour else { continue };
-        let path = [Segment::Key("run"), Segment::Index(at), Segment::Key("colour")];
+        let path = [PathPart::Key("run"), PathPart::Index(at), PathPart::Key("colour")];
         let found = contrast(colour, palette.background);
         if found < LINE_CONTRAST {
             let message = format!(

@@ -3,7 +3,7 @@
 use super::typed::FontFile;
 use super::view::FontFiles;
 use crate::reading::beside::bytes;
-use crate::reading::collector::{Collector, Segment};
+use crate::reading::collector::{Collector, PathPart};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ pub(crate) fn read(folder: &Path, typed: &FontFile, report: &mut Collector<'_>) 
     let mut one = |key: &str, name: &str| {
         let found = bytes(&folder.join(name), &ENDINGS, LONGEST, "a font", EXPECTED);
         let found = found.and_then(|bytes| check(&bytes).map(|()| Arc::from(bytes)).map_err(|message| (message, None)));
-        let path = [Segment::Key("view"), Segment::Key("font"), Segment::Key(key)];
+        let path = [PathPart::Key("view"), PathPart::Key("font"), PathPart::Key(key)];
         found.map_err(|(message, help)| report.at(&path, format!("`{name}` {message}"), help)).ok()
     };
     let regular = one("regular", &typed.regular);

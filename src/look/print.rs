@@ -1,7 +1,7 @@
 //! Pictures for print: sizes in millimetres and type in points.
 
 use crate::reading::captions::rounded;
-use crate::reading::collector::{Collector, Segment};
+use crate::reading::collector::{Collector, PathPart};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -86,7 +86,7 @@ impl SizeFile {
     pub(crate) fn resolve(
         self,
         least: u32,
-        path: &[Segment<'_>],
+        path: &[PathPart<'_>],
         report: &mut Collector<'_>,
     ) -> Option<([u32; 2], Option<Print>)> {
         let PrintFile { mm, dpi } = match self {
@@ -113,7 +113,7 @@ impl TextScaleFile {
         self,
         print: Option<&Print>,
         unit: f64,
-        path: &[Segment<'_>],
+        path: &[PathPart<'_>],
         report: &mut Collector<'_>,
     ) -> Option<f64> {
         let TypeSizeFile { pt } = match self {

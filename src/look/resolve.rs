@@ -10,7 +10,7 @@ use super::subject::Subject;
 use super::typed::TypedColour;
 use super::view::{Camera, ColourScale, FontFiles, View, Visible};
 use crate::reading::captions::rounded;
-use crate::reading::collector::{Collector, Segment, key_path};
+use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::coordinates::vector;
 use crate::sim::Dimension;
 use crate::sim::geometry::is_inside;
@@ -134,7 +134,7 @@ const NARROWEST: f64 = 1e-9;
 pub(crate) fn colour(
     typed: &ColourFile,
     scenes: &[Subject<'_>],
-    path: &[Segment<'_>; 3],
+    path: &[PathPart<'_>; 3],
     report: &mut Collector<'_>,
 ) -> Option<ColourScale> {
     let range = match typed.range {
@@ -145,8 +145,8 @@ pub(crate) fn colour(
 }
 
 /// The ends of a scale, if they rise and differ enough.
-fn rising([low, high]: [f64; 2], path: &[Segment<'_>; 3], report: &mut Collector<'_>) -> Option<[f64; 2]> {
-    let keys = path.iter().filter_map(|step| if let Segment::Key(key) = step { Some(*key) } else { None });
+fn rising([low, high]: [f64; 2], path: &[PathPart<'_>; 3], report: &mut Collector<'_>) -> Option<[f64; 2]> {
+    let keys = path.iter().filter_map(|step| if let PathPart::Key(key) = step { Some(*key) } else { None });
     let name = keys.collect::<Vec<_>>().join(".");
     if low >= high {
         report.at(path, format!("`{name}` runs from {low} to {high}; expected a rising range"), None);

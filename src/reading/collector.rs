@@ -7,20 +7,20 @@ use toml::de::{DeTable, DeValue};
 
 /// One step of the path from the root of a file to a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Segment<'a> {
+pub(crate) enum PathPart<'a> {
     /// Into a table.
     Key(&'a str),
     /// Into an array.
     Index(usize),
 }
 
-impl<'a> From<&'a str> for Segment<'a> {
+impl<'a> From<&'a str> for PathPart<'a> {
     fn from(key: &'a str) -> Self {
         Self::Key(key)
     }
 }
 
-impl From<usize> for Segment<'_> {
+impl From<usize> for PathPart<'_> {
     fn from(index: usize) -> Self {
         Self::Index(index)
     }
@@ -28,7 +28,7 @@ impl From<usize> for Segment<'_> {
 
 /// A path of keys and indices: `key_path!["run", 1, "model"]`, or `key_path![path; "model"]` to extend `path`.
 macro_rules! key_path {
-    ($($part:expr),+) => { [$($crate::reading::collector::Segment::from($part)),+] };
+    ($($part:expr),+) => { [$($crate::reading::collector::PathPart::from($part)),+] };
     ($before:expr; $($part:expr),+) => { [&$before[..], &$crate::reading::collector::key_path![$($part),+][..]].concat() };
 }
 pub(crate) use key_path;
@@ -57,13 +57,13 @@ impl Help for Option<String> {
 }
 
 /// The path of a value, as written in messages: `run[1].model.stiffness`.
-pub(crate) fn written(path: &[Segment<'_>]) -> String {
+pub(crate) fn written(path: &[PathPart<'_>]) -> String {
     let mut text = String::new();
-    for segment in path {
-        match segment {
-            Segment::Key(key) if text.is_empty() => text.push_str(key),
-            Segment::Key(key) => text.extend([".", key]),
-            Segment::Index(index) => text.push_str(&format!("[{index}]")),
+    for part in path {
+        match part {
+            PathPart::Key(key) if text.is_empty() => text.push_str(key),
+            PathPart::Key(key) => text.extend([".", key]),
+            PathPart::Index(index) => text.push_str(&format!("[{index}]")),
         }
     }
     text
@@ -100,9 +100,9 @@ impl<'t> Collector<'t> {
     }
 
     /// Whether the file has the key at the end of `path`.
-    pub(crate) fn is_typed(&self, path: &[Segment<'_>]) -> bool {
+    pub(crate) fn is_typed(&self, path: &[PathPart<'_>]) -> bool {
         match path {
-            [before @ .., Segment::Key(key)] => {
+            [before @ .., PathPart::Key(key)] => {
                 table_at(self.root, before).is_some_and(|table| table.contains_key(*key))
             }
             _ => false,
@@ -110,7 +110,7 @@ impl<'t> Collector<'t> {
     }
 
     /// Line and column of the value at `path`, or of its nearest ancestor in the file. Both are 0 if the command line sets it.
-    pub(crate) fn position(&self, path: &[Segment<'_>]) -> (usize, usize) {
+    pub(crate) fn position(&self, path: &[PathPart<'_>]) -> (usize, usize) {
         let (line, column) = self.source.position(span_of(self.root, path).start);
         if self.source.is_setting(line) { (0, 0) } else { (line, column) }
     }
@@ -122,7 +122,7 @@ impl<'t> Collector<'t> {
     }
 
     /// A mistake at a span of the text, in the value at `path`.
-    pub(crate) fn at_span(&mut self, span: Range<usize>, path: &[Segment<'_>], message: String, help: Option<String>) {
+    pub(crate) fn at_span(&mut self, span: Range<usize>, path: &[PathPart<'_>], message: String, help: Option<String>) {
         self.total += 1;
         if self.found.len() < KEPT {
             self.found.push(mistake(self.source, span, path, message, help));
@@ -130,14 +130,14 @@ impl<'t> Collector<'t> {
     }
 
     /// A mistake in the value at `path`, or in its nearest ancestor in the file.
-    pub(crate) fn at(&mut self, path: &[Segment<'_>], message: impl Into<String>, help: impl Help) {
+    pub(crate) fn at(&mut self, path: &[PathPart<'_>], message: impl Into<String>, help: impl Help) {
         self.at_span(span_of(self.root, path), path, message.into(), help.text());
     }
 
     /// A mistake about the key at the end of `path`, or about the table that lacks it.
-    pub(crate) fn at_key(&mut self, path: &[Segment<'_>], message: impl Into<String>, help: impl Help) {
+    pub(crate) fn at_key(&mut self, path: &[PathPart<'_>], message: impl Into<String>, help: impl Help) {
         let (table, key) = match path {
-            [before @ .., Segment::Key(key)] => (table_at(self.root, before), *key),
+            [before @ .., PathPart::Key(key)] => (table_at(self.root, before), *key),
             _ => (None, ""),
         };
         let span = table.and_then(|table| table.get_key_value(key)).map(|(key, _)| key.span());
@@ -145,7 +145,7 @@ impl<'t> Collector<'t> {
     }
 
     /// A warning about the value at `path`: allowed, but probably a mistake.
-    pub(crate) fn warn(&mut self, path: &[Segment<'_>], message: String, help: impl Help) {
+    pub(crate) fn warn(&mut self, path: &[PathPart<'_>], message: String, help: impl Help) {
         self.warned.push(mistake(self.source, span_of(self.root, path), path, message, help.text()));
     }
 
@@ -174,7 +174,7 @@ impl<'t> Collector<'t> {
 pub(crate) fn mistake(
     source: &Source<'_>,
     span: Range<usize>,
-    path: &[Segment<'_>],
+    path: &[PathPart<'_>],
     message: String,
     help: Option<String>,
 ) -> Mistake {
@@ -184,16 +184,16 @@ pub(crate) fn mistake(
 }
 
 /// The span of the value at `path`, or of its innermost ancestor that exists.
-fn span_of(root: &DeTable<'_>, path: &[Segment<'_>]) -> Range<usize> {
+fn span_of(root: &DeTable<'_>, path: &[PathPart<'_>]) -> Range<usize> {
     let (first, rest) = match path {
-        [Segment::Key(first), rest @ ..] => (*first, rest),
+        [PathPart::Key(first), rest @ ..] => (*first, rest),
         _ => return 0..0,
     };
     let Some(mut value) = root.get(first) else { return 0..0 };
-    for segment in rest {
-        let next = match (segment, value.get_ref()) {
-            (Segment::Key(key), DeValue::Table(table)) => table.get(*key),
-            (Segment::Index(index), DeValue::Array(items)) => items.get(*index),
+    for part in rest {
+        let next = match (part, value.get_ref()) {
+            (PathPart::Key(key), DeValue::Table(table)) => table.get(*key),
+            (PathPart::Index(index), DeValue::Array(items)) => items.get(*index),
             _ => None,
         };
         match next {
@@ -204,13 +204,13 @@ fn span_of(root: &DeTable<'_>, path: &[Segment<'_>]) -> Range<usize> {
     value.span()
 }
 
-fn table_at<'a, 't>(root: &'a DeTable<'t>, path: &[Segment<'_>]) -> Option<&'a DeTable<'t>> {
-    let Some((Segment::Key(first), rest)) = path.split_first() else { return Some(root) };
+fn table_at<'a, 't>(root: &'a DeTable<'t>, path: &[PathPart<'_>]) -> Option<&'a DeTable<'t>> {
+    let Some((PathPart::Key(first), rest)) = path.split_first() else { return Some(root) };
     let mut value = root.get(*first)?;
-    for segment in rest {
-        value = match segment {
-            Segment::Key(key) => value.get_ref().get(*key)?,
-            Segment::Index(index) => value.get_ref().get(*index)?,
+    for part in rest {
+        value = match part {
+            PathPart::Key(key) => value.get_ref().get(*key)?,
+            PathPart::Index(index) => value.get_ref().get(*index)?,
         };
     }
     value.get_ref().as_table()

@@ -1,6 +1,6 @@
 //! Points and vectors as typed.
 
-use super::collector::{Collector, Segment, written};
+use super::collector::{Collector, PathPart, written};
 use crate::sim::Dimension;
 use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
@@ -33,7 +33,7 @@ impl From<DVec3> for Coordinates {
 pub(crate) fn vector(
     typed: &Coordinates,
     dimension: Dimension,
-    path: &[Segment<'_>],
+    path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) -> Option<DVec3> {
     match (typed.0.as_slice(), dimension) {
@@ -52,7 +52,7 @@ pub(crate) fn vector(
 }
 
 /// A vector scaled to unit length. A zero vector is a mistake.
-pub(crate) fn direction(vector: DVec3, path: &[Segment<'_>], report: &mut Collector<'_>) -> Option<DVec3> {
+pub(crate) fn direction(vector: DVec3, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<DVec3> {
     // The largest coordinate is divided out first: squares of very small or large numbers leave the range of double
     // precision.
     let largest = vector.abs().max_element();

@@ -1,6 +1,6 @@
 //! Keys and values of scene files that are gone, and what to write instead.
 
-use crate::reading::collector::Segment;
+use crate::reading::collector::PathPart;
 
 /// A key or a value that is gone.
 struct Gone {
@@ -72,8 +72,8 @@ const GONE: &[Gone] = &[
 ];
 
 /// What to write instead of a key that is gone, or of one of its values.
-pub(super) fn instead(path: &[Segment<'_>], value: Option<&str>) -> Option<&'static str> {
-    let keys = path.iter().filter_map(|segment| if let Segment::Key(key) = segment { Some(*key) } else { None });
+pub(super) fn instead(path: &[PathPart<'_>], value: Option<&str>) -> Option<&'static str> {
+    let keys = path.iter().filter_map(|part| if let PathPart::Key(key) = part { Some(*key) } else { None });
     let is_at = |gone: &&Gone| gone.value == value && gone.key.split('.').eq(keys.clone());
     GONE.iter().find(is_at).map(|gone| gone.instead)
 }

@@ -5,7 +5,7 @@ use super::{Column, Content, Figure, Forces, Row, Sheet};
 use crate::look::print::{unit, unit_of_sheet};
 use crate::look::{self, Subject};
 use crate::reading::captions::typed;
-use crate::reading::collector::{Collector, Segment, key_path};
+use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::words::{list, quoted};
 use crate::scene::structure::ValidFile;
 use crate::scene::{Scene, SceneError};
@@ -93,7 +93,7 @@ struct Scenes<'a, 'r, 't> {
 
 impl Scenes<'_, '_, '_> {
     /// The index of the scene named at `path` in the file; `None` after reporting a mistake.
-    fn scene(&mut self, named: &str, path: &[Segment<'_>]) -> Result<Option<usize>, SceneError> {
+    fn scene(&mut self, named: &str, path: &[PathPart<'_>]) -> Result<Option<usize>, SceneError> {
         let file = self.folder.join(named);
         if let Some(&place) = self.places.get(&file) {
             return Ok(Some(place));

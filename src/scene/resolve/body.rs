@@ -4,7 +4,7 @@ use super::lists::{Lists, check_count, check_exclusive};
 use super::motion::axis;
 use super::{direction, elements, vector};
 use crate::reading::captions::typed;
-use crate::reading::collector::{Collector, Segment, key_path};
+use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::words::quoted;
 use crate::scene::file::{BodyFile, Cells, Coordinates, Lattice, RunFile, SideFile, StartShape};
 use crate::scene::generate::{Generator, Made, brought_to_start};
@@ -191,7 +191,7 @@ fn solids(file: &BodyFile) -> Solids {
 }
 
 /// The place of a run's springs.
-fn springs_of(run: usize) -> [Segment<'static>; 4] {
+fn springs_of(run: usize) -> [PathPart<'static>; 4] {
     key_path!["run", run, "model", "springs"]
 }
 

@@ -2,7 +2,7 @@
 
 use super::body::ResolvedBody;
 use super::{motion, vector};
-use crate::reading::collector::{Collector, Segment, key_path, written};
+use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::{count, fine};
 use crate::scene::file::{GrabFile, HoldFile, NodesFile, RegionFile};
 use crate::scene::summary::corners;
@@ -18,7 +18,7 @@ pub(super) fn resolve(
     body: &ResolvedBody,
     report: &mut Collector<'_>,
 ) -> Option<Vec<Grip>> {
-    let mut named: Vec<(String, Vec<Segment<'_>>, Grip)> = Vec::new();
+    let mut named: Vec<(String, Vec<PathPart<'_>>, Grip)> = Vec::new();
     let layers = OnceCell::new();
     for (at, typed) in holds.iter().enumerate() {
         let Some(typed) = typed else { continue };
@@ -80,7 +80,7 @@ pub(super) fn check_steps(
 }
 
 /// Reports nodes in two constraints at the same time.
-fn check_overlaps(named: &[(String, Vec<Segment<'_>>, Grip)], report: &mut Collector<'_>) {
+fn check_overlaps(named: &[(String, Vec<PathPart<'_>>, Grip)], report: &mut Collector<'_>) {
     let mut holders: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (at, (_, _, grip)) in named.iter().enumerate() {
         grip.nodes.iter().for_each(|&node| holders.entry(node).or_default().push(at));
@@ -116,7 +116,7 @@ fn nodes(
     typed: &NodesFile,
     body: &ResolvedBody,
     layers: &OnceCell<Vec<Layers>>,
-    path: &[Segment<'_>],
+    path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) -> Option<Vec<u32>> {
     let path = key_path![path; "nodes"];
@@ -126,7 +126,7 @@ fn nodes(
     }
 }
 
-fn listed(list: &[u32], count: usize, path: &[Segment<'_>], report: &mut Collector<'_>) -> Option<Vec<u32>> {
+fn listed(list: &[u32], count: usize, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Vec<u32>> {
     let before = report.total();
     let mut first = HashMap::new();
     for (place, &node) in list.iter().enumerate() {
@@ -146,7 +146,7 @@ fn within(
     region: &RegionFile,
     body: &ResolvedBody,
     layers: &OnceCell<Vec<Layers>>,
-    path: &[Segment<'_>],
+    path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) -> Option<Vec<u32>> {
     let dimension = body.body.dimension;
@@ -221,7 +221,7 @@ fn warn_of_rest(
     layers: &[Layers],
     position: &[DVec3],
     dimension: Dimension,
-    path: &[Segment<'_>],
+    path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) {
     let taken = layers.iter().map(|layers| {

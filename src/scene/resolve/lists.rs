@@ -2,7 +2,7 @@
 
 use super::vector;
 use crate::reading::beside::{missing, similar};
-use crate::reading::collector::{Collector, Help, Segment, key_path, written};
+use crate::reading::collector::{Collector, Help, PathPart, key_path, written};
 use crate::reading::words::{count, list, nearest};
 use crate::scene::file::LARGEST;
 use crate::scene::file::{BodyFile, Coordinates, Positive};
@@ -36,7 +36,7 @@ impl ListSource {
     pub(super) fn report(&self, report: &mut Collector<'_>, key: &str, at: &[usize], message: String, help: impl Help) {
         match self {
             Self::Scene => {
-                let indices = at.iter().map(|&index| Segment::Index(index));
+                let indices = at.iter().map(|&index| PathPart::Index(index));
                 let path: Vec<_> = key_path!["body", key].into_iter().chain(indices).collect();
                 report.at(&path, message, help);
             }

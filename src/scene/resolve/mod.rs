@@ -17,7 +17,7 @@ use super::structure::ValidFile;
 use super::{Run, Scene};
 use crate::look::{self, FontFiles, TypedView, View, font};
 use crate::reading::captions::typed;
-use crate::reading::collector::{Collector, Segment, key_path};
+use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::words::{count, quoted, short};
 use crate::sim::{Grip, Obstacle};
@@ -153,7 +153,7 @@ fn several<T: DeserializeOwned>(file: &Map<String, Json>, key: &str, report: &mu
     entries.map(|(at, entry)| read(entry, &key_path![key, at], report)).collect()
 }
 
-fn read<T: DeserializeOwned>(json: &Json, path: &[Segment<'_>], report: &mut Collector<'_>) -> Option<T> {
+fn read<T: DeserializeOwned>(json: &Json, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<T> {
     if json.is_null() {
         return None;
     }

@@ -1,7 +1,7 @@
 //! Rotations and paths.
 
 use super::{direction, vector};
-use crate::reading::collector::{Collector, Segment, key_path, written};
+use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::scene::file::{Coordinates, MotionPath, Rotation, Swing};
 use crate::sim::{Dimension, Key, Motion, Offset};
 use glam::DVec3;
@@ -10,7 +10,7 @@ use glam::DVec3;
 pub(super) fn axis(
     typed: Option<&Coordinates>,
     dimension: Dimension,
-    path: &[Segment<'_>],
+    path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) -> Option<DVec3> {
     let rotation = written(path);
@@ -38,7 +38,7 @@ fn offset(
     shift: Option<&Coordinates>,
     rotation: Option<&Rotation>,
     dimension: Dimension,
-    path: &[Segment<'_>],
+    path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) -> Option<Offset> {
     let shift = match shift {
@@ -59,7 +59,7 @@ fn offset(
 pub(super) fn keys(
     typed: &MotionPath,
     dimension: Dimension,
-    path: &[Segment<'_>],
+    path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) -> Option<Motion> {
     let mut keys = Vec::with_capacity(typed.keys.len());
@@ -110,7 +110,7 @@ fn same(one: Offset, other: Offset) -> bool {
 pub(super) fn swing(
     typed: &Swing,
     dimension: Dimension,
-    path: &[Segment<'_>],
+    path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) -> Option<Motion> {
     if typed.shift.is_none() && typed.rotation.is_none() {
@@ -123,7 +123,7 @@ pub(super) fn swing(
 }
 
 /// Reports keys that are closer to each other than a time step (s).
-pub(super) fn check_steps(typed: &MotionPath, step: f64, path: &[Segment<'_>], report: &mut Collector<'_>) {
+pub(super) fn check_steps(typed: &MotionPath, step: f64, path: &[PathPart<'_>], report: &mut Collector<'_>) {
     for (at, pair) in typed.keys.windows(2).enumerate() {
         let apart = pair[1].time - pair[0].time;
         if apart > 0.0 && apart < step {

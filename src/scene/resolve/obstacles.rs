@@ -4,7 +4,7 @@ use super::body::ResolvedBody;
 use super::motion::{self, axis};
 use super::{direction, vector};
 use crate::reading::captions::{quantity, rounded};
-use crate::reading::collector::{Collector, Segment, key_path};
+use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::scene::file::{Coordinates, ObstacleFile, ShapeFile};
 use crate::sim::geometry::{bounds, is_inside};
 use crate::sim::{Dimension, Motion, Obstacle, Shape};
@@ -34,7 +34,7 @@ pub(super) fn resolve(
 fn one(
     typed: &ObstacleFile,
     dimension: Dimension,
-    path: &[Segment<'_>],
+    path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) -> Option<Obstacle> {
     let shape = shape(&typed.shape, dimension, path, report);
@@ -66,7 +66,7 @@ fn one(
     })
 }
 
-fn shape(typed: &ShapeFile, dimension: Dimension, path: &[Segment<'_>], report: &mut Collector<'_>) -> Option<Shape> {
+fn shape(typed: &ShapeFile, dimension: Dimension, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Shape> {
     let path = |key| key_path![path; key];
     let mut point = |typed: &Coordinates, key| vector(typed, dimension, &path(key), report);
     match typed {
@@ -111,7 +111,7 @@ fn shape(typed: &ShapeFile, dimension: Dimension, path: &[Segment<'_>], report: 
 const TOUCHING: f64 = 1e-9;
 
 /// Reports obstacles that contain nodes at the start, and obstacles that start inside the body.
-fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[Segment<'_>], report: &mut Collector<'_>) {
+fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[PathPart<'_>], report: &mut Collector<'_>) {
     let placed = obstacle.at(0.0, 1.0);
     let name = match obstacle.shape {
         Shape::Floor { .. } => "floor",

@@ -1,7 +1,7 @@
 //! The runs: models, steps and integrators.
 
 use super::body::ResolvedBody;
-use crate::reading::collector::{Collector, Segment, key_path};
+use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::words;
 use crate::scene::Run;
 use crate::scene::file::{RunFile, StepFile, TimeFile};
@@ -120,7 +120,7 @@ fn misplaced(
     run: &RunFile,
     time: &TimeFile,
     integrator: Integrator,
-) -> Option<(Vec<Segment<'static>>, String, String)> {
+) -> Option<(Vec<PathPart<'static>>, String, String)> {
     let own = |key| key_path!["run", at, key].to_vec();
     let common = |key| key_path!["time", key].to_vec();
     let name = words::quoted(&crate::reading::captions::typed(&integrator));

@@ -2,7 +2,7 @@
 
 use super::Walk;
 use super::expect::first_sentence;
-use crate::reading::collector::{Segment, written};
+use crate::reading::collector::{PathPart, written};
 use crate::reading::words::{list, nearest, quoted, shortened};
 use crate::scene::gone::instead;
 use serde_json::Value as Json;
@@ -114,10 +114,8 @@ impl Walk<'_, '_, '_> {
         let help = match nearest(name, &known).filter(|_| others.is_empty()) {
             Some(near) => format!("did you mean `{near}`?"),
             None => {
-                let keys = self
-                    .path
-                    .iter()
-                    .filter_map(|segment| if let Segment::Key(key) = segment { Some(*key) } else { None });
+                let keys =
+                    self.path.iter().filter_map(|part| if let PathPart::Key(key) = part { Some(*key) } else { None });
                 let here = keys.collect::<Vec<_>>().join(".");
                 let elsewhere = elsewhere(self.schema, name).into_iter();
                 let tables = elsewhere.filter(|table| here != format!("{table}.{name}"));

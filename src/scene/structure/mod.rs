@@ -11,7 +11,7 @@ use super::gone::instead;
 use super::schema::{choices, variants};
 use super::step::NamedStep;
 use crate::look::typed::TypedColour;
-use crate::reading::collector::{Collector, Segment, written};
+use crate::reading::collector::{Collector, PathPart, written};
 use crate::reading::words::{self, list, nearest, quoted};
 use expect::{expected, first_sentence, range};
 use serde_json::{Map, Value as Json};
@@ -38,7 +38,7 @@ pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Collector<'_
     for (key, value) in root.iter() {
         let name = key.get_ref().as_ref();
         let before = walk.report.total();
-        walk.path.push(Segment::Key(name));
+        walk.path.push(PathPart::Key(name));
         let part = match (schema["properties"].get(name), value.get_ref()) {
             (None, _) => {
                 walk.unknown_key(schema, name, key.span(), &[]);
@@ -68,7 +68,7 @@ struct Walk<'r, 't, 'p> {
     /// The schema of the whole file.
     schema: &'r Json,
     report: &'r mut Collector<'t>,
-    path: Vec<Segment<'p>>,
+    path: Vec<PathPart<'p>>,
 }
 
 impl<'p> Walk<'_, '_, 'p> {
@@ -82,7 +82,7 @@ impl<'p> Walk<'_, '_, 'p> {
 
     /// The first sentence of the description of a key; `None` for an entry of an array.
     fn meaning(&self, schema: &Json) -> Option<String> {
-        let keyed = matches!(self.path.last(), Some(Segment::Key(_)));
+        let keyed = matches!(self.path.last(), Some(PathPart::Key(_)));
         schema.get("description").and_then(Json::as_str).filter(|_| keyed).map(|text| first_sentence(text).into())
     }
 
@@ -98,7 +98,7 @@ impl<'p> Walk<'_, '_, 'p> {
         let inner = schema.get("items").unwrap_or(&nothing);
         let mut entries = Vec::with_capacity(items.len());
         for (index, item) in items.iter().enumerate() {
-            self.path.push(Segment::Index(index));
+            self.path.push(PathPart::Index(index));
             entries.push(self.guarded(inner, item));
             self.path.pop();
         }
@@ -136,7 +136,7 @@ impl<'p> Walk<'_, '_, 'p> {
 
     fn wrong_type(&mut self, schema: &Json, value: &Spanned<DeValue<'_>>) -> Json {
         let mut help = self.meaning(schema);
-        if let [Segment::Key(key)] = self.path[..] {
+        if let [PathPart::Key(key)] = self.path[..] {
             match (schema["type"].as_str(), value.get_ref()) {
                 (Some("array"), DeValue::Table(_)) => {
                     help = Some(format!("write [[{key}]], with double brackets: there may be several"));
@@ -289,7 +289,7 @@ impl<'p> Walk<'_, '_, 'p> {
         let mut json = Map::new();
         for (key, value) in table.iter() {
             let name = key.get_ref().as_ref();
-            self.path.push(Segment::Key(name));
+            self.path.push(PathPart::Key(name));
             match schema["properties"].get(name) {
                 None => self.unknown_key(schema, name, key.span(), kinds),
                 Some(inner) => {

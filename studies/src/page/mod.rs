@@ -53,11 +53,11 @@ pub(crate) struct Page {
     pub(crate) caption: Vec<String>,
     /// The number of parts beside each other.
     pub(crate) columns: usize,
-    pub(crate) panels: Panels,
+    pub(crate) contents: Contents,
 }
 
 /// The parts of a page.
-pub(crate) enum Panels {
+pub(crate) enum Contents {
     Plots(Vec<Plot>),
     Maps(Vec<Map>),
 }
@@ -72,18 +72,18 @@ struct Room {
 
 impl Page {
     fn room(&self) -> &'static Room {
-        match self.panels {
-            Panels::Plots(_) => &plot::ROOM,
-            Panels::Maps(_) => &map::ROOM,
+        match self.contents {
+            Contents::Plots(_) => &plot::ROOM,
+            Contents::Maps(_) => &map::ROOM,
         }
     }
 
     /// The places of the parts, and the height of the page.
     fn areas(&self) -> (Vec<Area>, f64) {
         let Room { around: [left, above, right, below], shape, legend } = self.room();
-        let count = match &self.panels {
-            Panels::Plots(plots) => plots.len(),
-            Panels::Maps(maps) => maps.len(),
+        let count = match &self.contents {
+            Contents::Plots(plots) => plots.len(),
+            Contents::Maps(maps) => maps.len(),
         };
         let (columns, rows) = (self.columns as f64, count.div_ceil(self.columns) as f64);
         let wide = (WIDE - 2.0 * MARGIN - columns * (left + right) - (columns - 1.0) * BETWEEN) / columns;
@@ -105,9 +105,9 @@ impl Page {
         for (at, line) in self.caption.iter().enumerate() {
             write(&mut diagram, line, USUAL, 0.0, [MARGIN, CAPTION_AT + LINE * at as f64]);
         }
-        match &self.panels {
-            Panels::Plots(plots) => plot::draw(plots, &areas, &mut diagram),
-            Panels::Maps(maps) => {
+        match &self.contents {
+            Contents::Plots(plots) => plot::draw(plots, &areas, &mut diagram),
+            Contents::Maps(maps) => {
                 map::legend(&mut diagram, CAPTION_AT + LINE * self.caption.len() as f64);
                 maps.iter().zip(areas).for_each(|(map, area)| map.draw(&mut diagram, area));
             }

@@ -2,7 +2,7 @@
 
 use super::sample::Kind;
 use super::{Measured, Results, Solver};
-use crate::page::{Line, Page, Panels, Plot};
+use crate::page::{Contents, Line, Page, Plot};
 use crate::turns::machine;
 
 impl Results {
@@ -58,7 +58,7 @@ impl Results {
                 format!("Times on one thread of {}.", machine()),
             ],
             columns: 2,
-            panels: Panels::Plots([order].into_iter().chain(by_time).collect()),
+            contents: Contents::Plots([order].into_iter().chain(by_time).collect()),
         }
     }
 

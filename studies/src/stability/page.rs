@@ -2,7 +2,7 @@
 
 use super::text::short;
 use super::{Cell, Grid, Outcome, Results};
-use crate::page::{Map, Page, Panels, Tile};
+use crate::page::{Contents, Map, Page, Tile};
 
 impl Results {
     pub(super) fn page(&self) -> Page {
@@ -44,7 +44,7 @@ impl Results {
                     .to_owned(),
             ],
             columns: self.protocol.speeds.len().clamp(2, 3),
-            panels: Panels::Maps(self.maps().map(map).collect()),
+            contents: Contents::Maps(self.maps().map(map).collect()),
         }
     }
 }

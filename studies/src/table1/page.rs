@@ -2,7 +2,7 @@
 
 use super::printed::{Printed, ROWS};
 use super::{Results, Summary};
-use crate::page::{Line, Page, Panels, Plot};
+use crate::page::{Contents, Line, Page, Plot};
 use crate::spread::Spread;
 
 impl Results {
@@ -41,7 +41,7 @@ impl Results {
                 "The paper's numbers are of one start; those that it could not measure are left out.".to_owned(),
             ],
             columns: 2,
-            panels: Panels::Plots(vec![
+            contents: Contents::Plots(vec![
                 plot("Mean of α", |one| one.mean, |printed| printed.mean),
                 plot("Greatest α", |one| one.maximum, |printed| printed.maximum),
             ]),

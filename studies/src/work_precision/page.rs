@@ -2,7 +2,7 @@
 
 use super::method::Method;
 use super::{Comparison, Measured, Results};
-use crate::page::{Line, Page, Panels, Plot};
+use crate::page::{Contents, Line, Page, Plot};
 use crate::turns::machine;
 use localshape::sim::Integrator;
 
@@ -41,7 +41,7 @@ impl Results {
                 format!("Times on one thread of {}.", machine()),
             ],
             columns: 2,
-            panels: Panels::Plots(self.comparisons.iter().flat_map(of).collect()),
+            contents: Contents::Plots(self.comparisons.iter().flat_map(of).collect()),
         }
     }
 }

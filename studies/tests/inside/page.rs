@@ -22,7 +22,7 @@ fn all_is_on_the_page() {
         title: "Maps".to_owned(),
         caption: vec!["one line".to_owned()],
         columns: 2,
-        panels: Panels::Maps(vec![map(13, 12), map(1, 1), map(0, 0)]),
+        contents: Contents::Maps(vec![map(13, 12), map(1, 1), map(0, 0)]),
     };
     let (areas, high) = page.areas();
     let Room { around: [left, above, right, below], .. } = page.room();

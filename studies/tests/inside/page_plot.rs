@@ -1,6 +1,6 @@
 //! Plots of any numbers.
 
-use super::super::{Page, Panels};
+use super::super::{Contents, Page};
 use super::*;
 
 fn plots(points: Vec<[f64; 2]>) -> Vec<Plot> {
@@ -61,7 +61,7 @@ fn all_is_on_the_page_whatever_the_numbers() {
             }
         }
         let (title, caption) = ("Title".to_owned(), vec!["Words".to_owned()]);
-        let page = Page { title, caption, columns: 2, panels: Panels::Plots(plots) };
+        let page = Page { title, caption, columns: 2, contents: Contents::Plots(plots) };
         page.diagram();
     }
 }
