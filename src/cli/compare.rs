@@ -36,7 +36,7 @@ its frames. The result then names the keys that changed, the first state that mo
 Frames record a digest of the state that they show, so a difference is either of the state (`state moved`) or of the \
 drawing (`drawn differently`). The difference of a pixel is its distance from the range of the pixels around its place in the \
 other picture. Pictures pass if at most 1 % of their pixels differ by more than 2 of 255, and at most 0.03 %, or 8, by more \
-than 16, as other graphics drivers may.";
+than 16, and the mean of any 16 × 16 pixels by at most 1.5: other graphics drivers may differ as much.";
 
 /// Compare pictures, folders of frames, or a scene with its golden
 #[derive(Args, Debug)]

@@ -1,8 +1,8 @@
 //! The distance of two pictures of one size, and the tolerance.
 //!
 //! Graphics drivers round differently, and take other samples along silhouettes and lines. So each pixel is compared
-//! with the range of colours of all pixels around its place. What moves or fades as a whole is seen in the means of
-//! blocks. One tolerance holds for all drivers. It was measured between two software drivers of different makers,
+//! with the range of colours of all pixels around its place. A shift or a fade of a whole area changes the means
+//! of blocks. One tolerance holds for all drivers. It was measured between two software drivers of different makers,
 //! llvmpipe and SwiftShader, with all goldens of this project: at most 0.67 % of the pixels differ by more than
 //! [`FAINT`], 0.016 % by more than [`STRONG`], and the means of blocks by 1.14 of 255. A shift of a picture by one
 //! pixel changes the mean of some block by at least 2.10.
@@ -20,7 +20,7 @@ pub(super) const STRONG: u8 = 16;
 const PARTS: [f64; 2] = [0.01, 0.0003];
 /// The number of pixels that may differ in any picture, however small.
 const AT_LEAST: u64 = 8;
-/// The side of a block (px), and how far the means of a channel over it may differ, of 255.
+/// The side of a block (px), and the largest allowed difference of the means of a channel over it, of 255.
 const BLOCK: usize = 16;
 const MEAN: f64 = 1.5;
 
