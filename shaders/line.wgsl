@@ -49,10 +49,10 @@ const SMALL_FOLDED = 8.0;
 // The width of the widest line of a kind (px in the reference picture).
 fn widest(kind: u32) -> f32 {
     switch kind {
-        case EDGE, OBSTACLE_EDGE: { return select(EDGE_WIDTH, FLAT_EDGE_WIDTH, panel.flatness > 0.5); }
+        case EDGE, OBSTACLE_EDGE: { return EDGE_WIDTH; }
         case ALARM_EDGE: { return ALARM_EDGE_WIDTH; }
         case BAR: { return BAR_WIDTH; }
-        default: { return select(CONTOUR_WIDTH, FLAT_CONTOUR_WIDTH, panel.flatness > 0.5); }
+        default: { return CONTOUR_WIDTH; }
     }
 }
 
@@ -203,24 +203,4 @@ fn alarm_contour_opacity(segment: Segment) -> @location(0) vec4<f32> {
     // At the end of the set, its outline is drawn at full strength.
     let fold = mix(smallness * smallness, 1.0, shares.w);
     return vec4(0.0, look.step + fold * look.hidden, look.outline, 0.0);
-}
-
-// In the plane nothing hides a line.
-@fragment
-fn flat_opacity(segment: Segment) -> @location(0) vec4<f32> {
-    unpack(segment);
-    let distance = beside(segment).distance;
-    let scale = panel.line_scale;
-    switch segment.kind {
-        case BAR: { return vec4(BAR_ALPHA * covered(distance, BAR_WIDTH * scale), 0.0, 0.0, 0.0); }
-        case EDGE, OBSTACLE_EDGE: {
-            return vec4(FLAT_EDGE_ALPHA * edge_strength() * covered(distance, FLAT_EDGE_WIDTH * scale), 0.0, 0.0, 0.0);
-        }
-        case ALARM_EDGE: {
-            let width = ALARM_EDGE_WIDTH * scale * panel.contour_share;
-            return vec4(0.0, ALARM_EDGE_ALPHA * edge_strength() * covered(distance, width), 0.0, 0.0);
-        }
-        case ALARM_CONTOUR: { return vec4(0.0, covered(distance, FLAT_CONTOUR_WIDTH * scale), 0.0, 0.0); }
-        default: { return vec4(0.0, 0.0, covered(distance, FLAT_CONTOUR_WIDTH * scale), 0.0); }
-    }
 }

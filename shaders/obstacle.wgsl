@@ -1,21 +1,17 @@
-// Solid obstacles, among the bodies: the same light on another material, nothing below the floor. In the plane they
-// have a rim and a smooth border.
+// Solid obstacles, among the bodies: the same light on another material, nothing below the floor.
 
 struct SolidCorner {
     @builtin(position) place: vec4<f32>,
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) @interpolate(flat) colour: vec3<f32>,
-    @location(3) @interpolate(flat) rim: vec3<f32>,
-    // The distance inside the outline (px).
-    @location(4) inward: f32,
-    @location(5) above: f32,
+    @location(3) above: f32,
     // The share of ambient light that the body occludes.
-    @location(6) near: f32,
-    @location(7) @interpolate(flat) shared_0: vec4<f32>,
-    @location(8) @interpolate(flat) shared_1: vec4<f32>,
-    @location(9) @interpolate(flat) shared_2: vec4<f32>,
-    @location(10) @interpolate(flat) shared_3: vec4<f32>,
+    @location(4) near: f32,
+    @location(5) @interpolate(flat) shared_0: vec4<f32>,
+    @location(6) @interpolate(flat) shared_1: vec4<f32>,
+    @location(7) @interpolate(flat) shared_2: vec4<f32>,
+    @location(8) @interpolate(flat) shared_3: vec4<f32>,
 }
 
 fn unpack_solid(corner: SolidCorner) {
@@ -27,15 +23,13 @@ fn solid_corner(
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) colour: vec3<f32>,
-    @location(3) rim: vec3<f32>,
-    @location(4) inward: f32,
-    @location(5) near: f32,
+    @location(3) near: f32,
 ) -> SolidCorner {
     panel = panel_data;
     let same = pack_shared(panel.sound);
     let above = dot(position, panel.up) - panel.floor;
     let place = panel.clip * vec4(position, 1.0);
-    return SolidCorner(place, position, normal, colour, rim, inward, above, near, same[0], same[1], same[2], same[3]);
+    return SolidCorner(place, position, normal, colour, above, near, same[0], same[1], same[2], same[3]);
 }
 
 @fragment
@@ -43,10 +37,9 @@ fn solid_surface(corner: SolidCorner) -> @location(0) vec4<f32> {
     unpack_solid(corner);
     let rise = length(vec2(dpdx(corner.above), dpdy(corner.above)));
     let light = light_left(corner.position, facing_normal(corner.position, corner.normal), 1.0 - TAKEN * corner.near);
-    let material = mix(corner.rim, corner.colour, saturate(corner.inward - RIM_WIDTH * panel.line_scale + 0.5));
-    let colour = material * light.diffuse + light.gloss;
+    let colour = corner.colour * light.diffuse + light.gloss;
     // Nothing is drawn below the floor.
-    let inside = saturate(corner.inward + 0.5) * saturate(corner.above / max(rise, 1e-9) + 0.5);
+    let inside = saturate(corner.above / max(rise, 1e-9) + 0.5);
     if inside <= 0.0 {
         discard;
     }

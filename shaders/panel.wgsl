@@ -18,9 +18,9 @@ struct Panel {
     // The position of the eye; distance of the near plane.
     eye: vec3<f32>,
     near: f32,
-    // Towards the key light; 1 for flat colours without light.
+    // Towards the key light.
     key: vec3<f32>,
-    flatness: f32,
+    unused_0: f32,
     // The floor's outward normal, and its height along the normal.
     up: vec3<f32>,
     floor: f32,
@@ -46,7 +46,7 @@ struct Panel {
     place: vec4<f32>,
     // Width of contours of bodies, from 0 to 1.
     contour_share: f32,
-    unused: f32,
+    unused_1: f32,
     // The distances over which solid obstacles fade, across and down (px); left, upper, right and lower side of their
     // room (px); and the strength of the fading at each.
     fade_distance: vec2<f32>,

@@ -97,7 +97,6 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
         for (var tap = 0u; tap < TAPS; tap++) {
             shown += disc_share(middle, pixel, before, nearness, tap) / f32(TAPS);
         }
-        shown = max(shown, panel.flatness);
         let colour = mix(stroke.second.rgb, stroke.first.rgb, saturate(inward - BEAD_RIM * stroke.size + 0.5));
         return vec4(decoded(colour), saturate(inward + 0.5) * shown);
     }
@@ -113,7 +112,6 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
     for (var tap = 0u; tap < TAPS; tap++) {
         shares += line_shares(middle, across, before, tap) / f32(TAPS);
     }
-    shares.x = max(shares.x, panel.flatness);
     var own = mix(stroke.first.rgb, stroke.second.rgb, share);
     if stroke.kind == CASED_LINE {
         let casing = max(CASING * stroke.size, LEAST_CASING);

@@ -17,7 +17,7 @@ struct Corner {
 fn pack_shared(own: vec3<f32>) -> array<vec4<f32>, 4> {
     return array(
         vec4(panel.eye, panel.soft),
-        vec4(panel.key, panel.flatness),
+        vec4(panel.key, 0.0),
         vec4(panel.up, panel.floor),
         vec4(own, 0.0),
     );
@@ -29,7 +29,6 @@ fn unpack_shared(same: array<vec4<f32>, 4>) -> vec3<f32> {
     panel.eye = same[0].xyz;
     panel.soft = same[0].w;
     panel.key = same[1].xyz;
-    panel.flatness = same[1].w;
     panel.up = same[2].xyz;
     panel.floor = same[2].w;
     return same[3].xyz;
@@ -59,7 +58,7 @@ const KEY_TAKEN = 0.8;
 const NEARER = 0.02;
 // A face turned away is this much farther back, relative to the distance.
 const BACK_FACE = 1e-5;
-// The dark share of a stripe's period, in space.
+// The dark share of a stripe's period.
 const STRIPE = 0.2;
 // From this depth (soft units) behind the visible surface on, a turned-over element is equally visible.
 const THROUGH_DEPTH = 0.6;
@@ -70,7 +69,7 @@ const UNLIT = 0.86;
 // viewer is always visible: the other is moved back by a few times the round-off of depths.
 fn corner_place(position: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
     var place = panel.clip * vec4(position, 1.0);
-    if panel.flatness < 0.5 && dot(normal, panel.eye - position) < 0.0 {
+    if dot(normal, panel.eye - position) < 0.0 {
         place.z *= 1.0 - BACK_FACE;
     }
     return place;
@@ -132,21 +131,17 @@ fn light_left(position: vec3<f32>, facing: vec3<f32>, left: f32) -> Light {
     let shine16 = shine4 * shine4 * shine4 * shine4;
     let rim = 1.0 - max(0.0, dot(facing, view));
     let gloss = 0.05 * shine16 * shine4 * shine4 * shine4 + 0.06 * rim * rim * rim * rim;
-    return Light(mix(KEY * key + around, vec3(1.0), panel.flatness), gloss * (1.0 - panel.flatness));
+    return Light(KEY * key + around, gloss);
 }
 
-// The part of a pixel that the stripes of the hatch cover. In the plane they move with the body, like dots.
-fn stripes(hatch: f32, place: vec2<f32>) -> f32 {
-    let from_body = place + panel.place.xy - panel.place.zw;
-    let flat_hatch = (from_body.x + from_body.y) * 0.70710678 / (FLAT_PERIOD * panel.line_scale);
-    let at = select(hatch, flat_hatch, panel.flatness > 0.5);
-    let share = select(STRIPE, FLAT_STRIPE, panel.flatness > 0.5);
+// The part of a pixel that the stripes of the hatch cover.
+fn stripes(hatch: f32) -> f32 {
     // Periods per pixel; the width of the filter.
-    let width = max(length(vec2(dpdx(at), dpdy(at))), 1e-5);
-    let off = abs(fract(at) - 0.5);
-    let covered = clamp((0.5 * share - off) / width + 0.5, 0.0, 1.0);
+    let width = max(length(vec2(dpdx(hatch), dpdy(hatch))), 1e-5);
+    let off = abs(fract(hatch) - 0.5);
+    let covered = clamp((0.5 * STRIPE - off) / width + 0.5, 0.0, 1.0);
     // Stripes finer than three pixels per period would only flicker.
-    return mix(covered, share, smoothstep(0.2, 0.45, width));
+    return mix(covered, STRIPE, smoothstep(0.2, 0.45, width));
 }
 
 struct AlarmColour {
@@ -156,7 +151,7 @@ struct AlarmColour {
 
 fn alarm(corner: Corner) -> AlarmColour {
     let light = light(corner.position, corner.normal);
-    let dark = STRIPE_ALPHA * stripes(corner.hatch, corner.place.xy);
+    let dark = STRIPE_ALPHA * stripes(corner.hatch);
     let colour = mix(panel.alarm, panel.alarm_line, dark);
     return AlarmColour(colour * light.diffuse + light.gloss, dot(light.diffuse, LUMINANCE));
 }
@@ -184,8 +179,7 @@ fn over_behind(colour: vec3<f32>, corner: Corner) -> vec4<f32> {
     let at = vec2<i32>(corner.place.xy);
     let behind = load_alarm_depth(at);
     let stored = load_alarm_colour(at);
-    // In the plane, turned-over elements lie in front of others.
-    if behind <= 0.0 || panel.flatness > 0.5 {
+    if behind <= 0.0 {
         return opaque(colour);
     }
     let depth = panel.near / behind - 1.0 / corner.place.w;

@@ -63,9 +63,6 @@ fn tint(corner: TintedCorner) -> vec3<f32> {
     let shade = mix(ramp[cell].rgb, ramp[cell + 1u].rgb, at - f32(cell));
     // Below zero there is no value.
     let colour = select(panel.sound, shade, corner.shade > -0.5);
-    if panel.flatness > 0.5 {
-        return colour;
-    }
     let brightness = dot(light(corner.position, corner.normal).diffuse, LUMINANCE);
     let lightness = 1.0 + LIGHTNESS * (2.0 * smoothstep(BRIGHTNESS.x, BRIGHTNESS.y, brightness) - 1.0);
     // Lightness follows the cube root of light (Oklab). Colours too bright for the screen would change their hue there.
@@ -75,7 +72,7 @@ fn tint(corner: TintedCorner) -> vec3<f32> {
 
 // The colour of a turned-over element, and the share of the stripes of its hatch.
 fn alarm_tint(corner: TintedCorner) -> vec4<f32> {
-    let covered = stripes(corner.hatch, corner.place.xy);
+    let covered = stripes(corner.hatch);
     return vec4(mix(tint(corner), panel.alarm, covered), covered);
 }
 
@@ -93,7 +90,7 @@ fn tinted_over(colour: vec3<f32>, corner: TintedCorner) -> vec4<f32> {
     let at = vec2<i32>(corner.place.xy);
     let behind = load_alarm_depth(at);
     let stored = load_alarm_colour(at);
-    if behind <= 0.0 || panel.flatness > 0.5 {
+    if behind <= 0.0 {
         return opaque(colour);
     }
     let depth = panel.near / behind - 1.0 / corner.place.w;

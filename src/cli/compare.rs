@@ -134,9 +134,10 @@ impl Compare {
             Subject::Scene(scene) => warn(path, scene),
             Subject::Figure(figure) => warn_of_figure(figure),
         }
-        let gpu = self.adapter.as_ref().map_or_else(|| usual_gpu(&golden), Gpu::new)?;
+        let open = || self.adapter.as_ref().map_or_else(|| usual_gpu(&golden), Gpu::new);
+        let gpu = subject.is_lit().then(open).transpose()?;
         interrupt::listen();
-        let drawn = draw(path, &subject, &golden, PICTURES, Some(&gpu), &mut || !interrupt::requested());
+        let drawn = draw(path, &subject, &golden, PICTURES, gpu.as_ref(), &mut || !interrupt::requested());
         let drawn = drawn.map_err(|error| match error {
             DrawError::Render(error) => error.into(),
             DrawError::Disk(_) => Failure::files(error.to_string()),

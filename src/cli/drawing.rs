@@ -6,13 +6,13 @@ use super::results::Pictures;
 use super::still::{check_type, source_of};
 use super::{animate, interrupt};
 use crate::animation::Format;
-use crate::gpu::{Gpu, GpuError, Pending};
+use crate::gpu::{Gpu, GpuError, adapter_name};
 use crate::output::{
     Clock, FrameWriter, PixelFrame, Spent, Summary, Tags, Texts, Timings, frame_file_name, is_drawn, read_tags,
     temporary_folder,
 };
 use crate::picture::{Composer, Picture};
-use crate::render::{RenderError, Renderer};
+use crate::render::{Pending, RenderError, Renderer};
 use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::{Diagnostic, Frame, RunFrame, Snapshot};
@@ -23,7 +23,8 @@ use tempfile::TempDir;
 
 /// The device and the settings for the pictures of all scenes.
 pub(super) struct Device {
-    pub(super) gpu: Gpu,
+    /// The graphics device, if a scene has lit bodies.
+    pub(super) gpu: Option<Gpu>,
     /// The number of threads that compress.
     pub(super) threads: usize,
     /// Whether frames are kept after the command.
@@ -101,7 +102,7 @@ impl<'a> Drawing<'a> {
             history: History::default(),
             composer: None,
             still: None,
-            renderer: Renderer::new(&device.gpu, scene.view.size)?,
+            renderer: Renderer::new(device.gpu.as_ref(), scene.view.size)?,
             begun: None,
             last: None,
             repeated: 0,
@@ -112,7 +113,7 @@ impl<'a> Drawing<'a> {
             frames: frames.to_vec(),
             folder: folder.to_owned(),
             temporary,
-            adapter: device.gpu.description().to_string(),
+            adapter: adapter_name(device.gpu.as_ref().filter(|_| scene.is_lit())),
             compose_time: Spent::default(),
             draw_time: Spent::default(),
             cut: Vec::new(),

@@ -5,8 +5,8 @@ use super::failure::{Failure, Status, warn_of_figure};
 use super::interrupt;
 use super::options::{DeviceOptions, PrintOptions, ThemeOption, ThreadOptions, number_in, size};
 use super::record;
-use super::still::{Drawn, Format, NO_ADAPTER, Still, replaceable};
-use crate::gpu::Gpu;
+use super::still::{Drawn, Format, Still, replaceable};
+use crate::gpu::{Gpu, adapter_name};
 use crate::output::{AtomicFile, FolderLock, OutputError, Tags, folder_of, is_folder, read_tags};
 use crate::picture::compose_figure;
 use crate::reading::setting::Setting;
@@ -100,10 +100,8 @@ impl FigureCommand {
             self.fit(figure)?;
         }
         let paths = self.paths(&figures)?;
-        let format = self.format();
-        let needs_device = format.needs_device(figures.iter().flat_map(Figure::scenes));
-        let sizes = figures.iter().map(|figure| figure.size);
-        let gpu = needs_device.then(|| self.device.open(sizes)).transpose()?;
+        let lit = figures.iter().filter(|figure| figure.is_lit());
+        let gpu = self.device.open(lit.map(|figure| figure.size))?;
         interrupt::listen();
         let pool = record::pool(self.threads.count())?;
         let folder = self.folder();
@@ -172,8 +170,8 @@ impl FigureCommand {
             let [width, height] = figure.size;
             Failure::usage(format!("{}: at {width}×{height} {error}", figure.name))
         })?;
-        let adapter = gpu.map_or(NO_ADAPTER.to_owned(), |gpu| gpu.description().to_string());
-        let tags = Tags::of_figure(figure, &moments, &adapter).texts();
+        let gpu = gpu.filter(|_| figure.is_lit());
+        let tags = Tags::of_figure(figure, &moments, &adapter_name(gpu)).texts();
         let title = &figure.title;
         let print = figure.print.as_ref();
         let source = print.map_or("", |print| &print.file);

@@ -133,15 +133,19 @@ pub(super) struct DeviceOptions {
 
 #[cfg(feature = "render")]
 impl DeviceOptions {
-    /// Opens the device for pictures of these sizes (px).
-    pub(super) fn open(&self, sizes: impl IntoIterator<Item = [u32; 2]>) -> Result<Gpu, Failure> {
+    /// Opens the device for pictures with lit bodies, of these sizes (px), if there are any.
+    pub(super) fn open(&self, sizes: impl IntoIterator<Item = [u32; 2]>) -> Result<Option<Gpu>, Failure> {
+        let mut sizes = sizes.into_iter().peekable();
+        if sizes.peek().is_none() {
+            return Ok(None);
+        }
         let gpu = Gpu::new(&self.adapter)?;
         let longest = gpu.longest_side();
-        if let Some([width, height]) = sizes.into_iter().find(|size| size.iter().any(|&side| side > longest)) {
+        if let Some([width, height]) = sizes.find(|size| size.iter().any(|&side| side > longest)) {
             let adapter = gpu.description();
             bail!("{width}×{height} is too large: {adapter} draws up to {longest} pixels a side");
         }
-        Ok(gpu)
+        Ok(Some(gpu))
     }
 }
 

@@ -9,10 +9,9 @@ use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, ThemeOption, size};
 use super::record::{self, Begin};
 use super::scenes::{Wish, nearest};
-use super::still::{
-    Format as FileFormat, NO_ADAPTER, Still, one_frame, replaceable as replaceable_still, source_of, too_small,
-};
+use super::still::{Format as FileFormat, Still, one_frame, replaceable as replaceable_still, source_of, too_small};
 use crate::animation::Format;
+use crate::gpu::adapter_name;
 use crate::look::Ghost;
 use crate::output::shell;
 use crate::output::{AtomicFile, FolderLock, OutputError, StoredStates, Tags, folder_of};
@@ -118,9 +117,10 @@ impl Render {
             job.stored = Some(StoredStates::open(file, &job.scene, &job.runs, &job.frames)?);
         }
         // The device is opened after all other checks, and before any folder is changed.
-        let gpu = self.device.open(jobs.iter().map(|job| job.scene.view.size))?;
+        let lit = jobs.iter().map(|job| &job.scene).filter(|scene| scene.is_lit());
+        let gpu = self.device.open(lit.map(|scene| scene.view.size))?;
         jobs.iter().try_for_each(|job| self.tell_moments(&job.scene))?;
-        let adapter = gpu.description().to_string();
+        let adapter = adapter_name(gpu.as_ref());
         let device = Arc::new(Device {
             gpu,
             threads: self.options.threads.count(),
@@ -177,7 +177,7 @@ impl Render {
             replaceable_still(path, format)?;
         }
         self.tell_moments(scene)?;
-        let gpu = format.needs_device([scene]).then(|| self.device.open([scene.view.size])).transpose()?;
+        let gpu = self.device.open(scene.is_lit().then_some(scene.view.size))?;
         let folder = folder_of(path);
         std::fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
         let _lock = FolderLock::beside_others(folder);
@@ -188,8 +188,7 @@ impl Render {
             return Ok(Status::Interrupted);
         };
         let picture = Composer::new(scene, &history.unwrap_or_default()).compose(&frame);
-        let adapter = gpu.as_ref().map_or(NO_ADAPTER.to_owned(), |gpu| gpu.description().to_string());
-        let tags = Tags::of_frame(scene, &frame, &adapter).texts();
+        let tags = Tags::of_frame(scene, &frame, &adapter_name(gpu.as_ref())).texts();
         let source = source_of(scene);
         let (print, title) = (scene.view.print.as_ref(), &scene.title);
         let still = Still { picture: &picture, print, source: &source, title, tags: &tags };

@@ -11,7 +11,7 @@ use crate::render::{RenderError, Renderer};
 use crate::runner::history::History;
 use crate::runner::{Frames, Next, Runner};
 use crate::scene::Scene;
-use crate::sim::{Dimension, Frame};
+use crate::sim::Frame;
 use crate::vector::{self, Page};
 use rayon::ThreadPool;
 use std::path::Path;
@@ -46,11 +46,6 @@ impl Format {
              `localshape animate`)",
             path.display()
         )
-    }
-
-    /// Whether pictures of scenes need a graphics device; vector formats need one only for lit bodies.
-    pub(super) fn needs_device<'a>(self, scenes: impl IntoIterator<Item = &'a Scene>) -> bool {
-        self == Self::Png || scenes.into_iter().any(|scene| scene.body.dimension == Dimension::Space)
     }
 }
 
@@ -92,9 +87,6 @@ pub(super) fn one_frame(
     bar.finish_and_clear();
     Ok(None)
 }
-
-/// The name of the adapter in files that are drawn without one.
-pub(super) const NO_ADAPTER: &str = "none";
 
 /// Refuses to replace a file that is not a figure or single frame of this program.
 pub(super) fn replaceable(path: &Path, format: Format) -> Result<(), Failure> {
@@ -174,7 +166,7 @@ impl Still<'_> {
 
 /// The pixels of a picture: red, green and blue of each, in rows from the top left.
 fn draw(gpu: Option<&Gpu>, picture: &Picture) -> Result<Vec<u8>, RenderError> {
-    Ok(Renderer::new(gpu.expect("a device for pixels"), picture.size)?.draw(picture)?.into_raw())
+    Ok(Renderer::new(gpu, picture.size)?.draw(picture)?.into_raw())
 }
 
 /// A drawn picture.

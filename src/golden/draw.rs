@@ -4,7 +4,7 @@ use super::folder::{Drawn, Golden};
 use super::record::{DIGITS, Record};
 use super::said;
 use super::states::{State, States};
-use crate::gpu::{AdapterChoice, Gpu, InitError};
+use crate::gpu::{AdapterChoice, Gpu, InitError, adapter_name};
 use crate::output::{Compression, Tags, encode, frame_file_name, state_digest};
 use crate::picture::{Composer, compose_figure};
 use crate::render::{RenderError, Renderer};
@@ -45,6 +45,14 @@ impl Subject {
         }
         Ok(Self::Scene(Box::new(Scene::load(path, limits)?)))
     }
+
+    /// Whether its pictures need a device.
+    pub(crate) fn is_lit(&self) -> bool {
+        match self {
+            Self::Scene(scene) => scene.is_lit(),
+            Self::Figure(figure) => figure.is_lit(),
+        }
+    }
 }
 
 /// Why a scene or figure could not be drawn.
@@ -67,7 +75,7 @@ pub(crate) fn usual_gpu(golden: &Golden) -> Result<Gpu, InitError> {
 }
 
 /// Simulates a scene or figure and draws the pictures that its golden has, or `pictures` of them for a new golden.
-/// Without a device nothing is drawn, and only states can be compared. If `go_on` returns `false`, there is no result.
+/// Lit bodies are drawn only with a device; without one, only their states are compared. If `go_on` returns `false`, there is no result.
 ///
 /// # Errors
 /// If the device fails, or a figure has no room in the size of its golden.
@@ -106,8 +114,9 @@ fn draw_scene(
     let size = size(scene.view.size, golden);
     scene.view.size = size;
     let runs: Vec<usize> = (0..scene.runs.len()).collect();
-    let mut renderer = gpu.map(|gpu| Renderer::new(gpu, size)).transpose()?;
-    let adapter = gpu.map_or_else(String::new, |gpu| gpu.description().to_string());
+    let is_drawn = gpu.is_some() || !scene.is_lit();
+    let mut renderer = is_drawn.then(|| Renderer::new(gpu, size)).transpose()?;
+    let adapter = adapter_name(gpu.filter(|_| scene.is_lit()));
     let (mut states, mut files, mut stopped) = (States::default(), BTreeMap::new(), BTreeMap::new());
     // Charts, paths and cameras need the whole time series, which is simulated before the first frame is drawn.
     let wanted = scene.time_series().filter(|_| renderer.is_some());
@@ -151,7 +160,7 @@ fn draw_scene(
         }
     }
     let record = Record { subject: String::new(), size, frames: drawn, keys: said::of_scene(&scene), states };
-    Ok(Some(Drawn::new(record, files, gpu.is_some(), stopped.into_values().collect())))
+    Ok(Some(Drawn::new(record, files, is_drawn, stopped.into_values().collect())))
 }
 
 fn draw_figure(
@@ -175,17 +184,18 @@ fn draw_figure(
         add(&mut states, &name, 0, snapshot, true);
     }
     let mut files = BTreeMap::new();
-    if let Some(gpu) = gpu {
+    let is_drawn = gpu.is_some() || !figure.is_lit();
+    if is_drawn {
         let [width, height] = figure.size;
         let no_room = |error| DrawError::NoRoom(format!("{}: at {width}×{height} {error}", figure.name));
         let picture = compose_figure(&figure, &moments).map_err(no_room)?;
         let image = Renderer::new(gpu, figure.size)?.draw(&picture)?;
-        let texts = Tags::of_figure(&figure, &moments, &gpu.description().to_string()).texts();
+        let texts = Tags::of_figure(&figure, &moments, &adapter_name(gpu.filter(|_| figure.is_lit()))).texts();
         files.insert(format!("{}.png", figure.name), encode(figure.size, image.as_raw(), &texts, Compression::High));
     }
     let keys = said::of_figure(path, &figure);
     let record = Record { subject: String::new(), size: figure.size, frames: [0].into(), keys, states };
-    Ok(Some(Drawn::new(record, files, gpu.is_some(), Vec::new())))
+    Ok(Some(Drawn::new(record, files, is_drawn, Vec::new())))
 }
 
 /// Adds the state of a snapshot, with its positions on request.

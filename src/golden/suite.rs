@@ -107,7 +107,7 @@ impl Suite {
         let subject = Subject::load(path, &Limits::default()).map_err(|error| error.to_string())?;
         let golden = if updates { Golden::read(&folder) } else { Golden::read_whole(&folder) };
         let golden = golden.map_err(|error| error.to_string())?;
-        let gpu = self.device(&golden)?.cloned();
+        let gpu = if subject.is_lit() { self.device(&golden)?.cloned() } else { None };
         let drawn = draw(path, &subject, &golden, self.pictures, gpu.as_ref(), &mut || true);
         let drawn = drawn.map_err(|error| error.to_string())?.expect("it is not interrupted");
         let comparison = Comparison::of_golden(&golden, &drawn);

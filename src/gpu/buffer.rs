@@ -59,11 +59,6 @@ impl<T: bytemuck::NoUninit> GrowingBuffer<T> {
     pub(crate) fn contents(&self) -> &[T] {
         &self.contents
     }
-
-    /// The number of elements in the last contents.
-    pub(crate) fn len(&self) -> usize {
-        self.contents.len()
-    }
 }
 
 /// The part of new contents that differs from the old ones, in whole blocks.

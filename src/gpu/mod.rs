@@ -159,6 +159,11 @@ pub struct Gpu {
     work: Arc<Mutex<Vec<Work>>>,
 }
 
+/// The name of a device's adapter in the metadata of files.
+pub(crate) fn adapter_name(gpu: Option<&Gpu>) -> String {
+    gpu.map_or_else(|| "none".to_owned(), |gpu| gpu.description().to_string())
+}
+
 impl Gpu {
     /// Opens a device on the adapter that fits `choice`.
     ///

@@ -12,18 +12,11 @@ pub(crate) fn padded_row(width: u32) -> u32 {
     (width * PIXEL).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
 
-/// Takes the colours out of padded rows of four-byte pixels, without alpha and padding.
-fn without_padding(rows: &[u8], width: u32, height: u32) -> Vec<u8> {
-    let mut colours = vec![0; width as usize * height as usize * 3];
+/// The pixels of padded rows.
+fn without_padding(rows: &[u8], width: u32) -> Vec<u8> {
     let rows = rows.chunks_exact(padded_row(width) as usize);
-    for (row, colours) in rows.zip(colours.chunks_exact_mut(width as usize * 3)) {
-        // Arrays of known length, which compile to whole words.
-        let (pixels, colours) = (row.as_chunks::<{ PIXEL as usize }>().0, colours.as_chunks_mut::<3>().0);
-        for (&[red, green, blue, _], colour) in pixels.iter().zip(colours) {
-            *colour = [red, green, blue];
-        }
-    }
-    colours
+    let rows: Vec<_> = rows.map(|row| &row[..(width * PIXEL) as usize]).collect();
+    rows.concat()
 }
 
 /// A buffer for reading back one texture after the other.
@@ -76,7 +69,7 @@ impl ReadBack {
         Pending { mapped, submission: gpu.queue().submit([commands.finish()]) }
     }
 
-    /// Waits for the copy and returns its colours: three bytes a pixel, row after row from the top.
+    /// Waits for the copy and returns its pixels: red, green, blue and opacity of each, in rows from the top left.
     ///
     /// # Errors
     /// The device was lost or refused a command.
@@ -88,7 +81,7 @@ impl ReadBack {
         pending.mapped.recv().map_err(|error| lost(&error.to_string()))?.map_err(|error| lost(&error.to_string()))?;
         let colours = {
             let rows = self.buffer.get_mapped_range(..).map_err(|error| lost(&error.to_string()))?;
-            without_padding(&rows, self.width, self.height)
+            without_padding(&rows, self.width)
         };
         self.buffer.unmap();
         Ok(colours)
@@ -105,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn padding_and_alpha_stay_behind_at_odd_widths() {
+    fn padding_stays_behind_at_odd_widths() {
         let (width, height) = (65, 3);
         let mut rows = vec![0xee; (padded_row(width) * height) as usize];
         for y in 0..height {
@@ -114,8 +107,8 @@ mod tests {
                 rows[at..at + 4].copy_from_slice(&[x as u8, y as u8, 7, 255]);
             }
         }
-        let colours = without_padding(&rows, width, height);
-        assert_eq!(colours.len(), 65 * 3 * 3);
-        assert!(colours.chunks(3).enumerate().all(|(at, colour)| colour == [(at % 65) as u8, (at / 65) as u8, 7]));
+        let pixels = without_padding(&rows, width);
+        assert_eq!(pixels.len(), 65 * 3 * 4);
+        assert!(pixels.chunks(4).enumerate().all(|(at, pixel)| pixel == [(at % 65) as u8, (at / 65) as u8, 7, 255]));
     }
 }

@@ -40,12 +40,26 @@ fn check(bytes: &[u8]) -> Result<(), String> {
 /// Why bytes that begin like a font are not a usable one.
 #[cfg(feature = "render")]
 fn letters(bytes: &[u8]) -> Result<(), String> {
-    use ab_glyph::{Font, FontRef};
-    let font = FontRef::try_from_slice(bytes)
+    /// Whether an outline has anything.
+    struct Drawn(bool);
+    impl ttf_parser::OutlineBuilder for Drawn {
+        fn move_to(&mut self, _: f32, _: f32) {}
+        fn line_to(&mut self, _: f32, _: f32) {
+            self.0 = true;
+        }
+        fn quad_to(&mut self, _: f32, _: f32, _: f32, _: f32) {
+            self.0 = true;
+        }
+        fn curve_to(&mut self, _: f32, _: f32, _: f32, _: f32, _: f32, _: f32) {
+            self.0 = true;
+        }
+        fn close(&mut self) {}
+    }
+    let font = ttf_parser::Face::parse(bytes, 0)
         .map_err(|_| format!("begins like a font but is damaged or cut short; {EXPECTED}"))?;
     let drawn = |character: &char| {
-        let glyph = font.glyph_id(*character);
-        glyph.0 != 0 && font.outline(glyph).is_some_and(|outline| !outline.curves.is_empty())
+        let mut outline = Drawn(false);
+        font.glyph_index(*character).is_some_and(|glyph| font.outline_glyph(glyph, &mut outline).is_some()) && outline.0
     };
     let needed = ('0'..='9').chain('A'..='Z').chain('a'..='z');
     let missing: Vec<char> = needed.filter(|character| !drawn(character)).collect();

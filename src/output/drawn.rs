@@ -16,10 +16,15 @@ impl FrameFolder<'_> {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write_picture(&self, frame: &Frame, image: &image::RgbImage, gpu: &crate::gpu::Gpu) -> io::Result<PathBuf> {
+    pub fn write_picture<'b>(
+        &self,
+        frame: &Frame,
+        image: &image::RgbImage,
+        gpu: impl Into<Option<&'b crate::gpu::Gpu>>,
+    ) -> io::Result<PathBuf> {
         let DiagnosticsWriter { scene, path, .. } = &self.diagnostics;
         let path = path.with_file_name(frame_file_name(frame.index));
-        let texts = Tags::of_frame(scene, frame, &gpu.description().to_string()).texts();
+        let texts = Tags::of_frame(scene, frame, &crate::gpu::adapter_name(gpu.into())).texts();
         let dpi = scene.view.print.as_ref().map(|print| print.dpi);
         let file = encode_print(image.dimensions().into(), image.as_raw(), &texts, Compression::Fast, dpi);
         write_whole(&path, &file).map_err(io::Error::other)?;

@@ -3,9 +3,9 @@
 use super::narrow::narrow;
 use crate::colour::Colour;
 use crate::look::FontFiles;
-use ab_glyph::{Font, FontArc, FontRef, GlyphId, OutlinedGlyph, PxScale, point};
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
+use ttf_parser::{Face as Parsed, GlyphId};
 
 /// The two weights in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -81,7 +81,7 @@ pub(crate) struct Fonts {
 struct Letter {
     /// The number of its font, and its glyph there.
     face: u8,
-    glyph: GlyphId,
+    glyph: u16,
     /// The distance by which the glyph moves the pen in its font, and here, in sizes of type.
     own: f64,
     advance: f64,
@@ -90,7 +90,6 @@ struct Letter {
 /// One font.
 #[derive(Debug)]
 pub(crate) struct Face {
-    font: FontArc,
     /// Its file, unless it is built in.
     own: Option<Arc<[u8]>>,
     /// Identifies a font, also among those of different scenes.
@@ -134,19 +133,16 @@ impl Default for Fonts {
 impl Fonts {
     /// The fonts of a scene. A file that is not a font is ignored; loaded scenes have none.
     pub(crate) fn new(files: &FontFiles) -> Self {
-        let built_in = |bytes: &'static [u8], key| {
-            let font = FontRef::try_from_slice(bytes).expect("the font that comes with the program is whole");
-            Face { font: FontArc::new(font), own: None, key }
-        };
+        let built_in = |key| Face { own: None, key };
         let own = |file: &Option<Arc<[u8]>>| {
             let bytes = file.as_ref()?;
-            let font = FontArc::try_from_vec(bytes.to_vec()).ok()?;
+            Parsed::parse(bytes, 0).ok()?;
             let digest = Sha256::digest(bytes);
             let key = digest.iter().take(8).fold(0, |key, &byte| key << 8 | u64::from(byte));
-            Some(Face { font, own: Some(Arc::clone(bytes)), key })
+            Some(Face { own: Some(Arc::clone(bytes)), key })
         };
         let own = [&files.regular, &files.semi_bold].map(own);
-        let faces = [built_in(REGULAR, 0), built_in(SEMI_BOLD, 1)].into_iter();
+        let faces = [built_in(0), built_in(1)].into_iter();
         let faces = match own {
             [Some(regular), Some(semi_bold)] => faces.chain([regular, semi_bold]).collect(),
             [Some(only), None] | [None, Some(only)] => faces.chain([only]).collect(),
@@ -180,12 +176,12 @@ impl Fonts {
 
     /// The font and the glyph of a character. The first glyph of the built-in font, a box, represents all characters
     /// that no font has.
-    fn glyph(&self, weight: Weight, character: char) -> (u8, GlyphId) {
+    fn glyph(&self, weight: Weight, character: char) -> (u8, u16) {
         let character = if character.is_whitespace() { ' ' } else { character };
-        let mut last = (0, GlyphId(0));
+        let mut last = (0, 0);
         for number in self.order(weight) {
-            last = (number, self.face(number).font.glyph_id(character));
-            if last.1.0 != 0 {
+            last = (number, self.face(number).parsed().glyph_index(character).map_or(0, |glyph| glyph.0));
+            if last.1 != 0 {
                 break;
             }
         }
@@ -200,9 +196,10 @@ impl Fonts {
 
     /// A character from the fonts. All digits move the pen equally far, so that numbers do not jump between frames.
     fn look_up(&self, weight: Weight, character: char) -> Letter {
-        let own = |(face, glyph): (u8, GlyphId)| {
-            let face = self.face(face);
-            f64::from(face.font.h_advance_unscaled(glyph)) / f64::from(face.units_per_em())
+        let own = |(face, glyph): (u8, u16)| {
+            let face = self.face(face).parsed();
+            let advance = face.glyph_hor_advance(GlyphId(glyph)).unwrap_or_default();
+            f64::from(advance) / f64::from(face.units_per_em())
         };
         let of = |character| own(self.glyph(weight, character));
         let (face, glyph) = self.glyph(weight, character);
@@ -288,7 +285,7 @@ impl Fonts {
             let Letter { face, glyph, own, advance } = self.letter(weight, character);
             let [own, moved] = [own, advance].map(|advance| advance * size);
             // A digit narrower than the widest one is centred in its cell.
-            glyphs.push(Glyph { face, id: glyph.0, x: narrow(pen + (moved - own) / 2.0) });
+            glyphs.push(Glyph { face, id: glyph, x: narrow(pen + (moved - own) / 2.0) });
             pen += moved;
         }
         TextRun {
@@ -305,8 +302,9 @@ impl Fonts {
 }
 
 impl Face {
-    fn units_per_em(&self) -> f32 {
-        self.font.units_per_em().filter(|units| *units > 0.0).unwrap_or(1000.0)
+    /// Its tables. Reading where they are takes less than a microsecond.
+    pub(crate) fn parsed(&self) -> Parsed<'_> {
+        Parsed::parse(self.bytes(), 0).expect("it was read before, or comes with the program")
     }
 
     /// Its file.
@@ -316,14 +314,6 @@ impl Face {
             None if self.key == 0 => REGULAR,
             None => SEMI_BOLD,
         }
-    }
-
-    /// The outline of a glyph for type of a size (px), with its origin at a place between two pixels (px, to the
-    /// right); `None` for blanks.
-    pub(crate) fn outline(&self, id: u16, size: f32, place: f32) -> Option<OutlinedGlyph> {
-        // The scale of a font is its height; sizes of type are lengths of the em.
-        let scale = PxScale::from(size * self.font.height_unscaled() / self.units_per_em());
-        self.font.outline_glyph(GlyphId(id).with_scale_and_position(scale, point(place, 0.0)))
     }
 }
 
@@ -337,7 +327,7 @@ mod tests {
         for weight in [Weight::Regular, Weight::SemiBold] {
             for character in "AZaz09äöüßéñ ΑΩαωΔζων−–—…×°²³⁻∞≤≥≈→′√%/()".chars()
             {
-                assert_ne!(fonts.glyph(weight, character).1.0, 0, "{character} in {weight:?}");
+                assert_ne!(fonts.glyph(weight, character).1, 0, "{character} in {weight:?}");
             }
         }
     }
@@ -346,7 +336,8 @@ mod tests {
     fn unknown_characters_get_a_visible_box() {
         let fonts = Fonts::default();
         let run = fonts.lay_out("龍", Weight::Regular, 16.0, [0; 3], 0.0, 0.0);
-        assert!(fonts.face(run.glyphs[0].face).outline(run.glyphs[0].id, 16.0, 0.0).is_some());
+        let face = fonts.face(run.glyphs[0].face).parsed();
+        assert!(face.glyph_bounding_box(GlyphId(run.glyphs[0].id)).is_some());
         assert!(run.span[1] > 4.0);
     }
 

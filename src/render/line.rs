@@ -91,18 +91,15 @@ impl Lines {
             let projected = projected(panel);
             self.ranges.push(Kind::ALL.map(|kind| {
                 let start = segments.len() as u32;
-                segments.extend(panel.lines.iter().filter(|line| Kind::of(panel, line) == kind).filter_map(&projected));
+                segments.extend(panel.lines.iter().filter(|line| Kind::of(line) == kind).filter_map(&projected));
                 start..segments.len() as u32
             }));
         }
-        let ranges = self.ranges.iter().flat_map(|ranges| &ranges[..Kind::TESTED.len()]);
-        let tested: Vec<_> = ranges.flat_map(Range::clone).map(|at| at as usize).collect();
-        let length: f64 = tested.iter().map(|&at| f64::from(segments[at].length())).sum();
-        let left = most.saturating_sub(2 * tested.len() as u64).max(1);
+        let length: f64 = segments.iter().map(|segment| f64::from(segment.length())).sum();
+        let left = most.saturating_sub(2 * segments.len() as u64).max(1);
         let apart = (length / left as f64).max(1.0);
         let mut first = 0;
-        for at in tested {
-            let segment = &mut segments[at];
+        for segment in &mut segments {
             let count = ((f64::from(segment.length()) / apart).ceil() as u32 + 1).max(2);
             segment.sample(first..first + count);
             first += count;

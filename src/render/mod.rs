@@ -1,29 +1,12 @@
-//! From a [`Picture`] to an image: the passes, in order.
-//!
-//! 1. `surface`: turned-over elements, alone, to be seen through the body, and as surfaces of the body.
-//! 2. `surface`: other elements over them, in textures no larger than the bodies, with solid obstacles (`obstacle`).
-//! 3. `border`: smooth borders where colours change at a line.
-//! 4. `visibility`, then `line`: edges and contours as opacities, with smooth borders of their own.
-//! 5. `ground`: the floor with its grid and its shadows, into the picture.
-//! 6. `composite`: bodies and lines over the ground, between transparent obstacles (`obstacle`).
-//! 7. `stroke`: coloured lines and nodes in space, over the bodies, if there are any.
-//! 8. `overlay`: marks and words, with flat curves (`curve`) between them, if there are any.
-//!
-//! Every pixel has one sample. All borders are found from the geometry, which costs nothing without borders.
-//!
-//!
-//! With a scalar field, `tint` takes the place of `surface`.
-//!
-//! Each pass has one file here and one of the same name in `shaders/`.
+//! From a [`Picture`] to an image: the device draws lit bodies (`lit`), and `vector` paints flat items over them. A picture
+//! without lit bodies needs no device.
 
 mod border;
 mod composite;
-mod curve;
-mod glyphs;
 mod ground;
 mod line;
+mod lit;
 mod obstacle;
-mod overlay;
 mod panel;
 mod pass;
 mod pipeline;
@@ -36,13 +19,11 @@ mod target;
 mod tint;
 mod visibility;
 
-use crate::gpu::{Gpu, GpuError, Pending, ReadBack};
-use crate::picture::Picture;
+use crate::gpu::{Gpu, GpuError};
+use crate::picture::{Panel, Picture};
+use crate::vector::{self, Painter};
 use image::RgbImage;
-use obstacle::{Slabs, Solids};
-use panel::Panels;
-use pass::Pass;
-use target::{Bodies, Canvas};
+use lit::Lit;
 
 const PANEL_SHADER: &str = include_str!("../../shaders/panel.wgsl");
 const SEGMENT_SHADER: &str = include_str!("../../shaders/segment.wgsl");
@@ -83,6 +64,9 @@ pub enum RenderError {
         /// The most that the device can draw.
         most: usize,
     },
+    /// There is no device for lit bodies.
+    #[error("bodies in space are drawn with light, which needs a graphics device; none was given")]
+    NoDevice,
     /// The device failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
@@ -91,81 +75,47 @@ pub enum RenderError {
 /// Draws pictures of one size. The same picture gives the same bytes, independent of pictures before it.
 #[derive(Debug)]
 pub struct Renderer {
-    gpu: Gpu,
     size: [u32; 2],
-    panels: Panels,
-    surfaces: surface::Surfaces,
-    lines: line::Lines,
-    borders: border::Borders,
-    /// Made when first needed.
-    solids: Option<Solids>,
-    slabs: Option<Slabs>,
-    grounds: ground::Grounds,
-    composite: composite::Composite,
-    /// Made when first needed, like the tint.
-    strokes: Option<stroke::Strokes>,
-    tint: Option<tint::Tint>,
-    overlay: overlay::Overlay,
-    /// Made when first needed.
-    curves: Option<curve::Curves>,
-    canvas: Canvas,
-    bodies: Option<Bodies>,
-    read_back: ReadBack,
+    painter: Painter,
+    gpu: Option<Gpu>,
+    /// Made when the first lit body is drawn.
+    lit: Option<Lit>,
+}
+
+/// A picture that is being drawn.
+#[derive(Debug)]
+pub(crate) enum Pending {
+    /// Its colour below flat items.
+    Flat([u8; 3]),
+    /// Its lit bodies.
+    Lit(crate::gpu::Pending),
 }
 
 impl Renderer {
-    /// Prepares to draw pictures of a width and height (px).
+    /// Prepares to draw pictures of a width and height (px). Lit bodies need a device.
     ///
     /// # Errors
-    /// The device cannot draw pictures of this size, or fails.
-    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, RenderError> {
+    /// Pictures of this size cannot be drawn.
+    pub fn new<'a>(gpu: impl Into<Option<&'a Gpu>>, size: [u32; 2]) -> Result<Self, RenderError> {
+        let gpu = gpu.into();
         let [width, height] = size;
-        let longest = gpu.longest_side();
+        let longest = gpu.map_or(LONGEST, |gpu| gpu.longest_side().min(LONGEST));
         if size.contains(&0) || width.max(height) > longest {
             return Err(RenderError::Size { width, height, longest });
         }
-        let panels = Panels::new(gpu);
-        let renderer = Self {
-            size,
-            surfaces: surface::Surfaces::new(gpu),
-            lines: line::Lines::new(gpu),
-            borders: border::Borders::new(gpu),
-            solids: None,
-            slabs: None,
-            grounds: ground::Grounds::new(gpu, &panels),
-            composite: composite::Composite::new(gpu),
-            strokes: None,
-            tint: None,
-            overlay: overlay::Overlay::new(gpu),
-            curves: None,
-            canvas: Canvas::new(gpu, size),
-            bodies: None,
-            read_back: ReadBack::new(gpu, width, height),
-            panels,
-            gpu: gpu.clone(),
-        };
-        gpu.check()?;
-        Ok(renderer)
+        let painter = Painter::new(size.map(|length| length as u16));
+        Ok(Self { size, painter, gpu: gpu.cloned(), lit: None })
     }
 
     /// Draws a picture.
     ///
     /// # Errors
-    /// The picture has another size, or the device fails.
+    /// The picture has another size, or it has lit bodies and there is no device, or the device fails.
     pub fn draw(&mut self, picture: &Picture) -> Result<RgbImage, RenderError> {
         let pending = self.submit(picture)?;
         let pixels = self.collect(pending)?;
         let [width, height] = self.size;
-        // The read-back gives exactly three bytes for each pixel.
         Ok(RgbImage::from_raw(width, height, pixels).expect("three bytes a pixel"))
-    }
-
-    /// Waits for a submitted picture, and returns its pixels: three bytes each, in rows from the top left.
-    ///
-    /// # Errors
-    /// The device fails.
-    pub(crate) fn collect(&self, pending: Pending) -> Result<Vec<u8>, RenderError> {
-        Ok(self.read_back.collect(&self.gpu, pending)?)
     }
 
     /// Submits a picture and returns at once. Collect it before the next one is submitted: there is one buffer for
@@ -174,134 +124,52 @@ impl Renderer {
         if picture.size != self.size {
             return Err(RenderError::OtherSize { found: picture.size, expected: self.size });
         }
-        let gpu = self.gpu.clone();
-        let (places, needed) = panel::place(picture);
-        // Items behind surfaces are drawn only where they are read: over turned-over elements, and by lines of turned-over
-        // elements without faces.
-        let has_behind = picture.panels.iter().any(|panel| panel::has_behind(panel) || line::has_alarm(panel));
-        let bodies = match self.bodies.take().filter(|bodies| bodies.suit(needed, has_behind)) {
-            Some(bodies) => bodies,
-            None => {
-                let bodies = Bodies::new(&gpu, target::rounded(needed), has_behind);
-                self.surfaces.retarget(&gpu, &bodies);
-                self.lines.retarget(&gpu, &bodies);
-                self.borders.retarget(&gpu, &bodies);
-                self.composite.retarget(&gpu, &bodies);
-                if let Some(slabs) = &mut self.slabs {
-                    slabs.retarget(&gpu, &bodies);
-                }
-                self.strokes.iter_mut().for_each(|strokes| strokes.retarget(&gpu, &bodies));
-                self.tint.iter_mut().for_each(|tint| tint.retarget(&gpu, &bodies));
-                bodies
+        let is_lit = |panel: &Panel| !panel.sight.flat;
+        let pending = if picture.panels.iter().any(is_lit) {
+            let gpu = self.gpu.as_ref().ok_or(RenderError::NoDevice)?;
+            if self.lit.is_none() {
+                self.lit = Some(Lit::new(gpu, self.size)?);
             }
-        };
-        self.panels.write(&gpu, picture, &places);
-        self.surfaces.write(&gpu, picture);
-        self.borders.write(&gpu, &self.panels, picture)?;
-        self.composite.write(&gpu, &self.panels, picture);
-        self.grounds.write(&gpu, picture);
-        self.overlay.write(&gpu, picture);
-        if !picture.curves.is_empty() {
-            self.curves.get_or_insert_with(|| curve::Curves::new(&gpu, self.size)).write(&gpu, picture);
-        }
-        let curves = self.curves.as_ref().filter(|_| !picture.curves.is_empty());
-        let [with_solids, with_slabs] = [Solids::are_in(picture), Slabs::are_in(picture)];
-        self.lines.write(&gpu, &self.panels, &bodies, picture, with_solids)?;
-        if with_solids {
-            self.solids.get_or_insert_with(|| Solids::new(&gpu, &self.panels)).write(&gpu, picture);
-        }
-        if with_slabs {
-            let new = || {
-                let mut slabs = Slabs::new(&gpu, &self.panels);
-                slabs.retarget(&gpu, &bodies);
-                slabs
-            };
-            self.slabs.get_or_insert_with(new).write(&gpu, picture);
-        }
-        let solids = self.solids.as_ref().filter(|_| with_solids);
-        let slabs = self.slabs.as_ref().filter(|_| with_slabs);
-        let occluders = surface::occluders(picture);
-        let colouring = if picture.ramp.is_empty() {
-            self.surfaces.prepare(&gpu, &self.panels, picture);
-            self.surfaces.plain(occluders)
+            let lit = self.lit.as_mut().expect("made above");
+            Pending::Lit(if picture.panels.iter().all(is_lit) {
+                lit.submit(picture)?
+            } else {
+                let mut bodies = picture.clone();
+                bodies.panels.retain(is_lit);
+                lit.submit(&bodies)?
+            })
         } else {
-            let tint = self.tint.get_or_insert_with(|| tint::Tint::new(&gpu, &bodies));
-            tint.prepare(&gpu, &self.panels, picture);
-            tint.write(&gpu, picture);
-            tint.colouring(occluders)
+            Pending::Flat(picture.palette.background)
         };
-        if stroke::Strokes::are_in(picture) {
-            let made = || stroke::Strokes::new(&gpu, &self.panels, &bodies);
-            self.strokes.get_or_insert_with(made).write(&gpu, picture);
-        }
-        let strokes = self.strokes.as_ref().filter(|_| stroke::Strokes::are_in(picture));
+        vector::give(&mut self.painter, picture);
+        Ok(pending)
+    }
 
-        let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let (mut load, mut deep) = (CLEAR, FAR);
-        if has_behind {
-            // One drawing serves both uses: the other surfaces are drawn over it.
-            let targets = [(&bodies.alarm_colour, CLEAR), (&bodies.colour, CLEAR)];
-            let depth = Some((&bodies.alarm_depth, FAR));
-            let mut pass = Pass::begin(&gpu, &mut commands, "turned over", &targets, depth);
-            self.surfaces.draw_turned_over(&mut pass, &self.panels, &places, colouring);
-            drop(pass);
-            bodies.copy_depth(&mut commands);
-            (load, deep) = (wgpu::LoadOp::Load, wgpu::LoadOp::Load);
-        }
-        {
-            let depth = Some((&bodies.depth, deep));
-            let mut pass = Pass::begin(&gpu, &mut commands, "bodies", &[(&bodies.colour, load)], depth);
-            self.surfaces.draw_sound(&mut pass, &self.panels, &places, colouring);
-            if let Some(solids) = solids {
-                solids.draw(&mut pass, &self.panels, &places);
+    /// Waits for a submitted picture, and returns its pixels: three bytes each, in rows from the top left.
+    ///
+    /// # Errors
+    /// The device fails.
+    pub(crate) fn collect(&mut self, pending: Pending) -> Result<Vec<u8>, RenderError> {
+        let mut pixels = match pending {
+            Pending::Flat([red, green, blue]) => {
+                [red, green, blue, u8::MAX].repeat(self.size.iter().product::<u32>() as usize)
             }
-        }
-        {
-            let mut pass = Pass::begin(&gpu, &mut commands, "borders", &[(&bodies.borders, CLEAR)], None);
-            self.borders.draw(&mut pass, &self.panels, &places);
-        }
-        self.lines.test(&gpu, &mut commands, &self.panels, &places, with_solids);
-        {
-            let mut pass = Pass::begin(&gpu, &mut commands, "lines", &[(&bodies.lines, CLEAR)], None);
-            self.lines.draw(&mut pass, &self.panels, &places);
-        }
-        let [r, g, b] = panel::linear(picture.palette.background).to_array().map(f64::from);
-        let mut background = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });
-        if !picture.under.is_empty() {
-            let [r, g, b] = picture.palette.background.map(|byte| f64::from(byte) / 255.0);
-            let encoded = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });
-            let mut pass = Pass::begin(&gpu, &mut commands, "under", &[(&self.canvas.encoded, encoded)], None);
-            self.overlay.draw_under(&mut pass);
-            background = wgpu::LoadOp::Load;
-        }
-        {
-            let mut pass = Pass::begin(&gpu, &mut commands, "picture", &[(&self.canvas.linear, background)], None);
-            self.grounds.draw(&mut pass, &self.panels, picture);
-            if let Some(slabs) = slabs {
-                slabs.draw(&mut pass, &self.panels, picture, false);
-            }
-            self.composite.draw(&mut pass, &self.panels, picture);
-            if let Some(strokes) = strokes {
-                strokes.draw(&mut pass, &self.panels, picture);
-            }
-            if let Some(slabs) = slabs {
-                slabs.draw(&mut pass, &self.panels, picture, true);
-            }
-        }
-        {
-            let mut pass =
-                Pass::begin(&gpu, &mut commands, "overlay", &[(&self.canvas.encoded, wgpu::LoadOp::Load)], None);
-            self.overlay.draw_marks(&mut pass);
-            if let Some(curves) = curves {
-                curves.draw(&mut pass);
-            }
-            self.overlay.draw_words(&mut pass);
-        }
-        self.bodies = Some(bodies);
-        Ok(self.read_back.submit(&gpu, commands, &self.canvas.texture))
+            Pending::Lit(pending) => self.lit.as_ref().expect("it is drawing").collect(pending)?,
+        };
+        self.painter.paint(&mut pixels);
+        Ok(without_opacity(&pixels))
     }
 }
 
-/// Empty: transparent, and infinitely far away.
-const CLEAR: wgpu::LoadOp<wgpu::Color> = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
-const FAR: wgpu::LoadOp<f32> = wgpu::LoadOp::Clear(0.0);
+/// The longest side of a picture (px).
+const LONGEST: u32 = 16384;
+
+/// The colours of pixels of four bytes.
+fn without_opacity(pixels: &[u8]) -> Vec<u8> {
+    let mut colours = vec![0; pixels.len() / 4 * 3];
+    // Arrays of known length, which compile to whole words.
+    for (&[red, green, blue, _], colour) in pixels.as_chunks::<4>().0.iter().zip(colours.as_chunks_mut::<3>().0) {
+        *colour = [red, green, blue];
+    }
+    colours
+}

@@ -27,19 +27,12 @@ struct SolidVertex {
     position: [f32; 3],
     normal: [f32; 3],
     colour: [f32; 3],
-    rim: [f32; 3],
-    /// Its distance from the outline, inwards (px).
-    inward: f32,
     /// The share of ambient light that the body occludes.
     near: f32,
 }
 
-const SOLID: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
-    0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x3, 4 => Float32, 5 => Float32
-];
-
-/// Solids in space have no rim: lines draw their outlines.
-const DEEP_INSIDE: f32 = 1e6;
+const SOLID: [wgpu::VertexAttribute; 4] =
+    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32];
 
 /// A corner of a pane as the shader reads it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -114,11 +107,9 @@ impl Solids {
             let start = indices.len() as u32;
             for solid in &panel.obstacles.solids {
                 let (base, colour) = (vertices.len() as u32, linear(solid.colour).to_array());
-                let rim = solid.rim.map_or(colour, |rim| linear(rim).to_array());
-                let vertex = |(at, &crate::picture::Vertex { position, normal, hatch })| {
-                    let inward = if solid.rim.is_some() { hatch } else { DEEP_INSIDE };
+                let vertex = |(at, &crate::picture::Vertex { position, normal, .. })| {
                     let near = solid.near.get(at).copied().unwrap_or(0.0);
-                    SolidVertex { position, normal, colour, rim, inward, near }
+                    SolidVertex { position, normal, colour, near }
                 };
                 vertices.extend(solid.mesh.vertices.iter().enumerate().map(vertex));
                 indices.extend(solid.mesh.triangles.iter().flatten().map(|at| base + at));

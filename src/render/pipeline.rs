@@ -13,8 +13,6 @@ pub(super) const BORDER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba1
 pub(super) const LINE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// The finished picture, written as linear light.
 pub(super) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-/// The finished picture, written as sRGB values.
-pub(super) const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// A pipeline and its label.
 #[derive(Debug)]

@@ -121,19 +121,16 @@ pub(super) enum Kind {
     AlarmEdge,
     Contour,
     AlarmContour,
-    /// All lines in the plane.
-    Flat,
 }
 
 impl Kind {
-    pub(super) const ALL: [Self; 5] = [Self::Edge, Self::AlarmEdge, Self::Contour, Self::AlarmContour, Self::Flat];
-    /// The entry point of the visibility test of each kind. Nothing hides lines in the plane.
+    pub(super) const ALL: [Self; 4] = [Self::Edge, Self::AlarmEdge, Self::Contour, Self::AlarmContour];
+    /// The entry point of the visibility test of each kind.
     pub(super) const TESTED: [&'static str; 4] = ["edges", "alarm_edges", "contours", "alarm_contours"];
 
-    /// The kind of a line in a panel.
-    pub(super) fn of(panel: &Panel, line: &Line) -> Self {
+    /// The kind of a line.
+    pub(super) fn of(line: &Line) -> Self {
         match line.kind {
-            _ if panel.sight.flat => Self::Flat,
             LineKind::Edge | LineKind::Bar | LineKind::ObstacleEdge => Self::Edge,
             LineKind::AlarmEdge => Self::AlarmEdge,
             LineKind::Contour | LineKind::ObstacleContour => Self::Contour,
@@ -148,7 +145,6 @@ impl Kind {
             Self::AlarmEdge => "alarm_edge_opacity",
             Self::Contour => "contour_opacity",
             Self::AlarmContour => "alarm_contour_opacity",
-            Self::Flat => "flat_opacity",
         }
     }
 }

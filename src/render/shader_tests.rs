@@ -1,11 +1,9 @@
 //! All shaders are valid, and their structs have the layout of the structs in Rust. Needs no graphics device.
 
 use super::ground::GroundUniform;
-use super::overlay::CanvasUniform;
 use super::panel::{OccluderUniform, PanelUniform};
 use super::{
-    BODIES_SHADER, PANEL_SHADER, border, composite, curve, ground, obstacle, overlay, segment, stroke, surface, tint,
-    visibility,
+    BODIES_SHADER, PANEL_SHADER, border, composite, ground, obstacle, segment, stroke, surface, tint, visibility,
 };
 use crate::picture::MOST_OCCLUDERS;
 use std::mem::offset_of;
@@ -23,8 +21,6 @@ fn parse(parts: &[&str]) -> naga::Module {
 #[test]
 fn shaders_are_valid() {
     parse(&[PANEL_SHADER, ground::SHADER]);
-    parse(&[overlay::SHADER]);
-    parse(&[curve::SHADER]);
     for occluders in 0..=MOST_OCCLUDERS {
         parse(&surface::parts(occluders));
         parse(&[&surface::parts(occluders)[..], &[tint::SHADER]].concat());
@@ -60,13 +56,11 @@ macro_rules! same_layout {
 fn structs_are_laid_out_alike_on_both_sides() {
     let module = parse(&[PANEL_SHADER, ground::SHADER]);
     same_layout!(module, "Panel", PanelUniform,
-        clip eye near key flatness up floor sound element alarm line_scale alarm_line outline_alpha edge focal outline soft
-        region place contour_share unused fade_distance fade_room fade_strength occluders);
+        clip eye near key unused_0 up floor sound element alarm line_scale alarm_line outline_alpha edge focal outline soft
+        region place contour_share unused_1 fade_distance fade_room fade_strength occluders);
     same_layout!(module, "Occluder", OccluderUniform, first second rotation);
     same_layout!(module, "Ground", GroundUniform,
         first second middle fade key sky background floor grid shadow viewport);
-    same_layout!(parse(&[overlay::SHADER]), "Canvas", CanvasUniform, size unused);
-    same_layout!(parse(&[curve::SHADER]), "Canvas", CanvasUniform, size unused);
 }
 
 #[test]

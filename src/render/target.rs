@@ -1,6 +1,6 @@
 //! The textures that pictures are drawn into.
 
-use super::pipeline::{BODY_FORMAT, BORDER_FORMAT, DEPTH_FORMAT, ENCODED_FORMAT, LINE_FORMAT, PICTURE_FORMAT};
+use super::pipeline::{BODY_FORMAT, BORDER_FORMAT, DEPTH_FORMAT, LINE_FORMAT, PICTURE_FORMAT};
 use crate::gpu::Gpu;
 
 /// Textures of bodies grow in steps of this length (px), so that a moving body seldom needs new ones.
@@ -10,10 +10,7 @@ const STEP: u32 = 64;
 #[derive(Debug)]
 pub(super) struct Canvas {
     pub(super) texture: wgpu::Texture,
-    /// The view for passes that work with linear light.
-    pub(super) linear: wgpu::TextureView,
-    /// The view for passes that work with sRGB values.
-    pub(super) encoded: wgpu::TextureView,
+    pub(super) view: wgpu::TextureView,
 }
 
 impl Canvas {
@@ -26,11 +23,9 @@ impl Canvas {
             dimension: wgpu::TextureDimension::D2,
             format: PICTURE_FORMAT,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[ENCODED_FORMAT],
+            view_formats: &[],
         });
-        let encoded =
-            texture.create_view(&wgpu::TextureViewDescriptor { format: Some(ENCODED_FORMAT), ..Default::default() });
-        Self { linear: texture.create_view(&wgpu::TextureViewDescriptor::default()), encoded, texture }
+        Self { view: texture.create_view(&wgpu::TextureViewDescriptor::default()), texture }
     }
 }
 

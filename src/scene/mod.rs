@@ -152,6 +152,12 @@ impl Scene {
 }
 
 impl Scene {
+    /// Whether its pictures need a graphics device: bodies in space are lit.
+    #[cfg(feature = "render")]
+    pub(crate) fn is_lit(&self) -> bool {
+        self.body.dimension == Dimension::Space
+    }
+
     /// Gives the runs their places.
     fn place_runs(&mut self) {
         let chosen: Vec<_> = self.runs.iter().map(|run| run.colour).collect();

@@ -238,9 +238,17 @@ impl PlanePanel<'_> {
             let across = on + reach.normalize() * reach.normalize().dot(0.5 * (corners[0] + corners[2]) - on);
             path.add_line(&[across - reach, across + reach]);
         }
-        items.push(Item::Clip(self.whole(&self.panel.turned_over)));
+        // Stripes finer than three pixels per period would only flicker: towards that, their mean replaces them.
+        let fine = ((period.recip() - 0.2) / 0.25).clamp(0.0, 1.0);
+        let fine = fine * fine * (3.0 - 2.0 * fine);
+        let whole = self.whole(&self.panel.turned_over);
+        if fine > 0.0 {
+            let paint = Paint { colour, alpha: alpha * FLAT_STRIPE * fine };
+            items.push(Item::Fill { path: whole.clone(), paint });
+        }
+        items.push(Item::Clip(whole));
         let pen = Pen { round: false, ..Pen::solid(FLAT_STRIPE * period) };
-        items.push(Item::Stroke { path, pen, paint: Paint { colour, alpha } });
+        items.push(Item::Stroke { path, pen, paint: Paint { colour, alpha: alpha * (1.0 - fine) } });
         items.push(Item::Unclip);
     }
 

@@ -1,8 +1,8 @@
-//! Pictures as SVG and PDF, for print. Text stays text, in embedded parts of its fonts. Curves, marks and panels in the
-//! plane are paths. Lit bodies are images from the renderer.
+//! The flat parts of pictures as one list of items, and its three writers: SVG and PDF, where text stays text in embedded
+//! parts of its fonts, and pixels. Curves, marks and panels in the plane are paths. Lit bodies are images from the renderer.
 //!
 //! ```text
-//! Picture ─▶ items (paths, text, images) ─▶ SVG or PDF
+//! Picture ─▶ items (paths, text, images) ─▶ SVG, PDF or pixels
 //! ```
 //!
 //! Nothing here needs a graphics device. The same picture gives the same bytes.
@@ -12,11 +12,13 @@ mod flat;
 mod font;
 mod marks;
 mod pdf;
+mod pixels;
 mod svg;
 
-use crate::picture::{Panel, Picture, Rectangle, TextRun};
+use crate::picture::{Face, Panel, Picture, Rectangle, TextRun};
 use drawing::{Image, Item, Path, Pen};
 use glam::Vec2;
+pub(crate) use pixels::Painter;
 
 /// The format of a vector file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,6 +166,13 @@ fn items<'a>(page: &Page<'a>) -> Vec<Item<'a>> {
     items
 }
 
+/// Gives a painter the flat items of a picture. Lit bodies below them, if there are any, come with their ground.
+pub(crate) fn give(painter: &mut Painter, picture: &Picture) {
+    let items = items(&Page::new(picture));
+    let skip = usize::from(picture.panels.iter().any(|panel| !panel.sight.flat));
+    painter.take(&items[skip..], &picture.fonts);
+}
+
 /// The part of a lit panel that is not empty.
 fn image(page: &Page<'_>, panel: &Panel, pixels: &[u8]) -> Option<Image> {
     let picture = page.picture;
@@ -192,14 +201,18 @@ fn image(page: &Page<'_>, panel: &Panel, pixels: &[u8]) -> Option<Image> {
 /// The outlines of a line of text.
 fn outlines(picture: &Picture, run: &TextRun) -> Path {
     let mut path = Path::default();
-    for glyph in &run.glyphs {
-        let Ok(face) = ttf_parser::Face::parse(picture.fonts.face(glyph.face).bytes(), 0) else { continue };
-        let origin = Vec2::new(glyph.x, run.baseline);
-        let scale = run.size / f32::from(face.units_per_em());
-        let mut outline = Outline { path: &mut path, origin, scale, last: Vec2::ZERO };
-        face.outline_glyph(ttf_parser::GlyphId(glyph.id), &mut outline);
+    for one in &run.glyphs {
+        let font = picture.fonts.face(one.face);
+        glyph(font, one.id, run.size, Vec2::new(one.x, run.baseline), &mut path);
     }
     path
+}
+
+/// Adds the outline of a glyph of a font, with its origin at a point (px).
+fn glyph(font: &Face, id: u16, size: f32, origin: Vec2, path: &mut Path) {
+    let face = font.parsed();
+    let scale = size / f32::from(face.units_per_em());
+    face.outline_glyph(ttf_parser::GlyphId(id), &mut Outline { path, origin, scale, last: Vec2::ZERO });
 }
 
 /// Collects the outline of a glyph.

@@ -86,11 +86,6 @@ pub(crate) fn make(study: &dyn Study, threads: usize, options: &Options) -> Resu
     let (name, command) = (study.name(), study.command());
     let path = options.out.clone().unwrap_or_else(|| format!("output/study-{name}").into());
     let folder = Folder::new(path, name, &command, options.overwrite)?;
-    // A missing adapter is reported before the measurement. These two studies draw no pages.
-    #[cfg(feature = "render")]
-    let gpu = (!["ratio", "stress"].contains(&name)).then(|| localshape::Gpu::new(&options.adapter)).transpose();
-    #[cfg(feature = "render")]
-    let gpu = gpu.map_err(|error| Failure::adapter(error.to_string()))?;
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Failure::files(format!("cannot start threads: {error}")))?;
     let notes = folder.notes(study.digest());
@@ -107,8 +102,8 @@ pub(crate) fn make(study: &dyn Study, threads: usize, options: &Options) -> Resu
     let mut files = vec![(format!("{name}.md"), text.clone().into_bytes())];
     files.extend(tables.iter().map(|(name, table)| (format!("{name}.csv"), table.csv().into_bytes())));
     #[cfg(feature = "render")]
-    for ((name, page), gpu) in found.iter().flat_map(|found| &found.pages).zip(gpu.iter().cycle()) {
-        let [svg, png] = page.files(gpu)?;
+    for (name, page) in found.iter().flat_map(|found| &found.pages) {
+        let [svg, png] = page.files()?;
         files.extend([(format!("{name}.svg"), svg), (format!("{name}.png"), png)]);
     }
     folder.write(&files)?;

@@ -523,21 +523,21 @@ fn what_fades_lets_the_ground_through() {
 /// In the plane obstacles have smooth rims of their own.
 #[test]
 fn rims_fade_with_their_obstacles() {
-    let Some(gpu) = gpu("rims_fade_with_their_obstacles") else { return };
     let rod = "[[obstacle]]\nkind = 'capsule'\nfrom = [-9, 0.9]\nto = [9, 0.7]\nradius = 0.05\n";
     let view = "[view]\nsize = [320, 240]\nlabels = []\n";
     let fading = picture(&scene(&[WORLD, TRIANGLE, rod, view]), 0);
     let mut bare = fading.clone();
     bare.panels[0].obstacles.solids.clear();
     let draw = |picture: &Picture| {
-        Renderer::new(gpu, picture.size).and_then(|mut renderer| renderer.draw(picture)).expect("drawn")
+        Renderer::new(None, picture.size).and_then(|mut renderer| renderer.draw(picture)).expect("no device is needed")
     };
     let [fading, bare] = [&fading, &bare].map(draw);
     let off = |x: u32| {
         let pixels = (0..240).flat_map(|y| bare.get_pixel(x, y).0.into_iter().zip(fading.get_pixel(x, y).0));
         pixels.map(|(one, other)| one.abs_diff(other)).max().expect("pixels")
     };
-    assert!(off(2) <= 2 && off(317) <= 2 && off(12) < 20 && off(60) > 30, "{:?}", [2, 12, 60].map(off));
+    let seen = [2, 6, 12, 20, 60].map(off);
+    assert!(seen[0] <= 2 && off(317) <= 2 && seen.is_sorted() && 2 * seen[2] < seen[4], "{seen:?}");
 }
 
 #[test]

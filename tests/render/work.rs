@@ -1,9 +1,10 @@
 //! The commands to the device: none that a picture does not need, and none twice.
 
-use super::{compose, draw, fig4b, gpu, renderer};
+use super::{compose, draw, fig4b, gpu, parse, renderer};
 use localshape::gpu::{AdapterChoice, Gpu, GpuError, Work};
 use localshape::picture::Picture;
-use localshape::render::RenderError;
+use localshape::render::{RenderError, Renderer};
+use localshape::runner::Runner;
 use std::collections::BTreeSet;
 
 /// A device whose work log no other test shares.
@@ -54,14 +55,11 @@ fn only_what_a_picture_holds_is_drawn_and_has_pipelines() {
     let floors = still.panels.iter_mut().filter_map(|panel| panel.floor.as_mut());
     floors.flat_map(|floor| &mut floor.shades).for_each(|shade| shade.cells.clear());
     let floor = ["floor_colour", "shadowed_colour"];
-    let words = ["rectangle_colour", "mark_colour", "glyph_colour"];
     // The bodies still fall: nothing is turned over, and here they have no shadow.
     let work = work_for(&gpu, &still);
-    let of_all = set(&[&LINES, &BODY, &floor[..1], &words]);
-    assert!(drawn(&work).is_subset(&of_all), "{:?}", drawn(&work));
-    assert!(set(&[&LINES, &BODY, &["glyph_colour"]]).is_subset(&drawn(&work)), "{:?}", drawn(&work));
+    assert_eq!(drawn(&work), set(&[&LINES, &BODY, &floor[..1]]));
     // The pipelines of surfaces and of the ground are made together.
-    let together = set(&[&LINES, &BODY, &floor, &words, &["turned over", "sound, before others"]]);
+    let together = set(&[&LINES, &BODY, &floor, &["turned over", "sound, before others"]]);
     assert!(made(&work).is_subset(&together), "{:?}", made(&work));
 
     // One panel has turned-over elements.
@@ -94,23 +92,22 @@ fn only_what_changed_is_uploaded() {
     };
     let (work, first) = work_for(&picture);
     let labels: BTreeSet<_> = uploads(&work).iter().map(|(label, _)| *label).collect();
-    for label in ["vertices", "indices", "lines", "borders", "panels", "grounds", "shades", "marks", "glyphs"] {
+    for label in ["vertices", "indices", "lines", "borders", "panels", "grounds", "shades"] {
         assert!(labels.contains(label), "{label} is not in {labels:?}");
     }
     // The same picture, drawn again: nothing is uploaded, and no pipeline is made.
     let (work, again) = work_for(&picture);
     assert_eq!((uploads(&work), made(&work), pictures(&work)), (Vec::new(), BTreeSet::new(), 1));
     assert!(again == first);
-    // A body that moves a little keeps its triangles, and words, glyphs and the floor stay.
+    // A body that moves a little keeps its triangles, and the floor stays.
     picture.panels[1].sound.vertices[0].position[0] += 0.01;
     let (work, moved) = work_for(&picture);
     assert!(matches!(uploads(&work)[..], [("vertices", size)] if size <= 4096), "{:?}", uploads(&work));
     assert_eq!(moved, draw(&gpu, &picture), "as drawn alone");
-    // A new letter gets new rows of the texture.
+    // Words are painted without the device.
     picture.words[0].size *= 1.5;
     let (work, larger) = work_for(&picture);
-    let labels: BTreeSet<_> = uploads(&work).iter().map(|(label, _)| *label).collect();
-    assert_eq!(labels, BTreeSet::from(["glyphs", "marks"]));
+    assert_eq!(uploads(&work), Vec::new());
     assert_eq!(larger, draw(&gpu, &picture), "as drawn alone");
     // A shadow that moves.
     let floor = picture.panels[1].floor.as_mut().expect("a floor");
@@ -119,6 +116,21 @@ fn only_what_changed_is_uploaded() {
     let (work, shaded) = work_for(&picture);
     assert!(matches!(uploads(&work)[..], [("shades", _)]), "{:?}", uploads(&work));
     assert_eq!(shaded, draw(&gpu, &picture), "as drawn alone");
+}
+
+#[test]
+fn pictures_in_the_plane_need_no_device() {
+    let scene = parse(include_str!("../../scenes/fig4a.toml"));
+    let picture = compose(&scene, &Runner::new(&scene, &[0, 1]).frame(90));
+    let mut renderer = Renderer::new(None, picture.size).expect("a size that can be drawn");
+    let image = renderer.draw(&picture).expect("no device is needed");
+    assert_eq!(renderer.draw(&picture), Ok(image.clone()));
+    let colours: BTreeSet<_> = image.pixels().map(|pixel| pixel.0).collect();
+    assert!(colours.contains(&picture.palette.background) && colours.contains(&picture.palette.sound_flat));
+    // Lit bodies do.
+    let (scene, frame) = fig4b(0);
+    let lit = Renderer::new(None, scene.view.size).and_then(|mut renderer| renderer.draw(&compose(&scene, &frame)));
+    assert_eq!(lit, Err(RenderError::NoDevice));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::scene::Limits;
 /// A device with the settings of the tests.
 fn device(gpu: &Gpu, resume: bool) -> Arc<Device> {
     let (films, words) = Default::default();
-    Arc::new(Device { gpu: gpu.clone(), threads: 2, keep: true, resume, films, words })
+    Arc::new(Device { gpu: Some(gpu.clone()), threads: 2, keep: true, resume, films, words })
 }
 
 /// The scene of Fig. 4(b), drawn small, and its first frames.

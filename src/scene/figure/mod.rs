@@ -158,6 +158,12 @@ impl Figure {
         }
     }
 
+    /// Whether its picture needs a graphics device: bodies in space are lit.
+    #[cfg(feature = "render")]
+    pub(crate) fn is_lit(&self) -> bool {
+        self.scenes().iter().any(Scene::is_lit)
+    }
+
     /// Gives the figure the colours of a theme.
     pub fn set_theme(&mut self, theme: Theme) {
         self.look = look(&self.scenes()[0], Some(theme), Some(self.look.text_scale));

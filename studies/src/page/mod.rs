@@ -8,7 +8,6 @@ pub(crate) use plot::{Line, Plot};
 
 use crate::failure::Failure;
 use image::ImageFormat;
-use localshape::gpu::Gpu;
 use localshape::picture::{Diagram, TextStyle};
 use localshape::render::Renderer;
 use localshape::vector;
@@ -116,7 +115,7 @@ impl Page {
     }
 
     /// The files of the page: SVG, then PNG.
-    pub(crate) fn files(&self, gpu: &Gpu) -> Result<[Vec<u8>; 2], Failure> {
+    pub(crate) fn files(&self) -> Result<[Vec<u8>; 2], Failure> {
         let (diagram, (_, high)) = (self.diagram(), self.areas());
         let page = vector::Page {
             size_mm: Some([WIDE_MM, WIDE_MM * high / WIDE]),
@@ -125,7 +124,7 @@ impl Page {
         };
         let svg = vector::write(&page, vector::Format::Svg).map_err(|error| Failure::files(error.to_string()))?;
         let size = [WIDE as u32, high as u32];
-        let image = Renderer::new(gpu, size)
+        let image = Renderer::new(None, size)
             .and_then(|mut renderer| renderer.draw(diagram.picture()))
             .map_err(|error| Failure::adapter(error.to_string()))?;
         let mut png = Cursor::new(Vec::new());

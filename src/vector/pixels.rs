@@ -1,0 +1,225 @@
+//! A page as pixels. Colours blend as bytes (sRGB). The same page gives the same bytes on every processor: the painter is
+//! held to 128-bit vectors, because wider ones round some bytes differently.
+
+use super::drawing::{Image, Item, Paint, Path, Pen, Step};
+use crate::picture::{Colour, Fonts, TextRun};
+use glam::Vec2;
+use std::collections::HashMap;
+use std::sync::Arc;
+use vello_cpu::color::{AlphaColor, DynamicColor, PremulRgba8, Rgba8, Srgb};
+use vello_cpu::kurbo::{Affine, BezPath, Cap, Join, PathEl, Point, Stroke, flatten};
+use vello_cpu::peniko::{ColorStop, ColorStops, Extend, Gradient, ImageQuality, ImageSampler, LinearGradientPosition};
+use vello_cpu::{
+    Image as ImagePaint, ImageSource, Level, Pixmap, PixmapMut, RasterizerSettings, RenderContext, RenderSettings,
+    Resources, TargetInit,
+};
+
+/// How far straight pieces may lie from the curves that they stand for (px). The painter's own limit is .25.
+const FLATNESS: f64 = 0.03;
+/// The number of places between two pixels at which glyphs may stand.
+const PLACES: f32 = 4.0;
+
+/// The key of the outline of a glyph: its font, of any scene, its number and the size of the type, as bits.
+type GlyphKey = (u64, u16, u32);
+
+/// Paints pages of one size.
+#[derive(Debug)]
+pub(crate) struct Painter {
+    size: [u16; 2],
+    context: RenderContext,
+    resources: Resources,
+    /// Straight outlines of the glyphs that were used (px from the origin).
+    glyphs: HashMap<GlyphKey, Arc<[PathEl]>>,
+}
+
+impl Painter {
+    /// A painter of pages of a width and height (px).
+    pub(crate) fn new(size: [u16; 2]) -> Self {
+        let level = Level::try_detect().and_then(Level::as_sse4_2).map_or(Level::baseline(), Level::Sse4_2);
+        let context = RenderContext::new_with(size[0], size[1], RenderSettings { level, num_threads: 0 });
+        Self { size, context, resources: Resources::new(), glyphs: HashMap::new() }
+    }
+
+    /// Takes the items of a page, in place of those of the last one.
+    pub(super) fn take(&mut self, items: &[Item<'_>], fonts: &Fonts) {
+        self.context.reset();
+        items.iter().for_each(|item| self.item(item, fonts));
+    }
+
+    /// Paints the items over pixels: red, green, blue and full opacity of each, in rows from the top left.
+    pub(crate) fn paint(&mut self, pixels: &mut [u8]) {
+        let settings = RasterizerSettings { target_init: TargetInit::SrcOver, ..RasterizerSettings::default() };
+        let [width, height] = self.size;
+        let mut target = PixmapMut::new(width, height, pixels).expect("four bytes a pixel");
+        target.set_may_have_transparency(false);
+        self.context.render_with(target, &mut self.resources, settings);
+    }
+
+    fn item(&mut self, item: &Item<'_>, fonts: &Fonts) {
+        match item {
+            Item::Fill { path, paint } => {
+                self.context.set_paint(colour(*paint));
+                self.context.fill_path(&outline(path));
+            }
+            Item::Stroke { path, pen, paint } => {
+                self.context.set_paint(colour(*paint));
+                self.context.set_stroke(stroke(pen));
+                self.context.stroke_path(&joined(path));
+            }
+            Item::Blend { path, ends, colours } => {
+                let [start, end] = ends.map(point);
+                let stop = |(at, colour): (f32, Colour)| {
+                    let [r, g, b] = colour;
+                    let colour: AlphaColor<Srgb> = Rgba8 { r, g, b, a: u8::MAX }.into();
+                    ColorStop { offset: at, color: DynamicColor::from_alpha_color(colour) }
+                };
+                let stops = [(0.0, colours[0]), (1.0, colours[1])].map(stop);
+                self.context.set_paint(Gradient {
+                    kind: LinearGradientPosition { start, end }.into(),
+                    extend: Extend::Pad,
+                    stops: ColorStops::from(&stops[..]),
+                    ..Gradient::default()
+                });
+                self.context.fill_path(&outline(path));
+            }
+            Item::Image(image) => self.image(image),
+            Item::Text(run) => self.text(run, fonts),
+            Item::Clip(path) => self.context.push_clip_path(&outline(path)),
+            Item::Unclip => self.context.pop_clip(),
+        }
+    }
+
+    fn image(&mut self, image: &Image) {
+        let [width, height] = image.size;
+        let channels = image.pixels.len() / (width * height) as usize;
+        let mut pixmap = Pixmap::new(width as u16, height as u16);
+        for (to, from) in pixmap.data_mut().iter_mut().zip(image.pixels.chunks_exact(channels)) {
+            let a = from.get(3).copied().unwrap_or(u8::MAX);
+            let by = |channel: u8| ((u16::from(channel) * u16::from(a) + 127) / 255) as u8;
+            *to = PremulRgba8 { r: by(from[0]), g: by(from[1]), b: by(from[2]), a };
+        }
+        let [corner, right, down] = image.place;
+        let [x, y] = [right / width as f32, down / height as f32];
+        let place = [x.x, x.y, y.x, y.y, corner.x, corner.y].map(f64::from);
+        let sampler = ImageSampler { quality: ImageQuality::Medium, ..ImageSampler::default() };
+        self.context.set_paint(ImagePaint { image: ImageSource::Pixmap(Arc::new(pixmap)), sampler });
+        self.context.set_paint_transform(Affine::new(place));
+        self.context.fill_path(&outline(&Path::polygon(&[
+            corner,
+            corner + right,
+            corner + right + down,
+            corner + down,
+        ])));
+        self.context.reset_paint_transform();
+    }
+
+    /// A line of text. Baselines on whole pixels make all lines equally sharp.
+    fn text(&mut self, run: &TextRun, fonts: &Fonts) {
+        let mut path = BezPath::new();
+        for glyph in &run.glyphs {
+            let face = fonts.face(glyph.face);
+            let key = (face.key, glyph.id, run.size.to_bits());
+            let new = || {
+                let mut path = Path::default();
+                super::glyph(face, glyph.id, run.size, Vec2::ZERO, &mut path);
+                outline(&path).iter().collect()
+            };
+            let outline = self.glyphs.entry(key).or_insert_with(new);
+            let at = [(glyph.x * PLACES).round() / PLACES, run.baseline.round()].map(f64::from);
+            let moved = Affine::translate((at[0], at[1]));
+            path.extend(outline.iter().map(|&element| moved * element));
+        }
+        self.context.set_paint(colour(run.colour.into()));
+        self.context.fill_path(&path);
+    }
+}
+
+fn colour(Paint { colour: [r, g, b], alpha }: Paint) -> AlphaColor<Srgb> {
+    let opaque: AlphaColor<Srgb> = Rgba8 { r, g, b, a: u8::MAX }.into();
+    opaque.with_alpha(alpha)
+}
+
+fn point(at: Vec2) -> Point {
+    Point::new(at.x.into(), at.y.into())
+}
+
+fn stroke(pen: &Pen) -> Stroke {
+    let cap = if pen.round { Cap::Round } else { Cap::Butt };
+    let stroke = Stroke::new(pen.width.into()).with_caps(cap).with_join(Join::Round);
+    stroke.with_dashes(0.0, pen.dash.iter().map(|&length| f64::from(length)))
+}
+
+fn element(step: &Step) -> PathEl {
+    match *step {
+        Step::Move(to) => PathEl::MoveTo(point(to)),
+        Step::Line(to) => PathEl::LineTo(point(to)),
+        Step::Cubic([one, other, to]) => PathEl::CurveTo(point(one), point(other), point(to)),
+        Step::Close => PathEl::ClosePath,
+    }
+}
+
+/// A path of straight lines.
+fn straight(elements: impl Iterator<Item = PathEl>) -> BezPath {
+    let mut path = BezPath::new();
+    flatten(elements, FLATNESS, |element| path.push(element));
+    path
+}
+
+fn outline(path: &Path) -> BezPath {
+    straight(path.0.iter().map(element))
+}
+
+/// A path to be stroked, with single lines joined to longer ones where they meet: where strokes of two lines overlap, the
+/// painter adds up how much of a pixel they cover.
+fn joined(path: &Path) -> BezPath {
+    let is_line = |steps: &[Step]| matches!(steps, [Step::Move(_), Step::Line(_)]);
+    if path.0.len() < 4 || !path.0.len().is_multiple_of(2) || !path.0.chunks(2).all(is_line) {
+        return outline(path);
+    }
+    let lines: Vec<[Vec2; 2]> = path
+        .0
+        .chunks(2)
+        .filter_map(|steps| match steps {
+            [Step::Move(from), Step::Line(to)] => Some([*from, *to]),
+            _ => None,
+        })
+        .collect();
+    // The ends of lines at each point.
+    let bits = |at: Vec2| at.to_array().map(f32::to_bits);
+    let mut ends: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
+    for (at, line) in lines.iter().enumerate() {
+        line.iter().for_each(|end| ends.entry(bits(*end)).or_default().push(at));
+    }
+    let mut is_used = vec![false; lines.len()];
+    // The straightest line that goes on from a point, and its other end.
+    let next = |from: Vec2, to: Vec2, is_used: &[bool]| -> Option<(usize, Vec2)> {
+        let along = (to - from).normalize_or_zero();
+        let free = ends[&bits(to)].iter().filter(|&&at| !is_used[at]);
+        let candidates = free.map(|&at| (at, if lines[at][0] == to { lines[at][1] } else { lines[at][0] }));
+        candidates.max_by(|one, other| {
+            let turn = |end: Vec2| along.dot((end - to).normalize_or_zero());
+            turn(one.1).total_cmp(&turn(other.1))
+        })
+    };
+    let mut joined = BezPath::new();
+    for first in 0..lines.len() {
+        if is_used[first] {
+            continue;
+        }
+        is_used[first] = true;
+        let mut chain = std::collections::VecDeque::from(lines[first]);
+        loop {
+            let [from, to] = [chain[chain.len() - 2], chain[chain.len() - 1]];
+            let Some((at, end)) = next(from, to, &is_used) else { break };
+            is_used[at] = true;
+            chain.push_back(end);
+        }
+        while let Some((at, end)) = next(chain[1], chain[0], &is_used) {
+            is_used[at] = true;
+            chain.push_front(end);
+        }
+        joined.move_to(point(chain[0]));
+        chain.iter().skip(1).for_each(|&to| joined.line_to(point(to)));
+    }
+    joined
+}
