@@ -8,8 +8,6 @@ use std::process::ExitCode;
 pub(crate) enum Status {
     Done = 0,
     Usage = 2,
-    #[cfg(feature = "render")]
-    Adapter = 3,
     Files = 4,
     Interrupted = 130,
 }
@@ -28,12 +26,6 @@ impl Failure {
     /// Wrong usage, or mistakes in a scene.
     pub(crate) fn usage(message: impl Into<String>) -> Self {
         Self(Status::Usage, message.into())
-    }
-
-    /// There is no usable graphics adapter.
-    #[cfg(feature = "render")]
-    pub(crate) fn adapter(message: impl Into<String>) -> Self {
-        Self(Status::Adapter, message.into())
     }
 
     /// Reading or writing failed.

@@ -55,7 +55,6 @@ Times are those of this machine, which should be otherwise idle.
 Exit status:
     0  done
     2  wrong usage, or mistakes in a scene file
-    3  no usable graphics adapter
     4  reading or writing failed
   130  interrupted by Ctrl-C or SIGTERM";
 

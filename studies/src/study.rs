@@ -74,11 +74,6 @@ pub(crate) struct Options {
     /// Print the results as one JSON document
     #[arg(long, global = true, conflicts_with = "quiet")]
     pub(crate) json: bool,
-
-    /// Graphics adapter that draws plots as PNG: auto (a GPU if there is one), cpu, gpu, or part of its name
-    #[cfg(feature = "render")]
-    #[arg(long, global = true, value_name = "ADAPTER", default_value = "auto")]
-    pub(crate) adapter: localshape::AdapterChoice,
 }
 
 /// Makes a study: measures with a number of threads, writes its files, and prints its text.

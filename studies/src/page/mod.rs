@@ -126,7 +126,7 @@ impl Page {
         let size = [WIDE as u32, high as u32];
         let image = Renderer::new(None, size)
             .and_then(|mut renderer| renderer.draw(diagram.picture()))
-            .map_err(|error| Failure::adapter(error.to_string()))?;
+            .expect("a page has a size that can be drawn, and no lit bodies");
         let mut png = Cursor::new(Vec::new());
         image.write_to(&mut png, ImageFormat::Png).expect("writing to memory");
         Ok([svg, png.into_inner()])
