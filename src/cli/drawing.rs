@@ -168,8 +168,11 @@ impl<'a> Drawing<'a> {
         }
         let own = &self.adapter;
         Ok(match read_tags(path)? {
-            Some((_, tags)) if tags.adapter != *own => {
+            Some((_, tags)) if tags.adapter != *own && self.scene.is_lit() => {
                 format!("{name}, which {} has drawn, and this is {own}; choose that with --adapter", tags.adapter)
+            }
+            Some((_, tags)) if tags.adapter != *own => {
+                format!("{name}, which an earlier build has drawn; draw all anew with --overwrite")
             }
             _ => format!("{name}, which has been replaced since; restore it"),
         })

@@ -5,7 +5,7 @@ use super::failure::{Failure, Status, warn_of_figure};
 use super::interrupt;
 use super::options::{DeviceOptions, PrintOptions, ThemeOption, ThreadOptions, number_in, size};
 use super::record;
-use super::still::{Drawn, Format, Still, replaceable};
+use super::still::{Drawn, Format, Still, replaceable, size_text};
 use crate::gpu::{Gpu, adapter_name};
 use crate::output::{AtomicFile, FolderLock, OutputError, Tags, folder_of, is_folder, read_tags};
 use crate::picture::compose_figure;
@@ -92,6 +92,7 @@ impl FigureCommand {
             console::print(&format!("figures: {}, fig4 (all of Fig. 4), all\n", NAMES.join(", ")))?;
             return Ok(Status::Done);
         }
+        Format::check_name(&self.out)?;
         let mut figures = self.load()?;
         if !self.printing.quiet {
             figures.iter().for_each(warn_of_figure);
@@ -275,8 +276,8 @@ impl FigureCommand {
         }
         if !self.printing.quiet {
             for (figure, path, _) in made {
-                let [width, height] = figure.size;
-                console::print(&format!("{}  {width}×{height}\n", path.display()))?;
+                let size = size_text(self.format(), figure.size, figure.print.as_ref());
+                console::print(&format!("{}  {size}\n", path.display()))?;
             }
         }
         Ok(())

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 const NOTE: &str = "\
-Without a graphics adapter, it names the packages to install; `simulate` needs none.";
+Without a graphics adapter, it names the packages to install; only bodies in space need one.";
 
 /// Print the version, and the vector instructions and graphics adapters that are used on this machine
 #[derive(Args, Debug)]

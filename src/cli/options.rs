@@ -126,7 +126,7 @@ impl PrintOptions {
 #[cfg(feature = "render")]
 #[derive(Args, Debug)]
 pub(super) struct DeviceOptions {
-    /// Graphics adapter: auto (a GPU if there is one), cpu, gpu, or part of its name
+    /// Graphics adapter for bodies in space: auto (a GPU if there is one), cpu, gpu, or part of its name
     #[arg(long, value_name = "ADAPTER", default_value = "auto")]
     adapter: AdapterChoice,
 }

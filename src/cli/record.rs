@@ -25,14 +25,14 @@ use std::time::Duration;
 /// Begins the pictures of some frames of a scene, in a folder.
 pub(super) type Begin<'d> = dyn for<'s> Fn(&'s Scene, &Path, &[u64]) -> Result<Box<dyn Pictures + 's>, Failure> + 'd;
 
-/// Runs all scenes in order and reports on each. If pictures are made, `adapter` is the name of the graphics adapter.
+/// Runs all scenes in order and reports on each. If pictures are made, `pictures` names the graphics adapter of a scene and begins its pictures.
 pub(super) fn run_all(
     jobs: Vec<Job>,
     options: &RunOptions,
     settings: &[Setting],
     words: &[OsString],
     timings: bool,
-    pictures: Option<(&str, &Begin<'_>)>,
+    pictures: Option<(&dyn Fn(&Scene) -> String, &Begin<'_>)>,
 ) -> Result<Status, Failure> {
     interrupt::listen();
     let pool = pool(options.threads.count())?;
@@ -53,7 +53,7 @@ pub(super) fn run_all(
         }
         let mut summary = Summary::new(&job.scene, &job.runs, job.frames.len(), &command);
         summary.set = settings.iter().map(|setting| setting.text().to_owned()).collect();
-        summary.adapter = pictures.map(|(adapter, _)| adapter.to_owned());
+        summary.adapter = pictures.map(|(adapter, _)| adapter(&job.scene));
         // Frames that are not kept count as simulated only.
         summary.frames.size = job.folder.contents().0.size;
         summary.frames.written = summary.frames.size.map(|_| 0);

@@ -9,7 +9,9 @@ use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, ThemeOption, size};
 use super::record::{self, Begin};
 use super::scenes::{Wish, nearest};
-use super::still::{Format as FileFormat, Still, one_frame, replaceable as replaceable_still, source_of, too_small};
+use super::still::{
+    Format as FileFormat, Still, one_frame, replaceable as replaceable_still, size_text, source_of, too_small,
+};
 use crate::animation::Format;
 use crate::gpu::adapter_name;
 use crate::look::Ghost;
@@ -120,7 +122,8 @@ impl Render {
         let lit = jobs.iter().map(|job| &job.scene).filter(|scene| scene.is_lit());
         let gpu = self.device.open(lit.map(|scene| scene.view.size))?;
         jobs.iter().try_for_each(|job| self.tell_moments(&job.scene))?;
-        let adapter = adapter_name(gpu.as_ref());
+        let opened = gpu.clone();
+        let adapter = |scene: &Scene| adapter_name(opened.as_ref().filter(|_| scene.is_lit()));
         let device = Arc::new(Device {
             gpu,
             threads: self.options.threads.count(),
@@ -130,7 +133,7 @@ impl Render {
             words: words.to_vec(),
         });
         let begin: &Begin<'_> = &|scene, folder, frames| Ok(Box::new(Drawing::begin(&device, scene, folder, frames)?));
-        let pictures = Some((&*adapter, begin));
+        let pictures = Some((&adapter as &dyn Fn(&Scene) -> String, begin));
         record::run_all(jobs, &self.options, &self.scenes.set, words, self.timings, pictures)
     }
 
@@ -195,8 +198,7 @@ impl Render {
         file.append(&still.draw(format, gpu.as_ref())?.file())?;
         file.commit()?;
         if self.options.printing.prints_text() {
-            let [width, height] = scene.view.size;
-            console::print(&format!("{name}  {width}×{height}\n"))?;
+            console::print(&format!("{name}  {}\n", size_text(format, scene.view.size, print)))?;
         }
         Ok(Status::Done)
     }

@@ -7,6 +7,7 @@ use crate::gpu::Gpu;
 use crate::look::Print;
 use crate::output::{Compression, OutputError, encode_print, read_tags};
 use crate::picture::{Composer, Picture, type_left_out};
+use crate::reading::words::short;
 use crate::render::{RenderError, Renderer};
 use crate::runner::history::History;
 use crate::runner::{Frames, Next, Runner};
@@ -86,6 +87,14 @@ pub(super) fn one_frame(
     }
     bar.finish_and_clear();
     Ok(None)
+}
+
+/// The size of a file of one picture, as it is reported: of paper for a vector file with such a size, else in pixels.
+pub(super) fn size_text(format: Format, [width, height]: [u32; 2], print: Option<&Print>) -> String {
+    match (format, print) {
+        (Format::Vector(_), Some(Print { mm: [wide, high], .. })) => format!("{} × {} mm", short(*wide), short(*high)),
+        _ => format!("{width}×{height}"),
+    }
 }
 
 /// Refuses to replace a file that is not a figure or single frame of this program.

@@ -34,7 +34,7 @@ const UPDATE: &str = "UPDATE_GOLDENS";
 /// standard error, states that moved first. Each failure has a page for a browser in `target/golden/`.
 ///
 /// Pictures are drawn by the kind of adapter that drew the goldens if the machine has it, else by a software driver, else by
-/// any adapter. Without a graphics adapter only states are compared; with `LOCALSHAPE_REQUIRE_GPU=1` this is a failure.
+/// any adapter. Without a graphics adapter only the states of bodies in space are compared; with `LOCALSHAPE_REQUIRE_GPU=1` this is a failure.
 #[derive(Debug)]
 #[must_use = "`finish` reports failures"]
 pub struct Suite {

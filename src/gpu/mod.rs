@@ -103,7 +103,7 @@ impl fmt::Display for AdapterDescription {
 pub enum InitError {
     /// The machine offers no adapter at all.
     #[error(
-        "this machine has no usable graphics adapter. Without a GPU, software drawing is enough: install it with \
+        "this machine has no usable graphics adapter, which bodies in space need. Without a GPU, software drawing is enough: install it with \
          `apt install mesa-vulkan-drivers` (Debian, Ubuntu) or `dnf install mesa-vulkan-drivers` (Fedora)"
     )]
     NoAdapter,

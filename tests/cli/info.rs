@@ -14,6 +14,12 @@ fn information_works_without_any_driver() {
         assert!(ran.out.starts_with(concat!("localshape ", env!("CARGO_PKG_VERSION"))), "{}", ran.out);
         assert!(ran.out.contains("adapters") && ran.out.contains("thread"), "{}", ran.out);
     }
+    if cfg!(feature = "render") {
+        // Bodies in the plane are drawn without one, too.
+        place.write("plane.toml", include_str!("../../scenes/fig4a.toml"));
+        none("render plane.toml --frames 0,90 --size 320x200 --adapter none-such");
+        assert_eq!(place.json("output/plane/run.json")["adapter"], "none");
+    }
     let document = none("info --json").json();
     assert_eq!(document["version"], env!("CARGO_PKG_VERSION"));
     if cfg!(all(feature = "render", target_os = "linux")) {

@@ -259,7 +259,13 @@ fn keys_that_exclude_or_need_each_other() {
         SPACE,
         "duration = 3",
         "duration = 3\ntolerance = 1e-6",
-        "4:13 \"semi-implicit-euler\" has fixed steps and no tolerance give `step`",
+        "4:13 \"semi-implicit-euler\" has fixed steps and no tolerance give `step` in its place, or write",
+    );
+    case(
+        SPACE,
+        "duration = 3",
+        "duration = 3\nstep = 0.01\ntolerance = 1e-6",
+        "5:13 \"semi-implicit-euler\" has fixed steps and no tolerance remove `tolerance`, or write",
     );
     case(
         SPACE,

@@ -133,7 +133,9 @@ fn misplaced(
     let path = if run.tolerance.is_some() { own("tolerance") } else { common("tolerance") };
     let is_typed = run.tolerance.is_some() || time.tolerance.is_some() && run.integrator.is_none();
     let message = format!("{name} has fixed steps and no tolerance");
-    is_typed.then(|| (path, message, "give `step`, or `integrator = \"dormand-prince\"`".into()))
+    let has_step = run.step.is_some() || time.step.is_some();
+    let remedy = if has_step { "remove `tolerance`" } else { "give `step` in its place" };
+    is_typed.then(|| (path, message, format!("{remedy}, or write `integrator = \"dormand-prince\"`")))
 }
 
 /// The largest stable step (s) for each run with `step = "auto"`, and the run that limits it: the run itself, or among
