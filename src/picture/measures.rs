@@ -11,29 +11,22 @@ macro_rules! measures {
 
 // Widths and distances in pixels of the reference picture.
 measures! {
-    /// Edges of sound elements in the plane, of turned-over ones, elements without faces, contours in the plane.
-    FLAT_EDGE_WIDTH = 1.5;
-    FLAT_EDGE_ALPHA = 0.75;
+    /// Edges of turned-over elements, and elements without faces.
     ALARM_EDGE_WIDTH = 1.5;
     ALARM_EDGE_ALPHA = 0.95;
     BAR_WIDTH = 2.2;
     BAR_ALPHA = 0.85;
-    FLAT_CONTOUR_WIDTH = 2.5;
     /// Elements smaller than this (px) get fainter edges, or edges would cover everything.
     SMALL_ELEMENT = 26.0;
     /// Between these sizes of elements (px) edges fade out, because so close together they would flicker.
     SMALLEST_ELEMENT = 4.0;
     FADING_ELEMENT = 8.0;
-    /// The stripes of turned-over elements: opacity, and in the plane their distance and their dark share.
+    /// The opacity of the stripes of turned-over elements.
     STRIPE_ALPHA = 0.62;
-    FLAT_PERIOD = 9.0;
-    FLAT_STRIPE = 0.19;
     /// The dots of flat elements: distance, radius and opacity.
     DOTS_APART = 7.0;
     DOT = 1.3;
     DOT_ALPHA = 0.6;
-    /// The width of the rim of an obstacle in the plane.
-    RIM_WIDTH = 2.0;
     /// The width of a casing relative to the line's, and the least (px).
     CASING = 0.24;
     LEAST_CASING = 0.6;

@@ -46,7 +46,10 @@ impl Lit {
     /// # Errors
     /// The device fails.
     pub(super) fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, RenderError> {
-        let [width, height] = size;
+        let ([width, height], longest) = (size, gpu.longest_side());
+        if width.max(height) > longest {
+            return Err(RenderError::Size { width, height, longest });
+        }
         let panels = Panels::new(gpu);
         let lit = Self {
             surfaces: surface::Surfaces::new(gpu),

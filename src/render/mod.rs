@@ -43,7 +43,7 @@ pub enum RenderError {
         width: u32,
         /// Requested height (px).
         height: u32,
-        /// The longest side that the device can draw (px).
+        /// The longest side that can be drawn here (px).
         longest: u32,
     },
     /// A picture has another size than the renderer was made for.
@@ -99,9 +99,8 @@ impl Renderer {
     pub fn new<'a>(gpu: impl Into<Option<&'a Gpu>>, size: [u32; 2]) -> Result<Self, RenderError> {
         let gpu = gpu.into();
         let [width, height] = size;
-        let longest = gpu.map_or(LONGEST, |gpu| gpu.longest_side().min(LONGEST));
-        if size.contains(&0) || width.max(height) > longest {
-            return Err(RenderError::Size { width, height, longest });
+        if size.contains(&0) || width.max(height) > LONGEST {
+            return Err(RenderError::Size { width, height, longest: LONGEST });
         }
         let painter = Painter::new(size.map(|length| length as u16));
         Ok(Self { size, painter, gpu: gpu.cloned(), lit: None })

@@ -1,4 +1,4 @@
-//! Panels in the plane as paths. Colours, widths and opacities are those of the shaders for flat panels.
+//! Panels in the plane as paths.
 
 use super::drawing::{Image, Item, Paint, Path, Pen};
 use super::marks::{ends_of, winding};
@@ -7,6 +7,14 @@ use crate::picture::measures::*;
 use crate::picture::{Bead, Colour, Fading, Line, LineKind, Mesh, Palette, Panel, Picture, Second, Solid, Stroke};
 use glam::{Vec2, Vec3, Vec4Swizzles};
 
+/// Widths (px in the reference picture) and opacity of edges, contours and rims of obstacles.
+const EDGE_WIDTH: f32 = 1.5;
+const EDGE_ALPHA: f32 = 0.75;
+const CONTOUR_WIDTH: f32 = 2.5;
+const RIM_WIDTH: f32 = 2.0;
+/// The stripes of turned-over elements: their distance (px in the reference picture) and their dark share.
+const PERIOD: f32 = 9.0;
+const STRIPE: f32 = 0.19;
 /// The number of pieces of a line of changing colour.
 const PIECES: u32 = 8;
 
@@ -32,7 +40,7 @@ pub(super) fn panel(picture: &Picture, panel: &Panel, items: &mut Vec<Item<'_>>)
         flat.fade(fading, [left, top, left + width, top + height], items);
     }
     flat.surface(&panel.sound, items);
-    flat.dots(items);
+    flat.dots([left, top, width, height], items);
     flat.surface(&panel.turned_over, items);
     if !panel.turned_over.triangles.is_empty() {
         flat.hatch([left, top, width, height], items);
@@ -128,7 +136,7 @@ impl PlanePanel<'_> {
         let bands = ramp.len() - 1;
         let triangles = self.triangles(mesh, |at| mesh.shades[at] * bands as f32);
         if triangles.iter().all(|[a, b, c]| a.1 == b.1 && b.1 == c.1) {
-            // Each element has one value. Where a body is folded over itself, the renderer shows its first triangle.
+            // Each element has one value. Where a body is folded over itself, its first triangle lies on top.
             for same in triangles.chunk_by(|one, other| one[0].1 == other[0].1).rev() {
                 let path = path_of(same.iter().map(|triangle| triangle.map(|(at, _)| at).to_vec()));
                 let value = same[0][0].1;
@@ -181,8 +189,8 @@ impl PlanePanel<'_> {
         sum.map(|sum| (sum / mesh.shades.len()) as u8)
     }
 
-    /// Flat elements: grey, unless a field colours them, with dots that are fixed to the body.
-    fn dots(&self, items: &mut Vec<Item<'_>>) {
+    /// Flat elements: grey, unless a field colours them, with dots that are fixed to the body, in the room of the panel.
+    fn dots(&self, [left, top, width, height]: [f32; 4], items: &mut Vec<Item<'_>>) {
         let (mesh, sight) = (&self.panel.sound, &self.panel.sight);
         let is_flat = |triangle: &&[u32; 3]| mesh.vertices[triangle[0] as usize].hatch > 0.5;
         let triangles: Vec<_> = mesh.triangles.iter().filter(is_flat).copied().collect();
@@ -199,7 +207,15 @@ impl PlanePanel<'_> {
         let apart = DOTS_APART * sight.line_scale;
         let turn = Vec2::splat(std::f32::consts::FRAC_1_SQRT_2);
         let back = Vec2::new(turn.x, -turn.y);
-        let points = ends_of(&flat).into_iter().map(|at| back.rotate(at - Vec2::from(sight.middle)) / apart);
+        let room = [Vec2::new(left, top), Vec2::new(left + width, top + height)];
+        let inside = |at: Vec2| at.clamp(room[0], room[1]);
+        // The rows of the box that the elements fill in the room: its corners, since rows are turned.
+        let (from, to) = ends_of(&flat)
+            .into_iter()
+            .map(inside)
+            .fold((room[1], room[0]), |(from, to), at| (from.min(at), to.max(at)));
+        let corners = [from, Vec2::new(to.x, from.y), to, Vec2::new(from.x, to.y)];
+        let points = corners.into_iter().map(|at| back.rotate(at - Vec2::from(sight.middle)) / apart);
         let (low, high) = points.fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
         let mut path = Path::default();
         for row in low.y.floor() as i32 - 1..=high.y.ceil() as i32 {
@@ -221,7 +237,7 @@ impl PlanePanel<'_> {
             true => (palette.alarm_line, self.alpha(STRIPE_ALPHA, palette.alarm_line, palette.alarm)),
             false => (palette.alarm, 1.0),
         };
-        let period = FLAT_PERIOD * sight.line_scale;
+        let period = PERIOD * sight.line_scale;
         let slant = Vec2::splat(std::f32::consts::FRAC_1_SQRT_2);
         let middle = Vec2::from(sight.middle);
         let room = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
@@ -243,11 +259,11 @@ impl PlanePanel<'_> {
         let fine = fine * fine * (3.0 - 2.0 * fine);
         let whole = self.whole(&self.panel.turned_over);
         if fine > 0.0 {
-            let paint = Paint { colour, alpha: alpha * FLAT_STRIPE * fine };
+            let paint = Paint { colour, alpha: alpha * STRIPE * fine };
             items.push(Item::Fill { path: whole.clone(), paint });
         }
         items.push(Item::Clip(whole));
-        let pen = Pen { round: false, ..Pen::solid(FLAT_STRIPE * period) };
+        let pen = Pen { round: false, ..Pen::solid(STRIPE * period) };
         items.push(Item::Stroke { path, pen, paint: Paint { colour, alpha: alpha * (1.0 - fine) } });
         items.push(Item::Unclip);
     }
@@ -262,18 +278,13 @@ impl PlanePanel<'_> {
         let alarm = if is_plain { palette.alarm_line } else { palette.alarm };
         let alarm_width = ALARM_EDGE_WIDTH * sight.contour_share;
         let kinds: [(&[LineKind], [f32; 2], Colour, Colour); 5] = [
-            (
-                &[LineKind::Edge, LineKind::ObstacleEdge],
-                [FLAT_EDGE_WIDTH, FLAT_EDGE_ALPHA * strength],
-                palette.edge,
-                body,
-            ),
+            (&[LineKind::Edge, LineKind::ObstacleEdge], [EDGE_WIDTH, EDGE_ALPHA * strength], palette.edge, body),
             (&[LineKind::Bar], [BAR_WIDTH, BAR_ALPHA], palette.edge, palette.background),
             (&[LineKind::AlarmEdge], [alarm_width, ALARM_EDGE_ALPHA * strength], alarm, alarm_body),
-            (&[LineKind::AlarmContour], [FLAT_CONTOUR_WIDTH, 1.0], alarm, alarm_body),
+            (&[LineKind::AlarmContour], [CONTOUR_WIDTH, 1.0], alarm, alarm_body),
             (
                 &[LineKind::Contour, LineKind::ObstacleContour],
-                [FLAT_CONTOUR_WIDTH, palette.outline_alpha],
+                [CONTOUR_WIDTH, palette.outline_alpha],
                 palette.outline,
                 body,
             ),

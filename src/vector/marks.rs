@@ -1,4 +1,4 @@
-//! Flat marks and curves as paths. Shapes and sizes are those of `shaders/overlay.wgsl`.
+//! Flat marks and curves as paths.
 
 use super::drawing::{Image, Item, Paint, Path, Pen};
 use crate::picture::{Curve, Mark, MarkShape};

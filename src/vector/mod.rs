@@ -104,7 +104,7 @@ pub fn bodies(picture: &Picture, size_mm: Option<[f64; 2]>) -> Option<Picture> {
     }
     let mut bodies = picture.clone();
     bodies.panels.retain(lit);
-    (bodies.marks, bodies.curves, bodies.words) = Default::default();
+    (bodies.under, bodies.marks, bodies.curves, bodies.words) = Default::default();
     let times = fineness(picture, size_mm);
     let [_, _, width, height] = enlarged([0, 0, picture.size[0], picture.size[1]], times);
     bodies.size = [width, height];

@@ -1,5 +1,5 @@
-//! A page as pixels. Colours blend as bytes (sRGB). The same page gives the same bytes on every processor: the painter is
-//! held to 128-bit vectors, because wider ones round some bytes differently.
+//! A page as pixels. Colours blend as bytes (sRGB). The same page gives the same bytes on every x86-64 processor with
+//! the same C library: the painter is held to 128-bit vectors, because wider ones round some bytes differently.
 
 use super::drawing::{Image, Item, Paint, Path, Pen, Step};
 use crate::picture::{Colour, Fonts, TextRun};

@@ -1,9 +1,10 @@
 //! Panels in the plane look the same in SVG files, as a browser shows them, and in PNG files.
 
 use super::browser::Browser;
-use super::{compose, draw, frame, gpu, parse};
+use super::{compose, frame, parse};
 use localshape::look::{Style, Theme};
 use localshape::picture::{Mark, MarkShape, Picture};
+use localshape::render::Renderer;
 use localshape::sim::{Divergence, Frame, LastFit, Status};
 use localshape::vector::{Format, Page, write};
 
@@ -15,8 +16,9 @@ const SIZE: [u32; 2] = [720, 480];
 fn both(browser: &mut Browser, mut picture: Picture) -> [Vec<[u8; 3]>; 2] {
     assert_eq!(picture.size, SIZE);
     picture.words.clear();
-    let gpu = gpu("printed").expect("tried before");
-    let drawn = draw(gpu, &picture).pixels().map(|pixel| pixel.0).collect();
+    let drawn =
+        Renderer::new(None, SIZE).and_then(|mut renderer| renderer.draw(&picture)).expect("no device is needed");
+    let drawn = drawn.pixels().map(|pixel| pixel.0).collect();
     let svg = write(&Page::new(&picture), Format::Svg).expect("a page");
     let svg = String::from_utf8(svg).expect("text");
     let pdf = write(&Page::new(&picture), Format::Pdf).expect("a page");
@@ -99,9 +101,6 @@ type Change = fn(&mut Frame);
 
 #[test]
 fn a_browser_shows_flat_panels_as_they_are_drawn() {
-    if gpu("a_browser_shows_flat_panels_as_they_are_drawn").is_none() {
-        return;
-    }
     let Some(mut browser) = Browser::start() else { return };
     let cases: [(&str, &str, &[Change]); 10] = [
         (BLOCK, "", &[turned_over]),
@@ -144,8 +143,7 @@ fn a_browser_shows_flat_panels_as_they_are_drawn() {
 /// Marks, each of a size of its own, with both of its colours.
 #[test]
 fn a_browser_shows_marks_as_they_are_drawn() {
-    let name = "a_browser_shows_marks_as_they_are_drawn";
-    let (Some(_), Some(mut browser)) = (gpu(name), Browser::start()) else { return };
+    let Some(mut browser) = Browser::start() else { return };
     let scene = parse(&format!(
         "time = {{ duration = 1, step = 'T/50', frames_per_second = 50 }}
         run = [{{ name = 'one', model = {{ kind = 'shape-based', stiffness = 1e3 }} }}]

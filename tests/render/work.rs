@@ -5,6 +5,7 @@ use localshape::gpu::{AdapterChoice, Gpu, GpuError, Work};
 use localshape::picture::Picture;
 use localshape::render::{RenderError, Renderer};
 use localshape::runner::Runner;
+use localshape::vector::{Format, Page, write};
 use std::collections::BTreeSet;
 
 /// A device whose work log no other test shares.
@@ -131,6 +132,26 @@ fn pictures_in_the_plane_need_no_device() {
     let (scene, frame) = fig4b(0);
     let lit = Renderer::new(None, scene.view.size).and_then(|mut renderer| renderer.draw(&compose(&scene, &frame)));
     assert_eq!(lit, Err(RenderError::NoDevice));
+}
+
+/// Patterns on bodies are made only where a panel shows them.
+#[test]
+fn bodies_far_larger_than_their_panel_are_drawn_in_bounded_time() {
+    for distance in [1e-2, 1e-5, 1e-9] {
+        let scene = parse(&format!(
+            "time = {{ duration = 1, step = 'T/50', frames_per_second = 50 }}
+            run = [{{ name = 'one', model = {{ kind = 'shape-based', stiffness = 1e3 }} }}]
+            view = {{ size = [320, 240], camera = {{ follow = false, target = [0.1, 0.1], distance = {distance:e} }} }}
+            body = {{ lattice = {{ cells = [2, 2], side = 0.2 }} }}"
+        ));
+        let mut frame = Runner::new(&scene, &[0]).frame(0);
+        // Pressed flat, but for one cell, which is turned over.
+        frame.runs[0].snapshot.position[..6].iter_mut().for_each(|node| node.y = 0.1);
+        frame.runs[0].snapshot.position[8].y = -0.3;
+        let picture = compose(&scene, &frame);
+        Renderer::new(None, picture.size).and_then(|mut renderer| renderer.draw(&picture)).expect("drawn");
+        assert!(write(&Page::new(&picture), Format::Svg).expect("a page").len() < 4 << 20, "{distance:e}");
+    }
 }
 
 #[test]
