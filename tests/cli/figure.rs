@@ -152,7 +152,7 @@ fn figures_for_print_have_their_size_and_no_small_type() {
     );
     place.write("print.toml", &forces("size = { mm = [180, 101] }"));
     let ran = place.run("figure print.toml -o print.svg").good();
-    assert_eq!(ran.out, "print.svg  2126×1193\n");
+    assert_eq!(ran.out, "print.svg  180 × 101 mm\n");
     assert!(place.read("print.svg").contains("width=\"180mm\" height=\"101mm\""));
     place.write("tiny.toml", &forces("title = \"x\"\nsize = { mm = [80, 45] }"));
     place
