@@ -262,7 +262,7 @@ impl Diagnostic {
         self.value(all).size()
     }
 
-    /// Those that are written at least so widely.
+    /// The diagnostics that are written at least so widely.
     pub fn within(scope: Scope) -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(move |diagnostic| diagnostic.scope() >= scope)
     }
@@ -273,7 +273,7 @@ impl Diagnostic {
 pub struct Chosen(Vec<(Diagnostic, Value)>);
 
 impl Chosen {
-    /// Those that are written at least so widely.
+    /// The diagnostics that are written at least so widely.
     pub fn within(scope: Scope, all: &Diagnostics) -> Self {
         Self(Diagnostic::within(scope).map(|diagnostic| (diagnostic, diagnostic.value(all))).collect())
     }

@@ -64,7 +64,7 @@ impl Timeline {
         self
     }
 
-    /// With a fixed number of pictures per second, each of which is the frame at its time.
+    /// With a fixed number of pictures per second. Each picture is the frame at its time.
     pub fn at_rate(mut self, rate: f64) -> Self {
         // Sums of thirds may be slightly above a whole number.
         let tick = |time: f64| (time * rate - 1e-6).ceil().max(0.0) as u64;

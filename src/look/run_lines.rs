@@ -19,7 +19,7 @@ pub(super) const DASHES: [&[f64]; 8] = [
 ];
 
 impl Palette {
-    /// The places of runs, some of which have chosen colours. Each has the dashes of its number. The others avoid
+    /// The places of runs. Some runs have chosen colours. Each has the dashes of its number. The others avoid
     /// colours that look like a chosen one, if enough are left.
     pub(crate) fn places(&self, chosen: &[Option<Colour>]) -> Vec<usize> {
         let (colours, dashes) = (self.runs.len(), DASHES.len());

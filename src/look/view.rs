@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// The drawing of a scene. Plain data, kept also in builds without the renderer, so that every scene can be checked.
 ///
-/// The `[view]` table of a scene file has these keys. Missing keys take defaults, some of which depend on the scene.
+/// The `[view]` table of a scene file has these keys. Missing keys take defaults. Some defaults depend on the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(default)]
 #[schemars(deny_unknown_fields, rename = "ViewFile")]

@@ -156,7 +156,7 @@ impl Folder {
     }
 }
 
-/// A locked folder. Until it is dropped, no other process writes to it, except for those that share the lock.
+/// A locked folder. Until it is dropped, only processes that share the lock write to it.
 #[derive(Debug)]
 pub(crate) struct Claimed {
     folder: Folder,

@@ -147,7 +147,7 @@ impl Stored for StoredStates {
         };
         let [position, velocity, mut model] = [read(&arrays[0])?, read(&arrays[1])?, read(&arrays[2])?];
         if hash.finalize()[..] != stored.digests[row] {
-            return Err(damaged("is damaged: its numbers are not the ones that were written"));
+            return Err(damaged("is damaged: its numbers differ from the written ones"));
         }
         let vectors = |numbers: &[f64]| numbers.as_chunks::<3>().0.iter().map(|&v| DVec3::from_array(v)).collect();
         let constraints = model.split_off(stored.model);

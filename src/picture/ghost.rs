@@ -37,7 +37,7 @@ pub(super) struct Ghost<'a> {
     pub(super) triangles: &'a [[u32; 3]],
     /// The ends of the edges of elements without faces, as nodes.
     pub(super) bars: &'a [[u32; 2]],
-    /// The room, outside of which nothing is drawn.
+    /// The room; nothing is drawn outside.
     pub(super) room: Rectangle,
 }
 

@@ -9,8 +9,8 @@ use crate::picture::{Panel, Picture};
 
 pub(super) const SHADER: &str = include_str!("../../shaders/composite.wgsl");
 
-/// The pipelines for solid obstacles that do not fade at the sides of their room, and for those that do, made when they
-/// are first needed.
+/// The pipelines without and with the fading of solid obstacles at the sides of their room, made when they are first
+/// needed.
 #[derive(Debug)]
 pub(super) struct Composite {
     module: wgpu::ShaderModule,

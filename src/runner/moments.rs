@@ -112,7 +112,7 @@ struct Part<'a> {
 
 impl<'a> Taking<'a> {
     /// The simulations of a figure at their start. The states have the diagnostics that are written at this `scope` or
-    /// wider, and those that the figure shows.
+    /// wider, and the diagnostics that the figure shows.
     pub(crate) fn new(figure: &'a Figure, scope: Scope) -> Self {
         let wanted = Diagnostic::within(scope);
         match &figure.content {

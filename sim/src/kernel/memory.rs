@@ -1,6 +1,6 @@
 //! Memory aligned for vectors.
 
-#![expect(unsafe_code, reason = "cache lines are read as the doubles of which they consist, and threads share them")]
+#![expect(unsafe_code, reason = "cache lines are read as doubles, and threads share them")]
 
 use std::cell::UnsafeCell;
 

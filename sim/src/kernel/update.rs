@@ -6,7 +6,7 @@ use crate::contact::{Bound, Floor, ROUND_OFF};
 use crate::lanes::{Lanes, MOST, each};
 use glam::DVec3;
 
-/// What a pass computes from the forces of one evaluation.
+/// The part of a step that a pass computes from the forces of one evaluation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Stage {
     /// Eq. (2), then Eq. (3) with the new velocity.
@@ -35,12 +35,12 @@ impl Stage {
         !matches!(self, Self::SemiImplicitEuler | Self::ExplicitEuler)
     }
 
-    /// Whether it uses what was kept.
+    /// Whether it reads the stored acceleration.
     pub(crate) fn loads_acceleration(self) -> bool {
         matches!(self, Self::Finish | Self::FinishDrift | Self::Coast | Self::Arrive(_))
     }
 
-    /// Whether it changes what is kept.
+    /// Whether it changes the stored acceleration.
     pub(crate) fn stores_acceleration(self) -> bool {
         self.keeps_acceleration() && !matches!(self, Self::Coast | Self::Kick(_))
     }

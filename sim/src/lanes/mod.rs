@@ -58,7 +58,7 @@ pub(crate) trait Lanes:
     /// The distance of so many values, less than [`MOST`].
     fn distance(values: usize) -> Self::Distance;
     /// [`Self::WIDTH`] values at a distance beyond an address that is aligned for [`MOST`] values. Where a vector is a
-    /// cache line, this reads two whole lines, the second of which is `line` values after the first: loads that cross
+    /// cache line, this reads two whole lines, the second one `line` values after the first: loads that cross
     /// lines, or cross data that were just stored, are much slower. With narrower vectors the values are consecutive.
     ///
     /// # Safety

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 
 /// The margin around the body, which does not fade (px in the reference picture).
 const AROUND_BODY: f64 = 4.0;
-/// Obstacles that extend by less than the first length do not fade; those that extend by more than the second one fade
+/// Obstacles that extend by less than the first length do not fade; obstacles that extend by more than the second one fade
 /// fully (px in the reference picture).
 const BEGINS: [f64; 2] = [0.5, 8.0];
 /// Room for the lines of an obstacle (px in the reference picture).

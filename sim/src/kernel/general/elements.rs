@@ -1,4 +1,4 @@
-//! The laws of elements and springs in lanes: what they add to the sums of their nodes.
+//! The laws of elements and springs in lanes: their contributions to the sums of their nodes.
 
 use super::{Class, Constants, Part, RECORD, SUM};
 use crate::kernel::memory::Aligned;
@@ -35,7 +35,7 @@ unsafe fn sum_of(sums: *mut f64, record: u32) -> *mut f64 {
     unsafe { sums.cast::<f32>().add(record as usize).cast() }
 }
 
-/// What the elements of a block add to all their corners, lane by lane: in space `w̄` and `k M`, and behind them the
+/// The contributions of a block's elements to all their corners, lane by lane: in space `w̄` and `k M`, and behind them the
 /// rotations between two passes.
 #[repr(C, align(64))]
 struct Block<const ROWS: usize>([[f64; MOST]; ROWS]);
