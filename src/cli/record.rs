@@ -25,6 +25,9 @@ use std::time::Duration;
 /// Begins the pictures of some frames of a scene, in a folder.
 pub(super) type Begin<'d> = dyn for<'s> Fn(&'s Scene, &Path, &[u64]) -> Result<Box<dyn Pictures + 's>, Failure> + 'd;
 
+/// The name of the adapter that draws a scene.
+pub(super) type AdapterOf<'d> = dyn Fn(&Scene) -> String + 'd;
+
 /// Runs all scenes in order and reports on each. If pictures are made, `pictures` names the graphics adapter of a scene and begins its pictures.
 pub(super) fn run_all(
     jobs: Vec<Job>,
@@ -32,7 +35,7 @@ pub(super) fn run_all(
     settings: &[Setting],
     words: &[OsString],
     timings: bool,
-    pictures: Option<(&dyn Fn(&Scene) -> String, &Begin<'_>)>,
+    pictures: Option<(&AdapterOf<'_>, &Begin<'_>)>,
 ) -> Result<Status, Failure> {
     interrupt::listen();
     let pool = pool(options.threads.count())?;

@@ -7,7 +7,7 @@ use super::film::replaceable;
 use super::frames::{Moments, Shard};
 use super::interrupt;
 use super::options::{DeviceOptions, RunOptions, SceneOptions, ThemeOption, size};
-use super::record::{self, Begin};
+use super::record::{self, AdapterOf, Begin};
 use super::scenes::{Wish, nearest};
 use super::still::{
     Format as FileFormat, Still, one_frame, replaceable as replaceable_still, size_text, source_of, too_small,
@@ -133,7 +133,7 @@ impl Render {
             words: words.to_vec(),
         });
         let begin: &Begin<'_> = &|scene, folder, frames| Ok(Box::new(Drawing::begin(&device, scene, folder, frames)?));
-        let pictures = Some((&adapter as &dyn Fn(&Scene) -> String, begin));
+        let pictures = Some((&adapter as &AdapterOf<'_>, begin));
         record::run_all(jobs, &self.options, &self.scenes.set, words, self.timings, pictures)
     }
 
