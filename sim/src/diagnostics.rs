@@ -2,7 +2,7 @@
 //! files, strips, figures, goldens and the schema are derived from it.
 
 use super::model::Report;
-use super::snapshot::Placement;
+use super::placement::Placement;
 use super::state::Nodes;
 use glam::DVec3;
 use schemars::JsonSchema;

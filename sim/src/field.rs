@@ -4,7 +4,7 @@ use super::body::Body;
 use super::crew::Crew;
 use super::kernel;
 use super::lanes::Set;
-use super::snapshot::Placement;
+use super::placement::Placement;
 use super::state::Nodes;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,31 +1,9 @@
 //! A [`Snapshot`] of a run: the view of a simulation for drawing, diagnostics and files.
 
 use super::diagnostics::Diagnostics;
-use glam::{DMat3, DVec3};
-use serde::{Deserialize, Serialize};
-
-/// Where and when a run diverged. This is a result, not an error.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Divergence {
-    /// Time of the end of the first step that was rejected (s).
-    pub time: f64,
-    /// Number of that step, counted from 1.
-    pub step: u64,
-    /// The part of the node that exceeded the speed limit, counted from 0.
-    pub part: usize,
-    /// The first element of that part that contains the node; `None` if it belongs to no element.
-    pub element: Option<usize>,
-}
-
-/// Whether a run has diverged.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Status {
-    /// It has not.
-    #[default]
-    Ok,
-    /// It has; the snapshot has its last finite state.
-    Diverged(Divergence),
-}
+use super::placement::Placement;
+use super::state::Status;
+use glam::DVec3;
 
 /// The state of one run at one moment, with its diagnostics.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -51,24 +29,6 @@ pub struct Snapshot {
     pub diagnostics: Diagnostics,
     /// Whether the run has diverged.
     pub status: Status,
-}
-
-/// The rigid placement of a body's rest shape that is nearest to its nodes (least squares).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Placement {
-    /// Mean of the nodes at rest (m).
-    pub rest_centre: DVec3,
-    /// Mean of the nodes (m).
-    pub centre: DVec3,
-    /// The rotation.
-    pub turn: DMat3,
-}
-
-impl Placement {
-    /// The position of a point of the rest shape (m) in this placement.
-    pub fn place(&self, rest: DVec3) -> DVec3 {
-        self.centre + self.turn * (rest - self.rest_centre)
-    }
 }
 
 /// One frame of a scene: the requested runs at the same moment.

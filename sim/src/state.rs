@@ -1,7 +1,7 @@
 //! The [`State`]: everything that changes in a simulation.
 
-use super::snapshot::{Divergence, Status};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// Everything that persists from one step to the next. A run continued from a copy of its state, or from a state that
 /// was written and read back, has the same bits as one that never stopped.
@@ -19,6 +19,29 @@ pub struct State {
     pub status: Status,
     /// The memory of models, constraints and the integrator.
     pub memory: Memory,
+}
+
+/// Where and when a run diverged. This is a result, not an error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Divergence {
+    /// Time of the end of the first step that was rejected (s).
+    pub time: f64,
+    /// Number of that step, counted from 1.
+    pub step: u64,
+    /// The part of the node that exceeded the speed limit, counted from 0.
+    pub part: usize,
+    /// The first element of that part that contains the node; `None` if it belongs to no element.
+    pub element: Option<usize>,
+}
+
+/// Whether a run has diverged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Status {
+    /// It has not.
+    #[default]
+    Ok,
+    /// It has; the snapshot has its last finite state.
+    Diverged(Divergence),
 }
 
 /// What persists from one step to the next besides positions and velocities. The model, the constraint or the
