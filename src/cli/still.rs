@@ -115,7 +115,7 @@ pub(super) fn check_type(print: Option<&Print>, picture: &Picture, file: &str) -
 
 /// The size of the smallest type in a picture (px).
 fn smallest_type(picture: &Picture) -> f32 {
-    picture.words.iter().map(|run| run.size).fold(f32::INFINITY, f32::min)
+    picture.words().map(|run| run.size).fold(f32::INFINITY, f32::min)
 }
 
 /// Why some runs of a scene cannot be printed, judged by the first frame before anything is simulated.

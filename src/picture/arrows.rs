@@ -1,18 +1,22 @@
 //! Displacements as arrows: from the place of each node in the best fit of the rest shape to its present place.
 
+use super::Item;
 use super::camera::Lens;
 use super::layout::Rectangle;
 use super::narrow::narrow;
 use super::order::farthest_first;
+use super::page::{Path, Pen, point};
 use super::plane::{clipped, from_side, sides};
-use super::{Mark, MarkShape};
 use crate::colour::Colour;
 use crate::sim::Placement;
 use glam::{DVec2, DVec3};
 
-/// The widths of an arrow's halo, and of its head with the halo, in widths of the head. The shader has the same values.
-const HALO: f64 = 3.0 / 17.0;
-const HEIGHT: f64 = 1.0 + 2.0 * HALO;
+/// Width (in widths of the head) and opacity of an arrow's halo.
+const HALO: f64 = 0.147;
+const HALO_ALPHA: f64 = 0.92;
+/// A long arrow in widths of its head: length and notch of the head, thickness of the shaft. The last number is the head
+/// of a short arrow, in lengths of the arrow.
+const SHAPE: [f64; 4] = [1.235, 0.2, 0.247, 0.62];
 /// Width of the head of a long arrow (px in the reference picture).
 pub(super) const HEAD: f64 = 17.0;
 /// Elements smaller than this (px in the reference picture) get smaller arrows, down to this part of their size.
@@ -82,19 +86,27 @@ pub(super) fn size(element: f64, unit: f64) -> f64 {
 }
 
 /// An arrow from one pixel to another, with its tip exactly at the second one.
-pub(super) fn arrow([from, to]: [DVec2; 2], size: f64, colour: Colour, halo: Colour) -> Mark {
-    let length = (to - from).length();
-    let along = if length > 0.0 { (to - from) / length } else { DVec2::X };
-    let (height, pad) = (HEAD * HEIGHT * size, HEAD * HALO * size);
-    let corner = from - pad * along - 0.5 * height * along.perp();
-    Mark {
-        rectangle: [corner.x, corner.y, length + 2.0 * pad, height].map(narrow),
-        along: [along.x, along.y].map(narrow),
-        colour,
-        second: halo,
-        opacity: u8::MAX,
-        shape: MarkShape::Arrow,
-    }
+pub(super) fn arrow(ends: [DVec2; 2], size: f64, colour: Colour, halo: Colour) -> Item {
+    let (corners, part) = outline(ends, HEAD * size);
+    let path = Path::polygon(&corners.map(point));
+    let pen = Pen::solid(narrow(2.0 * HALO * HEAD * size * part.max(0.5)));
+    Item::part("arrow", [Item::stroke(path.clone(), pen, (halo, HALO_ALPHA)), Item::fill(path, colour)])
+}
+
+/// The corners of an arrow with a head of a width (px): one side of the shaft, the joint, a wing, the tip and back; and
+/// the size of its head, from 0 to 1: less than 1 for a short arrow.
+pub(super) fn outline([from, to]: [DVec2; 2], width: f64) -> ([DVec2; 7], f64) {
+    let length = from.distance(to);
+    let along = (to - from).try_normalize().unwrap_or(DVec2::X);
+    let head = (SHAPE[0] * width).min(SHAPE[3] * length);
+    let part = head / (SHAPE[0] * width);
+    let [half_head, half_shaft, notch] = [0.5 * width * part, 0.5 * SHAPE[2] * width * part, SHAPE[1] * width * part];
+    let back = length - head;
+    let joint = back + notch * (1.0 - half_shaft / half_head.max(1e-9));
+    let at = |x: f64, y: f64| from + x * along + y * along.perp();
+    let side = |y: f64| [at(0.0, y * half_shaft), at(joint, y * half_shaft), at(back, y * half_head)];
+    let ([a, b, c], [g, f, e]) = (side(1.0), side(-1.0));
+    ([a, b, c, to, e, f, g], part)
 }
 
 /// The data for the arrows of one panel.
@@ -120,7 +132,7 @@ impl Arrows<'_> {
         rest: &[DVec3],
         position: &[DVec3],
         placement: &Placement,
-        marks: &mut Vec<Mark>,
+        marks: &mut Vec<Item>,
     ) {
         let mut nodes = nodes.to_vec();
         nodes.sort_by_key(|&(node, _)| rank(node));
@@ -157,12 +169,10 @@ mod tests {
     #[test]
     fn an_arrow_ends_where_it_should() {
         let [from, to] = [DVec2::new(100.0, 50.0), DVec2::new(130.0, 90.0)];
-        let mark = arrow([from, to], 1.0, [0; 3], [255; 3]);
-        let [left, top, width, height] = mark.rectangle.map(f64::from);
-        let along = DVec2::from(mark.along.map(f64::from));
-        let middle = DVec2::new(left, top) + 0.5 * height * along.perp();
-        assert!((middle + (width - 3.0) * along - to).length() < 1e-4);
-        assert!((middle + 3.0 * along - from).length() < 1e-4);
+        let (corners, part) = outline([from, to], 17.0);
+        assert_eq!((corners[3], part), (to, 1.0));
+        assert!((corners[0].midpoint(corners[6]) - from).length() < 1e-9);
+        assert!(corners.iter().all(|at| (to - from).normalize().dot(*at - from) < 50.0 + 1e-9));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::layout::{self, Baselines, Layout, Rectangle, Scale};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight};
-use super::{Curve, Mark, MarkShape, number};
+use super::{Item, Panel, number};
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette};
 use crate::reading::captions::parts_and_constants;
@@ -39,9 +39,23 @@ pub(crate) struct Writer<'a> {
     pub(super) palette: &'a Palette,
     pub(super) fonts: &'a Fonts,
     pub(super) scale: Scale,
-    pub(super) marks: Vec<Mark>,
-    pub(super) curves: Vec<Curve>,
+    pub(super) marks: Vec<Item>,
+    pub(super) curves: Vec<Item>,
     pub(super) words: Vec<TextRun>,
+}
+
+impl Writer<'_> {
+    /// Gives a halo to words over bodies.
+    pub(super) fn over_bodies(&mut self, panels: &[Panel]) {
+        for word in &mut self.words {
+            word.has_halo = panels.iter().any(|panel| word.touches(panel.region));
+        }
+    }
+
+    /// Its items in the order in which they are drawn.
+    pub(super) fn items(self) -> impl Iterator<Item = Item> {
+        self.marks.into_iter().chain(self.curves).chain(self.words.into_iter().map(Item::Text))
+    }
 }
 
 /// The edges of the room for words in a panel (px).
@@ -164,7 +178,7 @@ impl Writer<'_> {
         let mut piece = |from: f64, to: f64| {
             let thickness = thickness.round().max(1.0);
             let rectangle = [left + from, (middle - 0.5 * thickness).round(), to - from, thickness];
-            self.marks.push(Mark::upright(rectangle, MarkShape::Filled, colour));
+            self.marks.push(Item::rectangle(rectangle, colour));
         };
         if dash.is_empty() {
             return piece(0.0, length.round());
@@ -336,7 +350,7 @@ impl Writer<'_> {
             [last, top - 0.5 * (tick - thickness), thickness, tick],
         ] {
             let rectangle = [x, y.round(), width, height];
-            self.marks.push(Mark::upright(rectangle, MarkShape::Filled, self.palette.second_text));
+            self.marks.push(Item::rectangle(rectangle, self.palette.second_text));
         }
         let colour = self.palette.second_text;
         let baseline = room.top + lines.caption;
@@ -354,7 +368,7 @@ impl Writer<'_> {
         let first = f64::from(layout.ground[1]);
         for panel in &layout.panels {
             let [left, top, width, height] = panel.map(f64::from);
-            let mut line = |rectangle| self.marks.push(Mark::upright(rectangle, MarkShape::Filled, halved));
+            let mut line = |rectangle| self.marks.push(Item::rectangle(rectangle, halved));
             if left > 0.0 && height > 2.0 * inset {
                 let length = (height - 2.0 * inset).round();
                 line([left - (thickness / 2.0).floor(), top + inset.round(), thickness, length]);

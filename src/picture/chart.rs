@@ -1,10 +1,9 @@
 //! A chart without a box: hairlines at round values, ticks at round times.
 
+use super::Item;
 use super::axis::{Axis, Kind};
 use super::caption::Writer;
-use super::narrow::narrow;
 use super::text::{Fonts, Weight};
-use super::{Curve, Mark, MarkShape};
 use crate::colour::{Colour, mixed};
 
 /// Size of the numbers at ticks (px in the reference picture).
@@ -85,7 +84,7 @@ impl Chart {
             let y = self.y(values, tick);
             let colour = self.thinned(if tick == 0.0 { palette.axis } else { palette.hairline }, palette.background);
             let line = [self.left, (y - thickness / 2.0).round(), self.right - self.left, thickness];
-            writer.marks.push(filled(line, colour));
+            writer.marks.push(Item::rectangle(line, colour));
             let above = values.ticks.get(at + 1).map(|&next| self.y(values, next));
             if !with_numbers || above.is_some_and(|above| y - above < NUMBERS * self.unit) {
                 continue;
@@ -103,7 +102,7 @@ impl Chart {
         let [hairline, axis] = [palette.hairline, palette.axis].map(|colour| self.thinned(colour, palette.background));
         if with_line {
             let line = [self.left, (self.bottom - thickness / 2.0).round(), self.right - self.left, thickness];
-            writer.marks.push(filled(line, hairline));
+            writer.marks.push(Item::rectangle(line, hairline));
         }
         let mut free = f64::INFINITY;
         // Numbers are written backwards from the last one, which has the unit. Numbers that would overlap are left out.
@@ -111,7 +110,7 @@ impl Chart {
             let x = self.x(times, tick);
             let top = (self.bottom + thickness / 2.0).round();
             let length = (TICK * self.unit).round().max(2.0);
-            writer.marks.push(filled([(x - thickness / 2.0).round(), top, thickness, length], axis));
+            writer.marks.push(Item::rectangle([(x - thickness / 2.0).round(), top, thickness, length], axis));
             let left = x - wide(writer.fonts, text, self.unit) / 2.0;
             let is_last = at + 1 == times.ticks.len();
             let text = if is_last { format!("{text} {}", times.unit) } else { text.clone() };
@@ -140,21 +139,15 @@ impl Chart {
             let [left, right] = [from, to].map(|time| self.x(times, time).round());
             let [top, bottom] = [value, 0.0].map(|value| self.y(values, value).clamp(self.top, self.bottom).round());
             if right > left && bottom > top {
-                writer.marks.push(filled([left, top, right - left, bottom - top], colour));
+                writer.marks.push(Item::rectangle([left, top, right - left, bottom - top], colour));
             }
         }
     }
 
     /// The line of a moment.
-    pub(super) fn moment(self, x: f64, colour: Colour) -> Curve {
+    pub(super) fn moment(self, x: f64, colour: Colour) -> Item {
         let ends = [[x, self.top - self.outside()], [x, self.bottom + TICK * self.unit]];
-        Curve {
-            points: ends.iter().map(|end| end.map(narrow)).collect(),
-            width: narrow(MOMENT * self.line),
-            dash: Vec::new(),
-            colour,
-            alpha: narrow(MOMENT_ALPHA),
-        }
+        Item::curve(&ends, MOMENT * self.line, &[], (colour, MOMENT_ALPHA))
     }
 
     fn write(self, writer: &mut Writer<'_>, text: &str, colour: Colour, left: f64, baseline: f64) {
@@ -165,13 +158,4 @@ impl Chart {
 /// Width of a number (px).
 pub(super) fn wide(fonts: &Fonts, text: &str, unit: f64) -> f64 {
     fonts.width(text, Weight::Regular, NUMBERS * unit)
-}
-
-pub(super) fn filled(rectangle: [f64; 4], colour: Colour) -> Mark {
-    Mark::upright(rectangle, MarkShape::Filled, colour)
-}
-
-/// A filled disc.
-pub(super) fn dot(at: [f64; 2], radius: f64, colour: Colour) -> Curve {
-    Curve { points: vec![at.map(narrow)], width: narrow(2.0 * radius), dash: Vec::new(), colour, alpha: 1.0 }
 }

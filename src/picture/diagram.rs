@@ -1,8 +1,7 @@
 //! Pictures made by hand, such as plots of measurements.
 
-use super::narrow::narrow;
 use super::text::{Fonts, Weight};
-use super::{Curve, Mark, MarkShape, Picture};
+use super::{Item, Picture};
 use crate::look::{Style, Theme};
 
 /// A picture made by hand: rectangles, then curves, then text, in the fonts of the program and on the ground of its light theme.
@@ -37,28 +36,27 @@ impl Diagram {
     /// An empty picture of a width and height (px).
     pub fn new(size: [u32; 2]) -> Self {
         let style = Style::of(Theme::Light);
-        let (ramp, panels, under, marks, curves, words) = Default::default();
+        let (ramp, panels, under, above) = Default::default();
         let fonts = Fonts::new(&style.font);
-        Self { picture: Picture { size, palette: style.palette(), fonts, ramp, panels, under, marks, curves, words } }
+        Self { picture: Picture { size, palette: style.palette(), fonts, ramp, panels, under, above } }
     }
 
     /// Adds a filled rectangle: left, top, width and height.
     pub fn rectangle(&mut self, rectangle: [f64; 4], colour: [u8; 3]) {
-        self.picture.marks.push(Mark::upright(rectangle, MarkShape::Filled, colour));
+        self.picture.under.push(Item::rectangle(rectangle, colour));
     }
 
     /// Adds a curve through points, with round ends; a single point is a disc. `dash` has the lengths of dashes and
     /// gaps in turn, up to three of each, and is empty for a solid curve.
     pub fn curve(&mut self, points: &[[f64; 2]], width: f64, colour: [u8; 3], dash: &[f64]) {
-        let points = points.iter().map(|point| point.map(narrow)).collect();
-        let dash = dash.iter().map(|&length| narrow(length)).collect();
-        self.picture.curves.push(Curve { points, width: narrow(width), dash, colour, alpha: 1.0 });
+        let below_text = self.picture.above.partition_point(|item| !matches!(item, Item::Text(_)));
+        self.picture.above.insert(below_text, Item::curve(points, width, dash, colour));
     }
 
     /// Adds a line of text from a place on its baseline.
     pub fn text(&mut self, text: &str, style: TextStyle, [left, baseline]: [f64; 2]) {
         let run = self.picture.fonts.lay_out(text, style.weight(), style.size, style.colour, left, baseline);
-        self.picture.words.push(super::TextRun { has_halo: style.has_halo, ..run });
+        self.picture.above.push(Item::Text(super::TextRun { has_halo: style.has_halo, ..run }));
     }
 
     /// The width of a line of text.
@@ -87,8 +85,8 @@ mod tests {
         diagram.curve(&[[10.0, 20.0], [300.0, 150.0]], 2.0, [0, 114, 178], &[7.0, 4.0]);
         diagram.text("energy", style, [300.0 - wide, 40.0]);
         let picture = diagram.picture();
-        assert_eq!((picture.marks.len(), picture.curves.len(), picture.words.len()), (1, 1, 1));
-        assert!((picture.words[0].span[1] - 300.0).abs() < 0.01);
+        assert_eq!((picture.under.len(), picture.above.len(), picture.words().count()), (1, 2, 1));
+        assert!((picture.words().next().unwrap().span[1] - 300.0).abs() < 0.01);
         let page = Page { title: "Energy", size_mm: Some([80.0, 50.0]), ..Page::new(picture) };
         let svg = String::from_utf8(vector::write(&page, Format::Svg).unwrap()).unwrap();
         assert!(svg.contains("80mm") && svg.contains("Energy") && svg.contains("energy"), "{svg}");

@@ -1,10 +1,9 @@
 //! Names at the ends of curves, right of a chart. Names of close ends are moved apart, and thin lines lead to them.
 
-use super::Curve;
+use super::Item;
 use super::caption::{Writer, letter};
 use super::chart::{Chart, NUMBERS};
 use super::layout::{CURVE_NAME, Scale};
-use super::narrow::narrow;
 use super::series::{DOTS, OWN, Series};
 use super::text::{Fonts, Weight};
 
@@ -102,24 +101,16 @@ impl Ends {
                 let from = [x + if is_early { 2.0 * free } else { free }, y];
                 let to = [left - free, place];
                 let points = if is_early { vec![from, [chart.right, y], to] } else { vec![from, to] };
-                writer.curves.push(Curve {
-                    points: points.into_iter().map(|point| point.map(narrow)).collect(),
-                    width: narrow(LEADER * chart.unit),
-                    dash: if is_early { DOTS.map(|length| narrow(length * unit)).to_vec() } else { Vec::new() },
-                    colour: one.style.colour,
-                    alpha: narrow(LEADER_ALPHA),
-                });
+                let dash = DOTS.map(|length| length * unit);
+                let dash = if is_early { &dash[..] } else { &[] };
+                let paint = (one.style.colour, LEADER_ALPHA);
+                writer.curves.push(Item::curve(&points, LEADER * chart.unit, dash, paint));
             }
             if self.sample > 0.0 {
                 let length = SAMPLE[0] * unit;
-                let dash = one.style.dash.iter().map(|length| narrow(length * chart.line));
-                writer.curves.push(Curve {
-                    points: vec![[left, place].map(narrow), [left + length, place].map(narrow)],
-                    width: narrow(OWN * chart.line),
-                    dash: dash.collect(),
-                    colour: one.style.colour,
-                    alpha: 1.0,
-                });
+                let dash: Vec<_> = one.style.dash.iter().map(|length| length * chart.line).collect();
+                let ends = [[left, place], [left + length, place]];
+                writer.curves.push(Item::curve(&ends, OWN * chart.line, &dash, one.style.colour));
             }
             let colour = writer.palette.text_like(one.style.colour);
             writer.left(&self.names[at].0, Weight::Regular, size, colour, left + self.sample, place + 0.36 * size);

@@ -1,13 +1,11 @@
 //! Flags above charts: letters or numbers in rings, with lines down to their places.
 
 use super::caption::{Room, Writer};
-use super::chart::dot;
 use super::ends::spread;
 use super::event::Event;
 use super::layout::{Baselines, Rectangle, Scale};
-use super::narrow::narrow;
 use super::text::Weight;
-use super::{Colour, Curve};
+use super::{Colour, Item};
 
 /// Radius of a ring, thickness of its rim, size of the letter in it, the gap beside the letter, and the gap between
 /// rings (px in the reference picture).
@@ -67,13 +65,7 @@ pub(super) fn draw(
         let from = if with_rings { [ring, middle] } else { [x, top] };
         let is_straight = (ring - x).abs() < 0.75 || !with_rings;
         let points: &[_] = if is_straight { &[[x, from[1]], [x, bottom]] } else { &[from, [x, top], [x, bottom]] };
-        writer.curves.push(Curve {
-            points: points.iter().map(|point| point.map(narrow)).collect(),
-            width: narrow(LINE * scale.line()),
-            dash: Vec::new(),
-            colour: flag.colour,
-            alpha: narrow(LINE_ALPHA),
-        });
+        writer.curves.push(Item::curve(points, LINE * scale.line(), &[], (flag.colour, LINE_ALPHA)));
     }
     if !with_rings {
         return;
@@ -94,7 +86,7 @@ pub(super) fn ring(
 ) {
     let thickness = RIM * writer.scale.line();
     for (radius, colour) in [(radius, rim), (radius - thickness, ground)] {
-        writer.curves.push(dot(at, radius, colour));
+        writer.curves.push(Item::disc(at, radius, colour));
     }
     let left = at[0] - 0.5 * writer.fonts.width(text, Weight::SemiBold, size);
     writer.left(text, Weight::SemiBold, size, letter, left, at[1] + 0.36 * size);

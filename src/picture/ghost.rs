@@ -1,10 +1,9 @@
 //! The outline of a body that is not drawn: dashed curves along the border of its projection.
 
-use super::Curve;
+use super::Item;
 use super::camera::Lens;
 use super::fade::{FADING, Fade, dashed};
 use super::layout::{Rectangle, Scale};
-use super::narrow::narrow;
 use super::plane::{clipped, sides};
 use crate::colour::Colour;
 use glam::{DVec2, DVec3};
@@ -44,7 +43,7 @@ pub(super) struct Ghost<'a> {
 impl Ghost<'_> {
     /// The dashed outline in a colour, on a casing without dashes; nothing if a part of the surface is not in front of
     /// the camera. If hardly any part of the body is in the room, an arrow may point to it.
-    pub(super) fn draw(&self, scale: Scale, colour: Colour, halo: Colour, curves: &mut Vec<Curve>) {
+    pub(super) fn draw(&self, scale: Scale, colour: Colour, halo: Colour, curves: &mut Vec<Item>) {
         let lines = [without_stray(self.outline(), DASH[0] * scale.line()), self.bars()].concat();
         let fade = self.fade(scale);
         let whole: f64 = lines.iter().map(|line| length(line)).sum();
@@ -79,12 +78,10 @@ impl Ghost<'_> {
             }
         }
         for (pieces, width, colour, alpha) in [(casing, HALO, halo, HALO_ALPHA), (pieces, WIDTH, colour, 1.0)] {
-            let curve = |(line, dash, opacity): &(Vec<DVec2>, Option<[f64; 2]>, f64)| Curve {
-                points: line.iter().map(|point| point.to_array().map(narrow)).collect(),
-                width: narrow(width * scale.line()),
-                dash: dash.iter().flatten().map(|&length| narrow(length)).collect(),
-                colour,
-                alpha: narrow(alpha * opacity),
+            let curve = |(line, dash, opacity): &(Vec<DVec2>, Option<[f64; 2]>, f64)| {
+                let points: Vec<_> = line.iter().map(|point| point.to_array()).collect();
+                let dash = dash.as_ref().map_or(&[][..], |dash| dash);
+                Item::curve(&points, width * scale.line(), dash, (colour, alpha * opacity))
             };
             curves.extend(pieces.iter().map(curve));
         }

@@ -1,12 +1,15 @@
 //! Marks on nodes that grips hold or drag.
 
+use super::Colour;
+use super::Item;
 use super::layout::{Rectangle, Scale};
+use super::narrow::narrow;
+use super::page::{self, Path, Pen};
 use super::pointer::{Going, Pointers};
 use super::skin::Skin;
-use super::{Mark, MarkShape};
 use crate::look::Palette;
 use crate::sim::{Grip, Motion};
-use glam::DVec3;
+use glam::{DVec3, Vec2};
 
 /// Half the width of a pin, and of the ring around a dragged node (px in the reference picture), in space and in the
 /// plane, where nodes are discs.
@@ -17,6 +20,13 @@ const FEW: usize = 4;
 /// The largest width of a mark in lengths of an element, and its least width (px).
 const SHARE: f64 = 0.45;
 const NARROWEST: f64 = 3.0;
+/// A dragged node, in radii of its mark: its disc, radius and width of its ring, and the halo around both.
+const DISC: f32 = 0.36;
+const RING: [f32; 2] = [0.76, 0.22];
+const HALO: f32 = 0.12;
+const HALO_ALPHA: f64 = 0.75;
+/// A held node: half the width of its diamond without and with its halo, in radii of its mark.
+const DIAMOND: [f32; 2] = [0.74, 0.98];
 /// The opacity of the mark of a hidden node.
 const HIDDEN: f64 = 0.38;
 
@@ -40,7 +50,7 @@ pub(super) struct Hands<'a> {
 
 impl Hands<'_> {
     /// Marks all nodes that are held at the panel's time.
-    pub(super) fn draw(&self, marks: &mut Vec<Mark>) {
+    pub(super) fn draw(&self, marks: &mut Vec<Item>) {
         let held: Vec<_> = self.grips.iter().filter(|grip| grip.holds(self.time)).collect();
         if held.is_empty() || self.position.is_empty() {
             return;
@@ -71,7 +81,7 @@ impl Hands<'_> {
         Going { velocity: (after - before) / (2.0 * half), greatest: grip.motion.greatest_speed(0.0) }
     }
 
-    fn mark(&self, point: DVec3, opacity: f64, ringed: bool, marks: &mut Vec<Mark>) {
+    fn mark(&self, point: DVec3, opacity: f64, ringed: bool, marks: &mut Vec<Item>) {
         let sizes = if ringed { HAND } else { PIN };
         let flat = self.pointers.lens.orthographic;
         let radius = (sizes[usize::from(flat)] * self.scale.line()).min(SHARE * self.element);
@@ -81,8 +91,25 @@ impl Hands<'_> {
         if !inside(pixel[0], left, width) || !inside(pixel[1], top, height) {
             return;
         }
-        let shape = if ringed { MarkShape::Hand } else { MarkShape::Pin };
-        let whole = Mark::around(pixel.into(), radius, shape, self.palette.pointer);
-        marks.extend(Mark { second: self.palette.background, ..whole }.faded(opacity));
+        let (pixel, radius) = (page::point(pixel.into()), narrow(radius));
+        let layers = [((self.palette.background, HALO_ALPHA), HALO), ((self.palette.pointer, 1.0), 0.0)];
+        let hand = || {
+            let one = |(paint, halo): ((Colour, f64), f32)| {
+                let pen = Pen::solid((RING[1] + 2.0 * halo) * radius);
+                let disc = Item::fill(Path::circle(pixel, (DISC + halo) * radius), paint);
+                [disc, Item::stroke(Path::circle(pixel, RING[0] * radius), pen, paint)]
+            };
+            Item::part("hand", layers.into_iter().flat_map(one).collect::<Vec<_>>())
+        };
+        let pin = || {
+            let one = |(paint, halo): ((Colour, f64), f32)| {
+                // The halo has sharp corners, too.
+                let reach = radius * if halo > 0.0 { DIAMOND[1] } else { DIAMOND[0] };
+                let corners = [-Vec2::X, -Vec2::Y, Vec2::X, Vec2::Y].map(|way| pixel + reach * way);
+                Item::fill(Path::polygon(&corners), paint)
+            };
+            Item::part("pin", layers.map(one))
+        };
+        marks.extend(if ringed { hand() } else { pin() }.faded(opacity));
     }
 }

@@ -1,15 +1,15 @@
 //! The key of colours and arrows: one for all panels, below them, so that it overlaps nothing.
 
+use super::Item;
 use super::arrows;
 use super::axis::{Axis, Kind};
 use super::caption::Writer;
-use super::chart::{NUMBERS, filled};
+use super::chart::NUMBERS;
 use super::ghost;
 use super::layout::Scale;
-use super::narrow::narrow;
 use super::number;
+use super::page::{Path, point};
 use super::text::Weight;
-use super::{Curve, Mark, MarkShape};
 use crate::colour::Colour;
 use glam::DVec2;
 use std::borrow::Cow;
@@ -162,19 +162,18 @@ impl Legend {
     fn sample(self, writer: &mut Writer<'_>, [left, middle]: [f64; 2], room: f64, sample: &Sample<'_>) -> f64 {
         let (unit, palette) = (self.unit, writer.palette);
         let [length, width] = SAMPLE.map(|length| length * unit);
-        let curve = |[from, to]: [f64; 2], dash: Vec<f32>, colour| {
-            let points = [from, to].map(|x| [x, middle].map(narrow)).to_vec();
-            Curve { points, width: narrow(width), dash, colour, alpha: 1.0 }
+        let curve = |[from, to]: [f64; 2], dash: &[f64], colour: Colour| {
+            Item::curve(&[[from, middle], [to, middle]], width, dash, colour)
         };
         match sample.kind {
             SampleKind::Ghost(colour) => {
-                let dash = ghost::DASH.map(|length| narrow(length * unit)).to_vec();
-                writer.curves.push(curve([left, left + length], dash, colour));
+                let dash = ghost::DASH.map(|length| length * unit);
+                writer.curves.push(curve([left, left + length], &dash, colour));
             }
             SampleKind::Path(ref colours) => {
                 // A part for each run.
                 let at = |part: usize| left + length * part as f64 / colours.len() as f64;
-                let part = |(part, &colour)| curve([at(part), at(part + 1)], Vec::new(), colour);
+                let part = |(part, &colour)| curve([at(part), at(part + 1)], &[], colour);
                 writer.curves.extend(colours.iter().enumerate().map(part));
             }
         }
@@ -234,25 +233,24 @@ impl Legend {
             let colour = ramp[if end == 0 { 0 } else { ramp.len() - 1 }];
             for (out, colour) in [(rim, palette.axis), (0.0, colour)] {
                 let [wide, high] = [cap + 1.6 * out, height + 2.0 * out];
-                let (y, along) = if end == 0 { (top + height + out, [-1.0, 0.0]) } else { (top - out, Mark::UPRIGHT) };
-                let point = Mark::upright([x, y, wide, high], MarkShape::Point, colour);
-                writer.marks.push(Mark { along, ..point });
+                let tip = if end == 0 { x - wide } else { x + wide };
+                let middle = top + 0.5 * height;
+                let corners = [[x, middle - 0.5 * high], [tip, middle], [x, middle + 0.5 * high]];
+                let path = Path::polygon(&corners.map(|at| point(at.into())));
+                writer.marks.push(Item::part("point", [Item::fill(path, colour)]));
             }
         }
         let sides = |end: usize| if beyond[end] { 0.0 } else { rim };
         let framed = [bar_left - sides(0), top - rim, length + sides(0) + sides(1), height + 2.0 * rim];
-        writer.marks.push(filled(framed, palette.axis));
-        let pieces = ramp.len() - 1;
-        let at = |piece: usize| bar_left + (length * piece as f64 / pieces as f64).round();
-        for piece in 0..pieces {
-            let rectangle = [at(piece), top, at(piece + 1) - at(piece), height];
-            let blend = Mark::upright(rectangle, MarkShape::Blend, ramp[piece]);
-            writer.marks.push(Mark { second: ramp[piece + 1], ..blend });
-        }
+        writer.marks.push(Item::rectangle(framed, palette.axis));
+        let corner = point([bar_left, top].into());
+        let size = point([length, height].into());
+        let ends = [corner, point([bar_left + length, top].into())];
+        writer.marks.push(Item::Blend { path: Path::rectangle(corner, size), ends, colours: ramp.to_vec() });
         for (&tick, text) in axis.ticks.iter().zip(&axis.texts) {
             let x = bar_left + axis.share(tick).clamp(0.0, 1.0) * length;
             let line = [(x - 0.5 * rim).round(), top + height + rim, rim, (TICK * unit).round()];
-            writer.marks.push(filled(line, palette.axis));
+            writer.marks.push(Item::rectangle(line, palette.axis));
             self.write(writer, text, Weight::Regular, NUMBERS, palette.second_text, x - wide(text) / 2.0, below);
         }
     }

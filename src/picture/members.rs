@@ -1,11 +1,10 @@
 //! Time series of one run in several scenes, such as one body with several seeds: their mean, in a band from the least
 //! to the greatest value.
 
-use super::Curve;
+use super::Item;
 use super::axis::Axis;
 use super::caption::Writer;
-use super::chart::{Chart, filled};
-use super::narrow::narrow;
+use super::chart::Chart;
 use super::series::{EXACT, Series, simplified, steps, value, within};
 
 /// Opacity of the band.
@@ -63,19 +62,18 @@ impl Series {
         while left < end {
             let [high, low] = range(left).map(|y| y.clamp(chart.top, chart.bottom));
             if high < low {
-                let mark = filled([left, high, (end - left).min(1.0), low - high], self.style.colour);
+                let mark = Item::rectangle([left, high, (end - left).min(1.0), low - high], self.style.colour);
                 writer.marks.extend(mark.faded(RANGE));
             }
             left += 1.0;
         }
         for part in members.iter().flat_map(|points| within(points, [chart.top, chart.bottom])) {
-            writer.curves.push(Curve {
-                points: simplified(&part, EXACT).into_iter().map(|point| point.map(narrow)).collect(),
-                width: narrow(SINGLE * chart.line),
-                dash: Vec::new(),
-                colour: self.style.colour,
-                alpha: narrow(SINGLE_ALPHA),
-            });
+            writer.curves.push(Item::curve(
+                &simplified(&part, EXACT),
+                SINGLE * chart.line,
+                &[],
+                (self.style.colour, SINGLE_ALPHA),
+            ));
         }
     }
 }

@@ -33,6 +33,7 @@ mod narrow;
 mod number;
 mod obstacle;
 mod order;
+mod page;
 mod plane;
 mod pointer;
 mod series;
@@ -55,11 +56,11 @@ pub use compose::Composer;
 pub(crate) use compose::{compose_figure, left_out, type_left_out};
 pub use diagram::{Diagram, TextStyle};
 pub(crate) use layout::Rectangle;
+pub(crate) use page::{Image, Item, Paint, Path, Pen, Step, winding};
 pub(crate) use shadow::{CELLS, Shade};
 pub(crate) use text::{Face, Fonts, Glyph, TextRun, Weight};
 
-use glam::{DVec2, Mat4, Vec3};
-use narrow::narrow;
+use glam::{Mat4, Vec3};
 
 /// A whole frame, ready to be drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,14 +75,10 @@ pub struct Picture {
     pub(crate) ramp: Vec<Colour>,
     /// A panel for each run shown.
     pub(crate) panels: Vec<Panel>,
-    /// Flat marks below the bodies, in the order in which they are drawn.
-    pub(crate) under: Vec<Mark>,
-    /// Flat marks above the bodies, in the order in which they are drawn.
-    pub(crate) marks: Vec<Mark>,
-    /// Flat curves above the marks, in the order in which they are drawn.
-    pub(crate) curves: Vec<Curve>,
-    /// Text, above everything else.
-    pub(crate) words: Vec<TextRun>,
+    /// Flat items below the bodies.
+    pub(crate) under: Vec<Item>,
+    /// Flat items above the bodies: marks, then curves, then text.
+    pub(crate) above: Vec<Item>,
 }
 
 /// One run, seen by one camera. Lengths are in sides ([`crate::look::View::side`]), from the panel's origin.
@@ -366,98 +363,9 @@ pub(crate) struct Bead {
     pub rim: Colour,
 }
 
-/// A flat curve on the picture with round ends and joints.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Curve {
-    /// The vertices of the polyline (px to the right and down); a single point is a dot.
-    pub points: Vec<[f32; 2]>,
-    /// Its width (px).
-    pub width: f32,
-    /// Lengths of its dashes and gaps in turn (px), up to three of each; empty for a solid curve.
-    pub dash: Vec<f32>,
-    /// Its colour.
-    pub colour: Colour,
-    /// Its opacity, from 0 to 1.
-    pub alpha: f32,
-}
-
-/// A flat mark on the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Mark {
-    /// Left, top, width and height (px).
-    pub rectangle: [f32; 4],
-    /// Unit vector along its width (px to the right and down): the rectangle is turned around its left upper corner.
-    pub along: [f32; 2],
-    /// Its colour.
-    pub colour: Colour,
-    /// The colour of the shape on it.
-    pub second: Colour,
-    /// Its opacity (of 255).
-    pub opacity: u8,
-    /// Its shape.
-    pub shape: MarkShape,
-}
-
-impl Mark {
-    /// The direction of a mark that is not turned.
-    pub(crate) const UPRIGHT: [f32; 2] = [1.0, 0.0];
-
-    /// An opaque mark of one colour that is not turned: left, top, width and height (px).
-    fn upright([left, top, width, height]: [f64; 4], shape: MarkShape, colour: Colour) -> Self {
-        let rectangle = [left, top, width, height].map(narrow);
-        Self { rectangle, along: Self::UPRIGHT, colour, second: colour, opacity: u8::MAX, shape }
+impl Picture {
+    /// Its lines of text.
+    pub(crate) fn words(&self) -> impl Iterator<Item = &TextRun> {
+        self.above.iter().filter_map(|item| if let Item::Text(run) = item { Some(run) } else { None })
     }
-
-    /// A mark that is not turned, around a middle, with a radius (px).
-    fn around(middle: DVec2, radius: f64, shape: MarkShape, colour: Colour) -> Self {
-        let DVec2 { x, y } = middle;
-        Self::upright([x - radius, y - radius, 2.0 * radius, 2.0 * radius], shape, colour)
-    }
-
-    /// A straight line with smooth borders.
-    fn line([from, to]: [DVec2; 2], thickness: f64, colour: Colour) -> Self {
-        let along = (to - from).try_normalize().unwrap_or(DVec2::X);
-        // The border of the mark is a pixel wide, half of it outside.
-        let corner = from - 0.5 * along - 0.5 * (thickness + 1.0) * along.perp();
-        let rectangle = [corner.x, corner.y, from.distance(to) + 1.0, thickness + 1.0];
-        Self { along: along.to_array().map(narrow), ..Self::upright(rectangle, MarkShape::Smooth, colour) }
-    }
-
-    /// The mark with a part of its opacity, from 0 to 1; `None` if it would be invisible.
-    fn faded(self, part: f64) -> Option<Self> {
-        let opacity = (f64::from(self.opacity) * part.clamp(0.0, 1.0)).round() as u8;
-        (opacity > 0).then_some(Self { opacity, ..self })
-    }
-}
-
-/// The shape of a mark.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum MarkShape {
-    /// A filled rectangle.
-    Filled,
-    /// A filled rectangle with a rising diagonal.
-    Struck,
-    /// A disc with a rim of the second colour.
-    Node,
-    /// A ring arrow that runs counter-clockwise.
-    CounterClockwise,
-    /// A heavier ring arrow that runs clockwise.
-    Clockwise,
-    /// A rectangle that fades out towards its lower side.
-    Fading,
-    /// The lower half of a soft disc.
-    Shadow,
-    /// A filled rectangle with smooth borders, a pixel wide inside it.
-    Smooth,
-    /// An arrow along the width with a halo of the second colour. The halo fills the rectangle's border, 3/23 of the
-    /// height wide; the tip is inside it.
-    Arrow,
-    /// A filled rectangle whose colour changes to the second one along its width.
-    Blend,
-    /// A triangle that points along the width.
-    Point,
-    /// A diamond with a halo of the second colour.
-    Pin,
-    /// A disc in a ring, both with a halo of the second colour.
-    Hand,
 }

@@ -1,17 +1,18 @@
 //! Marks of bodies in the plane: nodes, ring arrows for the orientation of elements, and floors seen from the side.
 
+use super::Item;
 use super::camera::Lens;
 use super::ears::Ears;
 use super::ends::spread;
 use super::layout::{Rectangle, Scale};
 use super::narrow::narrow;
 use super::obstacle::half_space;
+use super::page::{Image, Path, Step, direction, point, winding};
 use super::tracking::NEARER;
-use super::{Mark, MarkShape};
 use crate::colour::Colour;
 use crate::look::Palette;
 use crate::sim::{Body, Obstacle};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec2};
 use std::f64::consts::TAU;
 
 /// Floors whose normal rises more than this are level.
@@ -20,6 +21,15 @@ pub(super) const LEVEL: f64 = 1.0 - 1e-9;
 const NODE: f64 = 5.2;
 /// Radius of a ring arrow, and of the disc behind the arrow of a turned-over element (px in the reference picture).
 const RING: [f64; 2] = [13.0, 17.0];
+/// A ring arrow, relative to its radius: radius and thickness, the latter for sound and turned-over elements, start and
+/// end of its line (rad, counter-clockwise from the right), length and half width of its head.
+const ARROW_RING: f32 = 0.80;
+const THICKNESS: [f32; 2] = [0.14, 0.22];
+const ENDS: [f32; 2] = [0.9, std::f32::consts::TAU - 0.25];
+const HEAD: [f32; 2] = [0.72, 0.42];
+/// Opacity of a floor and of the shadow on it where they are strongest.
+const FADING: f32 = 0.75;
+const SHADOW: f32 = 0.42;
 /// Elements whose middle is nearer to a side than this get smaller arrows (px in the reference picture), down to this
 /// part of their size.
 const ROOMY: f64 = 18.0;
@@ -76,7 +86,7 @@ pub(super) struct PlaneMarks<'a> {
 
 impl PlaneMarks<'_> {
     /// All floors, below the body.
-    pub(super) fn floors(&self, obstacles: &[Obstacle], time: f64, marks: &mut Vec<Mark>) {
+    pub(super) fn floors(&self, obstacles: &[Obstacle], time: f64, marks: &mut Vec<Item>) {
         for obstacle in obstacles {
             let Some((normal, height)) = half_space(obstacle, time) else { continue };
             if normal.y > LEVEL {
@@ -88,7 +98,7 @@ impl PlaneMarks<'_> {
     }
 
     /// A floor at any angle, also a wall or a ceiling: a line between the words, soft on its solid side.
-    fn slope(&self, normal: DVec3, height: f64, marks: &mut Vec<Mark>) {
+    fn slope(&self, normal: DVec3, height: f64, marks: &mut Vec<Item>) {
         let unit = self.scale.unit;
         // The point of the floor nearest to the middle of the picture.
         let middle = DVec3::new(self.lens.eye.x, self.lens.eye.y, 0.0);
@@ -109,15 +119,11 @@ impl PlaneMarks<'_> {
                 .map(|(at, step, length)| if step < 0.0 { at / -step } else { (length - at) / step.max(1e-9) })
         });
         let depth = reaches.fold(FLOOR_DEPTH * unit, f64::min).max(0.0);
-        let mut mark = |[from, to]: [f64; 2], [above, below]: [f64; 2], colour, shape| {
-            let corner = start + from * along - above * along.perp();
-            let rectangle = [corner.x, corner.y, to - from, above + below];
-            let along = [along.x, along.y].map(narrow);
-            marks.push(Mark { along, ..Mark::upright(rectangle, shape, colour) });
-        };
+        let sides =
+            |[from, to]: [f64; 2], depth: f64| [start + from * along, (to - from) * along, depth * along.perp()];
         let [has_floor, has_shadow] = self.floors;
         if has_floor {
-            mark([from, to], [0.0, depth], self.palette.hairline, MarkShape::Fading);
+            marks.push(fading(sides([from, to], depth), self.palette.hairline));
         }
         let room = 40.0 * unit;
         let pixels = self.position.iter().filter_map(|&point| self.pixel(point));
@@ -125,13 +131,13 @@ impl PlaneMarks<'_> {
         let (low, high) = near.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
         let (low, high) = ((low - room).max(from), (high + room).min(to));
         if high > low && has_shadow {
-            mark([low, high], [0.0, (SHADOW_DEPTH * unit).min(depth)], self.palette.shadow, MarkShape::Shadow);
+            marks.push(shadow(sides([low, high], (SHADOW_DEPTH * unit).min(depth)), self.palette.shadow));
         }
         let thickness = (FLOOR_LINE * unit).round().max(1.0);
         if !has_floor {
             return;
         }
-        mark([from, to], [0.5, thickness + 0.5], self.palette.axis, MarkShape::Smooth);
+        marks.push(line(sides([from, to], thickness), self.palette.axis));
     }
 
     /// The shift of a level floor (px) by which it lies on whole pixels, unless the floor or the camera moves. It is
@@ -143,7 +149,7 @@ impl PlaneMarks<'_> {
     }
 
     /// A level floor.
-    fn level(&self, level: f64, alignment: f64, marks: &mut Vec<Mark>) {
+    fn level(&self, level: f64, alignment: f64, marks: &mut Vec<Item>) {
         let Some((pixel, _)) = self.lens.project(DVec3::new(self.lens.eye.x, level, 0.0)) else { return };
         let [left, top, width, height] = self.viewport.map(f64::from);
         let (y, unit) = (sharpened(pixel[1] + alignment), self.scale.unit);
@@ -156,10 +162,10 @@ impl PlaneMarks<'_> {
             return;
         }
         let depth = (FLOOR_DEPTH * unit).min(top + height - y);
+        let sides = |left: f64, length: f64, depth: f64| [DVec2::new(left, y), length * DVec2::X, depth * DVec2::Y];
         let [has_floor, has_shadow] = self.floors;
         if has_floor {
-            let below = [left + margin, y, length, depth];
-            marks.push(Mark::upright(below, MarkShape::Fading, self.palette.hairline));
+            marks.push(fading(sides(left + margin, length, depth), self.palette.hairline));
         }
         let pixels = self.position.iter().filter_map(|&point| self.lens.project(point)).map(|(pixel, _)| pixel);
         let lowest = pixels.clone().map(|pixel| pixel[1]).fold(f64::NEG_INFINITY, f64::max);
@@ -172,19 +178,18 @@ impl PlaneMarks<'_> {
             let high = (high + room).min(left + width - margin);
             if high > low {
                 let depth = (SHADOW_DEPTH * unit).min(depth);
-                marks.push(Mark::upright([low, y, high - low, depth], MarkShape::Shadow, self.palette.shadow));
+                marks.push(shadow(sides(low, high - low, depth), self.palette.shadow));
             }
         }
         if !has_floor {
             return;
         }
         let thickness = (FLOOR_LINE * unit).round().max(1.0);
-        let line = [left + margin - 0.5, y - 0.5, length + 1.0, thickness + 1.0];
-        marks.push(Mark::upright(line, MarkShape::Smooth, self.palette.axis));
+        marks.push(line(sides(left + margin, length, thickness), self.palette.axis));
     }
 
     /// Ring arrows for the orientation of elements, above the body.
-    pub(super) fn signs(&self, marks: &mut Vec<Mark>) {
+    pub(super) fn signs(&self, marks: &mut Vec<Item>) {
         if self.body.elements.len() > MOST_SIGNS || self.position.is_empty() {
             return;
         }
@@ -211,12 +216,12 @@ impl PlaneMarks<'_> {
 
     /// Nodes, above the arrows. `element` is the length of an element's edge (px); `colours` are the colours of nodes,
     /// if they have any.
-    pub(super) fn nodes(&self, element: f64, colours: &dyn Fn(usize) -> Option<Colour>, marks: &mut Vec<Mark>) {
+    pub(super) fn nodes(&self, element: f64, colours: &dyn Fn(usize) -> Option<Colour>, marks: &mut Vec<Item>) {
         let radius = node_radius(self.scale, element);
         for (node, &point) in self.position.iter().enumerate() {
             let Some(pixel) = self.pixel(point) else { continue };
-            let disc = Mark::around(pixel, radius, MarkShape::Node, colours(node).unwrap_or(self.palette.node));
-            self.add(Mark { second: self.palette.edge, ..disc }, pixel, radius, marks);
+            let disc = Item::rimmed(pixel, radius, colours(node).unwrap_or(self.palette.node), self.palette.edge);
+            self.add(disc, pixel, radius, marks);
         }
     }
 
@@ -228,7 +233,7 @@ impl PlaneMarks<'_> {
     }
 
     /// The arrow of an element that is not turned over, unless a turned-over one covers it.
-    fn sound_arrow(&self, (middle, room): Circle, turned_over: &[(Vec<DVec2>, Circle)], marks: &mut Vec<Mark>) {
+    fn sound_arrow(&self, (middle, room): Circle, turned_over: &[(Vec<DVec2>, Circle)], marks: &mut Vec<Item>) {
         let unit = self.scale.line();
         // The distance to a turned-over element, or to the disc of its arrow.
         let beside = |(polygon, (disc, _)): &(Vec<DVec2>, Circle)| {
@@ -239,7 +244,8 @@ impl PlaneMarks<'_> {
         let size = (room / (ROOMY * unit)).min(1.0);
         let grown = ((size - SMALLEST_SIGN) / FADING_SIGN).min(1.0);
         let radius = size * RING[0] * unit;
-        let sign = Mark::around(middle, radius, MarkShape::CounterClockwise, self.palette.sign());
+        let path = ring_arrow(point(middle), narrow(radius), THICKNESS[0], 1.0);
+        let sign = Item::part("ring arrow", [Item::fill(path, self.palette.sign())]);
         if let Some(sign) = sign.faded(grown.min(free)) {
             self.add(sign, middle, radius, marks);
         }
@@ -247,7 +253,7 @@ impl PlaneMarks<'_> {
 
     /// Signs that would cover their elements stand left or right of the body, with leaders to the elements. Returns the
     /// elements whose signs have no room.
-    fn callouts(&self, mut places: Vec<Circle>, marks: &mut Vec<Mark>) -> Vec<Circle> {
+    fn callouts(&self, mut places: Vec<Circle>, marks: &mut Vec<Item>) -> Vec<Circle> {
         let disc = RING[1] * self.scale.line();
         let pixels = self.position.iter().filter_map(|&point| self.pixel(point));
         let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
@@ -275,11 +281,8 @@ impl PlaneMarks<'_> {
                 let end = sign + disc * (middle - sign).normalize_or_zero();
                 let unit = self.scale.line();
                 let colour = self.palette.alarm_text;
-                let leader = Mark::line([middle, end], LEADER * unit, colour);
-                let dot = Mark {
-                    second: self.palette.background,
-                    ..Mark::around(middle, LEADER_DOT * unit, MarkShape::Node, colour)
-                };
+                let leader = Item::line([middle, end], LEADER * unit, colour);
+                let dot = Item::rimmed(middle, LEADER_DOT * unit, colour, self.palette.background);
                 marks.extend([leader, dot].into_iter().filter_map(|mark| mark.faded(grown)));
                 self.alarm_arrow((sign, disc), grown, marks);
             }
@@ -288,22 +291,21 @@ impl PlaneMarks<'_> {
     }
 
     /// The arrow of a turned-over element on a disc, with at most a part of its opacity.
-    fn alarm_arrow(&self, (middle, room): Circle, most: f64, marks: &mut Vec<Mark>) {
+    fn alarm_arrow(&self, (middle, room): Circle, most: f64, marks: &mut Vec<Item>) {
         let [ring, disc] = RING.map(|radius| radius * self.scale.line());
         // A disc must not hide its element.
         let size = (room / (0.55 * disc)).min(1.0);
         let grown = ((size - SMALLEST_ALARM) / FADING_SIGN).min(most);
-        let ground = (size * disc, MarkShape::Node, [255; 3]);
-        let sign = (size * ring, MarkShape::Clockwise, self.palette.alarm_on_white);
-        for (radius, shape, colour) in [ground, sign] {
-            if let Some(mark) = Mark::around(middle, radius, shape, colour).faded(grown) {
-                self.add(mark, middle, radius, marks);
-            }
+        let path = ring_arrow(point(middle), narrow(size * ring), THICKNESS[1], -1.0);
+        let ground = Item::disc(middle.to_array(), size * disc, [255; 3]);
+        let sign = Item::part("alarm arrow", [ground, Item::fill(path, self.palette.alarm_on_white)]);
+        if let Some(sign) = sign.faded(grown) {
+            self.add(sign, middle, size * disc, marks);
         }
     }
 
     /// Adds a mark of a radius around a pixel (px), unless it would extend into a neighbouring panel.
-    fn add(&self, mark: Mark, middle: DVec2, radius: f64, marks: &mut Vec<Mark>) {
+    fn add(&self, mark: Item, middle: DVec2, radius: f64, marks: &mut Vec<Item>) {
         marks.extend(self.holds(middle, radius).then_some(mark));
     }
 
@@ -319,6 +321,63 @@ impl PlaneMarks<'_> {
     fn pixel(&self, point: DVec3) -> Option<DVec2> {
         self.lens.project(point).map(|(pixel, _)| DVec2::from(pixel))
     }
+}
+
+/// A ring arrow that runs counter-clockwise if `way` is 1, clockwise if it is −1.
+fn ring_arrow(middle: Vec2, radius: f32, thickness: f32, way: f32) -> Path {
+    // Angles count counter-clockwise in a frame whose y-axis points up; mirrored, the arrow runs clockwise.
+    let turned = |angle: f32| if way > 0.0 { -angle } else { std::f32::consts::PI + angle };
+    let [from, to] = ENDS.map(turned);
+    let [outer, inner] = [0.5, -0.5].map(|part| (ARROW_RING + part * thickness) * radius);
+    let mut path = Path::default();
+    path.add_arc(middle, outer, [from, to], true);
+    path.add_arc(middle, inner, [to, from], false);
+    path.0.push(Step::Close);
+    let out = direction(ENDS[1]);
+    let corners =
+        [ARROW_RING * out + HEAD[1] * out, ARROW_RING * out + HEAD[0] * out.perp(), ARROW_RING * out - HEAD[1] * out];
+    let mut corners = corners.map(|corner| middle + radius * Vec2::new(way * corner.x, -corner.y));
+    // The head winds like the ring: otherwise both would cancel where they overlap.
+    if winding(&corners) * winding(&path.points()) < 0.0 {
+        corners.reverse();
+    }
+    path.add_polygon(&corners);
+    path
+}
+
+/// The line of a floor, from its corner along two sides (px).
+fn line([corner, along, down]: [DVec2; 3], colour: Colour) -> Item {
+    let corners = [corner, corner + along, corner + along + down, corner + down];
+    Item::part("floor", [Item::fill(Path::polygon(&corners.map(point)), colour)])
+}
+
+/// A floor that fades out downwards.
+fn fading(sides: [DVec2; 3], colour: Colour) -> Item {
+    Item::part("ground", [soft(sides, 1, colour, |_, down| FADING * (1.0 - down).powi(2))])
+}
+
+/// The lower half of a soft disc.
+fn shadow(sides: [DVec2; 3], colour: Colour) -> Item {
+    let across = |x: f32| {
+        let share = ((1.0 - (2.0 * x - 1.0).abs()) / 0.45).clamp(0.0, 1.0);
+        share * share * (3.0 - 2.0 * share)
+    };
+    let columns = narrow(sides[1].length()).ceil().max(1.0) as u32;
+    Item::part("shadow", [soft(sides, columns, colour, |x, down| SHADOW * across(x) * (1.0 - down).powi(2))])
+}
+
+/// Pixels from a corner along two sides (px), with an opacity that depends on their place, from 0 to 1 along each.
+fn soft(sides: [DVec2; 3], columns: u32, [r, g, b]: Colour, opacity: impl Fn(f32, f32) -> f32) -> Item {
+    let place = sides.map(point);
+    let size = [columns, place[2].length().ceil().max(1.0) as u32];
+    let mut pixels = Vec::with_capacity(4 * (size[0] * size[1]) as usize);
+    for y in 0..size[1] {
+        for x in 0..size[0] {
+            let [u, v] = [(x as f32 + 0.5) / size[0] as f32, (y as f32 + 0.5) / size[1] as f32];
+            pixels.extend([r, g, b, (255.0 * opacity(u, v).clamp(0.0, 1.0)).round() as u8]);
+        }
+    }
+    Item::Image(Image { size, pixels, place })
 }
 
 /// A place near a given one (px), closer to the border of pixels, where a line is sharp.

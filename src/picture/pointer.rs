@@ -1,6 +1,6 @@
 //! Arrows in the direction of motion of obstacles and grips.
 
-use super::Mark;
+use super::Item;
 use super::arrows::arrow;
 use super::camera::Lens;
 use super::layout::{Rectangle, Scale};
@@ -39,7 +39,7 @@ impl Pointers<'_> {
     /// The arrow of an object at a point (m), from that point or, with `arriving`, to it. It grows with the square root
     /// of the speed, so that it fades gently. A resting object has none, and none begins outside of its room. It is
     /// shorter near the sides of the room.
-    pub(super) fn draw(&self, point: DVec3, going: Going, arriving: bool, gap: f64, marks: &mut Vec<Mark>) {
+    pub(super) fn draw(&self, point: DVec3, going: Going, arriving: bool, gap: f64, marks: &mut Vec<Item>) {
         let speed = going.velocity.length();
         let share = (speed / (FAST * going.greatest)).min(1.0);
         if !(share > 0.0 && speed.is_finite()) {

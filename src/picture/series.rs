@@ -1,10 +1,9 @@
 //! The time series of a diagnostic of one run, as a curve in a chart.
 
-use super::Curve;
+use super::Item;
 use super::axis::Axis;
 use super::caption::Writer;
-use super::chart::{Chart, filled};
-use super::narrow::narrow;
+use super::chart::Chart;
 use crate::colour::mixed;
 use crate::look::{LineStyle, Palette};
 use crate::runner::history::TimeSeries;
@@ -112,31 +111,29 @@ impl Series {
         let points = self.pixels(chart, [times, values]);
         let borders = [chart.top - chart.outside(), chart.bottom + chart.outside()];
         let thickness = chart.line;
-        let curve = |points: &[[f64; 2]], width: f64, dash: Vec<f32>| Curve {
-            points: points.iter().map(|point| point.map(narrow)).collect(),
-            width: narrow(width * thickness),
-            dash,
-            colour: self.style.colour,
-            alpha: 1.0,
+        let curve = |points: &[[f64; 2]], width: f64, dash: &[f64]| {
+            Item::curve(points, width * thickness, dash, self.style.colour)
         };
-        let dash: Vec<_> = self.style.dash.iter().map(|length| narrow(length * thickness)).collect();
+        let dash: Vec<_> = self.style.dash.iter().map(|length| length * thickness).collect();
         let dense = dense(&points, [DENSE, TURN].map(|length| length * thickness));
         for &[from, to] in &dense {
             if !self.is_count {
                 let inside: Vec<_> = points.iter().copied().filter(|&[x, _]| (from..=to).contains(&x)).collect();
                 for part in within(&inside, borders) {
-                    writer.curves.push(curve(&simplified(&part, EXACT), OWN, Vec::new()));
+                    writer.curves.push(curve(&simplified(&part, EXACT), OWN, &[]));
                 }
                 continue;
             }
             let colour = mixed(writer.palette.background, self.style.colour, BAND);
             for [left, right, high, low] in band(&points, [from, to], DENSE * thickness) {
                 let [high, low] = [high, low].map(|y| y.clamp(chart.top, chart.bottom));
-                writer.marks.push(filled([left, high.round(), right - left, (low - high).round().max(1.0)], colour));
+                writer
+                    .marks
+                    .push(Item::rectangle([left, high.round(), right - left, (low - high).round().max(1.0)], colour));
             }
         }
         for part in outside(&points, &dense).iter().flat_map(|part| within(part, borders)) {
-            writer.curves.push(curve(&simplified(&part, EXACT), OWN, dash.clone()));
+            writer.curves.push(curve(&simplified(&part, EXACT), OWN, &dash));
         }
         if let Some(time) = self.diverged {
             let to = chart.x(times, time) - ARM * thickness;
@@ -146,10 +143,10 @@ impl Series {
                 let up = if tip[1] < from[1] { -1.0 } else { 1.0 };
                 let [wing, back] = HEAD.map(|length| length * thickness);
                 let corner = |side: f64| [tip[0] + side * wing, tip[1] - up * back];
-                writer.curves.push(curve(&[corner(-1.0), tip, corner(1.0)], CROSS, Vec::new()));
-                let dots = DOTS.map(|length| narrow(length * thickness)).to_vec();
+                writer.curves.push(curve(&[corner(-1.0), tip, corner(1.0)], CROSS, &[]));
+                let dots = DOTS.map(|length| length * thickness);
                 let y = tip[1].clamp(chart.top, chart.bottom);
-                writer.curves.push(curve(&[[tip[0] + wing, y], [to, y]], DOT, dots));
+                writer.curves.push(curve(&[[tip[0] + wing, y], [to, y]], DOT, &dots));
             }
         }
         if let Some((time, &[_, last])) = self.diverged.zip(points.last()) {
@@ -157,7 +154,7 @@ impl Series {
             let arm = ARM * thickness;
             for slope in [-1.0, 1.0] {
                 let ends = [[x - arm, y - slope * arm], [x + arm, y + slope * arm]];
-                writer.curves.push(curve(&ends, CROSS, Vec::new()));
+                writer.curves.push(curve(&ends, CROSS, &[]));
             }
         }
     }

@@ -2,7 +2,8 @@
 //! hollow.
 
 use super::layout::Scale;
-use super::{Mark, MarkShape};
+use super::page::{Path, point};
+use super::{Colour, Item};
 use crate::look::Palette;
 use crate::sim::Body;
 use glam::DVec3;
@@ -84,7 +85,7 @@ impl Tally {
         scale: Scale,
         room: f64,
         corner: [f64; 2],
-        marks: &mut Vec<Mark>,
+        marks: &mut Vec<Item>,
     ) -> f64 {
         match self.squares(scale, room) {
             Some(lengths) => {
@@ -115,7 +116,7 @@ impl Tally {
         palette: &Palette,
         [side, gap]: [f64; 2],
         [left, bottom]: [f64; 2],
-        marks: &mut Vec<Mark>,
+        marks: &mut Vec<Item>,
     ) -> f64 {
         let (left, bottom) = (left.round(), bottom.round());
         let mut width: f64 = 0.0;
@@ -127,10 +128,8 @@ impl Tally {
                 if flat {
                     marks.extend(hollow([x, y, side, side], palette));
                 } else {
-                    let (shape, colour) =
-                        if over { (MarkShape::Struck, palette.alarm) } else { (MarkShape::Filled, palette.tally) };
-                    let square = Mark::upright([x, y, side, side], shape, colour);
-                    marks.push(Mark { second: palette.alarm_line, ..square });
+                    let square = [x, y, side, side];
+                    marks.push(if over { struck(square, palette) } else { Item::rectangle(square, palette.tally) });
                 }
                 width = width.max(x + side - left);
             }
@@ -145,7 +144,7 @@ impl Tally {
         scale: Scale,
         room: f64,
         [left, bottom]: [f64; 2],
-        marks: &mut Vec<Mark>,
+        marks: &mut Vec<Item>,
     ) -> f64 {
         if self.count == 0 {
             return 0.0;
@@ -159,7 +158,7 @@ impl Tally {
         });
         let flat = flat.min(width - over);
         let (left, top) = (left.round(), (bottom - (HEIGHT - BAR[1]) / 2.0 * scale.type_unit() - height).round());
-        let bar = |length, colour| Mark::upright([left, top, length, height], MarkShape::Filled, colour);
+        let bar = |length, colour: Colour| Item::rectangle([left, top, length, height], colour);
         marks.push(bar(width, palette.tally));
         if flat > 0.0 {
             marks.extend(hollow([left + over, top, flat, height], palette));
@@ -172,9 +171,19 @@ impl Tally {
 }
 
 /// A hollow rectangle, the sign of flat elements.
-pub(in crate::picture) fn hollow([left, top, width, height]: [f64; 4], palette: &Palette) -> [Mark; 2] {
+pub(in crate::picture) fn hollow([left, top, width, height]: [f64; 4], palette: &Palette) -> [Item; 2] {
     let rim = (RIM * height).round().max(1.0).min(width / 2.0);
     let inside = [left + rim, top + rim, width - 2.0 * rim, height - 2.0 * rim];
-    let filled = |rectangle, colour| Mark::upright(rectangle, MarkShape::Filled, colour);
-    [filled([left, top, width, height], palette.axis), filled(inside, palette.background)]
+    [Item::rectangle([left, top, width, height], palette.axis), Item::rectangle(inside, palette.background)]
+}
+
+/// A square with a rising diagonal, the sign of turned-over elements.
+pub(in crate::picture) fn struck(rectangle: [f64; 4], palette: &Palette) -> Item {
+    /// Half the width of the diagonal along the sides, relative to them.
+    const HALF: f64 = 0.127;
+    let [left, top, width, height] = rectangle;
+    let (x, y) = (HALF * width, HALF * height);
+    let line = [[width - x, 0.0], [width, 0.0], [width, y], [x, height], [0.0, height], [0.0, height - y]];
+    let path = Path::polygon(&line.map(|[x, y]| point([left + x, top + y].into())));
+    Item::part("struck", [Item::rectangle(rectangle, palette.alarm), Item::fill(path, palette.alarm_line)])
 }

@@ -7,10 +7,9 @@ use super::ends::Ends;
 use super::event::{self, Event};
 use super::flag::{self, Flag};
 use super::layout::{LEAST_CHART, Rectangle, Scale};
-use super::narrow::narrow;
 use super::strip::{SplitChart, Strip};
 use super::text::TextRun;
-use super::{Colour, Curve, Mark};
+use super::{Colour, Item};
 use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::{Diagnostic, Frame, Status};
@@ -36,8 +35,8 @@ pub(super) struct Timeline {
     /// Its place; `None` if it could not be read.
     parts: Option<SplitChart>,
     /// The parts that do not move.
-    marks: Vec<Mark>,
-    curves: Vec<Curve>,
+    marks: Vec<Item>,
+    curves: Vec<Item>,
     words: Vec<TextRun>,
 }
 
@@ -74,7 +73,7 @@ impl Timeline {
     /// Draws the chart with the present moment: a line behind the curves, and circles around the values, which hide
     /// nothing.
     pub(super) fn draw(&self, writer: &mut Writer<'_>, frame: &Frame) {
-        writer.marks.extend(&self.marks);
+        writer.marks.extend_from_slice(&self.marks);
         writer.words.extend_from_slice(&self.words);
         if let Some(parts) = &self.parts {
             let (chart, now) = parts.place(frame.time);
@@ -145,11 +144,11 @@ fn still(
 }
 
 /// A circle around a place (px).
-fn circle([x, y]: [f64; 2], thickness: f64, colour: Colour) -> Curve {
+fn circle([x, y]: [f64; 2], thickness: f64, colour: Colour) -> Item {
     let corner = |at: usize| {
         let (sine, cosine) = libm::sincos(std::f64::consts::TAU * at as f64 / CORNERS as f64);
-        [x + CIRCLE[0] * thickness * cosine, y + CIRCLE[0] * thickness * sine].map(narrow)
+        [x + CIRCLE[0] * thickness * cosine, y + CIRCLE[0] * thickness * sine]
     };
-    let points = (0..=CORNERS).map(corner).collect();
-    Curve { points, width: narrow(CIRCLE[1] * thickness), dash: Vec::new(), colour, alpha: 1.0 }
+    let points: Vec<_> = (0..=CORNERS).map(corner).collect();
+    Item::curve(&points, CIRCLE[1] * thickness, &[], colour)
 }

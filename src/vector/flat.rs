@@ -1,10 +1,11 @@
 //! Panels in the plane as paths.
 
-use super::drawing::{Image, Item, Paint, Path, Pen};
-use super::marks::{ends_of, winding};
 use crate::colour::{encoded, encoded_exactly, linear, luminance};
 use crate::picture::measures::*;
-use crate::picture::{Bead, Colour, Fading, Line, LineKind, Mesh, Palette, Panel, Picture, Second, Solid, Stroke};
+use crate::picture::{
+    Bead, Colour, Fading, Image, Item, Line, LineKind, Mesh, Paint, Palette, Panel, Path, Pen, Picture, Second, Solid,
+    Stroke, winding,
+};
 use glam::{Vec2, Vec3, Vec4Swizzles};
 
 /// Widths (px in the reference picture) and opacity of edges, contours and rims of obstacles.
@@ -26,14 +27,16 @@ struct PlanePanel<'a> {
 }
 
 /// Adds a panel in the plane to a page.
-pub(super) fn panel(picture: &Picture, panel: &Panel, items: &mut Vec<Item<'_>>) {
+pub(super) fn panel(picture: &Picture, panel: &Panel, items: &mut Vec<Item>) {
     let [left, top, width, height] = panel.region.map(|length| length as f32);
     if width < 1.0 || height < 1.0 {
         return;
     }
     let palette = if panel.greyed { picture.palette.greyed() } else { picture.palette };
     let flat = PlanePanel { picture, panel, palette };
-    items.push(Item::Clip(Path::rectangle(Vec2::new(left, top), Vec2::new(width, height))));
+    let inside = Path::rectangle(Vec2::new(left, top), Vec2::new(width, height));
+    let (outside, mut drawn) = (items, Vec::new());
+    let items = &mut drawn;
     // The first one lies in front.
     panel.obstacles.solids.iter().rev().for_each(|solid| flat.solid(solid, items));
     if let Some(fading) = panel.obstacles.fade {
@@ -48,7 +51,7 @@ pub(super) fn panel(picture: &Picture, panel: &Panel, items: &mut Vec<Item<'_>>)
     flat.lines(items);
     flat.strokes(items);
     panel.beads.iter().for_each(|bead| flat.bead(bead, items));
-    items.push(Item::Unclip);
+    outside.push(Item::Clip { path: inside, items: drawn });
 }
 
 impl PlanePanel<'_> {
@@ -73,7 +76,7 @@ impl PlanePanel<'_> {
     }
 
     /// An obstacle: its rim, then its inside.
-    fn solid(&self, solid: &Solid, items: &mut Vec<Item<'_>>) {
+    fn solid(&self, solid: &Solid, items: &mut Vec<Item>) {
         let triangles = self.triangles(&solid.mesh, |at| solid.mesh.vertices[at].hatch);
         let inside = |least: f32| path_of(triangles.iter().map(|triangle| part(triangle, least, f32::INFINITY)));
         if let Some(rim) = solid.rim {
@@ -87,12 +90,13 @@ impl PlanePanel<'_> {
 
     /// Fades obstacles out at the sides of their room, before the body is drawn: covers them with the background within
     /// the region (left, top, right and bottom, px).
-    fn fade(&self, Fading { room, distance, strength }: Fading, region: [f32; 4], items: &mut Vec<Item<'_>>) {
+    fn fade(&self, Fading { room, distance, strength }: Fading, region: [f32; 4], items: &mut Vec<Item>) {
         let background = self.picture.palette.background;
         let solids = &self.panel.obstacles.solids;
         let below = solids.first().map_or(background, |solid| solid.colour);
         let triangles = solids.iter().flat_map(|solid| self.triangles(&solid.mesh, |at| solid.mesh.vertices[at].hatch));
-        items.push(Item::Clip(path_of(triangles.map(|triangle| triangle.map(|(at, _)| at).to_vec()))));
+        let inside = path_of(triangles.map(|triangle| triangle.map(|(at, _)| at).to_vec()));
+        let mut covers = Vec::new();
         let [left, top, right, bottom] = region;
         let corner = [[left, top], [left, top], [right, top], [left, bottom]].map(Vec2::from);
         for side in 0..4 {
@@ -113,14 +117,14 @@ impl PlanePanel<'_> {
             };
             if strength[side] > 0.0 && length > 0 {
                 let (pixels, place) = ((0..length).flat_map(pixel).collect(), [corner[side], sides[0], sides[1]]);
-                items.push(Item::Image(Image { size: [length, 1], pixels, place }));
+                covers.push(Item::Image(Image { size: [length, 1], pixels, place }));
             }
         }
-        items.push(Item::Unclip);
+        items.push(Item::Clip { path: inside, items: covers });
     }
 
     /// The surface of elements, in the colour of their kind or in the colours of a field.
-    fn surface(&self, mesh: &Mesh, items: &mut Vec<Item<'_>>) {
+    fn surface(&self, mesh: &Mesh, items: &mut Vec<Item>) {
         if mesh.triangles.is_empty() {
             return;
         }
@@ -190,7 +194,7 @@ impl PlanePanel<'_> {
     }
 
     /// Flat elements: grey, unless a field colours them, with dots that are fixed to the body, in the room of the panel.
-    fn dots(&self, [left, top, width, height]: [f32; 4], items: &mut Vec<Item<'_>>) {
+    fn dots(&self, [left, top, width, height]: [f32; 4], items: &mut Vec<Item>) {
         let (mesh, sight) = (&self.panel.sound, &self.panel.sight);
         let is_flat = |triangle: &&[u32; 3]| mesh.vertices[triangle[0] as usize].hatch > 0.5;
         let triangles: Vec<_> = mesh.triangles.iter().filter(is_flat).copied().collect();
@@ -210,10 +214,8 @@ impl PlanePanel<'_> {
         let room = [Vec2::new(left, top), Vec2::new(left + width, top + height)];
         let inside = |at: Vec2| at.clamp(room[0], room[1]);
         // The rows of the box that the elements fill in the room: its corners, since rows are turned.
-        let (from, to) = ends_of(&flat)
-            .into_iter()
-            .map(inside)
-            .fold((room[1], room[0]), |(from, to), at| (from.min(at), to.max(at)));
+        let (from, to) =
+            flat.points().into_iter().map(inside).fold((room[1], room[0]), |(from, to), at| (from.min(at), to.max(at)));
         let corners = [from, Vec2::new(to.x, from.y), to, Vec2::new(from.x, to.y)];
         let points = corners.into_iter().map(|at| back.rotate(at - Vec2::from(sight.middle)) / apart);
         let (low, high) = points.fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
@@ -226,11 +228,11 @@ impl PlanePanel<'_> {
         }
         let colour = self.palette.edge;
         let paint = Paint { colour, alpha: self.alpha(DOT_ALPHA, colour, ground) };
-        items.extend([Item::Clip(flat), Item::Fill { path, paint }, Item::Unclip]);
+        items.push(Item::Clip { path: flat, items: vec![Item::Fill { path, paint }] });
     }
 
     /// The stripes on turned-over elements, fixed to the body.
-    fn hatch(&self, [left, top, width, height]: [f32; 4], items: &mut Vec<Item<'_>>) {
+    fn hatch(&self, [left, top, width, height]: [f32; 4], items: &mut Vec<Item>) {
         let (palette, sight) = (&self.palette, &self.panel.sight);
         // On the colours of a field, vermilion stands out more.
         let (colour, alpha) = match self.panel.turned_over.shades.is_empty() {
@@ -262,14 +264,13 @@ impl PlanePanel<'_> {
             let paint = Paint { colour, alpha: alpha * STRIPE * fine };
             items.push(Item::Fill { path: whole.clone(), paint });
         }
-        items.push(Item::Clip(whole));
         let pen = Pen { round: false, ..Pen::solid(STRIPE * period) };
-        items.push(Item::Stroke { path, pen, paint: Paint { colour, alpha: alpha * (1.0 - fine) } });
-        items.push(Item::Unclip);
+        let stripes = Item::Stroke { path, pen, paint: Paint { colour, alpha: alpha * (1.0 - fine) } };
+        items.push(Item::Clip { path: whole, items: vec![stripes] });
     }
 
     /// Edges and contours. Lines of one kind are one path, so that joints are even.
-    fn lines(&self, items: &mut Vec<Item<'_>>) {
+    fn lines(&self, items: &mut Vec<Item>) {
         let (palette, sight) = (&self.palette, &self.panel.sight);
         let share = ((sight.element - SMALLEST_ELEMENT) / (FADING_ELEMENT - SMALLEST_ELEMENT)).clamp(0.0, 1.0);
         let strength = (sight.element / SMALL_ELEMENT).min(1.0) * share * share * (3.0 - 2.0 * share);
@@ -301,7 +302,7 @@ impl PlanePanel<'_> {
     }
 
     /// Coloured lines.
-    fn strokes(&self, items: &mut Vec<Item<'_>>) {
+    fn strokes(&self, items: &mut Vec<Item>) {
         self.panel.strokes.iter().for_each(|stroke| self.stroke(stroke, stroke.colours, items));
         let on_body = |stroke: &&Stroke| matches!(stroke.second, Second::OnBody(_));
         if !self.panel.strokes.iter().any(|stroke| on_body(&stroke)) {
@@ -309,18 +310,18 @@ impl PlanePanel<'_> {
         }
         for mesh in [&self.panel.sound, &self.panel.turned_over] {
             if !mesh.triangles.is_empty() {
-                items.push(Item::Clip(self.whole(mesh)));
+                let mut seen = Vec::new();
                 for stroke in self.panel.strokes.iter().filter(on_body) {
                     if let Second::OnBody(colour) = stroke.second {
-                        self.stroke(stroke, [colour; 2], items);
+                        self.stroke(stroke, [colour; 2], &mut seen);
                     }
                 }
-                items.push(Item::Unclip);
+                items.push(Item::Clip { path: self.whole(mesh), items: seen });
             }
         }
     }
 
-    fn stroke(&self, stroke: &Stroke, [first, last]: [Colour; 2], items: &mut Vec<Item<'_>>) {
+    fn stroke(&self, stroke: &Stroke, [first, last]: [Colour; 2], items: &mut Vec<Item>) {
         let [from, to] = stroke.ends.map(|end| self.pixel(end));
         let mut width = stroke.width;
         // Pieces of one line fit together only with straight ends.
@@ -344,7 +345,7 @@ impl PlanePanel<'_> {
         }
     }
 
-    fn bead(&self, bead: &Bead, items: &mut Vec<Item<'_>>) {
+    fn bead(&self, bead: &Bead, items: &mut Vec<Item>) {
         let at = self.pixel(bead.at);
         items.push(Item::Fill { path: Path::circle(at, bead.radius), paint: bead.rim.into() });
         let radius = (1.0 - BEAD_RIM) * bead.radius;

@@ -1,7 +1,7 @@
 //! The fonts of a page, reduced to the glyphs that it uses.
 
 use super::VectorError;
-use crate::picture::{Fonts, TextRun};
+use crate::picture::{Fonts, Picture};
 use std::collections::BTreeMap;
 use subsetter::GlyphRemapper;
 
@@ -22,14 +22,14 @@ pub(super) struct Subset<'a> {
 }
 
 /// The parts of all fonts that lines of text need, by index.
-pub(super) fn subsets<'a>(fonts: &'a Fonts, words: &[TextRun]) -> Result<Vec<Subset<'a>>, VectorError> {
+pub(super) fn subsets(picture: &Picture) -> Result<Vec<Subset<'_>>, VectorError> {
     let mut used: BTreeMap<u8, BTreeMap<u16, Vec<char>>> = BTreeMap::new();
-    for run in words {
+    for run in picture.words() {
         for (glyph, character) in run.glyphs.iter().zip(run.text.chars()) {
             used.entry(glyph.face).or_default().entry(glyph.id).or_default().push(character);
         }
     }
-    used.into_iter().map(|(face, used)| Subset::new(fonts, face, &used)).collect()
+    used.into_iter().map(|(face, used)| Subset::new(&picture.fonts, face, &used)).collect()
 }
 
 impl<'a> Subset<'a> {

@@ -7,16 +7,13 @@
 //!
 //! Nothing here needs a graphics device. The same picture gives the same bytes.
 
-mod drawing;
 mod flat;
 mod font;
-mod marks;
 mod pdf;
 mod pixels;
 mod svg;
 
-use crate::picture::{Face, Panel, Picture, Rectangle, TextRun};
-use drawing::{Image, Item, Path, Pen};
+use crate::picture::{Face, Image, Item, Panel, Path, Pen, Picture, Rectangle, Step, TextRun};
 use glam::Vec2;
 pub(crate) use pixels::Painter;
 
@@ -104,7 +101,7 @@ pub fn bodies(picture: &Picture, size_mm: Option<[f64; 2]>) -> Option<Picture> {
     }
     let mut bodies = picture.clone();
     bodies.panels.retain(lit);
-    (bodies.under, bodies.marks, bodies.curves, bodies.words) = Default::default();
+    (bodies.under, bodies.above) = Default::default();
     let times = fineness(picture, size_mm);
     let [_, _, width, height] = enlarged([0, 0, picture.size[0], picture.size[1]], times);
     bodies.size = [width, height];
@@ -129,7 +126,7 @@ pub fn bodies(picture: &Picture, size_mm: Option<[f64; 2]>) -> Option<Picture> {
 /// # Errors
 /// A font that cannot be embedded.
 pub fn write(page: &Page<'_>, format: Format) -> Result<Vec<u8>, VectorError> {
-    let subsets = font::subsets(&page.picture.fonts, &page.picture.words)?;
+    let subsets = font::subsets(page.picture)?;
     let items = items(page);
     Ok(match format {
         Format::Svg => svg::file(page, &items, &subsets),
@@ -138,15 +135,11 @@ pub fn write(page: &Page<'_>, format: Format) -> Result<Vec<u8>, VectorError> {
 }
 
 /// The items of a page, in order.
-fn items<'a>(page: &Page<'a>) -> Vec<Item<'a>> {
+fn items(page: &Page<'_>) -> Vec<Item> {
     let picture = page.picture;
-    let mut items = Vec::new();
     let whole = Path::rectangle(Vec2::ZERO, picture.size.map(|length| length as f32).into());
-    items.push(Item::Fill { path: whole, paint: picture.palette.background.into() });
-    let add = |marks: &[crate::picture::Mark], items: &mut Vec<_>| {
-        marks.iter().enumerate().for_each(|(at, mark)| marks::mark(mark, marks.get(at + 1), items));
-    };
-    add(&picture.under, &mut items);
+    let mut items = vec![Item::fill(whole, picture.palette.background)];
+    items.extend_from_slice(&picture.under);
     for panel in &picture.panels {
         match (panel.sight.flat, page.bodies) {
             (true, _) => flat::panel(picture, panel, &mut items),
@@ -154,23 +147,21 @@ fn items<'a>(page: &Page<'a>) -> Vec<Item<'a>> {
             (false, None) => {}
         }
     }
-    add(&picture.marks, &mut items);
-    picture.curves.iter().for_each(|curve| marks::curve(curve, &mut items));
-    for run in &picture.words {
-        if run.has_halo {
-            let pen = Pen::solid(2.0 * HALO * run.size);
-            items.push(Item::Stroke { path: outlines(picture, run), pen, paint: picture.palette.background.into() });
-        }
-        items.push(Item::Text(run));
-    }
+    items.extend_from_slice(&picture.above);
     items
+}
+
+/// The halo of a line of text, if it has one.
+fn halo(picture: &Picture, run: &TextRun) -> Option<Item> {
+    let pen = Pen::solid(2.0 * HALO * run.size);
+    run.has_halo.then(|| Item::stroke(outlines(picture, run), pen, picture.palette.background))
 }
 
 /// Gives a painter the flat items of a picture. Lit bodies below them, if there are any, come with their ground.
 pub(crate) fn give(painter: &mut Painter, picture: &Picture) {
     let items = items(&Page::new(picture));
     let skip = usize::from(picture.panels.iter().any(|panel| !panel.sight.flat));
-    painter.take(&items[skip..], &picture.fonts);
+    painter.take(&items[skip..], picture);
 }
 
 /// The part of a lit panel that is not empty.
@@ -233,27 +224,27 @@ impl Outline<'_> {
 impl ttf_parser::OutlineBuilder for Outline<'_> {
     fn move_to(&mut self, x: f32, y: f32) {
         let to = self.at(x, y);
-        self.path.0.push(drawing::Step::Move(to));
+        self.path.0.push(Step::Move(to));
     }
 
     fn line_to(&mut self, x: f32, y: f32) {
         let to = self.at(x, y);
-        self.path.0.push(drawing::Step::Line(to));
+        self.path.0.push(Step::Line(to));
     }
 
     fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
         let from = self.last;
         let [control, to] = [[x1, y1], [x, y]].map(|[x, y]| self.at(x, y));
         let cubic = [from.lerp(control, 2.0 / 3.0), to.lerp(control, 2.0 / 3.0), to];
-        self.path.0.push(drawing::Step::Cubic(cubic));
+        self.path.0.push(Step::Cubic(cubic));
     }
 
     fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
         let points = [[x1, y1], [x2, y2], [x, y]].map(|[x, y]| self.at(x, y));
-        self.path.0.push(drawing::Step::Cubic(points));
+        self.path.0.push(Step::Cubic(points));
     }
 
     fn close(&mut self) {
-        self.path.0.push(drawing::Step::Close);
+        self.path.0.push(Step::Close);
     }
 }

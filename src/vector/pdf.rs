@@ -1,9 +1,8 @@
 //! A page as PDF 1.7, with its fonts and images inside.
 
 use super::Page;
-use super::drawing::{Image, Item, Paint, Path, Pen, Step};
 use super::font::Subset;
-use crate::picture::{Colour, TextRun};
+use crate::picture::{Colour, Image, Item, Paint, Path, Pen, Picture, Step, TextRun};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use glam::Vec2;
@@ -18,7 +17,7 @@ const POINTS: f64 = 72.0 / 25.4;
 /// The encoding: characters are numbers of glyphs.
 const IDENTITY: SystemInfo<'static> = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 
-pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) -> Vec<u8> {
+pub(super) fn file(page: &Page<'_>, items: &[Item], subsets: &[Subset<'_>]) -> Vec<u8> {
     let [width, height] = match page.size_mm {
         Some(lengths) => lengths.map(|length| (length * POINTS) as f32),
         None => page.picture.size.map(|length| 0.75 * length as f32),
@@ -27,6 +26,7 @@ pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) 
         pdf: Pdf::new(),
         next: Ref::new(1),
         content: Content::new(),
+        picture: page.picture,
         subsets,
         alphas: Vec::new(),
         images: Vec::new(),
@@ -81,6 +81,7 @@ struct Writer<'a> {
     pdf: Pdf,
     next: Ref,
     content: Content,
+    picture: &'a Picture,
     subsets: &'a [Subset<'a>],
     /// The opacities in use, in thousandths.
     alphas: Vec<u16>,
@@ -91,7 +92,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    fn item(&mut self, item: &Item<'_>) {
+    fn item(&mut self, item: &Item) {
         match item {
             Item::Fill { path, paint } => {
                 if !path.is_empty() {
@@ -104,18 +105,21 @@ impl Writer<'_> {
                 self.set(1, *paint);
                 self.stroke(path, pen);
             }
-            Item::Blend { path, ends, colours } => self.blend(path, *ends, *colours),
+            Item::Blend { path, ends, colours } => self.blend(path, *ends, colours),
             Item::Image(image) => self.image(image),
-            Item::Text(run) => self.run(run),
-            Item::Clip(path) => {
+            Item::Text(run) => {
+                super::halo(self.picture, run).iter().for_each(|halo| self.item(halo));
+                self.run(run);
+            }
+            Item::Clip { path, items } => {
                 self.content.save_state();
                 self.path(path);
                 self.content.clip_nonzero().end_path();
-            }
-            Item::Unclip => {
+                items.iter().for_each(|item| self.item(item));
                 self.content.restore_state();
                 self.paint = [None; 2];
             }
+            Item::Part { items, .. } => items.iter().for_each(|item| self.item(item)),
         }
     }
 
@@ -162,10 +166,10 @@ impl Writer<'_> {
         self.content.stroke();
     }
 
-    fn blend(&mut self, path: &Path, ends: [Vec2; 2], colours: [Colour; 2]) {
+    fn blend(&mut self, path: &Path, ends: [Vec2; 2], colours: &[Colour]) {
         let [function, shading] = [self.next.bump(), self.next.bump()];
-        let mut between = self.pdf.exponential_function(function);
-        between.domain([0.0, 1.0]).c0(light(colours[0])).c1(light(colours[1])).n(1.0);
+        let mut between = self.pdf.sampled_function(function, colours.as_flattened());
+        between.domain([0.0, 1.0]).range([0.0, 1.0].repeat(3)).size([colours.len() as i32]).bits_per_sample(8);
         between.finish();
         let mut axial = self.pdf.function_shading(shading);
         axial.shading_type(FunctionShadingType::Axial).color_space().device_rgb();

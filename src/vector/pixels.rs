@@ -1,8 +1,7 @@
 //! A page as pixels. Colours blend as bytes (sRGB). The same page gives the same bytes on every x86-64 processor with
 //! the same C library: the painter is held to 128-bit vectors, because wider ones round some bytes differently.
 
-use super::drawing::{Image, Item, Paint, Path, Pen, Step};
-use crate::picture::{Colour, Fonts, TextRun};
+use crate::picture::{Image, Item, Paint, Path, Pen, Picture, Step, TextRun};
 use glam::Vec2;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -41,9 +40,9 @@ impl Painter {
     }
 
     /// Takes the items of a page, in place of those of the last one.
-    pub(super) fn take(&mut self, items: &[Item<'_>], fonts: &Fonts) {
+    pub(super) fn take(&mut self, items: &[Item], picture: &Picture) {
         self.context.reset();
-        items.iter().for_each(|item| self.item(item, fonts));
+        items.iter().for_each(|item| self.item(item, picture));
     }
 
     /// Paints the items over pixels: red, green, blue and full opacity of each, in rows from the top left.
@@ -55,7 +54,7 @@ impl Painter {
         self.context.render_with(target, &mut self.resources, settings);
     }
 
-    fn item(&mut self, item: &Item<'_>, fonts: &Fonts) {
+    fn item(&mut self, item: &Item, picture: &Picture) {
         match item {
             Item::Fill { path, paint } => {
                 self.context.set_paint(colour(*paint));
@@ -68,12 +67,13 @@ impl Painter {
             }
             Item::Blend { path, ends, colours } => {
                 let [start, end] = ends.map(point);
-                let stop = |(at, colour): (f32, Colour)| {
-                    let [r, g, b] = colour;
-                    let colour: AlphaColor<Srgb> = Rgba8 { r, g, b, a: u8::MAX }.into();
-                    ColorStop { offset: at, color: DynamicColor::from_alpha_color(colour) }
-                };
-                let stops = [(0.0, colours[0]), (1.0, colours[1])].map(stop);
+                let stops: Vec<_> = (0..)
+                    .zip(colours)
+                    .map(|(at, &one)| ColorStop {
+                        offset: at as f32 / (colours.len() - 1) as f32,
+                        color: DynamicColor::from_alpha_color(colour(one.into())),
+                    })
+                    .collect();
                 self.context.set_paint(Gradient {
                     kind: LinearGradientPosition { start, end }.into(),
                     extend: Extend::Pad,
@@ -83,9 +83,16 @@ impl Painter {
                 self.context.fill_path(&outline(path));
             }
             Item::Image(image) => self.image(image),
-            Item::Text(run) => self.text(run, fonts),
-            Item::Clip(path) => self.context.push_clip_path(&outline(path)),
-            Item::Unclip => self.context.pop_clip(),
+            Item::Text(run) => {
+                super::halo(picture, run).iter().for_each(|halo| self.item(halo, picture));
+                self.text(run, &picture.fonts);
+            }
+            Item::Clip { path, items } => {
+                self.context.push_clip_path(&outline(path));
+                items.iter().for_each(|item| self.item(item, picture));
+                self.context.pop_clip();
+            }
+            Item::Part { items, .. } => items.iter().for_each(|item| self.item(item, picture)),
         }
     }
 
@@ -114,7 +121,7 @@ impl Painter {
     }
 
     /// A line of text. Baselines on whole pixels make all lines equally sharp.
-    fn text(&mut self, run: &TextRun, fonts: &Fonts) {
+    fn text(&mut self, run: &TextRun, fonts: &crate::picture::Fonts) {
         let mut path = BezPath::new();
         for glyph in &run.glyphs {
             let face = fonts.face(glyph.face);

@@ -1,19 +1,18 @@
 //! A page as SVG 1.1, with its fonts and images inside.
 
 use super::Page;
-use super::drawing::{Image, Item, Paint, Path, Pen, Step};
 use super::font::Subset;
 use crate::colour::written;
 use crate::output::{Compression, encode};
-use crate::picture::{Glyph, TextRun, Weight};
+use crate::picture::{Colour, Glyph, Image, Item, Paint, Path, Pen, Picture, Step, TextRun, Weight};
 use crate::reading::words::escaped;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::Vec2;
 use std::fmt::Write;
 
-pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) -> Vec<u8> {
-    let mut svg = Svg { text: String::new(), subsets, names: 0 };
+pub(super) fn file(page: &Page<'_>, items: &[Item], subsets: &[Subset<'_>]) -> Vec<u8> {
+    let mut svg = Svg { text: String::new(), picture: page.picture, subsets, names: 0 };
     svg.head(page);
     items.iter().for_each(|item| svg.item(item));
     svg.text += "</svg>\n";
@@ -22,6 +21,7 @@ pub(super) fn file(page: &Page<'_>, items: &[Item<'_>], subsets: &[Subset<'_>]) 
 
 struct Svg<'a> {
     text: String,
+    picture: &'a Picture,
     subsets: &'a [Subset<'a>],
     /// The number of named clips and blends.
     names: usize,
@@ -61,7 +61,7 @@ impl Svg<'_> {
         self.text += "text{white-space:pre;font-kerning:none;font-variant-ligatures:none}\n</style>\n";
     }
 
-    fn item(&mut self, item: &Item<'_>) {
+    fn item(&mut self, item: &Item) {
         match item {
             Item::Fill { path, paint } => {
                 let (data, paint) = (data(path), fill(*paint));
@@ -71,29 +71,37 @@ impl Svg<'_> {
                 let (data, pen) = (data(path), stroke(pen, *paint));
                 self.add(format_args!("<path d=\"{data}\" fill=\"none\"{pen}/>\n"));
             }
-            Item::Blend { path, ends, colours } => self.blend(path, *ends, colours.map(written)),
+            Item::Blend { path, ends, colours } => self.blend(path, *ends, colours),
             Item::Image(image) => self.image(image),
-            Item::Text(run) => self.run(run),
-            Item::Clip(path) => {
+            Item::Text(run) => {
+                super::halo(self.picture, run).iter().for_each(|halo| self.item(halo));
+                self.run(run);
+            }
+            Item::Clip { path, items } => {
                 let (name, data) = (self.names, data(path));
                 self.names += 1;
                 self.add(format_args!(
                     "<clipPath id=\"c{name}\"><path d=\"{data}\"/></clipPath>\n<g clip-path=\"url(#c{name})\">\n"
                 ));
+                items.iter().for_each(|item| self.item(item));
+                self.text += "</g>\n";
             }
-            Item::Unclip => self.text += "</g>\n",
+            Item::Part { items, .. } => items.iter().for_each(|item| self.item(item)),
         }
     }
 
-    fn blend(&mut self, path: &Path, ends: [Vec2; 2], [first, last]: [String; 2]) {
+    fn blend(&mut self, path: &Path, ends: [Vec2; 2], colours: &[Colour]) {
         let (name, data) = (self.names, data(path));
         self.names += 1;
         let [x1, y1, x2, y2] = [ends[0].x, ends[0].y, ends[1].x, ends[1].y].map(number);
         self.add(format_args!(
-            "<linearGradient id=\"b{name}\" gradientUnits=\"userSpaceOnUse\" x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\">\
-             <stop stop-color=\"{first}\"/><stop offset=\"1\" stop-color=\"{last}\"/></linearGradient>\
-             <path d=\"{data}\" fill=\"url(#b{name})\"/>\n"
+            "<linearGradient id=\"b{name}\" gradientUnits=\"userSpaceOnUse\" x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\">"
         ));
+        for (at, &colour) in colours.iter().enumerate() {
+            let (place, colour) = (at as f64 / (colours.len() - 1) as f64, written(colour));
+            self.add(format_args!("<stop offset=\"{place:.5}\" stop-color=\"{colour}\"/>"));
+        }
+        self.add(format_args!("</linearGradient><path d=\"{data}\" fill=\"url(#b{name})\"/>\n"));
     }
 
     fn image(&mut self, image: &Image) {

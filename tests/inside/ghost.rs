@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::look::View;
-use crate::picture::Framing;
+use crate::picture::{Framing, Paint, Pen};
 use crate::sim::Dimension;
 use glam::Vec2;
 
@@ -27,6 +27,15 @@ fn lens(dimension: Dimension) -> Lens {
 fn outline(lens: &Lens, position: &[DVec3], triangles: &[[u32; 3]], room: Rectangle) -> Vec<Vec<DVec2>> {
     let nodes: Vec<u32> = (0..position.len() as u32).collect();
     Ghost { lens, position, nodes: &nodes, triangles, bars: &[], room }.outline()
+}
+
+/// The points, the pen and the paint of lines.
+fn lines(items: &[Item]) -> Vec<(Vec<Vec2>, Pen, Paint)> {
+    let one = |item: &Item| match item {
+        Item::Stroke { path, pen, paint } => (path.points(), pen.clone(), *paint),
+        other => panic!("{other:?}"),
+    };
+    items.iter().map(one).collect()
 }
 
 /// A cube with outward triangles.
@@ -60,13 +69,14 @@ fn an_arrow_points_to_what_lies_outside() {
     let ghost = Ghost { lens: &lens, position: &position, nodes: &nodes, triangles: &triangles, bars: &[], room: ROOM };
     let mut curves = Vec::new();
     ghost.draw(Scale::REFERENCE, [0; 3], [255; 3], &mut curves);
+    let curves = lines(&curves);
     // A shaft and a head, each with a halo, at the upper border.
-    assert_eq!(curves.iter().map(|curve| curve.points.len()).collect::<Vec<_>>(), [2, 3, 2, 3]);
-    let [tail, tip] = [0, 1].map(|at| curves[0].points[at]);
-    assert_eq!((tip, tip[1] < tail[1], curves[0].dash.len()), (curves[1].points[1], true, 0));
-    assert!((tip[1] - narrow(POINTER[2])).abs() < 1e-3, "{tip:?}");
+    assert_eq!(curves.iter().map(|curve| curve.0.len()).collect::<Vec<_>>(), [2, 3, 2, 3]);
+    let [tail, tip] = [0, 1].map(|at| curves[0].0[at]);
+    assert_eq!((tip, tip.y < tail.y, curves[0].1.dash.len()), (curves[1].0[1], true, 0));
+    assert!((tip.y - POINTER[2] as f32).abs() < 1e-3, "{tip:?}");
     // Both wings mirror each other about the shaft.
-    let [tail, tip, wing, other] = [tail, tip, curves[1].points[0], curves[1].points[2]].map(Vec2::from);
+    let [tail, tip, wing, other] = [tail, tip, curves[1].0[0], curves[1].0[2]];
     let [shaft, one, other] = [tail, wing, other].map(|end| end - tip);
     let mirrored = 2.0 * one.project_onto(shaft) - one;
     assert!(other.distance(mirrored) < 1e-3 && one.perp_dot(shaft).abs() > 1.0, "{one} {other}");
@@ -83,19 +93,20 @@ fn a_ghost_fades_where_it_leaves() {
         let ghost = Ghost { lens, position, nodes, triangles, bars: &[], room };
         let mut curves = Vec::new();
         ghost.draw(Scale::REFERENCE, [0; 3], [255; 3], &mut curves);
-        curves.retain(|curve| curve.colour == [0; 3]);
+        let mut curves = lines(&curves);
+        curves.retain(|(_, _, paint)| paint.colour == [0; 3]);
         curves
     };
     let whole = drawn(ROOM);
-    assert!(whole.len() == 1 && !whole[0].dash.is_empty() && whole[0].alpha == 1.0);
-    let xs = || whole[0].points.iter().map(|at| at[0]);
+    assert!(whole.len() == 1 && !whole[0].1.dash.is_empty() && whole[0].2.alpha == 1.0);
+    let xs = || whole[0].0.iter().map(|at| at.x);
     let middle = xs().fold(0.0, |sum: f32, x| sum + x) / xs().count() as f32;
     // In a room that ends within the body, each dash is separate, and fainter towards the side.
     let cut = drawn([0, 0, middle as u32 + 30, 640]);
-    let right = |curve: &Curve| curve.points.iter().fold(0.0, |most: f32, at| most.max(at[0]));
+    let right = |(points, ..): &(Vec<Vec2>, Pen, Paint)| points.iter().fold(0.0, |most: f32, at| most.max(at.x));
     let last = cut.iter().max_by(|a, b| right(a).total_cmp(&right(b))).unwrap();
-    assert!(last.dash.is_empty() && last.alpha < 0.2, "{last:?}");
-    assert!(cut.iter().any(|curve| curve.alpha == 1.0));
+    assert!(last.1.dash.is_empty() && last.2.alpha < 0.2, "{last:?}");
+    assert!(cut.iter().any(|(_, _, paint)| paint.alpha == 1.0));
 }
 
 #[test]

@@ -2,7 +2,8 @@
 //! is needed.
 
 use super::compose;
-use localshape::picture::{Composer, Panel, Picture};
+use super::listed::{Composer, Listed};
+use localshape::picture::Panel;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
@@ -33,7 +34,7 @@ fn asks_for_one_scale(path: &Path) -> bool {
 }
 
 /// A composer that knows the whole course, and frames of the scene at an interval.
-fn film(scene: &Scene, every: u64) -> Vec<(u64, Picture)> {
+fn film(scene: &Scene, every: u64) -> Vec<(u64, Listed)> {
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let composer = Composer::new(scene, &History::new(scene, &runs));
     let mut runner = Runner::new(scene, &runs);

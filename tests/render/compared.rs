@@ -1,8 +1,9 @@
 //! Ghosts and paths of bodies.
 
+use super::listed::{Composer, Curve, Listed, compose_figure};
 use super::{fig4b, unknown};
 use localshape::look::{Ghost, Style, Theme, Traced};
-use localshape::picture::{Composer, Curve, Panel, Picture};
+use localshape::picture::Panel;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::runner::moments::Moments;
@@ -11,7 +12,7 @@ use localshape::scene::{Limits, Scene};
 use localshape::sim::Frame;
 
 /// The dashed curves of a colour.
-fn outlines(picture: &Picture, colour: [u8; 3]) -> Vec<&Curve> {
+fn outlines(picture: &Listed, colour: [u8; 3]) -> Vec<&Curve> {
     let is_dashed = |curve: &&Curve| curve.colour == colour && curve.dash.len() == 2 && curve.points.len() > 2;
     picture.curves.iter().filter(is_dashed).collect()
 }
@@ -79,7 +80,7 @@ fn sheets_have_ghosts_too() {
     let moments = Moments::new(&figure);
     let other = moments.others[0][1].as_ref().expect("the ghost's run");
     assert_eq!((other.run, other.snapshot.time), (0, moments.cells[0][1].snapshot.time));
-    let picture = localshape::picture::compose_figure(&figure, &moments).expect("there is room");
+    let picture = compose_figure(&figure, &moments).expect("there is room");
     let colour = figure.scenes()[0].runs[0].line(&picture.palette).colour;
     for panel in &picture.panels {
         assert!(outlines(&picture, colour).iter().any(|curve| inside(panel.viewport, curve.points[0])));
@@ -154,7 +155,7 @@ fn sheets_have_paths() {
     let moments = Moments::new(&figure);
     let ends = moments.histories[0].series.iter().map(|series| *series.times.last().expect("a start"));
     assert!(ends.into_iter().all(|end| (0.04..0.06).contains(&end)), "paths end with the last cell");
-    let picture = localshape::picture::compose_figure(&figure, &moments).expect("there is room");
+    let picture = compose_figure(&figure, &moments).expect("there is room");
     for (at, panel) in picture.panels.iter().enumerate() {
         let colour = figure.scenes()[0].runs[at / 2].line(&picture.palette).colour;
         let here = |curve: &&Curve| curve.colour == colour && inside(panel.viewport, curve.points[0]);
@@ -192,7 +193,7 @@ fn what_finds_no_room_is_known() {
     let told = localshape::picture::left_out(&narrow);
     assert!(told.iter().any(|text| text == "the scale bar is left out"), "{told:?}");
     let title =
-        |picture: &Picture| picture.words.iter().filter(|run| run.size > 28.0).map(|run| run.text.clone()).collect();
+        |picture: &Listed| picture.words.iter().filter(|run| run.size > 28.0).map(|run| run.text.clone()).collect();
     let lines: Vec<String> = title(&unknown(&scene).compose(&Runner::new(&scene, &[0, 1]).frame(0)));
     assert!(lines.last().is_some_and(|line| line.ends_with('…')), "{lines:?}");
 }

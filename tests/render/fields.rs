@@ -1,9 +1,10 @@
 //! Fields, springs, nodes, arrows and the arrangement of panels, tested by the numbers in the picture.
 
+use super::listed::{Listed, Mark};
 use super::{compose, fig4b, gpu, parse, renderer};
 use localshape::colour::{Vision, difference, oklab};
 use localshape::look::{ColourMap, ColourScale, EdgeStyle, Style, Theme, Visible};
-use localshape::picture::{Mark, MarkShape, Mesh, Picture, SHADES, Second};
+use localshape::picture::{Mesh, SHADES, Second};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
 use localshape::sim::{Divergence, Field, Frame, Status};
@@ -40,7 +41,7 @@ fn plane(view: &str) -> (Scene, Frame) {
     (scene, frame)
 }
 
-fn marks(picture: &Picture, shape: MarkShape) -> Vec<Mark> {
+fn marks(picture: &Listed, shape: &str) -> Vec<Mark> {
     picture.marks.iter().copied().filter(|mark| mark.shape == shape && mark.opacity == 255).collect()
 }
 
@@ -53,7 +54,7 @@ fn ends(arrow: &Mark) -> [glam::Vec2; 2] {
 }
 
 /// The pixel of a point in a panel's coordinates.
-fn pixel(picture: &Picture, panel: usize, point: glam::Vec3) -> glam::Vec2 {
+fn pixel(picture: &Listed, panel: usize, point: glam::Vec3) -> glam::Vec2 {
     let panel = &picture.panels[panel];
     let [left, top, width, height] = panel.viewport.map(|length| length as f32);
     let at = panel.sight.clip * point.extend(1.0);
@@ -125,7 +126,7 @@ fn odd_values_are_drawn_like_any_others() {
 fn nothing_of_it_is_there_unless_it_is_asked_for() {
     let (scene, frame) = fig4b(4);
     let picture = compose(&scene, &frame);
-    assert!(picture.ramp.is_empty() && marks(&picture, MarkShape::Arrow).is_empty());
+    assert!(picture.ramp.is_empty() && marks(&picture, "arrow").is_empty());
     for panel in &picture.panels {
         assert!(panel.strokes.is_empty() && panel.beads.is_empty() && panel.sound.shades.is_empty());
         assert_eq!(panel.viewport[3], 720);
@@ -138,7 +139,7 @@ fn the_bar_has_round_numbers_under_its_own_colours() {
     for theme in [Theme::Light, Theme::Dark] {
         scene.view.look = Style::of(theme);
         let picture = compose(&scene, &frame);
-        let bar = marks(&picture, MarkShape::Blend);
+        let bar = marks(&picture, "colours");
         assert_eq!(bar.len(), SHADES - 1);
         assert_eq!([bar[0].colour, bar[SHADES - 2].second], [picture.ramp[0], picture.ramp[SHADES - 1]]);
         assert!(bar.windows(2).all(|two| two[0].second == two[1].colour));
@@ -156,7 +157,7 @@ fn the_bar_has_round_numbers_under_its_own_colours() {
 fn a_point_says_that_values_lie_beyond_the_scale() {
     for (range, points) in [([0.0, 1e9], 0), ([0.0, 1e-3], 1), ([5.0, 1e9], 1), ([5.0, 6.0], 2)] {
         let (scene, frame) = with_field(Field::Speed, range, 4);
-        let drawn = marks(&compose(&scene, &frame), MarkShape::Point);
+        let drawn = marks(&compose(&scene, &frame), "point");
         // Each node has an outline.
         assert_eq!(drawn.len(), 2 * points, "{range:?}");
     }
@@ -213,7 +214,7 @@ fn many_nodes_are_drawn_when_asked_for() {
     for (view, expected) in [("", 0), ("show = ['surfaces', 'nodes']", 21 * 21)] {
         let scene = parse(&text(view));
         let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
-        let discs = marks(&picture, MarkShape::Node);
+        let discs = marks(&picture, "node");
         assert_eq!(discs.len(), expected);
         assert!(discs.iter().all(|disc| disc.rectangle[2] < 8.0), "small ones");
     }
@@ -227,7 +228,7 @@ fn arrows_end_at_their_nodes() {
     let (flat, flat_frame) = plane("show = ['surfaces', 'displacements']");
     for (scene, frame, least) in [(&scene, &frame, 40), (&flat, &flat_frame, 4)] {
         let picture = compose(scene, frame);
-        let arrows = marks(&picture, MarkShape::Arrow);
+        let arrows = marks(&picture, "arrow");
         let in_panels: Vec<_> = arrows.iter().filter(|arrow| arrow.colour != picture.palette.text).collect();
         assert!(in_panels.len() >= least, "{}", in_panels.len());
         assert_eq!(arrows.len(), in_panels.len() + 1, "one key");
@@ -255,7 +256,7 @@ fn longer_arrows_begin_at_the_same_places() {
     let (mut scene, frame) = plane("show = ['surfaces', 'displacements']");
     let lengths = |scene: &Scene| {
         let picture = compose(scene, &frame);
-        let arrows: Vec<_> = marks(&picture, MarkShape::Arrow).iter().map(ends).collect();
+        let arrows: Vec<_> = marks(&picture, "arrow").iter().map(ends).collect();
         arrows
     };
     let once = lengths(&scene);
@@ -275,7 +276,7 @@ fn the_key_arrow_is_as_long_as_it_says() {
     for index in [0, 4, 40] {
         let frame = Runner::new(&scene, &[0, 1]).frame(index);
         let picture = compose(&scene, &frame);
-        let arrows = marks(&picture, MarkShape::Arrow);
+        let arrows = marks(&picture, "arrow");
         let key = arrows.iter().find(|arrow| arrow.colour == picture.palette.text).expect("a key");
         let text = &picture.words.iter().find(|run| run.text.starts_with("displacement ")).expect("its words").text;
         let millimetres: f32 =
@@ -289,16 +290,16 @@ fn the_key_arrow_is_as_long_as_it_says() {
 }
 
 /// The boxes of all texts and marks of the legend and of the panels, without marks on bodies (px).
-fn boxes(picture: &Picture) -> Vec<([f32; 4], String)> {
+fn boxes(picture: &Listed) -> Vec<([f32; 4], String)> {
     let words = picture.words.iter().map(|run| {
         let top = run.baseline - 0.74 * run.size;
         ([run.span[0], top, run.span[1], run.baseline + 0.05 * run.size], run.text.clone())
     });
     let tally = picture.marks.iter().filter(|mark| {
-        let struck = matches!(mark.shape, MarkShape::Struck | MarkShape::Blend | MarkShape::Point);
+        let struck = matches!(mark.shape, "struck" | "colours" | "point");
         // The outline of a point is below it.
         (struck && mark.colour != picture.palette.axis)
-            || (mark.shape == MarkShape::Filled && mark.colour == picture.palette.tally)
+            || (mark.shape == "rectangle" && mark.colour == picture.palette.tally)
     });
     let tally = tally.map(|mark| {
         let [left, top, width, height] = mark.rectangle;
@@ -308,7 +309,7 @@ fn boxes(picture: &Picture) -> Vec<([f32; 4], String)> {
     });
     // The only arrow below all panels is that of the legend.
     let lowest = picture.panels.iter().map(|panel| panel.viewport[1] + panel.viewport[3]).max().unwrap_or(0) as f32;
-    let key = picture.marks.iter().filter(|mark| mark.shape == MarkShape::Arrow && mark.rectangle[1] > lowest);
+    let key = picture.marks.iter().filter(|mark| mark.shape == "arrow" && mark.rectangle[1] > lowest);
     let key = key.map(|arrow| {
         let ([start, tip], half) = (ends(arrow), 0.5 * arrow.rectangle[3]);
         ([start.x, start.y - half, tip.x, tip.y + half], "key arrow".to_owned())
@@ -346,7 +347,7 @@ fn nothing_overlaps_in_any_arrangement() {
                 }
                 // Bodies stay above the legend.
                 let lowest = picture.panels.iter().map(|panel| panel.viewport[1] + panel.viewport[3]).max();
-                let bar = marks(&picture, MarkShape::Blend);
+                let bar = marks(&picture, "colours");
                 if let (Some(lowest), Some(bar)) = (lowest, bar.first()) {
                     assert!(bar.rectangle[1] + bar.rectangle[3] > lowest as f32 && lowest < size[1]);
                 }

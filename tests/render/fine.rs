@@ -1,8 +1,9 @@
 //! Antialiasing of everything, text included: pictures compared with themselves, drawn four times larger and averaged.
 
+use super::listed::{Listed, enlarge};
 use super::{compose, draw, fig4b, frame, gpu, linear};
 use image::RgbImage;
-use localshape::picture::{MarkShape, Picture};
+use localshape::picture::Picture;
 use localshape::scene::{Limits, Scene};
 
 /// The scale of the reference pictures.
@@ -16,7 +17,7 @@ const PART: f64 = 3e-4;
 const MEAN: f64 = 4.5;
 
 /// The same picture with every length scaled: lines, marks and glyphs, too.
-fn larger(picture: &Picture) -> Picture {
+fn larger(picture: &Listed) -> Listed {
     let times = TIMES as f32;
     let mut large = picture.clone();
     large.size = large.size.map(|length| length * TIMES);
@@ -38,28 +39,9 @@ fn larger(picture: &Picture) -> Picture {
         panel.strokes.iter_mut().for_each(|stroke| stroke.width *= times);
         panel.beads.iter_mut().for_each(|bead| bead.radius *= times);
     }
-    for mark in large.under.iter_mut().chain(&mut large.marks) {
-        mark.rectangle = mark.rectangle.map(|length| length * times);
-        if mark.shape == MarkShape::Smooth {
-            // Its border is always one pixel wide, half of it inside.
-            let [left, top, width, height] = mark.rectangle;
-            let less = 0.5 * (times - 1.0);
-            let [along, across] = [mark.along, [-mark.along[1], mark.along[0]]];
-            let corner = [0, 1].map(|axis| less * (along[axis] + across[axis]));
-            mark.rectangle = [left + corner[0], top + corner[1], width - 2.0 * less, height - 2.0 * less];
-        }
-    }
-    for curve in &mut large.curves {
-        curve.points.iter_mut().flatten().for_each(|at| *at *= times);
-        curve.width *= times;
-        curve.dash.iter_mut().for_each(|length| *length *= times);
-    }
-    for words in &mut large.words {
-        words.size *= times;
-        words.baseline = words.baseline.round() * times;
-        words.span = words.span.map(|at| at * times);
-        words.glyphs.iter_mut().for_each(|glyph| glyph.x = (glyph.x * 4.0).round() / 4.0 * times);
-    }
+    let Picture { under, above, .. } = &mut *large;
+    enlarge(under, times);
+    enlarge(above, times);
     large
 }
 

@@ -1,27 +1,28 @@
 //! Diagrams of forces: the numbers of Figs. 1 and 2, and legibility.
 
-use localshape::picture::{Mark, MarkShape, Picture, TextRun, compose_figure};
+use super::listed::{Listed, Mark, compose_figure};
+use localshape::picture::TextRun;
 use localshape::runner::moments::Moments;
 use localshape::scene::figure::Figure;
 
-fn picture(name: &str, size: [u32; 2]) -> Picture {
+fn picture(name: &str, size: [u32; 2]) -> Listed {
     picture_with(name, size, 1.0)
 }
 
 /// A figure with a larger font.
-fn picture_with(name: &str, size: [u32; 2], text_scale: f64) -> Picture {
+fn picture_with(name: &str, size: [u32; 2], text_scale: f64) -> Listed {
     let mut figure = Figure::built_in(name).expect("a figure of the paper");
     figure.size = size;
     figure.look.text_scale = text_scale;
     compose_figure(&figure, &Moments::new(&figure)).expect("room")
 }
 
-fn texts(picture: &Picture) -> Vec<&str> {
+fn texts(picture: &Listed) -> Vec<&str> {
     picture.words.iter().map(|word| word.text.as_str()).collect()
 }
 
 /// The number of occurrences of each text.
-fn counts(picture: &Picture, wanted: &[&str]) -> Vec<usize> {
+fn counts(picture: &Listed, wanted: &[&str]) -> Vec<usize> {
     let texts = texts(picture);
     wanted.iter().map(|wanted| texts.iter().filter(|text| *text == wanted).count()).collect()
 }
@@ -51,7 +52,7 @@ fn short_arrows_can_be_seen() {
     let picture = picture("fig2", [1280, 576]);
     let figure = Figure::built_in("fig2").expect("a figure of the paper");
     let own = figure.scenes()[0].runs[2].line(&picture.palette).colour;
-    let nodes = picture.marks.iter().rposition(|mark| mark.shape == MarkShape::Node).expect("nodes");
+    let nodes = picture.marks.iter().rposition(|mark| mark.shape == "node").expect("nodes");
     let arrows = picture.marks[nodes..].iter().filter(|mark| mark.colour == own);
     // A shaft and a head for each.
     assert_eq!(arrows.count(), 4 * 2);
@@ -61,7 +62,7 @@ fn short_arrows_can_be_seen() {
 fn fig_3_shows_both_vectors_and_the_centre_in_the_plane_and_in_space() {
     let picture = picture("fig3", [1280, 720]);
     assert_eq!(counts(&picture, &["r", "R", "c"]), [2; 3]);
-    let is_head = |mark: &&Mark| matches!(mark.shape, MarkShape::Arrow | MarkShape::Point);
+    let is_head = |mark: &&Mark| matches!(mark.shape, "arrow" | "point");
     // An arrow for each node of the pentagon and of the cube, and the legend's arrow.
     assert_eq!(picture.marks.iter().filter(is_head).count(), 5 + 8 + 1);
 }
@@ -102,8 +103,7 @@ fn a_figure_is_the_same_each_time() {
 #[test]
 fn type_is_as_many_times_larger_as_a_figure_says() {
     let [usual, large] = [1.0, 1.5].map(|text_scale| picture_with("fig1", [2560, 1440], text_scale));
-    let size =
-        |picture: &Picture, text: &str| picture.words.iter().find(|word| word.text == text).map(|word| word.size);
+    let size = |picture: &Listed, text: &str| picture.words.iter().find(|word| word.text == text).map(|word| word.size);
     for text in ["Local shape", "Apex pushed in", "0.508", "82° off", "rest shape, best fit"] {
         let [usual, large] = [&usual, &large].map(|picture| size(picture, text).expect("written"));
         assert!((large / usual - 1.5).abs() < 1e-4, "{text}: {usual} and {large}");
@@ -131,7 +131,7 @@ fn a_body_at_rest_has_no_forces_and_floors_that_are_not_drawn_cut_nothing() {
     assert_eq!(counts(&picture, &["no forces"]), [1]);
     // Of 27 nodes, the inner one and those hidden by faces are faint, or not drawn.
     let nodes = |opaque: bool| {
-        let is_one = |mark: &&Mark| mark.shape == MarkShape::Node && (mark.opacity == 255) == opaque;
+        let is_one = |mark: &&Mark| mark.shape == "node" && (mark.opacity == 255) == opaque;
         picture.marks.iter().filter(is_one).count()
     };
     assert_eq!((nodes(true), nodes(false)), (19, 0));

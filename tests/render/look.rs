@@ -1,10 +1,12 @@
 //! Pictures with their own fonts, colours and sizes.
 
+use super::listed::Listed;
 use super::{compose, fig4b, gpu, parse, renderer};
 use glam::DVec3;
 use image::RgbImage;
 use localshape::look::{EdgeStyle, FontFiles};
-use localshape::picture::{Line, LineKind, Mesh, Obstacles, Picture, Weight};
+use localshape::picture::Picture;
+use localshape::picture::{Line, LineKind, Mesh, Obstacles, Weight};
 use localshape::runner::Runner;
 
 const SIZE: [u32; 2] = [640, 360];
@@ -42,7 +44,7 @@ fn fonts_that_a_scene_brings_are_the_ones_it_is_written_with() {
 fn without_edges_outlines_and_turned_over_elements_stay() {
     let (mut scene, mut frame) = fig4b(12);
     frame.runs[1].snapshot.turned_over[0] = true;
-    let kinds = |picture: &Picture| {
+    let kinds = |picture: &Listed| {
         let count = |kind| {
             let lines = picture.panels.iter().flat_map(|panel| &panel.lines);
             lines.filter(|line: &&Line| line.kind == kind).count()
@@ -56,22 +58,21 @@ fn without_edges_outlines_and_turned_over_elements_stay() {
 }
 
 /// A picture of only its bodies' surfaces.
-fn surfaces_alone(mut picture: Picture) -> Picture {
+fn surfaces_alone(mut picture: Listed) -> Listed {
     for panel in &mut picture.panels {
         (panel.floor, panel.obstacles) = (None, Obstacles::default());
         panel.lines.clear();
         panel.strokes.clear();
         panel.beads.clear();
     }
-    picture.under.clear();
-    picture.marks.clear();
-    picture.curves.clear();
-    picture.words.clear();
+    let Picture { under, above, .. } = &mut *picture;
+    under.clear();
+    above.clear();
     picture
 }
 
 /// The picture without sound elements.
-fn turned_over_alone(picture: &Picture) -> Picture {
+fn turned_over_alone(picture: &Listed) -> Listed {
     let mut picture = surfaces_alone(picture.clone());
     picture.panels.iter_mut().for_each(|panel| panel.sound = Mesh::default());
     picture
@@ -103,7 +104,7 @@ fn turned_over_elements_are_hatched() {
             let mut renderer = renderer(gpu, scene.view.size);
             let alarm = scene.view.look.palette().alarm;
             let picture = compose(&scene, &frame);
-            let mut draw = |picture: &Picture| renderer.draw(picture).expect("the device works");
+            let mut draw = |picture: &Listed| renderer.draw(picture).expect("the device works");
             let inside = inside(&draw(&turned_over_alone(&picture)), picture.palette.background);
             assert!(inside.len() > 200, "{theme} {colour}: {}", inside.len());
             let image = draw(&surfaces_alone(picture));

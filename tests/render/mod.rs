@@ -11,6 +11,7 @@ mod fields;
 mod fine;
 mod forces;
 mod inside;
+mod listed;
 mod look;
 mod obstacles;
 mod pictures;
@@ -26,8 +27,9 @@ mod words;
 mod work;
 
 use image::RgbImage;
+use listed::{Composer, Listed};
 use localshape::gpu::{AdapterChoice, Gpu};
-use localshape::picture::{Composer, Picture, TextRun};
+use localshape::picture::{Picture, TextRun};
 use localshape::render::Renderer;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
@@ -78,7 +80,7 @@ fn frame(scene: &Scene, index: u64) -> Frame {
 }
 
 /// The picture of a frame, without the course of its scene.
-fn compose(scene: &Scene, frame: &Frame) -> Picture {
+fn compose(scene: &Scene, frame: &Frame) -> Listed {
     unknown(scene).compose(frame)
 }
 
@@ -103,7 +105,7 @@ fn draw(gpu: &Gpu, picture: &Picture) -> RgbImage {
 
 /// Checks that the boxes of no two lines of text overlap, and that none leaves the picture.
 #[track_caller]
-fn assert_words_are_clear(picture: &Picture, case: &str) {
+fn assert_words_are_clear(picture: &Listed, case: &str) {
     let [width, height] = picture.size.map(|length| length as f32);
     for (at, word) in picture.words.iter().enumerate() {
         let [left, top, right, bottom] = word.bounds();

@@ -1,10 +1,9 @@
 //! Obstacles and grips in the composed picture; only one test needs a device.
 
+use super::listed::{Composer, Listed, Mark, compose_figure};
 use super::{compose, fig4b, frame, gpu, parse, renderer, unknown};
 use glam::{DVec3, Vec3};
-use localshape::picture::{
-    Composer, LineKind, MOST_OCCLUDERS, Mark, MarkShape, Mesh, Obstacles, Occluder, Panel, Picture, compose_figure,
-};
+use localshape::picture::{LineKind, MOST_OCCLUDERS, Mesh, Obstacles, Occluder, Panel};
 use localshape::render::Renderer;
 use localshape::runner::history::History;
 use localshape::runner::moments::Moments;
@@ -36,7 +35,7 @@ fn following(text: &str) -> Scene {
     parse(text)
 }
 
-fn picture(scene: &Scene, index: u64) -> Picture {
+fn picture(scene: &Scene, index: u64) -> Listed {
     compose(scene, &frame(scene, index))
 }
 
@@ -87,7 +86,7 @@ fn numbers(panel: &Panel) -> Vec<f32> {
     all
 }
 
-fn marks(picture: &Picture, shapes: &[MarkShape]) -> Vec<Mark> {
+fn marks(picture: &Listed, shapes: &[&str]) -> Vec<Mark> {
     picture.marks.iter().filter(|mark| shapes.contains(&mark.shape) && mark.opacity == 255).copied().collect()
 }
 
@@ -144,7 +143,7 @@ fn a_plate_is_transparent_behind_its_surface_and_says_where_it_goes() {
         let heights = slab.panes.iter().flat_map(|pane| &pane.corners).map(|corner| corner.position[1] - surface);
         let (low, high) = heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
         assert!(low.abs() < 1e-4 && (0.01..0.2).contains(&high), "{low} {high}");
-        let found = marks(&picture, &[MarkShape::Arrow]);
+        let found = marks(&picture, &["arrow"]);
         assert_eq!(found.len(), arrows);
         assert!(found.iter().all(|arrow| arrow.along[1] < -0.99), "upwards");
     }
@@ -293,10 +292,10 @@ fn obstacles_in_the_plane_are_flat_and_end_at_the_floor() {
         assert!([-1.0, 1.0].iter().all(|sign| vertices.iter().any(|vertex| sign * vertex.hatch > 0.5)));
     }
     // The plate has a line and a soft fill, like the floor, and an arrow.
-    for (shape, count) in [(MarkShape::Fading, 2), (MarkShape::Smooth, 2)] {
+    for (shape, count) in [("ground", 2), ("floor", 2)] {
         assert_eq!(picture.under.iter().filter(|mark| mark.shape == shape).count(), count, "{shape:?}");
     }
-    assert_eq!(marks(&picture, &[MarkShape::Arrow]).len(), 1);
+    assert_eq!(marks(&picture, &["arrow"]).len(), 1);
 }
 
 #[test]
@@ -305,7 +304,7 @@ fn nothing_outside_the_panel_has_an_arrow() {
     for (target, expected) in [(0, 1), (40, 0), (-40, 0)] {
         let still = format!("[view.camera]\nfollow = false\ntarget = [{target}, 0.5, 0]\ndistance = 10\n");
         let scene = scene(&[WORLD, CUBE, FLOOR, grab, &still]);
-        assert_eq!(marks(&picture(&scene, 30), &[MarkShape::Arrow]).len(), expected, "{target}");
+        assert_eq!(marks(&picture(&scene, 30), &["arrow"]).len(), expected, "{target}");
     }
 }
 
@@ -314,18 +313,18 @@ fn nodes_are_marked_only_while_they_are_held() {
     let hold = "[[hold]]\nnodes = [0, 7]\nfrom = 0.2\nuntil = 0.4\n";
     let grab = "[[grab]]\nnodes = [3]\npath = { keys = [{ time = 0.4 }, { time = 0.8, shift = [0.3, 0, 0] }] }\n";
     let scene = scene(&[WORLD, CUBE, FLOOR, hold, grab]);
-    let count = |picture: &Picture, shape| picture.marks.iter().filter(|mark| mark.shape == shape).count();
+    let count = |picture: &Listed, shape| picture.marks.iter().filter(|mark| mark.shape == shape).count();
     for (index, held, dragged, arrows) in [(0, 0, 0, 0), (15, 2, 0, 0), (30, 0, 1, 1), (45, 0, 0, 0)] {
         let picture = picture(&scene, index);
-        assert_eq!(count(&picture, MarkShape::Pin), held, "{index}");
-        assert_eq!(count(&picture, MarkShape::Hand), dragged, "{index}");
-        let arrows_found = marks(&picture, &[MarkShape::Arrow]);
+        assert_eq!(count(&picture, "pin"), held, "{index}");
+        assert_eq!(count(&picture, "hand"), dragged, "{index}");
+        let arrows_found = marks(&picture, &["arrow"]);
         assert_eq!(arrows_found.len(), arrows, "{index}");
         assert!(arrows_found.iter().all(|arrow| arrow.along[0] > 0.9), "to the right");
     }
     // Node 0 lies behind, seen from above and from the right; node 7 in front.
     let picture = picture(&scene, 15);
-    assert_eq!(count(&picture, MarkShape::Pin), 2);
+    assert_eq!(count(&picture, "pin"), 2);
 }
 
 #[test]
@@ -367,7 +366,7 @@ fn following_the_body_lets_the_grid_scroll_below() {
     let body = CUBE.replace("lowest = 0.1", &format!("lowest = 0.1, {text}"));
     let body = following(&[WORLD, &body, FLOOR].concat());
     let composer = unknown(&body);
-    let eye = |picture: &Picture| picture.panels[0].sight.eye;
+    let eye = |picture: &Listed| picture.panels[0].sight.eye;
     // Any frame alone, in any order.
     let [late, early] = [25, 0].map(|index| composer.compose(&frame(&body, index)));
     // The camera has the same position relative to the body, and the grid has moved as far as the body.
@@ -504,7 +503,7 @@ fn what_fades_lets_the_ground_through() {
     whole.panels[0].obstacles.fade = None;
     bare.panels[0].obstacles.solids.clear();
     bare.panels[0].lines.retain(|line| (line.kind as u32) < 8);
-    let draw = |picture: &Picture| {
+    let draw = |picture: &Listed| {
         Renderer::new(gpu, picture.size).and_then(|mut renderer| renderer.draw(picture)).expect("drawn")
     };
     let [fading, whole, bare] = [&fading, &whole, &bare].map(draw);
@@ -528,7 +527,7 @@ fn rims_fade_with_their_obstacles() {
     let fading = picture(&scene(&[WORLD, TRIANGLE, rod, view]), 0);
     let mut bare = fading.clone();
     bare.panels[0].obstacles.solids.clear();
-    let draw = |picture: &Picture| {
+    let draw = |picture: &Listed| {
         Renderer::new(None, picture.size).and_then(|mut renderer| renderer.draw(picture)).expect("no device is needed")
     };
     let [fading, bare] = [&fading, &bare].map(draw);

@@ -1,9 +1,11 @@
 //! Panels in the plane look the same in SVG files, as a browser shows them, and in PNG files.
 
 use super::browser::Browser;
+use super::listed::Listed;
 use super::{compose, frame, parse};
+use glam::Vec2;
 use localshape::look::{Style, Theme};
-use localshape::picture::{Mark, MarkShape, Picture};
+use localshape::picture::{Image, Item, Paint, Path, Pen};
 use localshape::render::Renderer;
 use localshape::sim::{Divergence, Frame, LastFit, Status};
 use localshape::vector::{Format, Page, write};
@@ -13,9 +15,9 @@ const SQUARE: usize = 8;
 const SIZE: [u32; 2] = [720, 480];
 
 /// Draws a picture without its words in both ways: the colours of all pixels.
-fn both(browser: &mut Browser, mut picture: Picture) -> [Vec<[u8; 3]>; 2] {
+fn both(browser: &mut Browser, mut picture: Listed) -> [Vec<[u8; 3]>; 2] {
     assert_eq!(picture.size, SIZE);
-    picture.words.clear();
+    picture.mute();
     let drawn =
         Renderer::new(None, SIZE).and_then(|mut renderer| renderer.draw(&picture)).expect("no device is needed");
     let drawn = drawn.pixels().map(|pixel| pixel.0).collect();
@@ -140,9 +142,9 @@ fn a_browser_shows_flat_panels_as_they_are_drawn() {
     }
 }
 
-/// Marks, each of a size of its own, with both of its colours.
+/// Items of every kind.
 #[test]
-fn a_browser_shows_marks_as_they_are_drawn() {
+fn a_browser_shows_items_as_they_are_drawn() {
     let Some(mut browser) = Browser::start() else { return };
     let scene = parse(&format!(
         "time = {{ duration = 1, step = 'T/50', frames_per_second = 50 }}
@@ -151,28 +153,28 @@ fn a_browser_shows_marks_as_they_are_drawn() {
     ));
     let mut picture = compose(&scene, &frame(&scene, 0));
     picture.panels.clear();
-    let shapes = [
-        MarkShape::Filled,
-        MarkShape::Smooth,
-        MarkShape::Struck,
-        MarkShape::Node,
-        MarkShape::CounterClockwise,
-        MarkShape::Clockwise,
-        MarkShape::Fading,
-        MarkShape::Shadow,
-        MarkShape::Arrow,
-        MarkShape::Blend,
-        MarkShape::Point,
-        MarkShape::Pin,
-        MarkShape::Hand,
+    let (blue, yellow) = ([20, 90, 160], [250, 200, 40]);
+    let square = |at: u16| Vec2::new(50.0 + 130.0 * f32::from(at % 5), 50.0 + 140.0 * f32::from(at / 5));
+    let side = Vec2::splat(96.0);
+    let disc = |at: u16| Path::circle(square(at) + 48.0, 40.0);
+    let slant = Path::open(&[square(2), square(2) + side, square(2) + Vec2::new(96.0, 0.0)]);
+    let pen = Pen { dash: vec![14.0, 6.0], round: false, ..Pen::solid(7.0) };
+    let soft = (0..48).flat_map(|at| [20, 90, 160, 5 * at]).collect();
+    let place = [square(5), Vec2::new(96.0, 0.0), Vec2::new(0.0, 96.0)];
+    picture.above = vec![
+        Item::fill(Path::rectangle(square(0), side), blue),
+        Item::fill(disc(1), Paint { colour: blue, alpha: 0.4 }),
+        Item::stroke(slant, pen, blue),
+        Item::stroke(disc(3), Pen::solid(9.0), yellow),
+        Item::Blend {
+            path: Path::rectangle(square(4), side),
+            ends: [square(4), square(4) + Vec2::new(96.0, 0.0)],
+            colours: vec![blue, yellow, [0; 3]],
+        },
+        Item::Image(Image { size: [1, 48], pixels: soft, place }),
+        Item::Clip { path: disc(6), items: vec![Item::fill(Path::rectangle(square(6), 0.5 * side), yellow)] },
+        Item::part("two", [Item::fill(disc(7), blue), Item::fill(Path::rectangle(square(7), 0.5 * side), yellow)]),
     ];
-    let mark = |(at, shape)| {
-        let [left, top] = [50.0 + 130.0 * (at % 5) as f32, 50.0 + 140.0 * (at / 5) as f32];
-        let height = if shape == MarkShape::Arrow { 40.0 } else { 96.0 };
-        let rectangle = [left, top, 96.0, height];
-        Mark { rectangle, along: [1.0, 0.0], colour: [20, 90, 160], second: [250, 200, 40], opacity: 255, shape }
-    };
-    picture.marks = shapes.into_iter().enumerate().map(mark).collect();
     let (most, at, mean) = differences(&both(&mut browser, picture));
     assert!(most < 20.0 && mean < 0.4, "{most:.2} at {at:?}, {mean:.3} in the mean");
 }

@@ -1,9 +1,10 @@
 //! Contact sheets: nothing overlaps or is cut off, and the text agrees with the simulation.
 
 use super::assert_words_are_clear;
+use super::listed::{Listed, Mark, compose_figure};
 use super::strips::alike;
 use glam::Vec3;
-use localshape::picture::{Mark, MarkShape, Panel, Picture, TextRun, Weight, compose_figure};
+use localshape::picture::{Panel, TextRun, Weight};
 use localshape::runner::moments::Moments;
 use localshape::scene::Limits;
 use localshape::scene::figure::{Content, Figure, Sheet};
@@ -78,7 +79,7 @@ fn all() -> impl Iterator<Item = &'static (Figure, Moments)> {
 }
 
 /// The texts in a tile.
-fn within<'p>(picture: &'p Picture, panel: &'p Panel) -> impl Iterator<Item = &'p TextRun> {
+fn within<'p>(picture: &'p Listed, panel: &'p Panel) -> impl Iterator<Item = &'p TextRun> {
     let [left, top, width, height] = panel.viewport.map(|length| length as f32);
     let inside = move |word: &&TextRun| {
         let [x, y, x2, y2] = word.bounds();
@@ -109,7 +110,7 @@ fn no_words_overlap_and_all_can_be_read() {
 }
 
 /// The font sizes (px) of texts.
-fn sizes(picture: &Picture) -> std::collections::BTreeMap<&str, f32> {
+fn sizes(picture: &Listed) -> std::collections::BTreeMap<&str, f32> {
     picture.words.iter().map(|word| (word.text.as_str(), word.size)).collect()
 }
 
@@ -199,14 +200,14 @@ fn counts_are_those_that_were_simulated() {
             let [left, top, width, height] = panel.viewport.map(|length| length as f32);
             let struck = picture.marks.iter().filter(|mark| {
                 let [x, y, ..] = mark.rectangle;
-                mark.shape == MarkShape::Struck && left <= x && x < left + width && top <= y && y < top + height
+                mark.shape == "struck" && left <= x && x < left + width && top <= y && y < top + height
             });
             assert_eq!(struck.count(), expected, "{}", figure.title);
             // One square for each element, and one inside it for each flat one.
             let squares = picture.marks.iter().filter(|mark| {
                 let [x, y, across, high] = mark.rectangle;
                 let inside = left <= x && x < left + width && top <= y && y < top + height;
-                inside && across == high && matches!(mark.shape, MarkShape::Filled | MarkShape::Struck)
+                inside && across == high && matches!(mark.shape, "rectangle" | "struck")
             });
             assert_eq!(squares.count(), run.snapshot.turned_over.len() + flat, "{}", figure.title);
         }
@@ -231,7 +232,7 @@ fn the_last_columns_show_what_the_paper_tells() {
 }
 
 /// The letters in rings, from left to right, with the middles of their words.
-fn rings(picture: &Picture, top: f32) -> Vec<(&str, f32)> {
+fn rings(picture: &Listed, top: f32) -> Vec<(&str, f32)> {
     let letters = picture.words.iter().filter(|word| {
         word.weight == Weight::SemiBold && word.baseline > top && word.text.chars().all(|c| c.is_ascii_lowercase())
     });

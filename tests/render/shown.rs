@@ -1,9 +1,10 @@
 //! The contents of pictures, tested by their numbers: no device needed.
 
+use super::listed::{Composer, Listed, Mark};
 use super::{compose, fig4b, frame, parse, unknown};
 use localshape::colour::contrast;
 use localshape::look::{ColourMap, ColourScale, Palette, Theme};
-use localshape::picture::{Composer, LineKind, Mark, MarkShape, Mesh, Picture, TextRun, Weight};
+use localshape::picture::{LineKind, Mesh, TextRun, Weight};
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
@@ -19,7 +20,7 @@ fn scene(change: impl Fn(String) -> String) -> (Scene, Frame) {
 }
 
 /// Every number in a picture.
-fn numbers(picture: &Picture) -> Vec<f32> {
+fn numbers(picture: &Listed) -> Vec<f32> {
     let mut all = Vec::new();
     for panel in &picture.panels {
         all.extend(panel.sight.clip.to_cols_array());
@@ -315,7 +316,7 @@ fn every_floor_of_the_plane_is_drawn_and_stays_in_its_panel() {
         );
         let scene = parse(&text);
         let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
-        for shape in [MarkShape::Smooth, MarkShape::Fading] {
+        for shape in ["floor", "ground"] {
             assert_eq!(picture.under.iter().filter(|mark| mark.shape == shape).count(), 1, "{normal}");
         }
         let Some(obstacle) = scene.obstacles.first() else { panic!("{normal}") };
@@ -345,7 +346,7 @@ fn every_floor_of_the_plane_is_drawn_and_stays_in_its_panel() {
 }
 
 /// A scene of one body with one element of all its nodes.
-fn one_element(nodes: &str, count: usize) -> (Scene, Picture) {
+fn one_element(nodes: &str, count: usize) -> (Scene, Listed) {
     let all: Vec<_> = (0..count).collect();
     let text = format!(
         "time = {{ duration = 1, step = 'T/50', frames_per_second = 60 }}
@@ -424,13 +425,12 @@ fn a_sign_that_would_hide_its_element_stands_beside_the_body() {
             .iter()
             .chain(&over)
             .fold((glam::Vec2::INFINITY, glam::Vec2::NEG_INFINITY), |(low, high), &at| (low.min(at), high.max(at)));
-        let signs: Vec<_> = picture.marks.iter().filter(|mark| mark.shape == MarkShape::Clockwise).collect();
+        let signs: Vec<_> = picture.marks.iter().filter(|mark| mark.shape == "alarm arrow").collect();
         let [sign] = signs[..] else { panic!("one sign: {signs:?}") };
         let [x, _, width, _] = sign.rectangle;
         assert!(x + width < low.x || x > high.x, "frame {index}: {x} is between {low} and {high}");
         // The leader goes from its disc into the triangle.
-        let mut leaders =
-            picture.marks.iter().filter(|mark| mark.shape == MarkShape::Smooth && mark.along != Mark::UPRIGHT);
+        let mut leaders = picture.marks.iter().filter(|mark| mark.shape == "floor" && mark.along != Mark::UPRIGHT);
         let leader = leaders.next_back().expect("a leader");
         let start = glam::Vec2::new(leader.rectangle[0], leader.rectangle[1]);
         let (low, high) = over.iter().fold((over[0], over[0]), |(low, high), &at| (low.min(at), high.max(at)));
@@ -473,7 +473,7 @@ fn a_run_that_diverged_is_grey_and_stands_still_as_it_fitted_last() {
     let composer = unknown(&scene);
     let mut runner = Runner::new(&scene, &[0, 1, 2]);
     let [before, growing, first, last] = [10, 57, 90, 119].map(|index| composer.compose(&runner.frame(index)));
-    let greyed = |picture: &Picture| picture.panels.iter().map(|panel| panel.greyed).collect::<Vec<_>>();
+    let greyed = |picture: &Listed| picture.panels.iter().map(|panel| panel.greyed).collect::<Vec<_>>();
     assert_eq!((greyed(&before), greyed(&last)), (vec![false; 3], vec![false, false, true]));
     assert_eq!((&growing.panels[2], &first.panels[2]), (&last.panels[2], &last.panels[2]));
     let [left, top, width, height] = last.panels[2].viewport;
@@ -502,7 +502,7 @@ fn a_run_that_diverged_is_grey_and_stands_still_as_it_fitted_last() {
     let pixels = along(&mut seen.map(|at| 0.5 * f64::from(at) * f64::from(picture.panels[0].viewport[2])));
     let text = picture.words.iter().find(|run| run.text.ends_with("mm")).expect("a bar");
     let stands_for = text.text.trim_end_matches(|c: char| !c.is_ascii_digit()).parse::<f64>().expect("a number") * 1e-3;
-    let is_bar = |mark: &&Mark| mark.shape == MarkShape::Filled && mark.colour == picture.palette.second_text;
+    let is_bar = |mark: &&Mark| mark.shape == "rectangle" && mark.colour == picture.palette.second_text;
     let bar = picture.marks.iter().filter(is_bar).map(|mark| f64::from(mark.rectangle[2])).fold(0.0, f64::max);
     // Nearer points are a little larger.
     assert!(
@@ -531,12 +531,12 @@ fn flat_elements_are_a_state_of_their_own() {
     let frame = Runner::new(&scene, &[0]).frame(0);
     let picture = compose(&scene, &frame);
     assert!(picture.panels[0].sound.vertices.iter().all(|vertex| vertex.hatch == 1.0), "dots");
-    let squares = |picture: &Picture, colour| {
+    let squares = |picture: &Listed, colour| {
         let is_one = |mark: &&Mark| mark.colour == colour && mark.rectangle[2] == mark.rectangle[3];
         picture.marks.iter().filter(is_one).count()
     };
     assert_eq!([picture.palette.axis, picture.palette.tally].map(|colour| squares(&picture, colour)), [27, 0]);
-    let says = |picture: &Picture, text: &str| picture.words.iter().any(|run| run.text == text);
+    let says = |picture: &Listed, text: &str| picture.words.iter().any(|run| run.text == text);
     assert!(says(&picture, "27 of 27") && says(&picture, "flat") && !says(&picture, "turned over"));
     // At rest nothing is flat.
     let (scene, frame) = fig4b(0);

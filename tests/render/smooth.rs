@@ -1,8 +1,11 @@
 //! Antialiased borders without flicker: a slight motion changes pixels slightly.
 
+use super::listed::Listed;
 use super::{all, compose, draw, fig4b, gpu, linear, parse, renderer, unknown};
+use glam::Vec2;
 use image::RgbImage;
-use localshape::picture::{LineKind, Mark, MarkShape, Picture, Second, Stroke};
+use localshape::picture::{Item, Path};
+use localshape::picture::{LineKind, Second, Stroke};
 use localshape::runner::Runner;
 use localshape::scene::Scene;
 use localshape::sim::Frame;
@@ -36,11 +39,10 @@ fn frames(scene: &Scene, indices: std::ops::Range<u64>) -> Vec<Frame> {
 }
 
 /// A picture of the plane without marks and text.
-fn empty_plane(obstacle: &str) -> Picture {
+fn empty_plane(obstacle: &str) -> Listed {
     let scene = scene(&[PLANE, obstacle]);
     let mut picture = compose(&scene, &frames(&scene, 0..1)[0]);
-    picture.marks.clear();
-    picture.words.clear();
+    picture.above.clear();
     picture
 }
 
@@ -70,31 +72,16 @@ fn crossing(image: &RgbImage, x: u32, y: std::ops::Range<u32>) -> u32 {
 #[test]
 fn borders_of_flat_marks_are_smooth() {
     let Some(gpu) = gpu("borders_of_flat_marks_are_smooth") else { return };
-    let (sine, cosine) = (0.08_f32).sin_cos();
-    for shape in [MarkShape::Smooth, MarkShape::Arrow] {
-        let mut picture = empty_plane("");
-        picture.marks.push(Mark {
-            rectangle: [60.3, 60.2, 200.0, 80.0],
-            along: [cosine, sine],
-            colour: [0; 3],
-            second: [0; 3],
-            opacity: 255,
-            shape,
-        });
-        let image = draw(gpu, &picture);
-        let y = crossing(&image, 110, 40..90);
-        assert_smooth(&image, 100..120, y, &format!("{shape:?}"));
-    }
-    // The upper end of a disc, to its middle.
+    // Beside a long side, and at the upper end of a disc.
     let mut picture = empty_plane("");
-    picture.marks.push(Mark {
-        rectangle: [60.0, 40.3, 100.0, 100.0],
-        along: Mark::UPRIGHT,
-        colour: [0; 3],
-        second: [0; 3],
-        opacity: 255,
-        shape: MarkShape::Node,
-    });
+    let turn = |x: f32, y: f32| Vec2::new(60.3, 60.2) + Vec2::from_angle(0.08).rotate(Vec2::new(x, y));
+    let corners = [turn(0.0, 0.0), turn(200.0, 0.0), turn(200.0, 80.0), turn(0.0, 80.0)];
+    picture.above.push(Item::fill(Path::polygon(&corners), [0; 3]));
+    let image = draw(gpu, &picture);
+    let y = crossing(&image, 110, 40..90);
+    assert_smooth(&image, 100..120, y, "rectangle");
+    let mut picture = empty_plane("");
+    picture.above.push(Item::fill(Path::circle(Vec2::new(110.0, 90.3), 50.0), [0; 3]));
     let image = draw(gpu, &picture);
     assert_smooth(&image, 94..110, 40, "disc");
 }
@@ -118,8 +105,7 @@ fn lines_and_bodies_in_space_are_smooth() {
     let view = format!("[view]\nsize = [320, 180]\n{camera}");
     let scene = scene(&[WORLD, SPRINGS, body, &view]);
     let mut picture = compose(&scene, &frames(&scene, 0..1)[0]);
-    picture.words.clear();
-    picture.marks.clear();
+    picture.above.clear();
     let image = draw(gpu, &picture);
     let y = crossing(&image, 160, 30..96);
     assert_smooth(&image, 150..170, y, "outline");

@@ -84,7 +84,7 @@ impl Camera {
 
     fn shot(&mut self, scene: &Scene, frame: &Frame) -> RgbImage {
         let mut picture = unknown(scene).compose(frame);
-        picture.words.clear();
+        picture.mute();
         self.0.draw(&picture).expect("the device works")
     }
 }

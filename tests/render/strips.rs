@@ -1,8 +1,9 @@
 //! Diagnostics over time below the panels.
 
+use super::listed::{Composer, Curve, Listed, Mark, line};
 use super::{assert_words_are_clear, fig4b, gpu, parse, renderer, unknown};
 use localshape::look::{Style, Theme};
-use localshape::picture::{Composer, Curve, Mark, MarkShape, Picture, TextRun, Weight};
+use localshape::picture::{TextRun, Weight};
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
@@ -18,25 +19,25 @@ fn with_strip<const N: usize>(strip: Diagnostic, frames: [u64; N]) -> (Scene, [F
 }
 
 /// The picture of a frame by a composer that has the scene's time series.
-fn compose(scene: &Scene, frame: &Frame) -> Picture {
+fn compose(scene: &Scene, frame: &Frame) -> Listed {
     let [picture] = pictures(scene, std::array::from_ref(frame));
     picture
 }
 
 /// Pictures of frames by one composer that has the scene's time series.
-fn pictures<const N: usize>(scene: &Scene, frames: &[Frame; N]) -> [Picture; N] {
+fn pictures<const N: usize>(scene: &Scene, frames: &[Frame; N]) -> [Listed; N] {
     let runs: Vec<_> = frames[0].runs.iter().map(|run| run.run).collect();
     let composer = Composer::new(scene, &History::new(scene, &runs));
     frames.each_ref().map(|frame| composer.compose(frame))
 }
 
 /// The line of the present moment.
-fn moments(picture: &Picture) -> Vec<&Curve> {
+fn moments(picture: &Listed) -> Vec<&Curve> {
     picture.curves.iter().filter(|curve| curve.alpha == 0.75).collect()
 }
 
 /// The circles around present values.
-fn circles(picture: &Picture) -> Vec<&Curve> {
+fn circles(picture: &Listed) -> Vec<&Curve> {
     picture.curves.iter().filter(|curve| curve.points.len() == 25 && curve.points[0] == curve.points[24]).collect()
 }
 
@@ -46,7 +47,7 @@ fn middle(circle: &Curve) -> [f32; 2] {
 }
 
 /// The curves of time series: no other curves are as wide.
-fn series(picture: &Picture) -> Vec<&Curve> {
+fn series(picture: &Listed) -> Vec<&Curve> {
     let all = picture.curves.iter().filter(|curve| curve.points.len() > 1 && curve.alpha == 1.0);
     let widest = all.clone().map(|curve| curve.width).fold(0.0, f32::max);
     all.filter(|curve| curve.width == widest).collect()
@@ -72,7 +73,7 @@ fn nothing_but_the_present_moment_moves() {
         let pictures = pictures(&scene, &frames);
         // Below the captions of the panels.
         const CHART: f32 = 560.0;
-        let still = |picture: &Picture| {
+        let still = |picture: &Listed| {
             let moving = [moments(picture), circles(picture)].concat();
             let curves = picture.curves.iter().filter(|curve| !moving.contains(curve) && curve.points[0][1] > CHART);
             let curves: Vec<_> = curves.cloned().collect();
@@ -137,7 +138,7 @@ fn a_short_story_has_a_scale_of_its_own_and_its_events_recur_in_the_panels() {
         assert!(chart.baseline > 560.0);
     }
     // Rings of past events are filled.
-    let ring = |picture: &Picture, number: &str| {
+    let ring = |picture: &Listed, number: &str| {
         let is_flag = |word: &&TextRun| word.text == number && word.weight == Weight::SemiBold;
         let word = picture.words.iter().find(is_flag).expect("a number").clone();
         let is_below = |curve: &&Curve| {
@@ -323,9 +324,7 @@ fn joints_do_not_show() {
     let mut draw = |points: Vec<[f32; 2]>, dash: &[f32]| {
         let mut picture = compose(&scene, &frame);
         picture.panels.clear();
-        picture.marks.clear();
-        picture.words.clear();
-        picture.curves = vec![Curve { points, width: 2.2, dash: dash.to_vec(), colour: [0, 0, 0], alpha: 0.5 }];
+        picture.above = vec![line(&points, 2.2, dash, ([0; 3], 0.5))];
         renderer.draw(&picture).expect("the device works")
     };
     for (from, to) in [([10.0, 20.3], [190.0, 20.3]), ([10.0, 10.0], [190.0, 77.0]), ([99.7, 95.0], [102.0, 5.0])] {
@@ -392,7 +391,7 @@ fn eight_runs_of_one_model_are_told_apart() {
             let [_, top, right, bottom] = name.bounds();
             let sample = picture.marks.iter().find(|mark| {
                 let [x, y, ..] = mark.rectangle;
-                mark.shape == MarkShape::Filled && x > right && x < right + 40.0 && top < y && y < bottom
+                mark.shape == "rectangle" && x > right && x < right + 40.0 && top < y && y < bottom
             });
             assert_eq!(sample.expect("a sample beside it").colour, line.colour);
         }
@@ -463,9 +462,8 @@ fn bands_are_explained_and_samples_of_counts_are_solid() {
     assert!(has_band, "edges chatter");
     // The sample of a dashed run is one piece.
     let colour = scene.runs[1].line(&picture.palette).colour;
-    let pieces = |picture: &Picture| {
-        let is_sample =
-            |mark: &&Mark| mark.colour == colour && mark.rectangle[3] <= 4.0 && mark.shape == MarkShape::Filled;
+    let pieces = |picture: &Listed| {
+        let is_sample = |mark: &&Mark| mark.colour == colour && mark.rectangle[3] <= 4.0 && mark.shape == "rectangle";
         picture.marks.iter().filter(is_sample).count()
     };
     let solid = pieces(&picture);

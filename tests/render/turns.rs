@@ -1,7 +1,7 @@
 //! One renderer draws pictures of every kind in turn: each has the bytes that it has alone.
 
+use super::listed::{Listed, line};
 use super::{compose, draw, frame, gpu, parse, renderer};
-use localshape::picture::{Curve, Picture};
 use localshape::sim::Frame;
 
 const SIZE: [u32; 2] = [160, 100];
@@ -27,7 +27,7 @@ fn none(_: &mut Frame) {}
 type Case<'a> = (&'a [&'a str], &'a str, fn(&mut Frame));
 
 /// Pictures of two sizes of the body, so that textures are replaced. No picture equals another one.
-fn pictures() -> Vec<Picture> {
+fn pictures() -> Vec<Listed> {
     let lines = "show = ['springs', 'nodes'], colour = { by = 'strain', range = [0, 0.1] }";
     let cases: [Case<'_>; 11] = [
         (&[CUBES, FLOOR], "", none),
@@ -59,8 +59,8 @@ fn pictures() -> Vec<Picture> {
             scene.view.camera.distance *= near;
             let mut picture = compose(&scene, &frame);
             if case % 3 == 0 {
-                let points = vec![[10.0, 10.0 + 30.0 * near as f32], [90.0, 80.0 - case as f32]];
-                picture.curves.push(Curve { points, width: 3.0, dash: vec![], colour: [200, 0, 90], alpha: 0.7 });
+                let points = [[10.0, 10.0 + 30.0 * near as f32], [90.0, 80.0 - case as f32]];
+                picture.above.push(line(&points, 3.0, &[], ([200, 0, 90], 0.7)));
             }
             pictures.push(picture);
         }

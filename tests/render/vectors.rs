@@ -1,28 +1,30 @@
 //! Pictures as SVG and PDF: text stays text in embedded fonts, flat bodies are paths, and lit bodies are images.
 
+use super::listed::{Listed, compose_figure, line};
 use super::{compose, draw, fig4b, frame, gpu, parse};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use glam::Vec2;
 use image::RgbImage;
 use localshape::look::Theme;
-use localshape::picture::{Curve, Mark, MarkShape, Picture, compose_figure};
+use localshape::picture::{Item, Path};
 use localshape::runner::moments::Moments;
 use localshape::scene::figure::Figure;
 use localshape::vector::{Format, Page, bodies, write};
 use std::io::Read;
 
-fn figure(name: &str, theme: Theme) -> Picture {
+fn figure(name: &str, theme: Theme) -> Listed {
     let mut figure = Figure::built_in(name).expect("a figure of the paper");
     figure.set_theme(theme);
     compose_figure(&figure, &Moments::new(&figure)).expect("room")
 }
 
-fn page<'a>(picture: &'a Picture, bodies: Option<&'a [u8]>) -> Page<'a> {
+fn page<'a>(picture: &'a Listed, bodies: Option<&'a [u8]>) -> Page<'a> {
     let tags = &[];
     Page { picture, bodies, size_mm: Some([180.0, 90.0]), title: "A & B", maker: "a test", tags }
 }
 
-fn svg(picture: &Picture) -> String {
+fn svg(picture: &Listed) -> String {
     String::from_utf8(write(&page(picture, None), Format::Svg).expect("a page")).expect("text")
 }
 
@@ -97,7 +99,7 @@ fn glyphs_stand_where_the_layout_has_them() {
 }
 
 /// The operators of a page and their operands.
-fn operations(picture: &Picture) -> Vec<Vec<String>> {
+fn operations(picture: &Listed) -> Vec<Vec<String>> {
     let pdf = write(&page(picture, None), Format::Pdf).expect("a page");
     let is_page = |part: &&Vec<u8>| part.windows(4).any(|four| four == b" cm\n");
     let content = streams(&pdf).iter().find(is_page).map(|part| String::from_utf8_lossy(part).into_owned());
@@ -108,18 +110,12 @@ fn operations(picture: &Picture) -> Vec<Vec<String>> {
 #[test]
 fn opacities_and_colours_are_set_again_where_pdf_has_others() {
     let mut picture = figure("fig1", Theme::Light);
-    (picture.under, picture.marks, picture.words) = Default::default();
+    (*picture).under.clear();
     let panels = std::mem::take(&mut picture.panels);
-    let curve = |points: &[[f32; 2]], alpha| Curve {
-        points: points.to_vec(),
-        width: 4.0,
-        dash: vec![],
-        colour: [1, 2, 3],
-        alpha,
-    };
+    let curve = |points: &[[f32; 2]], alpha| line(points, 4.0, &[], ([1, 2, 3], alpha));
     let [from, to] = [[10.0, 10.0], [50.0, 40.0]];
-    picture.curves = vec![curve(&[from], 0.5), curve(&[from, to], 1.0), curve(&[to], 0.5)];
-    let states = |picture: &Picture| -> Vec<String> {
+    picture.above = vec![curve(&[from], 0.5), curve(&[from, to], 1.0), curve(&[to], 0.5)];
+    let states = |picture: &Listed| -> Vec<String> {
         operations(picture)
             .into_iter()
             .filter(|words| words.last().is_some_and(|last| last == "gs"))
@@ -129,19 +125,11 @@ fn opacities_and_colours_are_set_again_where_pdf_has_others() {
     assert_eq!(states(&picture)[1..], ["/G500", "/G1000", "/G500"], "after the background");
 
     // The body of a panel in the plane is drawn in a clip.
-    picture.curves.clear();
     picture.panels = panels[..1].to_vec();
     let panel = &mut picture.panels[0];
     (panel.lines, panel.obstacles) = Default::default();
     let colour = picture.palette.sound_flat;
-    picture.marks = vec![Mark {
-        rectangle: [0.0, 0.0, 9.0, 9.0],
-        along: [1.0, 0.0],
-        colour,
-        second: colour,
-        opacity: 255,
-        shape: MarkShape::Filled,
-    }];
+    picture.above = vec![Item::fill(Path::rectangle(Vec2::ZERO, Vec2::splat(9.0)), colour)];
     let fill = colour.map(|byte| f32::from(byte) / 255.0).map(|part| format!("{part}"));
     let sets =
         operations(&picture).iter().filter(|words| words.len() == 4 && words[3] == "rg" && words[..3] == fill).count();
@@ -200,7 +188,7 @@ fn lit_bodies_are_images_without_words() {
     let picture = compose(&scene, &frame);
     let lit = bodies(&picture, Some([180.0, 90.0])).expect("lit panels");
     assert_eq!(lit.panels, picture.panels);
-    assert!(lit.words.is_empty() && lit.marks.is_empty() && lit.curves.is_empty());
+    assert!(lit.under.is_empty() && lit.above.is_empty());
     let [width, height] = picture.size;
     let mut pixels = picture.palette.background.repeat((width * height) as usize);
     // Three pixels beside each other in the second panel.
@@ -256,7 +244,7 @@ fn obstacles_that_leave_their_panel_fade() {
     let mut picture = compose(&scene, &frame(&scene, 0));
     let fading = picture.panels[0].obstacles.fade.expect("it leaves the panel");
     assert_eq!(fading.strength, [1.0, 0.0, 0.0, 0.0]);
-    let covers = |picture: &Picture| svg(picture).matches("<image").count();
+    let covers = |picture: &Listed| svg(picture).matches("<image").count();
     assert_eq!(covers(&picture), 1);
     picture.panels[0].obstacles.fade = None;
     assert_eq!(covers(&picture), 0);

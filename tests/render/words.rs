@@ -1,8 +1,8 @@
 //! Positions of texts: nowhere overlapping, and the same in every frame.
 
+use super::listed::{Composer, Listed, Mark};
 use super::{all, assert_words_are_clear, compose, fig4b, frame, parse, unknown};
 use localshape::look::Labels;
-use localshape::picture::{Composer, Mark, MarkShape, Picture};
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::Scene;
@@ -80,17 +80,13 @@ fn no_words_overlap_and_none_leaves_the_picture() {
 }
 
 /// Left, top, right and bottom of the legend's arrow as drawn.
-fn key_arrow(picture: &Picture) -> Option<[f32; 4]> {
+fn key_arrow(picture: &Listed) -> Option<[f32; 4]> {
     let words = picture.words.iter().find(|word| word.text.starts_with("displacement "))?;
     let [left, top, _, bottom] = words.bounds();
     let is_beside = |mark: &&Mark| {
         let [x, y, width, height] = mark.rectangle;
         let middle = y + 0.5 * height;
-        mark.shape == MarkShape::Arrow
-            && mark.along == Mark::UPRIGHT
-            && x + width < left
-            && top < middle
-            && middle < bottom
+        mark.shape == "arrow" && mark.along == Mark::UPRIGHT && x + width < left && top < middle && middle < bottom
     };
     let [x, y, width, height] = picture.marks.iter().rev().find(is_beside)?.rectangle;
     let (halo, middle) = (3.0 / 23.0 * height, y + 0.5 * height);
@@ -169,7 +165,7 @@ fn the_scale_bar_stays_when_its_run_blows_up() {
     let text = text.replacen("stiffness = 1e4 }", "stiffness = 1e4 }\nintegrator = 'explicit-euler'", 1);
     let scene = parse(&text.replace("step = 0.005", "step = 0.02"));
     let (composer, mut runner) = (unknown(&scene), Runner::new(&scene, &[0]));
-    let bar = |picture: &Picture| picture.words.iter().find(|word| word.text.ends_with("00 mm")).map(|word| word.span);
+    let bar = |picture: &Listed| picture.words.iter().find(|word| word.text.ends_with("00 mm")).map(|word| word.span);
     let frames = [0, scene.last_frame()].map(|frame| composer.compose(&runner.frame(frame)));
     assert!(frames[1].words.iter().any(|word| word.text.starts_with("diverged")), "it blows up");
     assert!(bar(&frames[0]).is_some());
@@ -314,7 +310,7 @@ fn what_is_not_wanted_is_not_written() {
         (Labels { name: false, ..labels }, "Local shape"),
         (Labels { model: false, ..labels }, "27 cubes, k = 10 kN/m, ζ = 0.1"),
     ] {
-        let has = |picture: &Picture| picture.words.iter().any(|word| word.text == words);
+        let has = |picture: &Listed| picture.words.iter().any(|word| word.text == words);
         scene.view.labels = labels;
         assert!(has(&compose(&scene, &frame)), "“{words}” is missing");
         scene.view.labels = wanted;

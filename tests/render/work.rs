@@ -1,8 +1,9 @@
 //! The commands to the device: none that a picture does not need, and none twice.
 
+use super::listed::Listed;
 use super::{compose, draw, fig4b, gpu, parse, renderer};
 use localshape::gpu::{AdapterChoice, Gpu, GpuError, Work};
-use localshape::picture::Picture;
+use localshape::picture::Item;
 use localshape::render::{RenderError, Renderer};
 use localshape::runner::Runner;
 use localshape::vector::{Format, Page, write};
@@ -31,7 +32,7 @@ fn pictures(work: &[Work]) -> usize {
 }
 
 /// The work of a new renderer for a picture.
-fn work_for(gpu: &Gpu, picture: &Picture) -> Vec<Work> {
+fn work_for(gpu: &Gpu, picture: &Listed) -> Vec<Work> {
     gpu.take_work();
     draw(gpu, picture);
     gpu.take_work()
@@ -73,7 +74,7 @@ fn only_what_a_picture_holds_is_drawn_and_has_pipelines() {
     for panel in &mut bare.panels {
         (panel.floor, panel.lines, panel.borders) = (None, Vec::new(), Vec::new());
     }
-    (bare.words, bare.marks) = (Vec::new(), Vec::new());
+    bare.above.clear();
     assert_eq!(drawn(&work_for(&gpu, &bare)), set(&[&["sound", "composite"]]));
     bare.panels.clear();
     assert_eq!(drawn(&work_for(&gpu, &bare)), BTreeSet::new());
@@ -86,7 +87,7 @@ fn only_what_changed_is_uploaded() {
     scene.view.size = [640, 360];
     let mut picture = compose(&scene, &frame);
     let mut renderer = renderer(&gpu, picture.size);
-    let mut work_for = |picture: &Picture| {
+    let mut work_for = |picture: &Listed| {
         gpu.take_work();
         let image = renderer.draw(picture).expect("the device works");
         (gpu.take_work(), image)
@@ -106,7 +107,8 @@ fn only_what_changed_is_uploaded() {
     assert!(matches!(uploads(&work)[..], [("vertices", size)] if size <= 4096), "{:?}", uploads(&work));
     assert_eq!(moved, draw(&gpu, &picture), "as drawn alone");
     // Words are painted without the device.
-    picture.words[0].size *= 1.5;
+    let runs = picture.above.iter_mut().filter_map(|item| if let Item::Text(run) = item { Some(run) } else { None });
+    runs.take(1).for_each(|run| run.size *= 1.5);
     let (work, larger) = work_for(&picture);
     assert_eq!(uploads(&work), Vec::new());
     assert_eq!(larger, draw(&gpu, &picture), "as drawn alone");

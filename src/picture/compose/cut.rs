@@ -4,7 +4,7 @@ use super::panel::Draft;
 use crate::picture::fade::FADING;
 use crate::picture::narrow::narrow;
 use crate::picture::plane::sides;
-use crate::picture::{Fading, Mark, MarkShape, Obstacles};
+use crate::picture::{Fading, Item, Obstacles};
 use glam::{DVec2, DVec3};
 
 /// The margin around the body, which does not fade (px in the reference picture).
@@ -32,7 +32,7 @@ impl Draft<'_> {
     /// Lets solid obstacles fade where they leave the part of the panel between its words and half of its margins. At
     /// the sides where plates leave the panel, covers everything but the body with the background. Both fade towards
     /// the side, and less where they hardly leave it, so that nothing changes suddenly.
-    pub(super) fn fade_obstacles(&self, obstacles: &mut Obstacles, marks: &mut Vec<Mark>) {
+    pub(super) fn fade_obstacles(&self, obstacles: &mut Obstacles, marks: &mut Vec<Item>) {
         let place = |at: [f32; 3]| self.origin + self.side * DVec3::from(at.map(f64::from));
         let has_words = self.scene.view.labels.are_in_panels();
         let room = if has_words { self.between_words() } else { self.viewport };
@@ -61,7 +61,7 @@ impl Draft<'_> {
         &self,
         [left, top, right, bottom]: [f64; 4],
         boxes: impl Iterator<Item = [DVec2; 2]>,
-        marks: &mut Vec<Mark>,
+        marks: &mut Vec<Item>,
     ) {
         let parts = self.beyond([left, top, right, bottom], boxes);
         if parts.iter().all(Option::is_none) {
@@ -91,7 +91,7 @@ impl Draft<'_> {
                         0 => [across, start, 1.0, stop - start],
                         _ => [start, across, stop - start, 1.0],
                     };
-                    let mark = Mark::upright(rectangle, MarkShape::Filled, self.composer.palette.background);
+                    let mark = Item::rectangle(rectangle, self.composer.palette.background);
                     marks.extend(mark.faded(cover));
                 }
             }

@@ -4,7 +4,7 @@ use super::Composer;
 use super::panel::Draft;
 use crate::colour::Colour;
 use crate::look::Ghost;
-use crate::picture::Curve;
+use crate::picture::Item;
 use crate::picture::ghost;
 use crate::picture::layout::Rectangle;
 use crate::sim::{RunFrame, Status};
@@ -22,7 +22,7 @@ impl Composer<'_> {
 
 impl Draft<'_> {
     /// The ghost of the scene, inside a part of the picture. `others` are runs at the same moment.
-    pub(super) fn ghost(&self, others: &[RunFrame], room: Rectangle, curves: &mut Vec<Curve>) {
+    pub(super) fn ghost(&self, others: &[RunFrame], room: Rectangle, curves: &mut Vec<Item>) {
         let Some((_, colour)) = self.composer.ghost() else { return };
         match self.scene.view.ghost {
             Some(Ghost::Rest) => {
@@ -41,7 +41,7 @@ impl Draft<'_> {
     }
 
     /// The outline of the body with its nodes at other positions (m).
-    pub(super) fn outline(&self, position: &[DVec3], colour: Colour, room: Rectangle, curves: &mut Vec<Curve>) {
+    pub(super) fn outline(&self, position: &[DVec3], colour: Colour, room: Rectangle, curves: &mut Vec<Item>) {
         if self.diverged || position.len() != self.body.len() {
             return;
         }

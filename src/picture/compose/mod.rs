@@ -219,23 +219,20 @@ impl<'a> Composer<'a> {
             legend.draw(&mut writer, width, ground, arrow, &self.samples(), self.bar(frame));
         }
         let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::with_capacity(runs.len()));
-        let mut curves = Vec::new();
+        let curves = std::mem::take(&mut writer.curves);
         for ((&panel, run), framing) in layout.panels.iter().zip(&frame.runs).zip(&framings) {
             let draft = Draft::new(self, panel, run, framing, scale);
-            draft.ghost(&frame.runs, draft.between_words(), &mut curves);
-            draft.paths(&self.traced, draft.between_words(), &mut curves);
+            draft.ghost(&frame.runs, draft.between_words(), &mut writer.curves);
+            draft.paths(&self.traced, draft.between_words(), &mut writer.curves);
             panels.push(draft.panel(&mut under, &mut marks));
         }
         marks.extend(hairlines);
-        let Writer { marks: above, curves: in_front, mut words, .. } = writer;
-        curves.extend(in_front);
+        writer.curves.extend(curves);
         // Text and tallies lie above bodies; text over a body gets a halo.
-        marks.extend(above);
-        for word in &mut words {
-            word.has_halo = panels.iter().any(|panel| word.touches(panel.region));
-        }
+        writer.over_bodies(&panels);
+        marks.extend(writer.items());
         let (fonts, ramp) = (self.fonts.clone(), self.ramp.clone());
-        Picture { size, palette: self.palette, fonts, ramp, panels, under, marks, curves, words }
+        Picture { size, palette: self.palette, fonts, ramp, panels, under, above: marks }
     }
 
     /// Arranges the panels of some runs.

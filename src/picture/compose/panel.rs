@@ -13,7 +13,7 @@ use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
 use crate::picture::shadow::key_light;
 use crate::picture::surface::SurfaceLines;
-use crate::picture::{Framing, Line, Mark, Mesh, Obstacles, Panel, Sight};
+use crate::picture::{Framing, Item, Line, Mesh, Obstacles, Panel, Sight};
 use crate::scene::Scene;
 use crate::sim::geometry;
 use crate::sim::{Body, Dimension, RunFrame, Snapshot, Status};
@@ -124,7 +124,7 @@ impl<'a> Draft<'a> {
     }
 
     /// Draws the panel, with flat marks below and above the bodies.
-    pub(super) fn panel(&self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) -> Panel {
+    pub(super) fn panel(&self, under: &mut Vec<Item>, above: &mut Vec<Item>) -> Panel {
         let mut lines = SurfaceLines::default();
         let [sound, turned_over] = self.surfaces(&mut lines);
         self.marks_of_plane(under, above);
@@ -194,7 +194,7 @@ impl<'a> Draft<'a> {
     }
 
     /// Floors, nodes and ring arrows of the plane.
-    fn marks_of_plane(&self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) {
+    fn marks_of_plane(&self, under: &mut Vec<Item>, above: &mut Vec<Item>) {
         if !self.flat {
             return;
         }
@@ -226,7 +226,7 @@ impl<'a> Draft<'a> {
     }
 
     /// All obstacles but the ground, with their lines and marks.
-    fn obstacles(&self, surfaces: [&Mesh; 2], lines: &mut Vec<Line>, above: &mut Vec<Mark>) -> (Obstacles, Staged) {
+    fn obstacles(&self, surfaces: [&Mesh; 2], lines: &mut Vec<Line>, above: &mut Vec<Item>) -> (Obstacles, Staged) {
         let site = Site {
             obstacles: &self.scene.obstacles,
             time: self.run.snapshot.time,
@@ -258,7 +258,7 @@ impl<'a> Draft<'a> {
     }
 
     /// Marks on nodes that are held or dragged.
-    fn hands(&self, above: &mut Vec<Mark>) {
+    fn hands(&self, above: &mut Vec<Item>) {
         if self.diverged {
             return;
         }
@@ -278,7 +278,7 @@ impl<'a> Draft<'a> {
     }
 
     /// Displacements.
-    fn arrows(&self, above: &mut Vec<Mark>) {
+    fn arrows(&self, above: &mut Vec<Item>) {
         let view = &self.scene.view;
         if !view.visible.displacements || self.diverged || self.position.is_empty() {
             return;

@@ -3,11 +3,9 @@
 use super::Composer;
 use super::panel::Draft;
 use crate::look::Traced;
-use crate::picture::Curve;
-use crate::picture::chart::dot;
+use crate::picture::Item;
 use crate::picture::fade::{FADING, Fade};
 use crate::picture::layout::Rectangle;
-use crate::picture::narrow::narrow;
 use crate::picture::plane::{clipped, sides};
 use crate::picture::series::{EXACT, simplified};
 use crate::runner::history::TimeSeries;
@@ -49,7 +47,7 @@ impl Composer<'_> {
 
 impl Draft<'_> {
     /// The paths up to the present moment inside a part of the picture, for the known part of the run's time series.
-    pub(super) fn paths(&self, series: &[TimeSeries], room: Rectangle, curves: &mut Vec<Curve>) {
+    pub(super) fn paths(&self, series: &[TimeSeries], room: Rectangle, curves: &mut Vec<Item>) {
         let snapshot = &self.run.snapshot;
         let own = series.iter().find(|series| series.run == self.run.run);
         let Some(own) = own.filter(|_| snapshot.position.len() == self.body.len()) else { return };
@@ -69,14 +67,11 @@ impl Draft<'_> {
             let last = self.lens.project(now).map(|(pixel, _)| pixel).filter(|&pixel| holds(room, pixel.into()));
             for (more, colour, alpha) in [(HALO, halo, HALO_ALPHA), (0.0, colour, 1.0)] {
                 let line = self.scale.line();
-                curves.extend(pieces.iter().map(|(piece, part)| Curve {
-                    points: piece.iter().map(|point| point.map(narrow)).collect(),
-                    width: narrow((width + more) * line),
-                    dash: Vec::new(),
-                    colour,
-                    alpha: narrow(alpha * part),
-                }));
-                curves.extend(last.map(|pixel| dot(pixel, (DOT * width + 0.75 * more) * line, colour)));
+                let curve = |(piece, part): &(Vec<_>, f64)| {
+                    Item::curve(piece, (width + more) * line, &[], (colour, alpha * part))
+                };
+                curves.extend(pieces.iter().map(curve));
+                curves.extend(last.map(|pixel| Item::disc(pixel, (DOT * width + 0.75 * more) * line, colour)));
             }
         }
     }

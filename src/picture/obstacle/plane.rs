@@ -4,7 +4,7 @@ use super::half_space::{HalfSpace, clipped_polygon, half_space};
 use super::{Site, Staged};
 use crate::picture::narrow::narrow;
 use crate::picture::pointer::Pointers;
-use crate::picture::{Mark, Mesh, Obstacles, Solid, Vertex};
+use crate::picture::{Item, Mesh, Obstacles, Solid, Vertex};
 use crate::sim::{Motion, Obstacle, Shape};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -27,7 +27,7 @@ pub(in crate::picture) struct PlaneObstacles<'a> {
 
 impl PlaneObstacles<'_> {
     /// The arrows of moving plates, on the solid side.
-    pub(in crate::picture) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Mark>) {
+    pub(in crate::picture) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Item>) {
         for obstacle in self.site.obstacles {
             let Shape::Plate { point, .. } = obstacle.shape else { continue };
             let Some((normal, _)) = half_space(obstacle, self.site.time).filter(|_| obstacle.motion != Motion::Still)

@@ -6,7 +6,7 @@ use super::space::Staging;
 use crate::picture::narrow::narrow;
 use crate::picture::pointer::Pointers;
 use crate::picture::shadow::Plane;
-use crate::picture::{Mark, Pane, PaneCorner, Slab};
+use crate::picture::{Item, Pane, PaneCorner, Slab};
 use crate::runner::history::NearObstacles;
 use crate::sim::{Motion, Pose, Shape};
 use glam::{DVec2, DVec3};
@@ -86,7 +86,7 @@ impl Staging<'_> {
     }
 
     /// The arrows of moving plates.
-    pub(in crate::picture) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Mark>) {
+    pub(in crate::picture) fn arrows(&self, pointers: &Pointers<'_>, marks: &mut Vec<Item>) {
         for (at, obstacle) in self.site.obstacles.iter().enumerate() {
             let Shape::Plate { normal, .. } = obstacle.shape else { continue };
             if obstacle.motion == Motion::Still {

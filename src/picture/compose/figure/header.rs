@@ -3,10 +3,9 @@
 use crate::picture::caption::Writer;
 use crate::picture::compose::cut;
 use crate::picture::layout::{CAPTION_LINE, Scale};
-use crate::picture::tally::hollow;
+use crate::picture::tally::{hollow, struck};
 use crate::picture::text::Weight;
 use crate::picture::wrap::wrapped;
-use crate::picture::{Mark, MarkShape};
 use crate::scene::figure::Figure;
 
 /// The baselines of title and caption without a title, and from the title to the caption (px in the reference picture).
@@ -83,8 +82,7 @@ pub(super) fn write(writer: &mut Writer<'_>, figure: &Figure, wordings: &[String
         }
         let left = left + of_flat;
         let rectangle = [left.round(), top, side, side];
-        let square = Mark::upright(rectangle, MarkShape::Struck, palette.alarm);
-        writer.marks.push(Mark { second: palette.alarm_line, ..square });
+        writer.marks.push(struck(rectangle, palette));
         writer.left(text, Weight::Regular, small, palette.second_text, left + side + gap, baseline);
         last = last.max(baseline);
     }

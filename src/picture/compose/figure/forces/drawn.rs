@@ -5,7 +5,7 @@ use super::marks::{GHOST_LINE, bare, ghost_colour, outlined};
 use crate::colour::Colour;
 use crate::picture::arrows::arrow;
 use crate::picture::caption::Writer;
-use crate::picture::chart::{NUMBERS, dot};
+use crate::picture::chart::NUMBERS;
 use crate::picture::compose::figure::labels::Labels;
 use crate::picture::compose::panel::Draft;
 use crate::picture::layout::Scale;
@@ -13,7 +13,7 @@ use crate::picture::narrow::narrow;
 use crate::picture::plane::is_inside;
 use crate::picture::text::Weight;
 use crate::picture::wire::Edges;
-use crate::picture::{Curve, Mark, MarkShape, Mesh, Panel, Second, Solid, Stroke, Vertex};
+use crate::picture::{Item, Mesh, Panel, Second, Solid, Stroke, Vertex};
 use crate::scene::figure::{Figure, Forces};
 use glam::{DVec2, DVec3};
 
@@ -59,7 +59,7 @@ impl<'a> Drawn<'a> {
     }
 
     /// The body with its rest shape behind it.
-    pub(super) fn panel(&self, under: &mut Vec<Mark>, above: &mut Vec<Mark>) -> Panel {
+    pub(super) fn panel(&self, under: &mut Vec<Item>, above: &mut Vec<Item>) -> Panel {
         // Ring arrows, nodes and displacements of usual panels are left out.
         let mut panel = self.draft.panel(under, &mut Vec::new());
         self.draft.fade_obstacles(&mut panel.obstacles, above);
@@ -121,7 +121,7 @@ impl<'a> Drawn<'a> {
     }
 
     /// The dashed outline of the ghost in the plane, outside of the body or complete.
-    fn ghost_outline(&self, marks: &mut Vec<Mark>, also_inside: bool) {
+    fn ghost_outline(&self, marks: &mut Vec<Item>, also_inside: bool) {
         let body = &self.cell.scene.body;
         let pixels: Vec<_> = self.cell.snapshot().position.iter().map(|&at| self.pixel(at)).collect();
         let polygons: Vec<Vec<DVec2>> =
@@ -139,14 +139,14 @@ impl<'a> Drawn<'a> {
                         true => palette.second_text,
                         false => palette.axis,
                     };
-                    marks.push(Mark::line(ends, GHOST_LINE * self.scale.line(), colour));
+                    marks.push(Item::line(ends, GHOST_LINE * self.scale.line(), colour));
                 }
             }
         }
     }
 
     /// Everything above the body.
-    pub(super) fn draw(&self, forces: &Forces, writer: &mut Writer<'_>, above: &mut Vec<Mark>) {
+    pub(super) fn draw(&self, forces: &Forces, writer: &mut Writer<'_>, above: &mut Vec<Item>) {
         let Self { cell, scale, .. } = self;
         let palette = &self.figure.look.palette();
         let unit = scale.unit;
@@ -198,7 +198,7 @@ impl<'a> Drawn<'a> {
         let (short, long): (Vec<_>, Vec<_>) = order.iter().copied().partition(is_short);
         for at in long {
             if self.is_in_corner(at, arrows[at]) {
-                above.extend(bare(arrows[at], scale.line(), own));
+                above.push(bare(arrows[at], scale.line(), own));
                 continue;
             }
             let whole = arrow(arrows[at], scale.line(), own, palette.background);
@@ -209,13 +209,11 @@ impl<'a> Drawn<'a> {
                 let usual = NODE * scale.line();
                 let [part, least] = SMALL_NODE;
                 let radius = if short.contains(&node) { (part * length(node)).max(least * usual) } else { usual };
-                let disc = Mark::around(self.pixel(at), radius, MarkShape::Node, palette.node);
-                above.extend(Mark { second: palette.edge, ..disc }.faded(seen));
+                above.extend(Item::rimmed(self.pixel(at), radius, palette.node, palette.edge).faded(seen));
             }
         }
         for at in short {
-            let parts = bare(arrows[at], scale.line(), own).into_iter();
-            above.extend(parts.filter_map(|part| part.faded(HIDDEN + (1.0 - HIDDEN) * seen[at])));
+            above.extend(bare(arrows[at], scale.line(), own).faded(HIDDEN + (1.0 - HIDDEN) * seen[at]));
         }
         if order.is_empty() {
             let text = if cell.ways.iter().all(|way| way.length() < NONE * cell.scene.view.side) {
@@ -287,17 +285,14 @@ impl<'a> Drawn<'a> {
         let visible = (0..position.len()).filter(|&node| seen[node] > 0.5);
         let Some(node) = visible.max_by(|one, other| displaced(one).total_cmp(&displaced(other))) else { return };
         let [now, equilibrium] = [position[node], cell.ghost[node]].map(|at| self.pixel(at));
-        let curve = |to: DVec2, dash: &[f64]| Curve {
-            points: [centre, to].map(|at| at.to_array().map(narrow)).to_vec(),
-            width: narrow(VECTOR * scale.line()),
-            dash: dash.iter().map(|length| narrow(length * unit)).collect(),
-            colour: palette.text,
-            alpha: 0.9,
+        let mut curve = |to: DVec2, dash: &[f64]| {
+            let points = [centre, to].map(|at| at.to_array());
+            writer.curves.push(Item::curve(&points, VECTOR * scale.line(), dash, (palette.text, 0.9)));
         };
-        writer.curves.push(curve(now, &[]));
-        writer.curves.push(curve(equilibrium, &DASH));
+        curve(now, &[]);
+        curve(equilibrium, &DASH.map(|length| length * unit));
         for (radius, colour) in [(CENTRE + 1.6, palette.background), (CENTRE, palette.text)] {
-            writer.curves.push(dot(centre.to_array(), radius * unit, colour));
+            writer.curves.push(Item::disc(centre.to_array(), radius * unit, colour));
         }
         labels.lines.extend([[centre, now], [centre, equilibrium]]);
         let across = |to: DVec2, other: DVec2| {

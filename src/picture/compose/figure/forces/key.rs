@@ -1,10 +1,9 @@
 //! The key of a diagram of forces.
 
 use super::marks::{GHOST_LINE, ghost_colour, outlined};
-use crate::picture::Mark;
+use crate::picture::Item;
 use crate::picture::arrows::arrow;
 use crate::picture::caption::Writer;
-use crate::picture::chart::filled;
 use crate::picture::layout::Scale;
 use crate::picture::number::round_below;
 use crate::picture::text::Weight;
@@ -26,7 +25,7 @@ pub(super) struct Key<'a> {
 }
 
 impl Key<'_> {
-    pub(super) fn draw(&self, writer: &mut Writer<'_>, marks: &mut Vec<Mark>) {
+    pub(super) fn draw(&self, writer: &mut Writer<'_>, marks: &mut Vec<Item>) {
         let Self { figure, forces, scene, pixels, scale, .. } = *self;
         let (palette, unit) = (&figure.look.palette(), scale.unit);
         let [width, height] = figure.size.map(f64::from);
@@ -70,14 +69,14 @@ impl Key<'_> {
         // Ghost.
         let icon = 22.0 * unit;
         let rectangle = [left, middle - 0.5 * icon, icon, icon].map(f64::round);
-        marks.push(filled(rectangle, ghost_colour(palette)));
+        marks.push(Item::rectangle(rectangle, ghost_colour(palette)));
         let [x, y, w, h] = rectangle;
         let corners = [[x, y], [x + w, y], [x + w, y + h], [x, y + h]].map(DVec2::from);
         for at in 0..4 {
             let ends = [corners[at], corners[(at + 1) % 4]];
             for part in [[0.0, 0.2], [0.4, 0.6], [0.8, 1.0]] {
                 let dash = part.map(|share| ends[0].lerp(ends[1], share));
-                marks.push(Mark::line(dash, GHOST_LINE * scale.line(), palette.axis));
+                marks.push(Item::line(dash, GHOST_LINE * scale.line(), palette.axis));
             }
         }
         left = say("rest shape, best fit", left + icon + gap, writer) + 3.0 * gap;

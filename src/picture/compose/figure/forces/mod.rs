@@ -7,9 +7,9 @@ mod marks;
 
 use super::{NoRoom, header};
 use crate::look::Labels;
+use crate::picture::Item;
 use crate::picture::Picture;
 use crate::picture::caption::Writer;
-use crate::picture::chart::filled;
 use crate::picture::compose::Composer;
 use crate::picture::layout::Scale;
 use crate::picture::text::{Fonts, Weight};
@@ -102,7 +102,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
             let from = top + scale.margin() - raised;
             let line = [x, from, thickness, cells_bottom - from];
             // Above the fading at the sides of the cells.
-            above.push(filled(line, palette.hairline));
+            above.push(Item::rectangle(line, palette.hairline));
         }
     }
     if runs > 1 && rows > 1 {
@@ -115,9 +115,8 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
         }
     }
     Key { figure, forces, scene: &scenes[0], pixels, columns, scale }.draw(&mut writer, &mut above);
-    let Writer { marks, curves, words, .. } = writer;
-    above.extend(marks);
-    Ok(Picture { size: figure.size, palette, fonts, ramp: Vec::new(), panels, under, marks: above, curves, words })
+    above.extend(writer.items());
+    Ok(Picture { size: figure.size, palette, fonts, ramp: Vec::new(), panels, under, above })
 }
 
 /// A scene for a diagram: in the figure's colours, without fields, strips, words, arrows and floors.

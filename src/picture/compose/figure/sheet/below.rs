@@ -4,10 +4,9 @@ use super::sheet_layout::{SheetLayout, TALLY_RAISED};
 use crate::picture::caption::{Writer, diverged, wider};
 use crate::picture::compose::Composer;
 use crate::picture::layout::Scale;
-use crate::picture::narrow::narrow;
 use crate::picture::tally::{self, Tally};
 use crate::picture::text::Weight;
-use crate::picture::{Mark, number, series};
+use crate::picture::{number, series};
 use crate::reading::captions::elements;
 use crate::scene::Scene;
 use crate::sim::{Diagnostic, RunFrame, Snapshot, Status};
@@ -55,9 +54,10 @@ pub(super) fn key(scenes: &[Scene], tallies: &[Tally], scale: Scale, layout: &Sh
 }
 
 /// The text below the body of a tile.
-pub(super) struct Below {
-    /// The tally, placed as in a tile at the picture's origin.
-    tally: Vec<Mark>,
+pub(super) struct Below<'a> {
+    /// The tally, if there is one, and the turned-over and the flat elements.
+    tally: Option<&'a Tally>,
+    states: [&'a [bool]; 2],
     tally_width: f64,
     /// The number of turned-over elements or, if there are none, of flat ones; empty if unknown.
     count: String,
@@ -68,13 +68,13 @@ pub(super) struct Below {
     diverged: Vec<String>,
 }
 
-impl Below {
+impl<'a> Below<'a> {
     /// The text for a run, with a diagnostic if requested.
     pub(super) fn new(
         writer: &Writer<'_>,
         layout: &SheetLayout,
-        composer: &Composer<'_>,
-        run: &RunFrame,
+        composer: &'a Composer<'_>,
+        run: &'a RunFrame,
         number: Option<Diagnostic>,
     ) -> Self {
         let Snapshot { turned_over: over, flat, .. } = &run.snapshot;
@@ -86,16 +86,16 @@ impl Below {
             }
             Status::Ok => Vec::new(),
         };
-        let (mut tally, mut tally_width) = (Vec::new(), 0.0);
-        if !over.is_empty() {
-            let (scale, room) = size_of_tallies(writer.scale, layout);
-            tally_width = composer.tally.draw([over, flat], writer.palette, scale, room, [0.0; 2], &mut tally);
-        }
+        let tally = (!over.is_empty()).then_some(&composer.tally);
+        let states = [&over[..], &flat[..]];
+        let (scale, room) = size_of_tallies(writer.scale, layout);
+        let width = |tally: &Tally| tally.draw(states, writer.palette, scale, room, [0.0; 2], &mut Vec::new());
         let count = run.snapshot.diagnostics.turned_over;
         let flattened = flat.iter().filter(|&&flat| flat).count();
         Self {
             tally,
-            tally_width,
+            states,
+            tally_width: tally.map_or(0.0, width),
             count: match count {
                 _ if over.is_empty() => String::new(),
                 0 if flattened > 0 => format!("{flattened} flat"),
@@ -147,11 +147,11 @@ impl Below {
         let gap = if number.is_empty() { 0.0 } else { NUMBER_GAP * scale.type_unit() };
         let counted = self.counted(writer);
         let left = (middle - 0.5 * (counted + gap + fonts.width(number, Weight::Regular, small))).round();
-        writer.marks.extend(self.tally.into_iter().map(|mut mark| {
-            mark.rectangle[0] += narrow(left);
-            mark.rectangle[1] += narrow(bottom.round());
-            mark
-        }));
+        let corner = [left, bottom.round()];
+        let (scale, room) = size_of_tallies(scale, layout);
+        if let Some(tally) = self.tally {
+            tally.draw(self.states, palette, scale, room, corner, &mut writer.marks);
+        }
         let colour = if self.is_alarm { palette.alarm_text } else { palette.second_text };
         let count_left = left + counted - fonts.width(&self.count, Weight::SemiBold, size);
         writer.left(&self.count, Weight::SemiBold, size, colour, count_left, baseline);

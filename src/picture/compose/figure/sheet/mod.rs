@@ -27,9 +27,8 @@ use crate::picture::compose::Composer;
 use crate::picture::compose::panel::Draft;
 use crate::picture::layout::Scale;
 use crate::picture::legend::Legend;
-use crate::picture::narrow::narrow;
 use crate::picture::text::Fonts;
-use crate::picture::{Colour, Curve, Framing, Picture};
+use crate::picture::{Colour, Framing, Item, Picture};
 use crate::runner::history::History;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
@@ -112,7 +111,6 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         legend.draw(&mut writer, f64::from(size[0]), f64::from(bottom), arrow, &first.samples(), first.bar(&frame));
     }
 
-    let Writer { marks: above, mut curves, mut words, .. } = writer;
     let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::new());
     for (row, cells) in moments.cells.iter().enumerate() {
         for (column, run) in cells.iter().enumerate() {
@@ -120,20 +118,18 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
             let draft = Draft::new(composer, layout.tile(row, column), run, framing, layout.tile_scale);
             let [left, top, width, height] = draft.viewport;
             let room = [left, top, width, height - (layout.below_body.ceil() as u32).min(height)];
-            draft.ghost(moments.others[row][column].as_slice(), room, &mut curves);
-            draft.paths(&composer.traced, room, &mut curves);
+            draft.ghost(moments.others[row][column].as_slice(), room, &mut writer.curves);
+            draft.paths(&composer.traced, room, &mut writer.curves);
             panels.push(draft.panel(&mut under, &mut marks));
             // Surfaces without width are invisible.
             let ends = cameras::collapsed(&scenes[sheet.columns[column].scene], &layout, [row, column], framing, run);
-            curves.extend(ends.map(|ends| collapsed(ends, layout.tile_scale, palette.outline)));
+            writer.curves.extend(ends.map(|ends| collapsed(ends, layout.tile_scale, palette.outline)));
         }
     }
-    marks.extend(above);
-    for word in &mut words {
-        word.has_halo = panels.iter().any(|panel| word.touches(panel.region));
-    }
+    writer.over_bodies(&panels);
+    marks.extend(writer.items());
     let ramp = composers.first().map_or_else(Vec::new, |composer| composer.ramp.clone());
-    Picture { size, palette: *palette, fonts, ramp, panels, under, marks, curves, words }
+    Picture { size, palette: *palette, fonts, ramp, panels, under, above: marks }
 }
 
 /// The scenes for their tiles: without words, in the look of the figure.
@@ -167,11 +163,11 @@ fn seen(scene: &Scene, at: usize, sheet: &Sheet, framings: &[Vec<Framing>]) -> S
 }
 
 /// A collapsed body, as a line or a dot.
-fn collapsed(ends: [DVec2; 2], scale: Scale, colour: Colour) -> Curve {
+fn collapsed(ends: [DVec2; 2], scale: Scale, colour: Colour) -> Item {
     let is_dot = ends[0].distance(ends[1]) < 1.0;
     let width = scale.line() * if is_dot { COLLAPSED[1] } else { COLLAPSED[0] };
-    let points = ends.iter().take(if is_dot { 1 } else { 2 }).map(|end| [end.x, end.y].map(narrow)).collect();
-    Curve { points, width: narrow(width), dash: Vec::new(), colour, alpha: 1.0 }
+    let points = ends.map(|end| end.to_array());
+    Item::curve(&points[..if is_dot { 1 } else { 2 }], width, &[], colour)
 }
 
 /// The key of colours and arrows, if there are any.
