@@ -28,8 +28,8 @@ pub(super) struct Listed {
 pub(super) struct Mark {
     /// The name of the part; `rectangle`, `line` or `colours` for other shapes.
     pub(super) shape: &'static str,
-    /// Left, top, width and height of its box (px); of an arrow, the box that is turned around its left upper corner, with
-    /// room for its halo.
+    /// Left, top, width and height of its box (px); of an arrow, with room for its halo, a line or
+    /// a floor, the box that is turned around its left upper corner.
     pub(super) rectangle: [f32; 4],
     /// The direction of an arrow or a line.
     pub(super) along: [f32; 2],
@@ -114,7 +114,8 @@ fn read(item: &Item, marks: &mut Vec<Mark>, curves: &mut Vec<Curve>) {
         Item::Stroke { path, pen, paint } => match (&path.points()[..], pen.round || !pen.dash.is_empty()) {
             (&[from, to], false) => {
                 let along = (to - from).normalize_or_zero().to_array();
-                marks.push(Mark { along, ..mark("line", bounds(path), paint) });
+                let rectangle = [from.x, from.y, from.distance(to), pen.width];
+                marks.push(Mark { along, rectangle, ..mark("line", bounds(path), paint) });
             }
             (points, _) => curves.push(curve(points.to_vec(), pen.width, &pen.dash, paint)),
         },
@@ -168,10 +169,17 @@ fn part(name: &'static str, items: &[Item], mark: &dyn Fn(&'static str, [Vec2; 2
         }
         [Item::Fill { path, .. }] if name == "floor" => {
             let points = path.points();
-            Mark { along: (points[1] - points[0]).normalize().to_array(), ..whole }
+            turned(whole, [points[0], points[1] - points[0], points[3] - points[0]])
         }
+        [Item::Image(image)] => turned(whole, image.place),
         _ => whole,
     }
+}
+
+/// A mark with its turned rectangle, from a corner along two sides.
+fn turned(mark: Mark, [corner, along, down]: [Vec2; 3]) -> Mark {
+    let rectangle = [corner.x, corner.y, along.length(), down.length()];
+    Mark { rectangle, along: along.normalize().to_array(), ..mark }
 }
 
 /// The corners of the box of a path.

@@ -148,7 +148,7 @@ fn what_turns_slowly_changes_slowly() {
                 .iter()
                 .map(|frame| {
                     let mut picture = composer.compose(frame);
-                    picture.words.clear();
+                    picture.mute();
                     renderer.draw(&picture).expect("the device works")
                 })
                 .collect();
