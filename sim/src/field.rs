@@ -16,13 +16,14 @@ pub enum Field {
     /// Relative deformation of each element: `√(Σ |r − M R0|² / Σ |R0|²)` with the best rotation `M`. Zero for any
     /// rigid motion, and `a` for an element scaled by `1 + a`.
     Strain,
-    /// Distance of each node from its position in the best rigid placement of the whole rest shape (m).
+    /// Distance of each node from its position in the best rigid fit of the rest shape (m).
     Displacement,
     /// Speed of each node (m/s).
     Speed,
-    /// Elastic energy of each node (J): the part of an element's energy for the node's own displacement from the
-    /// equilibrium shape, and half of a spring's energy. The sum over all nodes is the elastic energy of the body.
+    /// Elastic energy of each node (J): its part of the energy of elements, and half of a spring's energy.
     ElasticEnergy,
+    /// Distance of each node from the same node of the run `to` at the same moment (m). That run is plain.
+    Distance,
 }
 
 /// The places of the values of a field.
@@ -39,7 +40,7 @@ impl Field {
     pub fn support(self) -> Support {
         match self {
             Self::Strain => Support::Elements,
-            Self::Displacement | Self::Speed | Self::ElasticEnergy => Support::Nodes,
+            _ => Support::Nodes,
         }
     }
 
@@ -50,6 +51,7 @@ impl Field {
             Self::Displacement => "displacement",
             Self::Speed => "speed",
             Self::ElasticEnergy => "elastic energy",
+            Self::Distance => "distance",
         }
     }
 
@@ -57,7 +59,7 @@ impl Field {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Strain => "",
-            Self::Displacement => "m",
+            Self::Displacement | Self::Distance => "m",
             Self::Speed => "m/s",
             Self::ElasticEnergy => "J",
         }
@@ -70,10 +72,12 @@ impl Field {
             Self::Displacement => "distance from the best fit of the rest shape",
             Self::Speed => "of each node",
             Self::ElasticEnergy => "share of each node",
+            Self::Distance => "of the same nodes; the run itself is plain",
         }
     }
 
-    /// The field at a state. `energies` is the elastic energy of each node (J), for [`Field::ElasticEnergy`].
+    /// The field at a state. `energies` is the elastic energy of each node (J), for [`Field::ElasticEnergy`]. One state has
+    /// no values of [`Field::Distance`]: see [`RunFrame::measure`](crate::RunFrame::measure).
     pub(super) fn values(
         self,
         body: &Body,
@@ -90,6 +94,7 @@ impl Field {
             }
             Self::Speed => state.velocity.iter().map(|velocity| velocity.length()).collect(),
             Self::ElasticEnergy => energies,
+            Self::Distance => Vec::new(),
         }
     }
 }

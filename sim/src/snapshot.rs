@@ -60,6 +60,16 @@ impl RunFrame {
         Self { run, snapshot, last_fit: None }
     }
 
+    /// Makes the distance of each node from the same node of another run (m) the field, [`Field::Distance`]. The other run
+    /// has no values itself, nor has any run after the other has diverged.
+    ///
+    /// [`Field::Distance`]: crate::Field::Distance
+    pub fn measure(&mut self, other: &Self) {
+        let is_known = other.run != self.run && other.snapshot.status == Status::Ok;
+        let nodes = self.snapshot.position.iter().zip(&other.snapshot.position);
+        self.snapshot.field = nodes.filter(|_| is_known).map(|(one, other)| one.distance(*other)).collect();
+    }
+
     /// The state that pictures show.
     pub fn shown(&self) -> &Snapshot {
         self.last_fit.as_ref().map_or(&self.snapshot, |last_fit| &last_fit.snapshot)

@@ -14,7 +14,6 @@ use super::still::{
 };
 use crate::animation::Format;
 use crate::gpu::adapter_name;
-use crate::look::Ghost;
 use crate::output::shell;
 use crate::output::{AtomicFile, FolderLock, OutputError, StoredStates, Tags, folder_of};
 use crate::picture::Composer;
@@ -113,7 +112,7 @@ impl Render {
         let from_states = self.from_states.is_some();
         let wish = Wish { pictures: !self.no_frames, shard: self.shard, from_states, at: self.at.as_ref() };
         let mut jobs = self.options.jobs(scenes, wish, words)?;
-        jobs.iter().try_for_each(|job| check_ghost(&job.scene, &job.runs))?;
+        jobs.iter().try_for_each(|job| check_compared(&job.scene, &job.runs))?;
         if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {
             file.metadata().map_err(|error| missing(file, "npz", error))?;
             job.stored = Some(StoredStates::open(file, &job.scene, &job.runs, &job.frames)?);
@@ -169,7 +168,7 @@ impl Render {
             bail!("{name} gets one frame and nothing else; with {others} name a folder");
         }
         let (runs, frames) = (self.options.runs(scene)?, self.options.frames(scene, self.at.as_ref())?);
-        check_ghost(scene, &runs)?;
+        check_compared(scene, &runs)?;
         let &[frame] = &frames[..] else {
             let count = frames.len();
             bail!(
@@ -232,15 +231,15 @@ impl Render {
     }
 }
 
-/// Checks that the requested runs include the one whose outline is drawn over the others.
-fn check_ghost(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
-    match scene.view.ghost {
-        Some(Ghost::Run(run)) if !runs.contains(&run) => {
+/// Checks that the requested runs include those with which the scene compares others.
+fn check_compared(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
+    match scene.view.compared().into_iter().flatten().find(|(_, run)| !runs.contains(run)) {
+        Some((key, run)) => {
             let (title, name) = (&scene.title, &scene.runs[run].name);
-            let message = format!("--only leaves out the run “{name}”, which `view.ghost` of “{title}” needs");
+            let message = format!("--only leaves out the run “{name}”, which `view.{key}` of “{title}” needs");
             bail!("{message}; add --only {}", shell::word(name))
         }
-        _ => Ok(()),
+        None => Ok(()),
     }
 }
 

@@ -20,15 +20,24 @@ pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &mut Collector<'_>)
             None
         }
         None if name == REST => Some(Ghost::Rest),
-        _ => {
-            let run = run.or_else(|| unknown(name, &[REST], &path, scene, report))?;
-            let other = scene.runs.iter().position(|(_, step)| *step != scene.runs[run].1);
-            if let Some(other) = other {
-                other_steps([run, other], &path, scene, report);
-            }
-            Some(Ghost::Run(run))
-        }
+        _ => self::run(name, &[REST], &path, scene, report).map(Ghost::Run),
     }
+}
+
+/// A run whose states are compared with those of all others. `more` are other words in its place.
+pub(super) fn run(
+    name: &str,
+    more: &[&str],
+    path: &[PathPart<'_>],
+    scene: &Subject<'_>,
+    report: &mut Collector<'_>,
+) -> Option<usize> {
+    let run = scene.runs.iter().position(|(known, _)| *known == name);
+    let run = run.or_else(|| unknown(name, more, path, scene, report))?;
+    if let Some(other) = scene.runs.iter().position(|(_, step)| *step != scene.runs[run].1) {
+        other_steps([run, other], path, scene, report);
+    }
+    Some(run)
 }
 
 /// The points with paths; empty also after a mistake.

@@ -64,9 +64,12 @@ pub(crate) enum ShowFile {
 pub(crate) struct ColourFile {
     /// The field.
     pub(crate) by: Field,
-    /// The values at both ends of the colour bar, in the field's unit. Larger and smaller values have the colours of
-    /// the ends. Default: from zero to an estimate for the scene: a strain of 0.5, a displacement of half an element's
-    /// edge, the speed of a fall through the scene or at the start, the energy of an element with a strain of 0.5.
+    /// The run to which `distance` is measured. All runs then have that run's time step.
+    #[schemars(length(min = 1, max = 80))]
+    pub(crate) to: Option<String>,
+    /// The values at both ends of the colour bar, in the field's unit. Values beyond have the colours of the ends.
+    /// Default: from zero to an estimate for the scene: a strain of 0.5, a displacement of half an element's edge, a
+    /// distance of half the body, the speed of a fall or at the start, the energy of an element with a strain of 0.5.
     pub(crate) range: Option<[f64; 2]>,
     /// The colour map.
     #[serde(default)]

@@ -12,8 +12,8 @@ use super::view::{Camera, ColourScale, FontFiles, View, Visible};
 use crate::reading::captions::rounded;
 use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::coordinates::vector;
-use crate::sim::Dimension;
 use crate::sim::geometry::is_inside;
+use crate::sim::{Dimension, Field};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 
@@ -56,8 +56,7 @@ impl View {
             PanelsFile::Along(ArrangementFile::Column) => 1,
         });
         if let Some(typed) = get::<ColourFile>(typed, "colour", report) {
-            let path = key_path!["view", "colour", "range"];
-            view.colour = Some(colour(&typed, std::slice::from_ref(scene), &path, report)?);
+            view.colour = colour(&typed, std::slice::from_ref(scene), "view", report)?.pop();
         }
         view.visible = match get::<Vec<ShowFile>>(typed, "show", report) {
             Some(shown) => Visible {
@@ -130,18 +129,37 @@ fn camera(typed: &CameraFile, scene: &Subject<'_>, report: &mut Collector<'_>) -
 /// The narrowest range of colours, relative to its larger end: ticks still differ in a few digits.
 const NARROWEST: f64 = 1e-9;
 
-/// The colours of a field. A range that is not typed follows from the scenes.
+/// The colours of a field in each of some scenes, typed in a table. A range that is not typed follows from the scenes.
 pub(crate) fn colour(
     typed: &ColourFile,
     scenes: &[Subject<'_>],
-    path: &[PathPart<'_>; 3],
+    table: &'static str,
     report: &mut Collector<'_>,
-) -> Option<ColourScale> {
+) -> Option<Vec<ColourScale>> {
     let range = match typed.range {
-        Some(range) => rising(range, path, report)?,
+        Some(range) => rising(range, &key_path![table, "colour", "range"], report)?,
         None => [0.0, scenes.iter().fold(0.0, |most: f64, scene| most.max(scene.largest(typed.by)))],
     };
-    Some(ColourScale { field: typed.by, range, map: typed.map })
+    let (path, is_compared) = (key_path![table, "colour", "to"], typed.by == Field::Distance);
+    match &typed.to {
+        None if is_compared => {
+            let message = format!("`{table}.colour` has no `to`, the run to which the distance is measured");
+            report.at(&path[..2], message, "name a run, such as `to = \"Mass-spring\"`".to_owned());
+            return None;
+        }
+        Some(_) if !is_compared => {
+            let message = format!("`{table}.colour.to` is given, but only `by = \"distance\"` compares runs");
+            report.at_key(&path, message, "remove `to`".to_owned());
+            return None;
+        }
+        _ => {}
+    }
+    let one = |scene| {
+        let to = typed.to.as_ref().map(|name| compared::run(name, &[], &path, scene, report));
+        let to = if let Some(to) = to { Some(to?) } else { None };
+        Some(ColourScale { field: typed.by, to, range, map: typed.map })
+    };
+    scenes.iter().map(one).collect()
 }
 
 /// The ends of a scale, if they rise and differ enough.

@@ -36,6 +36,7 @@ impl Subject<'_> {
         match field {
             Field::Strain => LARGE,
             Field::Displacement => LARGE * side,
+            Field::Distance => LARGE * self.body.extent(),
             Field::ElasticEnergy => {
                 let stiffness = self.models.iter().fold(0.0, |most: f64, model| most.max(model.stiffness()));
                 0.5 * stiffness * (LARGE * side) * (LARGE * side)

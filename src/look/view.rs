@@ -108,6 +108,13 @@ impl View {
     pub(crate) fn looks_ahead(&self) -> bool {
         !self.paths.is_empty()
     }
+
+    /// The runs that pictures of other runs need, each with the key that names it.
+    pub(crate) fn compared(&self) -> [Option<(&'static str, usize)>; 2] {
+        let ghost = if let Some(Ghost::Run(run)) = self.ghost { Some(run) } else { None };
+        let to = self.colour.and_then(|scale| scale.to);
+        [ghost.map(|run| ("ghost", run)), to.map(|run| ("colour.to", run))]
+    }
 }
 
 impl Default for View {
@@ -302,6 +309,8 @@ impl Visible {
 pub struct ColourScale {
     /// The field.
     pub field: Field,
+    /// The run to which [`Field::Distance`] is measured, by its index.
+    pub to: Option<usize>,
     /// The values at the two ends of the scale, in the field's unit.
     pub range: [f64; 2],
     /// The colours.

@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn nodes_and_elements_have_their_own_numbers() {
         let body = body();
-        let scale = |field| ColourScale { field, range: [0.0, 4.0], map: ColourMap::default() };
+        let scale = |field| ColourScale { field, to: None, range: [0.0, 4.0], map: ColourMap::default() };
         let speed = Shades::new(&body, &scale(Field::Speed), &[0.0, 1.0, 2.0, f64::NAN]);
         assert_eq!(speed.corners(&[0, 1, 2], Some(0)), [0.0, 0.25, 0.5]);
         assert_eq!(speed.corners(&[1, 3, 2], Some(1)), [-1.0; 3]);

@@ -42,7 +42,7 @@ const ARROW: f64 = 64.0;
 
 /// A colour scale.
 pub(super) struct Bar<'a> {
-    name: &'static str,
+    name: String,
     unit: &'static str,
     definition: &'static str,
     /// The values at its ends.
@@ -58,7 +58,8 @@ impl<'a> Bar<'a> {
     /// The scale of a quantity with a name, a unit and a definition, for a body of a size (m), over a range. `values`
     /// may lie beyond the range.
     pub(super) fn new(
-        [name, unit, definition]: [&'static str; 3],
+        name: String,
+        [unit, definition]: [&'static str; 2],
         range: [f64; 2],
         extent: f64,
         ramp: &'a [Colour],
@@ -189,7 +190,7 @@ impl Legend {
     /// definition below its name. It is centred at the given middle if possible.
     fn bar(self, writer: &mut Writer<'_>, [left, right, middle]: [f64; 3], top: f64, bar: &Bar<'_>) {
         let (unit, palette) = (self.unit, writer.palette);
-        let &Bar { name, ramp, beyond, mut definition, .. } = bar;
+        let &Bar { ref name, ramp, beyond, mut definition, .. } = bar;
         let mut axis = Axis::new(Kind::Colour, bar.range, bar.unit, bar.extent, MOST_TICKS);
         let numbers = NUMBERS * unit;
         let fonts = writer.fonts;
@@ -198,6 +199,8 @@ impl Legend {
         let overhang = widths.last().map_or(0.0, |width| width / 2.0);
         let unit_text = if axis.unit.is_empty() { String::new() } else { format!("({})", axis.unit) };
         let caption = 16.0 * unit;
+        // The name of a run may be long.
+        let name = &*fonts.shortened(name, Weight::SemiBold, caption, 0.45 * (right - left));
         let space = if unit_text.is_empty() { 0.0 } else { 5.0 * unit };
         let named = writer.fonts.width(name, Weight::SemiBold, caption)
             + space

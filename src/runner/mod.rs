@@ -144,7 +144,12 @@ impl<'a> Runner<'a> {
 
     /// The states of the runs at the last moment that all have reached.
     pub fn snapshots(&self) -> Vec<RunFrame> {
-        self.runs.par_iter().map(|running| running.frame(self.scene)).collect()
+        let mut runs: Vec<_> = self.runs.par_iter().map(|running| running.frame(self.scene)).collect();
+        let to = self.scene.view.colour.and_then(|scale| scale.to).filter(|_| self.runs.iter().any(|run| run.is_drawn));
+        if let Some(other) = to.and_then(|to| runs.iter().find(|run| run.run == to).cloned()) {
+            runs.iter_mut().for_each(|run| run.measure(&other));
+        }
+        runs
     }
 
     /// Advances to a frame and returns it.

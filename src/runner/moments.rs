@@ -1,6 +1,5 @@
 //! The simulations of figures: states of runs at chosen moments, and the time series of a scene for strips.
 
-use crate::look::Ghost;
 use crate::runner::Runner;
 use crate::runner::history::History;
 use crate::scene::Scene;
@@ -14,8 +13,8 @@ use rayon::prelude::*;
 pub struct Moments {
     /// The cells of a sheet, row by row; empty for other figures. The run index is that in its scene.
     pub cells: Vec<Vec<RunFrame>>,
-    /// For each cell the run that is outlined over it, at the same moment, if there is one.
-    pub others: Vec<Vec<Option<RunFrame>>>,
+    /// For each cell the runs that its picture needs besides its own, at the same moment.
+    pub others: Vec<Vec<Vec<RunFrame>>>,
     /// The time series of each scene, for the runs in its rows, in the scene's order. They end with the scene if charts
     /// show them, and with the last cell if only paths need them. Empty for other scenes and other figures.
     pub histories: Vec<History>,
@@ -143,13 +142,12 @@ impl<'a> Taking<'a> {
             runs.map(|run| part([at, run])).collect::<Vec<_>>()
         };
         let series: Vec<_> = sheet.scenes.iter().enumerate().map(of_scene).collect();
-        // The outlined runs come after the cells.
-        let ghost = |(scene, run, time): (usize, usize, f64)| match sheet.scenes[scene].view.ghost {
-            Some(Ghost::Run(other)) if other != run => Some((scene, other, time)),
-            _ => None,
-        };
-        let others =
-            cells.clone().map(|cell| ghost(cell).map(|(scene, run, time)| (part([scene, run]), Moment::at(time))));
+        // The runs that pictures of other runs need come after the cells.
+        let others = cells.flat_map(|(scene, run, time)| {
+            let compared = sheet.scenes[scene].view.compared();
+            compared.map(|other| other.filter(|&(_, other)| other != run).map(|(_, other)| (scene, other, time)))
+        });
+        let others = others.map(|other| other.map(|(scene, run, time)| (part([scene, run]), Moment::at(time))));
         let others: Vec<_> = others.collect();
         let shown = shown.into_iter().map(Some).chain(others).enumerate();
         for (at, (part, moment)) in shown.filter_map(|(at, shown)| Some((at, shown?))) {
@@ -196,7 +194,7 @@ impl<'a> Taking<'a> {
     pub(crate) fn finish(mut self) -> Moments {
         match &self.figure.content {
             Content::Sheet(sheet) => {
-                let mut cells: Vec<Option<RunFrame>> = vec![None; 2 * sheet.rows.len() * sheet.columns.len()];
+                let mut cells: Vec<Option<RunFrame>> = vec![None; 3 * sheet.rows.len() * sheet.columns.len()];
                 for part in &self.parts {
                     assert_eq!(part.taken.len(), part.stops.len(), "finished when all moments are taken");
                     for ((_, places), taken) in part.stops.iter().zip(&part.taken) {
@@ -204,9 +202,15 @@ impl<'a> Taking<'a> {
                     }
                 }
                 let columns = sheet.columns.len().max(1);
-                let others = cells.split_off(cells.len() / 2);
+                let others = cells.split_off(cells.len() / 3);
+                let others: Vec<Vec<_>> = others.chunks(2).map(|two| two.iter().flatten().cloned().collect()).collect();
+                let mut cells: Vec<_> = cells.into_iter().map(|cell| cell.expect("each cell has a run")).collect();
+                for (at, (cell, others)) in cells.iter_mut().zip(&others).enumerate() {
+                    let (scene, ..) = sheet.cell(at / columns, at % columns);
+                    let to = sheet.scenes[scene].view.colour.and_then(|scale| scale.to);
+                    others.iter().filter(|other| Some(other.run) == to).for_each(|other| cell.measure(other));
+                }
                 let others = others.chunks(columns).map(<[_]>::to_vec).collect();
-                let cells: Vec<_> = cells.into_iter().map(|cell| cell.expect("each cell has a run")).collect();
                 let rows = cells.chunks(columns).map(<[RunFrame]>::to_vec).collect();
                 let histories = self.series.into_iter().map(|series| {
                     let mut all = series.into_iter().map(|part| self.parts[part].runner.take_history());

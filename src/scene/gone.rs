@@ -53,7 +53,7 @@ const GONE: &[Gone] = &[
     key("view.colours.shadow", "remove it"),
     key("view.colours.spring", "remove it"),
     key("view.colours.text", "remove it"),
-    key("view.difference", "remove it; `ghost = \"RUN\"` outlines another run over each body"),
+    key("view.difference", "write `colour = { by = \"distance\", to = \"RUN\" }`"),
     key("view.difference_of", "remove it"),
     key("view.columns", "write the number in `view.panels`"),
     key("view.explode", "remove it"),

@@ -131,8 +131,10 @@ fn steps(place: &Place, folder: &str) -> Vec<u64> {
 fn frames_of_stored_states_are_those_of_a_simulation() {
     let Some(place) = place_to_draw() else { return };
     place.write("rich.toml", &rich());
+    place.write("distance.toml", &format!("{SMALL}colour = {{ by = \"distance\", to = \"Mass-spring\" }}\n"));
     for (scene, options) in [
         ("small", ""),
+        ("distance", " --frames 1,4"),
         ("rich", " --frames 0-60x15"),
         ("rich", " --frames 3,45 --only Mass-spring --only Local\u{a0}shape --size 500x300"),
     ] {

@@ -406,14 +406,18 @@ fn formats_that_are_not_written_are_refused() {
     }
 }
 
-/// Pictures cannot outline a run that is left out; a simulation needs no other run.
+/// Pictures cannot show a run that is left out; a simulation needs no other run.
 #[test]
-fn runs_that_are_outlined_over_others_cannot_be_left_out() {
+fn runs_that_others_are_compared_with_cannot_be_left_out() {
     let place = Place::new();
-    place.write("ghost.toml", &format!("{SMALL}ghost = \"Local shape\"\n"));
-    let told =
-        "--only leaves out the run “Local shape”, which `view.ghost` of “Two cubes” needs; add --only 'Local shape'";
-    place.run("render ghost.toml --only Mass-spring").bad(2, &[told]);
+    let distance = "colour = { by = \"distance\", to = \"Local shape\" }";
+    for (key, typed) in [("colour.to", distance), ("ghost", "ghost = \"Local shape\"")] {
+        place.write("ghost.toml", &format!("{SMALL}{typed}\n"));
+        let told = format!(
+            "--only leaves out the run “Local shape”, which `view.{key}` of “Two cubes” needs; add --only 'Local shape'"
+        );
+        place.run("render ghost.toml --only Mass-spring").bad(2, &[&told]);
+    }
     place.run("simulate ghost.toml --only Mass-spring").good();
     if can_draw() {
         place.run("render ghost.toml --frames 2").good();

@@ -78,7 +78,7 @@ fn sheets_have_ghosts_too() {
     let figure = Figure::load(&folder.path().join("figure.toml"), &Limits::default());
     let figure = figure.unwrap_or_else(|error| panic!("{error}"));
     let moments = Moments::new(&figure);
-    let other = moments.others[0][1].as_ref().expect("the ghost's run");
+    let other = moments.others[0][1].first().expect("the ghost's run");
     assert_eq!((other.run, other.snapshot.time), (0, moments.cells[0][1].snapshot.time));
     let picture = compose_figure(&figure, &moments).expect("there is room");
     let colour = figure.scenes()[0].runs[0].line(&picture.palette).colour;
@@ -196,4 +196,52 @@ fn what_finds_no_room_is_known() {
         |picture: &Listed| picture.words.iter().filter(|run| run.size > 28.0).map(|run| run.text.clone()).collect();
     let lines: Vec<String> = title(&unknown(&scene).compose(&Runner::new(&scene, &[0, 1]).frame(0)));
     assert!(lines.last().is_some_and(|line| line.ends_with('…')), "{lines:?}");
+}
+
+/// A scene of Fig. 4(b) coloured by the distance to a run.
+fn measured(to: &str) -> Scene {
+    let view = format!("[view]\ncolour = {{ by = 'distance', to = '{to}', range = [0, 2] }}\n");
+    let text = include_str!("../../scenes/fig4b.toml").replace("[view]\n", &view);
+    Scene::parse(&text, "scene", &Limits::default()).expect("a scene")
+}
+
+#[test]
+fn the_distance_to_another_run_is_a_field() {
+    let scene = measured("Mass-spring");
+    let mut frame = Runner::new(&scene, &[0, 1]).frame(4);
+    let [one, other] = [0, 1].map(|run: usize| &frame.runs[run].snapshot);
+    let nodes = one.position.iter().zip(&other.position);
+    let expected: Vec<_> = nodes.map(|(one, other)| one.distance(*other)).collect();
+    assert_eq!((&one.field, &other.field), (&expected, &Vec::new()), "the run itself has no values");
+    let picture = unknown(&scene).compose(&frame);
+    assert!(picture.panels[0].sound.shades.iter().all(|&shade| shade >= 0.0));
+    assert!(picture.panels[1].sound.shades.iter().all(|&shade| shade < 0.0), "it is plain");
+    assert!(picture.words.iter().any(|word| word.text == "distance to Mass-spring"));
+    // Bodies at one place are at its low end, and bodies apart by half the range in its middle.
+    let other = frame.runs[1].clone();
+    for (shift, expected) in [(0.0, 0.0), (1.0, 0.5)] {
+        let shifted = other.snapshot.position.iter().map(|&at| at + shift * glam::DVec3::Y).collect();
+        frame.runs[0].snapshot.position = shifted;
+        frame.runs[0].measure(&other);
+        let shades = &unknown(&scene).compose(&frame).panels[0].sound.shades;
+        assert!(shades.iter().all(|&shade| (shade - expected).abs() < 1e-6), "{shift}: {shades:?}");
+    }
+    // Without the other run, all are plain.
+    let alone = Runner::new(&scene, &[0]).frame(4);
+    assert!(alone.runs[0].snapshot.field.is_empty());
+}
+
+/// A sheet measures the distance to a run that none of its rows shows.
+#[test]
+fn sheets_show_distances_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("scene.toml"), include_str!("../../scenes/fig4b.toml")).expect("a file");
+    let text =
+        "[sheet]\nscene = 'scene.toml'\nmoments = [0.0, 0.05]\ncolour = { by = 'distance', to = 'Mass-spring' }\n
+        [[sheet.row]]\nrun = 'Local shape'\n";
+    std::fs::write(folder.path().join("figure.toml"), text).expect("a file");
+    let figure = Figure::load(&folder.path().join("figure.toml"), &Limits::default()).expect("a figure");
+    let cells = &Moments::new(&figure).cells[0];
+    assert!(cells[0].snapshot.field.iter().all(|&distance| distance == 0.0) && !cells[0].snapshot.field.is_empty());
+    assert!(cells[1].snapshot.field.iter().all(|&distance| distance > 0.0));
 }

@@ -16,7 +16,7 @@ const FIELDS: [Field; 4] = [Field::Strain, Field::Displacement, Field::Speed, Fi
 /// The scene of Fig. 4(b) with a field, and one of its frames.
 fn with_field(field: Field, range: [f64; 2], index: u64) -> (Scene, Frame) {
     let (mut scene, _) = fig4b(0);
-    scene.view.colour = Some(ColourScale { field, range, map: ColourMap::default() });
+    scene.view.colour = Some(ColourScale { field, to: None, range, map: ColourMap::default() });
     let frame = Runner::new(&scene, &[0, 1]).frame(index);
     (scene, frame)
 }
@@ -411,7 +411,7 @@ fn light_keeps_the_colours_of_the_key() {
     let maps = [MintIndigo, Viridis, Cividis, Magma, Greys, VioletGreen, PurpleGreen];
     for (map, theme) in maps.into_iter().flat_map(|map| [Theme::Light, Theme::Dark].map(|theme| (map, theme))) {
         scene.view.look = Style::of(theme);
-        scene.view.colour = Some(ColourScale { field: Field::Speed, range: [0.0, 1.0], map });
+        scene.view.colour = Some(ColourScale { field: Field::Speed, to: None, range: [0.0, 1.0], map });
         for at in [0, 16, 32, 47, SHADES - 1] {
             frame.runs[0].snapshot.field.fill(at as f64 / (SHADES - 1) as f64);
             let mut picture = compose(&scene, &frame);

@@ -549,7 +549,7 @@ fn flat_elements_are_a_state_of_their_own() {
 fn the_more_strained_springs_lie_above_and_have_the_colours_of_the_key() {
     let (mut scene, _) = fig4b(0);
     scene.view.visible = localshape::look::Visible { springs: true, ..Default::default() };
-    let scale = ColourScale { field: Field::Strain, range: [-0.1, 0.1], map: ColourMap::VioletGreen };
+    let scale = ColourScale { field: Field::Strain, to: None, range: [-0.1, 0.1], map: ColourMap::VioletGreen };
     scene.view.colour = Some(scale);
     let frame = Runner::new(&scene, &[1]).frame(4);
     let strokes = &compose(&scene, &frame).panels[0].strokes;
@@ -578,7 +578,7 @@ fn springs_show_their_own_strain_without_its_sign_unless_the_range_has_one() {
         ([0.0, 0.1], count(&|strain| strain.abs() < 1e-4), count(&|strain| strain.abs() > 0.1)),
         ([-0.1, 0.1], count(&|strain| strain < -0.1), count(&|strain| strain > 0.1)),
     ] {
-        scene.view.colour = Some(ColourScale { field: Field::Strain, range, map: ColourMap::VioletGreen });
+        scene.view.colour = Some(ColourScale { field: Field::Strain, to: None, range, map: ColourMap::VioletGreen });
         let picture = compose(&scene, &frame);
         let ramp = localshape::look::ramp::ramp(ColourMap::VioletGreen, Theme::Light);
         let of = |end: [u8; 3]| picture.panels[1].strokes.iter().filter(|stroke| stroke.colours[0] == end).count();

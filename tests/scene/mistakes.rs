@@ -655,6 +655,9 @@ fn mistakes_of_what_is_shown() {
     view("colour = { range = [0, 1] }", "20:10 `view.colour` has no `by`");
     view("colour = { by = 'speed', range = [3, 1] }", "20:34 runs from 3 to 1; expected a rising range");
     view("colour = { by = 'speed', range = [0, inf] }", "20:38 is inf; expected a finite number");
+    view("colour = { by = 'distance' }", "20:10 `view.colour` has no `to`, the run to which the distance is measured");
+    view("colour = { by = 'distance', to = 'Mass' }", "20:34 there is no run \"Mass\" did you mean \"Mass-spring\"?");
+    view("colour = { by = 'speed', to = 'Mass-spring' }", "20:26 only `by = \"distance\"` compares runs remove `to`");
     view("title = \"a\\nb\"", "20:9 contains the control character");
     view("caption = \"a\\tb\"", "20:11 contains the control character '\\t'; it is lines of text");
     view("strip = 'turned over'", "20:9 did you mean \"turned_over\"?");

@@ -35,7 +35,9 @@ impl Composer<'_> {
             count if count == all => "change of length over length at rest",
             _ => "of springs: change of length over length at rest",
         };
-        Some(Bar::new([field.name(), field.unit(), definition], colour.range, self.extent, &self.ramp, values))
+        let to = colour.to.map_or_else(String::new, |run| format!(" to {}", self.scene.runs[run].name));
+        let name = field.name().to_owned() + &to;
+        Some(Bar::new(name, [field.unit(), definition], colour.range, self.extent, &self.ramp, values))
     }
 
     /// The strains of a run's springs on a scale.

@@ -191,9 +191,8 @@ impl Scenes<'_, '_, '_> {
         share_lines(&mut scenes);
         if let Some(typed) = &file.colour {
             let subjects: Vec<_> = scenes.iter().map(subject).collect();
-            let path = key_path!["sheet", "colour", "range"];
-            let scale = look::colour(typed, &subjects, &path, report);
-            scenes.iter_mut().for_each(|scene| scene.view.colour = scale);
+            let scales = look::colour(typed, &subjects, "sheet", report).unwrap_or_default();
+            scenes.iter_mut().zip(scales).for_each(|(scene, scale)| scene.view.colour = Some(scale));
         }
         let sheet = Sheet {
             scenes,

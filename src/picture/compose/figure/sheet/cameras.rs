@@ -37,13 +37,13 @@ pub(super) struct Cell {
 
 /// The cells of a sheet, row by row.
 pub(super) fn cells(scenes: &[Scene], reaches: &[NearObstacles], sheet: &Sheet, moments: &Moments) -> Vec<Vec<Cell>> {
-    let cell = |column: usize, run: &RunFrame, other: Option<&RunFrame>| {
+    let cell = |column: usize, run: &RunFrame, others: &[RunFrame]| {
         let at = sheet.columns[column].scene;
-        let ghost = ghost(&scenes[at], run, other);
+        let ghost = ghost(&scenes[at], run, others);
         Cell { scene: at, points: points(&scenes[at], &reaches[at], run, ghost) }
     };
-    let row = |(runs, others): (&Vec<RunFrame>, &Vec<Option<RunFrame>>)| {
-        runs.iter().zip(others).enumerate().map(|(column, (run, other))| cell(column, run, other.as_ref())).collect()
+    let row = |(runs, others): (&Vec<RunFrame>, &Vec<Vec<RunFrame>>)| {
+        runs.iter().zip(others).enumerate().map(|(column, (run, other))| cell(column, run, other)).collect()
     };
     moments.cells.iter().zip(&moments.others).map(row).collect()
 }
@@ -61,10 +61,13 @@ pub(super) fn reaches(scenes: &[Scene], sheet: &Sheet, moments: &Moments) -> Vec
 }
 
 /// The nodes of the body that is outlined over a run (m).
-fn ghost(scene: &Scene, run: &RunFrame, other: Option<&RunFrame>) -> Vec<DVec3> {
+fn ghost(scene: &Scene, run: &RunFrame, others: &[RunFrame]) -> Vec<DVec3> {
     match scene.view.ghost {
         Some(Ghost::Rest) => scene.body.rest.iter().map(|&rest| run.snapshot.placement.place(rest)).collect(),
-        Some(Ghost::Run(_)) => other.map_or_else(Vec::new, |other| other.snapshot.position.clone()),
+        Some(Ghost::Run(outlined)) => {
+            let other = others.iter().find(|other| other.run == outlined);
+            other.map_or_else(Vec::new, |other| other.snapshot.position.clone())
+        }
         None => Vec::new(),
     }
 }

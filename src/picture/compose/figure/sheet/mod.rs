@@ -21,7 +21,7 @@ mod rows;
 mod sheet_layout;
 
 use super::header;
-use crate::look::{Ghost, Labels, View, print};
+use crate::look::{ColourScale, Ghost, Labels, View, print};
 use crate::picture::caption::Writer;
 use crate::picture::compose::Composer;
 use crate::picture::compose::panel::Draft;
@@ -118,7 +118,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
             let draft = Draft::new(composer, layout.tile(row, column), run, framing, layout.tile_scale);
             let [left, top, width, height] = draft.viewport;
             let room = [left, top, width, height - (layout.below_body.ceil() as u32).min(height)];
-            draft.ghost(moments.others[row][column].as_slice(), room, &mut writer.curves);
+            draft.ghost(&moments.others[row][column], room, &mut writer.curves);
             draft.paths(&composer.traced, room, &mut writer.curves);
             panels.push(draft.panel(&mut under, &mut marks));
             // Surfaces without width are invisible.
@@ -134,9 +134,11 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
 
 /// The scenes for their tiles: without words, in the look of the figure.
 fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
-    let first = sheet.scenes.first().map(|scene| &scene.view);
-    let alike = |one: &Scene| first.is_some_and(|first| one.view.colour == first.colour);
-    let is_shared = sheet.scenes.iter().all(alike);
+    let scale = |scene: &Scene| {
+        let run = |scale: ColourScale| scale.to.map(|run| scene.runs[run].name.clone());
+        scene.view.colour.map(|scale| (run(scale), ColourScale { to: None, ..scale }))
+    };
+    let is_shared = sheet.scenes.windows(2).all(|two| scale(&two[0]) == scale(&two[1]));
     let one = |scene: &Scene| {
         let mut scene = scene.clone();
         let view = &mut scene.view;
