@@ -1,9 +1,5 @@
 // Bodies and their lines over the ground.
 
-@group(1) @binding(2) var lines: texture_2d<f32>;
-// The light that borders add to pixels.
-@group(1) @binding(3) var borders: texture_2d<f32>;
-
 struct Corner {
     @builtin(position) place: vec4<f32>,
     @location(0) @interpolate(flat) region: vec4<f32>,
@@ -60,7 +56,7 @@ fn layered_at(corner: Corner) -> vec4<f32> {
     panel.outline = corner.outline.rgb;
     panel.outline_alpha = corner.outline.a;
     let at = vec2<i32>(corner.place.xy - panel.place.xy);
-    let opacity = textureLoad(lines, at, 0);
+    let opacity = textureLoad(line_opacity, at, 0);
     var colour = with_borders(at);
     colour = over(colour, panel.edge, opacity.r);
     colour = over(colour, panel.alarm_line, opacity.g);
@@ -92,6 +88,6 @@ fn layered_fading(corner: Corner) -> @location(0) vec4<f32> {
         || stays(at + vec2(0, reach)) || stays(at - vec2(0, reach)));
     let room = panel_data.fade_room;
     let inside = vec4(pixel - room.xy, room.zw - pixel);
-    let left = 1.0 - panel_data.fade_strength * (1.0 - smoothstep(vec4(0.0), panel_data.fade_distance.xyxy, inside));
+    let left = 1.0 - panel_data.fade_strength * (1.0 - smoothstep(vec4(0.0), panel_data.fade_distance, inside));
     return colour * select(left.x * left.y * left.z * left.w, 1.0, beside || stays(at));
 }

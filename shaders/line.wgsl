@@ -38,9 +38,6 @@ const ALARM_HIDDEN_ALPHA = 0.62;
 // The opacity of visible edges.
 const EDGE_ALPHA = 0.80;
 
-// Widths of edges and contours in space (px in the reference picture). `measures.rs` has those in the plane.
-const EDGE_WIDTH = 1.15;
-const CONTOUR_WIDTH = 2.2;
 // A line lies this much in front of its surface, relative to the distance.
 const OFFSET = 0.0016;
 // Folds inside the turned-over set of elements smaller than this (px) are fainter.

@@ -18,9 +18,9 @@ struct Panel {
     // The position of the eye; distance of the near plane.
     eye: vec3<f32>,
     near: f32,
-    // Towards the key light.
+    // Towards the key light; opacity of the edges that surfaces draw themselves.
     key: vec3<f32>,
-    unused_0: f32,
+    edging: f32,
     // The floor's outward normal, and its height along the normal.
     up: vec3<f32>,
     floor: f32,
@@ -39,17 +39,19 @@ struct Panel {
     // Colour of the outline; unit of soft distances in light and of steps in depth.
     outline: vec3<f32>,
     soft: f32,
+    // Colour of obstacles; width of contours of bodies, from 0 to 1.
+    obstacle: vec3<f32>,
+    contour_share: f32,
     // Left, top, width and height of the body's region in the textures of bodies (px).
     region: vec4<f32>,
     // Its left and top in the picture (px), minus its left and top in those textures; the middle of the body in the
     // picture (px).
     place: vec4<f32>,
-    // Width of contours of bodies, from 0 to 1.
-    contour_share: f32,
-    unused_1: f32,
-    // The distances over which solid obstacles fade, across and down (px); left, upper, right and lower side of their
-    // room (px); and the strength of the fading at each.
-    fade_distance: vec2<f32>,
+    // Left, top, width and height of the panel in the picture (px).
+    viewport: vec4<f32>,
+    // The distances over which solid obstacles fade from the left, upper, right and lower side of their room (px); these
+    // sides (px); and the strength of the fading at each.
+    fade_distance: vec4<f32>,
     fade_room: vec4<f32>,
     fade_strength: vec4<f32>,
     // The obstacles near the body; unused entries have no effect.
@@ -64,3 +66,7 @@ var<private> panel: Panel;
 
 // Powers of a colour's brightness, weighted like the eye.
 const LUMINANCE = vec3<f32>(0.2126, 0.7152, 0.0722);
+
+// Widths of edges and contours in space (px in the reference picture). `measures.rs` has those in the plane.
+const EDGE_WIDTH = 1.15;
+const CONTOUR_WIDTH = 2.2;

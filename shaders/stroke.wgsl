@@ -43,13 +43,13 @@ fn stroke(
     if !ends.seen {
         return Stroke(NOWHERE, vec4(0.0), vec2(0.0), first, second, other, size, kind);
     }
-    let room = panel.region.zw;
+    let room = panel.viewport.zw;
     let from_pixel = pixel_of(ends.a, room);
     let to_pixel = pixel_of(ends.b, room);
     let depths = vec2(ends.a.z / max(ends.a.w - NEARER, panel.near), ends.b.z / max(ends.b.w - NEARER, panel.near));
     let reach = select(0.5 * size, size, kind == DISC) + 1.0;
     let place = strip_corner(corner, from_pixel, to_pixel, reach, room);
-    return Stroke(place, vec4(from_pixel, to_pixel) + panel.region.xyxy, depths, first, second, other, size, kind);
+    return Stroke(place, vec4(from_pixel, to_pixel) + panel.viewport.xyxy - panel.place.xyxy, depths, first, second, other, size, kind);
 }
 
 // An sRGB colour as linear light.
@@ -102,7 +102,7 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
     }
     // Lines thinner than a pixel are fainter instead.
     let drawn = max(stroke.size, 1.0);
-    var covered = saturate(0.5 * drawn + 0.5 - distance) * (stroke.size / drawn);
+    var covered = stroke.first.a * saturate(0.5 * drawn + 0.5 - distance) * (stroke.size / drawn);
     if covered <= 0.0 {
         return vec4(0.0);
     }

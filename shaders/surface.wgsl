@@ -1,45 +1,51 @@
-// Surfaces of bodies: lit, with a hatch on turned-over elements, which show through the others. Colours are stored as
-// their square roots, which keeps eight bits fine in the dark and is quick to undo.
+// Surfaces of bodies and obstacles: lit, with a hatch on turned-over elements, which show through the others. With a
+// scalar field, light is mild and keeps the colours of its scale. Colours are stored as their square roots, which keeps
+// eight bits fine in the dark and is quick to undo.
+//
+// `OCCLUDERS` is the number of obstacles near a body, `TINTED` tells whether a field colours surfaces, and `EDGED` whether
+// surfaces draw the edges of their elements.
+
+// The colours of the scale, linear.
+@group(0) @binding(1) var<uniform> ramp: array<vec4<f32>, SHADES>;
+const SHADES = 64;
 
 struct Corner {
     @builtin(position) place: vec4<f32>,
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
+    // On turned-over elements the place in the hatch; on others 1 if they are flat; on obstacles the share of ambient
+    // light that the body takes.
     @location(2) hatch: f32,
-    @location(4) @interpolate(flat) shared_0: vec4<f32>,
-    @location(5) @interpolate(flat) shared_1: vec4<f32>,
-    @location(6) @interpolate(flat) shared_2: vec4<f32>,
-    @location(7) @interpolate(flat) shared_3: vec4<f32>,
+    @location(3) shade: f32,
+    @location(4) edge: vec3<f32>,
+    // Values that all pixels of a panel use. More of them would take longer to set up for small triangles than they save.
+    @location(5) @interpolate(flat) eye_and_soft: vec4<f32>,
+    @location(6) @interpolate(flat) key: vec3<f32>,
+    @location(7) @interpolate(flat) up_and_floor: vec4<f32>,
+    @location(8) @interpolate(flat) own: vec3<f32>,
 }
 
-// Values of a panel that all its pixels use: packed into varyings, and unpacked again. More of them would take longer
-// to set up for small triangles than they save.
-fn pack_shared(own: vec3<f32>) -> array<vec4<f32>, 4> {
-    return array(
-        vec4(panel.eye, panel.soft),
-        vec4(panel.key, 0.0),
-        vec4(panel.up, panel.floor),
-        vec4(own, 0.0),
-    );
+struct Vertex {
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) hatch: f32,
+    @location(3) shade: f32,
+    @location(4) edge: vec4<f32>,
 }
 
-// Returns the colour of the set.
-fn unpack_shared(same: array<vec4<f32>, 4>) -> vec3<f32> {
+// A corner drawn at a place, of a set of a colour.
+fn corner_at(place: vec4<f32>, at: Vertex, own: vec3<f32>) -> Corner {
+    return Corner(place, at.position, at.normal, at.hatch, at.shade, at.edge.xyz, vec4(panel.eye, panel.soft), panel.key,
+        vec4(panel.up, panel.floor), own);
+}
+
+fn unpack(corner: Corner) {
     panel = panel_data;
-    panel.eye = same[0].xyz;
-    panel.soft = same[0].w;
-    panel.key = same[1].xyz;
-    panel.up = same[2].xyz;
-    panel.floor = same[2].w;
-    return same[3].xyz;
-}
-
-fn unpack_sound(corner: Corner) {
-    panel.sound = unpack_shared(array(corner.shared_0, corner.shared_1, corner.shared_2, corner.shared_3));
-}
-
-fn unpack_alarm(corner: Corner) {
-    panel.alarm = unpack_shared(array(corner.shared_0, corner.shared_1, corner.shared_2, corner.shared_3));
+    panel.eye = corner.eye_and_soft.xyz;
+    panel.soft = corner.eye_and_soft.w;
+    panel.key = corner.key;
+    panel.up = corner.up_and_floor.xyz;
+    panel.floor = corner.up_and_floor.w;
 }
 
 const KEY = vec3<f32>(0.66, 0.635, 0.595);
@@ -65,6 +71,19 @@ const THROUGH_DEPTH = 0.6;
 // The brightness of a surface without lighting.
 const UNLIT = 0.86;
 
+// There is no occlusion from this distance on (soft units). A plate, which is transparent, occludes less.
+const TAKEN_REACH = 1.3;
+const PLATE_TAKES = 0.37;
+// Light changes the lightness of a field's colour by at most this part, up and down, and never its hue. The darkest and
+// the brightest light have these brightnesses.
+const LIGHTNESS = 0.06;
+const BRIGHTNESS = vec2<f32>(0.40, 1.15);
+// The strength of stripes that are seen through a field.
+const THROUGH = 0.75;
+// Up to this depth (soft units) behind a field the colours of turned-over elements are visible, fading with depth. So
+// there is no jagged border where they cut the surface or lie close to it, and nothing appears suddenly.
+const NEAR_DEPTH = 0.3;
+
 // The drawn position of a face's corner. Of two faces at the same place, as in a body pressed flat, the one towards the
 // viewer is always visible: the other is moved back by a few times the round-off of depths.
 fn corner_place(position: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
@@ -73,14 +92,6 @@ fn corner_place(position: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
         place.z *= 1.0 - BACK_FACE;
     }
     return place;
-}
-
-@vertex
-fn sound_corner(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) hatch: f32) -> Corner {
-    panel = panel_data;
-    let same = pack_shared(panel.sound);
-    let place = corner_place(position, normal);
-    return Corner(place, position, normal, hatch, same[0], same[1], same[2], same[3]);
 }
 
 // The drawn position of a corner of the turned-over set.
@@ -92,11 +103,47 @@ fn moved_nearer(position: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
 }
 
 @vertex
-fn alarm_corner(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) hatch: f32) -> Corner {
+fn sound_corner(at: Vertex) -> Corner {
     panel = panel_data;
-    let same = pack_shared(panel.alarm);
-    let place = moved_nearer(position, normal);
-    return Corner(place, position, normal, hatch, same[0], same[1], same[2], same[3]);
+    return corner_at(corner_place(at.position, at.normal), at, panel.sound);
+}
+
+@vertex
+fn alarm_corner(at: Vertex) -> Corner {
+    panel = panel_data;
+    return corner_at(moved_nearer(at.position, at.normal), at, panel.alarm);
+}
+
+@vertex
+fn obstacle_corner(at: Vertex) -> Corner {
+    panel = panel_data;
+    return corner_at(panel.clip * vec4(at.position, 1.0), at, panel.obstacle);
+}
+
+// A vector rotated by the inverse of a quaternion.
+fn rotated_back(rotation: vec4<f32>, vector: vec3<f32>) -> vec3<f32> {
+    return vector + 2.0 * cross(cross(vector, rotation.xyz) + rotation.w * vector, rotation.xyz);
+}
+
+// The part of the ambient light that an obstacle leaves to a point of a body with a normal. All kinds of obstacles share
+// one path: a software driver would run every branch for each group of pixels.
+fn left_by(occluder: Occluder, position: vec3<f32>, facing: vec3<f32>) -> f32 {
+    let local = rotated_back(occluder.rotation, position - occluder.first.xyz);
+    let out = sign(local) * max(abs(local) - occluder.second.xyz, vec3(0.0));
+    let size = length(out);
+    let apart = saturate((size - occluder.first.w) / (TAKEN_REACH * panel.soft));
+    let away = dot(rotated_back(occluder.rotation, facing), out) / max(size, 1e-9);
+    // As at the floor: a face at a plate is visible through it and stays light.
+    let turned = mix(0.5 - 0.5 * away, PLATE_TAKES * (1.0 - abs(away)), occluder.second.w);
+    return 1.0 - TAKEN * turned * (1.0 - apart) * (1.0 - apart);
+}
+
+fn left_by_obstacles(position: vec3<f32>, facing: vec3<f32>) -> f32 {
+    var left = 1.0;
+    for (var at = 0u; at < OCCLUDERS; at++) {
+        left *= left_by(panel_data.occluders[at], position, facing);
+    }
+    return left;
 }
 
 struct Light {
@@ -144,54 +191,6 @@ fn stripes(hatch: f32) -> f32 {
     return mix(covered, STRIPE, smoothstep(0.2, 0.45, width));
 }
 
-struct AlarmColour {
-    lit: vec3<f32>,
-    brightness: f32,
-}
-
-fn alarm(corner: Corner) -> AlarmColour {
-    let light = light(corner.position, corner.normal);
-    let dark = STRIPE_ALPHA * stripes(corner.hatch);
-    let colour = mix(panel.alarm, panel.alarm_line, dark);
-    return AlarmColour(colour * light.diffuse + light.gloss, dot(light.diffuse, LUMINANCE));
-}
-
-// The turned-over set, as seen through the body, and as a surface of the body.
-struct TurnedOver {
-    @location(0) behind: vec4<f32>,
-    @location(1) surface: vec4<f32>,
-}
-
-@fragment
-fn alarm_surface(corner: Corner) -> TurnedOver {
-    unpack_alarm(corner);
-    let alarm = alarm(corner);
-    let colour = sqrt(saturate(alarm.lit));
-    return TurnedOver(vec4(colour, saturate(0.5 * alarm.brightness)), vec4(colour, 1.0));
-}
-
-fn opaque(colour: vec3<f32>) -> vec4<f32> {
-    return vec4(sqrt(saturate(colour)), 1.0);
-}
-
-// The stored colour of a surface over the colour behind it.
-fn over_behind(colour: vec3<f32>, corner: Corner) -> vec4<f32> {
-    let at = vec2<i32>(corner.place.xy);
-    let behind = load_alarm_depth(at);
-    let stored = load_alarm_colour(at);
-    if behind <= 0.0 {
-        return opaque(colour);
-    }
-    let depth = panel.near / behind - 1.0 / corner.place.w;
-    let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
-    let lit = stored.rgb * stored.rgb;
-    let unlit = lit * (UNLIT / max(2.0 * stored.a, 0.05));
-    let alarm = mix(lit, unlit, 0.65 * deep);
-    // Blue-grey under vermilion would turn pink, so the surface is desaturated first.
-    let grey = mix(colour, vec3(dot(colour, LUMINANCE)), 0.7);
-    return opaque(mix(grey, alarm, 1.0 - 0.4 * deep));
-}
-
 // The part of a pixel that the dots of a flat element cover.
 fn dots(place: vec2<f32>) -> f32 {
     let scale = panel.line_scale;
@@ -202,27 +201,124 @@ fn dots(place: vec2<f32>) -> f32 {
     return DOT_ALPHA * saturate(DOT * scale + 0.5 - off);
 }
 
-// The colour of a surface that is not inverted.
-fn sound(corner: Corner, own: vec3<f32>) -> vec3<f32> {
+// The colour with the edges of its element over it, in a colour.
+fn edged(colour: vec3<f32>, corner: Corner, edge: vec3<f32>) -> vec3<f32> {
+    if !EDGED {
+        return colour;
+    }
+    let at = corner.edge;
+    let across = vec3(
+        length(vec2(dpdx(at.x), dpdy(at.x))),
+        length(vec2(dpdx(at.y), dpdy(at.y))),
+        length(vec2(dpdx(at.z), dpdy(at.z))),
+    );
+    let off = (0.5 - abs(at - 0.5)) / max(across, vec3(1e-5));
+    let width = EDGE_WIDTH * panel.line_scale;
+    let drawn = max(width, 1.0);
+    let covered = saturate(0.5 * drawn + 0.5 - min(off.x, min(off.y, off.z))) * (width / drawn);
+    return mix(colour, edge, panel.edging * covered);
+}
+
+// The colour of a field at a place of its scale; the colour of the set below zero, where there is no value.
+fn tinted(corner: Corner, light: Light) -> vec3<f32> {
+    let at = saturate(corner.shade) * f32(SHADES - 1);
+    let cell = min(u32(at), u32(SHADES - 2));
+    let shade = mix(ramp[cell].rgb, ramp[cell + 1u].rgb, at - f32(cell));
+    let colour = select(corner.own, shade, corner.shade > -0.5);
+    let brightness = dot(light.diffuse, LUMINANCE);
+    let lightness = 1.0 + LIGHTNESS * (2.0 * smoothstep(BRIGHTNESS.x, BRIGHTNESS.y, brightness) - 1.0);
+    // Lightness follows the cube root of light (Oklab). Colours too bright for the screen would change their hue there.
+    let most = 1.0 / max(max(colour.r, colour.g), max(colour.b, 1e-3));
+    return colour * min(lightness * lightness * lightness, most);
+}
+
+// The turned-over set, as seen through the body, and as a surface of the body. Alpha of the first is the brightness of
+// the light or, with a field, the part of a pixel that the hatch covers.
+struct TurnedOver {
+    @location(0) behind: vec4<f32>,
+    @location(1) surface: vec4<f32>,
+}
+
+@fragment
+fn alarm_surface(corner: Corner) -> TurnedOver {
+    unpack(corner);
     let light = light(corner.position, corner.normal);
-    return own * light.diffuse + light.gloss;
+    let covered = stripes(corner.hatch);
+    var colour = mix(corner.own, panel.alarm_line, STRIPE_ALPHA * covered) * light.diffuse + light.gloss;
+    var alpha = saturate(0.5 * dot(light.diffuse, LUMINANCE));
+    if TINTED {
+        colour = mix(tinted(corner, light), corner.own, covered);
+        alpha = covered;
+    }
+    let stored = sqrt(saturate(edged(colour, corner, panel.alarm_line)));
+    return TurnedOver(vec4(stored, alpha), vec4(stored, 1.0));
+}
+
+fn opaque(colour: vec3<f32>) -> vec4<f32> {
+    return vec4(sqrt(saturate(colour)), 1.0);
+}
+
+// The stored colour of a surface over the colour behind it.
+fn over_behind(colour: vec3<f32>, corner: Corner) -> vec4<f32> {
+    let at = vec2<i32>(corner.place.xy);
+    let behind = load_alarm_depth(at);
+    let stored = textureLoad(alarm_colour, at, 0);
+    if behind <= 0.0 {
+        return opaque(colour);
+    }
+    let depth = panel.near / behind - 1.0 / corner.place.w;
+    let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
+    let lit = stored.rgb * stored.rgb;
+    if TINTED {
+        // Of a hatch only the stripes are visible, not the colours between them.
+        let through = mix(colour, panel.alarm, THROUGH * (1.0 - 0.4 * deep) * stored.a);
+        return opaque(mix(lit, through, smoothstep(0.0, NEAR_DEPTH * panel.soft, depth)));
+    }
+    let unlit = lit * (UNLIT / max(2.0 * stored.a, 0.05));
+    let alarm = mix(lit, unlit, 0.65 * deep);
+    // Blue-grey under vermilion would turn pink, so the surface is desaturated first.
+    let grey = mix(colour, vec3(dot(colour, LUMINANCE)), 0.7);
+    return opaque(mix(grey, alarm, 1.0 - 0.4 * deep));
 }
 
 @fragment
 fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
-    unpack_sound(corner);
-    return opaque(sound(corner, panel.sound));
+    unpack(corner);
+    let light = light(corner.position, corner.normal);
+    var colour = corner.own * light.diffuse + light.gloss;
+    if TINTED {
+        colour = tinted(corner, light);
+    }
+    return opaque(edged(colour, corner, panel.edge));
 }
 
 // For panels with turned-over elements behind such surfaces, or with flat elements. A software driver would run all of
 // it for every surface.
 @fragment
 fn sound_before(corner: Corner) -> @location(0) vec4<f32> {
-    unpack_sound(corner);
-    var own = panel.sound;
-    if corner.hatch > 0.5 {
-        // Flat: grey with dots.
-        own = mix(vec3(dot(own, LUMINANCE)), panel.edge, dots(corner.place.xy));
+    unpack(corner);
+    let light = light(corner.position, corner.normal);
+    let is_flat = corner.hatch > 0.5;
+    let dotted = select(0.0, dots(corner.place.xy), is_flat);
+    // Flat elements are grey with dots.
+    let own = select(corner.own, vec3(dot(corner.own, LUMINANCE)), is_flat);
+    var colour = mix(own, panel.edge, dotted) * light.diffuse + light.gloss;
+    if TINTED {
+        colour = mix(tinted(corner, light), panel.edge, dotted);
     }
-    return over_behind(sound(corner, own), corner);
+    return over_behind(edged(colour, corner, panel.edge), corner);
+}
+
+// The same light on another material, nothing below the floor.
+@fragment
+fn obstacle_surface(corner: Corner) -> @location(0) vec4<f32> {
+    unpack(corner);
+    let light = light_left(corner.position, facing_normal(corner.position, corner.normal), 1.0 - TAKEN * corner.hatch);
+    let above = dot(corner.position, panel.up) - panel.floor;
+    let rise = length(vec2(dpdx(above), dpdy(above)));
+    let inside = saturate(above / max(rise, 1e-9) + 0.5);
+    if inside <= 0.0 {
+        discard;
+    }
+    return vec4(sqrt(saturate(corner.own * light.diffuse + light.gloss) * inside), OBSTACLE * inside);
 }

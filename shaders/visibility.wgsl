@@ -16,6 +16,12 @@ const STEP = 0.22;
 // Below this step (soft units) an obstacle does not hide its own contour or that of another.
 const ROUND_STEP = 0.8;
 
+// Whether a solid obstacle, marked by its opacity, is at one of the taps around a point. `AMONG` tells whether there are
+// any.
+fn is_obstacle(place: vec2<f32>, tap: u32) -> bool {
+    return AMONG && abs(textureLoad(body_colour, texel_around(place, tap), 0).a - OBSTACLE) < 0.001;
+}
+
 // The depth of the turned-over set alone at one of the taps around a point.
 fn alarm_depth_around(place: vec2<f32>, tap: u32) -> f32 {
     return load_alarm_depth(texel_around(place, tap));

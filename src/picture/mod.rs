@@ -119,8 +119,10 @@ pub(crate) struct Panel {
 pub(crate) struct Obstacles {
     /// Opaque obstacles. In the plane all of them lie behind the body, each in front of the next.
     pub solids: Vec<Solid>,
-    /// Transparent obstacles, from the farthest to the nearest.
-    pub slabs: Vec<Slab>,
+    /// The faces of transparent obstacles towards the viewer, from the farthest to the nearest.
+    pub panes: Vec<Pane>,
+    /// The edges of plates, which are drawn over all panes.
+    pub edges: Vec<[[f32; 3]; 2]>,
     /// In space, the obstacles near the body, which occlude its ambient light; at most [`MOST_OCCLUDERS`].
     pub occluders: Vec<Occluder>,
     /// The fading of its solids at the sides of their room; `None` if none leaves it.
@@ -167,18 +169,6 @@ pub(crate) struct Solid {
     /// The colour of its rim, in the plane. There, the `hatch` of a corner is its distance inside the outline (px), and
     /// corners are more than half a pixel outside of it.
     pub rim: Option<Colour>,
-    /// The share of ambient light that the body occludes at each corner, in space: 1 where they touch face to face, 0
-    /// far away. Empty if the body is not near.
-    pub near: Vec<f32>,
-}
-
-/// A transparent obstacle.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Slab {
-    /// Its faces towards the viewer.
-    pub panes: Vec<Pane>,
-    /// The edges of these faces.
-    pub edges: Vec<[[f32; 3]; 2]>,
 }
 
 /// A transparent convex polygon.
@@ -269,6 +259,8 @@ pub(crate) struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// The place of each corner on the scale of a field, from 0 to 1; −1 without a value. Empty if no field is shown.
     pub shades: Vec<f32>,
+    /// Coordinates of each corner that are 0 or 255 at the edges of its element. Empty if edges are lines.
+    pub edges: Vec<[u8; 4]>,
 }
 
 /// A corner of a surface.
@@ -280,7 +272,8 @@ pub(crate) struct Vertex {
     /// Normal of the face, of any length.
     pub normal: [f32; 3],
     /// On turned-over elements: its place in the hatch, which is fixed to the material, in periods. On others: 1 if the
-    /// element is flat, and so dotted, else 0.
+    /// element is flat, and so dotted, else 0. On solid obstacles in space: the share of ambient light that the body
+    /// occludes, 1 where they touch face to face.
     pub hatch: f32,
 }
 

@@ -1,13 +1,12 @@
 //! Edges, contours and outlines of bodies, as opacities.
 
 use super::RenderError;
-use super::panel::Panels;
+use super::lit::Stage;
 use super::pass::Pass;
 use super::pipeline::{LINE_FORMAT, Pipeline, Recipe, bind_textures, group_layout, shader, texture_entry};
-use super::segment::{Kind, Segment, bind_lines, corners, lines_layout, parts, projected};
+use super::segment::{Kind, LineBuffer, Segment, corners, parts, projected};
 use super::target::Bodies;
 use super::visibility::{Visibility, most_lines, most_samples};
-use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Panel, Picture, Rectangle};
 use std::ops::Range;
 
@@ -23,61 +22,64 @@ pub(super) struct Lines {
     /// One pipeline for each kind, made when it is first needed.
     pipelines: [Option<Pipeline>; Kind::ALL.len()],
     layout: wgpu::BindGroupLayout,
-    found: Option<wgpu::BindGroup>,
+    found: wgpu::BindGroup,
     visibility: Visibility,
-    segments: GrowingBuffer<Segment>,
-    lines_layout: wgpu::BindGroupLayout,
-    lines: wgpu::BindGroup,
+    lines: LineBuffer,
     /// The lines of each panel, by kind.
     ranges: Vec<[Range<u32>; Kind::ALL.len()]>,
 }
 
 impl Lines {
-    pub(super) fn new(gpu: &Gpu) -> Self {
-        let segments = GrowingBuffer::new(gpu, "lines", wgpu::BufferUsages::STORAGE, 1024);
-        let lines_layout = lines_layout(gpu);
+    pub(super) fn new(stage: &Stage) -> Self {
+        let gpu = &stage.gpu;
+        let visibility = Visibility::new(gpu);
+        let layout = group_layout(gpu, "visibility", &[texture_entry(4, false)]);
         Self {
             module: shader(gpu, "line", &parts()),
             pipelines: [const { None }; Kind::ALL.len()],
-            layout: group_layout(gpu, "visibility", &[texture_entry(4, false)]),
-            found: None,
-            visibility: Visibility::new(gpu),
-            lines: bind_lines(gpu, &lines_layout, segments.buffer()),
-            lines_layout,
-            segments,
+            found: bind_textures(gpu, "visibility", &layout, &[(4, &visibility.found())]),
+            layout,
+            visibility,
+            lines: LineBuffer::new(gpu, "lines"),
             ranges: Vec::new(),
         }
     }
 
-    /// Uploads the lines of a picture, and prepares to draw them, with or without solid obstacles.
+    /// Uploads the lines of a picture, and prepares to draw them.
     ///
     /// # Errors
     /// There are more lines than the device can test.
-    pub(super) fn write(
-        &mut self,
-        gpu: &Gpu,
-        panels: &Panels,
-        bodies: &Bodies,
-        picture: &Picture,
-        among: bool,
-    ) -> Result<(), RenderError> {
+    pub(super) fn write(&mut self, stage: &Stage, picture: &Picture) -> Result<(), RenderError> {
+        let gpu = &stage.gpu;
         let segments = self.sampled(picture, most_samples(gpu));
         let most = most_lines::<Segment>(gpu);
         if segments.len() > most {
             return Err(RenderError::Lines { count: segments.len(), most });
         }
-        let is_new = self.segments.write(gpu, segments);
-        if is_new {
-            self.lines = bind_lines(gpu, &self.lines_layout, self.segments.buffer());
+        let is_new = self.lines.write(gpu, segments);
+        let among = picture.panels.iter().any(|panel| !panel.obstacles.solids.is_empty());
+        if self.visibility.write(stage, (&self.lines, is_new), &self.ranges, among) {
+            self.found = bind_textures(gpu, "visibility", &self.layout, &[(4, &self.visibility.found())]);
         }
-        let lines = (self.segments.contents(), self.segments.buffer(), is_new);
-        if self.visibility.write(gpu, panels, bodies, lines, &self.ranges, among) || self.found.is_none() {
-            self.found = Some(bind_textures(gpu, "visibility", &self.layout, &[(4, &self.visibility.found())]));
-        }
+        let largest = wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::One,
+            dst_factor: wgpu::BlendFactor::One,
+            operation: wgpu::BlendOperation::Max,
+        };
         for (at, kind) in Kind::ALL.into_iter().enumerate() {
-            if self.ranges.iter().any(|ranges| !ranges[at].is_empty()) {
-                self.prepare(gpu, panels, kind);
+            if self.ranges.iter().all(|ranges| ranges[at].is_empty()) {
+                continue;
             }
+            let build = || {
+                let [_, entry] = kind.entries();
+                let recipe = Recipe {
+                    groups: &[&stage.panels.layout, &self.layout, &self.lines.layout],
+                    blend: Some(wgpu::BlendState { color: largest, alpha: largest }),
+                    ..Recipe::lines(entry, &self.module, ["segment", entry], LINE_FORMAT)
+                };
+                recipe.build(gpu)
+            };
+            self.pipelines[at].get_or_insert_with(build);
         }
         Ok(())
     }
@@ -107,49 +109,25 @@ impl Lines {
         segments
     }
 
-    /// Makes the pipeline of a kind.
-    fn prepare(&mut self, gpu: &Gpu, panels: &Panels, kind: Kind) {
-        let largest = wgpu::BlendComponent {
-            src_factor: wgpu::BlendFactor::One,
-            dst_factor: wgpu::BlendFactor::One,
-            operation: wgpu::BlendOperation::Max,
-        };
-        let build = || {
-            let recipe = Recipe {
-                groups: &[&panels.layout, &self.layout, &self.lines_layout],
-                blend: Some(wgpu::BlendState { color: largest, alpha: largest }),
-                ..Recipe::lines(kind.entry(), &self.module, ["segment", kind.entry()], LINE_FORMAT)
-            };
-            recipe.build(gpu)
-        };
-        self.pipelines[kind as usize].get_or_insert_with(build);
-    }
-
-    /// Binds new textures.
-    pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
-        self.visibility.retarget(gpu, bodies);
-    }
-
-    /// Tests the visibility of all lines, with solid obstacles if there are any. The bodies must have been drawn.
+    /// Tests the visibility of all lines. The bodies must have been drawn.
     pub(super) fn test(
         &self,
-        gpu: &Gpu,
         commands: &mut wgpu::CommandEncoder,
-        panels: &Panels,
+        stage: &Stage,
+        bodies: &Bodies,
         places: &[Rectangle],
-        among: bool,
     ) {
-        self.visibility.find(gpu, commands, panels, places, among);
+        self.visibility.find(commands, stage, bodies, places);
     }
 
     /// Draws the lines of all panels. Their visibility must have been tested.
-    pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, places: &[Rectangle]) {
-        pass.set_bind_group(1, self.found.as_ref(), &[]);
-        pass.set_bind_group(2, &self.lines, &[]);
+    pub(super) fn draw(&self, pass: &mut Pass<'_>, stage: &Stage, places: &[Rectangle]) {
+        pass.set_bind_group(1, &self.found, &[]);
+        pass.set_bind_group(2, &self.lines.group, &[]);
         for (at, pipeline) in self.pipelines.iter().enumerate() {
             let Some(pipeline) = pipeline else { continue };
             pass.set_pipeline(pipeline);
-            panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
+            stage.panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
                 pass.draw(corners(&self.ranges[panel][at]), 0..1);
             });
         }

@@ -6,7 +6,7 @@ mod composite;
 mod ground;
 mod line;
 mod lit;
-mod obstacle;
+mod pane;
 mod panel;
 mod pass;
 mod pipeline;
@@ -16,7 +16,6 @@ mod shader_tests;
 mod stroke;
 mod surface;
 mod target;
-mod tint;
 mod visibility;
 
 use crate::gpu::{Gpu, GpuError};
@@ -28,10 +27,9 @@ use lit::Lit;
 const PANEL_SHADER: &str = include_str!("../../shaders/panel.wgsl");
 const SEGMENT_SHADER: &str = include_str!("../../shaders/segment.wgsl");
 
-/// The shaders that read around a point, read the drawn bodies, and read the turned-over set.
-const TAPS_SHADER: &str = include_str!("../../shaders/taps.wgsl");
+/// The shaders that read the drawn bodies, at a pixel and around a point.
 const BODIES_SHADER: &str = include_str!("../../shaders/bodies.wgsl");
-const TURNED_OVER_SHADER: &str = include_str!("../../shaders/turned_over.wgsl");
+const TAPS_SHADER: &str = include_str!("../../shaders/taps.wgsl");
 
 /// A reason why a picture cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

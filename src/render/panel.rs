@@ -3,9 +3,9 @@
 use super::pass::Pass;
 use super::pipeline::{bind, element, group_layout, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::{Colour, MOST_OCCLUDERS, Occluder, Panel, Picture, Rectangle};
+use crate::picture::{Colour, MOST_OCCLUDERS, Occluder, Panel, Picture, Rectangle, SHADES};
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use glam::{Mat4, Vec2, Vec2Swizzles as _, Vec3, Vec4};
 
 /// The struct `Panel` of `shaders/panel.wgsl`, field by field.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -15,7 +15,7 @@ pub(super) struct PanelUniform {
     pub(super) eye: Vec3,
     pub(super) near: f32,
     pub(super) key: Vec3,
-    pub(super) unused_0: f32,
+    pub(super) edging: f32,
     pub(super) up: Vec3,
     pub(super) floor: f32,
     pub(super) sound: Vec3,
@@ -28,11 +28,12 @@ pub(super) struct PanelUniform {
     pub(super) focal: f32,
     pub(super) outline: Vec3,
     pub(super) soft: f32,
+    pub(super) obstacle: Vec3,
+    pub(super) contour_share: f32,
     pub(super) region: Vec4,
     pub(super) place: Vec4,
-    pub(super) contour_share: f32,
-    pub(super) unused_1: f32,
-    pub(super) fade_distance: Vec2,
+    pub(super) viewport: Vec4,
+    pub(super) fade_distance: Vec4,
     pub(super) fade_room: Vec4,
     pub(super) fade_strength: Vec4,
     pub(super) occluders: [OccluderUniform; MOST_OCCLUDERS],
@@ -114,6 +115,11 @@ pub(super) fn has_behind(panel: &Panel) -> bool {
     panel.dotted || !panel.turned_over.triangles.is_empty()
 }
 
+/// The opacity of edges that surfaces draw themselves; 0 if they are lines.
+fn edging(_panel: &Panel) -> f32 {
+    0.0
+}
+
 fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> PanelUniform {
     let sight = &panel.sight;
     let palette = &if panel.greyed { picture.palette.greyed() } else { picture.palette };
@@ -123,7 +129,7 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         eye: sight.eye,
         near: sight.near,
         key: sight.key,
-        unused_0: 0.0,
+        edging: edging(panel),
         up: panel.floor.as_ref().map_or(Vec3::Y, |floor| floor.normal),
         // Without a floor, it lies far below everything.
         floor: panel.floor.as_ref().map_or(-1e6, |floor| floor.height),
@@ -138,12 +144,13 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
         focal: sight.focal,
         outline: linear(palette.outline),
         soft: sight.soft,
+        obstacle: linear(palette.obstacle),
+        contour_share: sight.contour_share,
         region: Vec4::from_array(region.map(|length| length as f32)),
         place: Vec4::new(left, top, sight.middle[0], sight.middle[1]),
-        contour_share: sight.contour_share,
-        unused_1: 0.0,
+        viewport: Vec4::from_array(panel.viewport.map(|length| length as f32)),
         fade_room: Vec4::from_array(panel.obstacles.fade.map_or([0.0; 4], |fade| fade.room)),
-        fade_distance: panel.obstacles.fade.map_or(Vec2::ONE, |fade| Vec2::from_array(fade.distance)),
+        fade_distance: panel.obstacles.fade.map_or(Vec4::ONE, |fade| Vec2::from(fade.distance).xyxy()),
         fade_strength: Vec4::from_array(panel.obstacles.fade.map_or([0.0; 4], |fade| fade.strength)),
         occluders: std::array::from_fn(|at| {
             panel.obstacles.occluders.get(at).map_or(OccluderUniform::NONE, OccluderUniform::new)
@@ -154,20 +161,22 @@ fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> P
 /// The distance between the data of two panels in the buffer (bytes): a multiple of 256, to which devices may align it.
 const STRIDE: usize = 768;
 
-/// The data of all panels, for the bodies' regions and for whole panels.
+/// The data of all panels, for the bodies' regions and for whole panels, and the scale of a field.
 #[derive(Debug)]
 pub(super) struct Panels {
     buffer: GrowingBuffer<u8>,
+    ramp: GrowingBuffer<Vec4>,
     bind_group: wgpu::BindGroup,
     pub(super) layout: wgpu::BindGroupLayout,
 }
 
 impl Panels {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        let layout = group_layout(gpu, "panel", &[uniform_entry(0, size_of::<PanelUniform>(), true)]);
+        let scale = uniform_entry(1, SHADES * size_of::<Vec4>(), false);
+        let layout = group_layout(gpu, "panel", &[uniform_entry(0, size_of::<PanelUniform>(), true), scale]);
         let buffer = GrowingBuffer::new(gpu, "panels", wgpu::BufferUsages::UNIFORM, 4 * STRIDE);
-        let bind_group = bind(gpu, "panel", &layout, &[(0, element::<PanelUniform>(buffer.buffer()))]);
-        Self { buffer, bind_group, layout }
+        let ramp = GrowingBuffer::new(gpu, "scale", wgpu::BufferUsages::UNIFORM, SHADES);
+        Self { bind_group: bound(gpu, &layout, &buffer, &ramp), buffer, ramp, layout }
     }
 
     /// Uploads the data of all panels of a picture.
@@ -180,9 +189,9 @@ impl Panels {
                 bytes[start..start + size_of::<PanelUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
             }
         }
+        self.ramp.write(gpu, picture.ramp.iter().take(SHADES).map(|&colour| linear(colour).extend(1.0)).collect());
         if self.buffer.write(gpu, bytes) {
-            let uniform = element::<PanelUniform>(self.buffer.buffer());
-            self.bind_group = bind(gpu, "panel", &self.layout, &[(0, uniform)]);
+            self.bind_group = bound(gpu, &self.layout, &self.buffer, &self.ramp);
         }
     }
 
@@ -209,6 +218,16 @@ impl Panels {
     pub(super) fn bind_whole(&self, pass: &mut Pass<'_>, panel: usize) {
         pass.set_bind_group(0, &self.bind_group, &[((2 * panel + 1) * STRIDE) as u32]);
     }
+}
+
+fn bound(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    panels: &GrowingBuffer<u8>,
+    ramp: &GrowingBuffer<Vec4>,
+) -> wgpu::BindGroup {
+    let uniform = element::<PanelUniform>(panels.buffer());
+    bind(gpu, "panel", layout, &[(0, uniform), (1, ramp.buffer().as_entire_binding())])
 }
 
 /// Limits drawing to a rectangle of the target.

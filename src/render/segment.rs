@@ -2,7 +2,7 @@
 
 use super::panel::cropped;
 use super::pipeline::{bind, group_layout, storage_entry};
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Line, LineKind, Panel};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4};
@@ -27,14 +27,29 @@ pub(super) struct Segment {
 pub(super) const KIND_BITS: u32 = 4;
 pub(super) const STRENGTH_BITS: u32 = 8;
 
-/// The layout of lines for a pass: three vertices each.
-pub(super) fn lines_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    group_layout(gpu, "lines", &[storage_entry(1)])
+/// Lines in a buffer, bound for passes that draw three vertices for each.
+#[derive(Debug)]
+pub(super) struct LineBuffer {
+    pub(super) buffer: GrowingBuffer<Segment>,
+    pub(super) layout: wgpu::BindGroupLayout,
+    pub(super) group: wgpu::BindGroup,
 }
 
-/// Lines bound in that layout.
-pub(super) fn bind_lines(gpu: &Gpu, layout: &wgpu::BindGroupLayout, lines: &wgpu::Buffer) -> wgpu::BindGroup {
-    bind(gpu, "lines", layout, &[(1, lines.as_entire_binding())])
+impl LineBuffer {
+    pub(super) fn new(gpu: &Gpu, label: &'static str) -> Self {
+        let buffer = GrowingBuffer::new(gpu, label, wgpu::BufferUsages::STORAGE, 1024);
+        let layout = group_layout(gpu, label, &[storage_entry(1)]);
+        Self { group: bind(gpu, label, &layout, &[(1, buffer.buffer().as_entire_binding())]), buffer, layout }
+    }
+
+    /// Replaces the lines. Returns true if they are bound anew.
+    pub(super) fn write(&mut self, gpu: &Gpu, segments: Vec<Segment>) -> bool {
+        let is_new = self.buffer.write(gpu, segments);
+        if is_new {
+            self.group = bind(gpu, "lines", &self.layout, &[(1, self.buffer.buffer().as_entire_binding())]);
+        }
+        is_new
+    }
 }
 
 /// The vertices of some lines.
@@ -125,8 +140,6 @@ pub(super) enum Kind {
 
 impl Kind {
     pub(super) const ALL: [Self; 4] = [Self::Edge, Self::AlarmEdge, Self::Contour, Self::AlarmContour];
-    /// The entry point of the visibility test of each kind.
-    pub(super) const TESTED: [&'static str; 4] = ["edges", "alarm_edges", "contours", "alarm_contours"];
 
     /// The kind of a line.
     pub(super) fn of(line: &Line) -> Self {
@@ -138,13 +151,13 @@ impl Kind {
         }
     }
 
-    /// The entry point that draws the kind.
-    pub(super) fn entry(self) -> &'static str {
+    /// The entry points that test the visibility of the kind and that draw it.
+    pub(super) fn entries(self) -> [&'static str; 2] {
         match self {
-            Self::Edge => "edge_opacity",
-            Self::AlarmEdge => "alarm_edge_opacity",
-            Self::Contour => "contour_opacity",
-            Self::AlarmContour => "alarm_contour_opacity",
+            Self::Edge => ["edges", "edge_opacity"],
+            Self::AlarmEdge => ["alarm_edges", "alarm_edge_opacity"],
+            Self::Contour => ["contours", "contour_opacity"],
+            Self::AlarmContour => ["alarm_contours", "alarm_contour_opacity"],
         }
     }
 }

@@ -2,9 +2,8 @@
 
 use super::ground::GroundUniform;
 use super::panel::{OccluderUniform, PanelUniform};
-use super::{
-    BODIES_SHADER, PANEL_SHADER, border, composite, ground, obstacle, segment, stroke, surface, tint, visibility,
-};
+use super::surface::Variant;
+use super::{PANEL_SHADER, border, composite, ground, pane, segment, stroke, visibility};
 use crate::picture::MOST_OCCLUDERS;
 use std::mem::offset_of;
 
@@ -22,16 +21,16 @@ fn parse(parts: &[&str]) -> naga::Module {
 fn shaders_are_valid() {
     parse(&[PANEL_SHADER, ground::SHADER]);
     for occluders in 0..=MOST_OCCLUDERS {
-        parse(&surface::parts(occluders));
-        parse(&[&surface::parts(occluders)[..], &[tint::SHADER]].concat());
+        for (tinted, edged) in [(false, false), (false, true), (true, false), (true, true)] {
+            parse(&[&Variant { occluders, tinted, edged }.parts()]);
+        }
     }
-    parse(&[&surface::parts(0)[..], &[obstacle::SHADER]].concat());
     parse(&border::parts());
     parse(&segment::parts());
     parse(&visibility::parts(false));
     parse(&visibility::parts(true));
-    parse(&obstacle::pane_parts());
-    parse(&[PANEL_SHADER, BODIES_SHADER, composite::SHADER]);
+    parse(&pane::parts());
+    parse(&composite::parts());
     parse(&stroke::parts());
 }
 
@@ -56,8 +55,8 @@ macro_rules! same_layout {
 fn structs_are_laid_out_alike_on_both_sides() {
     let module = parse(&[PANEL_SHADER, ground::SHADER]);
     same_layout!(module, "Panel", PanelUniform,
-        clip eye near key unused_0 up floor sound element alarm line_scale alarm_line outline_alpha edge focal outline soft
-        region place contour_share unused_1 fade_distance fade_room fade_strength occluders);
+        clip eye near key edging up floor sound element alarm line_scale alarm_line outline_alpha edge focal outline soft
+        obstacle contour_share region place viewport fade_distance fade_room fade_strength occluders);
     same_layout!(module, "Occluder", OccluderUniform, first second rotation);
     same_layout!(module, "Ground", GroundUniform,
         first second middle fade key sky background floor grid shadow viewport);
@@ -83,7 +82,7 @@ fn numbers_about_lines_are_the_same_on_both_sides() {
 
 #[test]
 fn the_scale_of_a_field_has_as_many_colours_on_both_sides() {
-    let module = parse(&[&surface::parts(0)[..], &[tint::SHADER]].concat());
+    let module = parse(&[&Variant { occluders: 0, tinted: true, edged: false }.parts()]);
     let ramp = module.global_variables.iter().find(|(_, variable)| variable.name.as_deref() == Some("ramp"));
     let (_, ramp) = ramp.expect("the scale");
     let naga::TypeInner::Array { size: naga::ArraySize::Constant(count), stride, .. } = module.types[ramp.ty].inner

@@ -1,20 +1,16 @@
 //! The visibility of lines, tested once for each pixel of their length before they are drawn. Testing each pixel that a
 //! line covers would take several times as long.
 
-use super::panel::Panels;
-use super::pipeline::{
-    bind, compute_pipeline, element, group_layout, shader, storage_entry, texture_entry, uniform_entry,
-};
-use super::segment::{self, Kind, Segment};
+use super::lit::Stage;
+use super::pipeline::{bind, compute_pipeline, element, group_layout, shader, storage_entry, uniform_entry};
+use super::segment::{self, Kind, LineBuffer};
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer, Work};
 use crate::picture::Rectangle;
+use std::collections::HashMap;
 use std::ops::Range;
 
 const SHADER: &str = include_str!("../../shaders/visibility.wgsl");
-/// The part of the shader about solid obstacles, without obstacles and with some.
-const ALONE_SHADER: &str = include_str!("../../shaders/line_alone.wgsl");
-const AMONG_SHADER: &str = include_str!("../../shaders/line_among.wgsl");
 
 /// The format of results: four shares, used with the precision of a byte.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -28,29 +24,19 @@ pub(super) const GROUP: u32 = 128;
 const STRIDE: usize = 256;
 
 /// The parts of the shader, without or with solid obstacles.
-pub(super) fn parts(among: bool) -> [&'static str; 8] {
-    let obstacles = if among { AMONG_SHADER } else { ALONE_SHADER };
+pub(super) fn parts(among: bool) -> [&'static str; 7] {
+    let obstacles = if among { "const AMONG = true;\n" } else { "const AMONG = false;\n" };
     let [panel, segment, line] = segment::parts();
-    [panel, segment, super::TAPS_SHADER, super::BODIES_SHADER, obstacles, super::TURNED_OVER_SHADER, line, SHADER]
-}
-
-/// Pipelines and their bindings.
-#[derive(Debug)]
-struct Variant {
-    among: bool,
-    module: wgpu::ShaderModule,
-    /// Pipelines for each kind of line, made when first needed.
-    pipelines: [Option<wgpu::ComputePipeline>; Kind::TESTED.len()],
-    layout: wgpu::BindGroupLayout,
-    textures: Option<wgpu::BindGroup>,
+    [obstacles, panel, segment, super::BODIES_SHADER, super::TAPS_SHADER, line, SHADER]
 }
 
 /// The pipelines, and the visibility of the lines of one picture.
 #[derive(Debug)]
 pub(super) struct Visibility {
-    alone: Variant,
-    /// Pipelines with solid obstacles, made for the first ones.
-    among: Option<Variant>,
+    /// Pipelines for each kind of line, without solid obstacles and with some, made when they are first needed.
+    pipelines: HashMap<(usize, bool), wgpu::ComputePipeline>,
+    /// Whether the picture has solid obstacles.
+    among: bool,
     layout: wgpu::BindGroupLayout,
     /// The line of each chunk of samples, and the chunk's first sample on it.
     chunks: GrowingBuffer<[u32; 2]>,
@@ -58,7 +44,7 @@ pub(super) struct Visibility {
     bind_group: Option<wgpu::BindGroup>,
     found: wgpu::Texture,
     /// The numbers of chunks of each panel and kind.
-    counts: Vec<[u32; Kind::TESTED.len()]>,
+    counts: Vec<[u32; Kind::ALL.len()]>,
 }
 
 impl Visibility {
@@ -75,8 +61,8 @@ impl Visibility {
         };
         let entries = [storage_entry(0), storage_entry(1), found, uniform_entry(3, size_of::<[u32; 2]>(), true)];
         Self {
-            alone: Variant::new(gpu, false),
-            among: None,
+            pipelines: HashMap::new(),
+            among: false,
             layout: group_layout(gpu, "visibility", &entries),
             chunks: GrowingBuffer::new(gpu, "samples of lines", wgpu::BufferUsages::STORAGE, 1024),
             ranges: GrowingBuffer::new(gpu, "ranges of samples", wgpu::BufferUsages::UNIFORM, 16 * STRIDE),
@@ -91,28 +77,17 @@ impl Visibility {
         self.found.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    /// Binds new textures of bodies.
-    pub(super) fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
-        self.alone.retarget(gpu, bodies);
-        self.among.iter_mut().for_each(|among| among.retarget(gpu, bodies));
-    }
-
     /// Prepares to test the lines of a picture, which lie in `lines` by panel and kind. Returns true if the results
     /// have a new texture.
     pub(super) fn write(
         &mut self,
-        gpu: &Gpu,
-        panels: &Panels,
-        bodies: &Bodies,
-        (segments, lines, is_new): (&[Segment], &wgpu::Buffer, bool),
+        stage: &Stage,
+        (lines, is_new): (&LineBuffer, bool),
         ranges_of_lines: &[[Range<u32>; Kind::ALL.len()]],
         among: bool,
     ) -> bool {
-        if among && self.among.is_none() {
-            let mut variant = Variant::new(gpu, true);
-            variant.retarget(gpu, bodies);
-            self.among = Some(variant);
-        }
+        let (gpu, segments) = (&stage.gpu, lines.buffer.contents());
+        self.among = among;
         let (mut chunks, mut ranges) = (Vec::new(), Vec::new());
         self.counts.clear();
         let mut samples = 0;
@@ -140,45 +115,47 @@ impl Visibility {
             let found = self.found();
             let resources = [
                 (0, self.chunks.buffer().as_entire_binding()),
-                (1, lines.as_entire_binding()),
+                (1, lines.buffer.buffer().as_entire_binding()),
                 (2, wgpu::BindingResource::TextureView(&found)),
                 (3, element::<[u32; 2]>(self.ranges.buffer())),
             ];
             self.bind_group = Some(bind(gpu, "visibility", &self.layout, &resources));
         }
-        let variant = if among { self.among.as_mut().expect("made above") } else { &mut self.alone };
         let is_tested = |kind: usize| self.counts.iter().any(|counts| counts[kind] > 0);
-        for kind in (0..Kind::TESTED.len()).filter(|&kind| is_tested(kind)) {
-            variant.prepare(gpu, &panels.layout, &self.layout, kind);
+        for kind in (0..Kind::ALL.len()).filter(|&kind| is_tested(kind)) {
+            let build = || {
+                let groups = [&stage.panels.layout, &stage.layouts.drawn, &self.layout];
+                let module = shader(gpu, "visibility", &parts(among));
+                compute_pipeline(gpu, "visibility", &module, Kind::ALL[kind].entries()[0], &groups)
+            };
+            self.pipelines.entry((kind, among)).or_insert_with(build);
         }
         is_small
     }
 
-    /// Tests all lines, with solid obstacles if there are any.
+    /// Tests all lines. The bodies must have been drawn.
     pub(super) fn find(
         &self,
-        gpu: &Gpu,
         commands: &mut wgpu::CommandEncoder,
-        panels: &Panels,
+        stage: &Stage,
+        bodies: &Bodies,
         places: &[Rectangle],
-        among: bool,
     ) {
-        let variant = self.among.as_ref().filter(|_| among).unwrap_or(&self.alone);
         let mut pass = commands.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_bind_group(1, variant.textures.as_ref(), &[]);
-        for (kind, pipeline) in variant.pipelines.iter().enumerate() {
-            let Some(pipeline) = pipeline else { continue };
+        pass.set_bind_group(1, &bodies.drawn, &[]);
+        for (at, kind) in Kind::ALL.into_iter().enumerate() {
+            let Some(pipeline) = self.pipelines.get(&(at, self.among)) else { continue };
             pass.set_pipeline(pipeline);
             for (panel, counts) in self.counts.iter().enumerate() {
-                let groups = (counts[kind] * CHUNK).div_ceil(GROUP);
+                let groups = (counts[at] * CHUNK).div_ceil(GROUP);
                 if groups == 0 || !super::panel::is_visible(places[panel]) {
                     continue;
                 }
-                panels.bind_region(&mut pass, panel);
-                let range = (panel * Kind::TESTED.len() + kind) * STRIDE;
+                stage.panels.bind_region(&mut pass, panel);
+                let range = (panel * Kind::ALL.len() + at) * STRIDE;
                 pass.set_bind_group(2, self.bind_group.as_ref(), &[range as u32]);
                 let wide = groups.min(MOST_GROUPS);
-                gpu.note(Work::Draw(Kind::TESTED[kind]));
+                stage.gpu.note(Work::Draw(kind.entries()[0]));
                 pass.dispatch_workgroups(wide, groups.div_ceil(wide), 1);
             }
         }
@@ -216,33 +193,4 @@ fn texture(gpu: &Gpu, height: u32) -> wgpu::Texture {
         usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     })
-}
-
-impl Variant {
-    fn new(gpu: &Gpu, among: bool) -> Self {
-        let mut entries = vec![texture_entry(1, true), texture_entry(2, true)];
-        if among {
-            entries.push(texture_entry(0, false));
-        }
-        Self {
-            among,
-            module: shader(gpu, "visibility", &parts(among)),
-            pipelines: [const { None }; Kind::TESTED.len()],
-            layout: group_layout(gpu, "depth", &entries),
-            textures: None,
-        }
-    }
-
-    /// Makes the pipeline of a kind.
-    fn prepare(&mut self, gpu: &Gpu, panel: &wgpu::BindGroupLayout, own: &wgpu::BindGroupLayout, kind: usize) {
-        let groups = [panel, &self.layout, own];
-        let build = || compute_pipeline(gpu, "visibility", &self.module, Kind::TESTED[kind], &groups);
-        self.pipelines[kind].get_or_insert_with(build);
-    }
-
-    fn retarget(&mut self, gpu: &Gpu, bodies: &Bodies) {
-        let all = [(1, &bodies.depth), (2, &bodies.alarm_depth), (0, &bodies.colour)];
-        let views = if self.among { &all[..] } else { &all[..2] };
-        self.textures = Some(super::pipeline::bind_textures(gpu, "depth", &self.layout, views));
-    }
 }

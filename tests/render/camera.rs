@@ -117,10 +117,10 @@ fn a_frame_drawn_alone_is_that_of_its_sequence() {
 fn plates_are_drawn_alike_in_all_panels_and_frames() {
     let scene = load(&shipped().into_iter().find(|path| path.ends_with("obstacles.toml")).expect("a scene"));
     let film = film(&scene, 20);
-    let first = &film[0].1.panels[0].obstacles.slabs;
+    let first = &film[0].1.panels[0].obstacles.panes;
     assert!(!first.is_empty());
     for (frame, picture) in &film {
-        assert!(picture.panels.iter().all(|panel| panel.obstacles.slabs == *first), "{frame}");
+        assert!(picture.panels.iter().all(|panel| panel.obstacles.panes == *first), "{frame}");
     }
 }
 

@@ -3,7 +3,7 @@
 use super::listed::{Composer, Listed, Mark, compose_figure};
 use super::{compose, fig4b, frame, gpu, parse, renderer, unknown};
 use glam::{DVec3, Vec3};
-use localshape::picture::{LineKind, MOST_OCCLUDERS, Mesh, Obstacles, Occluder, Panel};
+use localshape::picture::{LineKind, MOST_OCCLUDERS, Mesh, Obstacles, Occluder, Pane, Panel, Vertex};
 use localshape::render::Renderer;
 use localshape::runner::history::History;
 use localshape::runner::moments::Moments;
@@ -73,15 +73,13 @@ fn seen(scene: &Scene, point: [f64; 3]) -> Vec3 {
 fn numbers(panel: &Panel) -> Vec<f32> {
     let mut all = Vec::new();
     for solid in &panel.obstacles.solids {
-        all.extend(solid.mesh.vertices.iter().flat_map(|vertex| [vertex.position, vertex.normal].concat()));
-        all.extend(&solid.near);
+        let numbers = |vertex: &Vertex| [&vertex.position[..], &vertex.normal, &[vertex.hatch]].concat();
+        all.extend(solid.mesh.vertices.iter().flat_map(numbers));
     }
-    for slab in &panel.obstacles.slabs {
-        for corner in slab.panes.iter().flat_map(|pane| &pane.corners) {
-            all.extend(corner.position.iter().chain(&corner.grid).chain(&corner.from_middle));
-        }
-        all.extend(slab.edges.iter().flatten().flatten());
+    for corner in panel.obstacles.panes.iter().flat_map(|pane| &pane.corners) {
+        all.extend(corner.position.iter().chain(&corner.grid).chain(&corner.from_middle));
     }
+    all.extend(panel.obstacles.edges.iter().flatten().flatten());
     all.extend(panel.lines.iter().flat_map(|line| [line.from, line.to].concat()));
     all
 }
@@ -135,12 +133,12 @@ fn a_plate_is_transparent_behind_its_surface_and_says_where_it_goes() {
         let picture = picture(&scene, 25);
         let panel = &picture.panels[0];
         assert!(panel.obstacles.solids.is_empty());
-        let [slab] = &panel.obstacles.slabs[..] else { panic!("one slab") };
-        assert!(slab.panes.iter().all(|pane| pane.alpha < 1.0 && !pane.grid) && slab.panes.len() == 3);
-        assert_eq!(slab.edges.len(), 9, "those that are seen");
+        let panes = &panel.obstacles.panes;
+        assert!(panes.iter().all(|pane| pane.alpha < 1.0 && !pane.grid) && panes.len() == 3);
+        assert_eq!(panel.obstacles.edges.len(), 9, "those that are seen");
         let gone = gone * frame(&scene, 25).time;
         let surface = seen(&scene, [0.0, 0.8 + gone, 0.0]).y;
-        let heights = slab.panes.iter().flat_map(|pane| &pane.corners).map(|corner| corner.position[1] - surface);
+        let heights = panes.iter().flat_map(|pane| &pane.corners).map(|corner| corner.position[1] - surface);
         let (low, high) = heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
         assert!(low.abs() < 1e-4 && (0.01..0.2).contains(&high), "{low} {high}");
         let found = marks(&picture, &["arrow"]);
@@ -163,7 +161,7 @@ fn a_plate_reaches_as_far_as_bodies_slide_on_it() {
             down.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
         };
         let body = range(&mut panel.sound.vertices.iter().map(|vertex| vertex.position));
-        let corners = panel.obstacles.slabs.iter().flat_map(|slab| &slab.panes).flat_map(|pane| &pane.corners);
+        let corners = panel.obstacles.panes.iter().flat_map(|pane| &pane.corners);
         let plate = range(&mut corners.map(|corner| corner.position));
         assert!(plate[0] < body[0] && body[1] < plate[1], "{index}: {body:?} {plate:?}");
     }
@@ -176,10 +174,10 @@ fn walls_have_a_grid_and_end_at_the_ground() {
     let wall = "[[obstacle]]\nkind = 'floor'\nnormal = [1, 0.2, 0]\nheight = -0.4\n";
     let scene = scene(&[WORLD, CUBE, FLOOR, wall, FLOOR]);
     let picture = picture(&scene, 0);
-    let [slab] = &picture.panels[0].obstacles.slabs[..] else { panic!("the second ground is the first again") };
-    assert!(slab.panes.iter().all(|pane| pane.grid && pane.alpha < 1.0));
+    let [pane] = &picture.panels[0].obstacles.panes[..] else { panic!("the second ground is the first again") };
+    assert!(pane.grid && pane.alpha < 1.0);
     let ground = seen(&scene, [0.0; 3]).y;
-    let corners: Vec<_> = slab.panes.iter().flat_map(|pane| &pane.corners).collect();
+    let corners = &pane.corners;
     assert!(corners.iter().all(|corner| corner.position[1] > ground - 1e-4));
     assert!(corners.iter().any(|corner| corner.position[1] < ground + 1e-4));
 }
@@ -191,8 +189,10 @@ fn slabs_are_ordered_from_the_farthest_to_the_nearest() {
         .to_vec();
     let scene = scene(&[WORLD, CUBE, &plates.concat()[..], "[view]\ncamera = { azimuth = 0.0 }\n"]);
     let picture = picture(&scene, 0);
-    let depth = |slab: &localshape::picture::Slab| slab.panes[0].corners[0].position[2];
-    let depths: Vec<_> = picture.panels[0].obstacles.slabs.iter().map(depth).collect();
+    let depth = |pane: &Pane| pane.corners.iter().map(|corner| corner.position[2]).fold(f32::INFINITY, f32::min);
+    let panes = &picture.panels[0].obstacles.panes;
+    // Of the faces of plates, the surfaces are fainter.
+    let depths: Vec<_> = panes.iter().filter(|pane| pane.alpha < 0.6).map(depth).collect();
     assert!(depths.len() == 4 && depths.windows(2).all(|two| two[0] < two[1]), "{depths:?}");
 }
 
@@ -275,7 +275,7 @@ fn obstacles_in_the_plane_are_flat_and_end_at_the_floor() {
     let scene = scene(&[WORLD, TRIANGLE, obstacles]);
     let picture = picture(&scene, 25);
     let panel = &picture.panels[0];
-    assert!(panel.obstacles.slabs.is_empty());
+    assert!(panel.obstacles.panes.is_empty());
     assert_eq!(panel.obstacles.solids.len(), 3);
     let area = |mesh: &Mesh| -> f64 {
         let areas = mesh.triangles.iter().map(|three| three.map(|index| at(mesh, index)));
@@ -387,9 +387,9 @@ fn below(obstacle: &str) -> Panel {
 /// The smallest distance of the body from the only solid of a panel.
 fn nearest(panel: &Panel) -> f32 {
     let [solid] = &panel.obstacles.solids[..] else { panic!("one solid") };
-    assert!(solid.near.is_empty() || solid.near.len() == solid.mesh.vertices.len());
-    assert!(is_closed(&solid.mesh) && solid.near.iter().all(|near| (0.0..=1.0).contains(near)));
-    solid.near.iter().copied().fold(0.0, f32::max)
+    let near = || solid.mesh.vertices.iter().map(|vertex| vertex.hatch);
+    assert!(is_closed(&solid.mesh) && near().all(|near| (0.0..=1.0).contains(&near)));
+    near().fold(0.0, f32::max)
 }
 
 #[test]

@@ -46,14 +46,13 @@ impl Draft<'_> {
         let distance = [FADE[0] * (room[2] - room[0]), FADE[1] * (room[3] - room[1])].map(narrow);
         obstacles.fade = fades.then(|| Fading { room: room.map(narrow), distance, strength: strength.map(narrow) });
         // Plates extend behind words, too; walls have a fading of their own.
-        let slabs = obstacles.slabs.iter().filter_map(|slab| {
-            let panes = slab.panes.iter().filter(|pane| !pane.grid);
-            let corners = || panes.clone().flat_map(|pane| &pane.corners).map(|corner| place(corner.position));
+        let plates = obstacles.panes.iter().filter(|pane| !pane.grid).filter_map(|pane| {
+            let corners = || pane.corners.iter().map(|corner| place(corner.position));
             // An obstacle that extends behind the camera leaves on all sides.
             let is_before = corners().all(|corner| self.lens.project(corner).is_some());
             if is_before { self.bounds(corners()) } else { Some([DVec2::NEG_INFINITY, DVec2::INFINITY]) }
         });
-        self.cover_plates(sides(self.viewport.map(f64::from)), slabs, marks);
+        self.cover_plates(sides(self.viewport.map(f64::from)), plates, marks);
     }
 
     /// Covers the sides of a room (px: left, top, right and bottom) that plates in boxes (px) leave.

@@ -77,7 +77,7 @@ impl PlaneObstacles<'_> {
             mesh.triangles.extend((2..polygon.len() as u32).map(|at| [base, base + at - 1, base + at]));
         }
         let [colour, rim] = self.site.palette.obstacle_flat;
-        (!mesh.triangles.is_empty()).then_some(Solid { mesh, colour, rim: Some(rim), near: Vec::new() })
+        (!mesh.triangles.is_empty()).then_some(Solid { mesh, colour, rim: Some(rim) })
     }
 
     /// The outline of an obstacle, counter-clockwise, moved inwards by a length (m); `None` for half-spaces and if

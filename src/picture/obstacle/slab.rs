@@ -6,7 +6,7 @@ use super::space::Staging;
 use crate::picture::narrow::narrow;
 use crate::picture::pointer::Pointers;
 use crate::picture::shadow::Plane;
-use crate::picture::{Item, Pane, PaneCorner, Slab};
+use crate::picture::{Item, Pane, PaneCorner};
 use crate::runner::history::NearObstacles;
 use crate::sim::{Motion, Pose, Shape};
 use glam::{DVec2, DVec3};
@@ -31,7 +31,8 @@ const MANY_SLABS: usize = 64;
 
 /// A slab before sorting.
 pub(super) struct Loose {
-    slab: Slab,
+    panes: Vec<Pane>,
+    pub(super) edges: Vec<[[f32; 3]; 2]>,
     /// The plane of its surface (m).
     plane: HalfSpace,
     /// Its corners (m).
@@ -112,9 +113,7 @@ impl Staging<'_> {
         let axes = [second, first, out];
         let behind = middle - 0.5 * thickness * out;
         let corners = corners(behind, axes, DVec3::new(half.y, half.x, 0.5 * thickness));
-        let mut slab = Slab::default();
-        let mut seen = [false; 6];
-        let mut kept = Vec::new();
+        let (mut panes, mut kept, mut seen, mut drawn) = (Vec::new(), Vec::new(), [false; 6], Vec::new());
         for (face, nodes) in FACES.iter().enumerate() {
             let normal = axes[face / 2] * if face % 2 == 0 { -1.0 } else { 1.0 };
             let polygon = nodes.map(|node| corners[node]);
@@ -125,7 +124,7 @@ impl Staging<'_> {
                 let alpha = PLATE_ALPHA[usize::from(face < 4)];
                 let colour = if face < 4 { self.site.palette.plate_side } else { self.site.palette.plate };
                 let corner = |&at: &DVec3| PaneCorner { position: self.site.relative(at), ..PaneCorner::default() };
-                slab.panes.push(Pane { corners: polygon.iter().map(corner).collect(), colour, alpha, grid: false });
+                panes.push(Pane { corners: polygon.iter().map(corner).collect(), colour, alpha, grid: false });
             }
             if seen[face] {
                 // At a floor it has an edge, too.
@@ -134,17 +133,17 @@ impl Staging<'_> {
                 };
                 let next = polygon.iter().cycle().skip(1);
                 let cut = polygon.iter().zip(next).filter(|&(&a, &b)| floors.iter().any(|&at| on(a, at) && on(b, at)));
-                slab.edges.extend(cut.map(|(&a, &b)| [a, b].map(|end| self.site.relative(end))));
+                drawn.extend(cut.map(|(&a, &b)| [a, b].map(|end| self.site.relative(end))));
             }
             kept.extend(polygon);
         }
         for ([a, b], [one, other]) in edges() {
             if seen[one] || seen[other] {
                 let edge = clipped_line([corners[a], corners[b]], floors);
-                slab.edges.extend(edge.map(|ends| ends.map(|end| self.site.relative(end))));
+                drawn.extend(edge.map(|ends| ends.map(|end| self.site.relative(end))));
             }
         }
-        (!slab.panes.is_empty()).then(|| Loose { slab, plane: (out, out.dot(middle)), corners: kept })
+        (!panes.is_empty()).then(|| Loose { panes, edges: drawn, plane: (out, out.dot(middle)), corners: kept })
     }
 
     /// A floor that is not the ground, with a grid: the part around all places where nodes come near it at any time in
@@ -197,19 +196,18 @@ impl Staging<'_> {
             alpha: WALL_ALPHA[usize::from(!seen)],
             grid: true,
         };
-        let slab = Slab { panes: vec![pane], edges: Vec::new() };
-        Some(Loose { slab, plane: floor, corners: polygon })
+        Some(Loose { panes: vec![pane], edges: Vec::new(), plane: floor, corners: polygon })
     }
 
-    /// Slabs from the farthest to the nearest.
-    pub(super) fn in_order(&self, mut slabs: Vec<Loose>) -> Vec<Slab> {
+    /// The faces of slabs from the farthest to the nearest.
+    pub(super) fn in_order(&self, mut slabs: Vec<Loose>) -> Vec<Pane> {
         let distance = |loose: &Loose| {
             let count = loose.corners.len().max(1) as f64;
             (loose.corners.iter().sum::<DVec3>() / count - self.site.lens.eye).length()
         };
         slabs.sort_by(|one, other| distance(other).total_cmp(&distance(one)));
         if slabs.len() > MANY_SLABS {
-            return slabs.into_iter().map(|loose| loose.slab).collect();
+            return slabs.into_iter().flat_map(|loose| loose.panes).collect();
         }
         // A slab is drawn when none of the others lies behind it. If slabs cross, the farthest is drawn first.
         let mut ordered = Vec::with_capacity(slabs.len());
@@ -218,7 +216,7 @@ impl Staging<'_> {
                 slabs.iter().enumerate().all(|(other, loose)| other == *at || !self.covers(&slabs[*at], loose))
             };
             let next = (0..slabs.len()).find(covers_none).unwrap_or(0);
-            ordered.push(slabs.remove(next).slab);
+            ordered.extend(slabs.remove(next).panes);
         }
         ordered
     }

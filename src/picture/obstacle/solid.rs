@@ -37,18 +37,14 @@ impl Staging<'_> {
         let segments = needed.clamp(SEGMENTS[0] as f64, SEGMENTS[1] as f64) as usize;
         let lathe = shape(segments.next_multiple_of(4));
         let near = self.near(lathe.points().into_iter());
-        let (mesh, near) = match near {
-            // Finer where the body occludes its light.
-            Some(near) => {
-                let fine = lathe.refined(CELL * self.soft);
-                let near: Vec<f32> = fine.rings.iter().flatten().map(|&(at, out)| narrow(near.to(at, out))).collect();
-                (self.turned(&fine), near)
-            }
-            None => (self.turned(&lathe), Vec::new()),
+        // Finer where the body occludes its light.
+        let mesh = match near {
+            Some(near) => self.turned(&lathe.refined(CELL * self.soft), |at, out| near.to(at, out)),
+            None => self.turned(&lathe, |_, _| 0.0),
         };
         self.outline(&lathe, lines);
         staged.outermost.extend(lathe.rings.iter().flatten().map(|(at, _)| *at));
-        solids.push(Solid { mesh, colour: self.site.palette.obstacle, rim: None, near });
+        solids.push(Solid { mesh, colour: self.site.palette.obstacle, rim: None });
         let coarse = shape(SHADOW_SEGMENTS);
         staged.add(&coarse.points(), &coarse.triangles());
     }
@@ -81,7 +77,6 @@ impl Staging<'_> {
     ) {
         let mut mesh = Mesh::default();
         let near = self.near(corners.iter().copied());
-        let mut light = Vec::new();
         let mut seen = [false; 6];
         for (face, nodes) in FACES.iter().enumerate() {
             let normal = axes[face / 2] * if face % 2 == 0 { -1.0 } else { 1.0 };
@@ -97,9 +92,8 @@ impl Staging<'_> {
             for (row, column) in (0..=along).flat_map(|row| (0..=across).map(move |column| (row, column))) {
                 let [x, y] = [f64::from(column) / counts[0], f64::from(row) / counts[1]];
                 let at = polygon[0].lerp(polygon[1], x).lerp(polygon[3].lerp(polygon[2], x), y);
-                let (position, hatch) = (self.site.relative(at), 0.0);
-                mesh.vertices.push(Vertex { position, normal: narrow_point(normal).to_array(), hatch });
-                light.extend(near.as_ref().map(|near| narrow(near.to(at, normal))));
+                let near = near.as_ref().map_or(0.0, |near| near.to(at, normal));
+                mesh.vertices.push(self.corner(at, normal, near));
             }
             for (row, column) in (0..along).flat_map(|row| (0..across).map(move |column| (row, column))) {
                 let at = base + row * (across + 1) + column;
@@ -126,21 +120,18 @@ impl Staging<'_> {
             .map(|three| three.map(|at| at as u32))
             .collect();
         staged.add(corners, &triangles);
-        solids.push(Solid { mesh, colour: self.site.palette.obstacle, rim: None, near: light });
+        solids.push(Solid { mesh, colour: self.site.palette.obstacle, rim: None });
     }
 
-    /// The mesh of a round obstacle.
-    fn turned(&self, lathe: &Lathe) -> Mesh {
-        let vertex = |&(at, normal): &(DVec3, DVec3)| Vertex {
-            position: self.site.relative(at),
-            normal: narrow_point(normal).to_array(),
-            hatch: 0.0,
-        };
-        Mesh {
-            vertices: lathe.rings.iter().flatten().map(vertex).collect(),
-            triangles: lathe.triangles(),
-            shades: Vec::new(),
-        }
+    /// The mesh of a round obstacle with the ambient light that the body takes at points with normals.
+    fn turned(&self, lathe: &Lathe, near: impl Fn(DVec3, DVec3) -> f64) -> Mesh {
+        let vertices = lathe.rings.iter().flatten().map(|&(at, out)| self.corner(at, out, near(at, out))).collect();
+        Mesh { vertices, triangles: lathe.triangles(), ..Mesh::default() }
+    }
+
+    fn corner(&self, at: DVec3, normal: DVec3, near: f64) -> Vertex {
+        let position = self.site.relative(at);
+        Vertex { position, normal: narrow_point(normal).to_array(), hatch: narrow(near) }
     }
 
     /// The lines where a round surface turns away from the viewer, and where it meets the ground.

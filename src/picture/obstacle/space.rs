@@ -67,6 +67,8 @@ impl Staging<'_> {
                 }
             }
         }
-        (Obstacles { solids, slabs: self.in_order(slabs), occluders: self.occluders(), fade: None }, staged)
+        let edges = slabs.iter().flat_map(|slab| slab.edges.iter().copied()).collect();
+        let panes = self.in_order(slabs);
+        (Obstacles { solids, panes, edges, occluders: self.occluders(), fade: None }, staged)
     }
 }

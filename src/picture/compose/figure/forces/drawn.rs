@@ -84,8 +84,9 @@ impl<'a> Drawn<'a> {
             vertices: skin.nodes.iter().map(vertex).collect(),
             triangles: skin.triangles.clone(),
             shades: Vec::new(),
+            edges: Vec::new(),
         };
-        Solid { mesh, colour: ghost_colour(&self.figure.look.palette()), rim: None, near: Vec::new() }
+        Solid { mesh, colour: ghost_colour(&self.figure.look.palette()), rim: None }
     }
 
     /// The edges of all elements, each once.
