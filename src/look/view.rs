@@ -62,7 +62,7 @@ pub struct View {
     /// A title above all panels, wrapped at the width of the picture. Default: none.
     #[schemars(length(max = 200))]
     pub title: String,
-    /// A caption below all panels, wrapped at the width of the picture. `\n` begins a new line. Panels keep at least
+    /// A caption below all panels, wrapped at the width of the picture. `\n` begins a new line. Panels keep almost
     /// half of the picture: longer captions are cut off with an ellipsis. Default: none.
     #[schemars(length(max = 2000), extend("format" = "lines"))]
     pub caption: String,
@@ -114,6 +114,12 @@ impl View {
         let ghost = if let Some(Ghost::Run(run)) = self.ghost { Some(run) } else { None };
         let to = self.colour.and_then(|scale| scale.to);
         [ghost.map(|run| ("ghost", run)), to.map(|run| ("colour.to", run))]
+    }
+
+    /// Whether there are colours, lines or arrows to explain.
+    pub(crate) fn wants_legend(&self) -> bool {
+        let shown = [self.visible.displacements, self.colour.is_some(), self.ghost.is_some(), self.looks_ahead()];
+        self.labels.legend && shown.contains(&true)
     }
 }
 

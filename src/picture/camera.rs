@@ -7,7 +7,7 @@ use crate::sim::Dimension;
 use glam::{DVec3, DVec4, Mat4};
 
 /// The distance of the target below the middle of the room between the text, in heights of that room: bodies rise.
-const LOWERED: f64 = 0.037;
+const LOWERED: f64 = 0.032;
 /// The height of that room in the reference picture, in heights of the panel.
 const REFERENCE_ROOM: f64 = 0.75;
 /// The narrowest panel that shows a body at full size, in heights. In narrower ones the whole scene is smaller.

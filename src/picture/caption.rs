@@ -1,6 +1,6 @@
 //! The text of panels: names, clock, counts and numbers, and the lines between panels.
 
-use super::layout::{self, Baselines, Layout, Rectangle, Scale};
+use super::layout::{Baselines, Layout, Part, Rectangle, Scale};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight};
 use super::{Item, Panel, number};
@@ -17,8 +17,6 @@ const WIDEST_TIME: &str = "8888.8 s";
 /// The largest part of a panel's inner width that the clock's label may take.
 const LABEL_SHARE: f64 = 0.55;
 
-/// Size of the title above all panels, in sizes of names.
-const TITLE: f64 = 1.16;
 /// The gap between a panel's letter and its name, and the height of small letters, in sizes of type.
 const LETTER_GAP: f64 = 0.42;
 const X_HEIGHT: f64 = 0.55;
@@ -64,14 +62,13 @@ pub(super) struct Room {
     pub(super) left: f64,
     right: f64,
     pub(super) top: f64,
-    bottom: f64,
 }
 
 impl Room {
     pub(super) fn new(panel: Rectangle, scale: Scale) -> Self {
-        let [left, top, width, height] = panel.map(f64::from);
+        let [left, top, width, _] = panel.map(f64::from);
         let margin = scale.margin();
-        Self { left: left + margin, right: left + width - margin, top, bottom: top + height }
+        Self { left: left + margin, right: left + width - margin, top }
     }
 
     pub(super) fn width(self) -> f64 {
@@ -105,11 +102,10 @@ pub(super) struct Number {
 
 impl Writer<'_> {
     /// The title above all panels.
-    pub(super) fn title(&mut self, around: Scale, lines: &[String]) {
+    pub(super) fn title(&mut self, layout: &Layout, lines: &[String]) {
         // The title and the words of panels have the same left edge.
-        let (margin, size) = (self.scale.margin(), title_size(around));
-        for (at, line) in lines.iter().enumerate() {
-            let baseline = layout::title_baseline(around, at + 1);
+        let (margin, size) = (self.scale.margin(), layout.around.heading());
+        for (line, baseline) in lines.iter().zip(layout.baselines(Part::Title, size)) {
             self.left(line, Weight::SemiBold, size, self.palette.text, margin, baseline);
         }
     }
@@ -117,17 +113,16 @@ impl Writer<'_> {
     /// Whether there is room for the clock with its label behind the last line of a title, in a picture of a width (px).
     pub(super) fn has_room_beside(&self, around: Scale, title: &[String], label: &str, width: u32) -> bool {
         let wide = |text: &str, weight, size| self.fonts.width(text, weight, size) + around.gap();
-        let title = title.last().map(|line| wide(line, Weight::SemiBold, title_size(around)));
+        let title = title.last().map(|line| wide(line, Weight::SemiBold, around.heading()));
         let clock = wide(WIDEST_TIME, Weight::Regular, around.title()) + wide(label, Weight::Regular, around.caption());
         title.is_some_and(|title| title + clock + 2.0 * self.scale.margin() <= f64::from(width))
     }
 
-    /// The caption below all panels, with its first baseline at a height (px).
-    pub(super) fn caption(&mut self, around: Scale, lines: &[String], baseline: f64) {
-        for (at, line) in lines.iter().enumerate() {
-            let baseline = baseline + at as f64 * layout::CAPTION_LINE * around.type_unit();
-            let colour = self.palette.second_text;
-            self.left(line, Weight::Regular, around.caption(), colour, self.scale.margin(), baseline);
+    /// The caption below all panels.
+    pub(super) fn caption(&mut self, layout: &Layout, lines: &[String]) {
+        let (margin, size) = (self.scale.margin(), layout.around.caption());
+        for (line, baseline) in lines.iter().zip(layout.baselines(Part::Caption, size)) {
+            self.left(line, Weight::Regular, size, self.palette.second_text, margin, baseline);
         }
     }
 
@@ -273,13 +268,12 @@ impl Writer<'_> {
         };
         // If no element has turned over, flat ones are counted.
         let (count, state) = if over == 0 && flattened > 0 { (flattened, "flat") } else { (over, "turned over") };
-        let bottom = room.bottom - self.scale.margin();
         let taken = tally.draw(
             [turned_over, flat],
             self.palette,
             self.scale,
             share * room.width(),
-            [room.left, bottom],
+            [room.left, room.top + lines.caption],
             &mut self.marks,
         );
         let left = room.left + taken + if taken > 0.0 { self.scale.gap() } else { 0.0 };
@@ -360,21 +354,22 @@ impl Writer<'_> {
 
     /// Hairlines between adjacent panels.
     pub(super) fn hairlines(&mut self, layout: &Layout) {
-        let inset = self.scale.margin();
+        let side = self.scale.margin();
+        let [top_inset, bottom_inset] = self.scale.edges.map(|edge| edge * self.scale.unit);
         // A hairline of one pixel between two pixels would fill half of both.
         let thickness = (2.0 * self.scale.unit).round().max(1.0);
         let (line, ground) = (self.palette.hairline, self.palette.background);
         let halved = if thickness < 2.0 { line } else { std::array::from_fn(|at| line[at].midpoint(ground[at])) };
-        let first = f64::from(layout.ground[1]);
+        let first = layout.panels.first().map_or(0.0, |panel| f64::from(panel[1]));
         for panel in &layout.panels {
             let [left, top, width, height] = panel.map(f64::from);
             let mut line = |rectangle| self.marks.push(Item::rectangle(rectangle, halved));
-            if left > 0.0 && height > 2.0 * inset {
-                let length = (height - 2.0 * inset).round();
-                line([left - (thickness / 2.0).floor(), top + inset.round(), thickness, length]);
+            let length = (height - top_inset - bottom_inset).round();
+            if left > 0.0 && length > 0.0 {
+                line([left - (thickness / 2.0).floor(), top + top_inset.round(), thickness, length]);
             }
-            if top > first && width > 2.0 * inset {
-                line([left + inset.round(), top - (thickness / 2.0).floor(), (width - 2.0 * inset).round(), thickness]);
+            if top > first && width > 2.0 * side {
+                line([left + side.round(), top - (thickness / 2.0).floor(), (width - 2.0 * side).round(), thickness]);
             }
         }
     }
@@ -390,11 +385,6 @@ impl Writer<'_> {
         let left = right - self.fonts.width(text, weight, size);
         self.left(text, weight, size, colour, left, baseline);
     }
-}
-
-/// Size of the title above all panels (px).
-pub(super) fn title_size(around: Scale) -> f64 {
-    TITLE * around.title()
 }
 
 /// The letter of a panel: a to z, then aa, ab and so on.

@@ -14,9 +14,8 @@ use crate::colour::Colour;
 use glam::DVec2;
 use std::borrow::Cow;
 
-/// Height of the ground of the key, and the height of the bar above it (px in the reference picture).
-const HEIGHT: f64 = 50.0;
-const ABOVE: f64 = 4.0;
+/// Height of the key (px in the reference picture).
+const HEIGHT: f64 = 34.0;
 /// The least size of its type relative to the reference picture, as long as it takes no more than this of the picture.
 const LEAST_UNIT: f64 = 0.66;
 const MOST_HEIGHT: f64 = 0.1;
@@ -91,8 +90,8 @@ pub(super) enum SampleKind {
 pub(super) struct Legend {
     /// Pixels per pixel of the reference picture.
     unit: f64,
-    /// Height of its ground (px).
-    pub(super) height: u32,
+    /// Its height (px).
+    pub(super) height: f64,
 }
 
 impl Legend {
@@ -107,24 +106,23 @@ impl Legend {
         let needed = apart + arrow + SAMPLE_ROOM * samples as f64 + bar;
         let roomy = LEAST_UNIT.min(MOST_HEIGHT * height / HEIGHT);
         let unit = scale.of_type(scale.unit.max(roomy)).min((width - 2.0 * scale.margin()) / needed);
-        let height = (HEIGHT * unit).round() as u32;
-        Scale::legible(NUMBERS * unit).then_some(Self { unit, height })
+        Scale::legible(NUMBERS * unit).then_some(Self { unit, height: HEIGHT * unit })
     }
 
-    /// Draws the key over its ground, which begins at a height of a picture of a width (px). `arrow` has its length in
+    /// Draws the key from a height on in a picture of a width (px). `arrow` has its length in
     /// words, its pixels, and its size relative to the reference picture.
     pub(super) fn draw(
         self,
         writer: &mut Writer<'_>,
         picture_width: f64,
-        ground: f64,
+        top: f64,
         arrow: Option<(String, [f64; 2])>,
         samples: &[Sample<'_>],
         bar: Option<Bar<'_>>,
     ) {
         let unit = self.unit;
         let margin = writer.scale.margin();
-        let top = (ground - ABOVE * writer.scale.unit).round();
+        let top = top.round();
         let middle = top + 0.5 * (BAR * unit).round();
         let mut left = margin;
         if let Some((metres, [length, size])) = arrow {

@@ -272,21 +272,21 @@ fn a_dropped_body_and_the_floor_below_it_are_in_the_first_picture() {
                 scene.view.size = size;
                 let picture = compose(&scene, &frame);
                 let words = |upper: bool, panel: &localshape::picture::Panel| {
-                    let middle = panel.viewport[3] as f32 / 2.0;
+                    let middle = panel.viewport[1] as f32 + panel.viewport[3] as f32 / 2.0;
                     let lines = picture.words.iter().filter(move |run| (run.baseline < middle) == upper);
                     lines.map(move |run| if upper { run.baseline } else { run.baseline - 0.7 * run.size })
                 };
                 for panel in &picture.panels {
-                    let [left, _, width, height] = panel.viewport.map(|length| length as f32);
-                    let below = words(true, panel).fold(0.0, f32::max);
-                    let above = words(false, panel).fold(height, f32::min);
+                    let [left, top, width, height] = panel.viewport.map(|length| length as f32);
+                    let below = words(true, panel).fold(top, f32::max);
+                    let above = words(false, panel).fold(top + height, f32::min);
                     let fallen = lowest as f32 / scene.view.side as f32;
                     for vertex in &panel.sound.vertices {
                         for drop in [0.0, fallen] {
                             let point = glam::Vec3::from(vertex.position) - drop * glam::Vec3::Y;
                             let at = panel.sight.clip * point.extend(1.0);
                             let x = left + (0.5 + 0.5 * at.x / at.w) * width;
-                            let y = (0.5 - 0.5 * at.y / at.w) * height;
+                            let y = top + (0.5 - 0.5 * at.y / at.w) * height;
                             let inside = left < x && x < left + width && below < y && y < above;
                             assert!(inside, "{lowest} {elevation} {size:?}: {x} {y} in {below} {above}");
                         }

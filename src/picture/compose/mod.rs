@@ -18,7 +18,7 @@ use super::camera::Lens;
 use super::caption::{self, Writer};
 use super::ears::{Ears, bare_elements};
 use super::event::Event;
-use super::layout::{self, Rectangle, Scale};
+use super::layout::{Part, Rectangle, Scale, Written};
 use super::number;
 use super::shadow;
 use super::shell::Shell;
@@ -165,12 +165,10 @@ impl<'a> Composer<'a> {
         let runs: Vec<_> = history.series.iter().map(|series| series.run).collect();
         let layout = self.words().around(&runs, self.columns(&runs)).layout;
         let writer = self.writer(layout.around);
-        let panel = layout.panels.first().copied();
-        let written = panel.map(|panel| layout::written(&scene.view, panel[3].into(), layout.scale.unit));
-        let [has_events, have_letters] = written.map_or([false; 2], |written| [written.events, written.labels.letters]);
-        let (panel, in_panel) = (panel.filter(|_| has_events), self.writer(layout.scale));
-        let explained = |events: &[&Event]| panel.map_or(0, |panel| in_panel.explained(panel, events));
-        Some(Timeline::new(diagnostic, history, scene, writer, (layout.chart, have_letters), explained))
+        let (written, in_panel) = (&layout.written, self.writer(layout.scale));
+        let (panel, have_letters) = (layout.panels.first().filter(|_| written.events), written.labels.letters);
+        let explained = |events: &[&Event]| panel.map_or(0, |&panel| in_panel.explained(panel, events));
+        Some(Timeline::new(diagnostic, history, scene, writer, (layout.chart(), have_letters), explained))
     }
 
     /// The words of its pictures.
@@ -208,15 +206,15 @@ impl<'a> Composer<'a> {
         let hairlines = std::mem::take(&mut writer.marks);
         self.write(frame, arranged, framings.first(), &mut writer);
         self.timeline.iter().for_each(|timeline| timeline.draw(&mut writer, frame));
-        writer.title(layout.around, title);
+        writer.title(layout, title);
         if let &Clock::Above(Some(baseline)) = clock {
             writer.clock_alone(layout.around, [f64::from(size[0]), baseline], frame.time, &view.clock);
         }
-        writer.caption(layout.around, caption, layout.caption);
-        if let Some(((legend, &panel), framing)) = (*legend).zip(layout.panels.first()).zip(framings.first()) {
+        writer.caption(layout, caption);
+        let place = layout.parts.get(Part::Legend).zip(layout.panels.first());
+        if let Some(((legend, ([_, top, width, _], &panel)), framing)) = legend.zip(place).zip(framings.first()) {
             let arrow = view.visible.displacements.then(|| self.key_arrow(legend, panel, framing, scale));
-            let (width, ground) = (f64::from(size[0]), f64::from(layout.legend));
-            legend.draw(&mut writer, width, ground, arrow, &self.samples(), self.bar(frame));
+            legend.draw(&mut writer, width, top, arrow, &self.samples(), self.bar(frame));
         }
         let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::with_capacity(runs.len()));
         let curves = std::mem::take(&mut writer.curves);
@@ -247,18 +245,16 @@ impl<'a> Composer<'a> {
 
     /// Writes the words of all panels.
     fn write(&self, frame: &Frame, arranged: &Arranged, framing: Option<&Framing>, writer: &mut Writer<'_>) {
-        let view = &self.scene.view;
         let &Arranged { columns, ref around, tally, .. } = arranged;
         let (layout, with_clock) = (&around.layout, around.clock == Clock::InPanel);
         let words = self.words();
         let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
         let names = words.names(&runs);
         for (at, (&viewport, run)) in layout.panels.iter().zip(&frame.runs).enumerate() {
-            let written = layout::written(view, f64::from(viewport[3]), layout.scale.unit);
-            let layout::Written { labels, events, .. } = written;
-            let heading = words.heading(at, &runs, &names, labels, layout.chart.is_some());
+            let &Written { labels, events, .. } = &layout.written;
+            let heading = words.heading(at, &runs, &names, layout);
             let has_clock = labels.clock && with_clock && at == words::clock_panel(layout.panels.len(), columns);
-            let taken = if has_clock { writer.clock_room(viewport, words.clock_label(written)) } else { [0.0; 2] };
+            let taken = if has_clock { writer.clock_room(viewport, words.clock_label(layout)) } else { [0.0; 2] };
             writer.heading(viewport, &heading, taken);
             if let (Some(timeline), Some(shown)) =
                 (self.timeline.as_ref().filter(|_| events), self.scene.runs.get(run.run))
@@ -267,7 +263,7 @@ impl<'a> Composer<'a> {
                 writer.events(viewport, timeline.events_of(run.run), colour, frame.time);
             }
             if has_clock {
-                writer.clock(viewport, frame.time, words.clock_label(written));
+                writer.clock(viewport, frame.time, words.clock_label(layout));
             }
             let margin = writer.scale.margin();
             let mut from = f64::from(viewport[0]) + margin;

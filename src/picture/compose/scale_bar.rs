@@ -2,7 +2,7 @@
 
 use super::Composer;
 use crate::picture::caption::{self, Writer};
-use crate::picture::layout::{self, Layout, Rectangle, Scale};
+use crate::picture::layout::{Layout, Rectangle, Scale};
 use crate::picture::tracking::Shot;
 use crate::picture::{Framing, number};
 use crate::sim::{RunFrame, Snapshot};
@@ -45,9 +45,8 @@ impl Composer<'_> {
 
     /// Whether the scale bar has room beside a tally that takes a part of its panel's width.
     fn fits_bar(&self, layout: &Layout, shot: Option<&Shot>, share: f64) -> bool {
-        let (view, body) = (&self.scene.view, &*self.scene.body);
+        let (body, labels) = (&*self.scene.body, layout.written.labels);
         let Some(&panel) = layout.panels.first() else { return false };
-        let layout::Written { labels, .. } = layout::written(view, f64::from(panel[3]), layout.scale.unit);
         let snapshot = Snapshot {
             position: self.scene.initial.position.clone(),
             turned_over: vec![false; body.elements.len()],

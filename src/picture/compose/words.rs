@@ -4,7 +4,7 @@ use super::{Composer, cut};
 use crate::look::{Ghost, Labels, LineStyle, Palette, View};
 use crate::picture::caption::{self, Heading, Writer};
 use crate::picture::event;
-use crate::picture::layout::{self, Layout, Scale, Wanted, Written};
+use crate::picture::layout::{Layout, Part, Scale, Wanted};
 use crate::picture::legend::Legend;
 use crate::picture::series;
 use crate::picture::text::{Fonts, Weight};
@@ -61,26 +61,29 @@ impl<'a> Words<'a> {
         let [title, caption] = self.lines(scale);
         let legend = self.legend(scale);
         let wanted = Wanted {
-            title_lines: title.len().min(MOST_LINES[0]),
+            title: title.len().min(MOST_LINES[0]),
             clock: false,
-            legend: legend.map_or(0, |legend| legend.height),
-            caption_lines: caption.len().min(MOST_LINES[1]),
+            legend: legend.map(|legend| legend.height),
+            caption: caption.len().min(MOST_LINES[1]),
         };
         let layout = Layout::new(view, panels, columns, wanted);
-        // If names are long or type is large, the clock stands alone.
+        // If names are long or type is large, the clock stands alone: beside the title or in a row.
         let is_crowded = self.is_crowded(&layout, runs, columns);
-        let is_beside = layout.title_lines == title.len()
-            && self.writer(layout.scale).has_room_beside(scale, &title, &view.clock, view.size[0]);
-        let needs_row = is_crowded && !is_beside;
-        let layout =
-            if needs_row { Layout::new(view, panels, columns, Wanted { clock: true, ..wanted }) } else { layout };
-        let clock = match is_crowded {
-            true if is_beside => Clock::Above(Some(layout::title_baseline(layout.around, title.len()))),
-            true => Clock::Above(layout.clock),
-            false => Clock::InPanel,
+        let beside_title = layout
+            .baselines(Part::Title, scale.heading())
+            .nth(title.len().wrapping_sub(1))
+            .filter(|_| self.writer(layout.scale).has_room_beside(scale, &title, &view.clock, view.size[0]));
+        let (layout, clock) = match (is_crowded, beside_title) {
+            (false, _) => (layout, Clock::InPanel),
+            (true, Some(baseline)) => (layout, Clock::Above(Some(baseline))),
+            (true, None) => {
+                let layout = Layout::new(view, panels, columns, Wanted { clock: true, ..wanted });
+                let baseline = layout.baselines(Part::Clock, scale.title()).next();
+                (layout, Clock::Above(baseline))
+            }
         };
-        let (title, caption) = (cut(title, layout.title_lines), cut(caption, layout.caption_lines));
-        Around { title, caption, legend: legend.filter(|_| layout.has_legend), layout, clock }
+        let (title, caption) = (cut(title, layout.lines(Part::Title)), cut(caption, layout.lines(Part::Caption)));
+        Around { title, caption, legend: legend.filter(|_| layout.parts.get(Part::Legend).is_some()), layout, clock }
     }
 
     /// All lines of title and caption.
@@ -92,7 +95,7 @@ impl<'a> Words<'a> {
             if Scale::legible(size) { wrap(self.fonts, text, weight, size, room) } else { Vec::new() }
         };
         [
-            lines(&view.title, Weight::SemiBold, caption::title_size(around), balanced),
+            lines(&view.title, Weight::SemiBold, around.heading(), balanced),
             lines(&view.caption, Weight::Regular, around.caption(), wrapped),
         ]
     }
@@ -102,15 +105,13 @@ impl<'a> Words<'a> {
         let view = self.view();
         let parts = [view.visible.displacements, view.colour.is_some()];
         let samples = usize::from(view.ghost.is_some()) + usize::from(!view.paths.is_empty());
-        if !view.labels.legend || !parts.contains(&true) && samples == 0 {
-            return None;
-        }
-        Legend::new(view.size.map(|length| length.max(1)), around, parts, samples)
+        let size = view.size.map(|length| length.max(1));
+        view.wants_legend().then(|| Legend::new(size, around, parts, samples)).flatten()
     }
 
     /// The words below the clock.
-    pub(super) fn clock_label(&self, written: Written) -> &'a str {
-        if written.second { &self.view().clock } else { "" }
+    pub(super) fn clock_label(&self, layout: &Layout) -> &'a str {
+        if layout.written.second { &self.view().clock } else { "" }
     }
 
     /// The names of runs.
@@ -127,21 +128,21 @@ impl<'a> Words<'a> {
         own.split(BETWEEN_PARTS).filter(differs).collect::<Vec<_>>().join(BETWEEN_PARTS)
     }
 
-    /// The heading of a panel of several runs, with some of the labels.
+    /// The heading of a panel of several runs.
     pub(super) fn heading<'w>(
         &'w self,
         at: usize,
         runs: &[usize],
         names: &'w [&'w str],
-        labels: Labels,
-        has_chart: bool,
+        layout: &Layout,
     ) -> Heading<'w> {
+        let labels = layout.written.labels;
         let shown = |is_shown: bool, text| if is_shown { text } else { "" };
         Heading {
             letter: if labels.letters { caption::letter(at) } else { String::new() },
             name: shown(labels.name, names.get(at).copied().unwrap_or_default()),
             names,
-            sample: self.sample(runs[at], has_chart),
+            sample: self.sample(runs[at], layout.chart().is_some()),
             second: if labels.model { self.description(at, runs) } else { String::new() },
         }
     }
@@ -167,9 +168,9 @@ impl<'a> Words<'a> {
     fn is_crowded(&self, layout: &Layout, runs: &[usize], columns: usize) -> bool {
         let (names, at) = (self.names(runs), clock_panel(layout.panels.len(), columns));
         let Some(&panel) = layout.panels.get(at).filter(|_| at < runs.len()) else { return false };
-        let written = layout::written(self.view(), f64::from(panel[3]), layout.scale.unit);
-        let heading = self.heading(at, runs, &names, written.labels, layout.chart.is_some());
-        written.labels.clock && self.writer(layout.scale).is_crowded(panel, &heading, self.clock_label(written))
+        let heading = self.heading(at, runs, &names, layout);
+        let label = self.clock_label(layout);
+        layout.written.labels.clock && self.writer(layout.scale).is_crowded(panel, &heading, label)
     }
 
     fn writer(&self, scale: Scale) -> Writer<'_> {
@@ -181,42 +182,38 @@ impl<'a> Words<'a> {
     fn left_out(&self, runs: &[usize], columns: usize) -> Vec<String> {
         let (view, around) = (self.view(), self.around(runs, columns));
         let layout = &around.layout;
-        let mut told = Vec::new();
-        let mut tell = |is_so: bool, what: &str| {
-            if is_so {
-                told.push(what.to_owned());
-            }
-        };
         let [title, caption] = self.lines(layout.around);
-        tell(!view.title.is_empty() && around.title != title, "the title is cut off");
-        tell(!view.caption.is_empty() && around.caption != caption, "the caption is cut off");
-        let wants_key = self.legend(layout.around).is_some();
-        tell(wants_key && around.legend.is_none(), "the key of colours, lines and arrows is left out");
-        tell(view.strip.is_some() && layout.chart.is_none(), "the chart is left out");
-        tell(around.clock == Clock::Above(None), "the clock is left out");
-        let Some(panel) = layout.panels.first() else { return told };
-        let written = layout::written(view, f64::from(panel[3]), layout.scale.unit);
-        let has = |one: fn(Labels) -> bool| one(view.labels) && !one(written.labels);
-        tell(view.strip.is_some() && !written.events, "panels do not name the events of the chart");
-        if let Some(diagnostic) = view.strip.filter(|_| written.events && layout.chart.is_some()) {
-            let [explained, with_times] =
-                self.writer(layout.scale).explains(*panel, &event::narrowest(diagnostic, self.scene));
-            tell(!explained, "panels do not name all possible events of the chart");
-            tell(explained && !with_times, "panels do not have the times of all events");
-        }
-        tell(has(|labels| labels.model), "panels do not describe the models");
-        tell(has(|labels| labels.count || labels.number), "panels have no numbers");
-        tell(has(|labels| labels.name), "panels have no names");
-        let (names, writer) = (self.names(runs), self.writer(layout.scale));
-        for (at, &panel) in layout.panels.iter().enumerate().take(runs.len()) {
-            let heading = self.heading(at, runs, &names, written.labels, layout.chart.is_some());
-            let room = f64::from(panel[2]) - 2.0 * layout.scale.margin();
-            let [name, second] = writer.is_shortened(&heading, room);
-            if name {
-                told.push(format!("the name of run `{}` is shortened", names[at]));
+        let has = |one: fn(Labels) -> bool| one(view.labels) && !one(layout.written.labels);
+        let mut told: Vec<String> = [
+            (around.title != title || title.is_empty() && !view.title.is_empty(), "the title is cut off"),
+            (around.caption != caption || caption.is_empty() && !view.caption.is_empty(), "the caption is cut off"),
+            (view.wants_legend() && around.legend.is_none(), "the key of colours, lines and arrows is left out"),
+            (view.strip.is_some() && layout.chart().is_none(), "the chart is left out"),
+            (around.clock == Clock::Above(None), "the clock is left out"),
+            (layout.written.left_out.contains(&Part::Events), "panels do not name the events of the chart"),
+            (has(|labels| labels.model), "panels do not describe the models"),
+            (has(|labels| labels.count || labels.number), "panels have no numbers"),
+            (has(|labels| labels.name), "panels have no names"),
+        ]
+        .into_iter()
+        .filter_map(|(is_so, what)| is_so.then(|| what.to_owned()))
+        .collect();
+        let writer = self.writer(layout.scale);
+        if let Some((diagnostic, &panel)) = view.strip.zip(layout.panels.first()).filter(|_| layout.written.events) {
+            match writer.explains(panel, &event::narrowest(diagnostic, self.scene)) {
+                [_, true] => {}
+                [true, _] => told.push("panels do not have the times of all events".to_owned()),
+                _ => told.push("panels do not name all possible events of the chart".to_owned()),
             }
-            if second {
-                told.push(format!("the description of run `{}` is shortened", names[at]));
+        }
+        let names = self.names(runs);
+        for (at, &panel) in layout.panels.iter().enumerate().take(runs.len()) {
+            let heading = self.heading(at, runs, &names, layout);
+            let room = f64::from(panel[2]) - 2.0 * layout.scale.margin();
+            for (is_shortened, what) in writer.is_shortened(&heading, room).into_iter().zip(["name", "description"]) {
+                if is_shortened {
+                    told.push(format!("the {what} of run `{}` is shortened", names[at]));
+                }
             }
         }
         told
@@ -229,7 +226,7 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let words = composer.words();
     // A thumbnail needs no words.
-    if !Scale::legible(Layout::around(&scene.view).small()) {
+    if !Scale::legible(Layout::around(&scene.view).title()) {
         return Vec::new();
     }
     let columns = composer.columns(&runs);

@@ -2,7 +2,8 @@
 
 use crate::picture::caption::Writer;
 use crate::picture::compose::cut;
-use crate::picture::layout::{CAPTION_LINE, Scale};
+use crate::picture::layout::Scale;
+use crate::picture::layout::steps::ROW;
 use crate::picture::tally::{hollow, struck};
 use crate::picture::text::Weight;
 use crate::picture::wrap::wrapped;
@@ -43,7 +44,7 @@ pub(super) fn write(writer: &mut Writer<'_>, figure: &Figure, wordings: &[String
         last = baseline;
         lines.push([baseline, margin + fonts.width(&title, Weight::SemiBold, large)]);
     }
-    let step = CAPTION_LINE * scale.type_unit();
+    let step = ROW * scale.type_unit();
     let next = |last: f64| {
         if last > 0.0 { last + scale.of_type(BELOW_TITLE * scale.unit) } else { scale.row(FIRST_BASELINE) }
     };

@@ -26,6 +26,7 @@ use crate::picture::caption::Writer;
 use crate::picture::compose::Composer;
 use crate::picture::compose::panel::Draft;
 use crate::picture::layout::Scale;
+use crate::picture::layout::steps::GAP;
 use crate::picture::legend::Legend;
 use crate::picture::text::Fonts;
 use crate::picture::{Colour, Framing, Item, Picture};
@@ -58,7 +59,8 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let shows_runs = |scene: &Scene| matches!(scene.view.ghost, Some(Ghost::Run(_))) || !scene.view.paths.is_empty();
     let with_sample = has_charts || scenes.iter().any(shows_runs);
     let labels = RowLabels::new(sheet, &fonts, scale, with_sample, f64::from(size[0]));
-    let bottom = size[1] - legend.map_or(0, |legend| legend.height.min(size[1] / 2));
+    let below = legend.map_or(0, |legend| (legend.height + GAP * unit).round() as u32);
+    let bottom = size[1] - below.min(size[1] / 2);
     let layout_below = |header: f64, writer: &Writer<'_>| {
         SheetLayout::new(sheet, writer, [size[0], bottom], header, labels.width, charts.as_ref())
     };
