@@ -117,6 +117,7 @@ impl View {
     }
 
     /// Whether there are colours, lines or arrows to explain.
+    #[cfg(feature = "render")]
     pub(crate) fn wants_legend(&self) -> bool {
         let shown = [self.visible.displacements, self.colour.is_some(), self.ghost.is_some(), self.looks_ahead()];
         self.labels.legend && shown.contains(&true)
