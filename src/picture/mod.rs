@@ -56,7 +56,9 @@ pub use compose::Composer;
 pub(crate) use compose::{compose_figure, left_out, type_left_out};
 pub use diagram::{Diagram, TextStyle};
 pub(crate) use layout::Rectangle;
-pub(crate) use page::{Image, Item, Paint, Path, Pen, Step, winding};
+#[cfg(test)]
+pub(crate) use page::winding;
+pub(crate) use page::{Image, Item, Paint, Path, Pen, Step};
 pub(crate) use shadow::{CELLS, Shade};
 pub(crate) use text::{Face, Fonts, Glyph, TextRun, Weight};
 
@@ -117,7 +119,7 @@ pub(crate) struct Panel {
 /// The obstacles of a panel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Obstacles {
-    /// Opaque obstacles. In the plane all of them lie behind the body, each in front of the next.
+    /// Opaque obstacles.
     pub solids: Vec<Solid>,
     /// The faces of transparent obstacles towards the viewer, from the farthest to the nearest.
     pub panes: Vec<Pane>,
@@ -166,9 +168,6 @@ pub(crate) struct Solid {
     pub mesh: Mesh,
     /// Its colour, before lighting.
     pub colour: Colour,
-    /// The colour of its rim, in the plane. There, the `hatch` of a corner is its distance inside the outline (px), and
-    /// corners are more than half a pixel outside of it.
-    pub rim: Option<Colour>,
 }
 
 /// A transparent convex polygon.

@@ -1,6 +1,7 @@
 //! The display list: everything flat in a picture, as paths, images and text in the order in which they are drawn.
 //! Whoever draws a thing makes its items; three writers turn the list into pixels, SVG and PDF (`crate::vector`).
 
+use super::measures::BEAD_RIM;
 use super::narrow::narrow;
 use super::{Colour, TextRun};
 use glam::{DVec2, Vec2};
@@ -101,10 +102,8 @@ impl Item {
 
     /// A disc with a rim inside its radius (px).
     pub(super) fn rimmed(middle: DVec2, radius: f64, colour: Colour, rim: Colour) -> Self {
-        /// Width of the rim, relative to the radius.
-        const RIM: f32 = 0.32;
         let (middle, radius) = (point(middle), narrow(radius));
-        let width = RIM * radius;
+        let width = BEAD_RIM * radius;
         // Side by side, because both may be transparent.
         let inside = Self::fill(Path::circle(middle, radius - width), colour);
         let rim = Self::stroke(Path::circle(middle, radius - 0.5 * width), Pen::solid(width), rim);

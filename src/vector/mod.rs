@@ -7,7 +7,6 @@
 //!
 //! Nothing here needs a graphics device. The same picture gives the same bytes.
 
-mod flat;
 mod font;
 mod pdf;
 mod pixels;
@@ -95,13 +94,13 @@ fn enlarged([left, top, width, height]: Rectangle, times: f32) -> Rectangle {
 /// The part of a picture that the renderer draws for a page of a size (mm): lit panels without flat items; `None` if there are
 /// none. Without a size it is drawn with 300 pixels to an inch, that is, larger.
 pub fn bodies(picture: &Picture, size_mm: Option<[f64; 2]>) -> Option<Picture> {
-    let lit = |panel: &Panel| !panel.sight.flat;
-    if !picture.panels.iter().any(lit) {
+    let panels: Vec<_> = lit(picture).cloned().collect();
+    if panels.is_empty() {
         return None;
     }
-    let mut bodies = picture.clone();
-    bodies.panels.retain(lit);
-    (bodies.under, bodies.above) = Default::default();
+    let (fonts, ramp) = (picture.fonts.clone(), picture.ramp.clone());
+    let (under, above) = Default::default();
+    let mut bodies = Picture { fonts, ramp, panels, under, above, ..*picture };
     let times = fineness(picture, size_mm);
     let [_, _, width, height] = enlarged([0, 0, picture.size[0], picture.size[1]], times);
     bodies.size = [width, height];
@@ -134,18 +133,19 @@ pub fn write(page: &Page<'_>, format: Format) -> Result<Vec<u8>, VectorError> {
     })
 }
 
+/// The panels with a lit body.
+fn lit(picture: &Picture) -> impl Iterator<Item = &Panel> {
+    picture.panels.iter().filter(|panel| !panel.sight.flat)
+}
+
 /// The items of a page, in order.
 fn items(page: &Page<'_>) -> Vec<Item> {
     let picture = page.picture;
     let whole = Path::rectangle(Vec2::ZERO, picture.size.map(|length| length as f32).into());
     let mut items = vec![Item::fill(whole, picture.palette.background)];
     items.extend_from_slice(&picture.under);
-    for panel in &picture.panels {
-        match (panel.sight.flat, page.bodies) {
-            (true, _) => flat::panel(picture, panel, &mut items),
-            (false, Some(pixels)) => items.extend(image(page, panel, pixels).map(Item::Image)),
-            (false, None) => {}
-        }
+    if let Some(pixels) = page.bodies {
+        items.extend(lit(picture).filter_map(|panel| image(page, panel, pixels)).map(Item::Image));
     }
     items.extend_from_slice(&picture.above);
     items
@@ -160,7 +160,7 @@ fn halo(picture: &Picture, run: &TextRun) -> Option<Item> {
 /// Gives a painter the flat items of a picture. Lit bodies below them, if there are any, come with their ground.
 pub(crate) fn give(painter: &mut Painter, picture: &Picture) {
     let items = items(&Page::new(picture));
-    let skip = usize::from(picture.panels.iter().any(|panel| !panel.sight.flat));
+    let skip = usize::from(lit(picture).next().is_some());
     painter.take(&items[skip..], picture);
 }
 

@@ -2,8 +2,8 @@
 //! is needed.
 
 use super::compose;
-use super::listed::{Composer, Listed};
-use localshape::picture::Panel;
+use super::listed::{Composer, Listed, corners};
+use localshape::picture::Item;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
@@ -43,8 +43,19 @@ fn film(scene: &Scene, every: u64) -> Vec<(u64, Listed)> {
 }
 
 /// The box around the body of a panel: left, top, right and bottom (px from the panel's left upper corner).
-fn outline(panel: &Panel) -> Option<[f32; 4]> {
-    let [width, height] = [panel.viewport[2], panel.viewport[3]].map(|length| length as f32);
+fn outline(picture: &Listed, index: usize) -> Option<[f32; 4]> {
+    let panel = &picture.panels[index];
+    let [left, top, width, height] = panel.viewport.map(|length| length as f32);
+    let around = |all: Option<[f32; 4]>, [x, y]: [f32; 2]| {
+        let [a, b, c, d] = all.unwrap_or([x, y, x, y]);
+        Some([a.min(x), b.min(y), c.max(x), d.max(y)])
+    };
+    if panel.sight.flat {
+        let bodies: Vec<_> = picture.under.iter().filter(|item| matches!(item, Item::Clip { .. })).collect();
+        let parts = ["elements", "turned over", "edges", "strokes"].into_iter();
+        let points = parts.flat_map(|name| corners(std::slice::from_ref(bodies[index]), name));
+        return points.map(|at| [at.x - left, at.y - top]).fold(None, around);
+    }
     let meshes = [&panel.sound, &panel.turned_over].into_iter().flat_map(|mesh| &mesh.vertices);
     let points = meshes.map(|vertex| vertex.position);
     let points = points.chain(panel.strokes.iter().flat_map(|stroke| stroke.ends));
@@ -52,8 +63,7 @@ fn outline(panel: &Panel) -> Option<[f32; 4]> {
     points.chain(lines).fold(None, |all, point| {
         let at = panel.sight.clip * glam::Vec3::from(point).extend(1.0);
         let [x, y] = [(0.5 + 0.5 * at.x / at.w) * width, (0.5 - 0.5 * at.y / at.w) * height];
-        let [a, b, c, d] = all.unwrap_or([x, y, x, y]);
-        Some([a.min(x), b.min(y), c.max(x), d.max(y)])
+        around(all, [x, y])
     })
 }
 
@@ -79,7 +89,9 @@ fn every_shipped_scene_fills_its_panels_and_cuts_nothing_off() {
                 let element = *scale.get_or_insert(panel.sight.element);
                 assert!((panel.sight.element - element).abs() < 1e-4 * element, "{name} {frame}");
                 let [width, height] = [panel.viewport[2], panel.viewport[3]].map(|length| length as f32);
-                let Some([left, top, right, bottom]) = outline(panel).filter(|_| !diverged[run]) else { continue };
+                let Some([left, top, right, bottom]) = outline(&picture, run).filter(|_| !diverged[run]) else {
+                    continue;
+                };
                 let is_inside = left >= 0.0 && right <= width && top >= 0.0 && bottom <= height;
                 assert!(is_inside && !panel.is_cut, "{name}, run {run}, frame {frame}: {left} {top} {right} {bottom}");
                 (widest, highest) = (widest.max((right - left) / width), highest.max((bottom - top) / height));

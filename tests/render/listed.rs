@@ -14,7 +14,7 @@ use std::ops::{Deref, DerefMut};
 pub(super) struct Listed {
     picture: Picture,
     /// Marks below the bodies.
-    pub(super) under: Vec<Mark>,
+    pub(super) floors: Vec<Mark>,
     /// Marks above the bodies.
     pub(super) marks: Vec<Mark>,
     /// Lines and dots above the bodies.
@@ -57,11 +57,11 @@ pub(super) struct Curve {
 
 impl From<Picture> for Listed {
     fn from(picture: Picture) -> Self {
-        let ([mut under, mut marks], mut curves) = ([Vec::new(), Vec::new()], Vec::new());
-        picture.under.iter().for_each(|item| read(item, &mut under, &mut curves));
+        let ([mut floors, mut marks], mut curves) = ([Vec::new(), Vec::new()], Vec::new());
+        picture.under.iter().for_each(|item| read(item, &mut floors, &mut curves));
         picture.above.iter().for_each(|item| read(item, &mut marks, &mut curves));
         let words = picture.words().cloned().collect();
-        Self { picture, under, marks, curves, words }
+        Self { picture, floors, marks, curves, words }
     }
 }
 
@@ -180,6 +180,35 @@ fn part(name: &'static str, items: &[Item], mark: &dyn Fn(&'static str, [Vec2; 2
 fn turned(mark: Mark, [corner, along, down]: [Vec2; 3]) -> Mark {
     let rectangle = [corner.x, corner.y, along.length(), down.length()];
     Mark { rectangle, along: along.normalize().to_array(), ..mark }
+}
+
+/// The items of all parts with a name.
+pub(super) fn parts<'i>(items: &'i [Item], wanted: &str) -> Vec<&'i [Item]> {
+    let of_item = |item: &'i Item| match item {
+        Item::Part { name, items } if *name == wanted => vec![&items[..]],
+        Item::Part { items, .. } | Item::Clip { items, .. } => parts(items, wanted),
+        _ => Vec::new(),
+    };
+    items.iter().flat_map(of_item).collect()
+}
+
+/// Removes all parts with a name.
+pub(super) fn remove(items: &mut Vec<Item>, unwanted: &str) {
+    items.retain(|item| !matches!(item, Item::Part { name, .. } if *name == unwanted));
+    for item in items {
+        if let Item::Part { items, .. } | Item::Clip { items, .. } = item {
+            remove(items, unwanted);
+        }
+    }
+}
+
+/// The points of the paths in all parts with a name.
+pub(super) fn corners(items: &[Item], wanted: &str) -> Vec<Vec2> {
+    let of_item = |item: &Item| match item {
+        Item::Fill { path, .. } | Item::Stroke { path, .. } => path.points(),
+        _ => Vec::new(),
+    };
+    parts(items, wanted).into_iter().flatten().flat_map(of_item).collect()
 }
 
 /// The corners of the box of a path.

@@ -1,12 +1,12 @@
 //! Pictures with their own fonts, colours and sizes.
 
-use super::listed::Listed;
+use super::listed::{Listed, remove};
 use super::{compose, fig4b, gpu, parse, renderer};
 use glam::DVec3;
 use image::RgbImage;
 use localshape::look::{EdgeStyle, FontFiles};
 use localshape::picture::Picture;
-use localshape::picture::{Line, LineKind, Mesh, Obstacles, Weight};
+use localshape::picture::{Line, LineKind, Obstacles, Weight};
 use localshape::runner::Runner;
 
 const SIZE: [u32; 2] = [640, 360];
@@ -66,7 +66,7 @@ fn surfaces_alone(mut picture: Listed) -> Listed {
         panel.beads.clear();
     }
     let Picture { under, above, .. } = &mut *picture;
-    under.clear();
+    ["floor", "ground", "shadow", "obstacle", "edges", "strokes"].iter().for_each(|part| remove(under, part));
     above.clear();
     picture
 }
@@ -74,7 +74,7 @@ fn surfaces_alone(mut picture: Listed) -> Listed {
 /// The picture without sound elements.
 fn turned_over_alone(picture: &Listed) -> Listed {
     let mut picture = surfaces_alone(picture.clone());
-    picture.panels.iter_mut().for_each(|panel| panel.sound = Mesh::default());
+    ["elements", "dots"].iter().for_each(|part| remove(&mut picture.under, part));
     picture
 }
 

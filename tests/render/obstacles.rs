@@ -1,9 +1,9 @@
 //! Obstacles and grips in the composed picture; only one test needs a device.
 
-use super::listed::{Composer, Listed, Mark, compose_figure};
+use super::listed::{Composer, Listed, Mark, compose_figure, parts, remove};
 use super::{compose, fig4b, frame, gpu, parse, renderer, unknown};
 use glam::{DVec3, Vec3};
-use localshape::picture::{LineKind, MOST_OCCLUDERS, Mesh, Obstacles, Occluder, Pane, Panel, Vertex};
+use localshape::picture::{Item, LineKind, MOST_OCCLUDERS, Mesh, Obstacles, Occluder, Pane, Panel, Vertex, winding};
 use localshape::render::Renderer;
 use localshape::runner::history::History;
 use localshape::runner::moments::Moments;
@@ -274,26 +274,22 @@ fn obstacles_in_the_plane_are_flat_and_end_at_the_floor() {
         path = { keys = [{ time = 0 }, { time = 1, shift = [0, -0.5] }] }\n";
     let scene = scene(&[WORLD, TRIANGLE, obstacles]);
     let picture = picture(&scene, 25);
-    let panel = &picture.panels[0];
-    assert!(panel.obstacles.panes.is_empty());
-    assert_eq!(panel.obstacles.solids.len(), 3);
-    let area = |mesh: &Mesh| -> f64 {
-        let areas = mesh.triangles.iter().map(|three| three.map(|index| at(mesh, index)));
-        let areas = areas.map(|[a, b, c]| f64::from((b - a).cross(c - a).z) / 2.0);
-        areas.sum::<f64>() * scene.view.side.powi(2)
+    let metre = f64::from(picture.panels[0].sight.focal) / scene.view.side;
+    let area = |item: &Item| -> f64 {
+        let Item::Fill { path, .. } = item else { panic!("{item:?}") };
+        f64::from(winding(&path.points()).abs()) / 2.0 / (metre * metre)
     };
     let pi = std::f64::consts::PI;
-    for (solid, exact) in panel.obstacles.solids.iter().zip([pi * 0.125, 0.08, 0.4 + pi * 0.04]) {
-        // With a margin of less than a pixel for antialiasing.
-        let area = area(&solid.mesh);
-        assert!((0.99..1.2).contains(&(area / exact)), "{area} {exact}");
-        let vertices = &solid.mesh.vertices;
-        assert!(solid.rim.is_some() && vertices.iter().all(|vertex| vertex.position[2] == 0.0));
-        assert!([-1.0, 1.0].iter().all(|sign| vertices.iter().any(|vertex| sign * vertex.hatch > 0.5)));
+    // The last one is drawn first.
+    let drawn = parts(&picture.under, "obstacle");
+    assert_eq!(drawn.len(), 3);
+    for (items, exact) in drawn.iter().zip([0.4 + pi * 0.04, 0.08, pi * 0.125]) {
+        let [whole, inside] = [0, 1].map(|at| area(&items[at]) / exact);
+        assert!((0.99..1.001).contains(&whole) && inside < whole, "{whole} {inside}");
     }
     // The plate has a line and a soft fill, like the floor, and an arrow.
     for (shape, count) in [("ground", 2), ("floor", 2)] {
-        assert_eq!(picture.under.iter().filter(|mark| mark.shape == shape).count(), count, "{shape:?}");
+        assert_eq!(picture.floors.iter().filter(|mark| mark.shape == shape).count(), count, "{shape:?}");
     }
     assert_eq!(marks(&picture, &["arrow"]).len(), 1);
 }
@@ -526,7 +522,7 @@ fn rims_fade_with_their_obstacles() {
     let view = "[view]\nsize = [320, 240]\nlabels = []\n";
     let fading = picture(&scene(&[WORLD, TRIANGLE, rod, view]), 0);
     let mut bare = fading.clone();
-    bare.panels[0].obstacles.solids.clear();
+    remove(&mut bare.under, "obstacle");
     let draw = |picture: &Listed| {
         Renderer::new(None, picture.size).and_then(|mut renderer| renderer.draw(picture)).expect("no device is needed")
     };

@@ -1,9 +1,10 @@
 //! The contents of pictures, tested by their numbers: no device needed.
 
-use super::listed::{Composer, Listed, Mark};
+use super::listed::{Composer, Listed, Mark, corners};
 use super::{compose, fig4b, frame, parse, unknown};
 use localshape::colour::contrast;
 use localshape::look::{ColourMap, ColourScale, Palette, Theme};
+use localshape::picture::winding;
 use localshape::picture::{LineKind, Mesh, TextRun, Weight};
 use localshape::runner::Runner;
 use localshape::runner::history::History;
@@ -317,11 +318,11 @@ fn every_floor_of_the_plane_is_drawn_and_stays_in_its_panel() {
         let scene = parse(&text);
         let picture = compose(&scene, &Runner::new(&scene, &[0]).frame(0));
         for shape in ["floor", "ground"] {
-            assert_eq!(picture.under.iter().filter(|mark| mark.shape == shape).count(), 1, "{normal}");
+            assert_eq!(picture.floors.iter().filter(|mark| mark.shape == shape).count(), 1, "{normal}");
         }
         let Some(obstacle) = scene.obstacles.first() else { panic!("{normal}") };
         let Some((out, height)) = obstacle.floor(0.0) else { panic!("{normal}") };
-        for mark in &picture.under {
+        for mark in &picture.floors {
             let [left, top, width, depth] = mark.rectangle;
             let [x, y] = mark.along;
             for (across, down) in [(0.0, 0.0), (width, 0.0), (0.0, depth), (width, depth)] {
@@ -369,14 +370,14 @@ fn a_concave_polygon_is_filled_to_its_own_sides() {
     {
         let (scene, picture) = one_element(nodes, count);
         let panel = &picture.panels[0];
-        let at = |index: u32| glam::Vec3::from(panel.sound.vertices[index as usize].position);
-        let areas = panel.sound.triangles.iter().map(|&[a, b, c]| 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).z);
-        let areas: Vec<_> = areas.map(|sides| f64::from(sides) * scene.view.side * scene.view.side).collect();
+        let metre = f64::from(panel.sight.focal) / scene.view.side;
+        let triangles = corners(&picture.under, "elements");
+        let areas: Vec<_> =
+            triangles.chunks(3).map(|corners| f64::from(winding(corners)) / (2.0 * metre.powi(2))).collect();
         assert!(areas.iter().all(|&area| area > 0.0) && areas.len() == count - 2, "{areas:?}");
-        assert!((areas.iter().sum::<f64>() - area).abs() < 1e-5, "{areas:?}");
-        for kind in [LineKind::Edge, LineKind::Contour] {
-            assert_eq!(panel.lines.iter().filter(|line| line.kind == kind).count(), count, "{kind:?}");
-        }
+        assert!((areas.iter().sum::<f64>() - area).abs() < 1e-4, "{areas:?}");
+        // Edges and contours, each line with both ends.
+        assert_eq!(corners(&picture.under, "edges").len(), 2 * 2 * count);
     }
 }
 
@@ -413,14 +414,7 @@ fn a_sign_that_would_hide_its_element_stands_beside_the_body() {
         let frame = runner.frame(index);
         assert_eq!(frame.runs[0].snapshot.diagnostics.turned_over, 1, "this run is known for it");
         let picture = composer.compose(&frame);
-        let panel = &picture.panels[0];
-        let pixel = |at: [f32; 3]| {
-            let clip = panel.sight.clip * glam::Vec3::from(at).extend(1.0);
-            let [left, top, width, height] = panel.viewport.map(|length| length as f32);
-            glam::Vec2::new(left + width * (0.5 + 0.5 * clip.x / clip.w), top + height * (0.5 - 0.5 * clip.y / clip.w))
-        };
-        let corners = |mesh: &Mesh| mesh.vertices.iter().map(|vertex| pixel(vertex.position)).collect::<Vec<_>>();
-        let [sound, over] = [&panel.sound, &panel.turned_over].map(corners);
+        let [sound, over] = ["elements", "turned over"].map(|name| corners(&picture.under, name));
         let (low, high) = sound
             .iter()
             .chain(&over)

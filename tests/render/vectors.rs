@@ -110,8 +110,7 @@ fn operations(picture: &Listed) -> Vec<Vec<String>> {
 #[test]
 fn opacities_and_colours_are_set_again_where_pdf_has_others() {
     let mut picture = figure("fig1", Theme::Light);
-    (*picture).under.clear();
-    let panels = std::mem::take(&mut picture.panels);
+    picture.under.clear();
     let curve = |points: &[[f32; 2]], alpha| line(points, 4.0, &[], ([1, 2, 3], alpha));
     let [from, to] = [[10.0, 10.0], [50.0, 40.0]];
     picture.above = vec![curve(&[from], 0.5), curve(&[from, to], 1.0), curve(&[to], 0.5)];
@@ -124,12 +123,10 @@ fn opacities_and_colours_are_set_again_where_pdf_has_others() {
     };
     assert_eq!(states(&picture)[1..], ["/G500", "/G1000", "/G500"], "after the background");
 
-    // The body of a panel in the plane is drawn in a clip.
-    picture.panels = panels[..1].to_vec();
-    let panel = &mut picture.panels[0];
-    (panel.lines, panel.obstacles) = Default::default();
-    let colour = picture.palette.sound_flat;
-    picture.above = vec![Item::fill(Path::rectangle(Vec2::ZERO, Vec2::splat(9.0)), colour)];
+    let colour = [40, 50, 60];
+    let square = || Item::fill(Path::rectangle(Vec2::ZERO, Vec2::splat(9.0)), colour);
+    let clip = Item::Clip { path: Path::circle(Vec2::ZERO, 5.0), items: vec![square()] };
+    picture.above = vec![clip, square()];
     let fill = colour.map(|byte| f32::from(byte) / 255.0).map(|part| format!("{part}"));
     let sets =
         operations(&picture).iter().filter(|words| words.len() == 4 && words[3] == "rg" && words[..3] == fill).count();
@@ -241,13 +238,8 @@ fn obstacles_that_leave_their_panel_fade() {
         obstacle = [{ kind = 'capsule', from = [-9, 0.9], to = [0.2, 0.7], radius = 0.05 }]",
     );
     scene.view.camera.follow = false;
-    let mut picture = compose(&scene, &frame(&scene, 0));
-    let fading = picture.panels[0].obstacles.fade.expect("it leaves the panel");
-    assert_eq!(fading.strength, [1.0, 0.0, 0.0, 0.0]);
-    let covers = |picture: &Listed| svg(picture).matches("<image").count();
-    assert_eq!(covers(&picture), 1);
-    picture.panels[0].obstacles.fade = None;
-    assert_eq!(covers(&picture), 0);
+    let picture = compose(&scene, &frame(&scene, 0));
+    assert_eq!(svg(&picture).matches("<image").count(), 1, "one side is covered");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::panel::Draft;
 use crate::picture::fade::FADING;
 use crate::picture::narrow::narrow;
 use crate::picture::plane::sides;
-use crate::picture::{Fading, Item, Obstacles};
+use crate::picture::{Fading, Item, Obstacles, Solid};
 use glam::{DVec2, DVec3};
 
 /// The margin around the body, which does not fade (px in the reference picture).
@@ -29,25 +29,35 @@ struct Beyond {
 }
 
 impl Draft<'_> {
-    /// Lets solid obstacles fade where they leave the part of the panel between its words and half of its margins. At
-    /// the sides where plates leave the panel, covers everything but the body with the background. Both fade towards
-    /// the side, and less where they hardly leave it, so that nothing changes suddenly.
-    pub(super) fn fade_obstacles(&self, obstacles: &mut Obstacles, marks: &mut Vec<Item>) {
-        let place = |at: [f32; 3]| self.origin + self.side * DVec3::from(at.map(f64::from));
+    /// The fading of solid obstacles with some corners (m) where they leave the part of the panel between its words and
+    /// half of its margins. They fade less where they hardly leave it, so that nothing changes suddenly.
+    pub(super) fn fading<P: Iterator<Item = DVec3>>(&self, solids: impl Iterator<Item = P>) -> Option<Fading> {
         let has_words = self.scene.view.labels.are_in_panels();
         let room = if has_words { self.between_words() } else { self.viewport };
         let [left, top, right, bottom] = sides(room.map(f64::from));
         let beside = 0.5 * self.scale.margin();
         let room = [left + beside, top, right - beside, bottom];
-        let solids = obstacles.solids.iter().map(|solid| solid.mesh.vertices.iter().map(|vertex| vertex.position));
-        let solids = solids.filter_map(|points| self.bounds(points.map(place)));
+        let solids = solids.filter_map(|points| self.bounds(points));
         let strength = self.beyond(room, solids).map(|part| part.map_or(0.0, |part| part.strength));
         let fades = strength.iter().any(|&strength| strength > 0.0);
         let distance = [FADE[0] * (room[2] - room[0]), FADE[1] * (room[3] - room[1])].map(narrow);
-        obstacles.fade = fades.then(|| Fading { room: room.map(narrow), distance, strength: strength.map(narrow) });
+        fades.then(|| Fading { room: room.map(narrow), distance, strength: strength.map(narrow) })
+    }
+
+    /// A point of the panel (m).
+    pub(super) fn place(&self, at: [f32; 3]) -> DVec3 {
+        self.origin + self.side * DVec3::from(at.map(f64::from))
+    }
+
+    /// Lets solid obstacles in space fade. At the sides where plates leave the panel, covers everything but the body with
+    /// the background, less towards the middle.
+    pub(super) fn fade_obstacles(&self, obstacles: &mut Obstacles, marks: &mut Vec<Item>) {
+        let corners = |solid: &Solid| solid.mesh.vertices.iter().map(|vertex| self.place(vertex.position)).collect();
+        let solids = obstacles.solids.iter().map(corners).map(Vec::into_iter);
+        obstacles.fade = self.fading(solids);
         // Plates extend behind words, too; walls have a fading of their own.
         let plates = obstacles.panes.iter().filter(|pane| !pane.grid).filter_map(|pane| {
-            let corners = || pane.corners.iter().map(|corner| place(corner.position));
+            let corners = || pane.corners.iter().map(|corner| self.place(corner.position));
             // An obstacle that extends behind the camera leaves on all sides.
             let is_before = corners().all(|corner| self.lens.project(corner).is_some());
             if is_before { self.bounds(corners()) } else { Some([DVec2::NEG_INFINITY, DVec2::INFINITY]) }

@@ -9,6 +9,7 @@ mod ground;
 mod key;
 mod panel;
 mod paths;
+mod plane_body;
 mod region;
 mod scale_bar;
 mod words;

@@ -1,6 +1,7 @@
 //! Composes one panel from its parts.
 
 use super::Composer;
+use super::plane_body::PlaneBody;
 use crate::look::{FloorStyle, Palette};
 use crate::picture::arrows::{self, Arrows};
 use crate::picture::camera::Lens;
@@ -123,11 +124,34 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Draws the panel, with flat marks below and above the bodies.
+    /// Draws the panel, with items below and above lit bodies.
     pub(super) fn panel(&self, under: &mut Vec<Item>, above: &mut Vec<Item>) -> Panel {
+        if self.flat { self.in_plane(None, under, above) } else { self.in_space(above) }
+    }
+
+    /// Draws a panel in the plane, which has no lit body; `behind` lies behind the body, and may lie anywhere in the
+    /// panel.
+    pub(super) fn in_plane(&self, behind: Option<Item>, under: &mut Vec<Item>, above: &mut Vec<Item>) -> Panel {
         let mut lines = SurfaceLines::default();
         let [sound, turned_over] = self.surfaces(&mut lines);
         self.marks_of_plane(under, above);
+        let obstacles = obstacle::PlaneObstacles { site: self.site(), line_scale: self.scale.line() };
+        obstacles.arrows(&self.pointers(self.viewport), above);
+        let (obstacles, staged) = obstacles.draw();
+        let region = if behind.is_some() { self.viewport } else { self.region(&staged.outermost) };
+        let fading = self.fading(obstacles.iter().map(|[outline, ..]| outline.iter().copied()));
+        let (lines, strokes) = (lines.drawn, self.strokes());
+        let body = PlaneBody { draft: self, behind, obstacles, fading, sound, turned_over, lines, strokes };
+        under.push(body.item(region));
+        self.hands(above);
+        self.arrows(above);
+        self.without_body(region)
+    }
+
+    /// Draws a panel in space.
+    fn in_space(&self, above: &mut Vec<Item>) -> Panel {
+        let mut lines = SurfaceLines::default();
+        let [sound, turned_over] = self.surfaces(&mut lines);
         let SurfaceLines { drawn: mut lines, borders } = lines;
         let of_body = lines.len();
         let mut arrows = Vec::new();
@@ -138,9 +162,6 @@ impl<'a> Draft<'a> {
         self.hands(above);
         self.arrows(above);
         Panel {
-            viewport: self.viewport,
-            region: self.region(&staged.outermost),
-            sight: self.sight(),
             floor: self.floor(&staged),
             sound,
             turned_over,
@@ -151,6 +172,28 @@ impl<'a> Draft<'a> {
             obstacles,
             strokes: self.strokes(),
             beads: self.beads(),
+            ..self.without_body(self.region(&staged.outermost))
+        }
+    }
+
+    /// The panel without a lit body.
+    fn without_body(&self, region: Rectangle) -> Panel {
+        let (floor, sound, turned_over, dotted, greyed) = Default::default();
+        let (lines, borders, obstacles, strokes, beads) = Default::default();
+        Panel {
+            viewport: self.viewport,
+            region,
+            sight: self.sight(),
+            floor,
+            sound,
+            turned_over,
+            dotted,
+            greyed,
+            lines,
+            borders,
+            obstacles,
+            strokes,
+            beads,
             is_cut: self.is_cut(),
         }
     }
@@ -175,7 +218,7 @@ impl<'a> Draft<'a> {
 
     /// The width of the body's contours, relative to the usual one.
     fn contour_share(&self) -> f64 {
-        if self.flat || self.diverged {
+        if self.diverged {
             return 1.0;
         }
         let nodes = self.composer.skin.nodes.iter().filter_map(|&node| self.position.get(node as usize));
@@ -188,16 +231,13 @@ impl<'a> Draft<'a> {
     }
 
     /// The pixel of the body's middle.
-    fn middle(&self) -> [f32; 2] {
+    pub(super) fn middle(&self) -> [f32; 2] {
         let middle = self.position.iter().sum::<DVec3>() / self.position.len().max(1) as f64;
         self.lens.project(middle).map_or([0.0; 2], |(pixel, _)| pixel.map(narrow))
     }
 
     /// Floors, nodes and ring arrows of the plane.
     fn marks_of_plane(&self, under: &mut Vec<Item>, above: &mut Vec<Item>) {
-        if !self.flat {
-            return;
-        }
         let visible = self.scene.view.visible;
         let flat = plane::PlaneMarks {
             body: self.body,
@@ -225,9 +265,9 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// All obstacles but the ground, with their lines and marks.
-    fn obstacles(&self, surfaces: [&Mesh; 2], lines: &mut Vec<Line>, above: &mut Vec<Item>) -> (Obstacles, Staged) {
-        let site = Site {
+    /// The obstacles at the moment of the panel.
+    fn site(&self) -> Site<'_> {
+        Site {
             obstacles: &self.scene.obstacles,
             time: self.run.snapshot.time,
             frame: 1.0 / self.scene.frames_per_second,
@@ -236,14 +276,13 @@ impl<'a> Draft<'a> {
             side: self.side,
             extent: self.composer.extent,
             palette: &self.composer.palette,
-        };
-        if self.flat {
-            let flat = obstacle::PlaneObstacles { site, line_scale: self.scale.line() };
-            flat.arrows(&self.pointers(self.viewport), above);
-            return flat.draw();
         }
+    }
+
+    /// All obstacles in space but the ground, with their lines and marks.
+    fn obstacles(&self, surfaces: [&Mesh; 2], lines: &mut Vec<Line>, above: &mut Vec<Item>) -> (Obstacles, Staged) {
         let staging = Staging {
-            site,
+            site: self.site(),
             cell: self.cell(),
             ground: geometry::ground(&self.scene.obstacles, self.run.snapshot.time),
             position: &self.position,

@@ -1,10 +1,9 @@
 //! Obstacles in the plane: discs, capsules and rectangles, flat and behind the body. Plates are drawn like floors.
 
-use super::half_space::{HalfSpace, clipped_polygon, half_space};
+use super::half_space::{clipped_polygon, half_space};
 use super::{Site, Staged};
-use crate::picture::narrow::narrow;
+use crate::picture::Item;
 use crate::picture::pointer::Pointers;
-use crate::picture::{Item, Mesh, Obstacles, Solid, Vertex};
 use crate::sim::{Motion, Obstacle, Shape};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -13,9 +12,9 @@ use std::f64::consts::{PI, TAU};
 const FLATNESS: f64 = 0.1;
 /// The least and the largest number of segments of a round outline.
 const SEGMENTS: [f64; 2] = [24.0, 360.0];
-/// Thickness of outlines (px in the reference picture). The shader has the same constant.
+/// Thickness of outlines (px in the reference picture).
 const RIM: f64 = 2.0;
-/// Room for a smooth border on both sides of an outline (px).
+/// Room for the smooth border of an outline (px).
 const BORDER: f64 = 0.75;
 
 /// The data for the obstacles of one panel in the plane.
@@ -40,44 +39,22 @@ impl PlaneObstacles<'_> {
         }
     }
 
-    /// All obstacles but half-spaces, and points around them (m).
-    pub(in crate::picture) fn draw(&self) -> (Obstacles, Staged) {
-        let solid = self.site.obstacles.iter().filter_map(|obstacle| half_space(obstacle, self.site.time));
-        let solid: Vec<_> = solid.collect();
+    /// The outlines of all obstacles but half-spaces, of their insides, and of all that they touch, in front of half-spaces
+    /// (m); and points around them.
+    pub(in crate::picture) fn draw(&self) -> (Vec<[Vec<DVec3>; 3]>, Staged) {
+        let half_spaces = self.site.obstacles.iter().filter_map(|obstacle| half_space(obstacle, self.site.time));
+        let half_spaces: Vec<_> = half_spaces.collect();
         let (mut solids, mut outermost) = (Vec::new(), Vec::new());
         for obstacle in self.site.obstacles {
             let Some(outline) = self.outline(obstacle, 0.0) else { continue };
-            solids.extend(self.solid(obstacle, &solid));
+            let pixel = self.site.lens.focal.recip();
+            let [around, inside] = [-BORDER, RIM * self.line_scale]
+                .map(|inwards| self.outline(obstacle, inwards * pixel).unwrap_or_default());
+            solids.push([&outline, &inside, &around].map(|outline| clipped_polygon(outline, &half_spaces)));
             outermost.extend(outline);
         }
-        (Obstacles { solids, ..Obstacles::default() }, Staged { outermost, ..Staged::default() })
-    }
-
-    /// The part of an obstacle outside of half-spaces; `None` for half-spaces and if nothing is left.
-    fn solid(&self, obstacle: &Obstacle, half_spaces: &[HalfSpace]) -> Option<Solid> {
-        let pixels = self.site.lens.focal;
-        let inward = (RIM * self.line_scale + BORDER).min(0.999 * thinnest(&obstacle.shape) * pixels);
-        // The unused z-coordinate holds the distance inside the outline (px).
-        let around = |inward: f64| {
-            let outline = self.outline(obstacle, inward / pixels)?;
-            Some(outline.into_iter().map(move |at| at.with_z(inward)).collect::<Vec<_>>())
-        };
-        let (outer, inner) = (around(-BORDER)?, around(inward)?);
-        let next = |at: usize| (at + 1) % outer.len();
-        let border = (0..outer.len()).map(|at| vec![outer[at], outer[next(at)], inner[next(at)], inner[at]]);
-        let mut mesh = Mesh::default();
-        for polygon in border.chain([inner.clone()]) {
-            let base = mesh.vertices.len() as u32;
-            let polygon = clipped_polygon(&polygon, half_spaces);
-            mesh.vertices.extend(polygon.iter().map(|at| Vertex {
-                position: self.site.relative(at.with_z(0.0)),
-                normal: [0.0, 0.0, 1.0],
-                hatch: narrow(at.z),
-            }));
-            mesh.triangles.extend((2..polygon.len() as u32).map(|at| [base, base + at - 1, base + at]));
-        }
-        let [colour, rim] = self.site.palette.obstacle_flat;
-        (!mesh.triangles.is_empty()).then_some(Solid { mesh, colour, rim: Some(rim) })
+        solids.retain(|[whole, ..]| whole.len() > 2);
+        (solids, Staged { outermost, ..Staged::default() })
     }
 
     /// The outline of an obstacle, counter-clockwise, moved inwards by a length (m); `None` for half-spaces and if
@@ -116,14 +93,5 @@ impl PlaneObstacles<'_> {
             })
         };
         around(to, 0).chain(around(from, half)).collect()
-    }
-}
-
-/// Half the least thickness of a solid obstacle (m).
-fn thinnest(shape: &Shape) -> f64 {
-    match *shape {
-        Shape::Floor { .. } | Shape::Plate { .. } => f64::INFINITY,
-        Shape::Sphere { radius, .. } | Shape::Capsule { radius, .. } => radius,
-        Shape::Box { half, .. } => half.x.min(half.y),
     }
 }

@@ -44,7 +44,7 @@ impl Staging<'_> {
         };
         self.outline(&lathe, lines);
         staged.outermost.extend(lathe.rings.iter().flatten().map(|(at, _)| *at));
-        solids.push(Solid { mesh, colour: self.site.palette.obstacle, rim: None });
+        solids.push(Solid { mesh, colour: self.site.palette.obstacle });
         let coarse = shape(SHADOW_SEGMENTS);
         staged.add(&coarse.points(), &coarse.triangles());
     }
@@ -120,7 +120,7 @@ impl Staging<'_> {
             .map(|three| three.map(|at| at as u32))
             .collect();
         staged.add(corners, &triangles);
-        solids.push(Solid { mesh, colour: self.site.palette.obstacle, rim: None });
+        solids.push(Solid { mesh, colour: self.site.palette.obstacle });
     }
 
     /// The mesh of a round obstacle with the ambient light that the body takes at points with normals.

@@ -8,12 +8,14 @@ use crate::picture::caption::Writer;
 use crate::picture::chart::NUMBERS;
 use crate::picture::compose::figure::labels::Labels;
 use crate::picture::compose::panel::Draft;
+use crate::picture::compose::plane_body::path_of;
 use crate::picture::layout::Scale;
 use crate::picture::narrow::narrow;
+use crate::picture::page::point;
 use crate::picture::plane::is_inside;
 use crate::picture::text::Weight;
 use crate::picture::wire::Edges;
-use crate::picture::{Item, Mesh, Panel, Second, Solid, Stroke, Vertex};
+use crate::picture::{Item, Panel, Second, Stroke};
 use crate::scene::figure::{Figure, Forces};
 use glam::{DVec2, DVec3};
 
@@ -61,32 +63,23 @@ impl<'a> Drawn<'a> {
     /// The body with its rest shape behind it.
     pub(super) fn panel(&self, under: &mut Vec<Item>, above: &mut Vec<Item>) -> Panel {
         // Ring arrows, nodes and displacements of usual panels are left out.
+        if self.draft.flat {
+            return self.draft.in_plane(Some(self.ghost_in_plane()), under, &mut Vec::new());
+        }
         let mut panel = self.draft.panel(under, &mut Vec::new());
         self.draft.fade_obstacles(&mut panel.obstacles, above);
         panel.beads.clear();
-        if self.draft.flat {
-            panel.obstacles.solids.insert(0, self.ghost_in_plane());
-        } else {
-            panel.strokes.extend(self.ghost_in_space());
-        }
+        panel.strokes.extend(self.ghost_in_space());
         panel.region = panel.viewport;
         panel
     }
 
-    fn ghost_in_plane(&self) -> Solid {
-        let skin = &self.cell.composer.skin;
-        let vertex = |&node: &u32| Vertex {
-            position: self.draft.relative(self.cell.ghost[node as usize]),
-            normal: [0.0, 0.0, 1.0],
-            hatch: 0.0,
-        };
-        let mesh = Mesh {
-            vertices: skin.nodes.iter().map(vertex).collect(),
-            triangles: skin.triangles.clone(),
-            shades: Vec::new(),
-            edges: Vec::new(),
-        };
-        Solid { mesh, colour: ghost_colour(&self.figure.look.palette()), rim: None }
+    fn ghost_in_plane(&self) -> Item {
+        let triangles = self.cell.composer.skin.triangles.iter();
+        let skin = &self.cell.composer.skin.nodes;
+        let at = |at: u32| point(self.pixel(self.cell.ghost[skin[at as usize] as usize]));
+        let path = path_of(triangles.map(|triangle| triangle.map(at).to_vec()));
+        Item::fill(path, ghost_colour(&self.figure.look.palette()))
     }
 
     /// The edges of all elements, each once.

@@ -1,64 +1,79 @@
-//! Panels in the plane as paths.
+//! The body and the obstacles of a panel in the plane, as items.
 
+use super::panel::Draft;
 use crate::colour::{encoded, encoded_exactly, linear, luminance};
+use crate::look::Palette;
+use crate::picture::layout::Rectangle;
 use crate::picture::measures::*;
-use crate::picture::{
-    Bead, Colour, Fading, Image, Item, Line, LineKind, Mesh, Paint, Palette, Panel, Path, Pen, Picture, Second, Solid,
-    Stroke, winding,
-};
-use glam::{Vec2, Vec3, Vec4Swizzles};
+use crate::picture::narrow::narrow;
+use crate::picture::page::{Image, Paint, Path, Pen, point, winding};
+use crate::picture::{Colour, Fading, Item, Line, LineKind, Mesh, Second, Stroke};
+use glam::{DVec2, DVec3, Vec2};
 
-/// Widths (px in the reference picture) and opacity of edges, contours and rims of obstacles.
+/// Widths (px in the reference picture) and opacity of edges and contours.
 const EDGE_WIDTH: f32 = 1.5;
 const EDGE_ALPHA: f32 = 0.75;
 const CONTOUR_WIDTH: f32 = 2.5;
-const RIM_WIDTH: f32 = 2.0;
 /// The stripes of turned-over elements: their distance (px in the reference picture) and their dark share.
 const PERIOD: f32 = 9.0;
 const STRIPE: f32 = 0.19;
 /// The number of pieces of a line of changing colour.
 const PIECES: u32 = 8;
 
-/// One panel with its picture.
-struct PlanePanel<'a> {
-    picture: &'a Picture,
-    panel: &'a Panel,
-    palette: Palette,
+/// What is drawn of one panel, from the back to the front.
+pub(super) struct PlaneBody<'a> {
+    pub(super) draft: &'a Draft<'a>,
+    /// What lies behind the body, in front of the obstacles.
+    pub(super) behind: Option<Item>,
+    /// The outlines of obstacles, of their insides, and of all that they touch (m); the first obstacle lies in front.
+    pub(super) obstacles: Vec<[Vec<DVec3>; 3]>,
+    pub(super) fading: Option<Fading>,
+    pub(super) sound: Mesh,
+    pub(super) turned_over: Mesh,
+    pub(super) lines: Vec<Line>,
+    pub(super) strokes: Vec<Stroke>,
 }
 
-/// Adds a panel in the plane to a page.
-pub(super) fn panel(picture: &Picture, panel: &Panel, items: &mut Vec<Item>) {
-    let [left, top, width, height] = panel.region.map(|length| length as f32);
-    if width < 1.0 || height < 1.0 {
-        return;
+impl PlaneBody<'_> {
+    /// Its items in a part of the picture.
+    pub(super) fn item(mut self, region: Rectangle) -> Item {
+        let mut drawn = Vec::new();
+        let items = &mut drawn;
+        let [left, top, width, height] = region.map(|length| length as f32);
+        self.solids([left, top, left + width, top + height], items);
+        items.extend(self.behind.take());
+        let mut part = |name, draw: &dyn Fn(&mut Vec<Item>)| {
+            let mut of_part = Vec::new();
+            draw(&mut of_part);
+            items.extend((!of_part.is_empty()).then(|| Item::part(name, of_part)));
+        };
+        part("elements", &|items| self.surface(&self.sound, false, items));
+        part("dots", &|items| self.dots([left, top, width, height], items));
+        part("turned over", &|items| self.surface(&self.turned_over, true, items));
+        part("hatch", &|items| self.hatch([left, top, width, height], items));
+        part("edges", &|items| self.lines(items));
+        part("strokes", &|items| self.strokes(items));
+        Item::Clip { path: Path::rectangle(Vec2::new(left, top), Vec2::new(width, height)), items: drawn }
     }
-    let palette = if panel.greyed { picture.palette.greyed() } else { picture.palette };
-    let flat = PlanePanel { picture, panel, palette };
-    let inside = Path::rectangle(Vec2::new(left, top), Vec2::new(width, height));
-    let (outside, mut drawn) = (items, Vec::new());
-    let items = &mut drawn;
-    // The first one lies in front.
-    panel.obstacles.solids.iter().rev().for_each(|solid| flat.solid(solid, items));
-    if let Some(fading) = panel.obstacles.fade {
-        flat.fade(fading, [left, top, left + width, top + height], items);
-    }
-    flat.surface(&panel.sound, items);
-    flat.dots([left, top, width, height], items);
-    flat.surface(&panel.turned_over, items);
-    if !panel.turned_over.triangles.is_empty() {
-        flat.hatch([left, top, width, height], items);
-    }
-    flat.lines(items);
-    flat.strokes(items);
-    panel.beads.iter().for_each(|bead| flat.bead(bead, items));
-    outside.push(Item::Clip { path: inside, items: drawn });
-}
 
-impl PlanePanel<'_> {
-    fn pixel(&self, point: [f32; 3]) -> Vec2 {
-        let [left, top, width, height] = self.panel.viewport.map(|length| length as f32);
-        let at = self.panel.sight.clip * Vec3::from(point).extend(1.0);
-        Vec2::new(left, top) + (at.xy() / at.w * Vec2::new(0.5, -0.5) + 0.5) * Vec2::new(width, height)
+    fn palette(&self) -> &Palette {
+        &self.draft.palette
+    }
+
+    fn line_scale(&self) -> f32 {
+        narrow(self.draft.scale.line())
+    }
+
+    fn middle(&self) -> Vec2 {
+        self.draft.middle().into()
+    }
+
+    fn project(&self, at: DVec3) -> Vec2 {
+        self.draft.lens.project(at).map_or(Vec2::ZERO, |(pixel, _)| point(DVec2::from(pixel)))
+    }
+
+    fn pixel(&self, at: [f32; 3]) -> Vec2 {
+        self.project(self.draft.place(at))
     }
 
     /// The triangles of a mesh, all counter-clockwise or all clockwise, with a value at each corner.
@@ -75,27 +90,21 @@ impl PlanePanel<'_> {
         path_of(self.triangles(mesh, |_| 0.0).iter().map(|triangle| triangle.map(|(at, _)| at).to_vec()))
     }
 
-    /// An obstacle: its rim, then its inside.
-    fn solid(&self, solid: &Solid, items: &mut Vec<Item>) {
-        let triangles = self.triangles(&solid.mesh, |at| solid.mesh.vertices[at].hatch);
-        let inside = |least: f32| path_of(triangles.iter().map(|triangle| part(triangle, least, f32::INFINITY)));
-        if let Some(rim) = solid.rim {
-            items.push(Item::Fill { path: inside(0.0), paint: rim.into() });
-            let path = inside(RIM_WIDTH * self.panel.sight.line_scale);
-            items.push(Item::Fill { path, paint: solid.colour.into() });
-        } else {
-            items.push(Item::Fill { path: inside(f32::NEG_INFINITY), paint: solid.colour.into() });
+    /// Obstacles: their rims, then their insides. They fade out at the sides of their room, covered with the background
+    /// within the region (left, top, right and bottom, px).
+    fn solids(&self, region: [f32; 4], items: &mut Vec<Item>) {
+        let [colour, rim] = self.draft.composer.palette.obstacle_flat;
+        let background = self.palette().background;
+        let mut all = Path::default();
+        for solid in self.obstacles.iter().rev() {
+            let [whole, inside, around] =
+                solid.each_ref().map(|outline| outline.iter().map(|&at| self.project(at)).collect::<Vec<_>>());
+            all.add_polygon(&around);
+            let parts = [(whole, rim), (inside, colour)].into_iter().filter(|(outline, _)| outline.len() > 2);
+            let fills: Vec<_> = parts.map(|(outline, colour)| Item::fill(Path::polygon(&outline), colour)).collect();
+            items.push(Item::part("obstacle", fills));
         }
-    }
-
-    /// Fades obstacles out at the sides of their room, before the body is drawn: covers them with the background within
-    /// the region (left, top, right and bottom, px).
-    fn fade(&self, Fading { room, distance, strength }: Fading, region: [f32; 4], items: &mut Vec<Item>) {
-        let background = self.picture.palette.background;
-        let solids = &self.panel.obstacles.solids;
-        let below = solids.first().map_or(background, |solid| solid.colour);
-        let triangles = solids.iter().flat_map(|solid| self.triangles(&solid.mesh, |at| solid.mesh.vertices[at].hatch));
-        let inside = path_of(triangles.map(|triangle| triangle.map(|(at, _)| at).to_vec()));
+        let Some(Fading { room, distance, strength }) = self.fading else { return };
         let mut covers = Vec::new();
         let [left, top, right, bottom] = region;
         let corner = [[left, top], [left, top], [right, top], [left, bottom]].map(Vec2::from);
@@ -108,7 +117,7 @@ impl PlanePanel<'_> {
                 let share = ((at as f32 + 0.5 - outside) / far).clamp(0.0, 1.0);
                 let gone = strength[side] * (1.0 - share * share * (3.0 - 2.0 * share));
                 let [r, g, b] = background;
-                [r, g, b, (255.0 * self.alpha(gone, background, below)).round() as u8]
+                [r, g, b, (255.0 * self.alpha(gone, background, colour)).round() as u8]
             };
             let (along, across) = (inwards * length as f32, Vec2::new(right - left, bottom - top));
             let sides = match side % 2 {
@@ -120,23 +129,22 @@ impl PlanePanel<'_> {
                 covers.push(Item::Image(Image { size: [length, 1], pixels, place }));
             }
         }
-        items.push(Item::Clip { path: inside, items: covers });
+        items.push(Item::Clip { path: all, items: covers });
     }
 
     /// The surface of elements, in the colour of their kind or in the colours of a field.
-    fn surface(&self, mesh: &Mesh, items: &mut Vec<Item>) {
+    fn surface(&self, mesh: &Mesh, is_alarm: bool, items: &mut Vec<Item>) {
         if mesh.triangles.is_empty() {
             return;
         }
-        let palette = &self.palette;
-        let is_alarm = self.is_alarm(mesh);
-        let has_field = !mesh.shades.is_empty() && self.picture.ramp.len() > 1;
+        let palette = self.palette();
+        let has_field = !mesh.shades.is_empty() && self.draft.composer.ramp.len() > 1;
         let plain = if is_alarm && !has_field { palette.alarm } else { palette.sound_flat };
         items.push(Item::Fill { path: self.whole(mesh), paint: plain.into() });
         if !has_field {
             return;
         }
-        let ramp = &self.picture.ramp;
+        let ramp = &self.draft.composer.ramp;
         let bands = ramp.len() - 1;
         let triangles = self.triangles(mesh, |at| mesh.shades[at] * bands as f32);
         if triangles.iter().all(|[a, b, c]| a.1 == b.1 && b.1 == c.1) {
@@ -172,15 +180,10 @@ impl PlanePanel<'_> {
         }
     }
 
-    fn is_alarm(&self, mesh: &Mesh) -> bool {
-        std::ptr::eq(mesh, &self.panel.turned_over)
-    }
-
     /// The mean colour of the corners of a surface.
-    fn mean_colour(&self, mesh: &Mesh) -> Colour {
-        let plain =
-            if self.is_alarm(mesh) && mesh.shades.is_empty() { self.palette.alarm } else { self.palette.sound_flat };
-        let ramp = &self.picture.ramp;
+    fn mean_colour(&self, mesh: &Mesh, is_alarm: bool) -> Colour {
+        let plain = if is_alarm && mesh.shades.is_empty() { self.palette().alarm } else { self.palette().sound_flat };
+        let ramp = &self.draft.composer.ramp;
         if mesh.shades.is_empty() || ramp.is_empty() {
             return plain;
         }
@@ -195,20 +198,20 @@ impl PlanePanel<'_> {
 
     /// Flat elements: grey, unless a field colours them, with dots that are fixed to the body, in the room of the panel.
     fn dots(&self, [left, top, width, height]: [f32; 4], items: &mut Vec<Item>) {
-        let (mesh, sight) = (&self.panel.sound, &self.panel.sight);
+        let mesh = &self.sound;
         let is_flat = |triangle: &&[u32; 3]| mesh.vertices[triangle[0] as usize].hatch > 0.5;
         let triangles: Vec<_> = mesh.triangles.iter().filter(is_flat).copied().collect();
-        if !self.panel.dotted || triangles.is_empty() {
+        if !self.draft.run.snapshot.flat.contains(&true) || triangles.is_empty() {
             return;
         }
         let flat = self.whole(&Mesh { triangles, ..mesh.clone() });
-        let mut ground = self.mean_colour(mesh);
+        let mut ground = self.mean_colour(mesh, false);
         if mesh.shades.is_empty() {
             ground = encoded([luminance(ground); 3]);
             items.push(Item::Fill { path: flat.clone(), paint: ground.into() });
         }
         // Rows at 45°.
-        let apart = DOTS_APART * sight.line_scale;
+        let apart = DOTS_APART * self.line_scale();
         let turn = Vec2::splat(std::f32::consts::FRAC_1_SQRT_2);
         let back = Vec2::new(turn.x, -turn.y);
         let room = [Vec2::new(left, top), Vec2::new(left + width, top + height)];
@@ -217,34 +220,37 @@ impl PlanePanel<'_> {
         let (from, to) =
             flat.points().into_iter().map(inside).fold((room[1], room[0]), |(from, to), at| (from.min(at), to.max(at)));
         let corners = [from, Vec2::new(to.x, from.y), to, Vec2::new(from.x, to.y)];
-        let points = corners.into_iter().map(|at| back.rotate(at - Vec2::from(sight.middle)) / apart);
+        let points = corners.into_iter().map(|at| back.rotate(at - self.middle()) / apart);
         let (low, high) = points.fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
         let mut path = Path::default();
         for row in low.y.floor() as i32 - 1..=high.y.ceil() as i32 {
             for column in low.x.floor() as i32 - 1..=high.x.ceil() as i32 {
                 let at = turn.rotate(Vec2::new(column as f32 + 0.5, row as f32 + 0.5) * apart);
-                path.add_circle(Vec2::from(sight.middle) + at, DOT * sight.line_scale);
+                path.add_circle(self.middle() + at, DOT * self.line_scale());
             }
         }
-        let colour = self.palette.edge;
+        let colour = self.palette().edge;
         let paint = Paint { colour, alpha: self.alpha(DOT_ALPHA, colour, ground) };
         items.push(Item::Clip { path: flat, items: vec![Item::Fill { path, paint }] });
     }
 
     /// The stripes on turned-over elements, fixed to the body.
     fn hatch(&self, [left, top, width, height]: [f32; 4], items: &mut Vec<Item>) {
-        let (palette, sight) = (&self.palette, &self.panel.sight);
+        if self.turned_over.triangles.is_empty() {
+            return;
+        }
+        let palette = self.palette();
         // On the colours of a field, vermilion stands out more.
-        let (colour, alpha) = match self.panel.turned_over.shades.is_empty() {
+        let (colour, alpha) = match self.turned_over.shades.is_empty() {
             true => (palette.alarm_line, self.alpha(STRIPE_ALPHA, palette.alarm_line, palette.alarm)),
             false => (palette.alarm, 1.0),
         };
-        let period = PERIOD * sight.line_scale;
+        let period = PERIOD * self.line_scale();
         let slant = Vec2::splat(std::f32::consts::FRAC_1_SQRT_2);
-        let middle = Vec2::from(sight.middle);
+        let middle = self.middle();
         let room = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
         let corners = room.map(|[x, y]| Vec2::new(left + x, top + y));
-        let triangles = self.triangles(&self.panel.turned_over, |_| 0.0);
+        let triangles = self.triangles(&self.turned_over, |_| 0.0);
         let inside = |at: Vec2| at.clamp(corners[0], corners[2]);
         let points = triangles.iter().flatten().map(|(at, _)| slant.dot(inside(*at) - middle) / period);
         let (low, high) = points.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
@@ -259,7 +265,7 @@ impl PlanePanel<'_> {
         // Stripes finer than three pixels per period would only flicker: towards that, their mean replaces them.
         let fine = ((period.recip() - 0.2) / 0.25).clamp(0.0, 1.0);
         let fine = fine * fine * (3.0 - 2.0 * fine);
-        let whole = self.whole(&self.panel.turned_over);
+        let whole = self.whole(&self.turned_over);
         if fine > 0.0 {
             let paint = Paint { colour, alpha: alpha * STRIPE * fine };
             items.push(Item::Fill { path: whole.clone(), paint });
@@ -271,47 +277,43 @@ impl PlanePanel<'_> {
 
     /// Edges and contours. Lines of one kind are one path, so that joints are even.
     fn lines(&self, items: &mut Vec<Item>) {
-        let (palette, sight) = (&self.palette, &self.panel.sight);
-        let share = ((sight.element - SMALLEST_ELEMENT) / (FADING_ELEMENT - SMALLEST_ELEMENT)).clamp(0.0, 1.0);
-        let strength = (sight.element / SMALL_ELEMENT).min(1.0) * share * share * (3.0 - 2.0 * share);
-        let [body, alarm_body] = [&self.panel.sound, &self.panel.turned_over].map(|mesh| self.mean_colour(mesh));
-        let is_plain = self.picture.ramp.is_empty();
+        let palette = self.palette();
+        let element = narrow(self.draft.element);
+        let share = ((element - SMALLEST_ELEMENT) / (FADING_ELEMENT - SMALLEST_ELEMENT)).clamp(0.0, 1.0);
+        let strength = (element / SMALL_ELEMENT).min(1.0) * share * share * (3.0 - 2.0 * share);
+        let body = self.mean_colour(&self.sound, false);
+        let alarm_body = self.mean_colour(&self.turned_over, true);
+        let is_plain = self.draft.composer.ramp.is_empty();
         let alarm = if is_plain { palette.alarm_line } else { palette.alarm };
-        let alarm_width = ALARM_EDGE_WIDTH * sight.contour_share;
-        let kinds: [(&[LineKind], [f32; 2], Colour, Colour); 5] = [
-            (&[LineKind::Edge, LineKind::ObstacleEdge], [EDGE_WIDTH, EDGE_ALPHA * strength], palette.edge, body),
-            (&[LineKind::Bar], [BAR_WIDTH, BAR_ALPHA], palette.edge, palette.background),
-            (&[LineKind::AlarmEdge], [alarm_width, ALARM_EDGE_ALPHA * strength], alarm, alarm_body),
-            (&[LineKind::AlarmContour], [CONTOUR_WIDTH, 1.0], alarm, alarm_body),
-            (
-                &[LineKind::Contour, LineKind::ObstacleContour],
-                [CONTOUR_WIDTH, palette.outline_alpha],
-                palette.outline,
-                body,
-            ),
+        let kinds: [(LineKind, [f32; 2], Colour, Colour); 5] = [
+            (LineKind::Edge, [EDGE_WIDTH, EDGE_ALPHA * strength], palette.edge, body),
+            (LineKind::Bar, [BAR_WIDTH, BAR_ALPHA], palette.edge, palette.background),
+            (LineKind::AlarmEdge, [ALARM_EDGE_WIDTH, ALARM_EDGE_ALPHA * strength], alarm, alarm_body),
+            (LineKind::AlarmContour, [CONTOUR_WIDTH, 1.0], alarm, alarm_body),
+            (LineKind::Contour, [CONTOUR_WIDTH, palette.outline_alpha], palette.outline, body),
         ];
-        for (kinds, [width, alpha], colour, ground) in kinds {
-            let lines = self.panel.lines.iter().filter(|line| kinds.contains(&line.kind));
+        for (kind, [width, alpha], colour, ground) in kinds {
+            let lines = self.lines.iter().filter(|line| line.kind == kind);
             let mut path = Path::default();
             lines.for_each(|line: &Line| path.add_line(&[line.from, line.to].map(|end| self.pixel(end))));
             if !path.is_empty() && alpha > 0.0 {
                 let paint = Paint { colour, alpha: self.alpha(alpha, colour, ground) };
-                items.push(Item::Stroke { path, pen: Pen::solid(width * sight.line_scale), paint });
+                items.push(Item::Stroke { path, pen: Pen::solid(width * self.line_scale()), paint });
             }
         }
     }
 
     /// Coloured lines.
     fn strokes(&self, items: &mut Vec<Item>) {
-        self.panel.strokes.iter().for_each(|stroke| self.stroke(stroke, stroke.colours, items));
+        self.strokes.iter().for_each(|stroke| self.stroke(stroke, stroke.colours, items));
         let on_body = |stroke: &&Stroke| matches!(stroke.second, Second::OnBody(_));
-        if !self.panel.strokes.iter().any(|stroke| on_body(&stroke)) {
+        if !self.strokes.iter().any(|stroke| on_body(&stroke)) {
             return;
         }
-        for mesh in [&self.panel.sound, &self.panel.turned_over] {
+        for mesh in [&self.sound, &self.turned_over] {
             if !mesh.triangles.is_empty() {
                 let mut seen = Vec::new();
-                for stroke in self.panel.strokes.iter().filter(on_body) {
+                for stroke in self.strokes.iter().filter(on_body) {
                     if let Second::OnBody(colour) = stroke.second {
                         self.stroke(stroke, [colour; 2], &mut seen);
                     }
@@ -345,13 +347,6 @@ impl PlanePanel<'_> {
         }
     }
 
-    fn bead(&self, bead: &Bead, items: &mut Vec<Item>) {
-        let at = self.pixel(bead.at);
-        items.push(Item::Fill { path: Path::circle(at, bead.radius), paint: bead.rim.into() });
-        let radius = (1.0 - BEAD_RIM) * bead.radius;
-        items.push(Item::Fill { path: Path::circle(at, radius), paint: bead.colour.into() });
-    }
-
     /// The opacity that looks the same in blended bytes as a given opacity in blended light.
     fn alpha(&self, alpha: f32, above: Colour, below: Colour) -> f32 {
         let seen = encoded_exactly(mixed_light(below, above, alpha));
@@ -363,7 +358,7 @@ impl PlanePanel<'_> {
 }
 
 /// Polygons with an area as one path.
-fn path_of(polygons: impl Iterator<Item = Vec<Vec2>>) -> Path {
+pub(super) fn path_of(polygons: impl Iterator<Item = Vec<Vec2>>) -> Path {
     let mut path = Path::default();
     polygons.filter(|polygon| polygon.len() > 2).for_each(|polygon| path.add_polygon(&polygon));
     path
