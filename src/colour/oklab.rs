@@ -31,9 +31,9 @@ pub(crate) fn from_oklab(Oklab([lightness, a, b]): Oklab) -> Colour {
     ])
 }
 
+#[cfg(test)]
 impl Oklab {
     /// The perceived difference: 0 for equal colours, 1 for black and white.
-    #[cfg(test)]
     pub(crate) fn distance(self, other: Self) -> f64 {
         (0..3).map(|axis| (self.0[axis] - other.0[axis]) * (self.0[axis] - other.0[axis])).sum::<f64>().sqrt()
     }

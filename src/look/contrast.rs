@@ -1,7 +1,6 @@
 //! Checks the contrast and the difference of colours.
 
 use super::palette::Palette;
-use super::view::Colours;
 use crate::colour::{Colour, LINE_CONTRAST, Vision, contrast, difference, readable, written};
 use crate::reading::collector::{Collector, PathPart};
 use std::fmt;
@@ -9,13 +8,9 @@ use std::fmt;
 /// The least difference of turned-over elements from others, for any colour vision (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
 
-fn path(role: &str) -> [PathPart<'_>; 3] {
-    [PathPart::Key("view"), PathPart::Key("colours"), PathPart::Key(role)]
-}
-
 /// Checks the contrast of runs' chosen colours with the background, and their difference from turned-over elements.
 pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &mut Collector<'_>) {
-    let like_alarm = |colour| TooLike::find([(colour, ())], palette.alarm);
+    let like_alarm = |colour| TooLike::find(colour, palette.alarm);
     for (at, &colour) in chosen.iter().enumerate() {
         let Some(colour) = colour else { continue };
         let path = [PathPart::Key("run"), PathPart::Index(at), PathPart::Key("colour")];
@@ -45,43 +40,22 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
     }
 }
 
-/// Checks the difference of turned-over elements from others.
-pub(super) fn check_alarm(typed: &Colours, palette: &Palette, report: &mut Collector<'_>) {
-    let (key, other) = match (typed.turned_over, typed.body) {
-        (Some(_), _) => ("turned_over", "the body's"),
-        (None, Some(_)) => ("body", "the colour of turned-over elements,"),
-        (None, None) => return,
-    };
-    let sound = [(palette.sound, "in space"), (palette.sound_flat, "in the plane")];
-    let Some(found) = TooLike::find(sound, palette.alarm) else { return };
-    let opposite = written(if key == "body" { palette.alarm } else { found.colour });
-    let message = format!("`view.colours.{key}` is too similar to {other} {opposite} {}: {found}", found.place);
-    report.at(&path(key), message, "choose another hue, or make one of them much lighter than the other".to_owned());
-}
-
-/// A colour that may be mistaken for the colour of turned-over elements.
-struct TooLike<T> {
-    colour: Colour,
-    /// Its use.
-    place: T,
+/// A resemblance to the colour of turned-over elements.
+struct TooLike {
     difference: f64,
     vision: Vision,
 }
 
-impl<T: Copy> TooLike<T> {
-    /// The colour most similar to that of turned-over elements for any colour vision; `None` if all differ enough.
-    fn find(colours: impl IntoIterator<Item = (Colour, T)>, alarm: Colour) -> Option<Self> {
-        let seen = colours.into_iter().flat_map(|(colour, place)| Vision::ALL.map(|vision| (colour, place, vision)));
-        let measured = seen.map(|(colour, place, vision)| {
-            let difference = difference(colour, alarm, vision);
-            Self { colour, place, difference, vision }
-        });
-        let nearest = measured.min_by(|one, other| one.difference.total_cmp(&other.difference));
+impl TooLike {
+    /// The resemblance of a colour for the eyes that see the least difference; `None` if it differs enough for all.
+    fn find(colour: Colour, alarm: Colour) -> Option<Self> {
+        let seen = Vision::ALL.map(|vision| Self { difference: difference(colour, alarm, vision), vision });
+        let nearest = seen.into_iter().min_by(|one, other| one.difference.total_cmp(&other.difference));
         nearest.filter(|nearest| nearest.difference < LEAST_DIFFERENCE)
     }
 }
 
-impl<T> fmt::Display for TooLike<T> {
+impl fmt::Display for TooLike {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (eyes, found) = (self.vision.name(), rounded_down(self.difference));
         write!(out, "to {eyes} they differ by {found} (CIEDE2000); expected at least {LEAST_DIFFERENCE}")

@@ -124,7 +124,7 @@ pub enum ColourMap {
     /// From dark blue to yellow, the same with colour blindness (Nuñez, Anderton, Renslow 2018), in either theme.
     Cividis,
     /// From purple through crimson to pale yellow, in either theme: matplotlib's without its black end. Its orange
-    /// resembles turned-over elements; `colours.turned_over` can change that.
+    /// resembles turned-over elements.
     Magma,
     /// From light to dark grey in the light theme, from dark to light in the dark one.
     Greys,

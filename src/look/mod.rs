@@ -29,8 +29,6 @@ pub use palette::Theme;
 pub use print::Print;
 pub(crate) use resolve::{TypedView, colour};
 pub(crate) use subject::Subject;
-pub use view::{
-    Camera, ColourScale, Colours, EdgeStyle, FloorStyle, FontFiles, Ghost, Labels, Style, Traced, View, Visible,
-};
+pub use view::{Camera, ColourScale, EdgeStyle, FloorStyle, FontFiles, Ghost, Labels, Style, Traced, View, Visible};
 #[cfg(feature = "render")]
 pub(crate) use {drawn::LineStyle, palette::Palette, ramp::SHADES, view::axes};

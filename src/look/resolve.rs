@@ -1,7 +1,6 @@
 //! Reads a `[view]` table into the view of a body, its runs and its surroundings.
 
 use super::compared;
-use super::contrast;
 use super::file::{ArrangementFile, CameraFile, ColourFile, PanelsFile, ShowFile};
 use super::framing;
 use super::palette::Palette;
@@ -80,8 +79,6 @@ impl View {
         view.look.background = get::<TypedColour>(typed, "background", report).map(|colour| colour.0);
         set(&mut view.look.theme, typed, "theme", report);
         view.look.theme = Palette::theme_on(view.look.background, view.look.theme);
-        set(&mut view.look.colours, typed, "colours", report);
-        contrast::check_alarm(&view.look.colours, &view.look.palette(), report);
         view.look.font = font;
         view.clock = get(typed, "clock", report).unwrap_or_else(|| {
             if scene.grips.is_empty() { "after release".to_owned() } else { "after the start".to_owned() }

@@ -8,7 +8,7 @@ use crate::colour::Colour;
 use crate::sim::{Body, Diagnostic, Dimension, Field};
 use glam::DVec3;
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
 use std::sync::Arc;
 
@@ -330,12 +330,10 @@ pub struct ColourScale {
 pub struct Style {
     /// The colours.
     pub theme: Theme,
-    /// The background. The other theme is used if this one's text cannot be read on it. Default: the theme's.
+    /// The background, hexadecimal or a CSS name such as `"ivory"`. The other theme is used if this one's text cannot be
+    /// read on it. Default: the theme's.
     #[schemars(with = "Option<TypedColour>")]
     pub background: Option<Colour>,
-    /// Colours of the body, such as `{ body = "steelblue" }`, from which shades are derived. Default: the theme's.
-    #[serde(serialize_with = "open")]
-    pub colours: Colours,
     /// The font files, such as `{ regular = "NotoSansCJK.ttc" }`. Default: the built-in font, which has Latin and Greek
     /// letters.
     #[serde(serialize_with = "open")]
@@ -352,13 +350,12 @@ pub struct Style {
 impl Style {
     /// The style of a theme without settings.
     pub fn of(theme: Theme) -> Self {
-        let (background, colours, font) = Default::default();
-        Self { theme, background, colours, font, text_scale: 1.0 }
+        Self { theme, background: None, font: FontFiles::default(), text_scale: 1.0 }
     }
 
     /// All colours of a picture.
     pub(crate) fn palette(&self) -> Palette {
-        Palette::with(self.theme, self.background, &self.colours)
+        Palette::with(self.theme, self.background)
     }
 }
 
@@ -366,28 +363,6 @@ impl Default for Style {
     fn default() -> Self {
         Self::of(Theme::default())
     }
-}
-
-/// Colours of the body. Each is hexadecimal, `"#rgb"` or `"#rrggbb"`, or a CSS name such as `"steelblue"`. All are
-/// opaque.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Colours {
-    /// The colour of elements that are not turned over, before shading. The fill of elements in the plane and the
-    /// squares of the tally follow it; edges that would be invisible on it become lighter. Its difference from
-    /// `turned_over` must be at least 20 (CIEDE2000), also with colour blindness.
-    #[serde(deserialize_with = "typed")]
-    #[schemars(with = "Option<TypedColour>")]
-    pub body: Option<Colour>,
-    /// The colour of turned-over elements, before shading. Their edges without surfaces, hatching, signs and text
-    /// follow it.
-    #[serde(deserialize_with = "typed")]
-    #[schemars(with = "Option<TypedColour>")]
-    pub turned_over: Option<Colour>,
-}
-
-fn typed<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Colour>, D::Error> {
-    Ok(Option::<TypedColour>::deserialize(deserializer)?.map(|typed| typed.0))
 }
 
 /// The fonts of a scene, as the bytes of checked files. The built-in font takes the place of missing ones.

@@ -22,13 +22,7 @@ fn look(view: &str) -> Style {
 fn a_scene_that_says_nothing_has_the_look_of_its_theme() {
     assert_eq!(look(""), Style::of(Theme::Light));
     assert_eq!(look("theme = 'dark'"), Style::of(Theme::Dark));
-    assert_eq!(look("theme = 'dark'\ncolours = {}\ntext_scale = 1"), Style::of(Theme::Dark));
-}
-
-#[test]
-fn colours_are_taken_as_typed() {
-    let Palette { sound, alarm, .. } = look("colours = { body = 'DarkSeaGreen', turned_over = '#82f' }").palette();
-    assert_eq!((sound, alarm), ([143, 188, 143], [0x88, 0x22, 0xff]));
+    assert_eq!(look("theme = 'dark'\ntext_scale = 1"), Style::of(Theme::Dark));
 }
 
 /// Scenes of several runs, each with its lines.
@@ -168,17 +162,14 @@ fn scales_have_named_colours_and_factors() {
 fn the_digest_follows_what_colours_mean() {
     let digest = |view: &str| good(&with(view)).digest;
     let plain = digest("");
-    for same in ["colours = {}", "text_scale = 1", "shadow = true"] {
+    for same in ["text_scale = 1", "shadow = true"] {
         assert_eq!(digest(same), plain, "{same}");
     }
-    assert_eq!(digest("colours.body = 'steelblue'"), digest("colours = { body = '#4682B4' }"));
     assert_eq!(digest("background = 'white'"), digest("background = '#fff'"));
     assert_eq!(digest("colour.by = 'speed'"), digest("colour = { by = 'speed', map = 'mint-indigo' }"));
     let mut all: Vec<_> = [
         "",
         "background = 'white'",
-        "colours.body = 'white'",
-        "colours.turned_over = 'purple'",
         "text_scale = 1.1",
         "shadow = false",
         "colour.by = 'speed'",
@@ -188,7 +179,7 @@ fn the_digest_follows_what_colours_mean() {
     .to_vec();
     all.sort();
     all.dedup();
-    assert_eq!(all.len(), 8);
+    assert_eq!(all.len(), 6);
 }
 
 #[track_caller]
@@ -201,41 +192,13 @@ fn mistakes_of_colours() {
     view("background = 'transparent'", "20:14 `view.background = \"transparent\"` is gone write a colour");
     view("background = '#ffffff00'", "20:14 , which is transparent; expected an opaque colour");
     view("background = 7", "20:14 is the whole number 7; expected a string The background");
-    view(
-        "colours = { body = 'stelblue' }",
-        "20:20 `view.colours.body` is \"stelblue\"; expected digits such as \"#93a5ba\" or a name of CSS such as",
-    );
-    view("colours = { body = 'stelblue' }", "20:20 did you mean \"steelblue\"?");
-    view("colours = { body = '93a5ba' }", "20:20 write \"#93a5ba\"");
-    view("colours = { body = '#93a5b' }", "20:20 expected three or six digits, such as \"#93a5ba\"");
-    view("colours = { body = '#93a5ba80' }", "20:20 , which is transparent; expected an opaque colour");
-    view("colours = { body = 'transparent' }", "20:20 , which is transparent; expected an opaque colour");
-    view("colours = { body = '' }", "20:20 `view.colours.body` is \"\"; expected digits");
-    view("colours = { bodi = 'red' }", "20:13 unknown key `bodi` in `view.colours` did you mean `body`?");
-    view("colours = { turnedover = 'red' }", "20:13 did you mean `turned_over`?");
-    view("colours = ['red']", "20:11 `view.colours` is an array of 1; expected a table");
+    view("background = 'stelblue'", "20:14 `view.background` is \"stelblue\"; expected digits such as \"#93a5ba\"");
+    view("background = 'stelblue'", "20:14 did you mean \"steelblue\"?");
+    view("background = '93a5ba'", "20:14 write \"#93a5ba\"");
+    view("background = '#93a5b'", "20:14 expected three or six digits, such as \"#93a5ba\"");
+    view("background = ''", "20:14 `view.background` is \"\"; expected digits");
+    view("colours = { body = 'red' }", "20:1 `view.colours` is gone");
     view("color = 'red'", "20:1 unknown key `color` in `view` did you mean `colour`?");
-    // All colours at once.
-    view("colours = { body = 'x', turned_over = 'y' }", "20:20 `view.colours.body`\n20:39 `view.colours.turned_over`");
-}
-
-#[test]
-fn turned_over_elements_that_anybody_could_overlook_are_refused() {
-    view(
-        "colours = { turned_over = '#8fa0c0' }",
-        "20:27 `view.colours.turned_over` is too similar to the body's #93a5ba in space: to eyes",
-    );
-    view("colours = { turned_over = '#8fa0c0' }", "20:27 (CIEDE2000); expected at least 20 choose another hue");
-    view(
-        "colours = { body = 'coral' }",
-        "20:20 `view.colours.body` is too similar to the colour of turned-over elements, #e2661c",
-    );
-    // A red and a green that most people can distinguish.
-    let colours = "colours = { body = '#7c8c40', turned_over = '#b8703c' }";
-    let [body, alarm] = [[0x7c, 0x8c, 0x40], [0xb8, 0x70, 0x3c]];
-    assert!(difference(body, alarm, Vision::Normal) > 25.0);
-    assert!(difference(body, alarm, Vision::Deuteranopia) < 20.0);
-    view(colours, "20:45 to eyes without green cones (deuteranopia) they differ by");
 }
 
 /// A size in millimetres is one in pixels at a resolution, and type in points has that size there.
