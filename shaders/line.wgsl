@@ -11,13 +11,14 @@ struct Segment {
     @location(3) @interpolate(flat) strength: f32,
     @location(4) @interpolate(flat) samples: vec2<u32>,
     // Values of a panel that all its pixels share.
-    @location(5) @interpolate(flat) scales: vec3<f32>,
+    @location(5) @interpolate(flat) scales: vec4<f32>,
 }
 
 fn unpack(segment: Segment) {
     panel.line_scale = segment.scales.x;
     panel.contour_share = segment.scales.y;
     panel.element = segment.scales.z;
+    panel.edging = segment.scales.w;
 }
 
 const EDGE = 0u;
@@ -35,8 +36,6 @@ const STRENGTH_BITS = 8u;
 // earlier pictures.
 const HIDDEN_ALPHA = 0.16000003;
 const ALARM_HIDDEN_ALPHA = 0.62;
-// The opacity of visible edges.
-const EDGE_ALPHA = 0.80;
 
 // A line lies this much in front of its surface, relative to the distance.
 const OFFSET = 0.0016;
@@ -74,7 +73,7 @@ fn segment(@builtin(vertex_index) vertex: u32) -> Segment {
     let samples = vec2(line.rest.w, look >> (KIND_BITS + STRENGTH_BITS));
     let reach = 0.5 * max(widest(kind) * panel.line_scale, 1.0) + 0.5;
     let place = triangle_corner(vertex % 3u, ends.xy, ends.zw, reach, panel.region.zw);
-    let scales = vec3(panel.line_scale, panel.contour_share, panel.element);
+    let scales = vec4(panel.line_scale, panel.contour_share, panel.element, panel.edging);
     let depths = bitcast<vec2<f32>>(line.rest.xy);
     return Segment(place, ends + panel.region.xyxy, depths, kind, strength, samples, scales);
 }
@@ -111,11 +110,6 @@ fn beside(segment: Segment) -> Beside {
     return Beside(middle, along, length(pixel - middle), mix(segment.depths.x, segment.depths.y, share), share);
 }
 
-// The opacity of edges, before the factor for their elements.
-fn edge_strength() -> f32 {
-    return min(1.0, panel.element / SMALL_ELEMENT) * smoothstep(SMALLEST_ELEMENT, FADING_ELEMENT, panel.element);
-}
-
 // The tested visibility of lines, line after line: see `visibility.wgsl`.
 @group(1) @binding(4) var visibility: texture_2d<f32>;
 
@@ -142,7 +136,7 @@ fn edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let scale = panel.line_scale;
     let kind = segment.kind;
     let shares = visibility_at(segment, at.share);
-    let strength = edge_strength();
+    let strength = panel.edging;
     let of_obstacle = kind == OBSTACLE_EDGE;
     let seen = EDGE_ALPHA * select(strength, 1.0, of_obstacle) * covered(at.distance, EDGE_WIDTH * scale);
     let weak = HIDDEN_ALPHA * strength * strength * covered(at.distance, 0.9 * scale);
@@ -161,7 +155,7 @@ fn alarm_edge_opacity(segment: Segment) -> @location(0) vec4<f32> {
     let behind = mix(0.15, ALARM_HIDDEN_ALPHA, shares.z);
     let alpha = ALARM_EDGE_ALPHA * shares.x + behind * shares.y;
     let width = ALARM_EDGE_WIDTH * panel.line_scale * panel.contour_share;
-    return vec4(0.0, edge_strength() * alpha * covered(at.distance, width), 0.0, 0.0);
+    return vec4(0.0, panel.edging * alpha * covered(at.distance, width), 0.0, 0.0);
 }
 
 struct ContourLook {

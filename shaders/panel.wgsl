@@ -18,7 +18,7 @@ struct Panel {
     // The position of the eye; distance of the near plane.
     eye: vec3<f32>,
     near: f32,
-    // Towards the key light; opacity of the edges that surfaces draw themselves.
+    // Towards the key light; opacity of edges, before the factors for their elements.
     key: vec3<f32>,
     edging: f32,
     // The floor's outward normal, and its height along the normal.
@@ -70,3 +70,5 @@ const LUMINANCE = vec3<f32>(0.2126, 0.7152, 0.0722);
 // Widths of edges and contours in space (px in the reference picture). `measures.rs` has those in the plane.
 const EDGE_WIDTH = 1.15;
 const CONTOUR_WIDTH = 2.2;
+// The opacity of visible edges.
+const EDGE_ALPHA = 0.80;

@@ -201,8 +201,8 @@ fn dots(place: vec2<f32>) -> f32 {
     return DOT_ALPHA * saturate(DOT * scale + 0.5 - off);
 }
 
-// The colour with the edges of its element over it, in a colour.
-fn edged(colour: vec3<f32>, corner: Corner, edge: vec3<f32>) -> vec3<f32> {
+// The colour with the edges of its element over it: their colour, opacity and width (px).
+fn edged(colour: vec3<f32>, corner: Corner, edge: vec4<f32>, width: f32) -> vec3<f32> {
     if !EDGED {
         return colour;
     }
@@ -213,10 +213,18 @@ fn edged(colour: vec3<f32>, corner: Corner, edge: vec3<f32>) -> vec3<f32> {
         length(vec2(dpdx(at.z), dpdy(at.z))),
     );
     let off = (0.5 - abs(at - 0.5)) / max(across, vec3(1e-5));
-    let width = EDGE_WIDTH * panel.line_scale;
     let drawn = max(width, 1.0);
     let covered = saturate(0.5 * drawn + 0.5 - min(off.x, min(off.y, off.z))) * (width / drawn);
-    return mix(colour, edge, panel.edging * covered);
+    return mix(colour, edge.rgb, panel.edging * edge.a * covered);
+}
+
+fn sound_edged(colour: vec3<f32>, corner: Corner) -> vec3<f32> {
+    return edged(colour, corner, vec4(panel.edge, EDGE_ALPHA), EDGE_WIDTH * panel.line_scale);
+}
+
+fn alarm_edged(colour: vec3<f32>, corner: Corner) -> vec3<f32> {
+    let width = ALARM_EDGE_WIDTH * panel.line_scale * panel.contour_share;
+    return edged(colour, corner, vec4(panel.alarm_line, ALARM_EDGE_ALPHA), width);
 }
 
 // The colour of a field at a place of its scale; the colour of the set below zero, where there is no value.
@@ -250,7 +258,7 @@ fn alarm_surface(corner: Corner) -> TurnedOver {
         colour = mix(tinted(corner, light), corner.own, covered);
         alpha = covered;
     }
-    let stored = sqrt(saturate(edged(colour, corner, panel.alarm_line)));
+    let stored = sqrt(saturate(alarm_edged(colour, corner)));
     return TurnedOver(vec4(stored, alpha), vec4(stored, 1.0));
 }
 
@@ -289,7 +297,7 @@ fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
     if TINTED {
         colour = tinted(corner, light);
     }
-    return opaque(edged(colour, corner, panel.edge));
+    return opaque(sound_edged(colour, corner));
 }
 
 // For panels with turned-over elements behind such surfaces, or with flat elements. A software driver would run all of
@@ -306,7 +314,7 @@ fn sound_before(corner: Corner) -> @location(0) vec4<f32> {
     if TINTED {
         colour = mix(tinted(corner, light), panel.edge, dotted);
     }
-    return over_behind(edged(colour, corner, panel.edge), corner);
+    return over_behind(sound_edged(colour, corner), corner);
 }
 
 // The same light on another material, nothing below the floor.

@@ -24,6 +24,11 @@ impl Ears {
         Self(found.collect())
     }
 
+    /// Whether all faces are convex.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// The triangles of a face that is not convex.
     pub(super) fn of(&self, face: &[u32]) -> Option<&[[u32; 3]]> {
         self.0.get(face).map(Vec::as_slice)

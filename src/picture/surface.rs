@@ -31,6 +31,13 @@ const VERY_MANY_FACES: usize = 12_000;
 const SMOOTH: f64 = 0.995;
 /// Edges of elements smaller than this (px) are not visible through the body: their opacity would be less than 1 %.
 const SEEN_THROUGH: f64 = 7.2;
+/// Edges of so many elements or more, smaller than this (px), are drawn with their faces instead of as lines: a line takes
+/// longer than a small face. Edges behind such faces would be too many to be of use.
+const MANY_ELEMENTS: usize = 100;
+const FINE: f64 = 40.0;
+/// Faces of elements larger than this (px) have edges dark enough to need no smooth borders below them.
+const DARK: f64 = 13.0;
+
 /// The data for turning faces into the parts of a panel.
 pub(super) struct Surroundings<'a> {
     pub(super) body: &'a Body,
@@ -226,6 +233,8 @@ impl Surroundings<'_> {
         mesh.vertices.reserve(4 * faces.len());
         mesh.triangles.reserve(2 * faces.len());
         mesh.shades.reserve(if self.shades.is_some() { 4 * faces.len() } else { 0 });
+        // Edges of turned-over elements are always drawn.
+        let is_edged = self.is_fine() && (self.edges[0] || kinds.edge != LineKind::Edge);
         // Faces on the far side of the body are drawn last: the others hide them, so that they need no light.
         let mut last = Vec::new();
         let is_inside_out = kinds.edge != LineKind::Edge;
@@ -240,6 +249,9 @@ impl Surroundings<'_> {
             // Turned-over elements are hatched, flat ones among the others dotted.
             let dots = (kinds.edge == LineKind::Edge).then(|| f64::from(u8::from(self.is_flat(side))));
             self.emit(side, ears, dots, grid, &mut patch, mesh);
+            if is_edged {
+                note_edges(&patch, grid, &mut mesh.edges);
+            }
             if patch.facing.iter().all(|&seen| (seen < 0.0) != is_inside_out) {
                 last.extend(mesh.triangles.drain(before..));
             }
@@ -266,7 +278,7 @@ impl Surroundings<'_> {
         };
         // Smaller ones would be invisible.
         let is_large = self.element > if is_hidden { SEEN_THROUGH } else { SMALLEST_ELEMENT.into() };
-        if is_large && if is_hidden { behind } else { in_front } {
+        if is_large && !self.is_fine() && if is_hidden { behind } else { in_front } {
             lines.drawn.push(self.line(start, end, kinds.edge, if behind { 1.0 } else { 0.0 }));
         }
         let mut is_contour = false;
@@ -274,7 +286,8 @@ impl Surroundings<'_> {
             self.contour(part.map(|at| start.lerp(end, at)), Some([a, b]), kinds, lines);
             is_contour = true;
         });
-        if !is_hidden && !is_contour && (borders.are_bent(sides) || self.shades.is_some_and(Shades::jump)) {
+        let is_dark = self.is_fine() && in_front && self.element > DARK;
+        if !is_hidden && !is_contour && !is_dark && (borders.are_bent(sides) || self.shades.is_some_and(Shades::jump)) {
             lines.borders.push(Border { line: self.line(start, end, kinds.edge, 1.0), edge: Some([a, b]) });
         }
     }
@@ -284,6 +297,14 @@ impl Surroundings<'_> {
         let line = self.line(from, to, kinds.contour, 1.0);
         lines.drawn.push(line);
         lines.borders.push(Border { line, edge });
+    }
+
+    /// Whether faces draw the edges of their elements.
+    fn is_fine(&self) -> bool {
+        !self.lens.orthographic
+            && self.ears.is_empty()
+            && self.element < FINE
+            && self.body.elements.len() >= MANY_ELEMENTS
     }
 
     /// The component of an outward normal at a point towards the viewer, in units of its length times the distance.
@@ -434,6 +455,23 @@ impl Surroundings<'_> {
 /// The corners of a face that is a bilinear patch.
 fn bilinear(nodes: &[u32], ears: Option<&[[u32; 3]]>) -> Option<[u32; 4]> {
     nodes.try_into().ok().filter(|_| ears.is_none())
+}
+
+/// Records coordinates of the points of a face that are 0 or 255 at its sides.
+fn note_edges(patch: &Patch, grid: Option<&Grid>, edges: &mut Vec<[u8; 4]>) {
+    const INSIDE: u8 = 128;
+    match (grid, patch.points.len() - patch.nodes.len()) {
+        (Some(grid), _) => edges.extend(grid.points.iter().map(|&([u, v], _)| {
+            let [u, v] = [u, v].map(|at| (255.0 * at).round() as u8);
+            [u, v, INSIDE, 0]
+        })),
+        (None, 0) => edges.extend([[255, 0, 0, 0], [0, 255, 0, 0], [0, 0, 255, 0]]),
+        // A fan around the middle.
+        _ => {
+            edges.extend(patch.nodes.iter().map(|_| [0, INSIDE, INSIDE, 0]));
+            edges.push([INSIDE; 4]);
+        }
+    }
 }
 
 /// Records the component towards the viewer of the normals along the sides of a face.
