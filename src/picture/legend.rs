@@ -18,7 +18,7 @@ use std::borrow::Cow;
 const HEIGHT: f64 = 34.0;
 /// The least size of its type relative to the reference picture, as long as it takes no more than this of the picture.
 const LEAST_UNIT: f64 = 0.66;
-const MOST_HEIGHT: f64 = 0.1;
+const MOST_HEIGHT: f64 = 0.068;
 /// The least widths of the arrow with its words, of a sample with its name, and of the bar with its name (px in the
 /// reference picture).
 const ARROW_ROOM: f64 = 250.0;
