@@ -119,7 +119,7 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
         .size([640, 360])
         .theme(Theme::Dark)
         .colour_by(Field::Strain)
-        .strip(Diagnostic::Energy)
+        .charts([Diagnostic::Energy])
         .camera(0.2, 0.3);
     let text = "
         title = 'scene'
@@ -135,7 +135,7 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
                 integrator = 'pefrl' },
         ]
         hold = [{ nodes = [0, 1] }, { nodes = { of = [0.1, 1.2, 0.1], within = 0.01 }, from = 0.25, until = 0.5 }]
-        view = { size = [640, 360], theme = 'dark', colour.by = 'strain', strip = 'energy',
+        view = { size = [640, 360], theme = 'dark', colour.by = 'strain', charts = ['energy'],
             camera = { azimuth = 0.2, elevation = 0.3 } }
         [[obstacle]]
         kind = 'floor'
@@ -361,7 +361,7 @@ fn models_of_the_caller_are_checked_by_their_own_words() {
     scene(springs(&[[0, 1]])).build(&few).unwrap();
     refused(scene(springs(&[[0, 1], [1, 2]])), &few, "3 nodes, 1 element and up to 2 springs");
     // With springs and rotations, or with neither.
-    let strip = |model: Idle| scene(model).strip(Diagnostic::Residual);
+    let strip = |model: Idle| scene(model).charts([Diagnostic::Residual]);
     strip(Idle { turns: true, ..springs(&[[0, 1]]) }).build(&limits).unwrap();
-    refused(strip(idle(1.0)), &limits, "`view.strip` is \"residual\", which no run has; models without rotations");
+    refused(strip(idle(1.0)), &limits, "`view.charts[0]` is \"residual\", which no run has; models without rotations");
 }

@@ -90,7 +90,7 @@ impl View {
         set(&mut view.title, typed, "title", report);
         set(&mut view.caption, typed, "caption", report);
         [&mut view.title, &mut view.caption].into_iter().for_each(|text| *text = text.trim().to_owned());
-        view.strip = get(typed, "strip", report);
+        set(&mut view.charts, typed, "charts", report);
         set(&mut view.arrow_scale, typed, "arrow_scale", report);
         set(&mut view.labels, typed, "labels", report);
         set(&mut view.shadow, typed, "shadow", report);

@@ -69,12 +69,12 @@ pub struct View {
     /// The words and signs in panels and below them.
     #[schemars(with = "Vec<Label>")]
     pub labels: Labels,
-    /// A diagnostic plotted over the whole time of the scene in one chart below all panels, with the current time
-    /// marked. Curves end with their names, or with the letters of their panels if names have no room. Numbered flags
-    /// mark the moments when elements first turn over and when their count settles, or the extreme value. If nearly all
-    /// changes are early, that time has a larger scale. The whole scene is simulated before the first frame is drawn.
-    /// Default: none.
-    pub strip: Option<Diagnostic>,
+    /// Diagnostics plotted over the whole time of the scene, each in a chart below all panels, such as `["energy"]`,
+    /// with the current time marked. In the first chart, numbered flags mark the moments when elements first turn over
+    /// and when their count settles, or the extreme value; if nearly all its changes are early, that time has a larger
+    /// scale. The whole scene is simulated before the first frame is drawn. Default: none.
+    #[schemars(length(max = 6))]
+    pub charts: Vec<Diagnostic>,
     /// A dashed outline over each body: `"rest"` for the rest shape in its best rigid fit, or the name of a run for its
     /// body at the same moment, in the colour of that run. All runs then have that run's time step. Default: none.
     #[serde(serialize_with = "open")]
@@ -151,7 +151,7 @@ impl Default for View {
             title: String::new(),
             caption: String::new(),
             labels: Labels::default(),
-            strip: None,
+            charts: Vec::new(),
             ghost: None,
             paths: Vec::new(),
             shadow: true,

@@ -1,5 +1,8 @@
 //! Pictures made by hand, such as plots of measurements.
 
+use super::caption::Writer;
+use super::chart::{Chart, Place};
+use super::layout::Scale;
 use super::text::{Fonts, Weight};
 use super::{Item, Picture};
 use crate::look::{Style, Theme};
@@ -51,6 +54,20 @@ impl Diagram {
     pub fn curve(&mut self, points: &[[f64; 2]], width: f64, colour: [u8; 3], dash: &[f64]) {
         let below_text = self.picture.above.partition_point(|item| !matches!(item, Item::Text(_)));
         self.picture.above.insert(below_text, Item::curve(points, width, dash, colour));
+    }
+
+    /// Adds a chart in a rectangle, with its numbers below and at the left: left, top, right and bottom.
+    pub fn chart(&mut self, chart: &Chart, [left, top, right, bottom]: [f64; 4]) {
+        let Picture { palette, fonts, under, above, .. } = &mut self.picture;
+        let (marks, curves, words) = Default::default();
+        let mut writer = Writer { palette, fonts, scale: Scale::REFERENCE, marks, curves, words };
+        let place = Place { left, right, top, bottom, unit: 1.0, line: 1.0 };
+        chart.ground(&mut writer, place, true);
+        chart.curves(&mut writer, place);
+        let Writer { marks, curves, words, .. } = writer;
+        under.extend(marks);
+        above.splice(0..0, curves);
+        above.extend(words.into_iter().map(Item::Text));
     }
 
     /// Adds a line of text from a place on its baseline.

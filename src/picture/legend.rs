@@ -2,9 +2,9 @@
 
 use super::Item;
 use super::arrows;
-use super::axis::{Axis, Kind};
 use super::caption::Writer;
 use super::chart::NUMBERS;
+use super::chart::axis::{Kind, Stretch};
 use super::ghost;
 use super::layout::Scale;
 use super::number;
@@ -189,7 +189,7 @@ impl Legend {
     fn bar(self, writer: &mut Writer<'_>, [left, right, middle]: [f64; 3], top: f64, bar: &Bar<'_>) {
         let (unit, palette) = (self.unit, writer.palette);
         let &Bar { ref name, ramp, beyond, mut definition, .. } = bar;
-        let mut axis = Axis::new(Kind::Colour, bar.range, bar.unit, bar.extent, MOST_TICKS);
+        let mut axis = Stretch::new(Kind::Colour, bar.range, bar.unit, bar.extent, MOST_TICKS);
         let numbers = NUMBERS * unit;
         let fonts = writer.fonts;
         let wide = |text: &String| fonts.width(text, Weight::Regular, numbers);

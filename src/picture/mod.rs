@@ -6,11 +6,10 @@
 //! ```
 //!
 //! A [`Composer`] computes once the data that all frames of a scene share. Any frame can be composed alone: the result
-//! depends only on the scene and the frame. A chart ([`crate::look::View::strip`]) and paths show time series of the
+//! depends only on the scene and the frame. Charts ([`crate::look::View::charts`]) and paths show time series of the
 //! whole scene, which the composer gets beforehand; these depend only on the scene, too.
 
 mod arrows;
-mod axis;
 mod camera;
 mod caption;
 mod chart;
@@ -18,17 +17,13 @@ mod compose;
 mod cut;
 mod diagram;
 mod ears;
-mod ends;
-mod event;
 mod fade;
 mod field;
-mod flag;
 mod ghost;
 mod grip;
 mod layout;
 mod legend;
 pub(crate) mod measures;
-mod members;
 mod narrow;
 mod number;
 mod obstacle;
@@ -36,15 +31,12 @@ mod order;
 mod page;
 mod plane;
 mod pointer;
-mod series;
 mod shadow;
 mod shell;
 mod skin;
-mod strip;
 mod surface;
 mod tally;
 mod text;
-mod timeline;
 mod tracking;
 mod wire;
 mod wrap;
@@ -52,10 +44,12 @@ mod wrap;
 pub(crate) use crate::colour::Colour;
 pub(crate) use crate::look::{Palette, SHADES};
 pub(crate) use camera::Framing;
+pub use chart::{Annotation, Axis, Chart, Layer};
 pub use compose::Composer;
 pub(crate) use compose::{compose_figure, left_out, type_left_out};
 pub use diagram::{Diagram, TextStyle};
 pub(crate) use layout::Rectangle;
+pub use number::power_of_ten;
 #[cfg(test)]
 pub(crate) use page::winding;
 pub(crate) use page::{Image, Item, Paint, Path, Pen, Step};

@@ -136,6 +136,20 @@ pub(super) fn times(value: f64) -> String {
     }
 }
 
+/// A power of ten, typeset.
+pub fn power_of_ten(power: i32) -> String {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    match power {
+        0 => "1".to_owned(),
+        1 => "10".to_owned(),
+        _ => {
+            let digits = power.to_string();
+            let raised = digits.chars().map(|sign| sign.to_digit(10).map_or('⁻', |digit| RAISED[digit as usize]));
+            format!("10{}", raised.collect::<String>())
+        }
+    }
+}
+
 /// The largest of 1, 2 and 5 times a power of ten that is not larger than a positive value.
 pub(super) fn round_below(value: f64) -> f64 {
     let power = libm::floor(libm::log10(value.clamp(1e-300, 1e300)));

@@ -2,8 +2,8 @@
 
 use super::Item;
 use super::camera::Lens;
+use super::chart::spread;
 use super::ears::Ears;
-use super::ends::spread;
 use super::layout::{Rectangle, Scale};
 use super::narrow::narrow;
 use super::obstacle::half_space;

@@ -1,4 +1,4 @@
-//! The simulations of figures: states of runs at chosen moments, and the time series of a scene for strips.
+//! The simulations of figures: states of runs at chosen moments, and the time series of a scene for charts.
 
 use crate::runner::Runner;
 use crate::runner::history::History;
@@ -134,7 +134,7 @@ impl<'a> Taking<'a> {
         let (rows, columns) = (sheet.rows.len(), sheet.columns.len());
         let cells = (0..rows * columns).map(|at| sheet.cell(at / columns, at % columns));
         let shown: Vec<_> = cells.clone().map(|(scene, run, time)| (part([scene, run]), Moment::at(time))).collect();
-        let has_charts = !sheet.strips.is_empty();
+        let has_charts = !sheet.charts.is_empty();
         let of_scene = |(at, scene): (usize, &Scene)| {
             let is_shown = |run: &usize| sheet.rows.iter().any(|row| row.run == scene.runs[*run].name);
             let has_series = has_charts || !scene.view.paths.is_empty();
@@ -163,7 +163,7 @@ impl<'a> Taking<'a> {
         let closer = sheet.split.map(|split| [sheet.from, split]);
         let parts = parts.into_iter().enumerate().map(|(at, mut part)| {
             if series[part.of[0]].contains(&at) {
-                part.runner = part.runner.with_closer_time_series(&sheet.strips, closer, &times);
+                part.runner = part.runner.with_closer_time_series(&sheet.charts, closer, &times);
                 let scene = &sheet.scenes[part.of[0]];
                 let last = scene.moment(scene.last_frame());
                 if has_charts && part.runner.steps_at(last) > part.runner.steps_at(part.end) {

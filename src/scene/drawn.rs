@@ -17,7 +17,7 @@ impl Scene {
 
     /// The diagnostics of a frame in its picture: the number of each run, and the present value in a chart.
     pub(crate) fn frame_diagnostics(&self) -> Vec<Diagnostic> {
-        self.view.strip.iter().copied().chain([Diagnostic::ShapeError]).collect()
+        self.view.charts.iter().copied().chain([Diagnostic::ShapeError]).collect()
     }
 }
 

@@ -57,6 +57,7 @@ const GONE: &[Gone] = &[
     key("view.outline", "remove it; outlines are always drawn"),
     key("view.points", "remove it"),
     key("view.scale_bar", ALL_LABELS),
+    key("view.strip", "write `charts = [\"DIAGNOSTIC\"]`, such as `charts = [\"energy\"]`"),
     key("view.spring_colour", "write `colour = { by = \"strain\", range = [-0.3, 0.3], map = \"violet-green\" }`, and `show` without `\"surfaces\"`"),
 ];
 

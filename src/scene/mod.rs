@@ -119,11 +119,11 @@ impl Scene {
             Shape::Floor { .. } => one.floor(0.0) != ground,
             _ => false,
         };
-        let needed = view.strip.is_some()
+        let needed = !view.charts.is_empty()
             || view.looks_ahead()
             || view.camera.follow
             || (!is_flat && self.obstacles.iter().any(has_size));
-        needed.then_some(view.strip.as_slice())
+        needed.then_some(&view.charts[..])
     }
 
     /// The message for a diagnostic that no run has, with the diagnostics that charts can show; `None` if a run may

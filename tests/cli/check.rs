@@ -112,7 +112,7 @@ fn warns_of_what_is_probably_not_meant() {
 #[test]
 fn tells_what_finds_no_room() {
     let place = Place::new();
-    let view = "size = [640, 360]\ntext_scale = 3.0\nstrip = 'energy'";
+    let view = "size = [640, 360]\ntext_scale = 3.0\ncharts = ['energy']";
     place.write("large.toml", &SMALL.replace("size = [96, 64]", view));
     let ran = place.run("check large.toml");
     assert_eq!(ran.status, Some(0));
@@ -120,7 +120,7 @@ fn tells_what_finds_no_room() {
     assert!(ran.err.starts_with(told) && ran.err.contains("panels do not describe the models"), "{}", ran.err);
     let document = place.run("check large.toml --json").good().json();
     assert!(document["scenes"][0]["no_room"].as_array().is_some_and(|told| told.len() > 1), "{document}");
-    let view = "size = [1280, 720]\ntext_scale = 1.4\nstrip = 'energy'";
+    let view = "size = [1280, 720]\ntext_scale = 1.4\ncharts = ['energy']";
     place.write("roomy.toml", &SMALL.replace("size = [96, 64]", view));
     assert_eq!(place.run("check roomy.toml").good().err, "");
     let told = "warning: roomy.toml: not everything has room in 400×300: ";

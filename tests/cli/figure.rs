@@ -8,7 +8,7 @@ size = [320, 200]
 [sheet]
 scene = "small.toml"
 moments = [0.0, 0.1]
-strips = ["turned_over"]
+charts = ["turned_over"]
 "#;
 
 fn place() -> Place {
@@ -26,7 +26,7 @@ fn place_to_draw() -> Option<Place> {
 fn scenes_are_warned_of() {
     let place = place();
     place.write("small.toml", &SMALL.replace("frames_per_second = 60", "frames_per_second = 1e-300"));
-    place.write("mine.toml", &SHEET.replace("[0.0, 0.1]", "[0.0]").replace("strips = [\"turned_over\"]", ""));
+    place.write("mine.toml", &SHEET.replace("[0.0, 0.1]", "[0.0]").replace("charts = [\"turned_over\"]", ""));
     let words = "small.toml:7:21: at 1e-300 frames per second, 0.1 s have only one frame, the start\n";
     for command in ["figure mine.toml", "compare golden/mine mine.toml", "compare golden/small small.toml"] {
         let ran = place.run(command);

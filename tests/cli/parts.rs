@@ -109,7 +109,7 @@ fn an_animation_of_resumed_frames_is_the_same() {
 pub(crate) fn rich() -> String {
     let wild = "[[run]]\nname = \"Wild\"\nmodel = { kind = \"mass-spring\", stiffness = 1e4, springs = \"edges\" }\nstep = \"T/2\"\n";
     let grab = "[[grab]]\nnodes = [0]\npath = { keys = [{ time = 0.02 }, { time = 0.3, shift = [0, 0.2, 0] }] }\n";
-    let view = "[view]\nstrip = \"energy\"\ncolour = { by = \"elastic-energy\", range = [0, 1] }\n\
+    let view = "[view]\ncharts = [\"energy\"]\ncolour = { by = \"elastic-energy\", range = [0, 1] }\n\
                 paths = [\"centre\"]\n";
     let rotation = "stiffness = 1e4, damping_ratio = 0.1, rotation = \"arctangent\" }";
     SMALL

@@ -231,7 +231,7 @@ fn some_frames_of_one_run_in_another_size() {
 
 /// The small scene with a strip, which needs more height.
 fn with_strip(text: &str) -> String {
-    text.replace("size = [96, 64]", "size = [320, 180]\nstrip = \"shape_error\"")
+    text.replace("size = [96, 64]", "size = [320, 180]\ncharts = [\"shape_error\"]")
 }
 
 #[test]

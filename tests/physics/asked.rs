@@ -78,7 +78,7 @@ fn scene(view: &str) -> Scene {
 
 #[test]
 fn pictures_ask_for_energies_only_where_they_show_them() {
-    for (view, asked) in [("", 0), ("view.strip = 'volume_ratio'", 0), ("view.strip = 'energy'", 2)] {
+    for (view, asked) in [("", 0), ("view.charts = ['volume_ratio']", 0), ("view.charts = ['energy']", 2)] {
         let mut scene = scene(view);
         let reports = count(&mut scene);
         let mut runner = Runner::new(&scene, &[0, 1]).with_diagnostics(&scene.frame_diagnostics());
@@ -133,7 +133,7 @@ fn figures_ask_for_energies_only_where_they_show_them() {
         (Scope::Summaries, None, elastic, 0),
     ] {
         let Content::Sheet(sheet) = &mut figure.content else { panic!("a contact sheet") };
-        (sheet.number, sheet.strips) = (number, vec![strip]);
+        (sheet.number, sheet.charts) = (number, vec![strip]);
         let mut taking = Taking::new(&figure, scope);
         while taking.advance(u64::MAX).is_some() {}
         let moments = taking.finish();

@@ -14,7 +14,7 @@ const SCENE: &str = "
     body.velocity = [0, -2, 0]
     obstacle = [{ kind = 'floor', restitution = 0.5 }]
     grab = [{ nodes = [0], path = { keys = [{ time = 0.02 }, { time = 0.2, shift = [0, 0.2, 0] }] } }]
-    view = { strip = 'energy', paths = ['centre'] }
+    view = { charts = ['energy'], paths = ['centre'] }
     [[run]]
     name = 'shape'
     model = { kind = 'shape-based', stiffness = 1e4 }

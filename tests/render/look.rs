@@ -93,7 +93,7 @@ fn turned_over_elements_are_hatched() {
         plane
             .replace("labels =", "# labels =")
             .replace("[view]", &format!("[view]\nshow = ['surfaces']\n{more}"))
-            .replace("strip =", "# strip =")
+            .replace("charts =", "# charts =")
     };
     for theme in ["light", "dark"] {
         for colour in ["", "colour.by = 'strain'"] {

@@ -57,7 +57,7 @@ fn gpu(test: &str) -> Option<&'static Gpu> {
 fn plain() -> String {
     let text = include_str!("../../scenes/fig4b.toml");
     let (world, view) = text.split_once("[view]").expect("a view");
-    let asked = |line: &&str| !["size", "title", "labels", "strip"].iter().any(|key| line.starts_with(key));
+    let asked = |line: &&str| !["size", "title", "labels", "charts"].iter().any(|key| line.starts_with(key));
     let view: Vec<_> = view.lines().filter(asked).collect();
     format!("{world}[view]\nsize = [1280, 720]{}\ncamera.follow = false\n", view.join("\n"))
 }

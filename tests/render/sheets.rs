@@ -38,17 +38,17 @@ fn others() -> Vec<Figure> {
     };
     let long = "A text that goes on and on, as captions do. ".repeat(8);
     [
-        format!("[sheet]\nscene = 'fig4b.toml'\nmoments = [{}]\nstrips = ['turned_over', 'kinetic']\n", moments(40)),
+        format!("[sheet]\nscene = 'fig4b.toml'\nmoments = [{}]\ncharts = ['turned_over', 'kinetic']\n", moments(40)),
         format!("[sheet]\nscene = 'fig4b.toml'\n[[sheet.column]]\nlabel = 'A label that is long'\n{}", rows(20)),
         format!(
             "title = '{}'\ncaption = '{long}'\n[sheet]\nscene = 'fig4b.toml'\nmoments = [0.02, 0.021, 0.022, 1, 2.99, 3]\n\
-             strips = ['turned_over', 'shape_error', 'volume_ratio', 'kinetic', 'elastic', 'residual']\n",
+             charts = ['turned_over', 'shape_error', 'volume_ratio', 'kinetic', 'elastic', 'residual']\n",
             &long[..190]
         ),
         "[sheet]\nscene = 'fig4b.toml'\nmoments = [0, 0.3, 0.6, 1]\nnumber = 'volume_ratio'\n".to_owned(),
         "[sheet]\nscene = 'fig4a.toml'\nmoments = [0, 0.7, 1.45, 2.2, 5]\n".to_owned(),
         "[sheet]\nscene = 'fig4a.toml'\nmoments = [0.5]\n".to_owned(),
-        "title = 'x'\n[sheet]\nscene = 'explicit-euler.toml'\nmoments = [0, 0.5, 1]\nstrips = ['energy']\n".to_owned(),
+        "title = 'x'\n[sheet]\nscene = 'explicit-euler.toml'\nmoments = [0, 0.5, 1]\ncharts = ['energy']\n".to_owned(),
         "title = 'Several'\n[sheet]\n[[sheet.column]]\nscene = 'fig4b.toml'\ntime = 0.03\nlabel = 'dropped'\n\
          [[sheet.column]]\nscene = 'fig4c.toml'\ntime = 1.2\nlabel = 'pressed'\n\
          [[sheet.column]]\nscene = 'fig4a.toml'\ntime = 1.5\nlabel = 'in the plane'\n"
@@ -117,7 +117,7 @@ fn sizes(picture: &Listed) -> std::collections::BTreeMap<&str, f32> {
 #[test]
 fn type_is_as_many_times_larger_as_a_figure_says() {
     let usual = "title = 'A title'\ncaption = 'In a few words'\n\
-                 [sheet]\nscene = 'fig4b.toml'\nmoments = [0, 0.5, 1]\nstrips = ['turned_over', 'shape_error']\n";
+                 [sheet]\nscene = 'fig4b.toml'\nmoments = [0, 0.5, 1]\ncharts = ['turned_over', 'shape_error']\n";
     let picture = |text: &str| {
         let figure = own(text);
         compose_figure(&figure, &Moments::new(&figure)).expect("room")
@@ -242,7 +242,7 @@ fn rings(picture: &Listed, top: f32) -> Vec<(&str, f32)> {
 #[test]
 fn letters_ascend_above_columns_and_over_time() {
     let close = own(
-        "[sheet]\nscene = 'fig4b.toml'\nmoments = [0.02, 0.021, 0.022, 0.023, 1, 2.99, 3]\nstrips = ['turned_over']\n",
+        "[sheet]\nscene = 'fig4b.toml'\nmoments = [0.02, 0.021, 0.022, 0.023, 1, 2.99, 3]\ncharts = ['turned_over']\n",
     );
     for (figure, moments) in PAPER.iter().chain(&show([close])) {
         let mut figure = figure.clone();
@@ -257,7 +257,7 @@ fn letters_ascend_above_columns_and_over_time() {
             assert_eq!(above.span[0], panel.viewport[0] as f32);
         }
         let rings = rings(&picture, top);
-        let expected = if sheet(&figure).strips.is_empty() { &[][..] } else { &letters };
+        let expected = if sheet(&figure).charts.is_empty() { &[][..] } else { &letters };
         assert_eq!(rings.iter().map(|(letter, _)| *letter).collect::<Vec<_>>(), expected);
         for two in rings.windows(2) {
             assert!(two[1].1 - two[0].1 >= 20.0, "rings of 20 px do not touch: {rings:?}");
@@ -306,7 +306,7 @@ fn of_alike(runs: usize, sheet: &str) -> (Figure, Moments) {
 #[test]
 fn runs_of_one_model_are_told_apart_and_named_at_the_ends_of_their_curves() {
     for runs in [2, 3, 8, 10] {
-        let text = "[sheet]\nscene = 'alike.toml'\nmoments = [0, 0.4]\nstrips = ['energy', 'shape_error']\n";
+        let text = "[sheet]\nscene = 'alike.toml'\nmoments = [0, 0.4]\ncharts = ['energy', 'shape_error']\n";
         let (mut figure, moments) = of_alike(runs, text);
         // The second sheet has too little room for many names.
         for size in [[1200, 675], [1200, 360], [400, 300]] {

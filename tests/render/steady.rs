@@ -138,7 +138,7 @@ fn nothing_flickers_in_slow_motion() {
         if scene.view.size[0] > 400 {
             scene.view.size = [320, 180];
         }
-        scene.view.strip = None;
+        scene.view.charts.clear();
         // The whole motion is in the picture.
         scene.view.camera.follow = false;
         let mut runner = Runner::new(&scene, &all(&scene));

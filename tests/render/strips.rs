@@ -3,16 +3,16 @@
 use super::listed::{Composer, Curve, Listed, Mark, line};
 use super::{assert_words_are_clear, fig4b, gpu, parse, renderer, unknown};
 use localshape::look::{Style, Theme};
-use localshape::picture::{TextRun, Weight};
+use localshape::picture::{TextRun, Weight, left_out};
 use localshape::runner::Runner;
 use localshape::runner::history::History;
-use localshape::scene::{Limits, Scene};
+use localshape::scene::Scene;
 use localshape::sim::{Diagnostic, Frame, Status};
 
 /// The scene of Fig. 4(b) with a strip, and some of its frames.
 fn with_strip<const N: usize>(strip: Diagnostic, frames: [u64; N]) -> (Scene, [Frame; N]) {
     let (mut scene, _) = fig4b(0);
-    scene.view.strip = Some(strip);
+    scene.view.charts = vec![strip];
     let mut runner = Runner::new(&scene, &[0, 1]);
     let frames = frames.map(|index| runner.frame(index));
     (scene, frames)
@@ -38,12 +38,13 @@ fn moments(picture: &Listed) -> Vec<&Curve> {
 
 /// The circles around present values.
 fn circles(picture: &Listed) -> Vec<&Curve> {
-    picture.curves.iter().filter(|curve| curve.points.len() == 25 && curve.points[0] == curve.points[24]).collect()
+    let is_closed = |points: &[[f32; 2]]| points.len() == 5 && (points[0][0] - points[4][0]).abs() < 1e-3;
+    picture.curves.iter().filter(|curve| is_closed(&curve.points)).collect()
 }
 
 /// The middle of a circle.
 fn middle(circle: &Curve) -> [f32; 2] {
-    [0, 1].map(|axis| circle.points[1..].iter().map(|point| point[axis]).sum::<f32>() / 24.0)
+    [0, 1].map(|axis| circle.points[1..].iter().map(|point| point[axis]).sum::<f32>() / 4.0)
 }
 
 /// The curves of time series: no other curves are as wide.
@@ -127,8 +128,8 @@ fn a_short_story_has_a_scale_of_its_own_and_its_events_recur_in_the_panels() {
     let said = |text: &str| before.words.iter().filter(|word| word.text == text).collect::<Vec<_>>();
     // All changes are in the first 102 ms of 3 s.
     assert!(said("150 ms").len() == 1 && said("3 s").len() == 1, "two scales of time");
-    // Solid steps on both scales, of both runs.
-    assert!(series(&before).len() == 4 && series(&before).iter().all(|curve| curve.dash.is_empty()));
+    // Curves on both scales, of both runs.
+    assert_eq!(series(&before).len(), 4);
     for (number, words) in [("1", "first turned over at 20 ms"), ("2", "settles at 9 after 102 ms")] {
         let flags: Vec<_> = said(number).into_iter().filter(|word| word.weight == Weight::SemiBold).collect();
         let [panel, chart] = flags[..] else { panic!("a flag in the panel and one in the chart") };
@@ -189,6 +190,7 @@ fn what_chatters_is_a_band() {
     let widest = picture.marks.iter().filter(|mark| mark.rectangle[1] > 560.0 && mark.rectangle[3] > 5.0);
     let widest = widest.map(|mark| mark.rectangle[2]).fold(0.0, f32::max);
     assert!(widest > 600.0, "a band over most of the chart, not {widest} px");
+    assert!(picture.words.iter().any(|word| word.text == "band:"));
 }
 
 #[test]
@@ -354,7 +356,7 @@ pub(crate) fn alike(runs: usize, theme: &str) -> String {
         "gravity = [0, -9.8, 0]\ntime = {{ duration = 0.4, frames_per_second = 20 }}\n\
          body = {{ lattice = {{ cells = [3, 1, 1], side = 0.1 }}, mass = 0.1 }}\n{runs}\
          [[hold]]\nnodes = {{ low = [-0.16, 0, -1], high = [-0.14, 1, 1] }}\n\
-         [view]\nsize = [1600, 900]\ntheme = '{theme}'\nstrip = 'energy'\n"
+         [view]\nsize = [1600, 900]\ntheme = '{theme}'\ncharts = ['energy']\n"
     )
 }
 
@@ -379,7 +381,7 @@ fn eight_runs_of_one_model_are_told_apart() {
         let picture = compose(&scene, &frame);
         // The same line is below the name.
         let own = picture.curves.iter().filter(|curve| curve.points.len() > 2 && curve.alpha == 1.0);
-        let own: Vec<_> = own.filter(|curve| curve.points.len() != 25).collect();
+        let own: Vec<_> = own.filter(|curve| !circles(&picture).contains(curve)).collect();
         assert_eq!(own.len(), 8);
         let looks: Vec<_> = own.iter().map(|curve| look_of(curve)).collect();
         each_differs(&looks.iter().map(|look| look.0).collect::<Vec<_>>());
@@ -414,7 +416,7 @@ fn eight_runs_of_one_model_are_told_apart() {
         // Each run keeps its line for any selection of runs.
         let few = Frame { runs: vec![frame.runs[6].clone(), frame.runs[2].clone()], ..frame.clone() };
         let picture = compose(&scene, &few);
-        let shown = picture.curves.iter().filter(|curve| curve.points.len() > 3 && curve.points.len() != 25);
+        let shown = picture.curves.iter().filter(|curve| curve.points.len() > 3 && !circles(&picture).contains(curve));
         let shown: Vec<_> = shown.map(look_of).collect();
         assert!(shown.iter().all(|look| [&looks[6], &looks[2]].contains(&look)) && shown.len() == 2, "{shown:?}");
     }
@@ -449,26 +451,31 @@ fn what_stands_for_more_than_eight_runs_differs_in_colour_or_dashes() {
     each_differs(&scene.runs.iter().map(|run| run.line(&scene.view.look.palette())).collect::<Vec<_>>());
 }
 
-/// Bands and the like are explained, and samples look like their curves.
 #[test]
-fn bands_are_explained_and_samples_of_counts_are_solid() {
-    let text = include_str!("../../scenes/springs.toml");
-    let mut scene = Scene::parse(text, "springs.toml", &Limits::default()).expect("the shipped scene is sound");
-    let says_band = |scene: &Scene| {
-        let picture = compose(scene, &Runner::new(scene, &[0, 1]).frame(0));
-        (picture.words.iter().any(|run| run.text.starts_with("band: ")), picture)
-    };
-    let (has_band, picture) = says_band(&scene);
-    assert!(has_band, "edges chatter");
-    // The sample of a dashed run is one piece.
-    let colour = scene.runs[1].line(&picture.palette).colour;
-    let pieces = |picture: &Listed| {
-        let is_sample = |mark: &&Mark| mark.colour == colour && mark.rectangle[3] <= 4.0 && mark.shape == "rectangle";
-        picture.marks.iter().filter(is_sample).count()
-    };
-    let solid = pieces(&picture);
-    scene.view.strip = Some(Diagnostic::ShapeError);
-    let (has_band, picture) = says_band(&scene);
-    assert!(!has_band);
-    assert!(solid >= 1 && pieces(&picture) > solid + 2, "{solid}");
+fn several_charts_have_one_axis_of_time() {
+    let (mut scene, [frame]) = with_strip(Diagnostic::TurnedOver, [90]);
+    scene.view.charts = vec![Diagnostic::TurnedOver, Diagnostic::Energy];
+    scene.view.size = [1280, 840];
+    let picture = compose(&scene, &frame);
+    let said = |text: &str| picture.words.iter().filter(|word| word.text == text).collect::<Vec<_>>();
+    let names = ["Turned over", "Total energy"].map(|name| said(name)[..].first().map(|word| word.baseline));
+    assert!(names[0].is_some() && names[0] < names[1], "{names:?}");
+    // The moment is marked in both, at one place, and the times are written once.
+    let [one, other] = moments(&picture)[..] else { panic!("a line in each chart") };
+    assert_eq!(one.points[0][0], other.points[0][0]);
+    assert_eq!((circles(&picture).len(), said("3 s").len(), said("Mass-spring").len()), (4, 1, 3));
+    // Charts without room leave the others in place.
+    scene.view.charts.extend([Diagnostic::Kinetic, Diagnostic::ShapeError, Diagnostic::Elastic, Diagnostic::Momentum]);
+    let shown = moments(&compose(&scene, &frame)).len();
+    assert!((2..6).contains(&shown), "{shown}");
+    assert!(left_out(&scene).contains(&format!("only {shown} of 6 charts have room")));
+}
+
+#[test]
+fn an_axis_that_does_not_begin_at_zero_says_so() {
+    for (diagnostic, is_said) in [("volume_ratio", true), ("energy", false)] {
+        let scene = parse(&alike(2, "light").replace("energy", diagnostic));
+        let picture = compose(&scene, &Runner::new(&scene, &[0, 1]).frame(0));
+        assert_eq!(picture.words.iter().any(|word| word.text == "not from zero"), is_said, "{diagnostic}");
+    }
 }

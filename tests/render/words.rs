@@ -35,7 +35,7 @@ restitution = 0.5
 title = 'A title above all panels that says what the picture is about, at some length, for the sake of this test'
 caption = 'A caption of several sentences. It is set in lines, and goes on until there are at least two of them at every size.'
 labels = ['letters', 'name', 'model', 'clock', 'count', 'number', 'scale-bar', 'legend']
-strip = 'shape_error'
+charts = ['shape_error']
 colour = { by = 'strain' }
 "#;
 
@@ -58,10 +58,10 @@ fn scenes() -> Vec<Scene> {
 /// A chart takes its height from all rows of panels together, and type has the size that it has without a chart.
 #[test]
 fn a_chart_changes_no_size_of_type() {
-    let text = ALL.replace("strip = 'shape_error'", "").replace("title = 'A title", "#").replace("caption = ", "#");
+    let text = ALL.replace("charts = ['shape_error']", "").replace("title = 'A title", "#").replace("caption = ", "#");
     let more = "[[run]]\nname = 'Fourth'\nmodel = { kind = 'shape-based', stiffness = 1e4 }\n[view]";
     let text = text.replace("[view]", more);
-    let sizes = ["", "strip = 'shape_error'"].map(|strip| {
+    let sizes = ["", "charts = ['shape_error']"].map(|strip| {
         let picture = {
             let scene = parse(&format!("{text}\nsize = [2000, 800]\npanels = 2\n{strip}\n"));
             compose(&scene, &frame(&scene, 0))
@@ -103,11 +103,11 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_size_of_type() {
     let sizes = [[640, 360], [1280, 720], [700, 1200], [1600, 400], [150, 150]];
     for (number, text_scale) in [(0, 0.5), (1, 1.0), (2, 1.5), (4, 3.0)] {
         // In low panels, strips with type of three times the size have no room for two rows.
-        for strip in ["", "strip = 'shape_error'"].into_iter().filter(|strip| strip.is_empty() || text_scale < 3.0) {
+        for strip in ["", "charts = ['shape_error']"].into_iter().filter(|strip| strip.is_empty() || text_scale < 3.0) {
             for (at, view) in
                 ["", "caption = ''", "caption = '' # no legend", "panels = 'column'"].into_iter().enumerate()
             {
-                let text = ALL.lines().filter(|line| !line.starts_with("strip"));
+                let text = ALL.lines().filter(|line| !line.starts_with("charts"));
                 let text: Vec<_> =
                     text.filter(|line| !view.contains("caption") || !line.starts_with("caption")).collect();
                 let mut scene =
@@ -282,19 +282,6 @@ fn words_stay_where_they_are() {
                 assert!(stays, "“{}” has moved from “{}” in frame {frame}", now.text, before.text);
             }
         }
-    }
-}
-
-#[test]
-fn letters_of_panels_stand_for_names_without_room_beside_a_chart() {
-    for (size, expected) in [("[500, 900]", 2), ("[3000, 1688]", 1)] {
-        let text = ALL.replace(" that nobody would read to its end", "");
-        let scene = parse(&format!("{}\nsize = {size}\n", text));
-        let composer = Composer::new(&scene, &History::new(&scene, &all(&scene)));
-        let picture = composer.compose(&Runner::new(&scene, &all(&scene)).frame(0));
-        let count = |text: &str| picture.words.iter().filter(|word| word.text == text).count();
-        assert_eq!(["a", "b", "c"].map(count), [expected; 3], "{size}");
-        assert!(picture.words.iter().all(|word| !word.text.contains('…')), "{size}");
     }
 }
 

@@ -62,7 +62,7 @@ fn whatever_changes_the_scene_changes_the_digest() {
         ("friction = 0.3", "friction = 0.4"),
         ("friction = 0.3", ""),
         ("1280", "1281"),
-        ("strip =", "camera.follow = false\nstrip ="),
+        ("charts =", "camera.follow = false\ncharts ="),
         ("\"Mass-spring\"", "\"mass-spring\""),
     ] {
         assert!(scene.contains(from), "{from}");
@@ -74,11 +74,11 @@ fn whatever_changes_the_scene_changes_the_digest() {
     assert_eq!(digests.len(), all);
 }
 
-/// The scene of Fig. 4(b) before views could have titles, letters and strips, and before the default solver changed.
+/// The scene of Fig. 4(b) before views could have titles, letters and charts, and before the default solver changed.
 fn plain() -> String {
     let text = shipped("fig4b.toml").replace(", rotation = \"arctangent\"", "");
     let (world, view) = text.split_once("[view]").expect("a view");
-    let had = |line: &&str| !["size", "title", "labels", "strip"].iter().any(|key| line.starts_with(key));
+    let had = |line: &&str| !["size", "title", "labels", "charts"].iter().any(|key| line.starts_with(key));
     format!("{world}[view]\nsize = [1280, 720]{}\n", view.lines().filter(had).collect::<Vec<_>>().join("\n"))
 }
 

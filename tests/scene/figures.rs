@@ -74,35 +74,35 @@ fn every_mistake_is_said_where_it_is() {
             "[sheet]\nscene = 'fig4b.toml'\n[[sheet.column]]\n[[sheet.row]]\nrun = 'Local shape'\ntime = 4",
             "6:8 ends at 3 s",
         ),
-        ("[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\nstrips = ['shape_eror']", "4:11 did you mean \"shape_error\"?"),
+        ("[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\ncharts = ['shape_eror']", "4:11 did you mean \"shape_error\"?"),
         (
-            "[sheet]\nstrips = ['energy']\n[[sheet.column]]\nscene = 'fig4b.toml'\ntime = 0\n[[sheet.column]]\n\
+            "[sheet]\ncharts = ['energy']\n[[sheet.column]]\nscene = 'fig4b.toml'\ntime = 0\n[[sheet.column]]\n\
              scene = 'fig4a.toml'\ntime = 0",
-            "2:1 strips over several scenes have one axis of time, but “3×3×3 cubes dropped on a floor” ends at 3 s",
+            "2:1 charts over several scenes have one axis of time, but “3×3×3 cubes dropped on a floor” ends at 3 s",
         ),
         (
-            "[sheet]\nscene = 'fig4b.toml'\nmoments = [0, 1]\nstrips = ['energy']\nfrom = 0.5",
+            "[sheet]\nscene = 'fig4b.toml'\nmoments = [0, 1]\ncharts = ['energy']\nfrom = 0.5",
             "5:8 the axis of time begins at 0.5 s, but there is a moment at 0 s",
         ),
         (
-            "[sheet]\nscene = 'fig4b.toml'\nmoments = [3]\nstrips = ['energy']\nfrom = 4",
+            "[sheet]\nscene = 'fig4b.toml'\nmoments = [3]\ncharts = ['energy']\nfrom = 4",
             "5:8 but the scene ends at 3 s",
         ),
         (
-            "[sheet]\nscene = 'fig4b.toml'\nmoments = [1]\nstrips = ['energy']\nfrom = 0.5\nsplit = 0.5",
+            "[sheet]\nscene = 'fig4b.toml'\nmoments = [1]\ncharts = ['energy']\nfrom = 0.5\nsplit = 0.5",
             "6:9 goes from 0.5 to 3 s; expected a moment between, found 0.5",
         ),
         (
             "[sheet]\nscene = 'fig4b.toml'\nmoments = [1]\nsplit = 1",
-            "4:1 `sheet.split` is about strips, but there are none",
+            "4:1 `sheet.split` is about charts, but there are none",
         ),
         (
             "[sheet]\nscene = 'fig4b.toml'\nmoments = [1]\n[[sheet.row]]\nrun = 'Mass-spring'\ntime = 2",
             "6:1 both a row and a column give the moment of the same picture",
         ),
         (
-            "[sheet]\nscene = 'fig4b.toml'\nstrips = ['energy']\n[[sheet.column]]\n[[sheet.row]]\nrun = 'Mass-spring'\ntime = 2",
-            "7:1 strips mark the moments of columns",
+            "[sheet]\nscene = 'fig4b.toml'\ncharts = ['energy']\n[[sheet.column]]\n[[sheet.row]]\nrun = 'Mass-spring'\ntime = 2",
+            "7:1 charts mark the moments of columns",
         ),
         ("[forces]\nscenes = ['fig4b.toml', 'none.toml']", "2:25 none.toml: there is no such file"),
         ("[forces]\nscenes = ['fig4b.toml']\ncompare = 'Local shap'", "3:11 did you mean “Local shape”?"),

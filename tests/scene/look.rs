@@ -382,8 +382,8 @@ fn mistakes_of_ghosts() {
 #[test]
 fn charts_of_what_no_run_has_are_refused() {
     let other = "which no run has only shape-based models in space count them; plot another diagnostic";
-    let chart = |of: &str| format!("strip = '{of}'");
-    case(PLANE, "size = [640, 360]", &chart("global_rotations"), &format!("20:9 {other}"));
+    let chart = |of: &str| format!("charts = ['{of}']");
+    case(PLANE, "size = [640, 360]", &chart("global_rotations"), &format!("20:11 {other}"));
     good(&PLANE.replace("size = [640, 360]", &chart("residual")));
 }
 

@@ -660,7 +660,7 @@ fn mistakes_of_what_is_shown() {
     view("colour = { by = 'speed', to = 'Mass-spring' }", "20:26 only `by = \"distance\"` compares runs remove `to`");
     view("title = \"a\\nb\"", "20:9 contains the control character");
     view("caption = \"a\\tb\"", "20:11 contains the control character '\\t'; it is lines of text");
-    view("strip = 'turned over'", "20:9 did you mean \"turned_over\"?");
+    view("charts = ['turned over']", "20:11 did you mean \"turned_over\"?");
     view("labels = ['title']", "20:11 expected \"letters\", \"name\", \"model\", \"clock\", \"count\", \"number\"");
     view("floor = 'tiles'", "20:9 expected \"grid\", \"plain\" or \"none\"");
     view("edges = 'none'", "20:9 expected \"all\", \"visible\" or \"outline\"");

@@ -17,8 +17,9 @@ mod words;
 use super::arrows;
 use super::camera::Lens;
 use super::caption::{self, Writer};
+use super::chart::event::Event;
+use super::chart::timeline::Timeline;
 use super::ears::{Ears, bare_elements};
-use super::event::Event;
 use super::layout::{Part, Rectangle, Scale, Written};
 use super::number;
 use super::shadow;
@@ -26,7 +27,6 @@ use super::shell::Shell;
 use super::skin::Skin;
 use super::tally::Tally;
 use super::text::Fonts;
-use super::timeline::Timeline;
 use super::tracking::{Shot, Tracking};
 use super::wire::Edges;
 use super::{Framing, Picture};
@@ -80,7 +80,7 @@ pub struct Composer<'a> {
     start_box: [DVec3; 2],
     /// The unit of soft distances (sides).
     soft: f64,
-    /// The chart below the panels, if the time series are known.
+    /// The charts below the panels, if the time series are known.
     timeline: Option<Timeline>,
     /// The paths of all runs, if the time series are known.
     traced: Vec<TimeSeries>,
@@ -155,21 +155,21 @@ impl<'a> Composer<'a> {
             reach,
             arranged: OnceLock::new(),
         };
-        composer.timeline = composer.chart(history);
+        composer.timeline = composer.charts(history);
         composer
     }
 
-    /// The chart below the panels, if the scene has one and its time series are known.
-    fn chart(&self, history: &History) -> Option<Timeline> {
+    /// The charts below the panels, if the scene has any and its time series are known.
+    fn charts(&self, history: &History) -> Option<Timeline> {
         let scene = self.scene;
-        let diagnostic = scene.view.strip.filter(|_| !history.series.is_empty())?;
+        if scene.view.charts.is_empty() || history.series.is_empty() {
+            return None;
+        }
         let runs: Vec<_> = history.series.iter().map(|series| series.run).collect();
         let layout = self.words().around(&runs, self.columns(&runs)).layout;
-        let writer = self.writer(layout.around);
-        let (written, in_panel) = (&layout.written, self.writer(layout.scale));
-        let (panel, have_letters) = (layout.panels.first().filter(|_| written.events), written.labels.letters);
+        let (panel, in_panel) = (layout.panels.first().filter(|_| layout.written.events), self.writer(layout.scale));
         let explained = |events: &[&Event]| panel.map_or(0, |&panel| in_panel.explained(panel, events));
-        Some(Timeline::new(diagnostic, history, scene, writer, (layout.chart(), have_letters), explained))
+        Some(Timeline::new(history, scene, || self.writer(layout.around), layout.charts(), explained))
     }
 
     /// The words of its pictures.

@@ -4,10 +4,10 @@ use super::Composer;
 use super::panel::Draft;
 use crate::look::Traced;
 use crate::picture::Item;
+use crate::picture::chart::simplified;
 use crate::picture::fade::{FADING, Fade};
 use crate::picture::layout::Rectangle;
 use crate::picture::plane::{clipped, sides};
-use crate::picture::series::{EXACT, simplified};
 use crate::runner::history::TimeSeries;
 use glam::DVec2;
 
@@ -59,7 +59,7 @@ impl Draft<'_> {
             let now = traced.of(&self.scene.body, &snapshot.position);
             let way = path.iter().take(past).copied().chain([now]);
             let lines = within(way.map(|at| self.lens.project(at).map(|(pixel, _)| DVec2::from(pixel))), room);
-            let pieces = lines.iter().flat_map(|line| parted(simplified(line, EXACT)));
+            let pieces = lines.iter().flat_map(|line| parted(simplified(line)));
             // Without words they extend to the border.
             let fading = if self.clear == self.viewport { 0.0 } else { FADING * self.scale.unit };
             let fade = Fade::new(room, [fading; 4]);

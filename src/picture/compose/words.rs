@@ -3,10 +3,9 @@
 use super::{Composer, cut};
 use crate::look::{Ghost, Labels, LineStyle, Palette, View};
 use crate::picture::caption::{self, Heading, Writer};
-use crate::picture::event;
+use crate::picture::chart::event;
 use crate::picture::layout::{Layout, Part, Scale, Wanted};
 use crate::picture::legend::Legend;
-use crate::picture::series;
 use crate::picture::text::{Fonts, Weight};
 use crate::picture::wrap::{balanced, wrapped};
 use crate::runner::history::History;
@@ -142,7 +141,7 @@ impl<'a> Words<'a> {
             letter: if labels.letters { caption::letter(at) } else { String::new() },
             name: shown(labels.name, names.get(at).copied().unwrap_or_default()),
             names,
-            sample: self.sample(runs[at], layout.chart().is_some()),
+            sample: self.sample(runs[at], layout.charts().is_some()),
             second: if labels.model { self.description(at, runs) } else { String::new() },
         }
     }
@@ -152,16 +151,10 @@ impl<'a> Words<'a> {
         let view = self.view();
         let has_arrows = view.visible.displacements && view.colour.is_none();
         let has_ghost = matches!(view.ghost, Some(Ghost::Run(_))) || !view.paths.is_empty();
-        (view.labels.legend && (has_chart || has_arrows || has_ghost)).then(|| self.scene.runs.get(run)).flatten().map(
-            |run| {
-                let line = run.line(self.palette);
-                // The same as its curve in the chart. Without a chart, only colours count.
-                match view.strip.filter(|_| has_chart) {
-                    Some(diagnostic) => series::style(diagnostic, line),
-                    None => LineStyle { dash: &[], ..line },
-                }
-            },
-        )
+        let run = self.scene.runs.get(run).filter(|_| view.labels.legend && (has_chart || has_arrows || has_ghost))?;
+        let line = run.line(self.palette);
+        // Without a chart, only colours count.
+        Some(if has_chart { line } else { LineStyle { dash: &[], ..line } })
     }
 
     /// Whether the clock has no room beside the heading of its panel.
@@ -188,7 +181,7 @@ impl<'a> Words<'a> {
             (around.title != title || title.is_empty() && !view.title.is_empty(), "the title is cut off"),
             (around.caption != caption || caption.is_empty() && !view.caption.is_empty(), "the caption is cut off"),
             (view.wants_legend() && around.legend.is_none(), "the key of colours, lines and arrows is left out"),
-            (view.strip.is_some() && layout.chart().is_none(), "the chart is left out"),
+            (!view.charts.is_empty() && layout.charts().is_none(), "the charts are left out"),
             (around.clock == Clock::Above(None), "the clock is left out"),
             (layout.written.left_out.contains(&Part::Events), "panels do not name the events of the chart"),
             (has(|labels| labels.model), "panels do not describe the models"),
@@ -198,8 +191,13 @@ impl<'a> Words<'a> {
         .into_iter()
         .filter_map(|(is_so, what)| is_so.then(|| what.to_owned()))
         .collect();
+        if let Some((_, shown)) = layout.charts().filter(|(_, shown)| *shown < view.charts.len()) {
+            told.push(format!("only {shown} of {} charts have room", view.charts.len()));
+        }
         let writer = self.writer(layout.scale);
-        if let Some((diagnostic, &panel)) = view.strip.zip(layout.panels.first()).filter(|_| layout.written.events) {
+        if let Some((&diagnostic, &panel)) =
+            view.charts.first().zip(layout.panels.first()).filter(|_| layout.written.events)
+        {
             match writer.explains(panel, &event::narrowest(diagnostic, self.scene)) {
                 [_, true] => {}
                 [true, _] => told.push("panels do not have the times of all events".to_owned()),
@@ -249,7 +247,8 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
 pub(crate) fn type_left_out(scene: &Scene) -> Option<f64> {
     let view = &scene.view;
     let Labels { name, model, clock, count, number, .. } = view.labels;
-    let has_words = [name, model, clock, count, number, view.strip.is_some(), !view.title.is_empty()].contains(&true);
+    let has_words =
+        [name, model, clock, count, number, !view.charts.is_empty(), !view.title.is_empty()].contains(&true);
     let usual = Layout::around(view).caption();
     (has_words && !Scale::legible(usual)).then_some(usual)
 }

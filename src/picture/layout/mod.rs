@@ -31,8 +31,10 @@ const BODY: f64 = 0.46;
 /// chart (px), and the largest part of the picture for it.
 const CHART: f64 = 122.0;
 const LEAST_CHART_ROOM: f64 = 54.0;
-pub(super) const LEAST_CHART: f64 = 14.0;
+const LEAST_CHART: f64 = 14.0;
 const CHART_SHARE: f64 = 0.3;
+/// The height of a further chart (px in the reference picture).
+const FURTHER: f64 = 84.0;
 /// The distance of names at the ends of curves, the height of their room in a chart of the usual height (px in the
 /// reference picture), and the most names that make a chart higher.
 pub(super) const CURVE_NAME: f64 = 15.0;
@@ -105,12 +107,14 @@ impl Layout {
         };
         // The names at the ends of curves need room above each other.
         let names = (count.min(MOST_NAMES) as f64 * CURVE_NAME - CURVE_NAMES).max(0.0);
-        let has_chart = view.strip.is_some() && Scale::legible(SMALL * type_unit);
+        let has_chart = !view.charts.is_empty() && Scale::legible(SMALL * type_unit);
         let chart = Node::new(Part::Chart, (CHART + names) * type_unit)
             .least(LEAST_CHART_ROOM * type_unit + LEAST_CHART)
             .after(GAP * unit)
             .share(CHART_SHARE)
             .rank(1);
+        // Of several charts, as many are drawn as have room.
+        let further = Node::new(Part::Chart, (FURTHER + names) * type_unit).rank(0);
         let least = PANELS[usize::from(has_chart)] * height / rows as f64;
         let row = |row| Node::new(Part::Row, least).stretched().with(panels(row));
         // Below no title, the clock needs a margin.
@@ -122,6 +126,7 @@ impl Layout {
             .chain(clock)
             .chain((0..rows).map(row))
             .chain(has_chart.then_some(chart))
+            .chain((1..view.charts.len()).filter(|_| has_chart).map(|_| further.clone()))
             .chain(wanted.legend.map(|height| Node::new(Part::Legend, height).after(GAP * unit).rank(2)))
             .chain((0..wanted.caption).map(caption))
             .chain([Node::new(Part::Edge, bottom)])
@@ -147,17 +152,19 @@ impl Layout {
         self.parts.all(part).map(move |place| place[1] + ASCENT * size)
     }
 
-    /// The room of the chart, inside the margins.
-    pub(super) fn chart(&self) -> Option<Rectangle> {
-        let [_, top, width, height] = self.parts.get(Part::Chart)?;
+    /// The room of all charts, inside the margins, and their number.
+    pub(super) fn charts(&self) -> Option<(Rectangle, usize)> {
+        let [_, top, width, _] = self.parts.get(Part::Chart)?;
+        let height = self.parts.all(Part::Chart).map(|[_, _, _, height]| height).sum::<f64>();
         let side = self.scale.margin().min(width / 2.0);
-        Some([side, top, width - 2.0 * side, height].map(|length| length.round() as u32))
+        let room = [side, top, width - 2.0 * side, height].map(|length| length.round() as u32);
+        Some((room, self.lines(Part::Chart)))
     }
 }
 
 /// Whether a view has something to show below its panels.
 fn has_parts_below(view: &View) -> bool {
-    view.strip.is_some() || view.wants_legend() || !view.caption.is_empty()
+    !view.charts.is_empty() || view.wants_legend() || !view.caption.is_empty()
 }
 
 /// A place in whole pixels, so that adjacent places have no gap between them.
@@ -203,7 +210,7 @@ pub(super) struct Written {
 pub(super) fn written(view: &View, height: f64, unit: f64) -> Written {
     let scale = Scale::at(unit).within(view);
     let Labels { letters, name, model, clock, count, number, scale_bar, .. } = view.labels;
-    let (second, events) = (model || clock, view.strip.is_some());
+    let (second, events) = (model || clock, !view.charts.is_empty());
     let [has_heading, has_numbers] = [letters || name || second || events, count || number || scale_bar];
     let edge = |end: usize, has_words| Node::new(Part::Edge, if has_words { scale.edges[end] } else { ROW } * unit);
     let row = |part, height: f64, rank: u8| Node::new(part, height).rank(rank);
@@ -407,8 +414,8 @@ mod tests {
 
     /// A view of a size with a title and a chart.
     fn view(size: [u32; 2]) -> View {
-        let strip = Some(crate::sim::Diagnostic::TurnedOver);
-        View { size, title: "Title".to_owned(), strip, ..View::default() }
+        let charts = vec![crate::sim::Diagnostic::TurnedOver];
+        View { size, title: "Title".to_owned(), charts, ..View::default() }
     }
 
     #[test]

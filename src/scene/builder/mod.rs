@@ -163,9 +163,9 @@ impl SceneBuilder {
         self.show("colour", json!({ "by": field }))
     }
 
-    /// Plots a diagnostic over time below all panels.
-    pub fn strip(self, diagnostic: Diagnostic) -> Self {
-        self.show("strip", diagnostic)
+    /// Plots diagnostics over time below all panels.
+    pub fn charts(self, diagnostics: impl IntoIterator<Item = Diagnostic>) -> Self {
+        self.show("charts", diagnostics.into_iter().collect::<Vec<_>>())
     }
 
     /// The direction of the camera: azimuth to the right, and elevation above the horizon (rad).

@@ -59,7 +59,7 @@ pub(super) struct SheetFile {
     /// the scenes, in a band from the least to the greatest value. Default: none.
     #[serde(default)]
     #[schemars(length(max = 6))]
-    pub(super) strips: Vec<Diagnostic>,
+    pub(super) charts: Vec<Diagnostic>,
     /// A diagnostic written below each picture, such as `"volume_ratio"`. Default: none.
     pub(super) number: Option<Diagnostic>,
     /// A scalar field that colours all bodies, such as `{ by = "strain" }`, with one colour bar. By default the bar

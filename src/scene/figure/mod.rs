@@ -55,7 +55,7 @@ pub struct Sheet {
     /// The rows, from top to bottom.
     pub rows: Vec<Row>,
     /// Diagnostics over time below the pictures. With them, all columns show the first scene.
-    pub strips: Vec<Diagnostic>,
+    pub charts: Vec<Diagnostic>,
     /// The diagnostic written below each picture.
     pub number: Option<Diagnostic>,
     /// The start of the time axis (s).

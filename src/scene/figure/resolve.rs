@@ -163,22 +163,22 @@ impl Scenes<'_, '_, '_> {
         };
         self.check_cells(&rows, &resolved, are_moments);
         let ends: Vec<_> = self.scenes.iter().map(end).collect();
-        if let Some(other) = ends.iter().position(|end| *end != ends[0]).filter(|_| !file.strips.is_empty()) {
+        if let Some(other) = ends.iter().position(|end| *end != ends[0]).filter(|_| !file.charts.is_empty()) {
             let [one, two] = [0, other].map(|at| format!("“{}” ends at {} s", self.scenes[at].title, ends[at]));
-            let message = format!("strips over several scenes have one axis of time, but {one} and {two}");
-            self.report.at_key(&at("strips"), message, "give the scenes the same duration and frame rate");
+            let message = format!("charts over several scenes have one axis of time, but {one} and {two}");
+            self.report.at_key(&at("charts"), message, "give the scenes the same duration and frame rate");
         }
-        for (index, strip) in file.strips.iter().enumerate() {
-            if let Some(why) = self.scenes.iter().map(|scene| scene.lacks(*strip)).reduce(Option::and).flatten() {
-                let message = format!("`sheet.strips[{index}]` is {}, which no run has", quoted(&typed(strip)));
-                self.report.at(&key_path!["sheet", "strips", index], message, why);
+        for (index, chart) in file.charts.iter().enumerate() {
+            if let Some(why) = self.scenes.iter().map(|scene| scene.lacks(*chart)).reduce(Option::and).flatten() {
+                let message = format!("`sheet.charts[{index}]` is {}, which no run has", quoted(&typed(chart)));
+                self.report.at(&key_path!["sheet", "charts", index], message, why);
             }
         }
-        self.check_times(&file.strips, file.from, file.split, &resolved);
-        if let Some(index) = rows.iter().position(|row| row.time.is_some()).filter(|_| !file.strips.is_empty()) {
+        self.check_times(&file.charts, file.from, file.split, &resolved);
+        if let Some(index) = rows.iter().position(|row| row.time.is_some()).filter(|_| !file.charts.is_empty()) {
             let path = key_path!["sheet", "row", index, "time"];
-            let message = "strips mark the moments of columns, but here a row has one of its own";
-            self.report.at_key(&path, message, "leave out `sheet.strips`, or give the moments of columns");
+            let message = "charts mark the moments of columns, but here a row has one of its own";
+            self.report.at_key(&path, message, "leave out `sheet.charts`, or give the moments of columns");
         }
         let row = |row: RowFile| Row {
             label: row.label.unwrap_or_else(|| row.run.clone()),
@@ -198,7 +198,7 @@ impl Scenes<'_, '_, '_> {
             scenes,
             columns: resolved,
             rows,
-            strips: file.strips,
+            charts: file.charts,
             number: file.number,
             from: file.from.unwrap_or(0.0),
             split: file.split,
@@ -207,11 +207,11 @@ impl Scenes<'_, '_, '_> {
     }
 
     /// Whether the time axis includes its start, the change of its scale, and the moments of columns.
-    fn check_times(&mut self, strips: &[Diagnostic], from: Option<f64>, split: Option<f64>, columns: &[Column]) {
+    fn check_times(&mut self, charts: &[Diagnostic], from: Option<f64>, split: Option<f64>, columns: &[Column]) {
         let at = |key: &'static str| key_path!["sheet", key];
         for (key, _) in [("from", from), ("split", split)].iter().filter(|(_, time)| time.is_some()) {
-            if strips.is_empty() {
-                self.report.at_key(&at(key), format!("`sheet.{key}` is about strips, but there are none"), None);
+            if charts.is_empty() {
+                self.report.at_key(&at(key), format!("`sheet.{key}` is about charts, but there are none"), None);
                 return;
             }
         }

@@ -219,9 +219,11 @@ fn resolve(
         warnings: Vec::new(),
     };
     scene.place_runs();
-    if let Some((strip, why)) = scene.view.strip.and_then(|strip| Some((strip, scene.lacks(strip)?))) {
-        let message = format!("`view.strip` is {}, which no run has", quoted(&typed(&strip)));
-        report.at(&key_path!["view", "strip"], message, why);
+    for (index, &chart) in scene.view.charts.iter().enumerate() {
+        if let Some(why) = scene.lacks(chart) {
+            let message = format!("`view.charts[{index}]` is {}, which no run has", quoted(&typed(&chart)));
+            report.at(&key_path!["view", "charts", index], message, why);
+        }
     }
     warn_of_time(&scene, report);
     warn_of_steps(&scene, report);

@@ -8,7 +8,7 @@ pub(crate) use plot::{Line, Plot};
 
 use crate::failure::Failure;
 use image::ImageFormat;
-use localshape::picture::{Diagram, TextStyle};
+use localshape::picture::{Diagram, TextStyle, power_of_ten};
 use localshape::render::Renderer;
 use localshape::vector;
 use std::io::Cursor;
@@ -21,7 +21,6 @@ type Area = [f64; 4];
 /// The colours of the program's light theme.
 const TEXT: Colour = [0x1b, 0x23, 0x2e];
 const SECOND_TEXT: Colour = [0x5c, 0x66, 0x72];
-const HAIRLINE: Colour = [0xd8, 0xdc, 0xe1];
 
 /// Styles of text: of the title, of names, of captions and legends, of numbers and axes.
 const TITLE: TextStyle = style(26.0, true, TEXT);
@@ -137,20 +136,6 @@ impl Page {
 fn write(diagram: &mut Diagram, text: &str, style: TextStyle, share: f64, [x, baseline]: [f64; 2]) {
     let left = x - share * diagram.text_width(text, style);
     diagram.text(text, style, [left, baseline]);
-}
-
-/// A power of ten, typeset.
-pub(crate) fn power_of_ten(power: i32) -> String {
-    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    match power {
-        0 => "1".to_owned(),
-        1 => "10".to_owned(),
-        _ => {
-            let digits = power.to_string();
-            let raised = digits.chars().map(|sign| sign.to_digit(10).map_or('⁻', |digit| RAISED[digit as usize]));
-            format!("10{}", raised.collect::<String>())
-        }
-    }
 }
 
 #[cfg(test)]

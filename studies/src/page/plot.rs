@@ -9,8 +9,8 @@
 //!      1   10  its name          1   10  its name
 //! ```
 
-use super::{Area, Colour, HAIRLINE, MIDDLE, NAME, Room, SECOND_TEXT, SMALL, power_of_ten, write};
-use localshape::picture::{Diagram, TextStyle};
+use super::{Area, Colour, MIDDLE, NAME, Room, SECOND_TEXT, SMALL, write};
+use localshape::picture::{Axis, Chart, Diagram, Layer, TextStyle};
 
 /// One plot. Axes of one name have one range on a page.
 pub(crate) struct Plot {
@@ -42,11 +42,10 @@ const ABOVE: f64 = 54.0;
 pub(super) const ROOM: Room = Room { around: [NUMBERS, ABOVE, 0.0, 62.0], shape: 0.78, legend: 0.0 };
 /// The height of a line of words, in sizes of type.
 const HIGH: f64 = 1.08;
-/// Widths of curves, of strong ones, of slopes and of hairlines, and radii of dots (px).
+/// Widths of curves, of strong ones and of slopes, and radii of dots (px).
 const CURVE: f64 = 1.8;
 const STRONG: f64 = 3.2;
 const SLOPE: f64 = 1.2;
-const THIN: f64 = 1.0;
 const DOT: f64 = 3.6;
 const STRONG_DOT: f64 = 5.0;
 /// The gap from a dot to the name beside it (px).
@@ -61,22 +60,22 @@ const FAMILIES: [Colour; 6] = [
     [0x24, 0x9d, 0xb1],
 ];
 const SLOPES: Colour = [0x7a, 0x84, 0x91];
-/// The largest number of powers of ten along the upward axis.
-const MOST_ROWS: i32 = 7;
+/// The most numbers along the axes.
+const MOST: [usize; 2] = [9, 7];
 /// The reach of lines of known slopes, in decades to the right.
 const REACH: f64 = 0.8;
 
 /// Draws plots, each in its area.
 pub(super) fn draw(plots: &[Plot], areas: &[Area], diagram: &mut Diagram) {
     for (plot, &area) in plots.iter().zip(areas) {
-        Frame { area, ranges: [0, 1].map(|axis| range(plots, axis, &plot.axes[axis])) }.draw(diagram, plot);
+        Frame::new(plot, area, [0, 1].map(|axis| range(plots, axis, &plot.axes[axis]))).draw(diagram, plot);
     }
 }
 
 /// The logarithms at the ends of all axes of a name: in quarters of decades to the right, whole ones upwards.
 fn range(plots: &[Plot], axis: usize, name: &str) -> [f64; 2] {
     let alike = plots.iter().filter(|plot| plot.axes[axis] == name);
-    let points = alike.flat_map(|plot| plot.curves.iter().flat_map(Line::shown));
+    let points = alike.flat_map(|plot| plot.curves.iter().flat_map(Line::shown)).map(|point| point.map(libm::log10));
     let none = (f64::INFINITY, f64::NEG_INFINITY);
     let (low, high) = points.fold(none, |(low, high), point| (low.min(point[axis]), high.max(point[axis])));
     if low > high {
@@ -89,17 +88,34 @@ fn range(plots: &[Plot], axis: usize, name: &str) -> [f64; 2] {
 }
 
 impl Line {
-    /// The logarithms of the points that are shown.
-    fn shown(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
-        let is_shown = |point: &&[f64; 2]| point.iter().all(|&number| number > 0.0 && number.is_finite());
-        self.points.iter().filter(is_shown).map(|point| point.map(libm::log10))
+    /// The points that are shown.
+    fn shown(&self) -> impl Iterator<Item = &[f64; 2]> {
+        self.points.iter().filter(|point| point.iter().all(|&number| number > 0.0 && number.is_finite()))
     }
 }
 
-/// The place of a plot, and the logarithms at the ends of its axes.
+/// The names and the logarithms of the ends of lines of known slopes, downwards from their common point and within the
+/// axes; none if that point is outside.
+fn slopes(plot: &Plot, [across, up]: [[f64; 2]; 2]) -> Vec<(String, [[f64; 2]; 2])> {
+    let Some((meet, slopes)) = &plot.slopes else { return Vec::new() };
+    let [x, y] = meet.map(libm::log10);
+    if !(across[0]..=across[1]).contains(&x) || !(up[0]..=up[1]).contains(&y) {
+        return Vec::new();
+    }
+    let line = |&slope: &f64| {
+        let aside = if slope > 0.0 { x - across[0] } else { across[1] - x };
+        let reach = REACH.min((y - up[0]) / slope.abs()).min(aside) * -slope.signum();
+        (format!("slope {slope}"), [[x, y], [x + reach, y + slope * reach]])
+    };
+    slopes.iter().map(line).collect()
+}
+
+/// A plot at its place.
 struct Frame {
     area: Area,
-    ranges: [[f64; 2]; 2],
+    chart: Chart,
+    /// The lines of known slopes, and the curves.
+    lines: Vec<Drawn>,
 }
 
 /// Joined points (px) with a name beside one of them.
@@ -112,94 +128,45 @@ struct Drawn {
 }
 
 impl Frame {
-    /// The pixel of a pair of logarithms.
-    fn pixel(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let [left, top, right, bottom] = self.area;
-        let share = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
-        [left + share(x, self.ranges[0]) * (right - left), bottom - share(y, self.ranges[1]) * (bottom - top)]
+    /// A plot whose axes have the given logarithms at their ends.
+    fn new(plot: &Plot, area: Area, ranges: [[f64; 2]; 2]) -> Self {
+        let [x, y] = [0, 1].map(|axis| Axis::logarithmic(ranges[axis].map(libm::exp10), MOST[axis]));
+        let mut chart = Chart { x, y, layers: Vec::new(), annotations: Vec::new() };
+        let mut lines = Vec::new();
+        for (name, points) in slopes(plot, ranges) {
+            let points: Vec<_> = points.iter().map(|point| point.map(libm::exp10)).collect();
+            let pixels = points.iter().map(|&point| chart.at(area, point)).collect();
+            lines.push(Drawn { points: pixels, first: 1, name, colour: SECOND_TEXT });
+            chart.layers.push(Layer::Line { points, colour: SLOPES, width: SLOPE, dash: Vec::new() });
+        }
+        for one in &plot.curves {
+            let points: Vec<_> = one.shown().copied().collect();
+            let pixels = points.iter().map(|&point| chart.at(area, point)).collect();
+            let colour = FAMILIES[one.family % FAMILIES.len()];
+            let (width, radius) = if one.is_strong { (STRONG, STRONG_DOT) } else { (CURVE, DOT) };
+            lines.push(Drawn { points: pixels, first: 0, name: one.name.clone(), colour });
+            chart.layers.push(Layer::Line { points: points.clone(), colour, width, dash: Vec::new() });
+            chart.layers.push(Layer::Dots { points, colour, radius });
+        }
+        Self { area, chart, lines }
     }
 
     fn draw(&self, diagram: &mut Diagram, plot: &Plot) {
-        let [left, top, ..] = self.area;
+        let [left, top, right, bottom] = self.area;
         write(diagram, &plot.name, NAME, 0.0, [left - NUMBERS, top - ABOVE + 20.0]);
         write(diagram, &plot.axes[1], SMALL, 0.0, [left - NUMBERS, top - 12.0]);
-        self.grid(diagram, &plot.axes[0]);
-        let (slopes, curves) = (self.slopes(plot), self.curves(plot));
-        slopes.iter().for_each(|slope| diagram.curve(&slope.points, SLOPE, SLOPES, &[]));
-        for (one, Drawn { points, colour, .. }) in plot.curves.iter().zip(&curves) {
-            let (width, dot) = if one.is_strong { (STRONG, STRONG_DOT) } else { (CURVE, DOT) };
-            if points.len() > 1 {
-                diagram.curve(points, width, *colour, &[]);
-            }
-            points.iter().for_each(|&point| diagram.curve(&[point], 2.0 * dot, *colour, &[]));
-        }
-        let all: Vec<_> = slopes.into_iter().chain(curves).collect();
-        for (one, area) in all.iter().zip(self.names(diagram, &all)) {
+        write(diagram, &plot.axes[0], SMALL, 1.0, [right, bottom + 43.0]);
+        diagram.chart(&self.chart, self.area);
+        for (one, area) in self.lines.iter().zip(self.names(diagram)) {
             let Some([left, top, ..]) = area else { continue };
             let baseline = top + (0.5 * HIGH + MIDDLE) * SMALL.size;
             write(diagram, &one.name, label(one.colour), 0.0, [left, baseline]);
         }
     }
 
-    /// The curves of a plot.
-    fn curves(&self, plot: &Plot) -> Vec<Drawn> {
-        let drawn = |one: &Line| Drawn {
-            points: one.shown().map(|point| self.pixel(point)).collect(),
-            first: 0,
-            name: one.name.clone(),
-            colour: FAMILIES[one.family % FAMILIES.len()],
-        };
-        plot.curves.iter().map(drawn).collect()
-    }
-
-    /// The lines of known slopes, downwards from their common point and within the axes; none if that point is outside.
-    fn slopes(&self, plot: &Plot) -> Vec<Drawn> {
-        let Some((meet, slopes)) = &plot.slopes else { return Vec::new() };
-        let meet = meet.map(libm::log10);
-        if [0, 1].iter().any(|&axis| !(self.ranges[axis][0]..=self.ranges[axis][1]).contains(&meet[axis])) {
-            return Vec::new();
-        }
-        let line = |&slope: &f64| {
-            let down = (meet[1] - self.ranges[1][0]) / slope.abs();
-            let aside = if slope > 0.0 { meet[0] - self.ranges[0][0] } else { self.ranges[0][1] - meet[0] };
-            let reach = REACH.min(down).min(aside) * -slope.signum();
-            let points = [meet, [meet[0] + reach, meet[1] + slope * reach]].map(|end| self.pixel(end));
-            Drawn { points: points.into(), first: 1, name: format!("slope {slope}"), colour: SECOND_TEXT }
-        };
-        slopes.iter().map(line).collect()
-    }
-
-    /// Lines at powers of ten, with their numbers.
-    fn grid(&self, diagram: &mut Diagram, across: &str) {
-        let [left, top, right, bottom] = self.area;
-        let numbers = |[low, high]: [f64; 2]| libm::ceil(low - 1e-9) as i32..=libm::floor(high + 1e-9) as i32;
-        let [[low, high], rows] = self.ranges;
-        let apart = (1..).find(|apart| numbers(rows).count() as i32 <= MOST_ROWS * apart).unwrap_or(1);
-        for power in numbers(rows).filter(|power| power.rem_euclid(apart) == 0) {
-            let y = self.pixel([low, f64::from(power)])[1];
-            diagram.rectangle([left, (y - 0.5 * THIN).round(), right - left, THIN], HAIRLINE);
-            write(diagram, &power_of_ten(power), SMALL, 1.0, [left - GAP, y + MIDDLE * SMALL.size]);
-        }
-        // Numbers far from 1 are powers of ten, on the whole axis. On a short axis there are twos and fives, too.
-        let is_plain = low > -3.5 && high < 4.5;
-        let digits: &[f64] = if is_plain && high - low < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
-        let all = (low as i32 - 1..=high as i32 + 1).flat_map(|power| digits.iter().map(move |&digit| (power, digit)));
-        for (power, digit) in all {
-            let at = f64::from(power) + libm::log10(digit);
-            if !(low - 1e-9..=high + 1e-9).contains(&at) {
-                continue;
-            }
-            let x = self.pixel([at, rows[0]])[0];
-            diagram.rectangle([(x - 0.5 * THIN).round(), top, THIN, bottom - top], HAIRLINE);
-            let number = libm::round(digit * libm::exp10(f64::from(power)) * 1e6) / 1e6;
-            let text = if is_plain { number.to_string() } else { power_of_ten(power) };
-            write(diagram, &text, SMALL, 0.5, [x, bottom + 22.0]);
-        }
-        write(diagram, across, SMALL, 1.0, [right, bottom + 43.0]);
-    }
-
     /// The place of each line's name beside one of its points, where it covers least; `None` without points or name.
-    fn names(&self, diagram: &Diagram, lines: &[Drawn]) -> Vec<Option<Area>> {
+    fn names(&self, diagram: &Diagram) -> Vec<Option<Area>> {
+        let lines = &self.lines;
         let places: Vec<Vec<(Area, f64)>> = lines.iter().map(|line| self.places(diagram, line)).collect();
         let mut chosen: Vec<Option<Area>> = vec![None; lines.len()];
         // Names of later curves are placed first. Then each is placed again, with the others in place.

@@ -18,27 +18,27 @@ fn plots(points: Vec<[f64; 2]>) -> Vec<Plot> {
 fn frames(plots: &[Plot]) -> Vec<Frame> {
     let area = |number: usize| [100.0 + 600.0 * number as f64, 100.0, 600.0 + 600.0 * number as f64, 500.0];
     let ranges = |plot: &Plot| [0, 1].map(|axis| range(plots, axis, &plot.axes[axis]));
-    plots.iter().enumerate().map(|(at, plot)| Frame { area: area(at), ranges: ranges(plot) }).collect()
+    plots.iter().enumerate().map(|(at, plot)| Frame::new(plot, area(at), ranges(plot))).collect()
 }
 
 #[test]
 fn a_decade_is_equally_long_everywhere_and_plots_share_their_axes() {
     let plots = plots(vec![[1.0, 1e-12], [10.0, 1e-9], [100.0, 1e-6]]);
     let frames = frames(&plots);
-    let dots = &frames[0].curves(&plots[0])[0].points;
+    // The first two lines are slopes.
+    let dots = &frames[0].lines[2].points;
     assert!((dots[1][0] - dots[0][0] - (dots[2][0] - dots[1][0])).abs() < 1e-9);
     assert!((dots[1][1] - dots[0][1] - (dots[2][1] - dots[1][1])).abs() < 1e-9 && dots[1][1] < dots[0][1]);
     // 3e5 is outside the range of the first plot, and widens it.
-    assert!(dots[2][0] < 400.0 && frames[1].curves(&plots[1])[0].points[0][0] > 1100.0);
-    assert_eq!(frames[0].ranges, frames[1].ranges);
+    assert!(dots[2][0] < 400.0 && frames[1].lines[2].points[0][0] > 1100.0);
+    assert_eq!([&frames[0].chart.x, &frames[0].chart.y], [&frames[1].chart.x, &frames[1].chart.y]);
 }
 
 #[test]
 fn names_do_not_cover_each_other() {
     let plots = plots(vec![[1.0, 1e-12], [10.0, 1e-9], [100.0, 1e-6]]);
-    for (plot, frame) in plots.iter().zip(frames(&plots)) {
-        let lines: Vec<_> = frame.slopes(plot).into_iter().chain(frame.curves(plot)).collect();
-        let names: Vec<Area> = frame.names(&Diagram::new([1280, 600]), &lines).into_iter().flatten().collect();
+    for frame in frames(&plots) {
+        let names: Vec<Area> = frame.names(&Diagram::new([1280, 600])).into_iter().flatten().collect();
         // Two curves and two slopes.
         assert_eq!(names.len(), 4);
         for (at, one) in names.iter().enumerate() {
@@ -53,10 +53,9 @@ fn names_do_not_cover_each_other() {
 fn all_is_on_the_page_whatever_the_numbers() {
     for points in [vec![], vec![[0.0, -1.0]], vec![[f64::NAN, 1.0]], vec![[1e-300, f64::INFINITY]], vec![[2.0; 2]]] {
         let plots = plots(points);
-        for (plot, frame) in plots.iter().zip(frames(&plots)) {
+        for frame in frames(&plots) {
             let [left, top, right, bottom] = frame.area;
-            let lines = frame.slopes(plot).into_iter().chain(frame.curves(plot)).flat_map(|line| line.points);
-            for [x, y] in lines {
+            for &[x, y] in frame.lines.iter().flat_map(|line| &line.points) {
                 assert!((left..=right).contains(&x) && (top..=bottom).contains(&y), "{x} {y}");
             }
         }

@@ -119,12 +119,12 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     Ok(Picture { size: figure.size, palette, fonts, ramp: Vec::new(), panels, under, above })
 }
 
-/// A scene for a diagram: in the figure's colours, without fields, strips, words, arrows and floors.
+/// A scene for a diagram: in the figure's colours, without fields, charts, words, arrows and floors.
 fn bare(scene: &Scene, figure: &Figure) -> Scene {
     let mut scene = scene.clone();
     let view = &mut scene.view;
     view.look = figure.look.clone();
-    (view.colour, view.strip) = (None, None);
+    (view.colour, view.charts) = (None, Vec::new());
     view.visible.displacements = false;
     // There is no scale bar, but its room is kept.
     view.labels = Labels { scale_bar: view.labels.scale_bar, ..Labels::NONE };

@@ -6,7 +6,7 @@ use crate::picture::compose::Composer;
 use crate::picture::layout::Scale;
 use crate::picture::tally::{self, Tally};
 use crate::picture::text::Weight;
-use crate::picture::{number, series};
+use crate::picture::{chart, number};
 use crate::reading::captions::elements;
 use crate::scene::Scene;
 use crate::sim::{Diagnostic, RunFrame, Snapshot, Status};
@@ -162,7 +162,7 @@ impl<'a> Below<'a> {
 /// A diagnostic with its name; `None` if it has no value.
 fn text(diagnostic: Diagnostic, scene: &Scene, run: &RunFrame) -> Option<String> {
     let value = diagnostic.of(&run.snapshot.diagnostics);
-    let name = series::name(diagnostic, scene);
+    let name = chart::name(diagnostic, scene);
     let name = name.strip_suffix(" ratio").unwrap_or(name);
     if !value.is_finite() || diagnostic == Diagnostic::TurnedOver {
         return None;

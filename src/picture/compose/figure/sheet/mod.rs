@@ -36,7 +36,6 @@ use crate::scene::Scene;
 use crate::scene::figure::{Figure, Sheet};
 use crate::sim::Frame;
 use below::Below;
-use charts::Charts;
 use glam::DVec2;
 use rows::RowLabels;
 use sheet_layout::SheetLayout;
@@ -54,8 +53,8 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let scenes = plain(figure, sheet);
 
     let legend = legend(&scenes, size, scale);
-    let has_charts = !sheet.strips.is_empty();
-    let mut charts = has_charts.then(|| Charts::new(sheet, &moments.histories, &writer, f64::from(size[0])));
+    let has_charts = !sheet.charts.is_empty();
+    let charts = has_charts.then(|| charts::stack(sheet, &moments.histories, &writer, f64::from(size[0])));
     let shows_runs = |scene: &Scene| matches!(scene.view.ghost, Some(Ghost::Run(_))) || !scene.view.paths.is_empty();
     let with_sample = has_charts || scenes.iter().any(shows_runs);
     let labels = RowLabels::new(sheet, &fonts, scale, with_sample, f64::from(size[0]));
@@ -76,8 +75,8 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         let left = f64::from(layout.tile(0, column)[0]);
         heading.write(&mut writer, [left, layout.headings_baseline]);
     }
-    if let (Some(charts), Some(room)) = (&mut charts, &layout.charts) {
-        charts.draw(&mut writer, room);
+    if let (Some(charts), Some(room)) = (&charts, &layout.charts) {
+        charts::draw(charts, sheet, moments.histories[0].end, &mut writer, room);
     }
 
     let reaches = cameras::reaches(&scenes, sheet, moments);
@@ -147,7 +146,7 @@ fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
         view.size = figure.size;
         view.look = figure.look.clone();
         view.labels = Labels { legend: view.labels.legend, ..Labels::NONE };
-        view.strip = None;
+        view.charts.clear();
         // One colour scale for all, or none.
         view.colour = view.colour.filter(|_| is_shared);
         scene

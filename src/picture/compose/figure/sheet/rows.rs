@@ -5,7 +5,6 @@ use crate::picture::caption::Writer;
 use crate::picture::compose::cut;
 use crate::picture::layout::Scale;
 use crate::picture::number;
-use crate::picture::series;
 use crate::picture::text::{Fonts, Weight};
 use crate::picture::wrap::wrapped;
 use crate::scene::Scene;
@@ -99,11 +98,7 @@ impl RowLabels {
                 baseline += SAMPLE_BELOW * unit;
                 let run = |scene: &Scene| scene.runs.iter().position(|run| run.name == sheet.rows[row].run);
                 if let Some((scene, run)) = sheet.scenes.first().and_then(|scene| Some((scene, run(scene)?))) {
-                    // Some charts have no dashes. Those with dashes determine the sample.
-                    let line = scene.runs[run].line(palette);
-                    let lines = sheet.strips.iter().map(|&diagnostic| series::style(diagnostic, line));
-                    let line = lines.max_by_key(|line| line.dash.len()).unwrap_or(line);
-                    writer.sample([left, baseline], line);
+                    writer.sample([left, baseline], scene.runs[run].line(palette));
                 }
             }
             baseline += NOTE_BELOW * unit;

@@ -1,8 +1,8 @@
 //! The layout of a sheet.
 
-use super::charts::{Charts, ChartsRoom};
 use super::headings::{HEADING_LINE, Heading};
 use crate::picture::caption::Writer;
+use crate::picture::chart::{Room, Stack};
 use crate::picture::layout::{Rectangle, Scale};
 use crate::scene::figure::Sheet;
 use crate::sim::Dimension;
@@ -37,6 +37,8 @@ const ABOVE_RINGS: f64 = 24.0;
 const BELOW_RINGS: f64 = 27.0;
 const BETWEEN_CHARTS: [f64; 2] = [40.0, 26.0];
 const BELOW_CHARTS: f64 = 44.0;
+/// Half of the gap between the names of two charts at the ends of curves (px in the reference picture).
+const NAMES_APART: f64 = 3.0;
 /// The least, usual and largest height of a chart (px in the reference picture).
 const CHART: [f64; 3] = [32.0, 68.0, 150.0];
 /// The largest share of the height of tiles and charts for the charts.
@@ -61,7 +63,7 @@ pub(super) struct SheetLayout {
     pub(super) headings_baseline: f64,
     /// The left end and width of the words beside rows; `None` if there are none.
     pub(super) labels: Option<[f64; 2]>,
-    pub(super) charts: Option<ChartsRoom>,
+    pub(super) charts: Option<Room>,
 }
 
 impl SheetLayout {
@@ -72,7 +74,7 @@ impl SheetLayout {
         size: [u32; 2],
         header: f64,
         labels: f64,
-        charts: Option<&Charts<'_>>,
+        charts: Option<&Stack>,
     ) -> Self {
         let scale = writer.scale;
         let [width, height] = size.map(f64::from);
@@ -123,7 +125,7 @@ impl SheetLayout {
             labels: has_labels.then_some([margin, words]),
             charts: shape.map(|shape| {
                 // The names of curves are right of the charts.
-                let right = right - charts.map_or(0.0, Charts::ends_width);
+                let right = right - charts.map_or(0.0, Stack::ends_width);
                 shape.place(tiles_end, [left, right.round()], has_labels.then_some(margin), scale)
             }),
         }
@@ -165,12 +167,13 @@ struct ChartsShape {
 
 impl ChartsShape {
     /// As many charts as fit into a height (px) with tiles above them; `None` for none.
-    fn new(charts: &Charts<'_>, free: f64, scale: Scale) -> Option<Self> {
+    fn new(charts: &Stack, free: f64, scale: Scale) -> Option<Self> {
         let [least, usual, _] = CHART;
         let [wide, narrow] = BETWEEN_CHARTS;
         let sizes = [(usual, wide), (0.75 * usual, wide), (0.75 * usual, narrow), (least, narrow)];
         // Charts are as high as the names of their curves need, or lower without names.
-        let with_names = |(chart, between): (f64, f64)| (chart.max(charts.ends_height() - between), between);
+        let with_names =
+            |(chart, between): (f64, f64)| (chart.max(charts.ends_height() + 2.0 * NAMES_APART - between), between);
         let sizes: Vec<_> = sizes.map(with_names).into_iter().chain([sizes[3]]).collect();
         // With larger type, charts become lower before bodies become smaller.
         let wanted = CHARTS_SHARE * (scale.unit / scale.type_unit()).min(1.0);
@@ -197,14 +200,16 @@ impl ChartsShape {
         Self { chart: chart.min(CHART[2] * scale.type_unit()).max(self.chart), ..self }
     }
 
-    fn place(&self, top: f64, span: [f64; 2], names: Option<f64>, scale: Scale) -> ChartsRoom {
+    fn place(&self, top: f64, span: [f64; 2], names: Option<f64>, scale: Scale) -> Room {
         let rings = top + ABOVE_RINGS * scale.type_unit();
         let first = rings + BELOW_RINGS * scale.type_unit();
+        // Names may extend beside the gaps between charts, but must stay apart from the names of another chart.
+        let beyond = 0.5 * self.between - NAMES_APART * scale.type_unit();
         let chart = |at: usize| {
             let top = first + at as f64 * (self.chart + self.between);
             [top, top + self.chart].map(f64::round)
         };
-        ChartsRoom { rings, span, names, charts: (0..self.count).map(chart).collect(), between: self.between }
+        Room { rings, span, names, charts: (0..self.count).map(chart).collect(), beyond: [beyond; 2] }
     }
 }
 

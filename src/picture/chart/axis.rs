@@ -1,11 +1,11 @@
 //! Round numbers along an axis of a chart or a scale of colours.
 
-use super::number::{self, times_ten, with_minus};
+use crate::picture::number::{self, times_ten, with_minus};
 use crate::reading::captions::{prefix, rounded};
 
 /// The quantity along an axis, which determines its division.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Kind {
+pub(in crate::picture) enum Kind {
     /// Time (s). The axis ends at its ends.
     Time,
     /// A number of things.
@@ -16,17 +16,25 @@ pub(super) enum Kind {
     Colour,
 }
 
-/// A range with round numbers on it.
+/// An axis of a chart: a stretch of numbers, or two with a gap between where its scale changes.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Axis {
+pub struct Axis(pub(in crate::picture) Vec<Stretch>);
+
+/// A stretch of an axis: a range with numbers on it.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::picture) struct Stretch {
     /// The ends of the range.
-    pub(super) range: [f64; 2],
-    /// The round numbers, rising.
-    pub(super) ticks: Vec<f64>,
+    pub range: [f64; 2],
+    /// Its ends on the axis, which goes from 0 to 1.
+    pub along: [f64; 2],
+    /// Whether equal ratios of values are equally far apart.
+    pub is_logarithmic: bool,
+    /// The values with numbers, rising.
+    pub ticks: Vec<f64>,
     /// The text at each of the ticks.
-    pub(super) texts: Vec<String>,
+    pub texts: Vec<String>,
     /// The unit of the texts, with its prefix.
-    pub(super) unit: String,
+    pub unit: String,
 }
 
 /// An axis extends to the next round number up to this part of its range away, otherwise by the second part, so that no
@@ -37,9 +45,52 @@ const BEYOND: f64 = 0.05;
 const WITH_PREFIX: [&str; 2] = ["m/s", "J"];
 
 impl Axis {
-    /// An axis for values of a unit between two ends, with at least two and at most `most` ticks, if there are such
+    /// A logarithmic axis between two positive values, with numbers at powers of ten, at most `most` of them. A short
+    /// one has numbers at twos and fives, too.
+    pub fn logarithmic(ends: [f64; 2], most: usize) -> Self {
+        let [low, high] = ends.map(|end| end.clamp(f64::MIN_POSITIVE, f64::MAX)).map(libm::log10);
+        // Numbers far from 1 are powers of ten, on the whole axis.
+        let is_plain = low > -3.5 && high < 4.5;
+        let is_on = |&(power, digit): &(i32, f64)| {
+            (low - 1e-9..=high + 1e-9).contains(&(f64::from(power) + libm::log10(digit)))
+        };
+        let powers = libm::floor(low) as i32..=libm::ceil(high) as i32;
+        let at = |digits: &'static [f64]| {
+            let all = powers.clone().flat_map(move |power| digits.iter().map(move |&digit| (power, digit)));
+            all.filter(is_on).collect::<Vec<_>>()
+        };
+        let fine = Some(at(&[1.0, 2.0, 5.0])).filter(|all| is_plain && high - low < 2.5 && all.len() <= most);
+        let all = fine.unwrap_or_else(|| {
+            let all = at(&[1.0]);
+            let apart = (1..).find(|apart| all.len() as i32 <= most.max(1) as i32 * apart).unwrap_or(1);
+            all.into_iter().filter(|(power, _)| power.rem_euclid(apart) == 0).collect()
+        });
+        let text = |&(power, digit): &(i32, f64)| match is_plain {
+            true => times_ten(digit, f64::from(power)).to_string(),
+            false => number::power_of_ten(power),
+        };
+        Self(vec![Stretch {
+            range: [low, high].map(libm::exp10),
+            along: [0.0, 1.0],
+            is_logarithmic: true,
+            texts: all.iter().map(text).collect(),
+            ticks: all.iter().map(|&(power, digit)| times_ten(digit, f64::from(power))).collect(),
+            unit: String::new(),
+        }])
+    }
+
+    /// The place of a value: 0 at the low end, 1 at the high end, and beyond for values outside.
+    pub fn share(&self, value: f64) -> f64 {
+        let on = self.0.iter().find(|stretch| value <= stretch.range[1]).or(self.0.last());
+        let Some(on) = on else { return f64::NAN };
+        on.along[0] + on.share(value) * (on.along[1] - on.along[0])
+    }
+}
+
+impl Stretch {
+    /// A stretch for values of a unit between two ends, with at least two and at most `most` ticks, if there are such
     /// round numbers. Lengths have the unit for a body of a size (m).
-    pub(super) fn new(kind: Kind, [low, high]: [f64; 2], unit: &str, extent: f64, most: usize) -> Self {
+    pub(in crate::picture) fn new(kind: Kind, [low, high]: [f64; 2], unit: &str, extent: f64, most: usize) -> Self {
         let largest = low.abs().max(high.abs());
         let (factor, prefix) = match kind {
             _ if unit == "m" => number::metre(extent),
@@ -60,7 +111,8 @@ impl Axis {
                 _ => Vec::new(),
             };
             let texts = ticks.iter().map(f64::to_string).collect();
-            return Self { range: [low * factor, low * factor + (low * factor).abs().max(1.0)], ticks, texts, unit };
+            let range = [low * factor, low * factor + (low * factor).abs().max(1.0)];
+            return Self { range, along: [0.0, 1.0], is_logarithmic: false, ticks, texts, unit };
         }
         let division = divide(kind, [low, high], most.max(2));
         let digits = (libm::log10(largest / factor / span).max(0.0) + 3.0) as usize;
@@ -74,6 +126,8 @@ impl Axis {
         };
         Self {
             range: division.range.map(|end| end * factor),
+            along: [0.0, 1.0],
+            is_logarithmic: false,
             ticks: division.ticks.iter().map(|tick| tick * factor).collect(),
             texts: division.ticks.iter().copied().map(text).collect(),
             unit,
@@ -81,15 +135,16 @@ impl Axis {
     }
 
     /// Keeps every second tick, with the first.
-    pub(super) fn halve(&mut self) {
+    pub(in crate::picture) fn halve(&mut self) {
         self.ticks = self.ticks.iter().copied().step_by(2).collect();
         self.texts = self.texts.iter().step_by(2).cloned().collect();
     }
 
     /// The place of a value: 0 at the low end, 1 at the high end.
-    pub(super) fn share(&self, value: f64) -> f64 {
-        let [low, high] = self.range.map(|end| end / 2.0);
-        (value / 2.0 - low) / (high - low)
+    pub(in crate::picture) fn share(&self, value: f64) -> f64 {
+        let scaled = |value: f64| if self.is_logarithmic { libm::log10(value) } else { value / 2.0 };
+        let [low, high] = self.range.map(scaled);
+        (scaled(value) - low) / (high - low)
     }
 }
 
@@ -197,7 +252,7 @@ mod tests {
             (Kind::Colour, [0.0, 3e-7], "", 5, &["0", "1e−7", "2e−7", "3e−7"], ""),
         ];
         for (kind, range, unit, most, texts, with_prefix) in expected {
-            let axis = Axis::new(kind, range, unit, 0.3, most);
+            let axis = Stretch::new(kind, range, unit, 0.3, most);
             assert_eq!(axis.texts, texts, "{range:?}: {axis:?}");
             assert_eq!(axis.unit, with_prefix, "{range:?}");
         }
@@ -210,7 +265,7 @@ mod tests {
             for low in [0.0, 0.1 * high, -0.37 * high, -high, -12.0 * high, 0.7 * high, 0.95 * high] {
                 for kind in [Kind::Time, Kind::Value, Kind::Colour] {
                     for most in if kind == Kind::Colour { 5..=5 } else { 2..=6 } {
-                        let axis = Axis::new(kind, [low, high], "m", 0.3, most);
+                        let axis = Stretch::new(kind, [low, high], "m", 0.3, most);
                         let told = || format!("{kind:?} {low} {high} {most}: {axis:?}");
                         let fewest = if kind == Kind::Colour { 3 } else { 2 };
                         assert!((fewest..=most).contains(&axis.ticks.len()), "{}", told());
@@ -225,7 +280,7 @@ mod tests {
             }
         }
         for count in 1..500 {
-            let axis = Axis::new(Kind::Count, [0.0, f64::from(count)], "", 0.3, 4);
+            let axis = Stretch::new(Kind::Count, [0.0, f64::from(count)], "", 0.3, 4);
             assert!((2..=4).contains(&axis.ticks.len()), "{count}: {axis:?}");
             assert!(axis.ticks.iter().all(|tick| tick.fract() == 0.0), "{count}: {axis:?}");
         }
@@ -235,10 +290,10 @@ mod tests {
     fn odd_ranges_do_no_harm() {
         for odd in [[0.0, 0.0], [3.0, 3.0], [-f64::MAX, f64::MAX], [0.0, 5e-324], [1.0, 1.0 + 1e-15]] {
             for kind in [Kind::Time, Kind::Count, Kind::Value, Kind::Colour] {
-                let axis = Axis::new(kind, odd, "J", 0.3, 4);
+                let axis = Stretch::new(kind, odd, "J", 0.3, 4);
                 assert!(axis.ticks.len() <= 4 && axis.ticks.len() == axis.texts.len(), "{odd:?} {axis:?}");
             }
         }
-        assert_eq!(Axis::new(Kind::Value, [0.0, 0.0], "m", 0.3, 4).texts, ["0"]);
+        assert_eq!(Stretch::new(Kind::Value, [0.0, 0.0], "m", 0.3, 4).texts, ["0"]);
     }
 }

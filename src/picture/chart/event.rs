@@ -1,7 +1,12 @@
 //! Events in time series, in words. Flags in a chart and in panels mark them.
 
-use super::number;
+use super::ring;
 use super::series::Series;
+use crate::colour::Colour;
+use crate::picture::caption::{Room, Writer};
+use crate::picture::layout::{Baselines, Rectangle, Scale};
+use crate::picture::number;
+use crate::picture::text::Weight;
 use crate::scene::Scene;
 use crate::sim::Diagnostic;
 
@@ -16,18 +21,24 @@ const EXTREME: f64 = 0.1;
 const NEARLY_ALL: f64 = 0.95;
 const SHORT: f64 = 0.1;
 
+/// Radius of the ring of an event, in sizes of its number; the gap between it and its words, and the gap between events
+/// (px in the reference picture).
+const EVENT_RING: f64 = 0.68;
+const EVENT_BESIDE: f64 = 7.0;
+const EVENTS_APART: f64 = 18.0;
+
 /// An event of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Event {
-    pub(super) run: usize,
+pub(in crate::picture) struct Event {
+    pub run: usize,
     /// The time (s).
-    pub(super) time: f64,
+    pub time: f64,
     /// The name, with its time and without.
-    pub(super) words: [String; 2],
+    pub words: [String; 2],
 }
 
 /// The events in time series of a diagnostic of a body of a size (m), up to an end (s), in the order of time.
-pub(super) fn events(diagnostic: Diagnostic, series: &[Series], extent: f64, end: f64) -> Vec<Event> {
+pub(in crate::picture) fn events(diagnostic: Diagnostic, series: &[Series], extent: f64, end: f64) -> Vec<Event> {
     let widest = series
         .iter()
         .flat_map(|one| &one.points)
@@ -75,7 +86,7 @@ pub(super) fn events(diagnostic: Diagnostic, series: &[Series], extent: f64, end
 }
 
 /// The possible events of a run of a scene, in the narrowest words.
-pub(super) fn narrowest(diagnostic: Diagnostic, scene: &Scene) -> Vec<Event> {
+pub(in crate::picture) fn narrowest(diagnostic: Diagnostic, scene: &Scene) -> Vec<Event> {
     const AT: f64 = 1e-3;
     let event = |words: String, joint: &str| Event {
         run: 0,
@@ -91,7 +102,7 @@ pub(super) fn narrowest(diagnostic: Diagnostic, scene: &Scene) -> Vec<Event> {
 
 /// The time (s) at which the scale of time changes in a scene up to an end (s): soon after nearly all changes, if that
 /// is early.
-pub(super) fn split(series: &[Series], end: f64) -> Option<f64> {
+pub(in crate::picture) fn split(series: &[Series], end: f64) -> Option<f64> {
     let steps =
         series.iter().flat_map(|one| one.points.windows(2).map(|two| (two[1][0], (two[1][1] - two[0][1]).abs())));
     let mut steps: Vec<_> = steps.filter(|&(_, change)| change > 0.0 && change.is_finite()).collect();
@@ -108,6 +119,61 @@ pub(super) fn split(series: &[Series], end: f64) -> Option<f64> {
         .into_iter()
         .find(|round| round > nearly)?;
     (*nearly <= SHORT * end && after < 0.5 * end).then_some(after)
+}
+
+impl Writer<'_> {
+    /// The number of a run's events, from the first one on, whose words fit into a panel.
+    pub(in crate::picture) fn explained(&self, panel: Rectangle, events: &[&Event]) -> usize {
+        let room = Room::new(panel, self.scale).width();
+        let fits = |count: &usize| self.events_width(events[..*count].iter().copied(), 1) <= room;
+        (0..=events.len()).rev().find(fits).filter(|_| Scale::legible(self.scale.caption())).unwrap_or(0)
+    }
+
+    /// Whether the words of all events fit into a panel, without and with their times.
+    pub(in crate::picture) fn explains(&self, panel: Rectangle, events: &[Event]) -> [bool; 2] {
+        let room = Room::new(panel, self.scale).width();
+        [1, 0].map(|at| Scale::legible(self.scale.caption()) && self.events_width(events.iter(), at) <= room)
+    }
+
+    /// The width of events with their words, with or without their times (px).
+    fn events_width<'e>(&self, events: impl Iterator<Item = &'e Event>, at: usize) -> f64 {
+        let (unit, size) = (self.scale.type_unit(), self.scale.caption());
+        let [beside, apart] = [EVENT_BESIDE, EVENTS_APART].map(|length| length * unit);
+        let one = 2.0 * EVENT_RING * self.scale.small() + beside + apart;
+        let all: f64 = events.map(|event| one + self.fonts.width(&event.words[at], Weight::Regular, size)).sum();
+        (all - apart).max(0.0)
+    }
+
+    /// The events of a run, each with a number in a ring of a colour, in a line below its heading, with as many words
+    /// as fit. The rings of past events are filled.
+    pub(in crate::picture) fn events<'e>(
+        &mut self,
+        panel: Rectangle,
+        events: impl Iterator<Item = (usize, &'e Event)>,
+        colour: Colour,
+        now: f64,
+    ) {
+        let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
+        let (unit, size) = (self.scale.type_unit(), self.scale.caption());
+        let events: Vec<_> = events.collect();
+        let number_size = self.scale.small();
+        let radius = EVENT_RING * number_size;
+        let [beside, apart] = [EVENT_BESIDE, EVENTS_APART].map(|length| length * unit);
+        let wide = |words: &str| 2.0 * radius + beside + self.fonts.width(words, Weight::Regular, size);
+        let width = |at: usize| self.events_width(events.iter().map(|(_, event)| *event), at);
+        let Some(at) = (0..=1).find(|&at| width(at) <= room.width()) else { return };
+        let (mut left, baseline) = (room.left, room.top + lines.events);
+        let palette = self.palette;
+        for (number, event) in &events {
+            let [ground, letter] =
+                if event.time <= now { [colour, palette.background] } else { [palette.background, palette.text] };
+            let middle = [left + radius, baseline - 0.36 * size];
+            ring(self, middle, [radius, number_size], [colour, ground, letter], &number.to_string());
+            let text = &event.words[at];
+            self.left(text, Weight::Regular, size, palette.second_text, left + 2.0 * radius + beside, baseline);
+            left += wide(text) + apart;
+        }
+    }
 }
 
 #[cfg(test)]

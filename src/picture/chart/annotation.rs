@@ -1,0 +1,191 @@
+//! Signs and words in charts: moments, values, divergences, and flags with letters or numbers.
+
+use super::layer::{pixels, within};
+use super::names::{self, Name, spread};
+use super::{Chart, Place, TICK};
+use crate::colour::Colour;
+use crate::picture::caption::Writer;
+use crate::picture::layout::Scale;
+use crate::picture::narrow::narrow;
+use crate::picture::page::{self, Item, Path, Pen};
+use crate::picture::text::Weight;
+
+/// Width of the line of a moment (px in the reference picture), and its opacity.
+const MOMENT: f64 = 1.3;
+const MOMENT_ALPHA: f64 = 0.75;
+/// Radius of the circle around a value and width of its line (px in the reference picture).
+const CIRCLE: [f64; 2] = [4.5, 1.6];
+/// Width and arms of a cross (px in the reference picture).
+const CROSS: f64 = 1.8;
+const ARM: f64 = 4.0;
+/// Half the width and the length of the arrowhead where the curve of a diverged run leaves its chart, the width of the
+/// line from the arrowhead to the cross, and its dots and gaps (px in the reference picture).
+const HEAD: [f64; 2] = [4.0, 6.0];
+const DOT: f64 = 1.0;
+pub(super) const DOTS: [f64; 2] = [1.0, 3.5];
+/// Radius of the ring of a flag, thickness of its rim, size of the letter in it, the gap beside the letter, and the gap
+/// between rings (px in the reference picture).
+const RING: f64 = 10.0;
+const RIM: f64 = 1.3;
+const LETTER: f64 = 14.0;
+const BESIDE_LETTER: f64 = 4.0;
+const RINGS_APART: f64 = 3.0;
+/// The largest share of the margin for crowded rings at each end.
+const BEYOND: f64 = 0.35;
+/// The height above the charts at which the lines of flags become upright, their width (px in the reference picture),
+/// and their opacity.
+const UPRIGHT_ABOVE: f64 = 9.0;
+const LINE: f64 = 1.1;
+const LINE_ALPHA: f64 = 0.62;
+
+/// A sign or words in a chart, in the values of its axes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Annotation {
+    /// A line upwards.
+    Moment {
+        /// Its place to the right.
+        at: f64,
+        /// Its colour.
+        colour: Colour,
+    },
+    /// A circle around a value; none around a value outside of the chart.
+    Ring {
+        /// The value.
+        at: [f64; 2],
+        /// Its colour.
+        colour: Colour,
+    },
+    /// A cross at the end of a line that is cut off, with an arrowhead where it leaves the chart.
+    Cross {
+        /// The points of the line.
+        line: Vec<[f64; 2]>,
+        /// The place of the cross to the right.
+        at: f64,
+        /// Its colour.
+        colour: Colour,
+    },
+    /// Names at the ends of lines, right of the chart. Names of close ends are moved apart, and thin lines lead to them.
+    Names {
+        /// The names.
+        names: Vec<Name>,
+        /// The extent of the names above and below the chart (px).
+        beyond: [f64; 2],
+    },
+}
+
+/// A letter or a number in a ring above charts, with a line down to its place on their common axis.
+#[derive(Clone, Debug)]
+pub(in crate::picture) struct Flag {
+    /// The place on the axis.
+    pub at: f64,
+    pub text: String,
+    /// The colour of its line and rim.
+    pub colour: Colour,
+}
+
+impl Annotation {
+    pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: &Chart, place: Place) {
+        match self {
+            &Self::Moment { at, colour } => {
+                let x = place.x(&chart.x, at);
+                let ends = [[x, place.borders()[0]], [x, place.bottom + TICK * place.unit]];
+                writer.curves.push(place.curve(&ends, MOMENT, &[], (colour, MOMENT_ALPHA)));
+            }
+            &Self::Ring { at, colour } => {
+                let [x, y] = [place.x(&chart.x, at[0]), place.y(&chart.y, at[1])];
+                if (place.top - 1.0..=place.bottom + 1.0).contains(&y) {
+                    let [radius, width] = CIRCLE.map(|length| narrow(length * place.line));
+                    let path = Path::circle(page::point([x, y].into()), radius);
+                    writer.curves.push(Item::stroke(path, Pen::solid(width), colour));
+                }
+            }
+            Self::Cross { line, at, colour } => cross(writer, chart, place, (line, *at), *colour),
+            Self::Names { names, beyond } => names::write(writer, chart, place, names, *beyond),
+        }
+    }
+}
+
+/// Draws a cross at the end of a line that is cut off at a place.
+fn cross(writer: &mut Writer<'_>, chart: &Chart, place: Place, (line, at): (&[[f64; 2]], f64), colour: Colour) {
+    let (arm, x) = (ARM * place.line, place.x(&chart.x, at));
+    let Some(last) = line.last() else { return };
+    let mut curve = |points: &[[f64; 2]], width, dash: &[f64]| {
+        writer.curves.push(place.curve(points, width, dash, colour));
+    };
+    let stretch = chart.x.0.iter().find(|stretch| at <= stretch.range[1]).unwrap_or(&chart.x.0[0]);
+    let [wing, back] = HEAD.map(|length| length * place.line);
+    let left = leaving(&pixels(line, chart, stretch, place), place.borders());
+    if let Some([from, tip]) = left.filter(|[_, tip]| tip[0] + wing < x - arm) {
+        // An arrowhead, and dots along the border to the cross, which has the name.
+        let up = if tip[1] < from[1] { -1.0 } else { 1.0 };
+        let corner = |side: f64| [tip[0] + side * wing, tip[1] - up * back];
+        curve(&[corner(-1.0), tip, corner(1.0)], CROSS, &[]);
+        let y = tip[1].clamp(place.top, place.bottom);
+        curve(&[[tip[0] + wing, y], [x - arm, y]], DOT, &DOTS);
+    }
+    let y = place.y(&chart.y, last[1]).clamp(place.top, place.bottom);
+    for slope in [-1.0, 1.0] {
+        curve(&[[x - arm, y - slope * arm], [x + arm, y + slope * arm]], CROSS, &[]);
+    }
+}
+
+/// The last piece of a line within the borders of its chart, if the line leaves it there for good.
+fn leaving(points: &[[f64; 2]], borders: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    let inside = |y: f64| (borders[0]..=borders[1]).contains(&y);
+    let at = points.iter().rposition(|&[_, y]| inside(y)).filter(|&at| at + 1 < points.len())?;
+    let part = within(&points[at..at + 2], borders).pop()?;
+    part.last_chunk().copied()
+}
+
+/// Draws flags, sorted by their places: rings at a height, side by side within the width of the first chart, with lines
+/// from the top of all charts to the bottom of the last one (px).
+pub(super) fn flags(
+    writer: &mut Writer<'_>,
+    flags: &[Flag],
+    middle: f64,
+    (chart, place): (&Chart, Place),
+    bottom: f64,
+) {
+    let (scale, fonts, palette) = (writer.scale, writer.fonts, writer.palette);
+    let Place { left, right, .. } = place;
+    let top = place.top - UPRIGHT_ABOVE * scale.type_unit();
+    let wide = |text: &str| fonts.width(text, Weight::SemiBold, LETTER * scale.type_unit());
+    let widest = flags.iter().map(|flag| wide(&flag.text)).fold(0.0, f64::max);
+    let radius = (RING * scale.type_unit()).max(0.5 * widest + BESIDE_LETTER * scale.type_unit());
+    let apart = 2.0 * radius + RINGS_APART * scale.type_unit();
+    // The outermost rings reach into the margins, but not to the picture's sides.
+    let span = right - left + 2.0 * radius.min(BEYOND * scale.margin());
+    // Many rings become smaller while their letters can be read; otherwise they are left out.
+    let smaller = (span / (apart * flags.len().max(1) as f64)).min(1.0);
+    let letter = LETTER * scale.type_unit() * smaller;
+    let with_rings = Scale::legible(letter);
+    let places: Vec<_> = flags.iter().map(|flag| place.x(&chart.x, flag.at).floor() + 0.5).collect();
+    let rings = spread(&places, apart * smaller, [left, right]);
+    let rings = rings.iter().zip(&places).map(|(&ring, &x)| if (ring - x).abs() < 0.75 { x } else { ring });
+    let rings: Vec<_> = rings.collect();
+    for ((flag, &x), &ring) in flags.iter().zip(&places).zip(&rings) {
+        let from = if with_rings { [ring, middle] } else { [x, top] };
+        let points: &[_] = if from[0] == x { &[from, [x, bottom]] } else { &[from, [x, top], [x, bottom]] };
+        writer.curves.push(place.curve(points, LINE, &[], (flag.colour, LINE_ALPHA)));
+    }
+    for (flag, &at) in flags.iter().zip(&rings).filter(|_| with_rings) {
+        let colours = [flag.colour, palette.background, palette.text];
+        ring(writer, [at, middle], [radius * smaller, letter], colours, &flag.text);
+    }
+}
+
+/// A ring with a letter of a size around a place (px), and the colours of its rim, its ground and the letter.
+pub(in crate::picture) fn ring(
+    writer: &mut Writer<'_>,
+    at: [f64; 2],
+    [radius, size]: [f64; 2],
+    [rim, ground, letter]: [Colour; 3],
+    text: &str,
+) {
+    let thickness = RIM * writer.scale.line();
+    for (radius, colour) in [(radius, rim), (radius - thickness, ground)] {
+        writer.curves.push(Item::disc(at, radius, colour));
+    }
+    let left = at[0] - 0.5 * writer.fonts.width(text, Weight::SemiBold, size);
+    writer.left(text, Weight::SemiBold, size, letter, left, at[1] + 0.36 * size);
+}

@@ -1,0 +1,332 @@
+//! The layers of charts: areas, bands, lines and dots.
+
+use super::axis::Stretch;
+use super::{Chart, Place};
+use crate::colour::{Colour, mixed};
+use crate::picture::caption::Writer;
+use crate::picture::page::{self, Item, Path};
+
+/// A line is dense where it turns four times within this length, by more than the second one (px in the reference
+/// picture). Where it is so for longer than the third one, it is a band with this strength of its colour.
+const DENSE: f64 = 12.0;
+const TURN: f64 = 3.0;
+const LONG: f64 = 40.0;
+const BAND: f64 = 0.3;
+/// Curves are simplified as long as no point moves by more than this (px).
+const EXACT: f64 = 0.08;
+
+/// A layer of a chart, in the values of its axes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Layer {
+    /// The area between zero and level steps.
+    Area {
+        /// The corners of the steps.
+        points: Vec<[f64; 2]>,
+        /// Its colour.
+        colour: Colour,
+    },
+    /// The band from the least to the greatest value of several curves, up to the earliest end.
+    Band {
+        /// The points of each curve.
+        curves: Vec<Vec<[f64; 2]>>,
+        /// The colour, of which the band has a tint.
+        colour: Colour,
+    },
+    /// A line through points. Where it goes up and down too densely to be seen, it is a band.
+    Line {
+        /// The points.
+        points: Vec<[f64; 2]>,
+        /// Its colour.
+        colour: Colour,
+        /// Its width (px).
+        width: f64,
+        /// The lengths of dashes and gaps in turn (px); empty for a solid line.
+        dash: Vec<f64>,
+    },
+    /// A dot at each point.
+    Dots {
+        /// The points.
+        points: Vec<[f64; 2]>,
+        /// Their colour.
+        colour: Colour,
+        /// Their radius (px).
+        radius: f64,
+    },
+}
+
+impl Layer {
+    /// Draws an area.
+    pub(super) fn area(&self, writer: &mut Writer<'_>, chart: &Chart, place: Place) {
+        let Self::Area { points, colour } = self else { return };
+        let zero = place.y(&chart.y, 0.0);
+        for mut points in chart.x.0.iter().map(|stretch| pixels(points, chart, stretch, place)) {
+            let ends = [points.last(), points.first()].map(|end| end.map(|&[x, _]| [x, zero]));
+            points.extend(ends.into_iter().flatten());
+            writer.marks.extend(inside(&points, place, *colour));
+        }
+    }
+
+    /// Draws any other layer.
+    pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: &Chart, place: Place) {
+        for stretch in &chart.x.0 {
+            let pixels = |points: &Vec<[f64; 2]>| pixels(points, chart, stretch, place);
+            match self {
+                Self::Area { .. } => {}
+                Self::Band { curves, colour } => {
+                    let curves: Vec<_> = curves.iter().map(pixels).collect();
+                    let [left, right] = place.ends(stretch);
+                    let ends = curves.iter().map(|points| points.last().map_or(left, |end| end[0]));
+                    band(writer, place, &curves, [left, ends.fold(right, f64::min)], 0.0, *colour);
+                }
+                Self::Line { points, colour, width, dash } => {
+                    let points = pixels(points);
+                    let dense = dense(&points, place.line);
+                    let of_line = std::slice::from_ref(&points);
+                    dense
+                        .iter()
+                        .for_each(|&span| band(writer, place, of_line, span, 0.5 * DENSE * place.line, *colour));
+                    for part in outside(&points, &dense).iter().flat_map(|part| within(part, place.borders())) {
+                        writer.curves.push(place.curve(&simplified(&part), *width, dash, *colour));
+                    }
+                }
+                Self::Dots { points, colour, radius } => {
+                    writer.curves.extend(pixels(points).iter().map(|&at| Item::disc(at, radius * place.line, *colour)));
+                }
+            }
+        }
+    }
+
+    /// Whether a part of a line is a band.
+    pub(super) fn has_band(&self, chart: &Chart, place: Place) -> bool {
+        let Self::Line { points, .. } = self else { return false };
+        chart.x.0.iter().any(|stretch| !dense(&pixels(points, chart, stretch, place), place.line).is_empty())
+    }
+}
+
+/// The part of a line on a stretch of the axis to the right (px).
+pub(super) fn pixels(points: &[[f64; 2]], chart: &Chart, stretch: &Stretch, place: Place) -> Vec<[f64; 2]> {
+    let [left, right] = place.ends(stretch);
+    let at = |[x, y]: [f64; 2]| [left + stretch.share(x).clamp(0.0, 1.0) * (right - left), place.y(&chart.y, y)];
+    cut(points, stretch.range).into_iter().map(at).collect()
+}
+
+/// The part of a line between two places, with its ends there.
+fn cut(points: &[[f64; 2]], [start, end]: [f64; 2]) -> Vec<[f64; 2]> {
+    let is_new = |at: &f64| points.iter().all(|&[x, _]| x != *at);
+    let ends = [start, end].map(|at| Some(at).filter(is_new).and_then(|at| Some([at, value(points, at)?])));
+    let inside = points.iter().copied().filter(|[x, _]| (start..=end).contains(x));
+    ends[0].into_iter().chain(inside).chain(ends[1]).collect()
+}
+
+/// The height of a line at a place; `None` before its start and after its end.
+pub(super) fn value(points: &[[f64; 2]], at: f64) -> Option<f64> {
+    let after = points.partition_point(|&[x, _]| x <= at);
+    let &[from, one] = points.get(after.checked_sub(1)?)?;
+    let Some(&[to, other]) = points.get(after) else { return (from == at).then_some(one) };
+    Some(one + (at - from) / (to - from) * (other - one))
+}
+
+/// Draws the band that lines cover between two places, in each column with what is up to `reach` beside it (px).
+fn band(
+    writer: &mut Writer<'_>,
+    place: Place,
+    lines: &[Vec<[f64; 2]>],
+    [from, to]: [f64; 2],
+    reach: f64,
+    colour: Colour,
+) {
+    let colour = mixed(writer.palette.background, colour, BAND);
+    let [high, mut low] = envelope(lines, [from, to], reach);
+    low.reverse();
+    writer.marks.extend(inside(&[high, low].concat(), place, colour));
+}
+
+/// The inside of a closed line, as far as it is inside of a chart.
+fn inside(points: &[[f64; 2]], place: Place, colour: Colour) -> Option<Item> {
+    let points = points.iter().map(|&[x, y]| page::point([x, y.clamp(place.top, place.bottom)].into()));
+    let path = Path::polygon(&points.collect::<Vec<_>>());
+    (!path.is_empty()).then(|| Item::fill(path, colour))
+}
+
+/// The highest and the lowest places that lines cover between two places, at each pixel with what is up to `reach`
+/// beside it (px).
+fn envelope(lines: &[Vec<[f64; 2]>], [from, to]: [f64; 2], reach: f64) -> [Vec<[f64; 2]>; 2] {
+    let mut both = [Vec::new(), Vec::new()];
+    let mut at = from;
+    while at <= to {
+        let ends = [at - reach, at + reach].map(|end| end.clamp(from, to));
+        let heights = lines.iter().flat_map(|points| {
+            let first = points.partition_point(|&[x, _]| x < ends[0]);
+            let last = points.partition_point(|&[x, _]| x <= ends[1]);
+            let inside = points[first..last].iter().map(|&[_, y]| y);
+            inside.chain(ends.into_iter().filter_map(|x| value(points, x)))
+        });
+        let [high, low] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[high, low], y| [high.min(y), low.max(y)]);
+        if high <= low {
+            both[0].push([at, high]);
+            both[1].push([at, low]);
+        }
+        at = if at < to { (at + 1.0).min(to) } else { f64::INFINITY };
+    }
+    both
+}
+
+/// The stretches, from left to right, in which a line of a thickness is dense (px).
+fn dense(points: &[[f64; 2]], thickness: f64) -> Vec<[f64; 2]> {
+    let [length, height, long] = [DENSE, TURN, LONG].map(|length| length * thickness);
+    let Some(&[first, start]) = points.first() else { return Vec::new() };
+    // The turns: the last extreme value is one as soon as the curve has left it by that height.
+    let mut turns = Vec::new();
+    let (mut extreme, mut sense) = ([first, start], 0.0);
+    for &[x, y] in points {
+        let way = y - extreme[1];
+        if way * sense > 0.0 || sense == 0.0 && way.abs() > height {
+            (extreme, sense) = ([x, y], way.signum());
+        } else if way.abs() > height {
+            turns.push(extreme[0]);
+            (extreme, sense) = ([x, y], -sense);
+        }
+    }
+    let mut spans: Vec<[f64; 2]> = Vec::new();
+    for four in turns.windows(4).filter(|four| four[3] - four[0] <= length) {
+        // A short stretch between two dense ones is dense, too.
+        match spans.last_mut().filter(|last| four[0] <= last[1] + 3.0 * length) {
+            Some(last) => last[1] = four[3],
+            None => spans.push([four[0], four[3]]),
+        }
+    }
+    spans.retain(|[from, to]| to - from >= long);
+    spans
+}
+
+/// The parts of a curve outside of stretches (px).
+fn outside(points: &[[f64; 2]], spans: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+    let ends = std::iter::once(f64::NEG_INFINITY).chain(spans.iter().map(|span| span[1]));
+    let starts = spans.iter().map(|span| span[0]).chain([f64::INFINITY]);
+    let part = |(from, to): (f64, f64)| -> Vec<[f64; 2]> {
+        points.iter().copied().filter(|&[x, _]| (from..=to).contains(&x)).collect()
+    };
+    ends.zip(starts).map(part).filter(|part| !part.is_empty()).collect()
+}
+
+/// The parts of a curve between an upper and a lower border.
+pub(super) fn within(points: &[[f64; 2]], [top, bottom]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+    let mut parts: Vec<Vec<[f64; 2]>> = Vec::new();
+    let mut open = false;
+    if let &[[x, y]] = points
+        && (top..=bottom).contains(&y)
+    {
+        parts.push(vec![[x, y]]);
+    }
+    for two in points.windows(2) {
+        let ([from, to], way) = ([two[0], two[1]], two[1][1] - two[0][1]);
+        let at = |y: f64| [from[0] + (to[0] - from[0]) * ((y - from[1]) / way).clamp(0.0, 1.0), y];
+        let clamped = [from[1], to[1]].map(|y| y.clamp(top, bottom));
+        // Both ends are on one side of both borders, or both are inside.
+        let outside = (from[1] < top && to[1] < top) || (from[1] > bottom && to[1] > bottom);
+        if outside {
+            open = false;
+            continue;
+        }
+        let end = |y: f64, inside: f64, whole: [f64; 2]| if y == inside { whole } else { at(inside) };
+        let ends = [end(from[1], clamped[0], from), end(to[1], clamped[1], to)];
+        if !open {
+            parts.push(vec![ends[0]]);
+        }
+        if let Some(part) = parts.last_mut() {
+            part.push(ends[1]);
+        }
+        open = to[1] == clamped[1];
+    }
+    parts
+}
+
+/// A curve with fewer points, with all others hardly away from it (Douglas and Peucker).
+pub(in crate::picture) fn simplified(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut kept = vec![false; points.len()];
+    let Some(last) = points.len().checked_sub(1) else { return Vec::new() };
+    (kept[0], kept[last]) = (true, true);
+    let mut open = vec![(0, last)];
+    while let Some((from, to)) = open.pop() {
+        let [[ax, ay], [bx, by]] = [points[from], points[to]];
+        let [wx, wy] = [bx - ax, by - ay];
+        let squared = wx * wx + wy * wy;
+        let off = |&[x, y]: &[f64; 2]| {
+            let share = if squared > 0.0 { (((x - ax) * wx + (y - ay) * wy) / squared).clamp(0.0, 1.0) } else { 0.0 };
+            let [dx, dy] = [x - ax - share * wx, y - ay - share * wy];
+            dx * dx + dy * dy
+        };
+        let between = points[from..to].iter().enumerate().skip(1);
+        let farthest =
+            between.map(|(at, point)| (off(point), from + at)).max_by(|one, other| one.0.total_cmp(&other.0));
+        if let Some((_, at)) = farthest.filter(|(off, _)| *off > EXACT * EXACT) {
+            kept[at] = true;
+            open.extend([(from, at), (at, to)]);
+        }
+    }
+    points.iter().zip(kept).filter_map(|(&point, kept)| kept.then_some(point)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_of_a_line_begin_and_end_on_it() {
+        let whole = [[0.0, 1.0], [1.0, 3.0], [2.0, 2.0], [3.0, 2.0]];
+        assert_eq!(cut(&whole, [0.5, 2.25]), [[0.5, 2.0], [1.0, 3.0], [2.0, 2.0], [2.25, 2.0]]);
+        // An existing point is not repeated, and there is none beyond the end.
+        assert_eq!(cut(&whole, [1.0, 2.0]), [[1.0, 3.0], [2.0, 2.0]]);
+        assert_eq!(cut(&whole, [2.5, 9.0]), [[2.5, 2.0], [3.0, 2.0]]);
+        assert!(cut(&whole, [5.0, 9.0]).is_empty());
+    }
+
+    #[test]
+    fn curves_leave_at_the_border_and_come_back() {
+        let points = [[0.0, 5.0], [1.0, -5.0], [2.0, -50.0], [3.0, 5.0], [4.0, 25.0], [5.0, -15.0]];
+        let parts = within(&points, [0.0, 10.0]);
+        let expected: [&[[f64; 2]]; 3] = [
+            &[[0.0, 5.0], [0.5, 0.0]],
+            &[[2.0 + 50.0 / 55.0, 0.0], [3.0, 5.0], [3.25, 10.0]],
+            &[[4.375, 10.0], [4.625, 0.0]],
+        ];
+        assert_eq!(parts, expected);
+        assert_eq!(within(&points, [-100.0, 100.0]), [points]);
+        assert!(within(&[], [0.0, 1.0]).is_empty());
+        assert_eq!(within(&[[3.0, 0.5]], [0.0, 1.0]), [[[3.0, 0.5]]]);
+        assert!(within(&[[0.0, 1e300], [1.0, 1e300]], [0.0, 1.0]).is_empty());
+    }
+
+    #[test]
+    fn dense_stretches_are_cut_out() {
+        let calm = |from: i32| (from..from + 50).map(|x| [f64::from(x), 10.0]);
+        let busy = (50..100).map(|x| [f64::from(x), if x % 2 == 0 { 10.0 } else { 30.0 }]);
+        let points: Vec<_> = calm(0).chain(busy).chain(calm(100)).collect();
+        let spans = dense(&points, 1.0);
+        let [[from, to]] = spans[..] else { panic!("{spans:?}") };
+        assert!((45.0..55.0).contains(&from) && (95.0..105.0).contains(&to), "{spans:?}");
+        let parts = outside(&points, &spans);
+        assert!(parts.len() == 2 && parts[0][0] == points[0] && parts[1].last() == points.last());
+        let [high, low] = envelope(&[points], spans[0], 6.0);
+        assert!(high.iter().all(|at| at[1] == 10.0) && low.iter().all(|at| at[1] == 30.0), "{high:?}");
+        // Steep, but only upwards.
+        let rise: Vec<_> = (0..50).map(|x| [f64::from(x), f64::from(x * x)]).collect();
+        assert!(dense(&rise, 1.0).is_empty());
+    }
+
+    #[test]
+    fn simpler_curves_stay_near() {
+        let points: Vec<_> = (0..1000).map(|at| f64::from(at) * 0.4).map(|x| [x, 30.0 * libm::sin(x / 20.0)]).collect();
+        let simple = simplified(&points);
+        assert!(simple.len() > 20 && simple.len() < 150, "{}", simple.len());
+        assert_eq!((simple[0], simple[simple.len() - 1]), (points[0], points[999]));
+        for [x, y] in points {
+            let at = simple.iter().rposition(|point| point[0] <= x).unwrap().min(simple.len() - 2);
+            let [from, to] = [simple[at], simple[at + 1]];
+            let on = from[1] + (to[1] - from[1]) * (x - from[0]) / (to[0] - from[0]);
+            assert!((on - y).abs() < 0.15, "{x}: {on} {y}");
+        }
+        assert_eq!(simplified(&[[1.0, 2.0]]), [[1.0, 2.0]]);
+        assert!(simplified(&[]).is_empty());
+    }
+}

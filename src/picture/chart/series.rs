@@ -1,0 +1,235 @@
+//! Time series of a diagnostic of one run, in one scene or as the mean over several, and their range.
+
+use super::annotation::Annotation;
+use super::layer::{Layer, value};
+use crate::colour::mixed;
+use crate::look::{LineStyle, Palette};
+use crate::runner::history::TimeSeries;
+use crate::scene::Scene;
+use crate::sim::{Diagnostic, Dimension};
+
+/// Width of the curve of a run, and of one scene among several (px in the reference picture), whose colour has this
+/// strength.
+pub(super) const OWN: f64 = 2.2;
+const SINGLE: f64 = 1.0;
+const SINGLE_STRENGTH: f64 = 0.6;
+/// The strength of the alarm's colour in the area below a count.
+const AREA: f64 = 0.16;
+/// Values of a diverged run do not determine the scale above this many times the largest value of the other runs.
+const BEYOND: f64 = 3.0;
+/// The range includes zero unless zero is farther away than this many times its width.
+const NEAR_ZERO: f64 = 3.0;
+/// A range is at least this part of its values, so that round-off does not fill a chart.
+const LEAST_RANGE: f64 = 0.02;
+
+/// The time series of a diagnostic of one run.
+#[derive(Clone, Debug)]
+pub(in crate::picture) struct Series {
+    pub run: usize,
+    /// The name beside its curve.
+    pub name: String,
+    /// Colour and dashes of its curve.
+    pub style: LineStyle,
+    /// Whether it is a count.
+    pub is_count: bool,
+    /// Times (s) and finite values, those of counts as steps.
+    pub points: Vec<[f64; 2]>,
+    /// For a mean of several scenes, the time series of each: a band shows their least and greatest values. Empty
+    /// otherwise.
+    pub members: Vec<Vec<[f64; 2]>>,
+    /// When the run diverged (s).
+    pub diverged: Option<f64>,
+}
+
+impl Series {
+    /// A diagnostic of a run of a scene, in the colours of a picture.
+    pub(super) fn new(diagnostic: Diagnostic, of_run: &TimeSeries, scene: &Scene, palette: &Palette) -> Self {
+        let values = of_run.diagnostics.iter().map(|all| diagnostic.of(all));
+        let points = of_run.times.iter().zip(values).map(|(&time, value)| [time, value]);
+        let points: Vec<_> = points.filter(|[_, value]| value.is_finite()).collect();
+        let (run, is_count) = (&scene.runs[of_run.run], diagnostic == Diagnostic::TurnedOver);
+        Self {
+            run: of_run.run,
+            name: run.name.clone(),
+            style: run.line(palette),
+            is_count,
+            points: if is_count { steps(&points) } else { points },
+            members: Vec::new(),
+            diverged: of_run.divergence.map(|divergence| divergence.time),
+        }
+    }
+
+    /// The mean of a run's time series in several scenes, up to the earliest end. A single one is returned as it is.
+    pub(super) fn mean(mut all: Vec<Self>) -> Option<Self> {
+        if all.len() < 2 {
+            return all.pop();
+        }
+        let members: Vec<_> = all.iter_mut().map(|one| std::mem::take(&mut one.points)).collect();
+        let diverged = all.iter().filter_map(|one| one.diverged).reduce(f64::min);
+        let first = all.swap_remove(0);
+        let at = |time: f64| {
+            let values: Option<Vec<_>> = members.iter().map(|member| value(member, time)).collect();
+            values.map(|values| [time, values.iter().sum::<f64>() / values.len() as f64])
+        };
+        let points: Vec<_> = members[0].iter().filter_map(|&[time, _]| at(time)).collect();
+        let points = if first.is_count { steps(&points) } else { points };
+        Some(Self { points, members, diverged, ..first })
+    }
+
+    /// All its points, with those of its members.
+    fn all(&self) -> impl Iterator<Item = &[f64; 2]> {
+        self.points.iter().chain(self.members.iter().flatten())
+    }
+
+    /// The area below a count.
+    pub(super) fn area(&self, palette: &Palette) -> Option<Layer> {
+        let colour = mixed(palette.background, palette.alarm, AREA);
+        self.is_count.then(|| Layer::Area { points: self.points.clone(), colour })
+    }
+
+    /// Its curve. That of several scenes lies on a band with the thin curve of each: the mean may be far from all.
+    pub(super) fn curves(&self, palette: &Palette) -> impl Iterator<Item = Layer> {
+        let LineStyle { colour, dash } = self.style;
+        let faint = mixed(palette.background, colour, SINGLE_STRENGTH);
+        let single = move |points: &Vec<[f64; 2]>| Layer::Line {
+            points: points.clone(),
+            colour: faint,
+            width: SINGLE,
+            dash: Vec::new(),
+        };
+        let band = (!self.members.is_empty()).then(|| Layer::Band { curves: self.members.clone(), colour });
+        let own = Layer::Line { points: self.points.clone(), colour, width: OWN, dash: dash.to_vec() };
+        band.into_iter().chain(self.members.iter().map(single)).chain([own])
+    }
+
+    /// The cross at a divergence.
+    pub(super) fn cross(&self) -> Option<Annotation> {
+        let colour = self.style.colour;
+        self.diverged.map(|at| Annotation::Cross { line: self.points.clone(), at, colour })
+    }
+}
+
+/// The name of a diagnostic of a scene in a picture.
+pub(in crate::picture) fn name(diagnostic: Diagnostic, scene: &Scene) -> &'static str {
+    match (diagnostic, scene.body.dimension) {
+        (Diagnostic::VolumeRatio, Dimension::Plane) => "area ratio",
+        _ => diagnostic.name(),
+    }
+}
+
+/// The largest absolute value.
+fn peak(one: &Series) -> f64 {
+    one.all().fold(0.0, |most, [_, value]| value.abs().max(most))
+}
+
+/// The range of shown values: all values of runs that did not diverge, and the values of diverged runs that are not far
+/// larger.
+pub(super) fn range(series: &[Series], may_diverge: bool) -> Option<[f64; 2]> {
+    let with_values = || series.iter().filter(|one| !one.points.is_empty());
+    let is_wild = |one: &Series| may_diverge && one.diverged.is_some();
+    let calm = with_values().filter(|one| !is_wild(one)).map(peak).reduce(f64::max);
+    let limit = match calm {
+        Some(calm) if calm > 0.0 => BEYOND * calm,
+        // If all runs diverged, the median counts as ordinary.
+        _ => {
+            let mut sizes: Vec<_> = with_values().flat_map(Series::all).map(|[_, value]| value.abs()).collect();
+            sizes.sort_by(f64::total_cmp);
+            BEYOND * sizes.get(sizes.len() / 2).copied()?
+        }
+    };
+    let shown = |one: &Series, value: f64| value.abs() <= limit || !is_wild(one);
+    let values = with_values().flat_map(|one| {
+        let shown = one.all().filter(|[_, value]| shown(one, *value));
+        shown.map(|&[_, value]| value).collect::<Vec<_>>()
+    });
+    let ends = values.fold(None, |ends: Option<[f64; 2]>, value| {
+        Some(ends.map_or([value; 2], |[low, high]| [low.min(value), high.max(value)]))
+    });
+    ends.map(widened)
+}
+
+/// A range that is not too narrow and includes zero unless that is far away.
+fn widened([low, high]: [f64; 2]) -> [f64; 2] {
+    let nearest = if low > 0.0 { low } else { (-high).max(0.0) };
+    if nearest <= NEAR_ZERO * (high - low) {
+        return [low.min(0.0), high.max(0.0)];
+    }
+    let largest = low.abs().max(high.abs());
+    let missing = (LEAST_RANGE * largest - (high - low)).max(0.0) / 2.0;
+    [low - missing, high + missing]
+}
+
+/// A count as steps: level until it changes, then straight up or down.
+fn steps(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut steps: Vec<[f64; 2]> = Vec::new();
+    for &[x, y] in points {
+        if let Some(&[_, before]) = steps.last().filter(|&&[_, before]| before != y) {
+            steps.push([x, before]);
+        }
+        steps.push([x, y]);
+    }
+    steps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Values at 0, 1, 2 … s.
+    fn series(values: &[f64], diverged: bool) -> Series {
+        let points = values.iter().enumerate().map(|(at, &value)| [at as f64, value]).collect();
+        let style = LineStyle { colour: [0; 3], dash: &[] };
+        let diverged = diverged.then_some(values.len() as f64);
+        Series { run: 0, name: String::new(), style, is_count: false, points, members: Vec::new(), diverged }
+    }
+
+    #[test]
+    fn one_range_holds_all_runs_and_zero() {
+        let range = |all: &[&[f64]]| range(&all.iter().map(|values| series(values, false)).collect::<Vec<_>>(), true);
+        assert_eq!(range(&[&[1.0, 2.0, 3.0], &[-0.5, 0.2]]), Some([-0.5, 3.0]));
+        assert_eq!(range(&[&[3.0, 2.0, 5.0]]), Some([0.0, 5.0]));
+        // A short peak is not a divergence, and neither is one run with much larger values than the other.
+        assert_eq!(range(&[&[3000.0, 1.0, 0.1, 0.1, 0.1]]), Some([0.0, 3000.0]));
+        assert_eq!(range(&[&[0.001; 8], &[0.1; 8]]), Some([0.0, 0.1]));
+        // Zero is far from a volume that hardly changes, and a constant value has some room.
+        assert_eq!(range(&[&[1.0, 1.05, 0.97]]), Some([0.97, 1.05]));
+        let [low, high] = range(&[&[1.0, 1.0]]).unwrap();
+        assert!(low < 1.0 && 1.0 < high && high - low < 0.03, "{low} {high}");
+        assert_eq!((range(&[]), range(&[&[]])), (None, None));
+        assert_eq!(range(&[&[0.0, 0.0]]), Some([0.0, 0.0]));
+    }
+
+    #[test]
+    fn diverged_runs_do_not_set_the_scale() {
+        let calm = series(&[1.0, 2.0, 1.5, 1.0, 1.0, 1.0], false);
+        let blown = series(&[1.0, 2.0, 5.0, 40.0, 1e9, 1e300], true);
+        assert_eq!(range(&[calm, blown], true), Some([0.0, 5.0]));
+        // Lasting values are shown in full, however late they begin.
+        let late = series(&[0.0, 0.0, 0.0, 0.0, 9.0, 9.0], false);
+        assert_eq!(range(&[series(&[0.0; 6], false), late], true), Some([0.0, 9.0]));
+        // Counts are bounded by themselves.
+        let counted = series(&[0.0, 0.0, 8.0], true);
+        assert_eq!(range(&[series(&[1.0; 3], false), counted], false), Some([0.0, 8.0]));
+        // A single run shows half of its values.
+        let alone = series(&[1.0, 1.0, 1.0, 2.0, 1e3, 1e9], true);
+        assert_eq!(range(&[alone], true), Some([0.0, 2.0]));
+    }
+
+    #[test]
+    fn counts_go_in_steps() {
+        let steps = steps(&[[0.0, 0.0], [1.0, 0.0], [2.0, 3.0], [3.0, 3.0]]);
+        assert_eq!(steps, [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 3.0], [3.0, 3.0]]);
+    }
+
+    #[test]
+    fn several_scenes_have_a_mean_within_their_band() {
+        let mean = Series::mean(vec![series(&[0.0, 2.0, 4.0], false), series(&[2.0, 8.0], true)]).expect("two");
+        assert_eq!(mean.points, [[0.0, 1.0], [1.0, 5.0]]);
+        assert_eq!((mean.members.len(), mean.diverged), (2, Some(2.0)));
+        // The scale includes all members.
+        assert_eq!(range(std::slice::from_ref(&mean), false), Some([0.0, 8.0]));
+        // A single scene has no band.
+        let alone = Series::mean(vec![series(&[1.0], false)]).expect("one");
+        assert!(alone.members.is_empty() && alone.points == [[0.0, 1.0]]);
+    }
+}

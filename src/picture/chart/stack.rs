@@ -1,0 +1,251 @@
+//! Charts above each other on one axis of time: a diagnostic of all runs in each, with its name at the left and the
+//! names of the runs at the ends of their curves.
+
+use super::annotation::{Annotation, Flag, flags};
+use super::axis::{Axis, Kind, Stretch};
+use super::names::Shortened;
+use super::series::{self, Series};
+use super::{Chart, GAP, NUMBERS, Place};
+use crate::picture::caption::Writer;
+use crate::picture::layout::{CURVE_NAME, Scale};
+use crate::picture::number;
+use crate::picture::text::{Fonts, Weight};
+use crate::reading::captions::elements;
+use crate::runner::history::History;
+use crate::scene::Scene;
+use crate::sim::Diagnostic;
+
+/// The least distance of numbers, and the most of them, beside a chart (px in the reference picture).
+const ROWS_APART: f64 = 21.0;
+const MOST_TICKS: usize = 4;
+/// Size of the unit's type, and the distance of lines below the name (px in the reference picture).
+const UNIT: f64 = 14.0;
+const UNIT_BELOW: f64 = 19.0;
+/// The meaning of a band where a curve is dense.
+const BAND: [&str; 2] = ["band:", "least to most"];
+/// The gap between the name and the numbers beside the chart (px in the reference picture).
+const BESIDE_NAME: f64 = 14.0;
+
+/// A diagnostic of several runs over time.
+struct Quantity {
+    name: String,
+    /// The lines below the name: its unit, and explanations of the axis, of curves and of bands.
+    notes: Vec<String>,
+    kind: Kind,
+    unit: &'static str,
+    /// One for each run shown.
+    series: Vec<Series>,
+    /// The range of values; `None` if there are none.
+    range: Option<[f64; 2]>,
+    /// The size of the body (m).
+    extent: f64,
+}
+
+impl Quantity {
+    /// A diagnostic of all runs, as the mean over scenes with runs of the same names, in the colours of a picture;
+    /// `label` replaces names of runs.
+    fn new(
+        diagnostic: Diagnostic,
+        of_scenes: &[(&Scene, &History)],
+        writer: &Writer<'_>,
+        label: impl Fn(&str) -> String,
+    ) -> Self {
+        let scene = of_scenes[0].0;
+        let one = |(scene, history): &(&Scene, &History), name: &str| {
+            let own = history.series.iter().find(|series| scene.runs[series.run].name == name);
+            own.map(|own| Series::new(diagnostic, own, scene, writer.palette))
+        };
+        let of_run = |run: usize| {
+            let name = &scene.runs[run].name;
+            let mean = Series::mean(of_scenes.iter().filter_map(|of_scene| one(of_scene, name)).collect());
+            mean.map(|mean| Series { name: label(&mean.name), ..mean })
+        };
+        let series: Vec<_> = of_scenes[0].1.series.iter().filter_map(|series| of_run(series.run)).collect();
+        let is_count = diagnostic == Diagnostic::TurnedOver;
+        let mut name = series::name(diagnostic, scene).to_owned();
+        if let Some(first) = name.get_mut(..1) {
+            first.make_ascii_uppercase();
+        }
+        let mut one = Self {
+            name,
+            notes: Vec::new(),
+            kind: if is_count { Kind::Count } else { Kind::Value },
+            unit: diagnostic.unit(),
+            // Counts are bounded by the number of elements, so diverged runs are shown in full.
+            range: series::range(&series, !is_count),
+            series,
+            extent: scene.body.extent(),
+        };
+        let unit = match one.values(MOST_TICKS) {
+            _ if is_count => match elements(&scene.body)[..] {
+                _ if of_scenes.iter().any(|(other, _)| elements(&other.body) != elements(&scene.body)) => {
+                    "elements".to_owned()
+                }
+                [(count, name)] => format!("of {} {name}", number::count(count)),
+                _ => format!("of {} elements", number::count(scene.body.elements.len())),
+            },
+            Some(values) => values.unit,
+            None => "none".to_owned(),
+        };
+        let has_zero = one.range.is_none_or(|[low, high]| low <= 0.0 && high >= 0.0);
+        let unit = [&*unit, if has_zero { "" } else { "not from zero" }].into_iter().filter(|text| !text.is_empty());
+        one.notes = Vec::from_iter(Some(unit.collect::<Vec<_>>().join(", ")).filter(|text| !text.is_empty()));
+        if of_scenes.len() > 1 {
+            one.notes.push(format!("{} scenes: mean, range", of_scenes.len()));
+        }
+        one
+    }
+
+    /// The axis of values with at most `most` ticks; `None` if there are no values.
+    fn values(&self, most: usize) -> Option<Stretch> {
+        self.range.map(|range| Stretch::new(self.kind, range, self.unit, self.extent, most))
+    }
+
+    /// The chart over an axis of time, at a place.
+    fn chart(&self, x: Axis, writer: &Writer<'_>, place: Place) -> Chart {
+        let rows = ((place.bottom - place.top) / (ROWS_APART * place.unit)) as usize + 1;
+        let y = Axis(self.values(rows.min(MOST_TICKS)).into_iter().collect());
+        let areas = self.series.iter().filter_map(|one| one.area(writer.palette));
+        let layers = areas.chain(self.series.iter().flat_map(|one| one.curves(writer.palette)));
+        let layers = layers.filter(|_| !y.0.is_empty()).collect();
+        let crosses = self.series.iter().filter(|one| !one.points.is_empty()).filter_map(Series::cross);
+        Chart { x, layers, annotations: crosses.collect(), y }
+    }
+
+    /// The width of the numbers beside it (px), for any number of ticks, with the gap to its name.
+    fn numbers_width(&self, fonts: &Fonts, unit: f64) -> f64 {
+        let texts = (2..=MOST_TICKS).filter_map(|most| self.values(most)).flat_map(|axis| axis.texts);
+        let widths = texts.map(|text| fonts.width(&text, Weight::Regular, NUMBERS * unit));
+        widths.fold(0.0, f64::max) + (GAP + BESIDE_NAME) * unit
+    }
+
+    /// The width of its name, with the lines below it (px).
+    fn name_width(&self, fonts: &Fonts, scale: Scale) -> f64 {
+        let below = |text: &str| fonts.width(text, Weight::Regular, UNIT * scale.type_unit());
+        let name = fonts.width(&self.name, Weight::SemiBold, scale.caption());
+        self.notes.iter().map(|note| below(note)).fold(name.max(below(BAND[1])), f64::max)
+    }
+
+    /// Writes the name with its notes, as many as fit into a height, from a left end around a place (px).
+    fn write_name(&self, writer: &mut Writer<'_>, notes: &[&str], [left, middle]: [f64; 2]) {
+        let (scale, palette) = (writer.scale, writer.palette);
+        let unit = scale.type_unit();
+        let baseline = middle + 0.36 * scale.caption() - 0.5 * notes.len() as f64 * UNIT_BELOW * unit;
+        writer.left(&self.name, Weight::SemiBold, scale.caption(), palette.text, left, baseline);
+        for (text, line) in notes.iter().zip(1..) {
+            let baseline = baseline + f64::from(line) * UNIT_BELOW * unit;
+            writer.left(text, Weight::Regular, UNIT * unit, palette.second_text, left, baseline);
+        }
+    }
+}
+
+/// The room of charts (px).
+pub(in crate::picture) struct Room {
+    /// The middle of the rings above all charts.
+    pub rings: f64,
+    /// Left and right end of all charts.
+    pub span: [f64; 2],
+    /// The left end of their names.
+    pub names: Option<f64>,
+    /// Top and bottom of each chart.
+    pub charts: Vec<[f64; 2]>,
+    /// The extent of names at the ends of curves above and below each chart.
+    pub beyond: [f64; 2],
+}
+
+/// Charts above each other.
+pub(in crate::picture) struct Stack {
+    quantities: Vec<Quantity>,
+    /// Names at the ends of curves, if there is room for them, the same beside all charts.
+    ends: Option<Shortened>,
+    /// The widths of the names, and of the numbers beside the charts with gaps (px).
+    pub names_width: f64,
+    pub numbers_width: f64,
+}
+
+impl Stack {
+    /// Charts of diagnostics, each with the time series of scenes, with room for the names of runs (px).
+    ///
+    /// # Panics
+    /// If there is no scene.
+    pub(in crate::picture) fn new(
+        diagnostics: &[Diagnostic],
+        of_scenes: &[(&Scene, &History)],
+        writer: &Writer<'_>,
+        room: [f64; 2],
+        label: impl Fn(&str) -> String,
+    ) -> Self {
+        let (fonts, scale) = (writer.fonts, writer.scale);
+        let unit = scale.type_unit();
+        let quantities = diagnostics.iter().map(|&one| Quantity::new(one, of_scenes, writer, &label));
+        let quantities: Vec<_> = quantities.collect();
+        let widest = |wide: &dyn Fn(&Quantity) -> f64| quantities.iter().map(wide).fold(0.0, f64::max);
+        Self {
+            // The lines of all charts have the same names.
+            ends: quantities.iter().find_map(|one| Shortened::new(fonts, &one.series, unit, room)),
+            names_width: widest(&|one| one.name_width(fonts, scale)),
+            numbers_width: widest(&|one| one.numbers_width(fonts, unit)),
+            quantities,
+        }
+    }
+
+    /// The width of the names right of the charts (px).
+    pub(in crate::picture) fn ends_width(&self) -> f64 {
+        self.ends.as_ref().map_or(0.0, |ends| ends.width)
+    }
+
+    /// The height that the names of all curves of a chart need (px in the reference picture).
+    pub(in crate::picture) fn ends_height(&self) -> f64 {
+        let names = self.quantities.iter().map(|one| one.series.len()).max().unwrap_or(0);
+        self.ends.as_ref().map_or(0.0, |_| names as f64 * CURVE_NAME)
+    }
+
+    pub(in crate::picture) fn count(&self) -> usize {
+        self.quantities.len()
+    }
+
+    /// The time series of the first chart.
+    pub(super) fn first(&self) -> &[Series] {
+        self.quantities.first().map_or(&[], |one| &one.series)
+    }
+
+    /// Draws as many charts as have room, over a span of time whose scale may change between (s): what lies below the
+    /// curves with one writer, the curves with another. Returns the charts and their places.
+    pub(in crate::picture) fn draw(
+        &self,
+        [ground, curves]: [&mut Writer<'_>; 2],
+        room: &Room,
+        (span, split): ([f64; 2], Option<f64>),
+        marked: &[Flag],
+    ) -> Vec<(Chart, Place)> {
+        let scale = ground.scale;
+        let (unit, line) = (scale.type_unit(), scale.unit);
+        let [left, right] = room.span;
+        let x = Axis::of_time(ground.fonts, room.span, unit, span, split);
+        let placed = self.quantities.iter().zip(&room.charts).map(|(one, &[top, bottom])| {
+            let place = Place { left, right, top, bottom, unit, line };
+            (one.chart(x.clone(), ground, place), place)
+        });
+        let mut placed: Vec<_> = placed.collect();
+        let Some((first, last)) = placed.first().zip(placed.last()) else { return placed };
+        flags(ground, marked, room.rings, (&first.0, first.1), last.1.bottom);
+        let count = placed.len();
+        for (at, (one, (chart, place))) in self.quantities.iter().zip(&mut placed).enumerate() {
+            if let Some(names) = self.ends.as_ref().map(|ends| ends.at(&one.series)) {
+                chart.annotations.push(Annotation::Names { names, beyond: room.beyond });
+            }
+            chart.ground(ground, *place, at + 1 == count);
+            chart.curves(curves, *place);
+            let Some(left) = room.names else { continue };
+            let mut notes: Vec<_> = one.notes.iter().map(|note| &**note).collect();
+            if chart.layers.iter().any(|layer| layer.has_band(chart, *place)) {
+                notes.extend(BAND);
+            }
+            let free = place.bottom - place.top + room.beyond.iter().sum::<f64>() - scale.caption();
+            let fitting = if Scale::legible(UNIT * unit) { (free / (UNIT_BELOW * unit)).max(0.0) as usize } else { 0 };
+            notes.truncate(fitting.max(usize::from(fitting > 0)));
+            one.write_name(ground, &notes, [left, 0.5 * (place.top + place.bottom)]);
+        }
+        placed
+    }
+}
