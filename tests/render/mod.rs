@@ -14,6 +14,7 @@ mod inside;
 mod listed;
 mod look;
 mod obstacles;
+mod pages;
 mod pictures;
 mod printed;
 mod sheets;
