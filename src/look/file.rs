@@ -90,12 +90,12 @@ pub(crate) struct CameraFile {
     #[schemars(range(min = 0.001, max = 3.0))]
     pub(crate) field_of_view: Option<f64>,
     /// The point (m) that a fixed camera looks at. Default: the centre of the body where it would stand on the first
-    /// floor below it, or where it starts. Without a `distance` the target also brings plates, spheres, capsules, boxes
-    /// and moved nodes near the body into the picture.
+    /// floor below it, or where it starts.
     pub(crate) target: Option<Coordinates>,
     /// Distance of a fixed camera from its target (m). In the plane it gives the scale together with `field_of_view`.
-    /// Default: 8.5 times the longest side of the bounding box at the start, and more if the body starts above that picture. Without a `target` the picture also shows all parts of plates, spheres, capsules, boxes and moved
-    /// nodes that come within 1.25 body sizes of the body's start or stand.
+    /// Default: 8.5 times the longest side of the bounding box at the start. Without a `target`, more if that leaves out
+    /// the body where it starts or stands, or parts of plates, spheres, capsules, boxes and moved nodes within 1.25 body
+    /// sizes of it.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) distance: Option<f64>,
     /// Whether the camera follows the centre of mass of each run's body. All panels and frames then have one scale, at

@@ -40,29 +40,22 @@ pub(crate) fn camera(typed: &CameraFile, target: Option<DVec3>, scene: &Subject<
         field_of_view: typed.field_of_view.unwrap_or(FIELD_OF_VIEW),
         target: standing,
         distance: typed.distance.unwrap_or_else(|| DISTANCE * size(scene)),
-        rise: 0.0,
         follow: typed.follow && target.is_none() && typed.distance.is_none(),
         near: Vec::new(),
     };
-    let near = near(start, standing, scene);
-    match target {
-        Some(target) => chosen.target = target,
-        None => show_start(&mut chosen, start, dimension, typed.distance.is_some()),
-    }
-    if target.is_none() && typed.distance.is_none() {
-        show_reach(&mut chosen, start, standing, &near, dimension);
+    let (low, high) = bounds(start);
+    let drop = standing - (low + high) / 2.0;
+    let near = reach::near(scene, [low.min(low + drop), high.max(high + drop)], size(scene));
+    if let Some(target) = target {
+        chosen.target = target;
+    } else if typed.distance.is_none() {
+        let both = start.iter().flat_map(|&at| [at, at + drop]);
+        show(&mut chosen, &both.chain(near.iter().copied()).collect::<Vec<_>>(), dimension);
     }
     if chosen.follow {
         chosen.near = near;
     }
     chosen
-}
-
-/// Points of objects near a body where it starts and where it will stand (m).
-fn near(start: &[DVec3], standing: DVec3, scene: &Subject<'_>) -> Vec<DVec3> {
-    let (low, high) = bounds(start);
-    let drop = standing - (low + high) / 2.0;
-    reach::near(scene, [low.min(low + drop), high.max(high + drop)], size(scene))
 }
 
 /// The largest side of the box around the body at the start (m), or at rest if it starts as a point.
@@ -81,37 +74,16 @@ fn standing(start: &[DVec3], obstacles: &[Obstacle]) -> DVec3 {
     DVec3::new(middle.x, ground + (high.y - low.y) / 2.0, middle.z)
 }
 
-/// Moves a camera whose target is the place where a body will stand, so that the body is also in the picture at its
-/// start. If it already is, the camera stays.
-fn show_start(camera: &mut Camera, start: &[DVec3], dimension: Dimension, keep_distance: bool) {
-    let (low, high) = bounds(start);
-    let drop = camera.target - (low + high) / 2.0;
-    if least_distance(camera, start.iter().copied(), dimension) <= camera.distance {
+/// Moves a camera aside and back so that it shows points. If all are in the picture already, the camera stays.
+fn show(camera: &mut Camera, points: &[DVec3], dimension: Dimension) {
+    if least_distance(camera, points, dimension) <= camera.distance {
         return;
     }
-    camera.rise = -drop.y;
-    camera.target -= drop / 2.0;
-    if !keep_distance {
-        let shown = start.iter().flat_map(|&at| [at, at + drop]);
-        camera.distance = camera.distance.max(least_distance(camera, shown, dimension));
-    }
-}
-
-/// Moves a camera aside and back so that it also shows objects near the body. If all are in the picture already, or if
-/// there are none, the camera stays.
-fn show_reach(camera: &mut Camera, start: &[DVec3], standing: DVec3, near: &[DVec3], dimension: Dimension) {
-    if near.is_empty() || least_distance(camera, near.iter().copied(), dimension) <= camera.distance {
-        return;
-    }
-    let (low, high) = bounds(start);
-    let drop = standing - (low + high) / 2.0;
-    let mut shown = near.to_vec();
-    shown.extend(start.iter().flat_map(|&at| [at, at + drop]));
     // The middle depends a little on the distance, so iterate.
     for _ in 0..4 {
-        let step = middle_of(camera, &shown, dimension);
+        let step = middle_of(camera, points, dimension);
         camera.target += step;
-        camera.distance = camera.distance.max(least_distance(camera, shown.iter().copied(), dimension));
+        camera.distance = camera.distance.max(least_distance(camera, points, dimension));
     }
 }
 
@@ -141,10 +113,10 @@ fn is_under_plate(obstacles: &[Obstacle]) -> bool {
 }
 
 /// The least distance at which a camera has points in the picture (m).
-fn least_distance(camera: &Camera, points: impl Iterator<Item = DVec3>, dimension: Dimension) -> f64 {
+fn least_distance(camera: &Camera, points: &[DVec3], dimension: Dimension) -> f64 {
     let [right, up, towards] = axes(camera.azimuth, camera.elevation);
     let [aside, above, below] = ROOM.map(|share| share * 2.0 * libm::tan(camera.field_of_view / 2.0));
-    let least = points.map(|point| {
+    let least = points.iter().map(|&point| {
         let from_target = point - camera.target;
         let (x, y) = (from_target.dot(right), from_target.dot(up));
         let depth = if dimension == Dimension::Plane { 0.0 } else { from_target.dot(towards) };

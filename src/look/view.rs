@@ -137,7 +137,6 @@ impl Default for View {
                 field_of_view: 20.0 / 180.0 * std::f64::consts::PI,
                 target: DVec3::ZERO,
                 distance: 1.0,
-                rise: 0.0,
                 follow: false,
                 near: Vec::new(),
             },
@@ -427,8 +426,6 @@ pub struct Camera {
     pub target: DVec3,
     /// Distance from it (m).
     pub distance: f64,
-    /// The height of the body's start above its stand, if target and distance were chosen to show both (m).
-    pub rise: f64,
     /// Whether the camera follows the centre of each run's body, from a distance at which the body fills its panel at
     /// its widest moment.
     pub follow: bool,

@@ -22,8 +22,6 @@ pub(crate) struct Framing {
     pub target: DVec3,
     /// Distance from the target (m).
     pub distance: f64,
-    /// The height of the body at the start above the target, where the picture shows both (m).
-    pub rise: f64,
     /// Whether the framing differs between frames.
     pub moves: bool,
 }
@@ -31,8 +29,8 @@ pub(crate) struct Framing {
 impl Framing {
     /// The framing of a camera that stands still.
     pub(crate) fn still(camera: &Camera) -> Self {
-        let Camera { target, distance, rise, .. } = *camera;
-        Self { target, distance, rise, moves: false }
+        let Camera { target, distance, .. } = *camera;
+        Self { target, distance, moves: false }
     }
 }
 
@@ -146,7 +144,6 @@ mod tests {
                 field_of_view: 20_f64.to_radians(),
                 target: DVec3::new(0.0, 0.15, 0.0),
                 distance: 2.55,
-                rise: 0.0,
                 follow: false,
                 near: Vec::new(),
             },

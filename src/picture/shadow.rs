@@ -5,7 +5,7 @@
 //! edges between triangles that turn towards the light and others. Each edge begins or ends a layer, row by row, and a
 //! cell with at least one layer is in the shadow. The file is long because of its tests.
 
-use super::camera::{Framing, Lens};
+use super::camera::Lens;
 use super::narrow::narrow;
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
@@ -17,8 +17,6 @@ const KEY_CONE: f64 = 0.12;
 /// Azimuth of the key light from straight behind the viewer to the left, and its elevation above the horizon (rad).
 const KEY_AZIMUTH: f64 = 62.0 / 180.0 * std::f64::consts::PI;
 const KEY_ELEVATION: f64 = 50.0 / 180.0 * std::f64::consts::PI;
-/// The extra slope of the key light per camera distance that bodies have risen: it keeps the shadow in the panel.
-const KEY_STEEPENING: f64 = 8.0;
 /// The numbers of directions for the key light and for the sky.
 const DIRECTIONS: [usize; 2] = [48, 96];
 /// Bodies of more triangles get fewer directions, or the shadow would take longer than everything else.
@@ -77,11 +75,11 @@ impl Plane {
 }
 
 /// Unit vector towards the key light, which turns with the camera.
-pub(super) fn key_light(lens: &Lens, framing: &Framing) -> DVec3 {
+pub(super) fn key_light(lens: &Lens) -> DVec3 {
     let towards_viewer = lens.right.cross(DVec3::Y);
     let (left, towards) = libm::sincos(KEY_AZIMUTH);
     let level = towards * towards_viewer - left * lens.right;
-    let slope = libm::tan(KEY_ELEVATION) + KEY_STEEPENING * framing.rise / framing.distance;
+    let slope = libm::tan(KEY_ELEVATION);
     (level + slope * DVec3::Y).normalize()
 }
 

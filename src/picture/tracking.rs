@@ -148,7 +148,7 @@ impl Tracking {
         let target = if shot.is_still { shot.offset } else { centre + shot.offset };
         // Panels may differ by a pixel in width, but have one scale.
         let distance = near(scene, viewport, scale).focal / shot.pixels;
-        Framing { target, distance, rise: 0.0, moves: !shot.is_still }
+        Framing { target, distance, moves: !shot.is_still }
     }
 }
 
@@ -159,7 +159,7 @@ fn union([low, high]: [DVec3; 2], [from, to]: [DVec3; 2]) -> [DVec3; 2] {
 
 /// The camera of a panel at a distance of a metre.
 fn near(scene: &Scene, viewport: Rectangle, scale: Scale) -> Lens {
-    let framing = Framing { target: DVec3::ZERO, distance: 1.0, rise: 0.0, moves: false };
+    let framing = Framing { target: DVec3::ZERO, distance: 1.0, moves: false };
     Lens::new(&scene.view, &framing, scene.body.dimension, viewport.map(f64::from), scale.unit)
 }
 

@@ -109,7 +109,7 @@ impl<'a> Draft<'a> {
             viewport,
             clear: layout::clear_of_words(viewport, view, scale),
             scale,
-            key: key_light(&lens, framing),
+            key: key_light(&lens),
             origin: framing.target,
             side: view.side,
             position,

@@ -212,7 +212,7 @@ impl TileCamera<'_> {
     }
 
     fn framing(target: DVec3, distance: f64) -> Framing {
-        Framing { target, distance, rise: 0.0, moves: false }
+        Framing { target, distance, moves: false }
     }
 
     /// Pixels per metre at a distance (m).

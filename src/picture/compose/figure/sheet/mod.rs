@@ -160,7 +160,7 @@ fn seen(scene: &Scene, at: usize, sheet: &Sheet, framings: &[Vec<Framing>]) -> S
     let column = sheet.columns.iter().position(|column| column.scene == at);
     if let Some(framing) = column.and_then(|column| framings.first()?.get(column)) {
         let camera = &mut scene.view.camera;
-        (camera.target, camera.distance, camera.rise) = (framing.target, framing.distance, 0.0);
+        (camera.target, camera.distance) = (framing.target, framing.distance);
     }
     scene
 }
