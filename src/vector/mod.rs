@@ -126,10 +126,15 @@ pub fn bodies(picture: &Picture, size_mm: Option<[f64; 2]>) -> Option<Picture> {
 /// A font that cannot be embedded.
 pub fn write(page: &Page<'_>, format: Format) -> Result<Vec<u8>, VectorError> {
     let subsets = font::subsets(page.picture)?;
-    let items = items(page);
+    let picture = page.picture;
+    let ground = ground(picture);
+    let images: Vec<_> = page.bodies.map_or_else(Vec::new, |pixels| {
+        lit(picture).filter_map(|panel| image(page, panel, pixels)).map(Item::Image).collect()
+    });
+    let items = [&ground].into_iter().chain(&picture.under).chain(&images).chain(&picture.above);
     Ok(match format {
-        Format::Svg => svg::file(page, &items, &subsets),
-        Format::Pdf => pdf::file(page, &items, &subsets),
+        Format::Svg => svg::file(page, items, &subsets),
+        Format::Pdf => pdf::file(page, items, &subsets),
     })
 }
 
@@ -138,17 +143,10 @@ fn lit(picture: &Picture) -> impl Iterator<Item = &Panel> {
     picture.panels.iter().filter(|panel| !panel.sight.flat)
 }
 
-/// The items of a page, in order.
-fn items(page: &Page<'_>) -> Vec<Item> {
-    let picture = page.picture;
+/// The ground of a picture.
+fn ground(picture: &Picture) -> Item {
     let whole = Path::rectangle(Vec2::ZERO, picture.size.map(|length| length as f32).into());
-    let mut items = vec![Item::fill(whole, picture.palette.background)];
-    items.extend_from_slice(&picture.under);
-    if let Some(pixels) = page.bodies {
-        items.extend(lit(picture).filter_map(|panel| image(page, panel, pixels)).map(Item::Image));
-    }
-    items.extend_from_slice(&picture.above);
-    items
+    Item::fill(whole, picture.palette.background)
 }
 
 /// The halo of a line of text, if it has one.
@@ -159,9 +157,8 @@ fn halo(picture: &Picture, run: &TextRun) -> Option<Item> {
 
 /// Gives a painter the flat items of a picture. Lit bodies below them, if there are any, come with their ground.
 pub(crate) fn give(painter: &mut Painter, picture: &Picture) {
-    let items = items(&Page::new(picture));
-    let skip = usize::from(lit(picture).next().is_some());
-    painter.take(&items[skip..], picture);
+    let ground = lit(picture).next().is_none().then(|| ground(picture));
+    painter.take(ground.iter().chain(&picture.under).chain(&picture.above), picture);
 }
 
 /// The part of a lit panel that is not empty.

@@ -17,7 +17,7 @@ const POINTS: f64 = 72.0 / 25.4;
 /// The encoding: characters are numbers of glyphs.
 const IDENTITY: SystemInfo<'static> = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 
-pub(super) fn file(page: &Page<'_>, items: &[Item], subsets: &[Subset<'_>]) -> Vec<u8> {
+pub(super) fn file<'a>(page: &Page<'_>, items: impl Iterator<Item = &'a Item>, subsets: &[Subset<'_>]) -> Vec<u8> {
     let [width, height] = match page.size_mm {
         Some(lengths) => lengths.map(|length| (length * POINTS) as f32),
         None => page.picture.size.map(|length| 0.75 * length as f32),
@@ -50,7 +50,7 @@ pub(super) fn file(page: &Page<'_>, items: &[Item], subsets: &[Subset<'_>]) -> V
     let [x, y] = [width / page.picture.size[0] as f32, height / page.picture.size[1] as f32];
     writer.content.transform([x, 0.0, 0.0, -y, 0.0, height]);
     writer.content.set_line_join(LineJoinStyle::RoundJoin);
-    items.iter().for_each(|item| writer.item(item));
+    items.for_each(|item| writer.item(item));
     let fonts: Vec<_> = subsets.iter().map(|subset| (subset.face, writer.font(subset))).collect();
 
     let Writer { mut pdf, content: drawn, alphas, images, shadings, mut next, .. } = writer;

@@ -40,9 +40,9 @@ impl Painter {
     }
 
     /// Takes the items of a page, in place of those of the last one.
-    pub(super) fn take(&mut self, items: &[Item], picture: &Picture) {
+    pub(super) fn take<'a>(&mut self, items: impl Iterator<Item = &'a Item>, picture: &Picture) {
         self.context.reset();
-        items.iter().for_each(|item| self.item(item, picture));
+        items.for_each(|item| self.item(item, picture));
     }
 
     /// Paints the items over pixels: red, green, blue and full opacity of each, in rows from the top left.

@@ -11,10 +11,10 @@ use base64::engine::general_purpose::STANDARD;
 use glam::Vec2;
 use std::fmt::Write;
 
-pub(super) fn file(page: &Page<'_>, items: &[Item], subsets: &[Subset<'_>]) -> Vec<u8> {
+pub(super) fn file<'a>(page: &Page<'_>, items: impl Iterator<Item = &'a Item>, subsets: &[Subset<'_>]) -> Vec<u8> {
     let mut svg = Svg { text: String::new(), picture: page.picture, subsets, names: 0 };
     svg.head(page);
-    items.iter().for_each(|item| svg.item(item));
+    items.for_each(|item| svg.item(item));
     svg.text += "</svg>\n";
     svg.text.into_bytes()
 }
