@@ -6,6 +6,7 @@ use super::keys;
 use super::record::RECORD_FILE;
 use super::source::Source;
 use super::states::{Run, moved};
+use super::verdict::Verdict;
 use crate::output::{AtomicFile, FolderLock, OutputError, read_file, shell};
 use std::path::Path;
 
@@ -56,6 +57,15 @@ impl Comparison {
             }
         }
         comparison
+    }
+
+    /// Refuses pictures that are only within the tolerance.
+    pub(super) fn refuse_tolerance(&mut self) {
+        for picture in self.pictures.iter_mut().filter(|picture| picture.verdict == Verdict::WithinTolerance) {
+            picture.verdict = Verdict::DrawnDifferently;
+            let unequal = picture.distance.map_or(0, |distance| distance.unequal);
+            picture.note = Some(format!("unequal pixels: {unequal}, but none are allowed without lit bodies"));
+        }
     }
 
     /// Makes the golden, or replaces its parts that changed, and returns a line on each change. Pictures within the

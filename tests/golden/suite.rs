@@ -2,6 +2,7 @@
 
 use localshape::golden::Suite;
 use localshape::gpu::{AdapterChoice, Gpu};
+use localshape::internals::{Compression, Pixels, encode};
 use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;
@@ -27,6 +28,9 @@ fn of_another_project() {
         std::process::abort();
     });
     let mut goldens = Suite::new("goldens").reports("reports");
+    if std::env::var_os("EXACT").is_some() {
+        goldens = goldens.exact();
+    }
     for scene in std::env::var("SCENES").expect("set by the tests below").split(' ') {
         goldens.scene(scene);
     }
@@ -35,9 +39,15 @@ fn of_another_project() {
 
 /// Runs it and returns whether it passed, and its output.
 fn run(place: &TempDir, scenes: &str, update: &str) -> (bool, String) {
+    run_with(place, scenes, update, &[])
+}
+
+/// Runs it with further environment variables.
+fn run_with(place: &TempDir, scenes: &str, update: &str, others: &[(&str, &str)]) -> (bool, String) {
     let mut command = Command::new(std::env::current_exe().expect("this test"));
     command.args(["--exact", "suite::of_another_project", "--ignored"]).current_dir(place.path());
     command.env("SCENES", scenes).env("UPDATE_GOLDENS", update).env("RUST_BACKTRACE", "0");
+    command.envs(others.iter().copied());
     // Drivers print warnings about a missing window, which do not matter here.
     command.env_remove("XDG_RUNTIME_DIR");
     let output = command.output().expect("this test starts");
@@ -97,6 +107,27 @@ fn a_golden_is_missed_made_kept_renewed_and_guarded() {
     assert!(run(&place, "drop.toml", "").0);
     let (passed, text) = run(&place, "drop.toml", "state");
     assert!(!passed && text.contains("UPDATE_GOLDENS=state means nothing; UPDATE_GOLDENS=1 "), "{text}");
+}
+
+#[test]
+fn on_request_pictures_without_lit_bodies_have_no_tolerance() {
+    let place = tempfile::tempdir().expect("a folder");
+    let plane = SCENE.replace(", 0]", "]").replace("[1, 1, 1]", "[1, 1]");
+    write(&place, "drop.toml", &plane);
+    assert!(run(&place, "drop.toml", "1").0);
+    let exactly = |update: &str| run_with(&place, "drop.toml", update, &[("EXACT", "1")]);
+    assert!(exactly("").0);
+    let path = place.path().join("goldens/drop/frame_00002.png");
+    let mut picture = Pixels::read(&path).expect("a picture");
+    picture.bytes[0] ^= 1;
+    let texts = picture.label.expect("its metadata").texts();
+    std::fs::write(&path, encode(picture.size, &picture.bytes, &texts, Compression::High)).expect("a picture");
+    assert!(run(&place, "drop.toml", "").0);
+    let (passed, text) = exactly("");
+    assert!(!passed && text.contains("unequal pixels: 1, but none are allowed without lit bodies"), "{text}");
+    let (passed, text) = exactly("1");
+    assert!(passed && text.contains("drop: accepted goldens/drop/frame_00002.png"), "{text}");
+    assert!(exactly("").0);
 }
 
 #[test]
