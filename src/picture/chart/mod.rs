@@ -16,7 +16,7 @@ pub use axis::Axis;
 pub use layer::Layer;
 pub(super) use layer::simplified;
 pub(super) use names::spread;
-pub(super) use series::name;
+pub(super) use series::{name, style};
 pub(super) use stack::{Room, Stack};
 
 use super::caption::Writer;

@@ -41,9 +41,15 @@ pub(in crate::picture) struct Series {
     pub diverged: Option<f64>,
 }
 
+/// The line of a run in all charts of a picture and beside its name. One chart of counts makes all lines solid: dashed steps
+/// look ragged.
+pub(in crate::picture) fn style(charts: &[Diagnostic], line: LineStyle) -> LineStyle {
+    if charts.contains(&Diagnostic::TurnedOver) { LineStyle { dash: &[], ..line } } else { line }
+}
+
 impl Series {
-    /// A diagnostic of a run of a scene, in the colours of a picture.
-    pub(super) fn new(diagnostic: Diagnostic, of_run: &TimeSeries, scene: &Scene, palette: &Palette) -> Self {
+    /// A diagnostic of a run of a scene, with the line of the run.
+    pub(super) fn new(diagnostic: Diagnostic, of_run: &TimeSeries, scene: &Scene, style: LineStyle) -> Self {
         let values = of_run.diagnostics.iter().map(|all| diagnostic.of(all));
         let points = of_run.times.iter().zip(values).map(|(&time, value)| [time, value]);
         let points: Vec<_> = points.filter(|[_, value]| value.is_finite()).collect();
@@ -51,7 +57,7 @@ impl Series {
         Self {
             run: of_run.run,
             name: run.name.clone(),
-            style: run.line(palette),
+            style,
             is_count,
             points: if is_count { steps(&points) } else { points },
             members: Vec::new(),

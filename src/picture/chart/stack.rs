@@ -42,10 +42,11 @@ struct Quantity {
 }
 
 impl Quantity {
-    /// A diagnostic of all runs, as the mean over scenes with runs of the same names, in the colours of a picture;
-    /// `label` replaces names of runs.
+    /// A diagnostic of all runs, as the mean over scenes with runs of the same names, in the colours of a picture, beside
+    /// the charts of others; `label` replaces names of runs.
     fn new(
         diagnostic: Diagnostic,
+        charts: &[Diagnostic],
         of_scenes: &[(&Scene, &History)],
         writer: &Writer<'_>,
         label: impl Fn(&str) -> String,
@@ -53,7 +54,9 @@ impl Quantity {
         let scene = of_scenes[0].0;
         let one = |(scene, history): &(&Scene, &History), name: &str| {
             let own = history.series.iter().find(|series| scene.runs[series.run].name == name);
-            own.map(|own| Series::new(diagnostic, own, scene, writer.palette))
+            own.map(|own| {
+                Series::new(diagnostic, own, scene, series::style(charts, scene.runs[own.run].line(writer.palette)))
+            })
         };
         let of_run = |run: usize| {
             let name = &scene.runs[run].name;
@@ -177,7 +180,7 @@ impl Stack {
     ) -> Self {
         let (fonts, scale) = (writer.fonts, writer.scale);
         let unit = scale.type_unit();
-        let quantities = diagnostics.iter().map(|&one| Quantity::new(one, of_scenes, writer, &label));
+        let quantities = diagnostics.iter().map(|&one| Quantity::new(one, diagnostics, of_scenes, writer, &label));
         let quantities: Vec<_> = quantities.collect();
         let widest = |wide: &dyn Fn(&Quantity) -> f64| quantities.iter().map(wide).fold(0.0, f64::max);
         Self {

@@ -3,7 +3,7 @@
 use super::{Composer, cut};
 use crate::look::{Ghost, Labels, LineStyle, Palette, View};
 use crate::picture::caption::{self, Heading, Writer};
-use crate::picture::chart::event;
+use crate::picture::chart::{event, style};
 use crate::picture::layout::{Layout, Part, Scale, Wanted};
 use crate::picture::legend::Legend;
 use crate::picture::text::{Fonts, Weight};
@@ -154,7 +154,7 @@ impl<'a> Words<'a> {
         let run = self.scene.runs.get(run).filter(|_| view.labels.legend && (has_chart || has_arrows || has_ghost))?;
         let line = run.line(self.palette);
         // Without a chart, only colours count.
-        Some(if has_chart { line } else { LineStyle { dash: &[], ..line } })
+        Some(if has_chart { style(&view.charts, line) } else { LineStyle { dash: &[], ..line } })
     }
 
     /// Whether the clock has no room beside the heading of its panel.

@@ -2,6 +2,7 @@
 
 use super::sheet_layout::SheetLayout;
 use crate::picture::caption::Writer;
+use crate::picture::chart::style;
 use crate::picture::compose::cut;
 use crate::picture::layout::Scale;
 use crate::picture::number;
@@ -98,7 +99,7 @@ impl RowLabels {
                 baseline += SAMPLE_BELOW * unit;
                 let run = |scene: &Scene| scene.runs.iter().position(|run| run.name == sheet.rows[row].run);
                 if let Some((scene, run)) = sheet.scenes.first().and_then(|scene| Some((scene, run(scene)?))) {
-                    writer.sample([left, baseline], scene.runs[run].line(palette));
+                    writer.sample([left, baseline], style(&sheet.charts, scene.runs[run].line(palette)));
                 }
             }
             baseline += NOTE_BELOW * unit;
