@@ -1,12 +1,15 @@
-//! Panels in the plane look the same in SVG files, as a browser shows them, and in PNG files.
+//! Pictures in the plane look the same in SVG files, as a browser shows them, and in PNG files.
 
 use super::browser::Browser;
 use super::listed::Listed;
 use super::{compose, frame, parse};
 use glam::Vec2;
 use localshape::look::{Style, Theme};
-use localshape::picture::{Image, Item, Paint, Path, Pen};
+use localshape::picture::{Image, Item, Paint, Path, Pen, Picture, compose_figure};
 use localshape::render::Renderer;
+use localshape::runner::moments::Moments;
+use localshape::scene::figure::Figure;
+use localshape::scene::{Limits, Scene};
 use localshape::sim::{Divergence, Frame, LastFit, Status};
 use localshape::vector::{Format, Page, write};
 
@@ -14,23 +17,28 @@ use localshape::vector::{Format, Page, write};
 const SQUARE: usize = 8;
 const SIZE: [u32; 2] = [720, 480];
 
-/// Draws a picture without its words in both ways: the colours of all pixels.
-fn both(browser: &mut Browser, mut picture: Listed) -> [Vec<[u8; 3]>; 2] {
-    assert_eq!(picture.size, SIZE);
-    picture.mute();
+/// Draws a picture in both ways: the colours of all pixels.
+fn both(browser: &mut Browser, picture: &Picture) -> [Vec<[u8; 3]>; 2] {
     let drawn =
-        Renderer::new(None, SIZE).and_then(|mut renderer| renderer.draw(&picture)).expect("no device is needed");
+        Renderer::new(None, picture.size).and_then(|mut renderer| renderer.draw(picture)).expect("no device is needed");
     let drawn = drawn.pixels().map(|pixel| pixel.0).collect();
-    let svg = write(&Page::new(&picture), Format::Svg).expect("a page");
+    let svg = write(&Page::new(picture), Format::Svg).expect("a page");
     let svg = String::from_utf8(svg).expect("text");
-    let pdf = write(&Page::new(&picture), Format::Pdf).expect("a page");
+    let pdf = write(&Page::new(picture), Format::Pdf).expect("a page");
     let masks = String::from_utf8_lossy(&pdf).matches("/SMask").count();
     assert_eq!(masks, svg.matches("<image").count(), "soft images of PDF are transparent, too");
-    browser.resize(SIZE);
+    browser.resize(picture.size);
     browser.open(&format!("<!doctype html><meta charset=\"utf-8\"><body style=\"margin: 0\">{svg}"));
+    browser.until("the fonts", "document.fonts.status === 'loaded'");
     let (width, seen) = browser.pixels();
-    assert_eq!(width, SIZE[0] as usize);
+    assert_eq!(width, picture.size[0] as usize);
     [drawn, seen]
+}
+
+/// Draws a picture without its words in both ways.
+fn both_without_words(browser: &mut Browser, mut picture: Listed) -> [Vec<[u8; 3]>; 2] {
+    picture.mute();
+    both(browser, &picture)
 }
 
 /// The largest difference of a colour channel between the means of equal squares, with the place of the square (px), and the mean
@@ -127,7 +135,7 @@ fn a_browser_shows_flat_panels_as_they_are_drawn() {
             scene.view.look = Style::of(theme);
             let mut frame = frame(&scene, 0);
             changes.iter().for_each(|change| change(&mut frame));
-            let pictures = both(&mut browser, compose(&scene, &frame));
+            let pictures = both_without_words(&mut browser, compose(&scene, &frame));
             let (most, at, mean) = differences(&pictures);
             assert!(most < 20.0 && mean < 0.4, "case {case}, {theme:?}: {most:.2} at {at:?}, {mean:.3} in the mean");
             if changes.contains(&(diverged as Change)) {
@@ -175,6 +183,43 @@ fn a_browser_shows_items_as_they_are_drawn() {
         Item::Clip { path: disc(6), items: vec![Item::fill(Path::rectangle(square(6), 0.5 * side), yellow)] },
         Item::part("two", [Item::fill(disc(7), blue), Item::fill(Path::rectangle(square(7), 0.5 * side), yellow)]),
     ];
-    let (most, at, mean) = differences(&both(&mut browser, picture));
+    let (most, at, mean) = differences(&both_without_words(&mut browser, picture));
     assert!(most < 20.0 && mean < 0.4, "{most:.2} at {at:?}, {mean:.3} in the mean");
+}
+
+/// Whole pictures, with their words.
+#[test]
+fn a_browser_shows_each_shipped_picture_in_the_plane_as_it_is_drawn() {
+    let Some(mut browser) = Browser::start() else { return };
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut pictures = 0;
+    for folder in ["scenes", "scenes/elements", "figures"] {
+        for entry in std::fs::read_dir(root.join(folder)).expect("a folder that ships") {
+            let path = entry.expect("an entry").path();
+            if path.extension().is_none_or(|ending| ending != "toml") {
+                continue;
+            }
+            let name = path.display();
+            let picture = if folder == "figures" {
+                let figure = Figure::load(&path, &Limits::default()).expect("a figure that ships");
+                if figure.is_lit() {
+                    continue;
+                }
+                compose_figure(&figure, &Moments::new(&figure)).expect("room")
+            } else {
+                let scene = Scene::load(&path, &Limits::default()).expect("a scene that ships");
+                if scene.is_lit() {
+                    continue;
+                }
+                localshape::compose(&scene, &frame(&scene, scene.last_frame() / 2))
+            };
+            let [drawn, seen] = both(&mut browser, &picture);
+            let bytes = drawn.as_flattened().iter().zip(seen.as_flattened());
+            let mean = bytes.map(|(&a, &b)| f64::from(a.abs_diff(b))).sum::<f64>() / (3 * drawn.len()) as f64;
+            assert_eq!(drawn.len(), seen.len(), "{name}");
+            assert!(mean <= 1.0, "{name}: {mean:.3} of 255 in the mean");
+            pictures += 1;
+        }
+    }
+    assert!(pictures >= 10, "{pictures}");
 }
