@@ -44,7 +44,7 @@ mod wrap;
 pub(crate) use crate::colour::Colour;
 pub(crate) use crate::look::{Palette, SHADES};
 pub(crate) use camera::Framing;
-pub use chart::{Annotation, Axis, Chart, Layer};
+pub use chart::{Annotation, Axis, Chart, Layer, Name};
 pub use compose::Composer;
 pub(crate) use compose::{compose_figure, left_out, type_left_out};
 pub use diagram::{Diagram, TextStyle};

@@ -1,4 +1,4 @@
-//! Keys and values of scene files that are gone, and what to write instead.
+//! Keys and values of scene and figure files that are gone, and what to write instead.
 
 use crate::reading::collector::PathPart;
 
@@ -23,6 +23,8 @@ const fn value(key: &'static str, value: &'static str, instead: &'static str) ->
 /// For parts of pictures that became words in the list of labels. A list replaces the usual one.
 const ALL_LABELS: &str = "write `labels = [\"letters\", \"name\", \"model\", \"clock\", \"count\", \"number\", \"scale-bar\", \
                           \"legend\"]` without the words for parts that are not shown";
+
+const CHARTS: &str = "write `charts = [\"DIAGNOSTIC\"]`, such as `charts = [\"energy\"]`";
 
 #[rustfmt::skip]
 const GONE: &[Gone] = &[
@@ -57,7 +59,8 @@ const GONE: &[Gone] = &[
     key("view.outline", "remove it; outlines are always drawn"),
     key("view.points", "remove it"),
     key("view.scale_bar", ALL_LABELS),
-    key("view.strip", "write `charts = [\"DIAGNOSTIC\"]`, such as `charts = [\"energy\"]`"),
+    key("sheet.strips", CHARTS),
+    key("view.strip", CHARTS),
     key("view.spring_colour", "write `colour = { by = \"strain\", range = [-0.3, 0.3], map = \"violet-green\" }`, and `show` without `\"surfaces\"`"),
 ];
 
@@ -81,7 +84,8 @@ mod tests {
             body.lattice = { cells = [1, 1, 1], side = 0.1 }
             run = [{ name = 'Local shape', model = { kind = 'shape-based', stiffness = 1e4 } }]
             view.theme = 'light'";
-        for gone in GONE {
+        // `tests/scene/figures.rs` tests keys of figure files.
+        for gone in GONE.iter().filter(|gone| !gone.key.starts_with("sheet")) {
             let mut scene: Table = scene.parse().expect("TOML");
             let (tables, last) = gone.key.rsplit_once('.').expect("a key of a table");
             let table = tables.split('.').fold(&mut scene, |table, key| {

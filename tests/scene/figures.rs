@@ -74,6 +74,10 @@ fn every_mistake_is_said_where_it_is() {
             "[sheet]\nscene = 'fig4b.toml'\n[[sheet.column]]\n[[sheet.row]]\nrun = 'Local shape'\ntime = 4",
             "6:8 ends at 3 s",
         ),
+        (
+            "[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\nstrips = ['energy']",
+            "4:1 `sheet.strips` is gone write `charts = [\"DIAGNOSTIC\"]`, such as `charts = [\"energy\"]`",
+        ),
         ("[sheet]\nscene = 'fig4b.toml'\nmoments = [0]\ncharts = ['shape_eror']", "4:11 did you mean \"shape_error\"?"),
         (
             "[sheet]\ncharts = ['energy']\n[[sheet.column]]\nscene = 'fig4b.toml'\ntime = 0\n[[sheet.column]]\n\

@@ -15,6 +15,7 @@ pub(super) use annotation::{Flag, ring};
 pub use axis::Axis;
 pub use layer::Layer;
 pub(super) use layer::simplified;
+pub use names::Name;
 pub(super) use names::spread;
 pub(super) use series::{name, style};
 pub(super) use stack::{Room, Stack};

@@ -24,10 +24,10 @@ const HARDLY: f64 = 3.0;
 /// The least room for names (sizes of type).
 const LEAST_ROOM: f64 = 3.0;
 
-/// A name at the end of a line.
+/// A name at the end of a line, one of [`Annotation::Names`](super::Annotation::Names).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
-    /// The name.
+    /// Its text, on one line.
     pub text: String,
     /// The end of the line, in the values of the axes.
     pub end: [f64; 2],
