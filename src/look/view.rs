@@ -266,7 +266,7 @@ pub(crate) enum Label {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum EdgeStyle {
-    /// The outline and all edges, hidden ones faintly.
+    /// The outline and all edges. Hidden ones are faint, or left out if elements are many and small.
     #[default]
     All,
     /// The outline and visible edges.
