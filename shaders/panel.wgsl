@@ -67,7 +67,7 @@ var<private> panel: Panel;
 // Powers of a colour's brightness, weighted like the eye.
 const LUMINANCE = vec3<f32>(0.2126, 0.7152, 0.0722);
 
-// Widths of edges and contours in space (px in the reference picture). `measures.rs` has those in the plane.
+// Widths of edges and contours in space (px in the reference picture). In the plane they are wider.
 const EDGE_WIDTH = 1.15;
 const CONTOUR_WIDTH = 2.2;
 // The opacity of visible edges.

@@ -64,8 +64,6 @@ const KEY_TAKEN = 0.8;
 const NEARER = 0.02;
 // A face turned away is this much farther back, relative to the distance.
 const BACK_FACE = 1e-5;
-// The dark share of a stripe's period.
-const STRIPE = 0.2;
 // From this depth (soft units) behind the visible surface on, a turned-over element is equally visible.
 const THROUGH_DEPTH = 0.6;
 // The brightness of a surface without lighting.

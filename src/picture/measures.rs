@@ -21,7 +21,8 @@ measures! {
     /// Between these sizes of elements (px) edges fade out, because so close together they would flicker.
     SMALLEST_ELEMENT = 4.0;
     FADING_ELEMENT = 8.0;
-    /// The opacity of the stripes of turned-over elements.
+    /// The dark share and the opacity of the stripes of turned-over elements.
+    STRIPE = 0.2;
     STRIPE_ALPHA = 0.62;
     /// The dots of flat elements: distance, radius and opacity.
     DOTS_APART = 7.0;
@@ -32,4 +33,10 @@ measures! {
     LEAST_CASING = 0.6;
     /// The rim of a node in space, relative to its radius.
     BEAD_RIM = 0.32;
+}
+
+/// The opacity of the edges of elements of a size (px), relative to that of large ones.
+pub(crate) fn edging(element: f32) -> f32 {
+    let share = ((element - SMALLEST_ELEMENT) / (FADING_ELEMENT - SMALLEST_ELEMENT)).clamp(0.0, 1.0);
+    (element / SMALL_ELEMENT).min(1.0) * share * share * (3.0 - 2.0 * share)
 }

@@ -1,5 +1,5 @@
-//! Turns a frame of the simulation into a [`Picture`]: triangles, lines, marks and text as plain data. Nothing here needs
-//! a graphics device, so everything can be tested without one.
+//! Turns a frame of the simulation into a [`Picture`]: lit bodies as meshes and lines, and all that is flat as one list of
+//! items, as plain data. Nothing here needs a graphics device, so everything can be tested without one.
 //!
 //! ```text
 //! Scene ─▶ Composer ─ compose(Frame) ─▶ Picture ─▶ render

@@ -110,7 +110,7 @@ impl Item {
         Self::part("node", [inside, rim])
     }
 
-    /// The item with a part of its opacity, from 0 to 1; `None` if it would be invisible.
+    /// The item with a part of the opacity of its paths, from 0 to 1; `None` if they would be invisible.
     pub(super) fn faded(mut self, part: f64) -> Option<Self> {
         let part = narrow(part.clamp(0.0, 1.0));
         self.fade(part);

@@ -3,7 +3,7 @@
 use super::pass::Pass;
 use super::pipeline::{bind, element, group_layout, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
-use crate::picture::measures::{FADING_ELEMENT, SMALL_ELEMENT, SMALLEST_ELEMENT};
+use crate::picture::measures::edging;
 use crate::picture::{Colour, MOST_OCCLUDERS, Occluder, Panel, Picture, Rectangle, SHADES};
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec2Swizzles as _, Vec3, Vec4};
@@ -114,12 +114,6 @@ pub(super) fn cropped(panel: &Panel) -> Mat4 {
 /// One pipeline draws both.
 pub(super) fn has_behind(panel: &Panel) -> bool {
     panel.dotted || !panel.turned_over.triangles.is_empty()
-}
-
-/// The opacity of the edges of elements of a size (px), relative to that of large ones.
-fn edging(element: f32) -> f32 {
-    let share = ((element - SMALLEST_ELEMENT) / (FADING_ELEMENT - SMALLEST_ELEMENT)).clamp(0.0, 1.0);
-    (element / SMALL_ELEMENT).min(1.0) * share * share * (3.0 - 2.0 * share)
 }
 
 fn uniform(picture: &Picture, panel: &Panel, clip: Mat4, region: Rectangle) -> PanelUniform {

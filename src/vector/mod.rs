@@ -1,9 +1,5 @@
-//! The flat parts of pictures as one list of items, and its three writers: SVG and PDF, where text stays text in embedded
-//! parts of its fonts, and pixels. Curves, marks and panels in the plane are paths. Lit bodies are images from the renderer.
-//!
-//! ```text
-//! Picture ─▶ items (paths, text, images) ─▶ SVG, PDF or pixels
-//! ```
+//! The three writers of a picture's items: SVG and PDF, where text stays text in embedded parts of its fonts, and pixels.
+//! In SVG and PDF, lit bodies are images from the renderer.
 //!
 //! Nothing here needs a graphics device. The same picture gives the same bytes.
 

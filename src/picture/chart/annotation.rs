@@ -108,11 +108,10 @@ impl Annotation {
 /// Draws a cross at the end of a line that is cut off at a place.
 fn cross(writer: &mut Writer<'_>, chart: &Chart, place: Place, (line, at): (&[[f64; 2]], f64), colour: Colour) {
     let (arm, x) = (ARM * place.line, place.x(&chart.x, at));
-    let Some(last) = line.last() else { return };
+    let (Some(last), Some(stretch)) = (line.last(), chart.x.stretch(at)) else { return };
     let mut curve = |points: &[[f64; 2]], width, dash: &[f64]| {
         writer.curves.push(place.curve(points, width, dash, colour));
     };
-    let stretch = chart.x.0.iter().find(|stretch| at <= stretch.range[1]).unwrap_or(&chart.x.0[0]);
     let [wing, back] = HEAD.map(|length| length * place.line);
     let left = leaving(&pixels(line, chart, stretch, place), place.borders());
     if let Some([from, tip]) = left.filter(|[_, tip]| tip[0] + wing < x - arm) {

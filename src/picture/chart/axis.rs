@@ -81,9 +81,13 @@ impl Axis {
 
     /// The place of a value: 0 at the low end, 1 at the high end, and beyond for values outside.
     pub fn share(&self, value: f64) -> f64 {
-        let on = self.0.iter().find(|stretch| value <= stretch.range[1]).or(self.0.last());
-        let Some(on) = on else { return f64::NAN };
+        let Some(on) = self.stretch(value) else { return f64::NAN };
         on.along[0] + on.share(value) * (on.along[1] - on.along[0])
+    }
+
+    /// The stretch of a value, the last one for values beyond all.
+    pub(super) fn stretch(&self, value: f64) -> Option<&Stretch> {
+        self.0.iter().find(|stretch| value <= stretch.range[1]).or(self.0.last())
     }
 }
 

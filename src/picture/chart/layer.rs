@@ -103,11 +103,12 @@ impl Layer {
     }
 }
 
-/// The part of a line on a stretch of the axis to the right (px).
+/// The part of a line on a stretch of the axis to the right (px), without values that have no place: infinite ones, and zero on a
+/// logarithmic axis.
 pub(super) fn pixels(points: &[[f64; 2]], chart: &Chart, stretch: &Stretch, place: Place) -> Vec<[f64; 2]> {
     let [left, right] = place.ends(stretch);
     let at = |[x, y]: [f64; 2]| [left + stretch.share(x).clamp(0.0, 1.0) * (right - left), place.y(&chart.y, y)];
-    cut(points, stretch.range).into_iter().map(at).collect()
+    cut(points, stretch.range).into_iter().map(at).filter(|place| place.iter().all(|at| at.is_finite())).collect()
 }
 
 /// The part of a line between two places, with its ends there.
@@ -269,6 +270,7 @@ pub(in crate::picture) fn simplified(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::axis::{Axis, Kind};
     use super::*;
 
     #[test]
@@ -279,6 +281,17 @@ mod tests {
         assert_eq!(cut(&whole, [1.0, 2.0]), [[1.0, 3.0], [2.0, 2.0]]);
         assert_eq!(cut(&whole, [2.5, 9.0]), [[2.5, 2.0], [3.0, 2.0]]);
         assert!(cut(&whole, [5.0, 9.0]).is_empty());
+    }
+
+    #[test]
+    fn values_without_a_place_are_left_out() {
+        let x = Axis(vec![Stretch::new(Kind::Time, [0.0, 4.0], "s", 1.0, 5)]);
+        let y = Axis::logarithmic([0.01, 1.0], 4);
+        let chart = Chart { x, y, layers: Vec::new(), annotations: Vec::new() };
+        let place = Place { left: 0.0, right: 400.0, top: 0.0, bottom: 100.0, unit: 1.0, line: 1.0 };
+        let points = [[0.0, 0.0], [1.0, 0.01], [2.0, f64::NAN], [3.0, f64::INFINITY], [4.0, 1.0]];
+        let found = pixels(&points, &chart, &chart.x.0[0], place);
+        assert!(found.len() == 2 && found[0][0] == 100.0 && found[1] == [400.0, 0.0], "{found:?}");
     }
 
     #[test]

@@ -246,7 +246,7 @@ impl Stack {
             }
             let free = place.bottom - place.top + room.beyond.iter().sum::<f64>() - scale.caption();
             let fitting = if Scale::legible(UNIT * unit) { (free / (UNIT_BELOW * unit)).max(0.0) as usize } else { 0 };
-            notes.truncate(fitting.max(usize::from(fitting > 0)));
+            notes.truncate(fitting);
             one.write_name(ground, &notes, [left, 0.5 * (place.top + place.bottom)]);
         }
         placed

@@ -14,9 +14,8 @@ use glam::{DVec2, DVec3, Vec2};
 const EDGE_WIDTH: f32 = 1.5;
 const EDGE_ALPHA: f32 = 0.75;
 const CONTOUR_WIDTH: f32 = 2.5;
-/// The stripes of turned-over elements: their distance (px in the reference picture) and their dark share.
+/// The distance of the stripes of turned-over elements (px in the reference picture).
 const PERIOD: f32 = 9.0;
-const STRIPE: f32 = 0.19;
 /// The number of pieces of a line of changing colour.
 const PIECES: u32 = 8;
 
@@ -278,9 +277,7 @@ impl PlaneBody<'_> {
     /// Edges and contours. Lines of one kind are one path, so that joints are even.
     fn lines(&self, items: &mut Vec<Item>) {
         let palette = self.palette();
-        let element = narrow(self.draft.element);
-        let share = ((element - SMALLEST_ELEMENT) / (FADING_ELEMENT - SMALLEST_ELEMENT)).clamp(0.0, 1.0);
-        let strength = (element / SMALL_ELEMENT).min(1.0) * share * share * (3.0 - 2.0 * share);
+        let strength = edging(narrow(self.draft.element));
         let body = self.mean_colour(&self.sound, false);
         let alarm_body = self.mean_colour(&self.turned_over, true);
         let is_plain = self.draft.composer.ramp.is_empty();
