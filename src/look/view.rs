@@ -62,8 +62,8 @@ pub struct View {
     /// A title above all panels, wrapped at the width of the picture. Default: none.
     #[schemars(length(max = 200))]
     pub title: String,
-    /// A caption below all panels, wrapped at the width of the picture. `\n` begins a new line. Panels keep almost
-    /// half of the picture: longer captions are cut off with an ellipsis. Default: none.
+    /// A caption below all panels, wrapped at the width of the picture. `\n` begins a new line. Panels keep over a
+    /// third of the picture: longer captions are cut off with an ellipsis. Default: none.
     #[schemars(length(max = 2000), extend("format" = "lines"))]
     pub caption: String,
     /// The words and signs in panels and below them.

@@ -96,10 +96,10 @@ impl Layout {
         let line = |part, step: f64, size: f64| Node::new(part, (step * type_unit).max(LINE * size));
         let first = |at: usize, gap: f64| if at == 0 { gap * unit } else { 0.0 };
         // The most important parts have the highest ranks.
-        let title = |at| line(Part::Title, MARGIN, around.heading()).after(first(at, MARGIN)).rank(3);
+        let title = |at| line(Part::Title, MARGIN, around.heading()).after(first(at, MARGIN)).rank(4);
         let caption = |at| {
             let gap = if wanted.legend.is_some() { BESIDE } else { GAP };
-            line(Part::Caption, ROW, around.caption()).after(first(at, gap)).rank(0)
+            line(Part::Caption, ROW, around.caption()).after(first(at, gap)).rank(1)
         };
         let panels = |row: usize| {
             let key = |column: usize| if row * columns + column < count { Part::Panel } else { Part::Edge };
@@ -112,14 +112,14 @@ impl Layout {
             .least(LEAST_CHART_ROOM * type_unit + LEAST_CHART)
             .after(GAP * unit)
             .share(CHART_SHARE)
-            .rank(1);
+            .rank(2);
         // Of several charts, as many are drawn as have room.
         let further = Node::new(Part::Chart, (FURTHER + names) * type_unit).rank(0);
         let least = PANELS[usize::from(has_chart)] * height / rows as f64;
         let row = |row| Node::new(Part::Row, least).stretched().with(panels(row));
         // Below no title, the clock needs a margin.
         let above_clock = if wanted.title > 0 { 0.0 } else { MARGIN * unit };
-        let clock = wanted.clock.then(|| line(Part::Clock, NAME_ROW, around.title()).after(above_clock).rank(4));
+        let clock = wanted.clock.then(|| line(Part::Clock, NAME_ROW, around.title()).after(above_clock).rank(5));
         let bottom = if has_parts_below(view) { SHORT * unit } else { 0.0 };
         let nodes: Vec<_> = (0..wanted.title)
             .map(title)
@@ -127,7 +127,7 @@ impl Layout {
             .chain((0..rows).map(row))
             .chain(has_chart.then_some(chart))
             .chain((1..view.charts.len()).filter(|_| has_chart).map(|_| further.clone()))
-            .chain(wanted.legend.map(|height| Node::new(Part::Legend, height).after(GAP * unit).rank(2)))
+            .chain(wanted.legend.map(|height| Node::new(Part::Legend, height).after(GAP * unit).rank(3)))
             .chain((0..wanted.caption).map(caption))
             .chain([Node::new(Part::Edge, bottom)])
             .collect();
@@ -224,10 +224,11 @@ pub(super) fn written(view: &View, height: f64, unit: f64) -> Written {
         .chain([edge(1, has_numbers)])
         .collect();
     let mut solved = tree::column(&nodes, [0.0, 0.0, 0.0, height]);
-    // Rows that cannot be read stay empty.
+    // Rows that cannot be read stay empty, and rows below a name without room.
     let sizes = [(Part::Name, scale.title()), (Part::Second, scale.caption()), (Part::Events, scale.caption())];
     let sizes = sizes.into_iter().chain([(Part::Numbers, scale.caption())]);
-    let empty = sizes.filter(|&(part, size)| solved.get(part).is_some() && !Scale::legible(size));
+    let nameless = |part| solved.get(Part::Name).is_none() && part != Part::Numbers;
+    let empty = sizes.filter(|&(part, size)| solved.get(part).is_some() && (nameless(part) || !Scale::legible(size)));
     solved.left_out.extend(empty.map(|(part, _)| part).collect::<Vec<_>>());
     let has = |part| solved.get(part).is_some() && !solved.left_out.contains(&part);
     let [above, room] = solved.get(Part::Body).map_or([0.0, height], |[_, top, _, height]| [top, height]);

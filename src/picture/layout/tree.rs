@@ -16,7 +16,7 @@ pub(in crate::picture) struct Node<K> {
     share: f64,
     /// The gap before it, which is part of its length.
     gap: f64,
-    /// Boxes of lower ranks are left out first, and later ones of equal rank. A box without a rank is kept.
+    /// Boxes of higher ranks get room first, and earlier ones of equal rank. A box without a rank is kept.
     rank: Option<u8>,
     /// The boxes in it, in a row if it lies in a column, and in a column if it lies in a row.
     inside: Vec<Self>,
@@ -109,20 +109,22 @@ fn fill<K: Copy + PartialEq>(nodes: &[Node<K>], place: Place, axis: usize, solve
     }
 }
 
-/// The lengths of boxes that share a length, `None` for those without room. All get their least lengths, then as much
-/// as they want, then the rest.
-fn lengths<K>(nodes: &[Node<K>], length: f64) -> Vec<Option<f64>> {
+/// The lengths of boxes that share a length, `None` for those without room. Boxes without a rank get their least
+/// lengths, then each of the others, from the highest rank, if it still has room and no box of its key before it is
+/// left out. Then all get as much as they want, then the rest.
+fn lengths<K: PartialEq>(nodes: &[Node<K>], length: f64) -> Vec<Option<f64>> {
     let length = length.max(0.0);
     let limit = |node: &Node<K>, most: f64| most.min(node.share * length).max(node.least);
-    let mut given: Vec<_> = nodes.iter().map(|node| Some(node.least)).collect();
+    let mut given: Vec<_> = nodes.iter().map(|node| node.rank.is_none().then_some(node.least)).collect();
     let taken = |given: &[Option<f64>]| given.iter().flatten().sum::<f64>();
-    for (node, given) in nodes.iter().zip(&mut given) {
-        *given = given.filter(|&least| node.rank.is_none() || least <= node.share * length);
-    }
-    while taken(&given) > length * (1.0 + 1e-9) {
-        let ranked = (0..nodes.len()).rev().filter(|&at| given[at].is_some() && nodes[at].rank.is_some());
-        let Some(least) = ranked.min_by_key(|&at| nodes[at].rank) else { break };
-        given[least] = None;
+    let mut ranked: Vec<_> = (0..nodes.len()).filter(|&at| nodes[at].rank.is_some()).collect();
+    ranked.sort_by_key(|&at| std::cmp::Reverse(nodes[at].rank));
+    for at in ranked {
+        given[at] = Some(nodes[at].least).filter(|least| {
+            let is_first =
+                nodes[..at].iter().zip(&given).all(|(node, given)| given.is_some() || node.key != nodes[at].key);
+            is_first && *least <= nodes[at].share * length && taken(&given) + least <= length * (1.0 + 1e-9)
+        });
     }
     let smaller = (length / taken(&given).max(f64::MIN_POSITIVE)).min(1.0);
     given.iter_mut().flatten().for_each(|given| *given *= smaller);
@@ -190,6 +192,25 @@ mod tests {
                      panel 0 0 45 70\nbody 0 0 45 70\npanel 45 0 45 70\nbody 45 0 45 70\n\
                      left out: title, name, events, name, events, chart, caption, caption";
         assert_eq!(said([90.0, 70.0]), least);
+    }
+
+    #[test]
+    fn a_smaller_box_has_room_where_a_more_important_one_has_none() {
+        let caption = |gap| Node::new("caption", 20.0).after(gap).rank(1);
+        let nodes = [
+            Node::new("panels", 100.0),
+            Node::new("chart", 60.0).rank(2),
+            Node::new("chart", 20.0).rank(0),
+            caption(10.0),
+            caption(0.0),
+        ];
+        let left_out = |height| column(&nodes, [0.0, 0.0, 10.0, height]).left_out;
+        assert_eq!(left_out(230.0), [""; 0]);
+        assert_eq!(left_out(210.0), ["chart"]);
+        assert_eq!(left_out(190.0), ["chart", "caption"]);
+        // No chart without the chart before it, and no line of the caption without the line before it.
+        assert_eq!(left_out(150.0), ["chart", "chart"]);
+        assert_eq!(left_out(125.0), ["chart", "chart", "caption", "caption"]);
     }
 
     #[test]
