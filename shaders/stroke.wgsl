@@ -57,18 +57,32 @@ fn decoded(colour: vec3<f32>) -> vec3<f32> {
     return select(pow((colour + 0.055) / 1.055, vec3(2.4)), colour / 12.92, colour <= vec3(0.04045));
 }
 
-// The visibility of a disc, at one tap of the pixel around its middle and one of the drawn pixel.
-fn disc_share(middle: vec2<f32>, pixel: vec2<f32>, before: f32, nearness: f32, tap: u32) -> f32 {
+// The visibility of a disc, at one tap of the pixel around its middle.
+fn disc_share(middle: vec2<f32>, before: f32, tap: u32) -> f32 {
     // At an outline, the next pixel may be background.
     let beside = min(
         min(tap_depth(middle + vec2(1.5, 0.0), tap), tap_depth(middle - vec2(1.5, 0.0), tap)),
         min(tap_depth(middle + vec2(0.0, 1.5), tap), tap_depth(middle - vec2(0.0, 1.5), tap)),
     );
-    let seen = visible_share(before, min(tap_depth(middle, tap), beside));
-    // The taps around the middle of a pixel are all in it, so its neighbours count, too.
-    let here = max(tap_depth(pixel, tap), tap_depth(pixel + 0.5 - tap_place(tap), tap));
-    let front = before / (1.0 - FRONT * nearness);
-    return seen * saturate(0.5 + 0.5 * (front - here) / (max(0.5 * FRONT * nearness, FADED_DEPTH) * max(here, 1e-9)));
+    return visible_share(before, min(tap_depth(middle, tap), beside));
+}
+
+// The part of a disc's pixel that surfaces do not cut off. Surfaces up to three pixels away count, too, for balls larger
+// by as much: else the pixel would appear at once where an outline inside the body passes.
+fn uncut_share(pixel: vec2<f32>, before: f32, size: f32) -> f32 {
+    var shown = 0.0;
+    var nearest = 0.0;
+    for (var away = 0; away < 4; away++) {
+        for (var at = 0; at < 9; at++) {
+            nearest = max(nearest, load_depth(texel_of(pixel + vec2<f32>(away * (vec2(at % 3, at / 3) - 1)))));
+        }
+        // The radius of the ball, relative to the distance.
+        let nearness = min(0.5 / FRONT, (size + f32(away)) / panel.focal);
+        let front = before / (1.0 - FRONT * nearness);
+        let faded = max(0.5 * FRONT * nearness, FADED_DEPTH) * max(nearest, 1e-9);
+        shown += 0.25 * saturate(0.5 + 0.5 * (front - nearest) / faded);
+    }
+    return shown;
 }
 
 // The visibility of a line, and the part of it over a surface, not along an outline against the ground.
@@ -90,15 +104,13 @@ fn stroke_colour(stroke: Stroke) -> @location(0) vec4<f32> {
     let distance = length(pixel - middle);
     let before = mix(stroke.depths.x, stroke.depths.y, share) * (1.0 + OFFSET);
     if stroke.kind == DISC {
-        // The radius of a ball as large as the disc, relative to the distance.
-        let nearness = min(0.5 / FRONT, stroke.size / panel.focal);
         let inward = stroke.size - distance;
         var shown = 0.0;
         for (var tap = 0u; tap < TAPS; tap++) {
-            shown += disc_share(middle, pixel, before, nearness, tap) / f32(TAPS);
+            shown += disc_share(middle, before, tap) / f32(TAPS);
         }
         let colour = mix(stroke.second.rgb, stroke.first.rgb, saturate(inward - BEAD_RIM * stroke.size + 0.5));
-        return vec4(decoded(colour), saturate(inward + 0.5) * shown);
+        return vec4(decoded(colour), saturate(inward + 0.5) * shown * uncut_share(pixel, before, stroke.size));
     }
     // Lines thinner than a pixel are fainter instead.
     let drawn = max(stroke.size, 1.0);
