@@ -18,6 +18,11 @@ pub(super) fn narrow(value: f64) -> f32 {
     }
 }
 
+/// A whole number.
+pub(super) fn narrow_count(count: usize) -> f32 {
+    narrow(count as f64)
+}
+
 /// A point or direction of three narrowed coordinates.
 pub(super) fn narrow_point(point: DVec3) -> Vec3 {
     Vec3::new(narrow(point.x), narrow(point.y), narrow(point.z))

@@ -255,7 +255,7 @@ impl Path {
         let at = |angle: f32| middle + radius * direction(angle);
         self.0.push(if begins { Step::Move(at(from)) } else { Step::Line(at(from)) });
         for piece in 0..pieces as u32 {
-            let [a, b] = [piece, piece + 1].map(|piece| from + step * piece as f32);
+            let [a, b] = [piece, piece + 1].map(|piece| from + step * narrow(f64::from(piece)));
             let along = |angle: f32| reach * direction(angle).perp();
             self.0.push(Step::Cubic([at(a) + along(a), at(b) - along(b), at(b)]));
         }

@@ -5,7 +5,7 @@ use crate::colour::{encoded, encoded_exactly, linear, luminance};
 use crate::look::Palette;
 use crate::picture::layout::Rectangle;
 use crate::picture::measures::*;
-use crate::picture::narrow::narrow;
+use crate::picture::narrow::{narrow, narrow_count};
 use crate::picture::page::{Image, Paint, Path, Pen, point, winding};
 use crate::picture::{Colour, Fading, Item, Line, LineKind, Mesh, Second, Stroke};
 use glam::{DVec2, DVec3, Vec2};
@@ -38,7 +38,7 @@ impl PlaneBody<'_> {
     pub(super) fn item(mut self, region: Rectangle) -> Item {
         let mut drawn = Vec::new();
         let items = &mut drawn;
-        let [left, top, width, height] = region.map(|length| length as f32);
+        let [left, top, width, height] = region.map(|length| narrow(f64::from(length)));
         self.solids([left, top, left + width, top + height], items);
         items.extend(self.behind.take());
         let mut part = |name, draw: &dyn Fn(&mut Vec<Item>)| {
@@ -113,12 +113,12 @@ impl PlaneBody<'_> {
             let outside = inwards * (room[side] - region[side]);
             let length = (outside + far).ceil().max(0.0) as u32;
             let pixel = |at: u32| {
-                let share = ((at as f32 + 0.5 - outside) / far).clamp(0.0, 1.0);
+                let share = ((narrow(f64::from(at)) + 0.5 - outside) / far).clamp(0.0, 1.0);
                 let gone = strength[side] * (1.0 - share * share * (3.0 - 2.0 * share));
                 let [r, g, b] = background;
                 [r, g, b, (255.0 * self.alpha(gone, background, colour)).round() as u8]
             };
-            let (along, across) = (inwards * length as f32, Vec2::new(right - left, bottom - top));
+            let (along, across) = (inwards * narrow(f64::from(length)), Vec2::new(right - left, bottom - top));
             let sides = match side % 2 {
                 0 => [along * Vec2::X, across.y * Vec2::Y],
                 _ => [along * Vec2::Y, across.x * Vec2::X],
@@ -145,24 +145,24 @@ impl PlaneBody<'_> {
         }
         let ramp = &self.draft.composer.ramp;
         let bands = ramp.len() - 1;
-        let triangles = self.triangles(mesh, |at| mesh.shades[at] * bands as f32);
+        let triangles = self.triangles(mesh, |at| mesh.shades[at] * narrow_count(bands));
         if triangles.iter().all(|[a, b, c]| a.1 == b.1 && b.1 == c.1) {
             // Each element has one value. Where a body is folded over itself, its first triangle lies on top.
             for same in triangles.chunk_by(|one, other| one[0].1 == other[0].1).rev() {
                 let path = path_of(same.iter().map(|triangle| triangle.map(|(at, _)| at).to_vec()));
                 let value = same[0][0].1;
                 let band = (value.max(0.0) as usize).min(bands - 1);
-                let shade = mixed(ramp[band], ramp[band + 1], (value - band as f32).clamp(0.0, 1.0));
-                let colour = if value > -0.5 * bands as f32 { shade } else { palette.sound_flat };
+                let shade = mixed(ramp[band], ramp[band + 1], (value - narrow_count(band)).clamp(0.0, 1.0));
+                let colour = if value > -0.5 * narrow_count(bands) { shade } else { palette.sound_flat };
                 items.push(Item::Fill { path, paint: colour.into() });
             }
             return;
         }
         for band in 0..bands {
-            let [low, high] = [band, band + 1].map(|level| level as f32);
+            let [low, high] = [band, band + 1].map(narrow_count);
             // Values beyond the scale have the colours of its ends.
             let [from, to] = [
-                if band == 0 { -0.5 * bands as f32 } else { low },
+                if band == 0 { -0.5 * narrow_count(bands) } else { low },
                 if band + 1 == bands { f32::INFINITY } else { high },
             ];
             let values = |triangle: &[(Vec2, f32); 3]| triangle.map(|(_, value)| value);
@@ -186,7 +186,8 @@ impl PlaneBody<'_> {
         if mesh.shades.is_empty() || ramp.is_empty() {
             return plain;
         }
-        let colour = |&shade: &f32| if shade < -0.5 { plain } else { ramp[(shade * (ramp.len() - 1) as f32) as usize] };
+        let colour =
+            |&shade: &f32| if shade < -0.5 { plain } else { ramp[(shade * narrow_count(ramp.len() - 1)) as usize] };
         let sum = mesh
             .shades
             .iter()
@@ -224,7 +225,7 @@ impl PlaneBody<'_> {
         let mut path = Path::default();
         for row in low.y.floor() as i32 - 1..=high.y.ceil() as i32 {
             for column in low.x.floor() as i32 - 1..=high.x.ceil() as i32 {
-                let at = turn.rotate(Vec2::new(column as f32 + 0.5, row as f32 + 0.5) * apart);
+                let at = turn.rotate((Vec2::from([column, row].map(|at| narrow(f64::from(at)))) + 0.5) * apart);
                 path.add_circle(self.middle() + at, DOT * self.line_scale());
             }
         }
@@ -256,7 +257,7 @@ impl PlaneBody<'_> {
         let reach = Vec2::new(slant.x, -slant.y) * (width + height);
         let mut path = Path::default();
         for stripe in low.floor() as i32 - 1..=high.ceil() as i32 {
-            let on = middle + slant * (stripe as f32 + 0.5) * period;
+            let on = middle + slant * (narrow(f64::from(stripe)) + 0.5) * period;
             // The line is centred in the room, so that it crosses all of it.
             let across = on + reach.normalize() * reach.normalize().dot(0.5 * (corners[0] + corners[2]) - on);
             path.add_line(&[across - reach, across + reach]);
@@ -335,10 +336,11 @@ impl PlaneBody<'_> {
             return;
         }
         let pieces = if first == last { 1 } else { PIECES };
+        let at = |piece: u32| narrow(f64::from(piece) / f64::from(pieces));
         for piece in 0..pieces {
             // Each piece extends to the end of the line, below the next piece: no seams.
-            let begin = from.lerp(to, piece as f32 / pieces as f32);
-            let colour = mixed(first, last, (piece as f32 + 0.5) / pieces as f32);
+            let begin = from.lerp(to, at(piece));
+            let colour = mixed(first, last, at(piece) + 0.5 / narrow(f64::from(pieces)));
             let pen = Pen { round: round && pieces == 1, ..Pen::solid(width) };
             items.push(Item::Stroke { path: Path::open(&[begin, to]), pen, paint: colour.into() });
         }
@@ -348,7 +350,7 @@ impl PlaneBody<'_> {
     fn alpha(&self, alpha: f32, above: Colour, below: Colour) -> f32 {
         let seen = encoded_exactly(mixed_light(below, above, alpha));
         let [whole, part] = [above.map(f64::from), seen].map(|colour| {
-            colour.iter().zip(below).map(|(&one, other)| (one - f64::from(other)).abs()).sum::<f64>() as f32
+            narrow(colour.iter().zip(below).map(|(&one, other)| (one - f64::from(other)).abs()).sum::<f64>())
         });
         if whole > 0.0 { (part / whole).clamp(0.0, 1.0) } else { alpha }
     }
