@@ -360,7 +360,7 @@ impl Writer<'_> {
         let thickness = (2.0 * self.scale.unit).round().max(1.0);
         let (line, ground) = (self.palette.hairline, self.palette.background);
         let halved = if thickness < 2.0 { line } else { std::array::from_fn(|at| line[at].midpoint(ground[at])) };
-        let first = layout.panels.first().map_or(0.0, |panel| f64::from(panel[1]));
+        let bottoms = || layout.panels.iter().map(|&[_, top, _, height]| f64::from(top + height));
         for panel in &layout.panels {
             let [left, top, width, height] = panel.map(f64::from);
             let mut line = |rectangle| self.marks.push(Item::rectangle(rectangle, halved));
@@ -368,8 +368,9 @@ impl Writer<'_> {
             if left > 0.0 && length > 0.0 {
                 line([left - (thickness / 2.0).floor(), top + top_inset.round(), thickness, length]);
             }
-            if top > first && width > 2.0 * side {
-                line([left + side.round(), top - (thickness / 2.0).floor(), (width - 2.0 * side).round(), thickness]);
+            let above = bottoms().filter(|&bottom| bottom <= top).reduce(f64::max);
+            if let Some(above) = above.filter(|_| width > 2.0 * side) {
+                line([left + side.round(), above - (thickness / 2.0).floor(), (width - 2.0 * side).round(), thickness]);
             }
         }
     }
