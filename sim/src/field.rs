@@ -20,9 +20,11 @@ pub enum Field {
     Displacement,
     /// Speed of each node (m/s).
     Speed,
-    /// Elastic energy of each node (J): its part of the energy of elements, and half of a spring's energy.
+    /// Elastic energy of each node (J): its part of each element's, and half of each spring's. The sum over the nodes is
+    /// the body's.
     ElasticEnergy,
-    /// Distance of each node from the same node of the run `to` at the same moment (m). That run is plain.
+    /// Distance of each node from the same node of the run `to` at the same moment (m), until that run diverges. That run
+    /// has no values.
     Distance,
 }
 
@@ -40,7 +42,7 @@ impl Field {
     pub fn support(self) -> Support {
         match self {
             Self::Strain => Support::Elements,
-            _ => Support::Nodes,
+            Self::Displacement | Self::Speed | Self::ElasticEnergy | Self::Distance => Support::Nodes,
         }
     }
 
@@ -72,7 +74,7 @@ impl Field {
             Self::Displacement => "distance from the best fit of the rest shape",
             Self::Speed => "of each node",
             Self::ElasticEnergy => "share of each node",
-            Self::Distance => "of the same nodes; the run itself is plain",
+            Self::Distance => "between equal nodes",
         }
     }
 

@@ -61,11 +61,11 @@ impl RunFrame {
     }
 
     /// Makes the distance of each node from the same node of another run (m) the field, [`Field::Distance`]. The other run
-    /// has no values itself, nor has any run after the other has diverged.
+    /// has no values itself. No run has values once the other run has diverged or its present state is not shown.
     ///
     /// [`Field::Distance`]: crate::Field::Distance
     pub fn measure(&mut self, other: &Self) {
-        let is_known = other.run != self.run && other.snapshot.status == Status::Ok;
+        let is_known = other.run != self.run && other.shown().status == Status::Ok;
         let nodes = self.snapshot.position.iter().zip(&other.snapshot.position);
         self.snapshot.field = nodes.filter(|_| is_known).map(|(one, other)| one.distance(*other)).collect();
     }

@@ -231,8 +231,17 @@ impl Render {
     }
 }
 
-/// Checks that the requested runs include those with which the scene compares others.
+/// Checks that the requested runs include those with which the scene compares others, and a run to compare.
 fn check_compared(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
+    if let (Some(to), &[only]) = (scene.view.colour.and_then(|scale| scale.to), runs)
+        && (to, true) == (only, scene.runs.len() > 1)
+    {
+        let (title, name) = (&scene.title, &scene.runs[to].name);
+        bail!(
+            "--only leaves just the run “{name}”, from which `view.colour.to` of “{title}” measures distances of other runs; \
+             name another run, too"
+        );
+    }
     match scene.view.compared().into_iter().flatten().find(|(_, run)| !runs.contains(run)) {
         Some((key, run)) => {
             let (title, name) = (&scene.title, &scene.runs[run].name);

@@ -64,7 +64,7 @@ pub(crate) enum ShowFile {
 pub(crate) struct ColourFile {
     /// The field.
     pub(crate) by: Field,
-    /// The run to which `distance` is measured. All runs then have that run's time step.
+    /// The run to which `distance` is measured. All runs must have the same time step.
     #[schemars(length(min = 1, max = 80))]
     pub(crate) to: Option<String>,
     /// The values at both ends of the colour bar, in the field's unit. Values beyond have the colours of the ends.

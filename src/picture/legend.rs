@@ -43,7 +43,7 @@ const ARROW: f64 = 64.0;
 pub(super) struct Bar<'a> {
     name: String,
     unit: &'static str,
-    definition: &'static str,
+    definition: String,
     /// The values at its ends.
     range: [f64; 2],
     /// The size of the body (m).
@@ -58,7 +58,8 @@ impl<'a> Bar<'a> {
     /// may lie beyond the range.
     pub(super) fn new(
         name: String,
-        [unit, definition]: [&'static str; 2],
+        unit: &'static str,
+        definition: String,
         range: [f64; 2],
         extent: f64,
         ramp: &'a [Colour],
@@ -188,7 +189,8 @@ impl Legend {
     /// definition below its name. It is centred at the given middle if possible.
     fn bar(self, writer: &mut Writer<'_>, [left, right, middle]: [f64; 3], top: f64, bar: &Bar<'_>) {
         let (unit, palette) = (self.unit, writer.palette);
-        let &Bar { ref name, ramp, beyond, mut definition, .. } = bar;
+        let &Bar { ref name, ref definition, ramp, beyond, .. } = bar;
+        let mut definition = &definition[..];
         let mut axis = Stretch::new(Kind::Colour, bar.range, bar.unit, bar.extent, MOST_TICKS);
         let numbers = NUMBERS * unit;
         let fonts = writer.fonts;

@@ -41,7 +41,9 @@ pub use summary::{RunSummary, SceneSummary};
 
 use crate::colour::Colour;
 use crate::look::View;
-use crate::reading::words::{list, nearest};
+use crate::reading::captions::typed;
+use crate::reading::collector::{Collector, key_path};
+use crate::reading::words::{list, nearest, quoted};
 use crate::sim::geometry;
 use crate::sim::model::{ElasticModel, Report};
 use crate::sim::{Body, Dimension, Grip, Integrator, Obstacle, Shape};
@@ -126,9 +128,22 @@ impl Scene {
         needed.then_some(&view.charts[..])
     }
 
+    /// Reports charts that no run of these scenes has, and charts that are there already, in a table of a file.
+    fn check_charts(charts: &[Diagnostic], scenes: &[Self], table: &'static str, report: &mut Collector<'_>) {
+        for (index, chart) in charts.iter().enumerate() {
+            let (path, found) = (key_path![table, "charts", index], quoted(&typed(chart)));
+            if let Some(first) = charts[..index].iter().position(|other| other == chart) {
+                let message = format!("`{table}.charts[{index}]` is {found}, as is `{table}.charts[{first}]`");
+                report.at(&path, message, "expected each diagnostic once; remove one".to_owned());
+            } else if let Some(why) = scenes.iter().map(|scene| scene.lacks(*chart)).reduce(Option::and).flatten() {
+                report.at(&path, format!("`{table}.charts[{index}]` is {found}, which no run has"), why);
+            }
+        }
+    }
+
     /// The message for a diagnostic that no run has, with the diagnostics that charts can show; `None` if a run may
     /// have it.
-    pub(crate) fn lacks(&self, diagnostic: Diagnostic) -> Option<&'static str> {
+    fn lacks(&self, diagnostic: Diagnostic) -> Option<&'static str> {
         let has = |has: &dyn Fn(&dyn ElasticModel) -> bool| self.runs.iter().any(|run| has(&*run.model));
         // Only the model can tell, from its forces.
         let has_residual = |model: &dyn ElasticModel| {

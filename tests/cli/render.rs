@@ -418,6 +418,9 @@ fn runs_that_others_are_compared_with_cannot_be_left_out() {
         );
         place.run("render ghost.toml --only Mass-spring").bad(2, &[&told]);
     }
+    place.write("to.toml", &format!("{SMALL}colour = {{ by = \"distance\", to = \"Mass-spring\" }}\n"));
+    let told = "--only leaves just the run “Mass-spring”, from which `view.colour.to` of “Two cubes” measures";
+    place.run("render to.toml --only Mass-spring").bad(2, &[told]);
     place.run("simulate ghost.toml --only Mass-spring").good();
     if can_draw() {
         place.run("render ghost.toml --frames 2").good();

@@ -9,7 +9,7 @@ use localshape::runner::history::History;
 use localshape::runner::moments::Moments;
 use localshape::scene::figure::Figure;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::Frame;
+use localshape::sim::{Frame, Status};
 
 /// The dashed curves of a colour.
 fn outlines(picture: &Listed, colour: [u8; 3]) -> Vec<&Curve> {
@@ -226,9 +226,28 @@ fn the_distance_to_another_run_is_a_field() {
         let shades = &unknown(&scene).compose(&frame).panels[0].sound.shades;
         assert!(shades.iter().all(|&shade| (shade - expected).abs() < 1e-6), "{shift}: {shades:?}");
     }
+    assert!(picture.words.iter().any(|word| word.text.contains("Mass-spring is plain")));
     // Without the other run, all are plain.
     let alone = Runner::new(&scene, &[0]).frame(4);
     assert!(alone.runs[0].snapshot.field.is_empty());
+}
+
+/// A run that diverges is shown as it was, so there is no distance to its present state.
+#[test]
+fn there_is_no_distance_to_a_state_that_is_not_shown() {
+    let view = "[view]\ncolour = { by = 'distance', to = 'As printed' }\n";
+    let text = include_str!("../../scenes/explicit-euler.toml").replace("[view]\n", view);
+    let scene = Scene::parse(&text, "scene", &Limits::default()).expect("a scene");
+    let mut runner = Runner::new(&scene, &[0, 2]);
+    let frames = (0..=scene.last_frame()).map(|index| runner.frame(index));
+    let mut sound = [0; 2];
+    for frame in frames {
+        let [run, other] = &frame.runs[..] else { panic!("two runs") };
+        let is_shown = other.last_fit.is_none();
+        assert_eq!(run.snapshot.field.is_empty(), !is_shown, "frame {}", frame.index);
+        sound[usize::from(is_shown)] += usize::from(other.snapshot.status == Status::Ok);
+    }
+    assert!(sound[0] > 0 && sound[1] > 0, "it is not shown before it diverges: {sound:?}");
 }
 
 /// A sheet measures the distance to a run that none of its rows shows.

@@ -97,6 +97,10 @@ fn every_mistake_is_said_where_it_is() {
             "6:9 goes from 0.5 to 3 s; expected a moment between, found 0.5",
         ),
         (
+            "[sheet]\nscene = 'fig4b.toml'\nmoments = [1]\ncharts = ['energy', 'energy']",
+            "4:21 `sheet.charts[1]` is \"energy\", as is `sheet.charts[0]`",
+        ),
+        (
             "[sheet]\nscene = 'fig4b.toml'\nmoments = [1]\nsplit = 1",
             "4:1 `sheet.split` is about charts, but there are none",
         ),

@@ -385,6 +385,13 @@ fn charts_of_what_no_run_has_are_refused() {
     let chart = |of: &str| format!("charts = ['{of}']");
     case(PLANE, "size = [640, 360]", &chart("global_rotations"), &format!("20:11 {other}"));
     good(&PLANE.replace("size = [640, 360]", &chart("residual")));
+    let twice = "charts = ['energy', 'turned_over', 'energy']";
+    case(
+        PLANE,
+        "size = [640, 360]",
+        twice,
+        "20:36 is \"energy\", as is `view.charts[0]` expected each diagnostic once",
+    );
 }
 
 #[test]

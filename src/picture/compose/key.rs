@@ -35,9 +35,15 @@ impl Composer<'_> {
             count if count == all => "change of length over length at rest",
             _ => "of springs: change of length over length at rest",
         };
-        let to = colour.to.map_or_else(String::new, |run| format!(" to {}", self.scene.runs[run].name));
-        let name = field.name().to_owned() + &to;
-        Some(Bar::new(name, [field.unit(), definition], colour.range, self.extent, &self.ramp, values))
+        let (mut name, mut definition) = (field.name().to_owned(), definition.to_owned());
+        if let Some(to) = colour.to {
+            let other = &self.scene.runs[to].name;
+            name += &format!(" to {other}");
+            if frame.runs.iter().any(|run| run.run == to) {
+                definition += &format!("; {other} is plain");
+            }
+        }
+        Some(Bar::new(name, field.unit(), definition, colour.range, self.extent, &self.ramp, values))
     }
 
     /// The strains of a run's springs on a scale.

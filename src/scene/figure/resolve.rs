@@ -4,9 +4,8 @@ use super::file::{ColumnFile, FigureFile, ForcesFile, NumbersFile, RowFile, Shee
 use super::{Column, Content, Figure, Forces, Row, Sheet};
 use crate::look::print::{unit, unit_of_sheet};
 use crate::look::{self, Subject};
-use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path};
-use crate::reading::words::{list, quoted};
+use crate::reading::words::list;
 use crate::scene::structure::ValidFile;
 use crate::scene::{Scene, SceneError};
 use crate::sim::Diagnostic;
@@ -168,12 +167,7 @@ impl Scenes<'_, '_, '_> {
             let message = format!("charts over several scenes have one axis of time, but {one} and {two}");
             self.report.at_key(&at("charts"), message, "give the scenes the same duration and frame rate");
         }
-        for (index, chart) in file.charts.iter().enumerate() {
-            if let Some(why) = self.scenes.iter().map(|scene| scene.lacks(*chart)).reduce(Option::and).flatten() {
-                let message = format!("`sheet.charts[{index}]` is {}, which no run has", quoted(&typed(chart)));
-                self.report.at(&key_path!["sheet", "charts", index], message, why);
-            }
-        }
+        Scene::check_charts(&file.charts, &self.scenes, "sheet", self.report);
         self.check_times(&file.charts, file.from, file.split, &resolved);
         if let Some(index) = rows.iter().position(|row| row.time.is_some()).filter(|_| !file.charts.is_empty()) {
             let path = key_path!["sheet", "row", index, "time"];

@@ -16,10 +16,9 @@ use super::limits::Limits;
 use super::structure::ValidFile;
 use super::{Run, Scene};
 use crate::look::{self, FontFiles, TypedView, View, font};
-use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::coordinates::{direction, vector};
-use crate::reading::words::{count, quoted, short};
+use crate::reading::words::{count, short};
 use crate::sim::{Grip, Obstacle};
 use body::ResolvedBody;
 use glam::DVec3;
@@ -29,6 +28,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::slice;
 use std::sync::Arc;
 
 /// The parts of a scene file without mistakes in their structure.
@@ -219,12 +219,7 @@ fn resolve(
         warnings: Vec::new(),
     };
     scene.place_runs();
-    for (index, &chart) in scene.view.charts.iter().enumerate() {
-        if let Some(why) = scene.lacks(chart) {
-            let message = format!("`view.charts[{index}]` is {}, which no run has", quoted(&typed(&chart)));
-            report.at(&key_path!["view", "charts", index], message, why);
-        }
-    }
+    Scene::check_charts(&scene.view.charts, slice::from_ref(&scene), "view", report);
     warn_of_time(&scene, report);
     warn_of_steps(&scene, report);
     Some(scene)
