@@ -373,7 +373,7 @@ fn soft(sides: [DVec2; 3], columns: u32, [r, g, b]: Colour, opacity: impl Fn(f32
     let mut pixels = Vec::with_capacity(4 * (size[0] * size[1]) as usize);
     for y in 0..size[1] {
         for x in 0..size[0] {
-            let [u, v] = [(x as f32 + 0.5) / size[0] as f32, (y as f32 + 0.5) / size[1] as f32];
+            let [u, v] = [(x, size[0]), (y, size[1])].map(|(at, all)| narrow((f64::from(at) + 0.5) / f64::from(all)));
             pixels.extend([r, g, b, (255.0 * opacity(u, v).clamp(0.0, 1.0)).round() as u8]);
         }
     }
