@@ -1,10 +1,10 @@
 //! Smooth borders of surfaces, in pixels that a line between two colours crosses.
 
 use super::RenderError;
-use super::lit::Stage;
 use super::pass::Pass;
 use super::pipeline::{BORDER_FORMAT, Pipeline, Recipe, shader};
 use super::segment::{self, LineBuffer, corners};
+use super::stage::Stage;
 use super::target::Bodies;
 use super::visibility::most_bound;
 use crate::picture::{Line, Picture, Rectangle};

@@ -1,8 +1,8 @@
 //! Blending bodies and their lines over the ground.
 
-use super::lit::Stage;
 use super::pass::Pass;
 use super::pipeline::{PICTURE_FORMAT, Pipeline, Recipe, shader};
+use super::stage::Stage;
 use super::target::Bodies;
 use crate::picture::{Panel, Picture};
 

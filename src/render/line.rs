@@ -1,10 +1,10 @@
 //! Edges, contours and outlines of bodies, as opacities.
 
 use super::RenderError;
-use super::lit::Stage;
 use super::pass::Pass;
 use super::pipeline::{LINE_FORMAT, Pipeline, Recipe, bind_textures, group_layout, shader, texture_entry};
 use super::segment::{Kind, LineBuffer, Segment, corners, parts, projected};
+use super::stage::Stage;
 use super::target::Bodies;
 use super::visibility::{Visibility, most_lines, most_samples};
 use crate::picture::{Panel, Picture, Rectangle};

@@ -13,21 +13,14 @@
 //! one file here and one of the same name in `shaders/`.
 
 use super::pane::Panes;
-use super::panel::{self, Panels};
+use super::panel;
 use super::pass::Pass;
+use super::stage::Stage;
 use super::surface::{Set, Surfaces};
-use super::target::{self, Bodies, Canvas, Layouts};
+use super::target::{self, Bodies, Canvas};
 use super::{RenderError, border, composite, ground, line, stroke};
 use crate::gpu::{Gpu, Pending, ReadBack};
 use crate::picture::Picture;
-
-/// What all passes share.
-#[derive(Debug)]
-pub(super) struct Stage {
-    pub(super) gpu: Gpu,
-    pub(super) panels: Panels,
-    pub(super) layouts: Layouts,
-}
 
 /// Draws the lit bodies of pictures of one size. The same picture gives the same bytes, whatever was drawn before.
 #[derive(Debug)]
@@ -56,7 +49,7 @@ impl Lit {
         if width.max(height) > longest {
             return Err(RenderError::Size { width, height, longest });
         }
-        let stage = Stage { gpu: gpu.clone(), panels: Panels::new(gpu), layouts: Layouts::new(gpu) };
+        let stage = Stage::new(gpu);
         let lit = Self {
             surfaces: Surfaces::new(&stage),
             lines: line::Lines::new(&stage),

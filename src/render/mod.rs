@@ -13,6 +13,7 @@ mod pipeline;
 mod segment;
 #[cfg(test)]
 mod shader_tests;
+mod stage;
 mod stroke;
 mod surface;
 mod target;

@@ -1,9 +1,9 @@
 //! Transparent obstacles: panes from the farthest to the nearest, over the finished bodies.
 
-use super::lit::Stage;
 use super::panel::{limit, linear};
 use super::pass::Pass;
 use super::pipeline::{PICTURE_FORMAT, Pipeline, Recipe, for_vertices, shader};
+use super::stage::Stage;
 use super::target::Bodies;
 use crate::gpu::GrowingBuffer;
 use crate::picture::{Palette, Pane, PaneCorner, Picture};

@@ -1,9 +1,9 @@
 //! Coloured lines, and nodes in space.
 
-use super::lit::Stage;
 use super::panel::limit;
 use super::pass::Pass;
 use super::pipeline::{PICTURE_FORMAT, Pipeline, Recipe, for_instances, shader};
+use super::stage::Stage;
 use super::target::Bodies;
 use crate::gpu::GrowingBuffer;
 use crate::picture::{Bead, Colour, Panel, Picture, Second, Stroke};

@@ -1,10 +1,10 @@
 //! Surfaces: first the turned-over elements, alone and as seen through the body, then the others and solid obstacles over
 //! them, plain or coloured by a field.
 
-use super::lit::Stage;
 use super::panel::has_behind;
 use super::pass::Pass;
 use super::pipeline::{Pipeline, Recipe, for_vertices, shader};
+use super::stage::Stage;
 use super::target::Bodies;
 use crate::gpu::GrowingBuffer;
 use crate::picture::{MOST_OCCLUDERS, Mesh, Picture, Rectangle};

@@ -1,9 +1,9 @@
 //! The visibility of lines, tested once for each pixel of their length before they are drawn. Testing each pixel that a
 //! line covers would take several times as long.
 
-use super::lit::Stage;
 use super::pipeline::{bind, compute_pipeline, element, group_layout, shader, storage_entry, uniform_entry};
 use super::segment::{self, Kind, LineBuffer};
+use super::stage::Stage;
 use super::target::Bodies;
 use crate::gpu::{Gpu, GrowingBuffer, Work};
 use crate::picture::Rectangle;

@@ -1,7 +1,7 @@
 //! Signs and words in charts: moments, values, divergences, and flags with letters or numbers.
 
 use super::layer::{pixels, within};
-use super::names::{self, Name, spread};
+use super::names::{self, DOTS, Name, spread};
 use super::{Chart, Place, TICK};
 use crate::colour::Colour;
 use crate::picture::caption::Writer;
@@ -19,10 +19,9 @@ const CIRCLE: [f64; 2] = [4.5, 1.6];
 const CROSS: f64 = 1.8;
 const ARM: f64 = 4.0;
 /// Half the width and the length of the arrowhead where the curve of a diverged run leaves its chart, the width of the
-/// line from the arrowhead to the cross, and its dots and gaps (px in the reference picture).
+/// line from the arrowhead to the cross (px in the reference picture).
 const HEAD: [f64; 2] = [4.0, 6.0];
 const DOT: f64 = 1.0;
-pub(super) const DOTS: [f64; 2] = [1.0, 3.5];
 /// Radius of the ring of a flag, thickness of its rim, size of the letter in it, the gap beside the letter, and the gap
 /// between rings (px in the reference picture).
 const RING: f64 = 10.0;

@@ -1,6 +1,5 @@
 //! Names at the ends of lines, right of a chart.
 
-use super::annotation::DOTS;
 use super::series::{OWN, Series};
 use super::{Chart, NUMBERS, Place};
 use crate::colour::Colour;
@@ -19,6 +18,8 @@ const SAMPLE: [f64; 2] = [30.0, 6.0];
 const FREE: f64 = 3.0;
 const LEADER: f64 = 1.0;
 const LEADER_ALPHA: f64 = 0.7;
+/// Lengths of dots and gaps of thin lines (px in the reference picture).
+pub(super) const DOTS: [f64; 2] = [1.0, 3.5];
 /// A name that is moved by less than this needs no line (px in the reference picture).
 const HARDLY: f64 = 3.0;
 /// The least room for names (sizes of type).

@@ -1,6 +1,5 @@
 //! Time series of a diagnostic of one run, in one scene or as the mean over several, and their range.
 
-use super::annotation::Annotation;
 use super::layer::{Layer, value};
 use crate::colour::mixed;
 use crate::look::{LineStyle, Palette};
@@ -106,12 +105,6 @@ impl Series {
         let band = (!self.members.is_empty()).then(|| Layer::Band { curves: self.members.clone(), colour });
         let own = Layer::Line { points: self.points.clone(), colour, width: OWN, dash: dash.to_vec() };
         band.into_iter().chain(self.members.iter().map(single)).chain([own])
-    }
-
-    /// The cross at a divergence.
-    pub(super) fn cross(&self) -> Option<Annotation> {
-        let colour = self.style.colour;
-        self.diverged.map(|at| Annotation::Cross { line: self.points.clone(), at, colour })
     }
 }
 

@@ -111,7 +111,7 @@ impl Quantity {
         let areas = self.series.iter().filter_map(|one| one.area(writer.palette));
         let layers = areas.chain(self.series.iter().flat_map(|one| one.curves(writer.palette)));
         let layers = layers.filter(|_| !y.0.is_empty()).collect();
-        let crosses = self.series.iter().filter(|one| !one.points.is_empty()).filter_map(Series::cross);
+        let crosses = self.series.iter().filter(|one| !one.points.is_empty()).filter_map(cross);
         Chart { x, layers, annotations: crosses.collect(), y }
     }
 
@@ -140,6 +140,12 @@ impl Quantity {
             writer.left(text, Weight::Regular, UNIT * unit, palette.second_text, left, baseline);
         }
     }
+}
+
+/// The cross at the divergence of a run.
+fn cross(series: &Series) -> Option<Annotation> {
+    let colour = series.style.colour;
+    series.diverged.map(|at| Annotation::Cross { line: series.points.clone(), at, colour })
 }
 
 /// The room of charts (px).

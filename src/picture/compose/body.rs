@@ -1,7 +1,7 @@
 //! The body of a panel: its surfaces, lines and nodes.
 
 use super::Composer;
-use super::panel::Draft;
+use super::draft::Draft;
 use crate::look::ColourScale;
 use crate::picture::plane::node_radius;
 use crate::picture::surface::{Lines, SurfaceLines, Surroundings};

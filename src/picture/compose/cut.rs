@@ -1,6 +1,6 @@
 //! Obstacles that leave their panel fade instead of being cut off.
 
-use super::panel::Draft;
+use super::draft::Draft;
 use crate::picture::fade::FADING;
 use crate::picture::narrow::narrow;
 use crate::picture::plane::sides;

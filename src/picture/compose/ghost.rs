@@ -1,7 +1,7 @@
 //! The outline of another state over the body of a panel.
 
 use super::Composer;
-use super::panel::Draft;
+use super::draft::Draft;
 use crate::colour::Colour;
 use crate::look::Ghost;
 use crate::picture::Item;

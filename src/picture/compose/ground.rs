@@ -1,7 +1,7 @@
 //! The floor of a panel, its grid and its shadows.
 
 use super::Composer;
-use super::panel::Draft;
+use super::draft::Draft;
 use crate::look::FloorStyle;
 use crate::picture::Floor;
 use crate::picture::layout;

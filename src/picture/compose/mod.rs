@@ -3,6 +3,7 @@
 mod body;
 mod cameras;
 mod cut;
+mod draft;
 mod figure;
 mod ghost;
 mod ground;
@@ -37,9 +38,9 @@ use crate::runner::history::{History, NearObstacles, TimeSeries};
 use crate::scene::Scene;
 use crate::sim::geometry::bounds;
 use crate::sim::{Body, Dimension, Frame, Snapshot, Status};
+use draft::Draft;
 pub(crate) use figure::compose_figure;
 use glam::DVec3;
-use panel::Draft;
 use std::sync::OnceLock;
 use words::{Around, Clock, Words};
 pub(crate) use words::{left_out, type_left_out};

@@ -1,129 +1,28 @@
 //! Composes one panel from its parts.
 
 use super::Composer;
+use super::draft::Draft;
 use super::plane_body::PlaneBody;
-use crate::look::{FloorStyle, Palette};
+use crate::look::FloorStyle;
 use crate::picture::arrows::{self, Arrows};
-use crate::picture::camera::Lens;
-use crate::picture::field::{self, NOWHERE, Shades};
+use crate::picture::field::{self, NOWHERE};
 use crate::picture::grip::Hands;
-use crate::picture::layout::{self, Rectangle, Scale};
+use crate::picture::layout::Rectangle;
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::{self, Site, Staged, Staging};
 use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
-use crate::picture::shadow::key_light;
 use crate::picture::surface::SurfaceLines;
-use crate::picture::{Framing, Item, Line, Mesh, Obstacles, Panel, Sight};
-use crate::scene::Scene;
+use crate::picture::{Item, Line, Mesh, Obstacles, Panel, Sight};
 use crate::sim::geometry;
-use crate::sim::{Body, Dimension, RunFrame, Snapshot, Status};
 use glam::{DVec2, DVec3};
-use std::borrow::Cow;
-
-/// Coordinates of diverged runs are clamped to this (sides).
-const FARTHEST: f64 = 1e12;
 
 /// Bodies smaller than the second size have narrower contours, down to this part of the width at the first size (px in
 /// the reference picture); otherwise small bodies would be mostly outline.
 const SMALL_BODY: [f64; 2] = [30.0, 150.0];
 const LEAST_CONTOUR: f64 = 0.4;
 
-/// One panel while it is composed, with the data for all its parts.
-pub(super) struct Draft<'a> {
-    pub(super) composer: &'a Composer<'a>,
-    pub(super) scene: &'a Scene,
-    pub(super) body: &'a Body,
-    pub(super) run: Shown<'a>,
-    pub(super) framing: &'a Framing,
-    pub(super) viewport: Rectangle,
-    /// The part of it without words.
-    pub(super) clear: Rectangle,
-    pub(super) scale: Scale,
-    pub(super) lens: Lens,
-    /// Unit vector towards the key light.
-    pub(super) key: DVec3,
-    /// The panel's origin (m).
-    pub(super) origin: DVec3,
-    /// The panel's unit of length (m).
-    pub(super) side: f64,
-    /// The nodes (m); empty if not all are known.
-    pub(super) position: Cow<'a, [DVec3]>,
-    /// The shown field.
-    pub(super) shades: Option<Shades>,
-    /// Its places on the colour scale at the nodes, if lines or discs show them.
-    pub(super) of_nodes: Vec<f32>,
-    /// Length of an element's edge at the body's distance (px).
-    pub(super) element: f64,
-    /// Whether the body lies in the plane.
-    pub(super) flat: bool,
-    /// Whether the run diverged and no fitting state of it is known.
-    pub(super) diverged: bool,
-    /// Whether the body is greyed because the run diverges or has diverged.
-    pub(super) greyed: bool,
-    /// The colours.
-    pub(super) palette: Palette,
-}
-
-/// A run with its shown state.
-#[derive(Clone, Copy)]
-pub(super) struct Shown<'a> {
-    pub(super) run: usize,
-    pub(super) snapshot: &'a Snapshot,
-}
-
-impl<'a> Draft<'a> {
-    /// Collects the data of a panel.
-    pub(super) fn new(
-        composer: &'a Composer<'a>,
-        viewport: Rectangle,
-        run: &'a RunFrame,
-        framing: &'a Framing,
-        scale: Scale,
-    ) -> Self {
-        let scene = composer.scene;
-        let (view, body) = (&scene.view, &*scene.body);
-        let greyed = run.shown().status != Status::Ok;
-        let diverged = greyed && run.last_fit.is_none();
-        let run = Shown { run: run.run, snapshot: run.shown() };
-        let lens = Lens::new(view, framing, body.dimension, viewport.map(f64::from), scale.unit);
-        // Without positions nothing is drawn.
-        let position = if run.snapshot.position.len() == body.len() { &run.snapshot.position[..] } else { &[] };
-        let position = finite(position, FARTHEST * view.side);
-        // A greyed body shows no values.
-        let field = if greyed { &[][..] } else { &run.snapshot.field[..] };
-        // If springs show their strain, the body has no colours.
-        let shown = view.colour.as_ref().filter(|_| composer.strain_of_springs(run.run).is_none());
-        let shades = shown.map(|scale| Shades::new(body, scale, field));
-        let of_nodes = match &shades {
-            Some(shades) if !view.visible.surfaces || !composer.bare.is_empty() => shades.of_nodes(body),
-            _ => Vec::new(),
-        };
-        let flat = body.dimension == Dimension::Plane;
-        Self {
-            composer,
-            scene,
-            body,
-            run,
-            framing,
-            viewport,
-            clear: layout::clear_of_words(viewport, view, scale),
-            scale,
-            key: key_light(&lens),
-            origin: framing.target,
-            side: view.side,
-            position,
-            shades,
-            of_nodes,
-            element: lens.focal * view.side / if flat { 1.0 } else { framing.distance },
-            flat,
-            diverged,
-            greyed,
-            palette: if greyed { composer.palette.greyed() } else { composer.palette },
-            lens,
-        }
-    }
-
+impl Draft<'_> {
     /// Draws the panel, with items below and above lit bodies.
     pub(super) fn panel(&self, under: &mut Vec<Item>, above: &mut Vec<Item>) -> Panel {
         if self.flat { self.in_plane(None, under, above) } else { self.in_space(above) }
@@ -350,28 +249,8 @@ impl<'a> Draft<'a> {
         bearers.iter().map(|&node| (node, visible[node as usize])).collect()
     }
 
-    /// The part of the panel without words, over its whole width.
-    pub(super) fn between_words(&self) -> Rectangle {
-        let ([left, _, width, _], [_, top, _, height]) = (self.viewport, self.clear);
-        [left, top, width, height]
-    }
-
-    /// A point (m) in the panel's coordinates.
-    pub(super) fn relative(&self, point: DVec3) -> [f32; 3] {
-        narrow_point((point - self.origin) / self.side).to_array()
-    }
-
     /// Draws the arrows of moving objects, in a room.
     fn pointers(&self, room: Rectangle) -> Pointers<'_> {
         Pointers { lens: &self.lens, room, scale: self.scale, palette: &self.composer.palette }
     }
-}
-
-/// Clamps too large coordinates, so that arithmetic with them stays finite.
-fn finite(points: &[DVec3], farthest: f64) -> Cow<'_, [DVec3]> {
-    if points.iter().all(|point| point.abs().cmple(DVec3::splat(farthest)).all()) {
-        return Cow::Borrowed(points);
-    }
-    let one = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-farthest, farthest) };
-    points.iter().map(|&DVec3 { x, y, z }| DVec3::new(one(x), one(y), one(z))).collect()
 }

@@ -1,7 +1,7 @@
 //! Paths of bodies up to the present moment.
 
 use super::Composer;
-use super::panel::Draft;
+use super::draft::Draft;
 use crate::look::Traced;
 use crate::picture::Item;
 use crate::picture::chart::simplified;

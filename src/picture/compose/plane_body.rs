@@ -1,6 +1,6 @@
 //! The body and the obstacles of a panel in the plane, as items.
 
-use super::panel::Draft;
+use super::draft::Draft;
 use crate::colour::{encoded, encoded_exactly, linear, luminance};
 use crate::look::Palette;
 use crate::picture::layout::Rectangle;

@@ -1,6 +1,6 @@
 //! The part of a panel that the body and its lines may cover.
 
-use super::panel::Draft;
+use super::draft::Draft;
 use crate::picture::camera::Lens;
 use crate::picture::layout::Rectangle;
 use glam::{DVec2, DVec3};

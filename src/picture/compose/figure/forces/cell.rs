@@ -2,7 +2,7 @@
 
 use crate::picture::camera::{Framing, Lens};
 use crate::picture::compose::Composer;
-use crate::picture::compose::panel::Draft;
+use crate::picture::compose::draft::Draft;
 use crate::picture::layout::{Rectangle, Scale};
 use crate::runner::moments;
 use crate::scene::Scene;

@@ -24,7 +24,7 @@ use super::header;
 use crate::look::{ColourScale, Ghost, Labels, View, print};
 use crate::picture::caption::Writer;
 use crate::picture::compose::Composer;
-use crate::picture::compose::panel::Draft;
+use crate::picture::compose::draft::Draft;
 use crate::picture::layout::Scale;
 use crate::picture::layout::steps::GAP;
 use crate::picture::legend::Legend;
