@@ -73,7 +73,7 @@ pub struct View {
     /// with the current time marked. In the first chart, numbered flags mark the moments when elements first turn over
     /// and when their count settles, or the extreme value; if nearly all its changes are early, that time has a larger
     /// scale. The whole scene is simulated before the first frame is drawn. Default: none.
-    #[schemars(length(max = 6), extend("uniqueItems" = true))]
+    #[schemars(length(max = 6))]
     pub charts: Vec<Diagnostic>,
     /// A dashed outline over each body: `"rest"` for the rest shape in its best rigid fit, or the name of a run for its
     /// body at the same moment, in the colour of that run. All runs must have the same time step. Default: none.

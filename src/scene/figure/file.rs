@@ -58,7 +58,7 @@ pub(super) struct SheetFile {
     /// Several scenes of equal duration, such as one body with several seeds, have a curve for each run: the mean over
     /// the scenes, in a band from the least to the greatest value. Default: none.
     #[serde(default)]
-    #[schemars(length(max = 6), extend("uniqueItems" = true))]
+    #[schemars(length(max = 6))]
     pub(super) charts: Vec<Diagnostic>,
     /// A diagnostic written below each picture, such as `"volume_ratio"`. Default: none.
     pub(super) number: Option<Diagnostic>,
