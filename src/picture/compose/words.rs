@@ -189,7 +189,8 @@ impl<'a> Words<'a> {
             (has(|labels| labels.name), "panels have no names"),
         ]
         .into_iter()
-        .filter_map(|(is_so, what)| is_so.then(|| what.to_owned()))
+        .filter(|(is_so, _)| *is_so)
+        .map(|(_, what)| what.to_owned())
         .collect();
         if let Some((_, shown)) = layout.charts().filter(|(_, shown)| *shown < view.charts.len()) {
             told.push(format!("only {shown} of {} charts have room", view.charts.len()));
