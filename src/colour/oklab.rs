@@ -39,6 +39,7 @@ impl Oklab {
     }
 
     /// Chroma: 0 for greys.
+    #[cfg(all(test, feature = "render"))]
     pub(crate) fn chroma(self) -> f64 {
         let Self([_, a, b]) = self;
         (a * a + b * b).sqrt()
