@@ -9,6 +9,7 @@ use super::target::Bodies;
 use crate::gpu::GrowingBuffer;
 use crate::picture::{MOST_OCCLUDERS, Mesh, Picture, Rectangle};
 use bytemuck::{Pod, Zeroable};
+use std::cell::OnceCell;
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -122,14 +123,13 @@ impl Surfaces {
         self.corners.write(&stage.gpu, corners);
         self.indices.write(&stage.gpu, indices);
         self.variant = Variant::of(picture);
-        let needed = self.ranges.iter().flatten().filter(|(_, range)| !range.is_empty()).map(|(label, _)| *label);
-        let missing = needed.filter(|label| !self.pipelines.contains_key(&(*label, self.variant)));
-        let missing: Vec<_> = missing.collect();
-        if !missing.is_empty() {
-            let module = shader(&stage.gpu, "surface", &[&self.variant.parts()]);
-            for label in missing {
-                self.pipelines.insert((label, self.variant), made(stage, &module, label));
-            }
+        let module = OnceCell::new();
+        for (label, _) in self.ranges.iter().flatten().filter(|(_, range)| !range.is_empty()) {
+            // Panels share pipelines.
+            self.pipelines.entry((*label, self.variant)).or_insert_with(|| {
+                let module = module.get_or_init(|| shader(&stage.gpu, "surface", &[&self.variant.parts()]));
+                made(stage, module, label)
+            });
         }
     }
 
