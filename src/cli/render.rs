@@ -234,7 +234,8 @@ impl Render {
 /// Checks that the requested runs include those with which the scene compares others, and a run to compare.
 fn check_compared(scene: &Scene, runs: &[usize]) -> Result<(), Failure> {
     if let (Some(to), &[only]) = (scene.view.colour.and_then(|scale| scale.to), runs)
-        && (to, true) == (only, scene.runs.len() > 1)
+        && to == only
+        && scene.runs.len() > 1
     {
         let (title, name) = (&scene.title, &scene.runs[to].name);
         bail!(

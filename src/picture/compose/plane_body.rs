@@ -139,7 +139,7 @@ impl PlaneBody<'_> {
         let palette = self.palette();
         let has_field = !mesh.shades.is_empty() && self.draft.composer.ramp.len() > 1;
         let plain = if is_alarm && !has_field { palette.alarm } else { palette.sound_flat };
-        items.push(Item::Fill { path: self.whole(mesh), paint: plain.into() });
+        items.push(Item::fill(self.whole(mesh), plain));
         if !has_field {
             return;
         }
@@ -154,7 +154,7 @@ impl PlaneBody<'_> {
                 let band = (value.max(0.0) as usize).min(bands - 1);
                 let shade = mixed(ramp[band], ramp[band + 1], (value - narrow_count(band)).clamp(0.0, 1.0));
                 let colour = if value > -0.5 * narrow_count(bands) { shade } else { palette.sound_flat };
-                items.push(Item::Fill { path, paint: colour.into() });
+                items.push(Item::fill(path, colour));
             }
             return;
         }
@@ -174,7 +174,7 @@ impl PlaneBody<'_> {
             let path = path_of(seen.map(|triangle| part(triangle, from, to + 1.0)));
             if !path.is_empty() {
                 let colour = mixed(ramp[band], ramp[band + 1], 0.5);
-                items.push(Item::Fill { path, paint: colour.into() });
+                items.push(Item::fill(path, colour));
             }
         }
     }
@@ -208,7 +208,7 @@ impl PlaneBody<'_> {
         let mut ground = self.mean_colour(mesh, false);
         if mesh.shades.is_empty() {
             ground = encoded([luminance(ground); 3]);
-            items.push(Item::Fill { path: flat.clone(), paint: ground.into() });
+            items.push(Item::fill(flat.clone(), ground));
         }
         // Rows at 45°.
         let apart = DOTS_APART * self.line_scale();
@@ -231,7 +231,7 @@ impl PlaneBody<'_> {
         }
         let colour = self.palette().edge;
         let paint = Paint { colour, alpha: self.alpha(DOT_ALPHA, colour, ground) };
-        items.push(Item::Clip { path: flat, items: vec![Item::Fill { path, paint }] });
+        items.push(Item::Clip { path: flat, items: vec![Item::fill(path, paint)] });
     }
 
     /// The stripes on turned-over elements, fixed to the body.
@@ -268,10 +268,10 @@ impl PlaneBody<'_> {
         let whole = self.whole(&self.turned_over);
         if fine > 0.0 {
             let paint = Paint { colour, alpha: alpha * STRIPE * fine };
-            items.push(Item::Fill { path: whole.clone(), paint });
+            items.push(Item::fill(whole.clone(), paint));
         }
         let pen = Pen { round: false, ..Pen::solid(STRIPE * period) };
-        let stripes = Item::Stroke { path, pen, paint: Paint { colour, alpha: alpha * (1.0 - fine) } };
+        let stripes = Item::stroke(path, pen, Paint { colour, alpha: alpha * (1.0 - fine) });
         items.push(Item::Clip { path: whole, items: vec![stripes] });
     }
 
@@ -296,7 +296,7 @@ impl PlaneBody<'_> {
             lines.for_each(|line: &Line| path.add_line(&[line.from, line.to].map(|end| self.pixel(end))));
             if !path.is_empty() && alpha > 0.0 {
                 let paint = Paint { colour, alpha: self.alpha(alpha, colour, ground) };
-                items.push(Item::Stroke { path, pen: Pen::solid(width * self.line_scale()), paint });
+                items.push(Item::stroke(path, Pen::solid(width * self.line_scale()), paint));
             }
         }
     }
@@ -328,7 +328,7 @@ impl PlaneBody<'_> {
         let mut round = true;
         if let Second::Casing(casing) = stroke.second {
             let pen = Pen { round: false, ..Pen::solid(width) };
-            items.push(Item::Stroke { path: Path::open(&[from, to]), pen, paint: casing.into() });
+            items.push(Item::stroke(Path::open(&[from, to]), pen, casing));
             width -= 2.0 * (CASING * width).max(LEAST_CASING);
             round = false;
         }
@@ -342,7 +342,7 @@ impl PlaneBody<'_> {
             let begin = from.lerp(to, at(piece));
             let colour = mixed(first, last, at(piece) + 0.5 / narrow(f64::from(pieces)));
             let pen = Pen { round: round && pieces == 1, ..Pen::solid(width) };
-            items.push(Item::Stroke { path: Path::open(&[begin, to]), pen, paint: colour.into() });
+            items.push(Item::stroke(Path::open(&[begin, to]), pen, colour));
         }
     }
 

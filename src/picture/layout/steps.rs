@@ -1,5 +1,5 @@
-//! The distances of the layout: all rows, gaps and rooms are one of these steps (px in the reference picture), which
-//! follow from the usual size of type.
+//! The distances of a page and of the words in its panels (px in the reference picture), which follow from the usual size
+//! of type.
 
 /// The sizes of type: names and counts, words, numbers in charts.
 pub(in crate::picture) const NAME: f64 = 26.0;
