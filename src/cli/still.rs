@@ -189,7 +189,7 @@ pub(super) enum Drawn {
 impl Drawn {
     pub(super) fn file(self) -> Vec<u8> {
         match self {
-            Self::Pixels { size, pixels, tags, dpi } => encode_print(size, &pixels, &tags, Compression::High, dpi),
+            Self::Pixels { size, pixels, tags, dpi } => encode_print(size, &pixels, &tags, Compression::Small, dpi),
             Self::Vectors(file) => file,
         }
     }

@@ -156,7 +156,7 @@ fn draw_scene(
             let composer = composer.get_or_insert_with(|| Composer::new(&scene, &course));
             let pixels = renderer.draw(&composer.compose(&frame))?.into_raw();
             let texts = Tags::of_frame(&scene, &frame, &adapter).texts();
-            files.insert(frame_file_name(index), encode(size, &pixels, &texts, Compression::High));
+            files.insert(frame_file_name(index), encode(size, &pixels, &texts, Compression::Small));
         }
     }
     let record = Record { subject: String::new(), size, frames: drawn, keys: said::of_scene(&scene), states };
@@ -191,7 +191,7 @@ fn draw_figure(
         let picture = compose_figure(&figure, &moments).map_err(no_room)?;
         let image = Renderer::new(gpu, figure.size)?.draw(&picture)?;
         let texts = Tags::of_figure(&figure, &moments, &adapter_name(gpu.filter(|_| figure.is_lit()))).texts();
-        files.insert(format!("{}.png", figure.name), encode(figure.size, image.as_raw(), &texts, Compression::High));
+        files.insert(format!("{}.png", figure.name), encode(figure.size, image.as_raw(), &texts, Compression::Small));
     }
     let keys = said::of_figure(path, &figure);
     let record = Record { subject: String::new(), size: figure.size, frames: [0].into(), keys, states };

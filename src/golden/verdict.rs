@@ -221,7 +221,7 @@ mod tests {
 
     #[test]
     fn damage_is_reported_for_both_pictures() {
-        let good = encode([29, 50], &[9; 29 * 50 * 3], &[], Compression::High);
+        let good = encode([29, 50], &[9; 29 * 50 * 3], &[], Compression::Small);
         let memory = |length: usize| Some(Source::Memory(good[..length].to_vec()));
         for (lengths, words) in [
             ([60, 70], &["the expected picture: ", "; the actual picture: "][..]),

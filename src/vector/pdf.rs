@@ -342,5 +342,5 @@ fn packed(bytes: &[u8]) -> Vec<u8> {
 
 /// Rows of pixels, filtered and packed as in PNG.
 fn rows_of_png(size: [u32; 2], kind: png::ColorType, pixels: &[u8]) -> Vec<u8> {
-    crate::output::packed(size, kind, pixels, |encoder| encoder.set_compression(png::Compression::High))
+    crate::output::packed(size, kind, pixels, |encoder| crate::output::Compression::Small.apply(encoder))
 }

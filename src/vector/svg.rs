@@ -105,7 +105,7 @@ impl Svg<'_> {
     }
 
     fn image(&mut self, image: &Image) {
-        let png = STANDARD.encode(encode(image.size, &image.pixels, &[], Compression::High));
+        let png = STANDARD.encode(encode(image.size, &image.pixels, &[], Compression::Small));
         let [corner, right, down] = image.place;
         let matrix = [right.x, right.y, down.x, down.y, corner.x, corner.y];
         let [width, height] = image.size;

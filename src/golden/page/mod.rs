@@ -105,7 +105,7 @@ fn difference(expected: &Pixels, actual: &Pixels) -> Option<Vec<u8>> {
         let colour = COLOURS[usize::from(difference <= STRONG) + usize::from(difference <= FAINT)];
         bytes[3 * at..3 * at + 3].copy_from_slice(&colour);
     })?;
-    Some(encode(expected.size, &bytes, &[], Compression::High))
+    Some(encode(expected.size, &bytes, &[], Compression::Small))
 }
 
 impl Page {
