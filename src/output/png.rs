@@ -21,7 +21,11 @@ pub enum Compression {
 impl Compression {
     pub(crate) fn apply<W: Write>(self, encoder: &mut png::Encoder<'_, W>) {
         match self {
-            Self::Fast => encoder.set_compression(png::Compression::Fast),
+            // One filter for all rows: trying all of them takes a third more time for 5 %.
+            Self::Fast => {
+                encoder.set_compression(png::Compression::Fast);
+                encoder.set_filter(png::Filter::Paeth);
+            }
             // Mostly flat colours: filters make files larger, and the highest level takes 2.5 times as long for 2 %.
             Self::Small => {
                 encoder.set_deflate_compression(png::DeflateCompression::Level(6));
