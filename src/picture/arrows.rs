@@ -3,11 +3,12 @@
 use super::Item;
 use super::camera::Lens;
 use super::layout::Rectangle;
+use super::layout::steps::HAIR;
 use super::narrow::narrow;
 use super::order::farthest_first;
 use super::page::{Path, Pen, point};
 use super::plane::{clipped, from_side, sides};
-use crate::colour::Colour;
+use crate::colour::{Colour, mixed};
 use crate::sim::Placement;
 use glam::{DVec2, DVec3};
 
@@ -17,8 +18,10 @@ const HALO_ALPHA: f64 = 0.92;
 /// A long arrow in widths of its head: length and notch of the head, thickness of the shaft. The last number is the head
 /// of a short arrow, in lengths of the arrow.
 const SHAPE: [f64; 4] = [1.235, 0.2, 0.247, 0.62];
+/// Strengths of the inside and of the outline of arrows for comparison.
+const OUTLINED: [f64; 2] = [0.16, 0.75];
 /// Width of the head of a long arrow (px in the reference picture).
-pub(super) const HEAD: f64 = 17.0;
+const HEAD: f64 = 17.0;
 /// Elements smaller than this (px in the reference picture) get smaller arrows, down to this part of their size.
 const ROOMY_ELEMENT: f64 = 105.0;
 const SMALLEST: f64 = 0.36;
@@ -93,9 +96,23 @@ pub(super) fn arrow(ends: [DVec2; 2], size: f64, colour: Colour, halo: Colour) -
     Item::part("arrow", [Item::stroke(path.clone(), pen, (halo, HALO_ALPHA)), Item::fill(path, colour)])
 }
 
+/// An arrow without a halo, which would cover what lies beside it.
+pub(super) fn bare(ends: [DVec2; 2], size: f64, colour: Colour) -> Item {
+    let (corners, _) = outline(ends, HEAD * size);
+    Item::part("arrow", [Item::fill(Path::polygon(&corners.map(point)), colour)])
+}
+
+/// An arrow for comparison with others: faintly filled, with an outline.
+pub(super) fn outlined(ends: [DVec2; 2], size: f64, colour: Colour, ground: Colour) -> [Item; 2] {
+    let (corners, _) = outline(ends, HEAD * size);
+    let [inside, rim] = OUTLINED.map(|strength| mixed(ground, colour, strength));
+    let rim = Item::stroke(Path::polygon(&corners.map(point)), Pen::solid(narrow(HAIR * size)), rim);
+    [bare(ends, size, inside), rim]
+}
+
 /// The corners of an arrow with a head of a width (px): one side of the shaft, the joint, a wing, the tip and back; and
 /// the size of its head, from 0 to 1: less than 1 for a short arrow.
-pub(super) fn outline([from, to]: [DVec2; 2], width: f64) -> ([DVec2; 7], f64) {
+fn outline([from, to]: [DVec2; 2], width: f64) -> ([DVec2; 7], f64) {
     let length = from.distance(to);
     let along = (to - from).try_normalize().unwrap_or(DVec2::X);
     let head = (SHAPE[0] * width).min(SHAPE[3] * length);

@@ -1,5 +1,6 @@
 //! The text of panels: names, clock, counts and numbers, and the lines between panels.
 
+use super::layout::steps::{BESIDE, BOLD, MARGIN, NEAR, STRONG};
 use super::layout::{Baselines, Layout, Part, Rectangle, Scale};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight};
@@ -10,6 +11,8 @@ use crate::reading::captions::parts_and_constants;
 use crate::sim::model::ElasticModel;
 use crate::sim::{Body, Divergence, RunFrame, Snapshot, Status};
 
+/// The name of counts.
+const TURNED_OVER: &str = "turned over";
 /// The text in place of a number for a run that diverged.
 const DIVERGED: &str = "diverged";
 /// The widest time of a clock; room for it is reserved, so that nothing moves when the digits change.
@@ -20,12 +23,6 @@ const LABEL_SHARE: f64 = 0.55;
 /// The gap between a panel's letter and its name, and the height of small letters, in sizes of type.
 const LETTER_GAP: f64 = 0.42;
 const X_HEIGHT: f64 = 0.55;
-/// Between a name and the sample of its line; the sample's length and thickness (px in the reference picture).
-const SAMPLE_GAP: f64 = 14.0;
-const SAMPLE: [f64; 2] = [40.0, 2.6];
-/// The height of the scale bar above the baseline of counts, and the length of its ticks (px in the reference picture).
-const BAR_HEIGHT: f64 = 7.0;
-const BAR_TICK: f64 = 9.0;
 
 /// A model in short, for the second line of a picture: `27 cubes, k = 10 kN/m, ζ = 0.1`.
 pub(super) fn short_description(model: &dyn ElasticModel, body: &Body) -> String {
@@ -42,7 +39,12 @@ pub(crate) struct Writer<'a> {
     pub(super) words: Vec<TextRun>,
 }
 
-impl Writer<'_> {
+impl<'a> Writer<'a> {
+    pub(super) fn new(palette: &'a Palette, fonts: &'a Fonts, scale: Scale) -> Self {
+        let (marks, curves, words) = Default::default();
+        Self { palette, fonts, scale, marks, curves, words }
+    }
+
     /// Gives a halo to words over bodies.
     pub(super) fn over_bodies(&mut self, panels: &[Panel]) {
         for word in &mut self.words {
@@ -100,6 +102,12 @@ pub(super) struct Number {
     is_loud: bool,
 }
 
+impl Number {
+    fn weight(&self) -> Weight {
+        if self.is_loud { Weight::SemiBold } else { Weight::Regular }
+    }
+}
+
 impl Writer<'_> {
     /// The title above all panels.
     pub(super) fn title(&mut self, layout: &Layout, lines: &[String]) {
@@ -108,14 +116,6 @@ impl Writer<'_> {
         for (line, baseline) in lines.iter().zip(layout.baselines(Part::Title, size)) {
             self.left(line, Weight::SemiBold, size, self.palette.text, margin, baseline);
         }
-    }
-
-    /// Whether there is room for the clock with its label behind the last line of a title, in a picture of a width (px).
-    pub(super) fn has_room_beside(&self, around: Scale, title: &[String], label: &str, width: u32) -> bool {
-        let wide = |text: &str, weight, size| self.fonts.width(text, weight, size) + around.gap();
-        let title = title.last().map(|line| wide(line, Weight::SemiBold, around.heading()));
-        let clock = wide(WIDEST_TIME, Weight::Regular, around.title()) + wide(label, Weight::Regular, around.caption());
-        title.is_some_and(|title| title + clock + 2.0 * self.scale.margin() <= f64::from(width))
     }
 
     /// The caption below all panels.
@@ -138,14 +138,14 @@ impl Writer<'_> {
             left += self.fonts.width(&heading.letter, Weight::SemiBold, title) + LETTER_GAP * title;
         }
         let sample = heading.sample.filter(|_| !heading.name.is_empty());
-        let reserved = if sample.is_some() { (SAMPLE_GAP + SAMPLE[0]) * self.scale.unit } else { 0.0 };
+        let reserved = if sample.is_some() { (BESIDE + MARGIN) * self.scale.unit } else { 0.0 };
         let free_for_name = free[0] - (left - room.left) - reserved;
         // All names become smaller before one is cut.
         let size = self.size_of_names(heading, free_for_name);
         let name = self.fonts.told_apart(heading.name, heading.names, Weight::SemiBold, size, free_for_name);
         self.left(&name, Weight::SemiBold, size, self.palette.text, left, baseline);
         if let Some(sample) = sample.filter(|_| Scale::legible(title) && !name.is_empty()) {
-            let left = left + self.fonts.width(&name, Weight::SemiBold, size) + SAMPLE_GAP * self.scale.unit;
+            let left = left + self.fonts.width(&name, Weight::SemiBold, size) + BESIDE * self.scale.unit;
             self.sample([left, baseline - X_HEIGHT / 2.0 * title], sample);
         }
         // Parts are left out from the end: a number without its middle would be another number.
@@ -169,25 +169,9 @@ impl Writer<'_> {
     /// A sample of the line of a run, from a place (px).
     pub(super) fn sample(&mut self, [left, middle]: [f64; 2], LineStyle { colour, dash }: LineStyle) {
         let unit = self.scale.unit;
-        let [length, thickness] = SAMPLE.map(|length| length * unit);
-        let mut piece = |from: f64, to: f64| {
-            let thickness = thickness.round().max(1.0);
-            let rectangle = [left + from, (middle - 0.5 * thickness).round(), to - from, thickness];
-            self.marks.push(Item::rectangle(rectangle, colour));
-        };
-        if dash.is_empty() {
-            return piece(0.0, length.round());
-        }
-        let whole = |length: f64| (length * unit).round().max(1.0);
-        let mut from = 0.0;
-        for two in dash.chunks(2).cycle() {
-            let [dash, gap] = [two[0], two[1]].map(whole);
-            if from + dash > length + gap {
-                break;
-            }
-            piece(from, from + dash);
-            from += dash + gap;
-        }
+        let dash: Vec<_> = dash.iter().map(|length| length * unit).collect();
+        let ends = [[left, middle], [left + MARGIN * unit, middle]];
+        self.marks.push(Item::part("sample", [Item::curve(&ends, BOLD * unit, &dash, colour)]));
     }
 
     /// Whether a heading is shortened in a room of a width (px): its name, and its second line.
@@ -204,7 +188,7 @@ impl Writer<'_> {
         let wide = |text: &str| self.fonts.width(text, Weight::SemiBold, title);
         let letter = if heading.letter.is_empty() { 0.0 } else { wide(&heading.letter) + LETTER_GAP * title };
         let has_sample = heading.sample.is_some() && !heading.name.is_empty();
-        let sample = if has_sample { (SAMPLE_GAP + SAMPLE[0]) * self.scale.unit } else { 0.0 };
+        let sample = if has_sample { (BESIDE + MARGIN) * self.scale.unit } else { 0.0 };
         let second = self.fonts.width(&heading.second, Weight::Regular, self.scale.caption());
         [letter + wide(heading.name) + sample, second]
     }
@@ -252,57 +236,51 @@ impl Writer<'_> {
         self.right(&time, Weight::Regular, around.title(), palette.text, right, baseline);
     }
 
-    /// Tally and count, lower left; the tally takes at most a share of the panel's width. Returns the right end of the
-    /// widest possible count (px).
-    pub(super) fn count(&mut self, panel: Rectangle, (tally, share): (&Tally, f64), snapshot: &Snapshot) -> f64 {
+    /// Tally and count, lower left, each between two places from the left margin (px).
+    pub(super) fn count(&mut self, panel: Rectangle, places: [[f64; 2]; 2], tally: &Tally, snapshot: &Snapshot) {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
-        if !Scale::legible(caption) || snapshot.turned_over.is_empty() {
-            return room.left;
-        }
         let Snapshot { turned_over, flat, .. } = snapshot;
-        let [over, flattened] = [turned_over, flat].map(|state| state.iter().filter(|&&is_so| is_so).count());
+        let states = [&turned_over[..], &flat[..]];
+        let [over, flattened] = states.map(|state| state.iter().filter(|&&is_so| is_so).count());
         let (colour, second) = match over {
             0 => (self.palette.text, self.palette.second_text),
             _ => (self.palette.alarm_text, self.palette.alarm_text),
         };
         // If no element has turned over, flat ones are counted.
-        let (count, state) = if over == 0 && flattened > 0 { (flattened, "flat") } else { (over, "turned over") };
-        let taken = tally.draw(
-            [turned_over, flat],
-            self.palette,
-            self.scale,
-            share * room.width(),
-            [room.left, room.top + lines.caption],
-            &mut self.marks,
-        );
-        let left = room.left + taken + if taken > 0.0 { self.scale.gap() } else { 0.0 };
-        let [count, all] = [count, snapshot.turned_over.len()].map(number::count);
-        let free = room.right - left;
+        let (count, state) = if over == 0 && flattened > 0 { (flattened, "flat") } else { (over, TURNED_OVER) };
+        let [(first, tally_room), (left, free)] = places.map(|[from, to]| (room.left + from, to - from));
+        let corner = [first, room.top + lines.caption];
+        tally.draw(states, self.palette, self.scale, tally_room, corner, &mut self.marks);
+        let [count, all] = [count, turned_over.len()].map(number::count);
         let count = self.fonts.shortened(&format!("{count} of {all}"), Weight::SemiBold, title, free);
         self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
-        let explained = |state: &str| self.fonts.shortened(state, Weight::Regular, caption, free);
-        let (usual, state) = (explained("turned over"), explained(state));
+        let state = self.fonts.shortened(state, Weight::Regular, caption, free);
         self.left(&state, Weight::Regular, caption, second, left, room.top + lines.caption);
-        // The widest count is reserved, so that its neighbours do not come and go.
-        let widest = self.fonts.width(&format!("{all} of {all}"), Weight::SemiBold, title);
-        left + widest.max(self.fonts.width(&usual, Weight::Regular, caption))
     }
 
-    /// The left end of the widest possible number at the lower right (px), diverged or not.
-    pub(super) fn left_of_numbers(&self, panel: Rectangle, usual: &Number) -> f64 {
-        let room = Room::new(panel, self.scale);
-        let [title, caption] = [self.scale.title(), self.scale.caption()];
-        let wide = |text: &str, weight, size| self.fonts.width(text, weight, size);
-        let widest = [
-            wide(&usual.widest, Weight::Regular, title),
-            wide(&usual.wordings[0][1], Weight::Regular, caption),
-            wide(DIVERGED, Weight::SemiBold, title),
-        ];
-        room.right - widest.into_iter().fold(0.0, f64::max)
+    /// The width of the widest count of a number of elements (px).
+    pub(super) fn count_width(&self, all: usize) -> f64 {
+        let all = number::count(all);
+        let widest = self.fonts.width(&format!("{all} of {all}"), Weight::SemiBold, self.scale.title());
+        widest.max(self.fonts.width(TURNED_OVER, Weight::Regular, self.scale.caption())).ceil()
     }
 
-    /// A number with its name, lower right, if there is room for it right of `taken` (px).
+    /// The widths of the widest number at the lower right, diverged or not, in its longest and in its shortest wording
+    /// (px).
+    pub(super) fn number_widths(&self, usual: &Number) -> [f64; 2] {
+        let diverged = self.fonts.width(DIVERGED, Weight::SemiBold, self.scale.title());
+        [usual.wordings.first(), usual.wordings.last()]
+            .map(|texts| texts.map_or(0.0, |texts| self.number_width(usual, texts)).max(diverged).ceil())
+    }
+
+    fn number_width(&self, number: &Number, [value, explained]: &[String; 2]) -> f64 {
+        let wide = |text| self.fonts.width(text, number.weight(), self.scale.title());
+        let explained = self.fonts.width(explained, Weight::Regular, self.scale.caption());
+        wide(&number.widest).max(wide(value)).max(explained)
+    }
+
+    /// A number with its name, lower right, in the longest wording with room right of a place from the left margin (px).
     pub(super) fn number(&mut self, panel: Rectangle, taken: f64, number: &Number) {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
@@ -310,46 +288,41 @@ impl Writer<'_> {
         if !Scale::legible(caption) && !number.is_loud {
             return;
         }
-        let weight = if number.is_loud { Weight::SemiBold } else { Weight::Regular };
-        let free = room.right - taken - if taken > room.left { self.scale.gap() } else { 0.0 };
-        let fonts = self.fonts;
-        let wide = |[value, explained]: &[String; 2]| {
-            let value = fonts.width(&number.widest, weight, title).max(fonts.width(value, weight, title));
-            value.max(fonts.width(explained, Weight::Regular, caption))
-        };
-        let Some([value, explained]) = number.wordings.iter().find(|texts| wide(texts) <= free) else { return };
-        self.right(value, weight, title, self.palette.text, room.right, room.top + lines.count);
+        let free = room.width() - taken - if taken > 0.0 { self.scale.gap() } else { 0.0 };
+        let mut wordings = number.wordings.iter();
+        let Some([value, explained]) = wordings.find(|texts| self.number_width(number, texts) <= free) else { return };
+        self.right(value, number.weight(), title, self.palette.text, room.right, room.top + lines.count);
         let colour = self.palette.second_text;
         self.right(explained, Weight::Regular, caption, colour, room.right, room.top + lines.caption);
     }
 
-    /// A scale bar of `pixels` with its length, centred between two places (px), if it fits. Returns its right end
-    /// (px).
-    pub(super) fn scale_bar(&mut self, panel: Rectangle, between: [f64; 2], text: &str, pixels: f64) -> Option<f64> {
+    /// The width of a scale bar of a length with its words (px).
+    pub(super) fn bar_width(&self, text: &str, pixels: f64) -> f64 {
+        pixels.max(self.fonts.width(text, Weight::Regular, self.scale.caption())).ceil()
+    }
+
+    /// The first of some scale bars, in words and px, that fits between two places from the left margin, centred there.
+    /// Returns its right end (px).
+    pub(super) fn scale_bar(
+        &mut self,
+        panel: Rectangle,
+        [from, to]: [f64; 2],
+        mut bars: impl Iterator<Item = (String, f64)>,
+    ) -> Option<f64> {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
-        let (unit, caption) = (self.scale.unit, self.scale.caption());
-        let wide = self.fonts.width(text, Weight::Regular, caption);
-        let free = between[1] - between[0] - 2.0 * self.scale.gap();
-        if !Scale::legible(caption) || pixels.max(wide) > free {
-            return None;
+        let (unit, caption, colour) = (self.scale.unit, self.scale.caption(), self.palette.second_text);
+        let (text, pixels) = bars.find(|(text, pixels)| self.bar_width(text, *pixels) <= to - from + 1e-6)?;
+        let middle = room.left + from.midpoint(to);
+        let [length, thickness] = [pixels, STRONG * self.scale.line()].map(|length| length.round().max(1.0));
+        let (left, top) = ((middle - 0.5 * length).round(), (room.top + lines.count - NEAR * unit).round());
+        let tick = (NEAR * unit).round().max(thickness);
+        let ends = [left, left + length - thickness].map(|x| [x, top - 0.5 * (tick - thickness), thickness, tick]);
+        for [x, y, width, height] in [[left, top, length, thickness]].into_iter().chain(ends) {
+            self.marks.push(Item::rectangle([x, y.round(), width, height], colour));
         }
-        let middle = between[0].midpoint(between[1]);
-        let [length, thickness] = [pixels, 2.0 * self.scale.line()].map(|length| length.round().max(1.0));
-        let (left, top) = ((middle - 0.5 * length).round(), (room.top + lines.count - BAR_HEIGHT * unit).round());
-        let tick = (BAR_TICK * unit).round().max(thickness);
-        let [first, last] = [left, left + length - thickness];
-        for [x, y, width, height] in [
-            [left, top, length, thickness],
-            [first, top - 0.5 * (tick - thickness), thickness, tick],
-            [last, top - 0.5 * (tick - thickness), thickness, tick],
-        ] {
-            let rectangle = [x, y.round(), width, height];
-            self.marks.push(Item::rectangle(rectangle, self.palette.second_text));
-        }
-        let colour = self.palette.second_text;
-        let baseline = room.top + lines.caption;
-        self.left(text, Weight::Regular, caption, colour, middle - 0.5 * wide, baseline);
-        Some(middle + 0.5 * pixels.max(wide))
+        let wide = self.fonts.width(&text, Weight::Regular, caption);
+        self.left(&text, Weight::Regular, caption, colour, middle - 0.5 * wide, room.top + lines.caption);
+        Some(from.midpoint(to) + 0.5 * pixels.max(wide))
     }
 
     /// Hairlines between adjacent panels.

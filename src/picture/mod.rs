@@ -49,7 +49,6 @@ pub use compose::Composer;
 pub(crate) use compose::{compose_figure, left_out, type_left_out};
 pub use diagram::{Diagram, TextStyle};
 pub(crate) use layout::Rectangle;
-pub use number::power_of_ten;
 #[cfg(test)]
 pub(crate) use page::winding;
 pub(crate) use page::{Image, Item, Paint, Path, Pen, Step};
@@ -78,7 +77,7 @@ pub struct Picture {
 }
 
 /// One run, seen by one camera. Lengths are in sides ([`crate::look::View::side`]), from the panel's origin.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Panel {
     /// The part of the picture that belongs to it.
     pub viewport: Rectangle,
@@ -190,7 +189,7 @@ pub(crate) struct PaneCorner {
 }
 
 /// Camera and light of a panel.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sight {
     /// From the panel's coordinates to clip space of its viewport. Depth is `near` over the distance.
     pub clip: Mat4,

@@ -124,20 +124,14 @@ pub(super) fn with_minus(text: String) -> String {
     set + &text[first + length..]
 }
 
-/// A factor: in words up to twelve, then in digits, from a thousand on in powers of ten.
+/// A factor, from a thousand on in powers of ten.
 pub(super) fn times(value: f64) -> String {
-    const WORDS: [&str; 11] =
-        ["two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"];
-    match value.round() {
-        whole if whole < 999.5 => {
-            WORDS.get((whole as usize).wrapping_sub(2)).map_or_else(|| format!("{whole}"), |&word| word.to_owned())
-        }
-        whole => format!("{whole:.0e}"),
-    }
+    let whole = value.round();
+    if whole < 999.5 { whole.to_string() } else { format!("{whole:.0e}") }
 }
 
 /// A power of ten, typeset.
-pub fn power_of_ten(power: i32) -> String {
+pub(super) fn power_of_ten(power: i32) -> String {
     const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     match power {
         0 => "1".to_owned(),
@@ -226,6 +220,11 @@ mod tests {
         let expected = ["10 mm", "50 mm", "500 mm", "1 m", "2 m", "2 km", "2 µm", "5e−4 nm", "5e4 Gm"];
         assert_eq!(lengths.map(|length| round_length(round_below(length), 0.3)), expected);
         assert_eq!((round_length(0.5, 50.0), round_length(0.5, 0.3)), ("0.5 m".to_owned(), "500 mm".to_owned()));
+    }
+
+    #[test]
+    fn powers_are_written_with_raised_digits() {
+        assert_eq!([-12, -3, 0, 1, 4].map(power_of_ten), ["10⁻¹²", "10⁻³", "1", "10", "10⁴"]);
     }
 
     #[test]

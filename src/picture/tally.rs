@@ -2,6 +2,7 @@
 //! hollow.
 
 use super::layout::Scale;
+use super::layout::steps::{CHART, FREE, MARGIN, RING, SMALL, STRONG, TEXT, TICK};
 use super::page::{Path, point};
 use super::{Colour, Item};
 use crate::look::Palette;
@@ -10,16 +11,10 @@ use glam::DVec3;
 
 /// Bodies of more elements get a bar instead of squares.
 const MOST_SQUARES: usize = 200;
-/// The height of all rows together (px in the reference picture).
-pub(super) const HEIGHT: f64 = 36.0;
-/// The widest tally (px in the reference picture).
-const WIDTH: f64 = 200.0;
-/// Squares smaller than this (px in the reference picture) would be less legible than a bar.
-const LEAST_SQUARE: f64 = 4.0;
+/// The height of all rows together: three squares with gaps (px in the reference picture).
+pub(super) const HEIGHT: f64 = 3.0 * RING + 2.0 * FREE;
 /// The rim of a hollow square, relative to its side.
 const RIM: f64 = 0.14;
-/// A bar's width and height (px in the reference picture).
-const BAR: [f64; 2] = [140.0, 14.0];
 
 /// The elements in rows, highest layer first; each row in the order of the elements.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,8 +71,16 @@ impl Tally {
         self.are_layers && self.rows.len() > 1
     }
 
-    /// The marks of the tally with its lower left corner at a place (px), and its width (px). `states` tells the
-    /// turned-over and the flat elements.
+    /// Its width in a room (px).
+    pub(super) fn width(&self, scale: Scale, room: f64) -> f64 {
+        match self.squares(scale, room) {
+            Some([side, gap]) => self.rows.iter().map(Vec::len).max().unwrap_or(0) as f64 * (side + gap) - gap,
+            None if self.count == 0 => 0.0,
+            None => (CHART * scale.type_unit()).min(room).round(),
+        }
+    }
+
+    /// Draws the tally with its lower left corner at a place (px). `states` tells the turned-over and the flat elements.
     pub(super) fn draw(
         &self,
         states: [&[bool]; 2],
@@ -86,7 +89,7 @@ impl Tally {
         room: f64,
         corner: [f64; 2],
         marks: &mut Vec<Item>,
-    ) -> f64 {
+    ) {
         match self.squares(scale, room) {
             Some(lengths) => {
                 // Few rows are centred in the height of three.
@@ -102,12 +105,12 @@ impl Tally {
     fn squares(&self, scale: Scale, room: f64) -> Option<[f64; 2]> {
         let columns = self.rows.iter().map(Vec::len).max()? as f64;
         let rows = self.rows.len() as f64;
-        let gap: f64 = if rows > 3.0 || columns > 14.0 { 2.0 } else { 3.0 };
-        let room = (room / scale.type_unit()).min(WIDTH);
-        let side = ((HEIGHT + gap) / rows - gap).min((room + gap) / columns - gap).min(17.0);
+        let gap: f64 = if rows > 3.0 || columns > 14.0 { STRONG } else { FREE };
+        let room = (room / scale.type_unit()).min(5.0 * MARGIN);
+        let side = ((HEIGHT + gap) / rows - gap).min((room + gap) / columns - gap).min(TEXT);
         let pixels = side * scale.type_unit();
         // Whole pixels keep all squares alike.
-        (side >= LEAST_SQUARE && pixels >= 2.0).then(|| [pixels.round(), (gap * scale.type_unit()).round().max(1.0)])
+        (side >= TICK && pixels >= 2.0).then(|| [pixels.round(), (gap * scale.type_unit()).round().max(1.0)])
     }
 
     fn draw_squares(
@@ -117,9 +120,8 @@ impl Tally {
         [side, gap]: [f64; 2],
         [left, bottom]: [f64; 2],
         marks: &mut Vec<Item>,
-    ) -> f64 {
+    ) {
         let (left, bottom) = (left.round(), bottom.round());
-        let mut width: f64 = 0.0;
         for (up, row) in self.rows.iter().rev().enumerate() {
             for (along, &element) in row.iter().enumerate() {
                 let [over, flat] = states.map(|state| state.get(element).copied().unwrap_or(false));
@@ -131,10 +133,8 @@ impl Tally {
                     let square = [x, y, side, side];
                     marks.push(if over { struck(square, palette) } else { Item::rectangle(square, palette.tally) });
                 }
-                width = width.max(x + side - left);
             }
         }
-        width
     }
 
     fn draw_bar(
@@ -145,28 +145,25 @@ impl Tally {
         room: f64,
         [left, bottom]: [f64; 2],
         marks: &mut Vec<Item>,
-    ) -> f64 {
-        if self.count == 0 {
-            return 0.0;
-        }
-        let [width, height] =
-            [(BAR[0] * scale.type_unit()).min(room).round(), (BAR[1] * scale.type_unit()).round().max(1.0)];
+    ) {
+        let (width, height) = (self.width(scale, room), (SMALL * scale.type_unit()).round().max(1.0));
         // A single element among thousands is visible.
         let [over, flat] = states.map(|state| match state.iter().filter(|&&is_so| is_so).count() {
             0 => 0.0,
             count => (width * count as f64 / self.count as f64).max(2.0).min(width).round(),
         });
         let flat = flat.min(width - over);
-        let (left, top) = (left.round(), (bottom - (HEIGHT - BAR[1]) / 2.0 * scale.type_unit() - height).round());
+        let (left, top) = (left.round(), (bottom - (HEIGHT - SMALL) / 2.0 * scale.type_unit() - height).round());
         let bar = |length, colour: Colour| Item::rectangle([left, top, length, height], colour);
-        marks.push(bar(width, palette.tally));
+        if width > 0.0 {
+            marks.push(bar(width, palette.tally));
+        }
         if flat > 0.0 {
             marks.extend(hollow([left + over, top, flat, height], palette));
         }
         if over > 0.0 {
             marks.push(bar(over, palette.alarm));
         }
-        width
     }
 }
 

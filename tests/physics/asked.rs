@@ -126,21 +126,21 @@ fn figures_ask_for_energies_only_where_they_show_them() {
     let reports = count(&mut sheet.scenes[0]);
     let shown = sheet.rows.len() * sheet.columns.len();
     let (ratio, elastic) = (Diagnostic::VolumeRatio, Diagnostic::Elastic);
-    for (scope, number, strip, asked) in [
+    for (scope, number, chart, asked) in [
         (Scope::Summaries, None, ratio, 0),
         (Scope::Summaries, Some(elastic), ratio, shown),
         (Scope::Frames, None, ratio, shown),
         (Scope::Summaries, None, elastic, 0),
     ] {
         let Content::Sheet(sheet) = &mut figure.content else { panic!("a contact sheet") };
-        (sheet.number, sheet.charts) = (number, vec![strip]);
+        (sheet.number, sheet.charts) = (number, vec![chart]);
         let mut taking = Taking::new(&figure, scope);
         while taking.advance(u64::MAX).is_some() {}
         let moments = taking.finish();
         let series = &moments.histories[0].series;
         let noted: usize = series.iter().map(|run| run.times.len()).sum();
-        let expected = asked + if strip == elastic { noted } else { 0 };
-        assert_eq!(reports.swap(0, Ordering::Relaxed), expected, "{scope:?}, {number:?}, {strip:?}");
+        let expected = asked + if chart == elastic { noted } else { 0 };
+        assert_eq!(reports.swap(0, Ordering::Relaxed), expected, "{scope:?}, {number:?}, {chart:?}");
         for run in moments.cells.iter().flatten() {
             let found = run.snapshot.diagnostics;
             assert!(found.volume_ratio > 0.0 && found.shape_error > 0.0);

@@ -226,7 +226,7 @@ fn the_distance_to_another_run_is_a_field() {
         let shades = &unknown(&scene).compose(&frame).panels[0].sound.shades;
         assert!(shades.iter().all(|&shade| (shade - expected).abs() < 1e-6), "{shift}: {shades:?}");
     }
-    assert!(picture.words.iter().any(|word| word.text.contains("Mass-spring is plain")));
+    assert!(picture.words.iter().any(|word| word.text.contains("that run is plain")));
     // Without the other run, all are plain.
     let alone = Runner::new(&scene, &[0]).frame(4);
     assert!(alone.runs[0].snapshot.field.is_empty());

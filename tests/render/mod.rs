@@ -6,6 +6,7 @@
 #[path = "../report/browser.rs"]
 mod browser;
 mod camera;
+mod charts;
 mod compared;
 mod fields;
 mod fine;
@@ -21,7 +22,6 @@ mod sheets;
 mod shown;
 mod smooth;
 mod steady;
-mod strips;
 mod turns;
 mod vectors;
 mod words;

@@ -61,9 +61,9 @@ fn a_chart_changes_no_size_of_type() {
     let text = ALL.replace("charts = ['shape_error']", "").replace("title = 'A title", "#").replace("caption = ", "#");
     let more = "[[run]]\nname = 'Fourth'\nmodel = { kind = 'shape-based', stiffness = 1e4 }\n[view]";
     let text = text.replace("[view]", more);
-    let sizes = ["", "charts = ['shape_error']"].map(|strip| {
+    let sizes = ["", "charts = ['shape_error']"].map(|chart| {
         let picture = {
-            let scene = parse(&format!("{text}\nsize = [2000, 800]\npanels = 2\n{strip}\n"));
+            let scene = parse(&format!("{text}\nsize = [2000, 800]\npanels = 2\n{chart}\n"));
             compose(&scene, &frame(&scene, 0))
         };
         picture.words.iter().find(|word| word.text.ends_with("Fourth")).expect("the name").size
@@ -102,8 +102,8 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_size_of_type() {
     let mut arrows = 0;
     let sizes = [[640, 360], [1280, 720], [700, 1200], [1600, 400], [150, 150]];
     for (number, text_scale) in [(0, 0.5), (1, 1.0), (2, 1.5), (4, 3.0)] {
-        // In low panels, strips with type of three times the size have no room for two rows.
-        for strip in ["", "charts = ['shape_error']"].into_iter().filter(|strip| strip.is_empty() || text_scale < 3.0) {
+        // In low panels, charts with type of three times the size have no room for two rows.
+        for chart in ["", "charts = ['shape_error']"].into_iter().filter(|chart| chart.is_empty() || text_scale < 3.0) {
             for (at, view) in
                 ["", "caption = ''", "caption = '' # no legend", "panels = 'column'"].into_iter().enumerate()
             {
@@ -111,13 +111,13 @@ fn no_words_overlap_and_none_leaves_the_picture_at_any_size_of_type() {
                 let text: Vec<_> =
                     text.filter(|line| !view.contains("caption") || !line.starts_with("caption")).collect();
                 let mut scene =
-                    parse(&format!("{}\n{strip}\n{shown}text_scale = {text_scale}\n{view}\n", text.join("\n")));
+                    parse(&format!("{}\n{chart}\n{shown}text_scale = {text_scale}\n{view}\n", text.join("\n")));
                 scene.view.labels.legend = !view.contains("no legend");
                 // Each pair of type, view and size occurs at least once.
                 for size in [0, 1, 2, 3].map(|next| sizes[(number + at + next) % 5]) {
                     scene.view.size = size;
                     let picture = compose(&scene, &Runner::new(&scene, &[0, 1, 2]).frame(3));
-                    let place = format!("{size:?} at {text_scale} with {strip} {view}");
+                    let place = format!("{size:?} at {text_scale} with {chart} {view}");
                     assert_words_are_clear(&picture, &place);
                     let arrow = key_arrow(&picture);
                     arrows += usize::from(arrow.is_some());

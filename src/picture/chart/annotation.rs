@@ -2,40 +2,20 @@
 
 use super::layer::{pixels, within};
 use super::names::{self, DOTS, Name, spread};
-use super::{Chart, Place, TICK};
+use super::{Chart, Place};
 use crate::colour::Colour;
 use crate::picture::caption::Writer;
 use crate::picture::layout::Scale;
+use crate::picture::layout::steps::{CLOSE, FREE, HAIR, NEAR, RING, SMALL, STRONG, THIN, TICK};
 use crate::picture::narrow::narrow;
 use crate::picture::page::{self, Item, Path, Pen};
 use crate::picture::text::Weight;
 
-/// Width of the line of a moment (px in the reference picture), and its opacity.
-const MOMENT: f64 = 1.3;
-const MOMENT_ALPHA: f64 = 0.75;
-/// Radius of the circle around a value and width of its line (px in the reference picture).
-const CIRCLE: [f64; 2] = [4.5, 1.6];
-/// Width and arms of a cross (px in the reference picture).
-const CROSS: f64 = 1.8;
-const ARM: f64 = 4.0;
-/// Half the width and the length of the arrowhead where the curve of a diverged run leaves its chart, the width of the
-/// line from the arrowhead to the cross (px in the reference picture).
-const HEAD: [f64; 2] = [4.0, 6.0];
-const DOT: f64 = 1.0;
-/// Radius of the ring of a flag, thickness of its rim, size of the letter in it, the gap beside the letter, and the gap
-/// between rings (px in the reference picture).
-const RING: f64 = 10.0;
-const RIM: f64 = 1.3;
-const LETTER: f64 = 14.0;
-const BESIDE_LETTER: f64 = 4.0;
-const RINGS_APART: f64 = 3.0;
+/// Opacities of the line of a moment, and of the lines of flags.
+const MOMENT: f64 = 0.75;
+const FLAG: f64 = 0.62;
 /// The largest share of the margin for crowded rings at each end.
 const BEYOND: f64 = 0.35;
-/// The height above the charts at which the lines of flags become upright, their width (px in the reference picture),
-/// and their opacity.
-const UPRIGHT_ABOVE: f64 = 9.0;
-const LINE: f64 = 1.1;
-const LINE_ALPHA: f64 = 0.62;
 
 /// A sign or words in a chart, in the values of its axes.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,12 +68,12 @@ impl Annotation {
             &Self::Moment { at, colour } => {
                 let x = place.x(&chart.x, at);
                 let ends = [[x, place.borders()[0]], [x, place.bottom + TICK * place.unit]];
-                writer.curves.push(place.curve(&ends, MOMENT, &[], (colour, MOMENT_ALPHA)));
+                writer.curves.push(place.curve(&ends, THIN, &[], (colour, MOMENT)));
             }
             &Self::Ring { at, colour } => {
                 let [x, y] = [place.x(&chart.x, at[0]), place.y(&chart.y, at[1])];
                 if (place.top - 1.0..=place.bottom + 1.0).contains(&y) {
-                    let [radius, width] = CIRCLE.map(|length| narrow(length * place.line));
+                    let [radius, width] = [TICK, THIN].map(|length| narrow(length * place.line));
                     let path = Path::circle(page::point([x, y].into()), radius);
                     writer.curves.push(Item::stroke(path, Pen::solid(width), colour));
                 }
@@ -106,24 +86,24 @@ impl Annotation {
 
 /// Draws a cross at the end of a line that is cut off at a place.
 fn cross(writer: &mut Writer<'_>, chart: &Chart, place: Place, (line, at): (&[[f64; 2]], f64), colour: Colour) {
-    let (arm, x) = (ARM * place.line, place.x(&chart.x, at));
+    let (arm, x) = (TICK * place.line, place.x(&chart.x, at));
     let (Some(last), Some(stretch)) = (line.last(), chart.x.stretch(at)) else { return };
     let mut curve = |points: &[[f64; 2]], width, dash: &[f64]| {
         writer.curves.push(place.curve(points, width, dash, colour));
     };
-    let [wing, back] = HEAD.map(|length| length * place.line);
+    let [wing, back] = [TICK, CLOSE].map(|length| length * place.line);
     let left = leaving(&pixels(line, chart, stretch, place), place.borders());
     if let Some([from, tip]) = left.filter(|[_, tip]| tip[0] + wing < x - arm) {
         // An arrowhead, and dots along the border to the cross, which has the name.
         let up = if tip[1] < from[1] { -1.0 } else { 1.0 };
         let corner = |side: f64| [tip[0] + side * wing, tip[1] - up * back];
-        curve(&[corner(-1.0), tip, corner(1.0)], CROSS, &[]);
+        curve(&[corner(-1.0), tip, corner(1.0)], STRONG, &[]);
         let y = tip[1].clamp(place.top, place.bottom);
-        curve(&[[tip[0] + wing, y], [x - arm, y]], DOT, &DOTS);
+        curve(&[[tip[0] + wing, y], [x - arm, y]], HAIR, &DOTS);
     }
     let y = place.y(&chart.y, last[1]).clamp(place.top, place.bottom);
     for slope in [-1.0, 1.0] {
-        curve(&[[x - arm, y - slope * arm], [x + arm, y + slope * arm]], CROSS, &[]);
+        curve(&[[x - arm, y - slope * arm], [x + arm, y + slope * arm]], STRONG, &[]);
     }
 }
 
@@ -146,16 +126,17 @@ pub(super) fn flags(
 ) {
     let (scale, fonts, palette) = (writer.scale, writer.fonts, writer.palette);
     let Place { left, right, .. } = place;
-    let top = place.top - UPRIGHT_ABOVE * scale.type_unit();
-    let wide = |text: &str| fonts.width(text, Weight::SemiBold, LETTER * scale.type_unit());
+    let unit = scale.type_unit();
+    let top = place.top - NEAR * unit;
+    let wide = |text: &str| fonts.width(text, Weight::SemiBold, SMALL * unit);
     let widest = flags.iter().map(|flag| wide(&flag.text)).fold(0.0, f64::max);
-    let radius = (RING * scale.type_unit()).max(0.5 * widest + BESIDE_LETTER * scale.type_unit());
-    let apart = 2.0 * radius + RINGS_APART * scale.type_unit();
+    let radius = (RING * unit).max(0.5 * widest + TICK * unit);
+    let apart = 2.0 * radius + FREE * unit;
     // The outermost rings reach into the margins, but not to the picture's sides.
     let span = right - left + 2.0 * radius.min(BEYOND * scale.margin());
     // Many rings become smaller while their letters can be read; otherwise they are left out.
     let smaller = (span / (apart * flags.len().max(1) as f64)).min(1.0);
-    let letter = LETTER * scale.type_unit() * smaller;
+    let letter = SMALL * unit * smaller;
     let with_rings = Scale::legible(letter);
     let places: Vec<_> = flags.iter().map(|flag| place.x(&chart.x, flag.at).floor() + 0.5).collect();
     let rings = spread(&places, apart * smaller, [left, right]);
@@ -164,7 +145,7 @@ pub(super) fn flags(
     for ((flag, &x), &ring) in flags.iter().zip(&places).zip(&rings) {
         let from = if with_rings { [ring, middle] } else { [x, top] };
         let points: &[_] = if from[0] == x { &[from, [x, bottom]] } else { &[from, [x, top], [x, bottom]] };
-        writer.curves.push(place.curve(points, LINE, &[], (flag.colour, LINE_ALPHA)));
+        writer.curves.push(place.curve(points, HAIR, &[], (flag.colour, FLAG)));
     }
     for (flag, &at) in flags.iter().zip(&rings).filter(|_| with_rings) {
         let colours = [flag.colour, palette.background, palette.text];
@@ -180,7 +161,7 @@ pub(in crate::picture) fn ring(
     [rim, ground, letter]: [Colour; 3],
     text: &str,
 ) {
-    let thickness = RIM * writer.scale.line();
+    let thickness = THIN * writer.scale.line();
     for (radius, colour) in [(radius, rim), (radius - thickness, ground)] {
         writer.curves.push(Item::disc(at, radius, colour));
     }

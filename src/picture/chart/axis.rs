@@ -6,18 +6,16 @@ use crate::reading::captions::{prefix, rounded};
 /// The quantity along an axis, which determines its division.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::picture) enum Kind {
-    /// Time (s). The axis ends at its ends.
-    Time,
+    /// A value. The axis ends at its ends.
+    Fixed,
     /// A number of things.
     Count,
-    /// Another value.
+    /// A value. The axis may end at round numbers beyond its ends.
     Value,
-    /// The values of a colour scale. The axis ends at its ends.
-    Colour,
 }
 
 /// An axis of a chart: a stretch of numbers, or two with a gap between where its scale changes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Axis(pub(in crate::picture) Vec<Stretch>);
 
 /// A stretch of an axis: a range with numbers on it.
@@ -45,6 +43,12 @@ const BEYOND: f64 = 0.05;
 const WITH_PREFIX: [&str; 2] = ["m/s", "J"];
 
 impl Axis {
+    /// An axis between two values, with texts at some of them.
+    pub fn linear(range: [f64; 2], texts: Vec<(f64, String)>) -> Self {
+        let (ticks, texts) = texts.into_iter().unzip();
+        Self(vec![Stretch { range, along: [0.0, 1.0], is_logarithmic: false, ticks, texts, unit: String::new() }])
+    }
+
     /// A logarithmic axis between two positive values, with numbers at powers of ten, at most `most` of them. A short
     /// one has numbers at twos and fives, too.
     pub fn logarithmic(ends: [f64; 2], most: usize) -> Self {
@@ -99,8 +103,7 @@ impl Stretch {
         let (factor, prefix) = match kind {
             _ if unit == "m" => number::metre(extent),
             // Kiloseconds are not in use.
-            Kind::Time if largest >= 1.0 => (1.0, ""),
-            Kind::Time => prefix(largest),
+            _ if unit == "s" => prefix(largest.min(1.0)),
             _ if WITH_PREFIX.contains(&unit) => prefix(largest),
             _ => (1.0, ""),
         };
@@ -120,12 +123,11 @@ impl Stretch {
         }
         let division = divide(kind, [low, high], most.max(2));
         let digits = (libm::log10(largest / factor / span).max(0.0) + 3.0) as usize;
-        let plain = division.decimals <= if kind == Kind::Colour { 5 } else { 4 } && largest / factor < 99_999.5;
+        let plain = division.decimals <= 4 && largest / factor < 99_999.5;
         let text = |value: f64| match plain {
             // Adjacent numbers may have different numbers of decimals.
-            _ if value == 0.0 && kind == Kind::Time => "0".to_owned(),
+            _ if value == 0.0 => "0".to_owned(),
             true => with_minus(format!("{value:.*}", division.decimals)),
-            false if value == 0.0 => "0".to_owned(),
             false => with_minus(format!("{:e}", rounded(value, digits))),
         };
         Self {
@@ -136,12 +138,6 @@ impl Stretch {
             texts: division.ticks.iter().copied().map(text).collect(),
             unit,
         }
-    }
-
-    /// Keeps every second tick, with the first.
-    pub(in crate::picture) fn halve(&mut self) {
-        self.ticks = self.ticks.iter().copied().step_by(2).collect();
-        self.texts = self.texts.iter().step_by(2).cloned().collect();
     }
 
     /// The place of a value: 0 at the low end, 1 at the high end.
@@ -161,14 +157,14 @@ struct Division {
     worth: usize,
 }
 
-/// The division with most ticks, preferably with ticks at its ends. For colours, ticks at both ends take precedence
-/// over their number.
+/// The division with most ticks, preferably with ticks at its ends. If these are fixed, ticks at both ends take
+/// precedence over their number.
 fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
     let highest = libm::floor(libm::log10(high - low));
     let digits: &[f64] = match kind {
         Kind::Count => &[5.0, 3.0, 2.0, 1.0],
-        Kind::Time | Kind::Value => &[5.0, 2.0, 1.0],
-        Kind::Colour => &[5.0, 2.5, 2.0, 1.0],
+        Kind::Value => &[5.0, 2.0, 1.0],
+        Kind::Fixed => &[5.0, 2.5, 2.0, 1.0],
     };
     // Counts have no fractions.
     let powers = [highest, highest - 1.0].map(|power| if kind == Kind::Count { power.max(0.0) } else { power });
@@ -182,7 +178,7 @@ fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
         let mut range = [low, high];
         let [below, above] = [from - (first - 1.0), last + 1.0 - to].map(|parts| parts % 1.0 * step / (high - low));
         let apart = |parts: f64| (1e-6..1.0 - 1e-6).contains(&parts.rem_euclid(1.0));
-        if matches!(kind, Kind::Count | Kind::Value) {
+        if kind != Kind::Fixed {
             if apart(from) {
                 let near = below <= near;
                 first -= f64::from(u8::from(near));
@@ -202,12 +198,11 @@ fn divide(kind: Kind, [low, high]: [f64; 2], most: usize) -> Division {
         Division { range, ticks, decimals, worth }
     });
     let mut all: Vec<_> = divisions.collect();
-    let fewest = if kind == Kind::Colour { 3 } else { 2 };
-    let best = (0..all.len()).filter(|&at| (fewest..=most).contains(&all[at].ticks.len()));
+    let best = (0..all.len()).filter(|&at| (2..=most).contains(&all[at].ticks.len()));
     let rank = |&at: &usize| {
         let (worth, count) = (all[at].worth, all[at].ticks.len());
         match kind {
-            Kind::Colour => (usize::from(worth == count + 2), count, 0),
+            Kind::Fixed => (usize::from(worth == count + 2), count, 0),
             // Among equals, three ticks are better than two, and then ticks at the ends: 0, 5, 10 instead of 0, 3, 6,
             // 9.
             _ => (worth, count.min(3), worth - count),
@@ -242,18 +237,18 @@ mod tests {
             (Kind::Value, [0.62, 1.08], "", 4, &["0.6", "0.8", "1.0"], ""),
             (Kind::Value, [-35.0, 120.0], "J", 4, &["−50", "0", "50", "100"], "J"),
             (Kind::Value, [0.0, 4e-7], "kg m/s", 4, &["0", "2e−7", "4e−7"], "kg m/s"),
-            (Kind::Time, [0.0, 3.0], "s", 6, &["0", "1", "2", "3"], "s"),
-            (Kind::Time, [0.0, 0.1], "s", 4, &["0", "50", "100"], "ms"),
-            (Kind::Time, [0.0, 6.5], "s", 5, &["0", "2", "4", "6"], "s"),
-            (Kind::Time, [0.0, 5000.0], "s", 4, &["0", "2000", "4000"], "s"),
-            (Kind::Colour, [0.0, 0.5], "", 5, &["0.00", "0.25", "0.50"], ""),
-            (Kind::Colour, [0.0, 1.0], "", 5, &["0.00", "0.25", "0.50", "0.75", "1.00"], ""),
-            (Kind::Colour, [0.0, 9.9], "m/s", 5, &["0", "2", "4", "6", "8"], "m/s"),
-            (Kind::Colour, [0.0, 0.05], "m", 5, &["0", "25", "50"], "mm"),
-            (Kind::Colour, [-0.02, 0.02], "m", 5, &["−20", "−10", "0", "10", "20"], "mm"),
-            (Kind::Colour, [0.0, 12.5], "J", 5, &["0", "5", "10"], "J"),
-            (Kind::Colour, [0.0, 2e6], "J", 5, &["0.0", "0.5", "1.0", "1.5", "2.0"], "MJ"),
-            (Kind::Colour, [0.0, 3e-7], "", 5, &["0", "1e−7", "2e−7", "3e−7"], ""),
+            (Kind::Fixed, [0.0, 3.0], "s", 6, &["0", "1", "2", "3"], "s"),
+            (Kind::Fixed, [0.0, 0.1], "s", 4, &["0", "50", "100"], "ms"),
+            (Kind::Fixed, [0.0, 6.5], "s", 5, &["0", "2", "4", "6"], "s"),
+            (Kind::Fixed, [0.0, 5000.0], "s", 4, &["0", "2500", "5000"], "s"),
+            (Kind::Fixed, [0.0, 0.5], "", 5, &["0", "0.25", "0.50"], ""),
+            (Kind::Fixed, [0.0, 1.0], "", 5, &["0", "0.25", "0.50", "0.75", "1.00"], ""),
+            (Kind::Fixed, [0.0, 9.9], "m/s", 5, &["0", "2", "4", "6", "8"], "m/s"),
+            (Kind::Fixed, [0.0, 0.05], "m", 5, &["0", "25", "50"], "mm"),
+            (Kind::Fixed, [-0.02, 0.02], "m", 5, &["−20", "−10", "0", "10", "20"], "mm"),
+            (Kind::Fixed, [0.0, 12.5], "J", 5, &["0", "5", "10"], "J"),
+            (Kind::Fixed, [0.0, 2e6], "J", 5, &["0", "0.5", "1.0", "1.5", "2.0"], "MJ"),
+            (Kind::Fixed, [0.0, 3e-7], "", 5, &["0", "1e−7", "2e−7", "3e−7"], ""),
         ];
         for (kind, range, unit, most, texts, with_prefix) in expected {
             let axis = Stretch::new(kind, range, unit, 0.3, most);
@@ -267,12 +262,11 @@ mod tests {
         for step in 0..3000 {
             let high = 1e-9 * libm::pow(10.0, f64::from(step) * 0.006_13);
             for low in [0.0, 0.1 * high, -0.37 * high, -high, -12.0 * high, 0.7 * high, 0.95 * high] {
-                for kind in [Kind::Time, Kind::Value, Kind::Colour] {
-                    for most in if kind == Kind::Colour { 5..=5 } else { 2..=6 } {
+                for kind in [Kind::Fixed, Kind::Value] {
+                    for most in 2..=6 {
                         let axis = Stretch::new(kind, [low, high], "m", 0.3, most);
                         let told = || format!("{kind:?} {low} {high} {most}: {axis:?}");
-                        let fewest = if kind == Kind::Colour { 3 } else { 2 };
-                        assert!((fewest..=most).contains(&axis.ticks.len()), "{}", told());
+                        assert!((2..=most).contains(&axis.ticks.len()), "{}", told());
                         assert!(axis.ticks.windows(2).all(|two| two[0] < two[1]), "{}", told());
                         assert!(axis.ticks.iter().all(|&tick| (-1e-6..=1.0 + 1e-6).contains(&axis.share(tick))));
                         assert!((-1e-6..=0.2).contains(&axis.share(low)), "{}", told());
@@ -293,7 +287,7 @@ mod tests {
     #[test]
     fn odd_ranges_do_no_harm() {
         for odd in [[0.0, 0.0], [3.0, 3.0], [-f64::MAX, f64::MAX], [0.0, 5e-324], [1.0, 1.0 + 1e-15]] {
-            for kind in [Kind::Time, Kind::Count, Kind::Value, Kind::Colour] {
+            for kind in [Kind::Fixed, Kind::Count, Kind::Value] {
                 let axis = Stretch::new(kind, odd, "J", 0.3, 4);
                 assert!(axis.ticks.len() <= 4 && axis.ticks.len() == axis.texts.len(), "{odd:?} {axis:?}");
             }

@@ -4,6 +4,7 @@ use super::ring;
 use super::series::Series;
 use crate::colour::Colour;
 use crate::picture::caption::{Room, Writer};
+use crate::picture::layout::steps::{GAP, NEAR};
 use crate::picture::layout::{Baselines, Rectangle, Scale};
 use crate::picture::number;
 use crate::picture::text::Weight;
@@ -21,11 +22,8 @@ const EXTREME: f64 = 0.1;
 const NEARLY_ALL: f64 = 0.95;
 const SHORT: f64 = 0.1;
 
-/// Radius of the ring of an event, in sizes of its number; the gap between it and its words, and the gap between events
-/// (px in the reference picture).
+/// Radius of the ring of an event, in sizes of its number.
 const EVENT_RING: f64 = 0.68;
-const EVENT_BESIDE: f64 = 7.0;
-const EVENTS_APART: f64 = 18.0;
 
 /// An event of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,16 +127,10 @@ impl Writer<'_> {
         (0..=events.len()).rev().find(fits).filter(|_| Scale::legible(self.scale.caption())).unwrap_or(0)
     }
 
-    /// Whether the words of all events fit into a panel, without and with their times.
-    pub(in crate::picture) fn explains(&self, panel: Rectangle, events: &[Event]) -> [bool; 2] {
-        let room = Room::new(panel, self.scale).width();
-        [1, 0].map(|at| Scale::legible(self.scale.caption()) && self.events_width(events.iter(), at) <= room)
-    }
-
     /// The width of events with their words, with or without their times (px).
     fn events_width<'e>(&self, events: impl Iterator<Item = &'e Event>, at: usize) -> f64 {
         let (unit, size) = (self.scale.type_unit(), self.scale.caption());
-        let [beside, apart] = [EVENT_BESIDE, EVENTS_APART].map(|length| length * unit);
+        let [beside, apart] = [NEAR, GAP].map(|length| length * unit);
         let one = 2.0 * EVENT_RING * self.scale.small() + beside + apart;
         let all: f64 = events.map(|event| one + self.fonts.width(&event.words[at], Weight::Regular, size)).sum();
         (all - apart).max(0.0)
@@ -158,7 +150,7 @@ impl Writer<'_> {
         let events: Vec<_> = events.collect();
         let number_size = self.scale.small();
         let radius = EVENT_RING * number_size;
-        let [beside, apart] = [EVENT_BESIDE, EVENTS_APART].map(|length| length * unit);
+        let [beside, apart] = [NEAR, GAP].map(|length| length * unit);
         let wide = |words: &str| 2.0 * radius + beside + self.fonts.width(words, Weight::Regular, size);
         let width = |at: usize| self.events_width(events.iter().map(|(_, event)| *event), at);
         let Some(at) = (0..=1).find(|&at| width(at) <= room.width()) else { return };

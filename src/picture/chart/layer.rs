@@ -2,15 +2,13 @@
 
 use super::axis::Stretch;
 use super::{Chart, Place};
-use crate::colour::{Colour, mixed};
+use crate::colour::Colour;
 use crate::picture::caption::Writer;
+use crate::picture::layout::steps::{BESIDE, FREE, HAIR, MARGIN, STRONG};
 use crate::picture::page::{self, Item, Path};
 
-/// A line is dense where it turns four times within this length, by more than the second one (px in the reference
-/// picture). Where it is so for longer than the third one, it is a band with this strength of its colour.
-const DENSE: f64 = 12.0;
-const TURN: f64 = 3.0;
-const LONG: f64 = 40.0;
+/// The strengths of the colours of areas and of bands.
+const AREA: f64 = 0.16;
 const BAND: f64 = 0.3;
 /// Curves are simplified as long as no point moves by more than this (px).
 const EXACT: f64 = 0.08;
@@ -22,7 +20,7 @@ pub enum Layer {
     Area {
         /// The corners of the steps.
         points: Vec<[f64; 2]>,
-        /// Its colour.
+        /// The colour, of which the area has a tint.
         colour: Colour,
     },
     /// The band from the least to the greatest value of several curves, up to the earliest end.
@@ -43,6 +41,17 @@ pub enum Layer {
         /// The lengths of dashes and gaps in turn (px); empty for a solid line.
         dash: Vec<f64>,
     },
+    /// Rectangles side by side.
+    Tiles {
+        /// The middle of each.
+        points: Vec<[f64; 2]>,
+        /// How many of them fit beside and above each other into the chart.
+        counts: [usize; 2],
+        /// Their colour.
+        colour: Colour,
+        /// The colour of a rising diagonal on each, so that the tiles stand out in grey, too; `None` without.
+        diagonal: Option<Colour>,
+    },
     /// A dot at each point.
     Dots {
         /// The points.
@@ -55,23 +64,17 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// Draws an area.
-    pub(super) fn area(&self, writer: &mut Writer<'_>, chart: &Chart, place: Place) {
-        let Self::Area { points, colour } = self else { return };
-        let zero = place.y(&chart.y, 0.0);
-        for mut points in chart.x.0.iter().map(|stretch| pixels(points, chart, stretch, place)) {
-            let ends = [points.last(), points.first()].map(|end| end.map(|&[x, _]| [x, zero]));
-            points.extend(ends.into_iter().flatten());
-            writer.marks.extend(inside(&points, place, *colour));
-        }
-    }
-
-    /// Draws any other layer.
+    /// Draws the layer.
     pub(super) fn draw(&self, writer: &mut Writer<'_>, chart: &Chart, place: Place) {
         for stretch in &chart.x.0 {
             let pixels = |points: &Vec<[f64; 2]>| pixels(points, chart, stretch, place);
             match self {
-                Self::Area { .. } => {}
+                Self::Area { points, colour } => {
+                    let (mut points, zero) = (pixels(points), place.y(&chart.y, 0.0));
+                    let ends = [points.last(), points.first()].map(|end| end.map(|&[x, _]| [x, zero]));
+                    points.extend(ends.into_iter().flatten());
+                    writer.marks.extend(inside(&points, place, (*colour, AREA)));
+                }
                 Self::Band { curves, colour } => {
                     let curves: Vec<_> = curves.iter().map(pixels).collect();
                     let [left, right] = place.ends(stretch);
@@ -84,9 +87,24 @@ impl Layer {
                     let of_line = std::slice::from_ref(&points);
                     dense
                         .iter()
-                        .for_each(|&span| band(writer, place, of_line, span, 0.5 * DENSE * place.line, *colour));
+                        .for_each(|&span| band(writer, place, of_line, span, 0.5 * BESIDE * place.line, *colour));
                     for part in outside(&points, &dense).iter().flat_map(|part| within(part, place.borders())) {
                         writer.curves.push(place.curve(&simplified(&part), *width, dash, *colour));
+                    }
+                }
+                &Self::Tiles { ref points, counts, colour, diagonal } => {
+                    let half = [place.right - place.left, place.bottom - place.top];
+                    let half: [_; 2] = std::array::from_fn(|axis| 0.5 * half[axis] / counts[axis].max(1) as f64);
+                    for [x, y] in pixels(points) {
+                        // Whole pixels make all gaps equal.
+                        let [left, top] = [x - half[0], y - half[1]].map(f64::round);
+                        let [right, bottom] = [x + half[0], y + half[1]].map(|end| end.round() - HAIR);
+                        let tile = [left, top, right - left, bottom - top];
+                        writer.curves.push(Item::rectangle(tile, colour));
+                        let inset = 0.2 * tile[2].min(tile[3]);
+                        let ends = [[left + inset, bottom - inset], [right - inset, top + inset]];
+                        let line = diagonal.map(|colour| place.curve(&ends, STRONG, &[], colour));
+                        writer.curves.extend(line);
                     }
                 }
                 Self::Dots { points, colour, radius } => {
@@ -136,17 +154,16 @@ fn band(
     reach: f64,
     colour: Colour,
 ) {
-    let colour = mixed(writer.palette.background, colour, BAND);
     let [high, mut low] = envelope(lines, [from, to], reach);
     low.reverse();
-    writer.marks.extend(inside(&[high, low].concat(), place, colour));
+    writer.marks.extend(inside(&[high, low].concat(), place, (colour, BAND)));
 }
 
 /// The inside of a closed line, as far as it is inside of a chart.
-fn inside(points: &[[f64; 2]], place: Place, colour: Colour) -> Option<Item> {
+fn inside(points: &[[f64; 2]], place: Place, paint: (Colour, f64)) -> Option<Item> {
     let points = points.iter().map(|&[x, y]| page::point([x, y.clamp(place.top, place.bottom)].into()));
     let path = Path::polygon(&points.collect::<Vec<_>>());
-    (!path.is_empty()).then(|| Item::fill(path, colour))
+    (!path.is_empty()).then(|| Item::fill(path, paint))
 }
 
 /// The highest and the lowest places that lines cover between two places, at each pixel with what is up to `reach`
@@ -172,9 +189,10 @@ fn envelope(lines: &[Vec<[f64; 2]>], [from, to]: [f64; 2], reach: f64) -> [Vec<[
     both
 }
 
-/// The stretches, from left to right, in which a line of a thickness is dense (px).
+/// The stretches, from left to right, in which a line of a thickness is dense (px): it goes up and down four times over
+/// a short length.
 fn dense(points: &[[f64; 2]], thickness: f64) -> Vec<[f64; 2]> {
-    let [length, height, long] = [DENSE, TURN, LONG].map(|length| length * thickness);
+    let [length, height, long] = [BESIDE, FREE, MARGIN].map(|length| length * thickness);
     let Some(&[first, start]) = points.first() else { return Vec::new() };
     // The turns: the last extreme value is one as soon as the curve has left it by that height.
     let mut turns = Vec::new();
@@ -212,32 +230,24 @@ fn outside(points: &[[f64; 2]], spans: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
 
 /// The parts of a curve between an upper and a lower border.
 pub(super) fn within(points: &[[f64; 2]], [top, bottom]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
-    let mut parts: Vec<Vec<[f64; 2]>> = Vec::new();
-    let mut open = false;
-    if let &[[x, y]] = points
-        && (top..=bottom).contains(&y)
-    {
-        parts.push(vec![[x, y]]);
+    let is_inside = |point: &[f64; 2]| (top..=bottom).contains(&point[1]);
+    if points.len() < 2 {
+        return points.iter().filter(|point| is_inside(point)).map(|&point| vec![point]).collect();
     }
+    let mut parts: Vec<Vec<[f64; 2]>> = Vec::new();
+    let mut is_open = false;
     for two in points.windows(2) {
-        let ([from, to], way) = ([two[0], two[1]], two[1][1] - two[0][1]);
-        let at = |y: f64| [from[0] + (to[0] - from[0]) * ((y - from[1]) / way).clamp(0.0, 1.0), y];
-        let clamped = [from[1], to[1]].map(|y| y.clamp(top, bottom));
-        // Both ends are on one side of both borders, or both are inside.
-        let outside = (from[1] < top && to[1] < top) || (from[1] > bottom && to[1] > bottom);
-        if outside {
-            open = false;
-            continue;
+        let [from, to] = [two[0], two[1]];
+        let crossing = |y: f64| [from[0] + (to[0] - from[0]) * ((y - from[1]) / (to[1] - from[1])).clamp(0.0, 1.0), y];
+        let end = |point: [f64; 2]| if is_inside(&point) { point } else { crossing(point[1].clamp(top, bottom)) };
+        // Both ends may be on one side of both borders.
+        if from[1].max(to[1]) >= top && from[1].min(to[1]) <= bottom {
+            if !is_open {
+                parts.push(vec![end(from)]);
+            }
+            parts.last_mut().into_iter().for_each(|part| part.push(end(to)));
         }
-        let end = |y: f64, inside: f64, whole: [f64; 2]| if y == inside { whole } else { at(inside) };
-        let ends = [end(from[1], clamped[0], from), end(to[1], clamped[1], to)];
-        if !open {
-            parts.push(vec![ends[0]]);
-        }
-        if let Some(part) = parts.last_mut() {
-            part.push(ends[1]);
-        }
-        open = to[1] == clamped[1];
+        is_open = is_inside(&to);
     }
     parts
 }
@@ -285,7 +295,7 @@ mod tests {
 
     #[test]
     fn values_without_a_place_are_left_out() {
-        let x = Axis(vec![Stretch::new(Kind::Time, [0.0, 4.0], "s", 1.0, 5)]);
+        let x = Axis(vec![Stretch::new(Kind::Fixed, [0.0, 4.0], "s", 1.0, 5)]);
         let y = Axis::logarithmic([0.01, 1.0], 4);
         let chart = Chart { x, y, layers: Vec::new(), annotations: Vec::new() };
         let place = Place { left: 0.0, right: 400.0, top: 0.0, bottom: 100.0, unit: 1.0, line: 1.0 };

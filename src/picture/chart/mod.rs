@@ -21,38 +21,25 @@ pub(super) use series::{name, style};
 pub(super) use stack::{Room, Stack};
 
 use super::caption::Writer;
+use super::layout::steps::{BESIDE, BLOCK, CLOSE, FREE, NEAR, SHORT, SMALL, TICK};
 use super::page::{Item, Paint};
-use super::text::{Fonts, Weight};
+use super::text::Weight;
 use crate::colour::{Colour, mixed};
 use axis::{Kind, Stretch};
 
-/// Size of the numbers at ticks (px in the reference picture).
-pub(super) const NUMBERS: f64 = 14.0;
-/// The height below a chart for the numbers of its axis (px in the reference picture).
-pub(super) const BELOW: f64 = 20.0;
-/// The gap between the numbers at the left and the chart, the length of a tick, and the least distance of numbers along
-/// an axis of time (px in the reference picture).
-const GAP: f64 = 8.0;
-const TICK: f64 = 4.0;
-const APART: f64 = 30.0;
-/// The largest extent of the first time left of the chart (px in the reference picture).
-const BEFORE_TIMES: f64 = 5.0;
 /// The most times with numbers on a stretch.
 const MOST_TIMES: usize = 6;
-/// The share of the width before a change of the scale of time, and the gap (px in the reference picture).
+/// The share of the width before a change of the scale of time.
 const BEFORE: f64 = 0.8;
-const SPLIT_GAP: f64 = 12.0;
-/// Curves that leave the chart end at this distance outside (px in the reference picture).
-const OUTSIDE: f64 = 5.0;
 
 /// A chart: axes, layers and annotations.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chart {
     /// The axis to the right.
     pub x: Axis,
     /// The axis upwards.
     pub y: Axis,
-    /// The layers, in the order in which they are drawn; areas lie below the lines of the axes.
+    /// The layers, in the order in which they are drawn; areas and bands lie below all lines.
     pub layers: Vec<Layer>,
     /// Signs and words above the layers.
     pub annotations: Vec<Annotation>,
@@ -82,9 +69,14 @@ impl Place {
         mixed(ground, colour, (1.25 * self.unit / self.hairline()).min(1.0))
     }
 
+    /// The baseline of the numbers below (px).
+    pub(super) fn below(self) -> f64 {
+        self.bottom + (SHORT - FREE) * self.unit
+    }
+
     /// The heights between which curves are drawn.
     fn borders(self) -> [f64; 2] {
-        [self.top - OUTSIDE * self.unit, self.bottom + OUTSIDE * self.unit]
+        [self.top - CLOSE * self.unit, self.bottom + CLOSE * self.unit]
     }
 
     /// The horizontal place of a value (px).
@@ -111,20 +103,13 @@ impl Place {
 impl Axis {
     /// An axis of time between two moments (s), with as many numbers as fit between two ends (px). Its scale may change
     /// at a moment between.
-    fn of_time(fonts: &Fonts, [left, right]: [f64; 2], unit: f64, [from, to]: [f64; 2], split: Option<f64>) -> Self {
-        let wide = |text: &String| fonts.width(text, Weight::Regular, NUMBERS * unit);
+    fn of_time([left, right]: [f64; 2], unit: f64, [from, to]: [f64; 2], split: Option<f64>) -> Self {
         let stretch = |range: [f64; 2], along: [f64; 2]| {
-            let one = |most: usize| Stretch { along, ..Stretch::new(Kind::Time, range, "s", 1.0, most) };
-            let fits = |one: &Stretch| {
-                let widest = one.texts.iter().map(wide).fold(0.0, f64::max);
-                let shares = [0, 1].map(|at| one.ticks.get(at).map_or(at as f64, |&tick| one.share(tick)));
-                let apart = (along[1] - along[0]) * (right - left) * (shares[1] - shares[0]);
-                widest + APART * unit <= apart
-            };
-            (3..=MOST_TIMES).rev().map(one).find(fits).unwrap_or_else(|| one(2))
+            let most = (along[1] - along[0]) * (right - left) / (BLOCK * unit);
+            Stretch { along, ..Stretch::new(Kind::Fixed, range, "s", 1.0, (most as usize).clamp(2, MOST_TIMES)) }
         };
         let Some(split) = split else { return Self(vec![stretch([from, to], [0.0, 1.0])]) };
-        let gap = (SPLIT_GAP * unit).round();
+        let gap = (BESIDE * unit).round();
         let middle = (BEFORE * (right - left - gap)).round();
         let [before, after] = [middle, middle + gap].map(|end| end / (right - left));
         Self(vec![stretch([from, split], [0.0, before]), stretch([split, to], [after, 1.0])])
@@ -138,16 +123,15 @@ impl Chart {
         [place.x(&self.x, x), place.y(&self.y, y)]
     }
 
-    /// Draws what lies below the curves: areas, and the axes with their numbers, optionally with those to the right.
+    /// Draws the axes with their numbers, optionally with those to the right.
     pub(super) fn ground(&self, writer: &mut Writer<'_>, place: Place, with_times: bool) {
-        self.layers.iter().for_each(|layer| layer.area(writer, self, place));
         self.rows(writer, place);
         if with_times || self.y.0.is_empty() {
             self.columns(writer, place);
         }
     }
 
-    /// Draws the curves and what lies above them.
+    /// Draws the layers and what lies above them.
     pub(super) fn curves(&self, writer: &mut Writer<'_>, place: Place) {
         self.layers.iter().for_each(|layer| layer.draw(writer, self, place));
         self.annotations.iter().for_each(|one| one.draw(writer, self, place));
@@ -167,9 +151,9 @@ impl Chart {
                     writer.marks.push(Item::rectangle(line, place.thinned(colour, palette.background)));
                 }
                 let above = stretch.ticks.get(at + 1).map(|&next| place.y(&self.y, next));
-                if above.is_none_or(|above| y - above >= NUMBERS * place.unit) {
-                    let [right, baseline] = [place.left - GAP * place.unit, y + 5.0 * place.unit];
-                    writer.right(text, Weight::Regular, NUMBERS * place.unit, palette.second_text, right, baseline);
+                if above.is_none_or(|above| y - above >= SMALL * place.unit) {
+                    let [right, baseline] = [place.left - NEAR * place.unit, y + 0.36 * SMALL * place.unit];
+                    writer.right(text, Weight::Regular, SMALL * place.unit, palette.second_text, right, baseline);
                 }
             }
         }
@@ -178,7 +162,7 @@ impl Chart {
     /// Ticks at round values to the right, on a logarithmic axis lines, with their numbers, the last one of a stretch
     /// with the unit. Numbers end with their stretch.
     fn columns(&self, writer: &mut Writer<'_>, place: Place) {
-        let (palette, thickness, size) = (writer.palette, place.hairline(), NUMBERS * place.unit);
+        let (palette, thickness, size) = (writer.palette, place.hairline(), SMALL * place.unit);
         let [hairline, axis] = [palette.hairline, palette.axis].map(|colour| place.thinned(colour, palette.background));
         for (part, stretch) in self.x.0.iter().enumerate() {
             let [left, right] = place.ends(stretch);
@@ -187,7 +171,7 @@ impl Chart {
                 writer.marks.push(Item::rectangle(line, hairline));
             }
             // The start is beside the lowest value's number, or beside the times of the other scale.
-            let from = left - if part == 0 { BEFORE_TIMES * place.unit } else { 0.0 };
+            let from = left - if part == 0 { CLOSE * place.unit } else { 0.0 };
             let mut free = f64::INFINITY;
             // Numbers are written backwards from the last one, which has the unit. Numbers that would overlap are left
             // out.
@@ -204,9 +188,8 @@ impl Chart {
                 let text = if is_last { format!("{text} {}", stretch.unit) } else { text.clone() };
                 let width = writer.fonts.width(&text, Weight::Regular, size);
                 let start = (x - half).min(right - width).max(from);
-                if start + width + GAP * place.unit <= free {
-                    let baseline = place.bottom + (BELOW - 3.0) * place.unit;
-                    writer.left(&text, Weight::Regular, size, palette.second_text, start, baseline);
+                if start + width + NEAR * place.unit <= free {
+                    writer.left(&text, Weight::Regular, size, palette.second_text, start, place.below());
                     free = start;
                 }
             }

@@ -1,19 +1,12 @@
 //! Time series of a diagnostic of one run, in one scene or as the mean over several, and their range.
 
 use super::layer::{Layer, value};
-use crate::colour::mixed;
 use crate::look::{LineStyle, Palette};
+use crate::picture::layout::steps::STRONG;
 use crate::runner::history::TimeSeries;
 use crate::scene::Scene;
 use crate::sim::{Diagnostic, Dimension};
 
-/// Width of the curve of a run, and of one scene among several (px in the reference picture), whose colour has this
-/// strength.
-pub(super) const OWN: f64 = 2.2;
-const SINGLE: f64 = 1.0;
-const SINGLE_STRENGTH: f64 = 0.6;
-/// The strength of the alarm's colour in the area below a count.
-const AREA: f64 = 0.16;
 /// Values of a diverged run do not determine the scale above this many times the largest value of the other runs.
 const BEYOND: f64 = 3.0;
 /// The range includes zero unless zero is farther away than this many times its width.
@@ -88,23 +81,15 @@ impl Series {
 
     /// The area below a count.
     pub(super) fn area(&self, palette: &Palette) -> Option<Layer> {
-        let colour = mixed(palette.background, palette.alarm, AREA);
-        self.is_count.then(|| Layer::Area { points: self.points.clone(), colour })
+        self.is_count.then(|| Layer::Area { points: self.points.clone(), colour: palette.alarm })
     }
 
-    /// Its curve. That of several scenes lies on a band with the thin curve of each: the mean may be far from all.
-    pub(super) fn curves(&self, palette: &Palette) -> impl Iterator<Item = Layer> {
+    /// Its curve, that of several scenes on a band.
+    pub(super) fn curves(&self) -> impl Iterator<Item = Layer> {
         let LineStyle { colour, dash } = self.style;
-        let faint = mixed(palette.background, colour, SINGLE_STRENGTH);
-        let single = move |points: &Vec<[f64; 2]>| Layer::Line {
-            points: points.clone(),
-            colour: faint,
-            width: SINGLE,
-            dash: Vec::new(),
-        };
         let band = (!self.members.is_empty()).then(|| Layer::Band { curves: self.members.clone(), colour });
-        let own = Layer::Line { points: self.points.clone(), colour, width: OWN, dash: dash.to_vec() };
-        band.into_iter().chain(self.members.iter().map(single)).chain([own])
+        let own = Layer::Line { points: self.points.clone(), colour, width: STRONG, dash: dash.to_vec() };
+        band.into_iter().chain([own])
     }
 }
 

@@ -5,8 +5,9 @@ use super::annotation::{Annotation, Flag, flags};
 use super::axis::{Axis, Kind, Stretch};
 use super::names::Shortened;
 use super::series::{self, Series};
-use super::{Chart, GAP, NUMBERS, Place};
+use super::{Chart, Place};
 use crate::picture::caption::Writer;
+use crate::picture::layout::steps::{BESIDE, NEAR, ROW, SHORT, SMALL};
 use crate::picture::layout::{CURVE_NAME, Scale};
 use crate::picture::number;
 use crate::picture::text::{Fonts, Weight};
@@ -15,16 +16,10 @@ use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::Diagnostic;
 
-/// The least distance of numbers, and the most of them, beside a chart (px in the reference picture).
-const ROWS_APART: f64 = 21.0;
+/// The most numbers beside a chart.
 const MOST_TICKS: usize = 4;
-/// Size of the unit's type, and the distance of lines below the name (px in the reference picture).
-const UNIT: f64 = 14.0;
-const UNIT_BELOW: f64 = 19.0;
 /// The meaning of a band where a curve is dense.
 const BAND: [&str; 2] = ["band:", "least to most"];
-/// The gap between the name and the numbers beside the chart (px in the reference picture).
-const BESIDE_NAME: f64 = 14.0;
 
 /// A diagnostic of several runs over time.
 struct Quantity {
@@ -106,10 +101,10 @@ impl Quantity {
 
     /// The chart over an axis of time, at a place.
     fn chart(&self, x: Axis, writer: &Writer<'_>, place: Place) -> Chart {
-        let rows = ((place.bottom - place.top) / (ROWS_APART * place.unit)) as usize + 1;
+        let rows = ((place.bottom - place.top) / (ROW * place.unit)) as usize + 1;
         let y = Axis(self.values(rows.min(MOST_TICKS)).into_iter().collect());
         let areas = self.series.iter().filter_map(|one| one.area(writer.palette));
-        let layers = areas.chain(self.series.iter().flat_map(|one| one.curves(writer.palette)));
+        let layers = areas.chain(self.series.iter().flat_map(Series::curves));
         let layers = layers.filter(|_| !y.0.is_empty()).collect();
         let crosses = self.series.iter().filter(|one| !one.points.is_empty()).filter_map(cross);
         Chart { x, layers, annotations: crosses.collect(), y }
@@ -118,13 +113,13 @@ impl Quantity {
     /// The width of the numbers beside it (px), for any number of ticks, with the gap to its name.
     fn numbers_width(&self, fonts: &Fonts, unit: f64) -> f64 {
         let texts = (2..=MOST_TICKS).filter_map(|most| self.values(most)).flat_map(|axis| axis.texts);
-        let widths = texts.map(|text| fonts.width(&text, Weight::Regular, NUMBERS * unit));
-        widths.fold(0.0, f64::max) + (GAP + BESIDE_NAME) * unit
+        let widths = texts.map(|text| fonts.width(&text, Weight::Regular, SMALL * unit));
+        widths.fold(0.0, f64::max) + (NEAR + BESIDE) * unit
     }
 
     /// The width of its name, with the lines below it (px).
     fn name_width(&self, fonts: &Fonts, scale: Scale) -> f64 {
-        let below = |text: &str| fonts.width(text, Weight::Regular, UNIT * scale.type_unit());
+        let below = |text: &str| fonts.width(text, Weight::Regular, SMALL * scale.type_unit());
         let name = fonts.width(&self.name, Weight::SemiBold, scale.caption());
         self.notes.iter().map(|note| below(note)).fold(name.max(below(BAND[1])), f64::max)
     }
@@ -133,11 +128,11 @@ impl Quantity {
     fn write_name(&self, writer: &mut Writer<'_>, notes: &[&str], [left, middle]: [f64; 2]) {
         let (scale, palette) = (writer.scale, writer.palette);
         let unit = scale.type_unit();
-        let baseline = middle + 0.36 * scale.caption() - 0.5 * notes.len() as f64 * UNIT_BELOW * unit;
+        let baseline = middle + 0.36 * scale.caption() - 0.5 * notes.len() as f64 * SHORT * unit;
         writer.left(&self.name, Weight::SemiBold, scale.caption(), palette.text, left, baseline);
         for (text, line) in notes.iter().zip(1..) {
-            let baseline = baseline + f64::from(line) * UNIT_BELOW * unit;
-            writer.left(text, Weight::Regular, UNIT * unit, palette.second_text, left, baseline);
+            let baseline = baseline + f64::from(line) * SHORT * unit;
+            writer.left(text, Weight::Regular, SMALL * unit, palette.second_text, left, baseline);
         }
     }
 }
@@ -230,7 +225,7 @@ impl Stack {
         let scale = ground.scale;
         let (unit, line) = (scale.type_unit(), scale.unit);
         let [left, right] = room.span;
-        let x = Axis::of_time(ground.fonts, room.span, unit, span, split);
+        let x = Axis::of_time(room.span, unit, span, split);
         let placed = self.quantities.iter().zip(&room.charts).map(|(one, &[top, bottom])| {
             let place = Place { left, right, top, bottom, unit, line };
             (one.chart(x.clone(), ground, place), place)
@@ -251,7 +246,7 @@ impl Stack {
                 notes.extend(BAND);
             }
             let free = place.bottom - place.top + room.beyond.iter().sum::<f64>() - scale.caption();
-            let fitting = if Scale::legible(UNIT * unit) { (free / (UNIT_BELOW * unit)).max(0.0) as usize } else { 0 };
+            let fitting = if Scale::legible(SMALL * unit) { (free / (SHORT * unit)).max(0.0) as usize } else { 0 };
             notes.truncate(fitting);
             one.write_name(ground, &notes, [left, 0.5 * (place.top + place.bottom)]);
         }

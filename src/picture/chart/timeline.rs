@@ -4,9 +4,10 @@
 use super::annotation::{Annotation, Flag};
 use super::event::{self, Event};
 use super::stack::{Room, Stack};
-use super::{BELOW, Chart, NUMBERS, Place};
+use super::{Chart, Place};
 use crate::picture::Colour;
 use crate::picture::caption::Writer;
+use crate::picture::layout::steps::{APART, BESIDE, GAP, MARGIN, NAME_ROW, NEAR, RING, SHORT, SMALL};
 use crate::picture::layout::{Rectangle, Scale};
 use crate::picture::page::Item;
 use crate::picture::text::TextRun;
@@ -14,16 +15,9 @@ use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::{Diagnostic, Frame, Status};
 
-/// The heights from the top of the room to the middle of the rings, and to the first chart; the gap between charts, and
-/// the largest extent of the names at the ends of curves above a chart, and below it if there are several (px in the
-/// reference picture).
-const RINGS: f64 = 11.0;
-const ABOVE: f64 = 33.0;
-const BETWEEN: f64 = 30.0;
-const NAMES_BEYOND: [f64; 2] = [8.0, 12.0];
-/// The narrowest and the lowest chart (px), and the largest shares of the room for names of charts and for the names at the ends of
-/// curves.
-const LEAST: [f64; 2] = [40.0, 14.0];
+/// The narrowest and the lowest chart (px), and the largest shares of the room for names of charts and for the names at
+/// the ends of curves.
+const LEAST: [f64; 2] = [MARGIN, SMALL];
 const NAME: f64 = 0.3;
 const NAMES: f64 = 0.22;
 
@@ -54,11 +48,9 @@ impl Timeline {
         let (unit, diagnostics) = (ground.scale.type_unit(), scene.view.charts.clone());
         let ([left, top, width, height], count) =
             room.map_or_else(Default::default, |(room, count)| (room.map(f64::from), count));
-        let gaps = count.saturating_sub(1) as f64;
-        let chart = (height - (ABOVE + BELOW + gaps * BETWEEN) * unit) / count.max(1) as f64;
-        let beyond = if count > 1 { [NAMES_BEYOND[1]; 2] } else { [NAMES_BEYOND[0], BELOW] };
+        let beyond = if count > 1 { [BESIDE; 2] } else { [NEAR, SHORT] };
         let beyond = beyond.map(|length| length * unit);
-        let names_room = [NAMES * width, chart + beyond[0] + beyond[1]];
+        let names_room = [NAMES * width, height / count.max(1) as f64];
         let stack = Stack::new(&diagnostics, &[(scene, history)], &ground, names_room, str::to_owned);
         let colours = stack.first().iter().map(|one| (one.run, one.style.colour)).collect();
         let mut events = event::events(diagnostics[0], stack.first(), scene.body.extent(), history.end);
@@ -72,7 +64,11 @@ impl Timeline {
                 is_kept
             });
         }
-        let is_drawn = room.is_some() && history.end > 0.0 && Scale::legible(NUMBERS * unit);
+        // Rings of flags need room above the charts.
+        let above = if events.is_empty() { GAP } else { NAME_ROW };
+        let gaps = count.saturating_sub(1) as f64;
+        let chart = (height - (above + SHORT + gaps * APART) * unit) / count.max(1) as f64;
+        let is_drawn = room.is_some() && history.end > 0.0 && Scale::legible(SMALL * unit);
         let charts = (is_drawn && chart >= LEAST[1]).then(|| {
             let has_names = stack.names_width <= NAME * width;
             let names = if has_names { stack.names_width } else { 0.0 };
@@ -85,11 +81,11 @@ impl Timeline {
             let flags: Vec<_> = (1..).zip(&events).map(flag).collect();
             let time = ([0.0, history.end], event::split(stack.first(), history.end));
             let ends = |at: usize| {
-                let top = top + ABOVE * unit + at as f64 * (chart + BETWEEN * unit);
+                let top = top + above * unit + at as f64 * (chart + APART * unit);
                 [top, top + chart].map(f64::round)
             };
             let room = Room {
-                rings: top + RINGS * unit,
+                rings: top + RING * unit,
                 span,
                 names: has_names.then_some(left),
                 charts: (0..count).map(ends).collect(),

@@ -10,15 +10,16 @@ use crate::sim::{Frame, RunFrame};
 use std::borrow::Cow;
 
 impl Composer<'_> {
-    /// Samples of lines and marks with their meanings.
-    pub(super) fn samples(&self) -> Vec<Sample<'_>> {
+    /// Samples of arrows, lines and marks with their meanings.
+    pub(super) fn samples(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> Vec<Sample<'_>> {
+        let arrow = self.scene.view.visible.displacements.then(|| self.key_arrow(legend, viewport, seen, scale));
         let ghost =
             self.ghost().map(|(name, colour)| Sample { names: vec![name.into()], kind: SampleKind::Ghost(colour) });
         let path: Vec<_> = self.path_names().into_iter().map(Cow::from).collect();
         let path = Some(path).filter(|names| !names.is_empty());
         let colours = self.traced.iter().map(|series| self.scene.runs[series.run].line(&self.palette).colour).collect();
         let path = path.map(|names| Sample { names, kind: SampleKind::Path(colours) });
-        ghost.into_iter().chain(path).collect()
+        arrow.into_iter().chain(ghost).chain(path).collect()
     }
 
     /// The colour scale of a frame, if there is one.
@@ -35,15 +36,14 @@ impl Composer<'_> {
             count if count == all => "change of length over length at rest",
             _ => "of springs: change of length over length at rest",
         };
-        let (mut name, mut definition) = (field.name().to_owned(), definition.to_owned());
-        if let Some(to) = colour.to {
-            let other = &self.scene.runs[to].name;
-            name += &format!(" to {other}");
-            if frame.runs.iter().any(|run| run.run == to) {
-                definition += &format!("; {other} is plain");
-            }
-        }
-        Some(Bar::new(name, field.unit(), definition, colour.range, self.extent, &self.ramp, values))
+        let name = match colour.to {
+            Some(to) => format!("{} to {}", field.name(), self.scene.runs[to].name),
+            None => field.name().to_owned(),
+        };
+        // The other run itself is plain.
+        let is_shown = colour.to.is_some_and(|to| frame.runs.iter().any(|run| run.run == to));
+        let definition = if is_shown { "between equal nodes; that run is plain" } else { definition };
+        Some(Bar::new(name, (field.unit(), definition), colour.range, self.extent, &self.ramp, values))
     }
 
     /// The strains of a run's springs on a scale.
@@ -56,18 +56,13 @@ impl Composer<'_> {
         springs.iter().map(|&ends| scale.of_spring(spring_strain(body, position, ends))).collect()
     }
 
-    /// The length in words of the key's arrow, its pixels, and its size relative to the reference picture.
-    pub(super) fn key_arrow(
-        &self,
-        legend: Legend,
-        viewport: Rectangle,
-        seen: &Framing,
-        scale: Scale,
-    ) -> (String, [f64; 2]) {
+    /// The key's arrow with its length in words.
+    fn key_arrow(&self, legend: Legend, viewport: Rectangle, seen: &Framing, scale: Scale) -> Sample<'_> {
         let pixels = self.pixels_a_metre(viewport, seen, scale);
         let times = self.scene.view.arrow_scale;
-        let metres = legend.arrow_metres(pixels * times);
+        let metres = number::round_below(legend.arrow_length() / (pixels * times));
         let size = arrows::size(pixels * self.scene.view.side, scale.unit);
-        (number::round_length(metres, self.extent), [metres * pixels * times, size])
+        let name = format!("displacement {}", number::round_length(metres, self.extent));
+        Sample { names: vec![name.into()], kind: SampleKind::Arrow([metres * pixels * times, size]) }
     }
 }

@@ -8,11 +8,11 @@ mod figure;
 mod ghost;
 mod ground;
 mod key;
+mod numbers;
 mod panel;
 mod paths;
 mod plane_body;
 mod region;
-mod scale_bar;
 mod words;
 
 use super::arrows;
@@ -21,6 +21,7 @@ use super::caption::{self, Writer};
 use super::chart::event::Event;
 use super::chart::timeline::Timeline;
 use super::ears::{Ears, bare_elements};
+use super::layout::tree::Solved;
 use super::layout::{Part, Rectangle, Scale, Written};
 use super::number;
 use super::shadow;
@@ -41,8 +42,9 @@ use crate::sim::{Body, Dimension, Frame, Snapshot, Status};
 use draft::Draft;
 pub(crate) use figure::compose_figure;
 use glam::DVec3;
+use numbers::Numeral;
 use std::sync::OnceLock;
-use words::{Around, Clock, Words};
+use words::{Around, Words};
 pub(crate) use words::{left_out, type_left_out};
 
 /// Bodies with more elements than this along a side get softer light, as if they had larger elements.
@@ -102,7 +104,7 @@ struct Arranged {
     /// The view of a camera that follows.
     shot: Option<Shot>,
     /// The part of panels' widths for tallies.
-    tally: f64,
+    numbers: Solved<Numeral>,
 }
 
 impl<'a> Composer<'a> {
@@ -180,8 +182,7 @@ impl<'a> Composer<'a> {
 
     /// An empty writer, with type and lines of a scale.
     fn writer(&self, scale: Scale) -> Writer<'_> {
-        let (marks, curves, words) = Default::default();
-        Writer { palette: &self.palette, fonts: &self.fonts, scale, marks, curves, words }
+        Writer::new(&self.palette, &self.fonts, scale)
     }
 
     /// Composes one frame.
@@ -198,7 +199,7 @@ impl<'a> Composer<'a> {
             }
         };
         let Arranged { around, shot, .. } = arranged;
-        let Around { layout, title, caption, legend, clock } = around;
+        let Around { layout, title, caption, legend, clock_above } = around;
         let scale = layout.scale;
         let places = layout.panels.iter().zip(&frame.runs);
         let framings = places.map(|(&panel, run)| self.framing(shot.as_ref(), run, (panel, scale)));
@@ -209,14 +210,14 @@ impl<'a> Composer<'a> {
         self.write(frame, arranged, framings.first(), &mut writer);
         self.timeline.iter().for_each(|timeline| timeline.draw(&mut writer, frame));
         writer.title(layout, title);
-        if let &Clock::Above(Some(baseline)) = clock {
+        if let Some(baseline) = layout.baselines(Part::Clock, layout.around.title()).next().filter(|_| *clock_above) {
             writer.clock_alone(layout.around, [f64::from(size[0]), baseline], frame.time, &view.clock);
         }
         writer.caption(layout, caption);
         let place = layout.parts.get(Part::Legend).zip(layout.panels.first());
         if let Some(((legend, ([_, top, width, _], &panel)), framing)) = legend.zip(place).zip(framings.first()) {
-            let arrow = view.visible.displacements.then(|| self.key_arrow(legend, panel, framing, scale));
-            legend.draw(&mut writer, width, top, arrow, &self.samples(), self.bar(frame));
+            let samples = self.samples(legend, panel, framing, scale);
+            legend.draw(&mut writer, [width, top], &samples, self.bar(frame).as_ref());
         }
         let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::with_capacity(runs.len()));
         let curves = std::mem::take(&mut writer.curves);
@@ -241,14 +242,14 @@ impl<'a> Composer<'a> {
         let around = self.words().around(runs, columns);
         let (layout, scale) = (&around.layout, around.layout.scale);
         let shot = layout.panels.first().and_then(|&panel| self.shot(panel, scale));
-        let (tally, _) = self.beside_tally(layout, shot.as_ref());
-        Arranged { runs: runs.to_vec(), columns, around, shot, tally }
+        let numbers = self.numbers(layout, shot.as_ref());
+        Arranged { runs: runs.to_vec(), columns, around, shot, numbers }
     }
 
     /// Writes the words of all panels.
     fn write(&self, frame: &Frame, arranged: &Arranged, framing: Option<&Framing>, writer: &mut Writer<'_>) {
-        let &Arranged { columns, ref around, tally, .. } = arranged;
-        let (layout, with_clock) = (&around.layout, around.clock == Clock::InPanel);
+        let &Arranged { columns, ref around, ref numbers, .. } = arranged;
+        let (layout, with_clock) = (&around.layout, !around.clock_above);
         let words = self.words();
         let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
         let names = words.names(&runs);
@@ -267,28 +268,24 @@ impl<'a> Composer<'a> {
             if has_clock {
                 writer.clock(viewport, frame.time, words.clock_label(layout));
             }
-            let margin = writer.scale.margin();
-            let mut from = f64::from(viewport[0]) + margin;
-            let to = f64::from(viewport[0] + viewport[2]) - margin;
-            if labels.count {
-                let before = (writer.marks.len(), writer.words.len());
-                from = writer.count(viewport, (&self.tally, tally), run.shown());
-                // The shown state of a run that diverges lacks the present number of turned-over elements. Its room is
-                // kept.
-                if run.shown().status != Status::Ok {
-                    writer.marks.truncate(before.0);
-                    writer.words.truncate(before.1);
-                }
+            let place = |numeral| numbers.get(numeral).map(|[left, _, width, _]| [left, left + width]);
+            let count = place(Numeral::Tally).zip(place(Numeral::Count));
+            // The shown state of a run that diverges lacks the present number of turned-over elements.
+            if let Some((tally, count)) = count.filter(|_| run.shown().status == Status::Ok) {
+                writer.count(viewport, [tally, count], &self.tally, run.shown());
             }
-            let usual = caption::number(self.extent, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
-            let to = to.min(writer.left_of_numbers(viewport, &usual));
+            let mut taken = count.map_or(0.0, |(_, [_, end])| end);
             // All panels have one scale, so there is one bar.
-            if let Some(framing) = framing.filter(|_| labels.scale_bar && at == 0) {
-                from = self.draw_bar(viewport, framing, [from, to], writer).unwrap_or(from);
+            if let Some((framing, between)) = framing.zip(place(Numeral::Bar)).filter(|_| at == 0) {
+                let end = writer.scale_bar(viewport, between, self.bars(viewport, framing, writer.scale));
+                taken = end.unwrap_or(taken);
             }
             match caption::divergence(run) {
-                Some(divergence) => writer.number(viewport, from, &divergence),
-                None if labels.number => writer.number(viewport, from, &usual),
+                Some(divergence) => writer.number(viewport, taken, &divergence),
+                None if labels.number && place(Numeral::Number).is_some() => {
+                    let usual = caption::number(self.extent, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
+                    writer.number(viewport, taken, &usual);
+                }
                 None => {}
             }
         }

@@ -8,6 +8,7 @@ use crate::picture::arrows::{self, Arrows};
 use crate::picture::field::{self, NOWHERE};
 use crate::picture::grip::Hands;
 use crate::picture::layout::Rectangle;
+use crate::picture::layout::steps::{APART, CHART};
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::{self, Site, Staged, Staging};
 use crate::picture::plane::{self, node_radius};
@@ -17,30 +18,27 @@ use crate::picture::{Item, Line, Mesh, Obstacles, Panel, Sight};
 use crate::sim::geometry;
 use glam::{DVec2, DVec3};
 
-/// Bodies smaller than the second size have narrower contours, down to this part of the width at the first size (px in
-/// the reference picture); otherwise small bodies would be mostly outline.
-const SMALL_BODY: [f64; 2] = [30.0, 150.0];
+/// Small bodies have narrower contours, down to this part of the width; otherwise they would be mostly outline.
 const LEAST_CONTOUR: f64 = 0.4;
 
 impl Draft<'_> {
     /// Draws the panel, with items below and above lit bodies.
     pub(super) fn panel(&self, under: &mut Vec<Item>, above: &mut Vec<Item>) -> Panel {
-        if self.flat { self.in_plane(None, under, above) } else { self.in_space(above) }
+        if self.flat { self.in_plane(under, above) } else { self.in_space(above) }
     }
 
-    /// Draws a panel in the plane, which has no lit body; `behind` lies behind the body, and may lie anywhere in the
-    /// panel.
-    pub(super) fn in_plane(&self, behind: Option<Item>, under: &mut Vec<Item>, above: &mut Vec<Item>) -> Panel {
+    /// Draws a panel in the plane, which has no lit body.
+    fn in_plane(&self, under: &mut Vec<Item>, above: &mut Vec<Item>) -> Panel {
         let mut lines = SurfaceLines::default();
         let [sound, turned_over] = self.surfaces(&mut lines);
         self.marks_of_plane(under, above);
         let obstacles = obstacle::PlaneObstacles { site: self.site(), line_scale: self.scale.line() };
         obstacles.arrows(&self.pointers(self.viewport), above);
         let (obstacles, staged) = obstacles.draw();
-        let region = if behind.is_some() { self.viewport } else { self.region(&staged.outermost) };
+        let region = self.region(&staged.outermost);
         let fading = self.fading(obstacles.iter().map(|[outline, ..]| outline.iter().copied()));
         let (lines, strokes) = (lines.drawn, self.strokes());
-        let body = PlaneBody { draft: self, behind, obstacles, fading, sound, turned_over, lines, strokes };
+        let body = PlaneBody { draft: self, obstacles, fading, sound, turned_over, lines, strokes };
         under.push(body.item(region));
         self.hands(above);
         self.arrows(above);
@@ -77,24 +75,7 @@ impl Draft<'_> {
 
     /// The panel without a lit body.
     fn without_body(&self, region: Rectangle) -> Panel {
-        let (floor, sound, turned_over, dotted, greyed) = Default::default();
-        let (lines, borders, obstacles, strokes, beads) = Default::default();
-        Panel {
-            viewport: self.viewport,
-            region,
-            sight: self.sight(),
-            floor,
-            sound,
-            turned_over,
-            dotted,
-            greyed,
-            lines,
-            borders,
-            obstacles,
-            strokes,
-            beads,
-            is_cut: self.is_cut(),
-        }
+        Panel { viewport: self.viewport, region, sight: self.sight(), is_cut: self.is_cut(), ..Panel::default() }
     }
 
     /// Camera and light.
@@ -125,7 +106,7 @@ impl Draft<'_> {
         let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
         let [low, high] = pixels.fold(none, |[low, high], at| [low.min(at), high.max(at)]);
         let widest = (high - low).max_element() / self.scale.line();
-        let share = ((widest - SMALL_BODY[0]) / (SMALL_BODY[1] - SMALL_BODY[0])).clamp(0.0, 1.0);
+        let share = ((widest - APART) / (CHART - APART)).clamp(0.0, 1.0);
         1.0 - (1.0 - LEAST_CONTOUR) * (1.0 - share * share * (3.0 - 2.0 * share))
     }
 

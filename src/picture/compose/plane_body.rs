@@ -22,8 +22,6 @@ const PIECES: u32 = 8;
 /// What is drawn of one panel, from the back to the front.
 pub(super) struct PlaneBody<'a> {
     pub(super) draft: &'a Draft<'a>,
-    /// What lies behind the body, in front of the obstacles.
-    pub(super) behind: Option<Item>,
     /// The outlines of obstacles, of their insides, and of all that they touch (m); the first obstacle lies in front.
     pub(super) obstacles: Vec<[Vec<DVec3>; 3]>,
     pub(super) fading: Option<Fading>,
@@ -35,12 +33,11 @@ pub(super) struct PlaneBody<'a> {
 
 impl PlaneBody<'_> {
     /// Its items in a part of the picture.
-    pub(super) fn item(mut self, region: Rectangle) -> Item {
+    pub(super) fn item(self, region: Rectangle) -> Item {
         let mut drawn = Vec::new();
         let items = &mut drawn;
         let [left, top, width, height] = region.map(|length| narrow(f64::from(length)));
         self.solids([left, top, left + width, top + height], items);
-        items.extend(self.behind.take());
         let mut part = |name, draw: &dyn Fn(&mut Vec<Item>)| {
             let mut of_part = Vec::new();
             draw(&mut of_part);

@@ -37,16 +37,8 @@ pub(super) struct Around {
     pub(super) caption: Vec<String>,
     /// The key of colours and arrows.
     pub(super) legend: Option<Legend>,
-    /// The place of the clock.
-    pub(super) clock: Clock,
-}
-
-/// The place of a clock: in a panel or, without room beside the heading there, at a baseline (px) above all panels, if
-/// it has room there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Clock {
-    InPanel,
-    Above(Option<f64>),
+    /// Whether the clock stands above all panels, because it has no room beside the heading of one.
+    pub(super) clock_above: bool,
 }
 
 impl<'a> Words<'a> {
@@ -65,24 +57,20 @@ impl<'a> Words<'a> {
             legend: legend.map(|legend| legend.height),
             caption: caption.len().min(MOST_LINES[1]),
         };
-        let layout = Layout::new(view, panels, columns, wanted);
-        // If names are long or type is large, the clock stands alone: beside the title or in a row.
-        let is_crowded = self.is_crowded(&layout, runs, columns);
-        let beside_title = layout
-            .baselines(Part::Title, scale.heading())
-            .nth(title.len().wrapping_sub(1))
-            .filter(|_| self.writer(layout.scale).has_room_beside(scale, &title, &view.clock, view.size[0]));
-        let (layout, clock) = match (is_crowded, beside_title) {
-            (false, _) => (layout, Clock::InPanel),
-            (true, Some(baseline)) => (layout, Clock::Above(Some(baseline))),
-            (true, None) => {
-                let layout = Layout::new(view, panels, columns, Wanted { clock: true, ..wanted });
-                let baseline = layout.baselines(Part::Clock, scale.title()).next();
-                (layout, Clock::Above(baseline))
-            }
-        };
+        let mut layout = Layout::new(view, panels, columns, wanted);
+        // If names are long or type is large, the clock has a row of its own.
+        let clock_above = self.is_crowded(&layout, runs, columns);
+        if clock_above {
+            layout = Layout::new(view, panels, columns, Wanted { clock: true, ..wanted });
+        }
         let (title, caption) = (cut(title, layout.lines(Part::Title)), cut(caption, layout.lines(Part::Caption)));
-        Around { title, caption, legend: legend.filter(|_| layout.parts.get(Part::Legend).is_some()), layout, clock }
+        Around {
+            title,
+            caption,
+            legend: legend.filter(|_| layout.parts.get(Part::Legend).is_some()),
+            layout,
+            clock_above,
+        }
     }
 
     /// All lines of title and caption.
@@ -102,10 +90,10 @@ impl<'a> Words<'a> {
     /// The key of colours and arrows, if there are any.
     fn legend(&self, around: Scale) -> Option<Legend> {
         let view = self.view();
-        let parts = [view.visible.displacements, view.colour.is_some()];
-        let samples = usize::from(view.ghost.is_some()) + usize::from(!view.paths.is_empty());
+        let samples = [view.visible.displacements, view.ghost.is_some(), !view.paths.is_empty()];
+        let samples = samples.iter().filter(|&&is_shown| is_shown).count();
         let size = view.size.map(|length| length.max(1));
-        view.wants_legend().then(|| Legend::new(size, around, parts, samples)).flatten()
+        view.wants_legend().then(|| Legend::new(size, around, samples, view.colour.is_some())).flatten()
     }
 
     /// The words below the clock.
@@ -167,8 +155,7 @@ impl<'a> Words<'a> {
     }
 
     fn writer(&self, scale: Scale) -> Writer<'_> {
-        let (marks, curves, words) = Default::default();
-        Writer { palette: self.palette, fonts: self.fonts, scale, marks, curves, words }
+        Writer::new(self.palette, self.fonts, scale)
     }
 
     /// The words without room in pictures of some runs, each with the consequence.
@@ -182,7 +169,7 @@ impl<'a> Words<'a> {
             (around.caption != caption || caption.is_empty() && !view.caption.is_empty(), "the caption is cut off"),
             (view.wants_legend() && around.legend.is_none(), "the key of colours, lines and arrows is left out"),
             (!view.charts.is_empty() && layout.charts().is_none(), "the charts are left out"),
-            (around.clock == Clock::Above(None), "the clock is left out"),
+            (around.clock_above && layout.lines(Part::Clock) == 0, "the clock is left out"),
             (layout.written.left_out.contains(&Part::Events), "panels do not name the events of the chart"),
             (has(|labels| labels.model), "panels do not describe the models"),
             (has(|labels| labels.count || labels.number), "panels have no numbers"),
@@ -199,10 +186,9 @@ impl<'a> Words<'a> {
         if let Some((&diagnostic, &panel)) =
             view.charts.first().zip(layout.panels.first()).filter(|_| layout.written.events)
         {
-            match writer.explains(panel, &event::narrowest(diagnostic, self.scene)) {
-                [_, true] => {}
-                [true, _] => told.push("panels do not have the times of all events".to_owned()),
-                _ => told.push("panels do not name all possible events of the chart".to_owned()),
+            let events = event::narrowest(diagnostic, self.scene);
+            if writer.explained(panel, &events.iter().collect::<Vec<_>>()) < events.len() {
+                told.push("panels do not name all possible events of the chart".to_owned());
             }
         }
         let names = self.names(runs);

@@ -12,8 +12,8 @@
 //!         10³  10⁴
 //! ```
 
-use super::{Area, Colour, MARGIN, MIDDLE, NAME, Room, SECOND_TEXT, SMALL, TEXT, USUAL, power_of_ten, write};
-use localshape::picture::{Diagram, TextStyle};
+use super::{Area, Colour, MARGIN, MIDDLE, NAME, Room, SECOND_TEXT, SMALL, TEXT, USUAL, write};
+use localshape::picture::{Annotation, Axis, Chart, Diagram, Layer, Name, TextStyle};
 
 /// One map.
 pub(crate) struct Map {
@@ -46,13 +46,12 @@ const LEFT: f64 = 44.0;
 const RIGHT: f64 = 56.0;
 const ABOVE: f64 = 72.0;
 pub(super) const ROOM: Room = Room { around: [LEFT, ABOVE, RIGHT, 58.0], shape: 0.5, legend: 40.0 };
-/// The size of a square of the legend (px).
+/// The size of a square of the legend, the width of lines at limits, and the gap between a map and its words (px).
 const SQUARE: f64 = 16.0;
-/// The gap between cells, the widths of hatches and of lines at limits, and the gap between a map and its words (px).
-const GAP: f64 = 1.0;
-const HATCH: f64 = 1.6;
 const LIMIT: f64 = 2.4;
 const BESIDE: f64 = 8.0;
+/// The most numbers across.
+const MOST: usize = 9;
 /// The colours of cells, of their hatch, and around lines at limits.
 const WHOLE: Colour = [0xb9, 0xc7, 0xd6];
 const TURNED_OVER: Colour = [0xe2, 0x66, 0x1c];
@@ -60,15 +59,21 @@ const HATCHES: Colour = [0x5a, 0x1f, 0x00];
 const GROUND: Colour = [0xfb, 0xfb, 0xfa];
 const LABEL: TextStyle = TextStyle { size: 14.5, is_bold: true, colour: TEXT, has_halo: true };
 
+/// The outcomes with their meanings.
+const MEANINGS: [(Tile, &str); 3] = [
+    (Tile::Whole, "whole at the end"),
+    (Tile::TurnedOver, "stable, but elements turned over at the end"),
+    (Tile::Diverged, "diverged"),
+];
+
 /// Draws the meaning of each kind of cell.
 pub(super) fn legend(diagram: &mut Diagram, top: f64) {
     let mut left = MARGIN;
-    for (tile, text) in [
-        (Tile::Whole, "whole at the end"),
-        (Tile::TurnedOver, "stable, but elements turned over at the end"),
-        (Tile::Diverged, "diverged"),
-    ] {
-        tile.draw(diagram, [left, top, SQUARE, SQUARE]);
+    for (tile, text) in MEANINGS {
+        let axis = Axis::linear([0.0, 1.0], Vec::new());
+        let layers = vec![tile.layer(vec![[0.5; 2]], [1, 1])];
+        let chart = Chart { x: axis.clone(), y: axis, layers, annotations: Vec::new() };
+        diagram.chart(&chart, [left, top, left + SQUARE, top + SQUARE]);
         left += SQUARE + BESIDE;
         write(diagram, text, USUAL, 0.0, [left, top + 0.5 * SQUARE + MIDDLE * USUAL.size]);
         left += diagram.text_width(text, USUAL) + 3.0 * BESIDE;
@@ -76,25 +81,21 @@ pub(super) fn legend(diagram: &mut Diagram, top: f64) {
 }
 
 impl Tile {
-    /// Draws the tile in a rectangle: left, top, width and height (px).
-    fn draw(self, diagram: &mut Diagram, [left, top, wide, high]: [f64; 4]) {
-        let colour = match self {
-            Self::Whole => WHOLE,
-            Self::TurnedOver => TURNED_OVER,
-            Self::Diverged => SECOND_TEXT,
-        };
-        diagram.rectangle([left, top, wide, high], colour);
+    /// Tiles at places in a chart with a number of tiles in a row and in a column.
+    fn layer(self, points: Vec<[f64; 2]>, counts: [usize; 2]) -> Layer {
         // As in pictures of bodies, the hatch replaces the colour in grey prints.
-        if self == Self::TurnedOver {
-            let inset = 0.2 * wide.min(high);
-            let ends = [[left + inset, top + high - inset], [left + wide - inset, top + inset]];
-            diagram.curve(&ends, HATCH, HATCHES, &[]);
-        }
+        let (colour, diagonal) = match self {
+            Self::Whole => (WHOLE, None),
+            Self::TurnedOver => (TURNED_OVER, Some(HATCHES)),
+            Self::Diverged => (SECOND_TEXT, None),
+        };
+        Layer::Tiles { points, counts, colour, diagonal }
     }
 }
 
 impl Map {
-    pub(super) fn draw(&self, diagram: &mut Diagram, [left, top, right, bottom]: Area) {
+    pub(super) fn draw(&self, diagram: &mut Diagram, area: Area) {
+        let [left, top, right, bottom] = area;
         for (text, style, baseline) in [(&self.name[0], NAME, 24.0), (&self.name[1], SMALL, 43.0)] {
             let text = shortened(diagram, text, style, LEFT + right - left + RIGHT);
             write(diagram, &text, style, 0.0, [left - LEFT, top - ABOVE + baseline]);
@@ -103,40 +104,48 @@ impl Map {
         write(diagram, at_left, SMALL, 0.0, [left - LEFT, top - BESIDE]);
         write(diagram, at_right, SMALL, 1.0, [right + RIGHT, top - BESIDE]);
         write(diagram, across, SMALL, 1.0, [right, bottom + 41.0]);
-        let (columns, rows) = (self.across.len(), self.up.len());
-        if columns == 0 || rows == 0 {
-            return;
-        }
-        let [column, row] = [(right - left) / columns as f64, (bottom - top) / rows as f64];
-        // Whole pixels make all gaps equal.
-        let x = |at: usize| (left + column * at as f64).round();
-        let y = |at: usize| (bottom - row * at as f64).round();
-        for (number, tile) in self.cells.iter().enumerate() {
-            let (at, up) = (number / rows, number % rows);
-            tile.draw(diagram, [x(at), y(up + 1), x(at + 1) - x(at) - GAP, y(up) - y(up + 1) - GAP]);
-        }
-        let apart = if rows > 1 { self.up[1] - self.up[0] } else { self.up[0] };
-        let height = |value: f64| bottom - row * ((value - self.up[0]) / apart + 0.5);
-        for (value, [before, after]) in &self.ticks {
-            let baseline = height(*value) + MIDDLE * SMALL.size;
-            write(diagram, before, SMALL, 1.0, [left - BESIDE, baseline]);
-            write(diagram, after, SMALL, 0.0, [right + BESIDE, baseline]);
-        }
-        for (number, &(value, text)) in self.lines.iter().enumerate() {
-            let line = [[left, height(value)], [right, height(value)]];
-            let dash: &[f64] = if number == 0 { &[] } else { &[7.0, 4.0] };
-            diagram.curve(&line, 2.0 * LIMIT, GROUND, &[]);
-            diagram.curve(&line, LIMIT, TEXT, dash);
-            write(diagram, text, LABEL, 0.0, [left + BESIDE, height(value) - 5.0]);
-        }
-        let logarithms = [self.across[0], self.across[columns - 1]].map(libm::log10);
-        let step = if columns > 1 { (logarithms[1] - logarithms[0]) / (columns - 1) as f64 } else { 1.0 };
-        let powers = libm::ceil(logarithms[0] - 1e-9) as i32..=libm::floor(logarithms[1] + 1e-9) as i32;
-        for power in powers {
-            let middle = left + column * ((f64::from(power) - logarithms[0]) / step + 0.5);
-            write(diagram, &power_of_ten(power), SMALL, 0.5, [middle, bottom + 20.0]);
+        let logarithms: Vec<_> = self.across.iter().copied().map(libm::log10).collect();
+        let Some((x, y)) = ends(&logarithms).zip(ends(&self.up)) else { return };
+        let (x, counts) = (x.map(libm::exp10), [self.across.len(), self.up.len()]);
+        let at = |number: usize| [self.across[number / counts[1]], self.up[number % counts[1]]];
+        let tiles = MEANINGS.map(|(tile, _)| {
+            let alike = self.cells.iter().enumerate().filter(|(_, other)| **other == tile);
+            tile.layer(alike.map(|(number, _)| at(number)).collect(), counts)
+        });
+        let limits = self.lines.iter().enumerate().flat_map(|(number, &(height, _))| {
+            let points = x.map(|end| [end, height]).to_vec();
+            let dash = if number == 0 { Vec::new() } else { vec![7.0, 4.0] };
+            [(GROUND, 2.0 * LIMIT, Vec::new()), (TEXT, LIMIT, dash)].map(|(colour, width, dash)| Layer::Line {
+                points: points.clone(),
+                colour,
+                width,
+                dash,
+            })
+        });
+        let names = self.ticks.iter().map(|(height, [_, text])| Name {
+            text: text.clone(),
+            end: [x[1], *height],
+            colour: SECOND_TEXT,
+        });
+        let chart = Chart {
+            x: Axis::logarithmic(x, MOST),
+            y: Axis::linear(y, self.ticks.iter().map(|(height, [text, _])| (*height, text.clone())).collect()),
+            layers: tiles.into_iter().chain(limits).collect(),
+            annotations: vec![Annotation::Names { names: names.collect(), beyond: [SMALL.size; 2] }],
+        };
+        diagram.chart(&chart, area);
+        for &(height, text) in &self.lines {
+            let [_, y] = chart.at(area, [x[0], height]);
+            write(diagram, text, LABEL, 0.0, [left + BESIDE, y - 5.0]);
         }
     }
+}
+
+/// The ends of a row of cells with even middles; `None` without cells.
+fn ends(middles: &[f64]) -> Option<[f64; 2]> {
+    let (&first, &last) = middles.first().zip(middles.last())?;
+    let apart = if middles.len() > 1 { (last - first) / (middles.len() - 1) as f64 } else { 1.0 };
+    Some([first - 0.5 * apart, last + 0.5 * apart])
 }
 
 /// The text, without its end if it is wider than the room (px).

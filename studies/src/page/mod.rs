@@ -8,7 +8,7 @@ pub(crate) use plot::{Line, Plot};
 
 use crate::failure::Failure;
 use image::ImageFormat;
-use localshape::picture::{Diagram, TextStyle, power_of_ten};
+use localshape::picture::{Diagram, TextStyle};
 use localshape::render::Renderer;
 use localshape::vector;
 use std::io::Cursor;

@@ -3,11 +3,6 @@
 use super::*;
 
 #[test]
-fn powers_are_written_with_raised_digits() {
-    assert_eq!([-12, -3, 0, 1, 4].map(power_of_ten), ["10⁻¹²", "10⁻³", "1", "10", "10⁴"]);
-}
-
-#[test]
 fn all_is_on_the_page() {
     let map = |columns: usize, rows: usize| Map {
         name: ["A run".to_owned(), "what it is of, ".repeat(20)],

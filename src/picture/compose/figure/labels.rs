@@ -1,26 +1,24 @@
 //! Label placement: at the tips of arrows and beside points, hiding as little as possible.
 
+use crate::picture::layout::steps::{CLOSE, FREE, NEAR, SMALL, TALL_ROW};
 use crate::picture::plane::{clipped, is_inside};
 use glam::DVec2;
 
 /// Distances that are tried between a point and its label (px in the reference picture).
-const DISTANCES: [f64; 3] = [7.0, 14.0, 24.0];
+const DISTANCES: [f64; 3] = [NEAR, SMALL, TALL_ROW];
 /// Directions that are tried, as angles from the preferred one (rad).
 const ANGLES: [f64; 9] = [0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2, 1.6, -1.6];
 /// The cost of an angle (per rad) and of a distance (per px in the reference picture); each hidden pixel of a line
 /// costs 1.
 const ANGLE_COST: f64 = 14.0;
 const DISTANCE_COST: f64 = 1.2;
-/// The cost of a place at the tail of an arrow, and the extent of the node behind it (px in the reference picture).
+/// The cost of a place at the tail of an arrow.
 const TAIL_COST: f64 = 38.0;
-const TAIL: f64 = 5.0;
 /// The cost of each corner and of the middle of a label that lies on a surface.
 const SURFACE_COST: f64 = 9.0;
 /// The cost of leaving the room (per px), and of covering another label (per px²).
 const OUTSIDE_COST: f64 = 500.0;
 const LABEL_COST: f64 = 8.0;
-/// The margin around a label (px in the reference picture).
-const FREE: f64 = 3.0;
 
 /// A box: left, top, right, bottom (px).
 pub(super) type Edges = [f64; 4];
@@ -52,7 +50,7 @@ impl Labels {
 
     /// The place of a label at the tip of an arrow or, if that is crowded, behind its tail.
     pub(super) fn place_at_arrow(&mut self, [from, to]: [DVec2; 2], size: DVec2) -> DVec2 {
-        let back = (from - to).normalize_or_zero() * TAIL * self.unit;
+        let back = (from - to).normalize_or_zero() * CLOSE * self.unit;
         let (at_tip, mut at_tail) = (self.best(to, to - from, size), self.best(from + back, from - to, size));
         at_tail.0 += TAIL_COST;
         self.take(if at_tail.0 < at_tip.0 { at_tail } else { at_tip }, size)
@@ -124,7 +122,7 @@ mod tests {
     fn labels_stand_where_they_are_wanted_if_nothing_is_in_the_way() {
         let mut labels = Labels::new([0.0, 0.0, 400.0, 400.0], 1.0);
         let corner = labels.place(DVec2::splat(200.0), DVec2::X, DVec2::new(40.0, 12.0));
-        assert_eq!(corner, DVec2::new(207.0, 194.0));
+        assert_eq!(corner, DVec2::new(208.0, 194.0));
     }
 
     #[test]

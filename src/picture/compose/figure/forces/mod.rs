@@ -1,9 +1,18 @@
 //! Diagrams of forces: the forces of each model on the nodes at the start of a scene.
+//!
+//! ```text
+//! title and caption
+//! │ name      │ name      │
+//! │ note      │ note      │
+//! │ scene     │ scene     │
+//! │   body    │   body    │
+//! │ scene     │ scene     │
+//! │   body    │   body    │
+//! key
+//! ```
 
 mod cell;
 mod drawn;
-mod key;
-mod marks;
 
 use super::{NoRoom, header};
 use crate::look::Labels;
@@ -11,32 +20,33 @@ use crate::picture::Item;
 use crate::picture::Picture;
 use crate::picture::caption::Writer;
 use crate::picture::compose::Composer;
-use crate::picture::layout::Scale;
+use crate::picture::layout::steps::{APART, GAP, MARGIN, NAME_ROW, ROOM, ROW, SHORT};
+use crate::picture::layout::tree::{self, Node};
+use crate::picture::layout::{ASCENT, Scale};
+use crate::picture::legend::{Legend, Sample, SampleKind};
+use crate::picture::number::round_below;
 use crate::picture::text::{Fonts, Weight};
 use crate::runner::history::History;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::{Figure, Forces};
 use crate::sim::Shape;
-use cell::{Cell, fit};
+use cell::Cell;
 use drawn::Drawn;
-use key::Key;
+use glam::DVec2;
 
-/// Room inside a cell for labels at each side (px in the reference picture).
-const LABEL_ROOM: f64 = 88.0;
-const BARE_ROOM: f64 = 84.0;
-/// Heights of the heads of columns and of the key at the bottom (px in the reference picture).
-const HEADS: f64 = 106.0;
-const KEY: f64 = 74.0;
-/// Baselines of a column's name, the part of that for its type, and baselines of its note and of a row's name below its
-/// top (px in the reference picture).
-const NAME: f64 = 60.0;
-const NAME_TYPE: f64 = 20.0;
-const NOTE: f64 = 86.0;
-const ROW_NAME: f64 = 20.0;
-/// The gap below the figure's title and caption, which heads need less margin for (px in the reference picture).
-const BELOW_HEADER: f64 = 16.0;
-const UNDER_TITLE: f64 = 20.0;
+/// The boxes of a diagram.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    Edge,
+    Name,
+    Note,
+    Cells,
+    Cell,
+    Scene,
+    Body,
+    Key,
+}
 
 /// Composes a diagram.
 pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Result<Picture, NoRoom> {
@@ -44,77 +54,117 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     let composers: Vec<_> = scenes.iter().map(|scene| Composer::new(scene, &History::default())).collect();
     let fonts = Fonts::new(&figure.look.font);
     let palette = figure.look.palette();
-    let runs = scenes[0].runs.len();
+    let runs = &scenes[0].runs;
     // Scenes of one run stand beside each other.
-    let (columns, rows) = if runs > 1 { (runs, scenes.len()) } else { (scenes.len(), 1) };
+    let (columns, rows) = if runs.len() > 1 { (runs.len(), scenes.len()) } else { (scenes.len(), 1) };
+    let place = |at: usize| if runs.len() > 1 { (at / columns, at % columns) } else { (at, 0) };
     let [width, height] = figure.size.map(f64::from);
     let scale = Scale::new(figure.size, [0, 0, figure.size[0] / columns as u32, figure.size[1]]).with(&scenes[0].view);
-    let (marks, curves, words) = Default::default();
-    let mut writer = Writer { palette: &palette, fonts: &fonts, scale, marks, curves, words };
-    let unit = scale.unit;
+    let mut writer = Writer::new(&palette, &fonts, scale);
+    let (unit, type_unit) = (scale.unit, scale.type_unit());
+
+    let cells = (0..rows * columns).map(|at| {
+        let (scene, run) = place(at);
+        let compare = forces.compare.filter(|&compare| compare != run);
+        Cell::new(&composers[scene], &moments.forces[scene], run, compare)
+    });
+    let cells: Vec<_> = cells.collect();
+    let samples = 2 + usize::from(forces.compare.is_some());
+    let key = Legend::new(figure.size, scale, samples, false);
+
+    let in_columns = |part, length: f64, inside: &[Node<Part>]| {
+        let column = Node::new(part, 0.0).stretched().with(inside.to_vec());
+        Node::new(Part::Edge, length).with(vec![column; columns])
+    };
     let last = header::write(&mut writer, figure, &[], false);
-    let top = if last > 0.0 { last + BELOW_HEADER * unit } else { 0.0 };
-    // Below a title, names need no margin above.
-    let raised = if top > 0.0 { UNDER_TITLE * unit } else { 0.0 };
-    let has_notes = runs > 1 && forces.notes.iter().any(|note| !note.is_empty());
-    let heads = scale.of_type(if has_notes { HEADS } else { HEADS - (NOTE - NAME) }) * unit - raised;
-    let cells_top = top + heads;
-    // The key's line grows upward, out of the margin.
-    let cells_bottom = height - KEY * unit - (scale.caption() - Scale::at(unit).caption());
-    let mut cells: Vec<Cell<'_>> = Vec::new();
-    for row in 0..rows {
-        for column in 0..columns {
-            let (scene, run) = if runs > 1 { (row, column) } else { (column, 0) };
-            let left = width * column as f64 / columns as f64;
-            let room = [left, cells_top, width / columns as f64, cells_bottom - cells_top];
-            let compare = forces.compare.filter(|&compare| compare != run);
-            cells.push(Cell::new(&composers[scene], &moments.forces[scene], run, compare, room));
-        }
+    let has_notes = runs.len() > 1 && forces.notes.iter().any(|note| !note.is_empty());
+    let page = [
+        Node::new(Part::Edge, if last > 0.0 { last + APART * unit } else { MARGIN * unit }),
+        in_columns(Part::Name, NAME_ROW * type_unit, &[]),
+        in_columns(Part::Note, if has_notes { ROW * type_unit } else { 0.0 }, &[]),
+        Node::new(Part::Cells, 0.0).stretched(),
+        Node::new(Part::Key, key.map_or(0.0, |key| key.height)).after(GAP * unit),
+        Node::new(Part::Edge, SHORT * unit),
+    ];
+    let page = tree::column(&page, [0.0, 0.0, width, height]);
+
+    // Bodies of one scale are aligned in columns and rows, which share the height by their needs.
+    let extents: Vec<_> = cells.iter().map(Cell::extent).collect();
+    let joined = |all: &[[DVec2; 2]]| {
+        let all = all.iter().copied();
+        all.reduce(|[low, high], other| [low.min(other[0]), high.max(other[1])]).unwrap_or_default()
+    };
+    let of_rows: Vec<_> = extents.chunks(columns).map(joined).collect();
+    let [low, high] = joined(&of_rows);
+    let scene = Node::new(Part::Scene, if runs.len() > 1 && rows > 1 { ROW * type_unit } else { 0.0 });
+    let scene = scene.after(GAP * unit);
+    // Labels need room on all sides.
+    let beside = ROOM * if forces.numbers { type_unit } else { unit };
+    let words = (if runs.len() > 1 && rows > 1 { 3.0 } else { 2.0 }) * ROW * type_unit + GAP * unit;
+    let place_of_cells = page.get(Part::Cells).unwrap_or_default();
+    let needed: f64 = of_rows.iter().map(|[low, high]| high.y - low.y).sum();
+    let across = (width / columns as f64 - 2.0 * beside) / (high.x - low.x).max(1e-9);
+    let down = (place_of_cells[3] - rows as f64 * words) / needed.max(1e-9);
+    let pixels = across.min(down);
+    if !(pixels > 0.0 && pixels.is_finite()) {
+        return Err(NoRoom);
     }
-    let side_room = if forces.numbers { scale.of_type(LABEL_ROOM) } else { BARE_ROOM } * unit;
-    let boxes = fit(&mut cells, columns, side_room, scale, runs > 1 && rows > 1);
-    let (pixels, centres) = boxes.ok_or(NoRoom)?;
+    let body = Node::new(Part::Body, 0.0).stretched();
+    let row = |[low, high]: &[DVec2; 2]| {
+        in_columns(Part::Cell, words + (high.y - low.y) * pixels, &[scene.clone(), body.clone()]).stretched()
+    };
+    let places = tree::column(&of_rows.iter().map(row).collect::<Vec<_>>(), place_of_cells);
 
     let (mut panels, mut under, mut above) = (Vec::new(), Vec::new(), Vec::new());
-    for (cell, &centre) in cells.iter().zip(&centres) {
-        let view = Drawn::new(cell, pixels, centre, scale, figure);
+    let bodies = places.all(Part::Cell).zip(places.all(Part::Body));
+    for ((at, cell), (room, [left, top, width, height])) in cells.iter().enumerate().zip(bodies) {
+        let [lowest, highest] = of_rows[at / columns].map(|end| end.y);
+        let from_middle = DVec2::new(-low.midpoint(high).x, lowest.midpoint(highest));
+        let centre = DVec2::new(left, top) + 0.5 * DVec2::new(width, height) + pixels * from_middle;
+        let view =
+            Drawn { cell, draft: cell.draft(room, scale, pixels, centre.round()), room, scale, palette: &palette };
         panels.push(view.panel(&mut under, &mut above));
         view.draw(forces, &mut writer, &mut above);
     }
-    for column in 0..columns {
-        let left = width * column as f64 / columns as f64 + scale.margin();
-        let room = width / columns as f64 - 2.0 * scale.margin();
-        let run = &scenes[0].runs[if runs > 1 { column } else { 0 }];
-        let (name, note) = if runs > 1 {
-            (run.name.as_str(), forces.notes[column].as_str())
+    // Above the fading at the sides of the cells.
+    let top = page.get(Part::Name).map_or(0.0, |[_, top, ..]| top);
+    for [left, ..] in page.all(Part::Name).skip(1) {
+        let line = [left.round(), top, unit.round().max(1.0), place_of_cells[1] + place_of_cells[3] - top];
+        above.push(Item::rectangle(line, palette.hairline));
+    }
+    let mut write = |text: &str, weight, size, colour, [left, top, width, _]: tree::Place| {
+        let text = fonts.shortened(text, weight, size, width - 2.0 * scale.margin());
+        writer.left(&text, weight, size, colour, left + scale.margin(), top + ASCENT * size);
+    };
+    for (column, (name, note)) in page.all(Part::Name).zip(page.all(Part::Note)).enumerate() {
+        let text = if runs.len() > 1 { &runs[column].name } else { &scenes[column].title };
+        write(text, Weight::SemiBold, scale.title(), palette.text, name);
+        if has_notes {
+            write(&forces.notes[column], Weight::Regular, scale.caption(), palette.second_text, note);
+        }
+    }
+    for (at, place_of_scene) in places.all(Part::Scene).enumerate().filter(|_| runs.len() > 1 && rows > 1) {
+        write(&scenes[place(at).0].title, Weight::SemiBold, scale.caption(), palette.text, place_of_scene);
+    }
+    if let Some((key, [_, top, ..])) = key.zip(page.get(Part::Key)) {
+        let side = scenes[0].view.side * pixels;
+        let share = round_below(key.arrow_length() / side);
+        let arrow = if forces.vectors {
+            "from r to R: the force on the node over k".to_owned()
         } else {
-            (scenes[column].title.as_str(), "")
+            format!("{share} k × side")
         };
-        let baseline = top + (NAME - NAME_TYPE + scale.of_type(NAME_TYPE)) * unit - raised;
-        let name = fonts.shortened(name, Weight::SemiBold, scale.title(), room);
-        writer.left(&name, Weight::SemiBold, scale.title(), palette.text, left, baseline);
-        let note = fonts.shortened(note, Weight::Regular, scale.caption(), room);
-        let below = baseline + scale.of_type(NOTE - NAME) * unit;
-        writer.left(&note, Weight::Regular, scale.caption(), palette.second_text, left, below);
-        if column > 0 {
-            let x = (width * column as f64 / columns as f64).round();
-            let thickness = unit.round().max(1.0);
-            let from = top + scale.margin() - raised;
-            let line = [x, from, thickness, cells_bottom - from];
-            // Above the fading at the sides of the cells.
-            above.push(Item::rectangle(line, palette.hairline));
-        }
+        let of_compared = forces.compare.map(|run| {
+            let names = vec![format!("forces of “{}”, for comparison", runs[run].name).into()];
+            Sample { names, kind: SampleKind::Outlined(runs[run].line(&palette).colour, scale.line()) }
+        });
+        let samples = [
+            Sample { names: vec![arrow.into()], kind: SampleKind::Arrow([share * side, scale.line()]) },
+            Sample { names: vec!["rest shape, best fit".into()], kind: SampleKind::Ghost(palette.second_text) },
+        ];
+        let samples: Vec<_> = samples.into_iter().chain(of_compared).collect();
+        key.draw(&mut writer, [width, top], &samples, None);
     }
-    if runs > 1 && rows > 1 {
-        for (at, cell) in cells.iter().enumerate() {
-            let [left, top, width, _] = cell.room;
-            let room = width - 2.0 * scale.margin();
-            let name = fonts.shortened(&scenes[at / columns].title, Weight::SemiBold, scale.caption(), room);
-            let baseline = top + scale.of_type(ROW_NAME) * unit;
-            writer.left(&name, Weight::SemiBold, scale.caption(), palette.text, left + scale.margin(), baseline);
-        }
-    }
-    Key { figure, forces, scene: &scenes[0], pixels, columns, scale }.draw(&mut writer, &mut above);
     above.extend(writer.items());
     Ok(Picture { size: figure.size, palette, fonts, ramp: Vec::new(), panels, under, above })
 }
@@ -124,10 +174,8 @@ fn bare(scene: &Scene, figure: &Figure) -> Scene {
     let mut scene = scene.clone();
     let view = &mut scene.view;
     view.look = figure.look.clone();
-    (view.colour, view.charts) = (None, Vec::new());
+    (view.colour, view.charts, view.labels) = (None, Vec::new(), Labels::NONE);
     view.visible.displacements = false;
-    // There is no scale bar, but its room is kept.
-    view.labels = Labels { scale_bar: view.labels.scale_bar, ..Labels::NONE };
     // Floors are not drawn, so they cover nothing.
     scene.obstacles.retain(|obstacle| !matches!(obstacle.shape, Shape::Floor { .. }));
     scene

@@ -89,13 +89,12 @@ impl<'a> Below<'a> {
         let tally = (!over.is_empty()).then_some(&composer.tally);
         let states = [&over[..], &flat[..]];
         let (scale, room) = size_of_tallies(writer.scale, layout);
-        let width = |tally: &Tally| tally.draw(states, writer.palette, scale, room, [0.0; 2], &mut Vec::new());
         let count = run.snapshot.diagnostics.turned_over;
         let flattened = flat.iter().filter(|&&flat| flat).count();
         Self {
             tally,
             states,
-            tally_width: tally.map_or(0.0, width),
+            tally_width: tally.map_or(0.0, |tally| tally.width(scale, room)),
             count: match count {
                 _ if over.is_empty() => String::new(),
                 0 if flattened > 0 => format!("{flattened} flat"),

@@ -1,8 +1,9 @@
 //! Charts below the tiles: diagnostics of all rows over the time of their scene, with the moments of the columns.
 
 use crate::picture::caption::{self, Writer};
-use crate::picture::chart::{Flag, NUMBERS, Room, Stack};
+use crate::picture::chart::{Flag, Room, Stack};
 use crate::picture::layout::Scale;
+use crate::picture::layout::steps::SMALL;
 use crate::runner::history::History;
 use crate::scene::figure::Sheet;
 
@@ -23,7 +24,7 @@ pub(super) fn stack(sheet: &Sheet, histories: &[History], writer: &Writer<'_>, w
 /// Draws as many charts as have room, up to the last moment (s), with a line through all of them at the moment of each
 /// column, with the column's letter in a ring above.
 pub(super) fn draw(stack: &Stack, sheet: &Sheet, end: f64, writer: &mut Writer<'_>, room: &Room) {
-    if !Scale::legible(NUMBERS * writer.scale.type_unit()) || end <= 0.0 {
+    if !Scale::legible(SMALL * writer.scale.type_unit()) || end <= 0.0 {
         return;
     }
     let colour = writer.palette.second_text;
@@ -31,8 +32,7 @@ pub(super) fn draw(stack: &Stack, sheet: &Sheet, end: f64, writer: &mut Writer<'
     let flags = columns.filter_map(|(at, column)| Some(Flag { at: column.time?, text: caption::letter(at), colour }));
     let mut flags: Vec<_> = flags.collect();
     flags.sort_by(|one, other| one.at.total_cmp(&other.at));
-    let (palette, fonts, scale) = (writer.palette, writer.fonts, writer.scale);
-    let mut curves = Writer { palette, fonts, scale, marks: Vec::new(), curves: Vec::new(), words: Vec::new() };
+    let mut curves = Writer::new(writer.palette, writer.fonts, writer.scale);
     stack.draw([writer, &mut curves], room, ([sheet.from, end], sheet.split), &flags);
     writer.marks.extend(curves.marks);
     writer.curves.extend(curves.curves);

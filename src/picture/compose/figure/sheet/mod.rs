@@ -49,7 +49,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let scale = Scale::at(unit).with(&View { look: figure.look.clone(), ..View::default() });
     let fonts = Fonts::new(&figure.look.font);
     let palette = &figure.look.palette();
-    let mut writer = Writer { palette, fonts: &fonts, scale, marks: Vec::new(), curves: Vec::new(), words: Vec::new() };
+    let mut writer = Writer::new(palette, &fonts, scale);
     let scenes = plain(figure, sheet);
 
     let legend = legend(&scenes, size, scale);
@@ -104,12 +104,11 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     below.into_iter().for_each(|(place, below)| below.write(&mut writer, &layout, place, with_number));
     if let Some(legend) = legend.filter(|_| bottom < size[1]) {
         let first = &composers[0];
-        let arrow = scenes[0].view.visible.displacements;
-        let arrow = arrow.then(|| first.key_arrow(legend, layout.tile(0, 0), &framings[0][0], layout.tile_scale));
+        let samples = first.samples(legend, layout.tile(0, 0), &framings[0][0], layout.tile_scale);
         let of_first = sheet.columns.iter().enumerate().filter(|(_, column)| column.scene == 0);
         let runs = of_first.flat_map(|(at, _)| moments.cells.iter().map(move |row| row[at].clone())).collect();
         let frame = Frame { index: 0, time: 0.0, runs };
-        legend.draw(&mut writer, f64::from(size[0]), f64::from(bottom), arrow, &first.samples(), first.bar(&frame));
+        legend.draw(&mut writer, [size[0], bottom].map(f64::from), &samples, first.bar(&frame).as_ref());
     }
 
     let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::new());
@@ -176,8 +175,8 @@ fn collapsed(ends: [DVec2; 2], scale: Scale, colour: Colour) -> Item {
 /// The key of colours and arrows, if there are any.
 fn legend(scenes: &[Scene], size: [u32; 2], scale: Scale) -> Option<Legend> {
     let view = &scenes.first()?.view;
-    let parts = [view.visible.displacements, view.colour.is_some()];
-    let samples = usize::from(view.ghost.is_some()) + usize::from(!view.paths.is_empty());
-    let any = view.labels.legend && (parts.contains(&true) || samples > 0);
-    any.then(|| Legend::new(size, scale, parts, samples)).flatten()
+    let samples = [view.visible.displacements, view.ghost.is_some(), !view.paths.is_empty()];
+    let samples = samples.iter().filter(|&&is_shown| is_shown).count();
+    let any = view.labels.legend && (samples > 0 || view.colour.is_some());
+    any.then(|| Legend::new(size, scale, samples, view.colour.is_some())).flatten()
 }

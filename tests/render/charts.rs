@@ -9,10 +9,10 @@ use localshape::runner::history::History;
 use localshape::scene::Scene;
 use localshape::sim::{Diagnostic, Frame, Status};
 
-/// The scene of Fig. 4(b) with a strip, and some of its frames.
-fn with_strip<const N: usize>(strip: Diagnostic, frames: [u64; N]) -> (Scene, [Frame; N]) {
+/// The scene of Fig. 4(b) with a chart, and some of its frames.
+fn with_chart<const N: usize>(chart: Diagnostic, frames: [u64; N]) -> (Scene, [Frame; N]) {
     let (mut scene, _) = fig4b(0);
-    scene.view.charts = vec![strip];
+    scene.view.charts = vec![chart];
     let mut runner = Runner::new(&scene, &[0, 1]);
     let frames = frames.map(|index| runner.frame(index));
     (scene, frames)
@@ -69,8 +69,8 @@ fn off_segment(point: [f32; 2], ends: &[[f32; 2]]) -> f32 {
 
 #[test]
 fn nothing_but_the_present_moment_moves() {
-    for strip in [Diagnostic::TurnedOver, Diagnostic::Kinetic, Diagnostic::Residual] {
-        let (scene, frames) = with_strip(strip, [0, 3, 40, 180]);
+    for chart in [Diagnostic::TurnedOver, Diagnostic::Kinetic, Diagnostic::Residual] {
+        let (scene, frames) = with_chart(chart, [0, 3, 40, 180]);
         let pictures = pictures(&scene, &frames);
         // Below the captions of the panels.
         const CHART: f32 = 560.0;
@@ -83,10 +83,10 @@ fn nothing_but_the_present_moment_moves() {
             (curves, marks, words)
         };
         let first = still(&pictures[0]);
-        assert!(!first.0.is_empty() && first.1.len() > 5 && first.2.len() > 5, "{strip:?}");
+        assert!(!first.0.is_empty() && first.1.len() > 5 && first.2.len() > 5, "{chart:?}");
         let mut places = Vec::new();
         for picture in &pictures {
-            assert_eq!(still(picture), first, "{strip:?}");
+            assert_eq!(still(picture), first, "{chart:?}");
             // One chart for both runs.
             assert_eq!(moments(picture).len(), 1);
             places.push(moments(picture)[0].points[0][0]);
@@ -97,7 +97,7 @@ fn nothing_but_the_present_moment_moves() {
 
 #[test]
 fn the_present_moment_is_on_the_curves_and_hides_none() {
-    let (scene, frames) = with_strip(Diagnostic::ShapeError, [0, 4, 57, 180]);
+    let (scene, frames) = with_chart(Diagnostic::ShapeError, [0, 4, 57, 180]);
     for (frame, picture) in frames.iter().zip(pictures(&scene, &frames)) {
         let (line, series, circles) = (moments(&picture), series(&picture), circles(&picture));
         assert_eq!((line.len(), series.len(), circles.len()), (1, 2, 2));
@@ -123,7 +123,7 @@ fn the_present_moment_is_on_the_curves_and_hides_none() {
 
 #[test]
 fn a_short_story_has_a_scale_of_its_own_and_its_events_recur_in_the_panels() {
-    let (scene, frames) = with_strip(Diagnostic::TurnedOver, [0, 4]);
+    let (scene, frames) = with_chart(Diagnostic::TurnedOver, [0, 4]);
     let [before, after] = pictures(&scene, &frames);
     let said = |text: &str| before.words.iter().filter(|word| word.text == text).collect::<Vec<_>>();
     // All changes are in the first 102 ms of 3 s.
@@ -158,7 +158,7 @@ fn a_short_story_has_a_scale_of_its_own_and_its_events_recur_in_the_panels() {
 /// If panels have no room to explain a number, the chart does not have it either.
 #[test]
 fn flags_are_those_that_panels_explain() {
-    let (mut scene, _) = with_strip(Diagnostic::TurnedOver, [0]);
+    let (mut scene, _) = with_chart(Diagnostic::TurnedOver, [0]);
     let mut counts = Vec::new();
     for size in [[1280, 720], [500, 720], [300, 720], [1280, 260]] {
         scene.view.size = size;
@@ -178,7 +178,7 @@ fn flags_are_those_that_panels_explain() {
 /// A count that goes up and down in every second moment.
 #[test]
 fn what_chatters_is_a_band() {
-    let (scene, [frame]) = with_strip(Diagnostic::TurnedOver, [0]);
+    let (scene, [frame]) = with_chart(Diagnostic::TurnedOver, [0]);
     let mut history = History::new(&scene, &[0, 1]);
     for (at, diagnostics) in history.series[1].diagnostics.iter_mut().enumerate() {
         diagnostics.turned_over = 5 + 4 * (at % 2);
@@ -197,7 +197,7 @@ fn what_chatters_is_a_band() {
 fn the_present_moment_is_at_its_pixel() {
     let Some(gpu) = gpu("the_present_moment_is_at_its_pixel") else { return };
     for theme in [Theme::Light, Theme::Dark] {
-        let (mut scene, frames) = with_strip(Diagnostic::ShapeError, [50]);
+        let (mut scene, frames) = with_chart(Diagnostic::ShapeError, [50]);
         scene.view.look = Style::of(theme);
         let [picture] = pictures(&scene, &frames);
         let mut renderer = renderer(gpu, scene.view.size);
@@ -220,21 +220,21 @@ fn the_present_moment_is_at_its_pixel() {
 }
 
 #[test]
-fn a_frame_composed_alone_has_the_same_strips() {
-    let (scene, frames) = with_strip(Diagnostic::TurnedOver, [0, 9]);
+fn a_frame_composed_alone_has_the_same_charts() {
+    let (scene, frames) = with_chart(Diagnostic::TurnedOver, [0, 9]);
     let pictures = pictures(&scene, &frames);
     assert_eq!(compose(&scene, &frames[1]), pictures[1]);
     // Only one run, without the other and with its own scale.
     let alone = Frame { runs: vec![frames[1].runs[0].clone()], ..frames[1].clone() };
     let picture = compose(&scene, &alone);
     assert!(picture.curves.len() == 3 && series(&picture)[0].dash.is_empty() && circles(&picture).len() == 1);
-    // Without the time series of the scene no strip is drawn.
+    // Without the time series of the scene no chart is drawn.
     assert!(unknown(&scene).compose(&frames[1]).curves.is_empty());
 }
 
 #[test]
-fn any_size_has_room_for_strips_or_none() {
-    let (mut scene, [frame]) = with_strip(Diagnostic::ShapeError, [4]);
+fn any_size_has_room_for_charts_or_none() {
+    let (mut scene, [frame]) = with_chart(Diagnostic::ShapeError, [4]);
     let history = History::new(&scene, &[0, 1]);
     let sizes = [
         ([1, 1], Some(false)),
@@ -271,7 +271,7 @@ fn any_size_has_room_for_strips_or_none() {
 
 #[test]
 fn what_a_model_does_not_have_is_said() {
-    let (scene, [frame]) = with_strip(Diagnostic::Residual, [4]);
+    let (scene, [frame]) = with_chart(Diagnostic::Residual, [4]);
     let picture = compose(&scene, &frame);
     assert!(picture.words.iter().any(|run| run.text == "rad/s²"));
     // Only the existing curve has a name.
@@ -393,7 +393,7 @@ fn eight_runs_of_one_model_are_told_apart() {
             let [_, top, right, bottom] = name.bounds();
             let sample = picture.marks.iter().find(|mark| {
                 let [x, y, ..] = mark.rectangle;
-                mark.shape == "rectangle" && x > right && x < right + 40.0 && top < y && y < bottom
+                mark.shape == "sample" && x > right && x < right + 40.0 && top < y && y < bottom
             });
             assert_eq!(sample.expect("a sample beside it").colour, line.colour);
         }
@@ -453,7 +453,7 @@ fn what_stands_for_more_than_eight_runs_differs_in_colour_or_dashes() {
 
 #[test]
 fn several_charts_have_one_axis_of_time() {
-    let (mut scene, [frame]) = with_strip(Diagnostic::TurnedOver, [90]);
+    let (mut scene, [frame]) = with_chart(Diagnostic::TurnedOver, [90]);
     scene.view.charts = vec![Diagnostic::TurnedOver, Diagnostic::Energy];
     scene.view.size = [1280, 840];
     let picture = compose(&scene, &frame);

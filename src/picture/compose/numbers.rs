@@ -1,0 +1,74 @@
+//! The row of numbers in panels, from left to right: tally, count, scale bar, number.
+
+use super::Composer;
+use crate::picture::caption;
+use crate::picture::layout::steps::{CHART, SHORT};
+use crate::picture::layout::tree::{self, Node, Solved};
+use crate::picture::layout::{Layout, Rectangle, Scale};
+use crate::picture::tracking::Shot;
+use crate::picture::{Framing, number};
+use crate::sim::{RunFrame, Snapshot};
+
+/// The largest and the least part of a panel's width for tallies.
+const TALLY: [f64; 2] = [0.36, 0.12];
+
+/// The boxes of the row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Numeral {
+    Row,
+    Tally,
+    Count,
+    Bar,
+    Number,
+}
+
+impl Composer<'_> {
+    /// The boxes of the row in each panel, from its left margin on (px). They are those of the start, so that nothing
+    /// comes and goes.
+    pub(super) fn numbers(&self, layout: &Layout, shot: Option<&Shot>) -> Solved<Numeral> {
+        let (body, labels, scale) = (&*self.scene.body, layout.written.labels, layout.scale);
+        let Some(&panel) = layout.panels.first() else { return tree::column(&[], [0.0; 4]) };
+        let snapshot = Snapshot { position: self.scene.initial.position.clone(), ..Snapshot::default() };
+        let number = caption::number(self.extent, &snapshot, self.smallest_area_ratio(&snapshot));
+        let framing = self.framing(shot, &RunFrame::new(0, snapshot), (panel, scale));
+        let writer = self.writer(scale);
+        let width = (f64::from(panel[2]) - 2.0 * scale.margin()).max(0.0);
+        let node = |numeral, [wanted, least]: [f64; 2]| Node::new(numeral, wanted).least(least).after(scale.gap());
+        let count = (labels.count && !body.elements.is_empty()).then(|| {
+            let tally = self.tally.width(scale, TALLY[0] * width);
+            let tally = Node::new(Numeral::Tally, tally).least(TALLY[1] * width);
+            [tally, node(Numeral::Count, [writer.count_width(body.elements.len()); 2])]
+        });
+        let bars = self.bars(panel, &framing, scale).map(|(text, pixels)| writer.bar_width(&text, pixels));
+        let bars: Vec<_> = bars.filter(|_| labels.scale_bar).collect();
+        let bar = bars.first().map(|&first| {
+            let least = bars.iter().copied().fold(first, f64::min);
+            node(Numeral::Bar, [first, least]).stretched().rank(0)
+        });
+        let number = node(Numeral::Number, writer.number_widths(&number)).rank(1);
+        let row = count.into_iter().flatten().chain(bar).chain([number]).collect();
+        tree::column(&[Node::new(Numeral::Row, 1.0).with(row)], [0.0, 0.0, width, 1.0])
+    }
+
+    /// Whether the scale bar of some runs in columns has no room.
+    pub(super) fn lacks_bar(&self, runs: &[usize], columns: usize) -> bool {
+        let layout = self.words().around(runs, columns).layout;
+        let shot = layout.panels.first().and_then(|&panel| self.shot(panel, layout.scale));
+        let has_bar = || self.numbers(&layout, shot.as_ref()).get(Numeral::Bar).is_some();
+        self.scene.view.labels.scale_bar && !layout.panels.is_empty() && !has_bar()
+    }
+
+    /// Scale bars with their lengths (px), from the longest to the shortest.
+    pub(super) fn bars(
+        &self,
+        panel: Rectangle,
+        framing: &Framing,
+        scale: Scale,
+    ) -> impl Iterator<Item = (String, f64)> {
+        let pixels = self.pixels_a_metre(panel, framing, scale);
+        let longest = number::round_below(CHART * scale.unit / pixels);
+        let lengths = std::iter::successors(Some(longest), |metres| Some(number::round_below(0.9 * metres))).take(4);
+        let bars = lengths.map(move |metres| (number::round_length(metres, self.extent), metres * pixels));
+        bars.take_while(move |(_, length)| *length >= SHORT * scale.unit)
+    }
+}
