@@ -3,11 +3,11 @@
 use super::Item;
 use super::camera::Lens;
 use super::layout::Rectangle;
-use super::layout::steps::HAIR;
+use super::layout::steps::{CHART, FREE, GAP, HAIR, RING};
 use super::narrow::narrow;
 use super::order::farthest_first;
 use super::page::{Path, Pen, point};
-use super::plane::{clipped, from_side, sides};
+use super::plane::{clipped, sides};
 use crate::colour::{Colour, mixed};
 use crate::sim::Placement;
 use glam::{DVec2, DVec3};
@@ -21,71 +21,31 @@ const SHAPE: [f64; 4] = [1.235, 0.2, 0.247, 0.62];
 /// Strengths of the inside and of the outline of arrows for comparison.
 const OUTLINED: [f64; 2] = [0.16, 0.75];
 /// Width of the head of a long arrow (px in the reference picture).
-const HEAD: f64 = 17.0;
-/// Elements smaller than this (px in the reference picture) get smaller arrows, down to this part of their size.
-const ROOMY_ELEMENT: f64 = 105.0;
+const HEAD: f64 = GAP;
+/// Small elements get smaller arrows, down to this part of their size; not smaller than the least size, relative to the
+/// reference picture, which could not be seen.
 const SMALLEST: f64 = 0.36;
-/// The least size of arrows, relative to the reference picture; smaller ones could not be seen.
 const FAINTEST: f64 = 0.33;
-/// Arrows shorter than this are left out (relative to the size, and px): they would be specks on the nodes.
-const SHORTEST: [f64; 2] = [9.0, 2.5];
-/// Longer arrows fade up to this part of that length above it.
+/// Arrows fade where they are longer than the shortest by less than this part of its length.
 const FADING: f64 = 0.35;
-/// Arrows nearer to each other than the first distance are thinned out, and fade up to the second one (widths of a head).
-const APART: [f64; 2] = [0.75, 1.5];
-/// Thinning more arrows than this would take long.
+/// More arrows than this would hide the body.
 const MOST_ARROWS: usize = 500;
 
 /// The nodes with arrows: those on the surface. Of very many, a subset that looks even but follows no rows.
 pub(super) fn bearers(on_surface: &[u32]) -> Vec<u32> {
     let mut nodes = on_surface.to_vec();
     if nodes.len() > MOST_ARROWS {
-        nodes.sort_by_key(|&node| rank(node));
+        // An order that looks even but follows no rows (Fibonacci hashing), the same in every frame, run and picture.
+        nodes.sort_by_key(|&node| (u64::from(node).wrapping_mul(0x9e37_79b9_7f4a_7c15), node));
         nodes.truncate(MOST_ARROWS);
     }
     nodes.sort_unstable();
     nodes
 }
 
-/// The rank of a node in an order that looks even but follows no rows (Fibonacci hashing). It is the same in every
-/// frame, run and picture.
-fn rank(node: u32) -> (u64, u32) {
-    (u64::from(node).wrapping_mul(0x9e37_79b9_7f4a_7c15), node)
-}
-
-/// The opacities of arrows that fade near others. Each arrow has its ends (px) and its own opacity; the first ones take
-/// precedence. Opacities change steadily as arrows move, so that none appears suddenly.
-fn thinned(arrows: &[([DVec2; 2], f64)], head: f64) -> Vec<f64> {
-    let [near, far] = APART.map(|widths| widths * head);
-    let mut opacities: Vec<f64> = Vec::with_capacity(arrows.len());
-    for &(ends, own) in arrows {
-        let before = arrows.iter().zip(&opacities).filter(|(_, opacity)| **opacity > 0.0);
-        let left = before.map(|((other, _), opacity)| {
-            let free = ((between(ends, *other) - near) / (far - near)).clamp(0.0, 1.0);
-            1.0 - opacity * (1.0 - free)
-        });
-        let left = left.fold(1.0, f64::min);
-        opacities.push(own * left);
-    }
-    opacities
-}
-
-/// The distance of two straight lines.
-fn between([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> f64 {
-    let parts = |from: DVec2, to: DVec2, one: DVec2, other: DVec2| {
-        (to - from).perp_dot(one - from) * (to - from).perp_dot(other - from) < 0.0
-    };
-    if parts(a, b, c, d) && parts(c, d, a, b) {
-        return 0.0;
-    }
-    [from_side(a, c, d), from_side(b, c, d), from_side(c, a, b), from_side(d, a, b)]
-        .into_iter()
-        .fold(f64::INFINITY, f64::min)
-}
-
 /// The size of arrows relative to the reference picture, for elements of a length (px) in type of a unit.
 pub(super) fn size(element: f64, unit: f64) -> f64 {
-    (unit * (element / (ROOMY_ELEMENT * unit)).clamp(SMALLEST, 1.0)).max(FAINTEST)
+    (unit * (element / (CHART * unit)).clamp(SMALLEST, 1.0)).max(FAINTEST)
 }
 
 /// An arrow from one pixel to another, with its tip exactly at the second one.
@@ -142,7 +102,8 @@ pub(super) struct Arrows<'a> {
 }
 
 impl Arrows<'_> {
-    /// Adds an arrow for each node with its opacity, fainter near other arrows, the farthest first.
+    /// Adds an arrow for each node with its opacity, the farthest first. Arrows that would be specks on the nodes are left
+    /// out.
     pub(super) fn draw(
         &self,
         nodes: &[(u32, f64)],
@@ -151,32 +112,26 @@ impl Arrows<'_> {
         placement: &Placement,
         marks: &mut Vec<Item>,
     ) {
-        let mut nodes = nodes.to_vec();
-        nodes.sort_by_key(|&(node, _)| rank(node));
-        let arrows = nodes.into_iter().filter_map(|(node, opacity)| {
+        let shortest = (RING * self.size).max(FREE).max(2.0 * self.node);
+        let arrows = nodes.iter().filter_map(|&(node, opacity)| {
             let start = placement.place(rest[node as usize]);
             let end = start + self.times * (position[node as usize] - start);
             let (from, _) = self.lens.project(start)?;
             let (to, depth) = self.lens.project(end)?;
-            let (ends, part) = self.inside([from, to].map(DVec2::from))?;
-            Some((depth, (ends, opacity * part)))
+            let (ends, part) = inside([from, to].map(DVec2::from), self.room, shortest)?;
+            Some((depth, arrow(ends, self.size, self.colour, self.halo).faded(opacity * part)?))
         });
-        let (depths, arrows): (Vec<_>, Vec<_>) = arrows.unzip();
-        let opacities = thinned(&arrows, HEAD * self.size);
-        let drawn = arrows.iter().zip(opacities).map(|(&(ends, _), opacity)| (ends, opacity));
-        let drawn = farthest_first(depths.into_iter().zip(drawn).collect());
-        marks.extend(drawn.filter_map(|(ends, opacity)| arrow(ends, self.size, self.colour, self.halo).faded(opacity)));
+        marks.extend(farthest_first(arrows.collect()));
     }
+}
 
-    /// The part of an arrow inside the room, and its opacity where it is short. Long arrows are cut rather than left
-    /// out, or the remaining small ones would mislead.
-    fn inside(&self, [from, to]: [DVec2; 2]) -> Option<([DVec2; 2], f64)> {
-        let shortest = (SHORTEST[0] * self.size).max(SHORTEST[1]).max(2.0 * self.node);
-        let shares = clipped(from, to - from, sides(self.room.map(f64::from)), [0.0, 1.0])?;
-        let ends = shares.map(|share| from.lerp(to, share));
-        let longer = ends[0].distance(ends[1]) / shortest - 1.0;
-        (longer > 0.0).then_some((ends, (longer / FADING).min(1.0)))
-    }
+/// The part of an arrow inside a room, and its opacity, which is less than 1 where it is hardly longer than the shortest
+/// (px). Long arrows are cut rather than left out, or the remaining small ones would mislead.
+pub(super) fn inside([from, to]: [DVec2; 2], room: Rectangle, shortest: f64) -> Option<([DVec2; 2], f64)> {
+    let shares = clipped(from, to - from, sides(room.map(f64::from)), [0.0, 1.0])?;
+    let ends = shares.map(|share| from.lerp(to, share));
+    let longer = ends[0].distance(ends[1]) / shortest - 1.0;
+    (longer > 0.0).then_some((ends, (longer / FADING).min(1.0)))
 }
 
 #[cfg(test)]
@@ -190,22 +145,6 @@ mod tests {
         assert_eq!((corners[3], part), (to, 1.0));
         assert!((corners[0].midpoint(corners[6]) - from).length() < 1e-9);
         assert!(corners.iter().all(|at| (to - from).normalize().dot(*at - from) < 50.0 + 1e-9));
-    }
-
-    #[test]
-    fn arrows_that_cross_or_crowd_are_thinned_out_steadily() {
-        let upright = |x: f64| ([DVec2::new(x, 0.0), DVec2::new(x, 40.0)], 1.0);
-        let level = ([DVec2::new(-10.0, 20.0), DVec2::new(90.0, 20.0)], 1.0);
-        assert_eq!(thinned(&[upright(0.0), level, upright(40.0)], 17.0), [1.0, 0.0, 1.0]);
-        assert_eq!(thinned(&[level, upright(0.0), upright(40.0)], 17.0), [1.0, 0.0, 0.0]);
-        // An invisible arrow takes no room.
-        assert_eq!(thinned(&[(level.0, 0.0), upright(0.0)], 17.0), [0.0, 1.0]);
-        let beside = |x: f64| thinned(&[upright(0.0), upright(x)], 17.0)[1];
-        assert_eq!([beside(0.0), beside(12.0), beside(30.0)], [0.0, 0.0, 1.0]);
-        for tenth in 100..300 {
-            let [here, next] = [0, 1].map(|more| beside(f64::from(tenth + more) / 10.0));
-            assert!((0.0..0.01).contains(&(next - here)), "{tenth}: {here} {next}");
-        }
     }
 
     #[test]

@@ -47,7 +47,8 @@ fn flattened(corners: &[DVec3]) -> Option<Vec<DVec2>> {
 }
 
 /// The triangles of a polygon that is not convex and does not cross itself, by cutting off its ears; `None` for others.
-fn ears(corners: &[DVec2]) -> Option<Vec<[u32; 3]>> {
+/// Corners are in the order in which the x-axis turns to the y-axis.
+pub(super) fn ears(corners: &[DVec2]) -> Option<Vec<[u32; 3]>> {
     let scale = corners.iter().fold(0.0, |scale: f64, at| scale.max(at.length_squared()));
     let orientation = |a: usize, b: usize, c: usize| (corners[b] - corners[a]).perp_dot(corners[c] - corners[b]);
     let count = corners.len();

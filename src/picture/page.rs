@@ -3,8 +3,9 @@
 
 use super::measures::BEAD_RIM;
 use super::narrow::narrow;
-use super::{Colour, TextRun};
+use super::{Colour, Rectangle, TextRun};
 use glam::{DVec2, Vec2};
+use std::collections::HashMap;
 use std::f32::consts::TAU;
 
 /// An item of a picture. Items are drawn in their order.
@@ -75,6 +76,12 @@ impl Item {
     pub(super) fn rectangle([left, top, width, height]: [f64; 4], colour: Colour) -> Self {
         let [left, top, width, height] = [left, top, width, height].map(narrow);
         Self::fill(Path::rectangle(Vec2::new(left, top), Vec2::new(width, height)), colour)
+    }
+
+    /// Items inside a part of the picture.
+    pub(super) fn inside(room: Rectangle, items: Vec<Self>) -> Self {
+        let [left, top, width, height] = room.map(|length| narrow(f64::from(length)));
+        Self::Clip { path: Path::rectangle(Vec2::new(left, top), Vec2::new(width, height)), items }
     }
 
     /// A straight line with straight ends (px).
@@ -209,6 +216,38 @@ impl Path {
     pub(crate) fn open(points: &[Vec2]) -> Self {
         let mut path = Self::default();
         path.add_line(points);
+        path
+    }
+
+    /// Lines between pairs of points, joined to lines that are as long and straight as possible: painters add up the
+    /// coverage of pixels where lines overlap, so that joints of single lines would be darker, and dashes would begin anew.
+    pub(super) fn joined(pairs: &[[u32; 2]], points: &[Vec2]) -> Self {
+        let place = |point: u32| points[point as usize];
+        let mut ends: HashMap<u32, Vec<usize>> = HashMap::new();
+        for (at, pair) in pairs.iter().enumerate() {
+            pair.iter().for_each(|&end| ends.entry(end).or_default().push(at));
+        }
+        let (mut path, mut is_used) = (Self::default(), vec![false; pairs.len()]);
+        for first in 0..pairs.len() {
+            if std::mem::replace(&mut is_used[first], true) {
+                continue;
+            }
+            let mut line = pairs[first].to_vec();
+            // From one end, then from the other.
+            for _ in 0..2 {
+                while let [.., from, to] = line[..] {
+                    let other = |at: usize| if pairs[at][0] == to { pairs[at][1] } else { pairs[at][0] };
+                    let way = |from: u32, to: u32| (place(to) - place(from)).normalize_or_zero();
+                    let straight = |at: &usize| way(from, to).dot(way(to, other(*at)));
+                    let free = ends[&to].iter().copied().filter(|&at| !is_used[at]);
+                    let Some(next) = free.max_by(|a, b| straight(a).total_cmp(&straight(b))) else { break };
+                    is_used[next] = true;
+                    line.push(other(next));
+                }
+                line.reverse();
+            }
+            path.add_line(&line.into_iter().map(place).collect::<Vec<_>>());
+        }
         path
     }
 

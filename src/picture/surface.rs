@@ -270,7 +270,7 @@ impl Surroundings<'_> {
         let [a, b] = ordered(sides[0].ends);
         let (start, end) = (self.at(a), self.at(b));
         let faces_away = |side: &FaceSide| borders.of(side).iter().all(|&seen| seen < 0.0);
-        let is_hidden = kinds.edge == LineKind::Edge && !self.lens.orthographic && sides.iter().all(faces_away);
+        let is_hidden = kinds.edge == LineKind::Edge && sides.iter().all(faces_away);
         // Edges of turned-over elements are always drawn.
         let [in_front, behind] = match kinds.edge {
             LineKind::Edge => self.edges,
@@ -301,15 +301,12 @@ impl Surroundings<'_> {
 
     /// Whether faces draw the edges of their elements.
     fn is_fine(&self) -> bool {
-        !self.lens.orthographic
-            && self.ears.is_empty()
-            && self.element < FINE
-            && self.body.elements.len() >= MANY_ELEMENTS
+        self.ears.is_empty() && self.element < FINE && self.body.elements.len() >= MANY_ELEMENTS
     }
 
     /// The component of an outward normal at a point towards the viewer, in units of its length times the distance.
     fn facing(&self, point: DVec3, normal: DVec3) -> f64 {
-        -normal.dot(if self.lens.orthographic { self.lens.forward } else { point - self.lens.eye })
+        -normal.dot(point - self.lens.eye)
     }
 
     fn line(&self, from: DVec3, to: DVec3, kind: LineKind, strength: f64) -> Line {
@@ -339,10 +336,9 @@ impl Surroundings<'_> {
         let [a, b, c, d] = corners.map(|node| self.at(node));
         let distances = [a, b, c, d].into_iter().filter_map(|corner| Some(self.lens.project(corner)?.1));
         let Some(distance) = distances.reduce(f64::min) else { return 1.0 };
-        let scale = if self.lens.orthographic { self.lens.focal } else { self.lens.focal / distance };
         // In the middle of a patch the distance of its diagonals is half of this, and each is a quarter away from the
         // patch.
-        let off = (a - b + c - d).length() / 4.0 * scale;
+        let off = (a - b + c - d).length() / 4.0 * self.lens.focal / distance;
         (off / FLATNESS).sqrt().ceil().max(1.0)
     }
 

@@ -63,7 +63,7 @@ impl Painter {
             Item::Stroke { path, pen, paint } => {
                 self.context.set_paint(colour(*paint));
                 self.context.set_stroke(stroke(pen));
-                self.context.stroke_path(&joined(path));
+                self.context.stroke_path(&outline(path));
             }
             Item::Blend { path, ends, colours } => {
                 let [start, end] = ends.map(point);
@@ -174,59 +174,4 @@ fn straight(elements: impl Iterator<Item = PathEl>) -> BezPath {
 
 fn outline(path: &Path) -> BezPath {
     straight(path.0.iter().map(element))
-}
-
-/// A path to be stroked, with single lines joined to longer ones where they meet: where strokes of two lines overlap, the
-/// painter adds up how much of a pixel they cover.
-fn joined(path: &Path) -> BezPath {
-    let is_line = |steps: &[Step]| matches!(steps, [Step::Move(_), Step::Line(_)]);
-    if path.0.len() < 4 || !path.0.len().is_multiple_of(2) || !path.0.chunks(2).all(is_line) {
-        return outline(path);
-    }
-    let lines: Vec<[Vec2; 2]> = path
-        .0
-        .chunks(2)
-        .filter_map(|steps| match steps {
-            [Step::Move(from), Step::Line(to)] => Some([*from, *to]),
-            _ => None,
-        })
-        .collect();
-    // The ends of lines at each point.
-    let bits = |at: Vec2| at.to_array().map(f32::to_bits);
-    let mut ends: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
-    for (at, line) in lines.iter().enumerate() {
-        line.iter().for_each(|end| ends.entry(bits(*end)).or_default().push(at));
-    }
-    let mut is_used = vec![false; lines.len()];
-    // The straightest line that goes on from a point, and its other end.
-    let next = |from: Vec2, to: Vec2, is_used: &[bool]| -> Option<(usize, Vec2)> {
-        let along = (to - from).normalize_or_zero();
-        let free = ends[&bits(to)].iter().filter(|&&at| !is_used[at]);
-        let candidates = free.map(|&at| (at, if lines[at][0] == to { lines[at][1] } else { lines[at][0] }));
-        candidates.max_by(|one, other| {
-            let turn = |end: Vec2| along.dot((end - to).normalize_or_zero());
-            turn(one.1).total_cmp(&turn(other.1))
-        })
-    };
-    let mut joined = BezPath::new();
-    for first in 0..lines.len() {
-        if is_used[first] {
-            continue;
-        }
-        is_used[first] = true;
-        let mut chain = std::collections::VecDeque::from(lines[first]);
-        loop {
-            let [from, to] = [chain[chain.len() - 2], chain[chain.len() - 1]];
-            let Some((at, end)) = next(from, to, &is_used) else { break };
-            is_used[at] = true;
-            chain.push_back(end);
-        }
-        while let Some((at, end)) = next(chain[1], chain[0], &is_used) {
-            is_used[at] = true;
-            chain.push_front(end);
-        }
-        joined.move_to(point(chain[0]));
-        chain.iter().skip(1).for_each(|&to| joined.line_to(point(to)));
-    }
-    joined
 }

@@ -2,7 +2,7 @@
 //! is needed.
 
 use super::compose;
-use super::listed::{Composer, Listed, corners};
+use super::listed::{Composer, Listed, corners, parts};
 use localshape::picture::Item;
 use localshape::runner::Runner;
 use localshape::runner::history::History;
@@ -51,7 +51,11 @@ fn outline(picture: &Listed, index: usize) -> Option<[f32; 4]> {
         Some([a.min(x), b.min(y), c.max(x), d.max(y)])
     };
     if panel.sight.flat {
-        let bodies: Vec<_> = picture.under.iter().filter(|item| matches!(item, Item::Clip { .. })).collect();
+        let is_body = |item: &&Item| match item {
+            Item::Clip { items, .. } => parts(items, "obstacle").is_empty(),
+            _ => false,
+        };
+        let bodies: Vec<_> = picture.under.iter().filter(is_body).collect();
         let parts = ["elements", "turned over", "edges", "strokes"].into_iter();
         let points = parts.flat_map(|name| corners(std::slice::from_ref(bodies[index]), name));
         return points.map(|at| [at.x - left, at.y - top]).fold(None, around);

@@ -41,10 +41,6 @@ fn a_ghost_has_the_colour_of_its_run_and_is_not_in_its_own_panel() {
             let mut has: Vec<_> = found.iter().map(|curve| of(curve).expect("in a panel")).collect();
             has.dedup();
             assert_eq!(has, panels, "{ghost:?}");
-            for curve in found {
-                let panel = picture.panels[of(curve).expect("in a panel")].viewport;
-                assert!(curve.points.iter().all(|&point| inside(panel, point)));
-            }
             // The key names the run of the outline.
             let name = if let Ghost::Run(run) = ghost { &scene.runs[run].name } else { "rest shape" };
             let straight = picture.curves.iter().filter(|curve| curve.points.len() == 2 && curve.colour == colour);
@@ -174,9 +170,9 @@ fn bodies_of_bars_have_ghosts() {
     let frame = Runner::new(&scene, &[0]).frame(0);
     let picture = unknown(&scene).compose(&frame);
     let is_ghost = |curve: &&Curve| curve.colour == picture.palette.second_text && curve.dash.len() == 2;
-    // Eight bars within the panel, the weight at their end, and the sample of the key.
-    let count = picture.curves.iter().filter(is_ghost).count();
-    assert!((5..=10).contains(&count), "{count}");
+    // Eight bars and the weight at their end; and the sample of the key.
+    let counts: Vec<_> = picture.curves.iter().filter(is_ghost).map(|curve| curve.points.len()).collect();
+    assert!(counts.len() == 2 && counts.iter().sum::<usize>() >= 14, "{counts:?}");
 }
 
 #[test]

@@ -59,7 +59,11 @@ impl From<Picture> for Listed {
     fn from(picture: Picture) -> Self {
         let ([mut floors, mut marks], mut curves) = ([Vec::new(), Vec::new()], Vec::new());
         picture.under.iter().for_each(|item| read(item, &mut floors, &mut curves));
-        picture.above.iter().for_each(|item| read(item, &mut marks, &mut curves));
+        let above = picture.above.iter().flat_map(|item| match item {
+            Item::Clip { items, .. } => &items[..],
+            item => std::slice::from_ref(item),
+        });
+        above.for_each(|item| read(item, &mut marks, &mut curves));
         let words = picture.words().cloned().collect();
         Self { picture, floors, marks, curves, words }
     }

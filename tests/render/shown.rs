@@ -377,7 +377,7 @@ fn a_concave_polygon_is_filled_to_its_own_sides() {
         assert!(areas.iter().all(|&area| area > 0.0) && areas.len() == count - 2, "{areas:?}");
         assert!((areas.iter().sum::<f64>() - area).abs() < 1e-4, "{areas:?}");
         // Edges and contours, each line with both ends.
-        assert_eq!(corners(&picture.under, "edges").len(), 2 * 2 * count);
+        assert_eq!(corners(&picture.under, "edges").len(), 2 * (count + 1));
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::Composer;
 use super::draft::Draft;
+use super::plane_marks::node_radius;
 use crate::look::ColourScale;
-use crate::picture::plane::node_radius;
 use crate::picture::surface::{Lines, SurfaceLines, Surroundings};
 use crate::picture::wire::Wire;
 use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
@@ -57,30 +57,31 @@ impl Draft<'_> {
         });
         // With a field, coloured strokes replace them.
         if self.shades.is_none() {
-            self.bare_lines(&mut lines.drawn);
+            lines.drawn.extend(self.bare_lines().into_iter().map(|(ends, over)| {
+                let [from, to] = ends.map(|end| self.relative(end));
+                let kind = if over { LineKind::AlarmEdge } else { LineKind::Bar };
+                Line { from, to, kind, strength: 1.0 }
+            }));
         }
         [sound, turned_over]
     }
 
-    /// Lines for elements without faces: their edges or, if they have none, lines from their middle.
-    fn bare_lines(&self, lines: &mut Vec<Line>) {
+    /// Lines for elements without faces, and whether the element turned over: their edges or, if they have none, lines
+    /// from their middle (m).
+    pub(super) fn bare_lines(&self) -> Vec<([DVec3; 2], bool)> {
+        let mut lines = Vec::new();
         for &element in &self.composer.bare {
             let nodes = &self.body.elements[element];
             let over = self.run.snapshot.turned_over.get(element).copied().unwrap_or(false);
-            let kind = if over { LineKind::AlarmEdge } else { LineKind::Bar };
-            let mut line = |from, to| {
-                lines.push(Line { from: self.relative(from), to: self.relative(to), kind, strength: 1.0 });
-            };
             let at = |node: u32| self.position[node as usize];
             let edges = self.body.topology().edges_of(element);
-            for &[a, b] in &edges {
-                line(at(a), at(b));
-            }
+            lines.extend(edges.iter().map(|edge| (edge.map(at), over)));
             if edges.is_empty() {
                 let middle = nodes.iter().map(|&node| at(node)).sum::<DVec3>() / nodes.len() as f64;
-                nodes.iter().for_each(|&node| line(middle, at(node)));
+                lines.extend(nodes.iter().map(|&node| ([middle, at(node)], over)));
             }
         }
+        lines
     }
 
     /// Coloured lines: springs, the edges of elements if nothing else would be visible, and elements without faces that

@@ -10,7 +10,7 @@ use crate::picture::narrow::narrow_point;
 use crate::picture::shadow::key_light;
 use crate::scene::Scene;
 use crate::sim::{Body, Dimension, RunFrame, Snapshot, Status};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
 /// Coordinates of diverged runs are clamped to this (sides).
@@ -115,6 +115,17 @@ impl<'a> Draft<'a> {
     pub(super) fn between_words(&self) -> Rectangle {
         let ([left, _, width, _], [_, top, _, height]) = (self.viewport, self.clear);
         [left, top, width, height]
+    }
+
+    /// The pixel of a point (m), if it is before the camera.
+    pub(super) fn pixel(&self, point: DVec3) -> Option<DVec2> {
+        self.lens.project(point).map(|(pixel, _)| pixel.into())
+    }
+
+    /// The corners of the box around points (m) before the camera (px).
+    pub(super) fn bounds<'p>(&self, points: impl Iterator<Item = &'p DVec3>) -> [DVec2; 2] {
+        let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+        points.filter_map(|&at| self.pixel(at)).fold(none, |[low, high], at| [low.min(at), high.max(at)])
     }
 
     /// A point (m) in the panel's coordinates.

@@ -7,8 +7,14 @@ use crate::look::Ghost;
 use crate::picture::Item;
 use crate::picture::ghost;
 use crate::picture::layout::Rectangle;
+use crate::picture::layout::steps::{STRONG, TICK};
+use crate::picture::narrow::narrow;
+use crate::picture::page::Pen;
 use crate::sim::{RunFrame, Status};
 use glam::DVec3;
+
+/// The opacity of the casing of outlines.
+const HALO_ALPHA: f64 = 0.65;
 
 impl Composer<'_> {
     /// The name and the colour of the scene's ghosts, if it has any.
@@ -42,20 +48,17 @@ impl Draft<'_> {
 
     /// The outline of the body with its nodes at other positions (m).
     pub(super) fn outline(&self, position: &[DVec3], colour: Colour, room: Rectangle, curves: &mut Vec<Item>) {
-        if self.diverged || position.len() != self.body.len() {
-            return;
-        }
+        let pixels = position.iter().map(|&at| self.pixel(at)).collect::<Option<Vec<_>>>();
+        let Some(pixels) = pixels.filter(|pixels| !self.diverged && pixels.len() == self.body.len()) else { return };
         let skin = &self.composer.skin;
+        let triangles: Vec<_> =
+            skin.triangles.iter().map(|corners| corners.map(|at| skin.nodes[at as usize])).collect();
         let bars = self.composer.bare.iter().flat_map(|&element| self.body.topology().edges_of(element));
-        let bars: Vec<_> = bars.collect();
-        let ghost = ghost::Ghost {
-            lens: &self.lens,
-            position,
-            nodes: &skin.nodes,
-            triangles: &skin.triangles,
-            bars: &bars,
-            room,
-        };
-        ghost.draw(self.scale, colour, self.composer.palette.background, curves);
+        let path = ghost::outline(&pixels, &triangles, &bars.collect::<Vec<_>>());
+        let [width, halo] = [STRONG, TICK].map(|width| narrow(width * self.scale.line()));
+        let dash = ghost::DASH.map(|length| narrow(length * self.scale.line())).to_vec();
+        let casing = Item::stroke(path.clone(), Pen::solid(halo), (self.composer.palette.background, HALO_ALPHA));
+        let line = Item::stroke(path, Pen { dash, round: false, width }, colour);
+        curves.push(Item::inside(room, vec![casing, line]));
     }
 }

@@ -6,12 +6,14 @@ mod cut;
 mod draft;
 mod figure;
 mod ghost;
+mod grip;
 mod ground;
 mod key;
 mod numbers;
 mod panel;
 mod paths;
 mod plane_body;
+mod plane_marks;
 mod region;
 mod words;
 

@@ -3,20 +3,17 @@
 use super::Composer;
 use super::draft::Draft;
 use super::plane_body::PlaneBody;
-use crate::look::FloorStyle;
+use super::plane_marks::node_radius;
 use crate::picture::arrows::{self, Arrows};
-use crate::picture::field::{self, NOWHERE};
-use crate::picture::grip::Hands;
 use crate::picture::layout::Rectangle;
 use crate::picture::layout::steps::{APART, CHART};
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::{self, Site, Staged, Staging};
-use crate::picture::plane::{self, node_radius};
 use crate::picture::pointer::Pointers;
 use crate::picture::surface::SurfaceLines;
-use crate::picture::{Item, Line, Mesh, Obstacles, Panel, Sight};
+use crate::picture::{Item, Line, Mesh, Obstacles, Panel, Sight, Solid};
 use crate::sim::geometry;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 /// Small bodies have narrower contours, down to this part of the width; otherwise they would be mostly outline.
 const LEAST_CONTOUR: f64 = 0.4;
@@ -29,17 +26,16 @@ impl Draft<'_> {
 
     /// Draws a panel in the plane, which has no lit body.
     fn in_plane(&self, under: &mut Vec<Item>, above: &mut Vec<Item>) -> Panel {
-        let mut lines = SurfaceLines::default();
-        let [sound, turned_over] = self.surfaces(&mut lines);
-        self.marks_of_plane(under, above);
         let obstacles = obstacle::PlaneObstacles { site: self.site(), line_scale: self.scale.line() };
+        let (mut items, outlines) = obstacles.draw();
+        let region = self.region(&outlines.concat());
+        items.extend(self.cover(&outlines, region));
+        under.extend((!items.is_empty()).then(|| Item::inside(region, items)));
+        self.floors(under);
+        self.signs(above);
+        self.nodes(above);
         obstacles.arrows(&self.pointers(self.viewport), above);
-        let (obstacles, staged) = obstacles.draw();
-        let region = self.region(&staged.outermost);
-        let fading = self.fading(obstacles.iter().map(|[outline, ..]| outline.iter().copied()));
-        let (lines, strokes) = (lines.drawn, self.strokes());
-        let body = PlaneBody { draft: self, obstacles, fading, sound, turned_over, lines, strokes };
-        under.push(body.item(region));
+        under.push(PlaneBody::new(self, region).item());
         self.hands(above);
         self.arrows(above);
         self.without_body(region)
@@ -51,10 +47,9 @@ impl Draft<'_> {
         let [sound, turned_over] = self.surfaces(&mut lines);
         let SurfaceLines { drawn: mut lines, borders } = lines;
         let of_body = lines.len();
-        let mut arrows = Vec::new();
-        let (mut obstacles, staged) = self.obstacles([&sound, &turned_over], &mut lines, &mut arrows);
-        self.fade_obstacles(&mut obstacles, above);
-        above.extend(arrows);
+        let (mut obstacles, staged) = self.obstacles([&sound, &turned_over], &mut lines, above);
+        let corners = |solid: &Solid| solid.mesh.vertices.iter().map(|vertex| self.place(vertex.position)).collect();
+        obstacles.fade = self.fading(&obstacles.solids.iter().map(corners).collect::<Vec<_>>());
         let borders = borders.into_iter().map(|border| border.line).chain(lines[of_body..].iter().copied()).collect();
         self.hands(above);
         self.arrows(above);
@@ -102,9 +97,7 @@ impl Draft<'_> {
             return 1.0;
         }
         let nodes = self.composer.skin.nodes.iter().filter_map(|&node| self.position.get(node as usize));
-        let pixels = nodes.filter_map(|&at| self.lens.project(at)).map(|(pixel, _)| DVec2::from(pixel));
-        let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
-        let [low, high] = pixels.fold(none, |[low, high], at| [low.min(at), high.max(at)]);
+        let [low, high] = self.bounds(nodes);
         let widest = (high - low).max_element() / self.scale.line();
         let share = ((widest - APART) / (CHART - APART)).clamp(0.0, 1.0);
         1.0 - (1.0 - LEAST_CONTOUR) * (1.0 - share * share * (3.0 - 2.0 * share))
@@ -114,35 +107,6 @@ impl Draft<'_> {
     pub(super) fn middle(&self) -> [f32; 2] {
         let middle = self.position.iter().sum::<DVec3>() / self.position.len().max(1) as f64;
         self.lens.project(middle).map_or([0.0; 2], |(pixel, _)| pixel.map(narrow))
-    }
-
-    /// Floors, nodes and ring arrows of the plane.
-    fn marks_of_plane(&self, under: &mut Vec<Item>, above: &mut Vec<Item>) {
-        let visible = self.scene.view.visible;
-        let flat = plane::PlaneMarks {
-            body: self.body,
-            ears: &self.composer.ears,
-            position: &self.position,
-            turned_over: &self.run.snapshot.turned_over,
-            lens: &self.lens,
-            moves: self.framing.moves,
-            viewport: self.viewport,
-            clear: self.clear,
-            floors: [self.scene.view.floor != FloorStyle::None, self.scene.view.shadow],
-            scale: self.scale,
-            palette: &self.palette,
-        };
-        flat.floors(&self.scene.obstacles, self.run.snapshot.time, under);
-        if visible.surfaces && !self.diverged {
-            flat.signs(above);
-        }
-        if visible.nodes && !self.diverged {
-            let colour = |node: usize| {
-                let place = self.of_nodes.get(node).copied().filter(|&place| place != NOWHERE);
-                place.filter(|_| !visible.surfaces).map(|place| field::colour(&self.composer.ramp, place))
-            };
-            flat.nodes(self.element, &colour, above);
-        }
     }
 
     /// The obstacles at the moment of the panel.
@@ -174,26 +138,6 @@ impl Draft<'_> {
         staging.arrows(&self.pointers(self.viewport), above);
         staging.pierced(&surfaces, lines);
         staging.draw(lines)
-    }
-
-    /// Marks on nodes that are held or dragged.
-    fn hands(&self, above: &mut Vec<Item>) {
-        if self.diverged {
-            return;
-        }
-        let hands = Hands {
-            grips: &self.scene.grips,
-            time: self.run.snapshot.time,
-            frame: 1.0 / self.scene.frames_per_second,
-            position: &self.position,
-            skin: &self.composer.skin,
-            element: self.element,
-            viewport: self.viewport,
-            scale: self.scale,
-            palette: &self.composer.palette,
-            pointers: &self.pointers(self.between_words()),
-        };
-        hands.draw(above);
     }
 
     /// Displacements.
@@ -231,7 +175,7 @@ impl Draft<'_> {
     }
 
     /// Draws the arrows of moving objects, in a room.
-    fn pointers(&self, room: Rectangle) -> Pointers<'_> {
+    pub(super) fn pointers(&self, room: Rectangle) -> Pointers<'_> {
         Pointers { lens: &self.lens, room, scale: self.scale, palette: &self.composer.palette }
     }
 }

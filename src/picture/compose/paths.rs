@@ -5,17 +5,12 @@ use super::draft::Draft;
 use crate::look::Traced;
 use crate::picture::Item;
 use crate::picture::chart::simplified;
-use crate::picture::fade::{FADING, Fade};
 use crate::picture::layout::Rectangle;
-use crate::picture::plane::{clipped, sides};
+use crate::picture::layout::steps::{STRONG, THIN};
 use crate::runner::history::TimeSeries;
 use glam::DVec2;
 
-/// Widths of the paths of the centre and of a node, the extra width of their halo (px in the reference picture), and
-/// its opacity.
-const CENTRE: f64 = 2.2;
-const NODE: f64 = 1.4;
-const HALO: f64 = 2.0;
+/// The opacity of the halo of a path.
 const HALO_ALPHA: f64 = 0.6;
 /// Radius of the dot at the end of a path, in widths.
 const DOT: f64 = 1.7;
@@ -53,99 +48,25 @@ impl Draft<'_> {
         let Some(own) = own.filter(|_| snapshot.position.len() == self.body.len()) else { return };
         let (colour, halo) =
             (self.scene.runs[self.run.run].line(&self.composer.palette).colour, self.composer.palette.background);
+        let mut items = Vec::new();
         for (traced, path) in self.scene.view.paths.iter().zip(&own.paths) {
-            let width = if *traced == Traced::Centre { CENTRE } else { NODE };
+            let width = if *traced == Traced::Centre { STRONG } else { THIN };
             let past = own.times.iter().take_while(|&&time| time < snapshot.time).count();
             let now = traced.of(&self.scene.body, &snapshot.position);
             let way = path.iter().take(past).copied().chain([now]);
-            let lines = within(way.map(|at| self.lens.project(at).map(|(pixel, _)| DVec2::from(pixel))), room);
-            let pieces = lines.iter().flat_map(|line| parted(simplified(line)));
-            // Without words they extend to the border.
-            let fading = if self.clear == self.viewport { 0.0 } else { FADING * self.scale.unit };
-            let fade = Fade::new(room, [fading; 4]);
-            let pieces: Vec<_> = pieces.flat_map(|piece| fade.parts(&piece)).collect();
-            let last = self.lens.project(now).map(|(pixel, _)| pixel).filter(|&pixel| holds(room, pixel.into()));
-            for (more, colour, alpha) in [(HALO, halo, HALO_ALPHA), (0.0, colour, 1.0)] {
+            let seen: Vec<_> = way.map(|at| self.pixel(at).map(|pixel| pixel.to_array())).collect();
+            // Points behind the camera divide the line.
+            let lines: Vec<Vec<_>> =
+                seen.split(Option::is_none).map(|part| part.iter().flatten().copied().collect()).collect();
+            for (more, paint) in [(STRONG, (halo, HALO_ALPHA)), (0.0, (colour, 1.0))] {
                 let line = self.scale.line();
-                let curve = |(piece, part): &(Vec<_>, f64)| {
-                    Item::curve(piece, (width + more) * line, &[], (colour, alpha * part))
-                };
-                curves.extend(pieces.iter().map(curve));
-                curves.extend(last.map(|pixel| Item::disc(pixel, (DOT * width + 0.75 * more) * line, colour)));
+                let curve =
+                    |line: &Vec<_>| Item::curve(&simplified(line), (width + more) * self.scale.line(), &[], paint);
+                items.extend(lines.iter().filter(|line| line.len() > 1).map(curve));
+                let dot = |pixel: DVec2| Item::disc(pixel.to_array(), (DOT * width + 0.75 * more) * line, paint.0);
+                items.extend(self.pixel(now).map(dot));
             }
         }
-    }
-}
-
-fn holds(room: Rectangle, pixel: DVec2) -> bool {
-    let [left, top, right, bottom] = sides(room.map(f64::from));
-    (left..=right).contains(&pixel.x) && (top..=bottom).contains(&pixel.y)
-}
-
-/// A line, divided where it turns back on itself: the shader of curves joins pieces that continue in about the same
-/// direction.
-fn parted(line: Vec<[f64; 2]>) -> Vec<Vec<[f64; 2]>> {
-    let mut pieces: Vec<Vec<[f64; 2]>> = Vec::new();
-    for two in line.windows(2) {
-        let [from, to] = [two[0], two[1]].map(DVec2::from);
-        let turns_back = |piece: &[[f64; 2]]| {
-            let [.., before, last] = piece else { return false };
-            (DVec2::from(*last) - DVec2::from(*before)).normalize_or_zero().dot((to - from).normalize_or_zero()) < -0.5
-        };
-        match pieces.last_mut().filter(|piece| !turns_back(piece)) {
-            Some(piece) => piece.push(two[1]),
-            None => pieces.push(two.to_vec()),
-        }
-    }
-    pieces
-}
-
-/// The parts of a line in a rectangle (px). Points that the camera does not see divide it.
-fn within(points: impl Iterator<Item = Option<DVec2>>, room: Rectangle) -> Vec<Vec<[f64; 2]>> {
-    let edges = sides(room.map(f64::from));
-    let mut lines: Vec<Vec<[f64; 2]>> = Vec::new();
-    let (mut before, mut is_open): (Option<DVec2>, bool) = (None, false);
-    for point in points {
-        // A resting body repeats its point.
-        if before == point {
-            continue;
-        }
-        if let (Some(from), Some(to)) = (before, point) {
-            match clipped(from, to - from, edges, [0.0, 1.0]) {
-                Some([begin, end]) => {
-                    let [first, last] = [begin, end].map(|share| from.lerp(to, share).to_array());
-                    match lines.last_mut().filter(|_| is_open && begin == 0.0) {
-                        Some(line) => line.push(last),
-                        None => lines.push(vec![first, last]),
-                    }
-                    is_open = end == 1.0;
-                }
-                None => is_open = false,
-            }
-        } else {
-            is_open = false;
-        }
-        before = point;
-    }
-    lines
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_are_parted_where_they_leave() {
-        let points = [[5.0, 5.0], [15.0, 5.0], [5.0, 8.0], [5.0, 8.0], [6.0, 9.0]].map(|at| Some(DVec2::from(at)));
-        let lines = within(points.into_iter(), [0, 0, 10, 10]);
-        assert_eq!(lines, [vec![[5.0, 5.0], [10.0, 5.0]], vec![[10.0, 6.5], [5.0, 8.0], [6.0, 9.0]]]);
-        assert_eq!(within([points[0], None, points[4], points[3]].into_iter(), [0, 0, 10, 10]).len(), 1);
-    }
-
-    #[test]
-    fn lines_are_parted_where_they_turn_back() {
-        let line = vec![[5.0, 5.0], [5.0, 9.0], [5.001, 1.0], [9.0, 1.0]];
-        assert_eq!(parted(line), [vec![[5.0, 5.0], [5.0, 9.0]], vec![[5.0, 9.0], [5.001, 1.0], [9.0, 1.0]]]);
-        assert!(parted(vec![[1.0, 1.0]]).is_empty());
+        curves.push(Item::inside(room, items));
     }
 }

@@ -3,15 +3,13 @@
 use super::draft::Draft;
 use crate::picture::camera::Lens;
 use crate::picture::layout::Rectangle;
+use crate::picture::layout::steps::FREE;
 use glam::{DVec2, DVec3};
-
-/// Room for thick lines around a body (px in the reference picture).
-const LINE_ROOM: f64 = 3.0;
 
 impl Draft<'_> {
     /// The part of the panel that the body, its lines and points around obstacles (m) may cover.
     pub(super) fn region(&self, around_obstacles: &[DVec3]) -> Rectangle {
-        let mut room = LINE_ROOM * self.scale.line() + 2.0;
+        let mut room = FREE * self.scale.line() + 2.0;
         if let Some(radius) = self.bead_radius() {
             room = room.max(radius + 2.0);
         }

@@ -4,7 +4,7 @@ use crate::sim::{Obstacle, Shape};
 use glam::DVec3;
 
 /// A half-space: its outward unit normal, and its distance from the origin along the normal (m).
-pub(super) type HalfSpace = (DVec3, f64);
+pub(in crate::picture) type HalfSpace = (DVec3, f64);
 
 /// The half-space of a floor or a plate at a time (s).
 pub(in crate::picture) fn half_space(obstacle: &Obstacle, time: f64) -> Option<HalfSpace> {

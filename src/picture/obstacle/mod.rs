@@ -11,7 +11,7 @@ mod slab;
 mod solid;
 mod space;
 
-pub(super) use half_space::half_space;
+pub(super) use half_space::{HalfSpace, half_space};
 pub(super) use plane::PlaneObstacles;
 pub(super) use space::Staging;
 

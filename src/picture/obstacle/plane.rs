@@ -1,8 +1,10 @@
 //! Obstacles in the plane: discs, capsules and rectangles, flat and behind the body. Plates are drawn like floors.
 
+use super::Site;
 use super::half_space::{clipped_polygon, half_space};
-use super::{Site, Staged};
 use crate::picture::Item;
+use crate::picture::layout::steps::STRONG;
+use crate::picture::page::{Path, point};
 use crate::picture::pointer::Pointers;
 use crate::sim::{Motion, Obstacle, Shape};
 use glam::DVec3;
@@ -12,10 +14,6 @@ use std::f64::consts::{PI, TAU};
 const FLATNESS: f64 = 0.1;
 /// The least and the largest number of segments of a round outline.
 const SEGMENTS: [f64; 2] = [24.0, 360.0];
-/// Thickness of outlines (px in the reference picture).
-const RIM: f64 = 2.0;
-/// Room for the smooth border of an outline (px).
-const BORDER: f64 = 0.75;
 
 /// The data for the obstacles of one panel in the plane.
 pub(in crate::picture) struct PlaneObstacles<'a> {
@@ -39,22 +37,29 @@ impl PlaneObstacles<'_> {
         }
     }
 
-    /// The outlines of all obstacles but half-spaces, of their insides, and of all that they touch, in front of half-spaces
-    /// (m); and points around them.
-    pub(in crate::picture) fn draw(&self) -> (Vec<[Vec<DVec3>; 3]>, Staged) {
+    /// All obstacles but half-spaces, in front of half-spaces, each with a rim; and outlines a pixel
+    /// around them (m).
+    pub(in crate::picture) fn draw(&self) -> (Vec<Item>, Vec<Vec<DVec3>>) {
         let half_spaces = self.site.obstacles.iter().filter_map(|obstacle| half_space(obstacle, self.site.time));
         let half_spaces: Vec<_> = half_spaces.collect();
-        let (mut solids, mut outermost) = (Vec::new(), Vec::new());
-        for obstacle in self.site.obstacles {
+        let rim = STRONG * self.line_scale / self.site.lens.focal;
+        let [colour, rim_colour] = self.site.palette.obstacle_flat;
+        let (mut items, mut outlines) = (Vec::new(), Vec::new());
+        // The first obstacle lies in front.
+        for obstacle in self.site.obstacles.iter().rev() {
+            let fill = |outline: &[DVec3], colour| {
+                let pixels =
+                    clipped_polygon(outline, &half_spaces).into_iter().filter_map(|at| self.site.lens.project(at));
+                let path = Path::polygon(&pixels.map(|(pixel, _)| point(pixel.into())).collect::<Vec<_>>());
+                (!path.is_empty()).then(|| Item::fill(path, colour))
+            };
             let Some(outline) = self.outline(obstacle, 0.0) else { continue };
-            let pixel = self.site.lens.focal.recip();
-            let [around, inside] = [-BORDER, RIM * self.line_scale]
-                .map(|inwards| self.outline(obstacle, inwards * pixel).unwrap_or_default());
-            solids.push([&outline, &inside, &around].map(|outline| clipped_polygon(outline, &half_spaces)));
-            outermost.extend(outline);
+            let inside = self.outline(obstacle, rim).unwrap_or_default();
+            let fills: Vec<_> = [fill(&outline, rim_colour), fill(&inside, colour)].into_iter().flatten().collect();
+            items.extend((!fills.is_empty()).then(|| Item::part("obstacle", fills)));
+            outlines.extend(self.outline(obstacle, -self.site.lens.focal.recip()));
         }
-        solids.retain(|[whole, ..]| whole.len() > 2);
-        (solids, Staged { outermost, ..Staged::default() })
+        (items, outlines)
     }
 
     /// The outline of an obstacle, counter-clockwise, moved inwards by a length (m); `None` for half-spaces and if

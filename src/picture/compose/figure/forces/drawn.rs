@@ -52,7 +52,7 @@ impl Drawn<'_> {
     }
 
     /// The body with its rest shape behind it.
-    pub(super) fn panel(&self, under: &mut Vec<Item>, above: &mut Vec<Item>) -> Panel {
+    pub(super) fn panel(&self, under: &mut Vec<Item>) -> Panel {
         if self.draft.flat {
             let (skin, ghost) = (&self.cell.composer.skin, self.pixels(&self.cell.ghost));
             let at = |at: u32| point(ghost[skin.nodes[at as usize] as usize]);
@@ -61,7 +61,6 @@ impl Drawn<'_> {
         }
         // Ring arrows, nodes and displacements of usual panels are left out.
         let mut panel = self.draft.panel(under, &mut Vec::new());
-        self.draft.fade_obstacles(&mut panel.obstacles, above);
         panel.beads.clear();
         panel.region = panel.viewport;
         panel

@@ -123,7 +123,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
         let centre = DVec2::new(left, top) + 0.5 * DVec2::new(width, height) + pixels * from_middle;
         let view =
             Drawn { cell, draft: cell.draft(room, scale, pixels, centre.round()), room, scale, palette: &palette };
-        panels.push(view.panel(&mut under, &mut above));
+        panels.push(view.panel(&mut under));
         view.draw(forces, &mut writer, &mut above);
     }
     // Above the fading at the sides of the cells.
