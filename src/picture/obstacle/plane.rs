@@ -37,8 +37,7 @@ impl PlaneObstacles<'_> {
         }
     }
 
-    /// All obstacles but half-spaces, in front of half-spaces, each with a rim; and outlines a pixel
-    /// around them (m).
+    /// All obstacles but half-spaces, in front of half-spaces, each with a rim; and outlines a pixel around them (m).
     pub(in crate::picture) fn draw(&self) -> (Vec<Item>, Vec<Vec<DVec3>>) {
         let half_spaces = self.site.obstacles.iter().filter_map(|obstacle| half_space(obstacle, self.site.time));
         let half_spaces: Vec<_> = half_spaces.collect();
@@ -57,7 +56,8 @@ impl PlaneObstacles<'_> {
             let inside = self.outline(obstacle, rim).unwrap_or_default();
             let fills: Vec<_> = [fill(&outline, rim_colour), fill(&inside, colour)].into_iter().flatten().collect();
             items.extend((!fills.is_empty()).then(|| Item::part("obstacle", fills)));
-            outlines.extend(self.outline(obstacle, -self.site.lens.focal.recip()));
+            let around = self.outline(obstacle, -self.site.lens.focal.recip()).unwrap_or_default();
+            outlines.push(clipped_polygon(&around, &half_spaces));
         }
         (items, outlines)
     }
