@@ -1,16 +1,13 @@
 //! Displacements as arrows: from the place of each node in the best fit of the rest shape to its present place.
 
 use super::Item;
-use super::camera::Lens;
 use super::layout::Rectangle;
-use super::layout::steps::{CHART, FREE, GAP, HAIR, RING};
+use super::layout::steps::{CHART, GAP, HAIR};
 use super::narrow::narrow;
-use super::order::farthest_first;
 use super::page::{Path, Pen, point};
 use super::plane::{clipped, sides};
 use crate::colour::{Colour, mixed};
-use crate::sim::Placement;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 /// Width (in widths of the head) and opacity of an arrow's halo.
 const HALO: f64 = 0.147;
@@ -84,45 +81,6 @@ fn outline([from, to]: [DVec2; 2], width: f64) -> ([DVec2; 7], f64) {
     let side = |y: f64| [at(0.0, y * half_shaft), at(joint, y * half_shaft), at(back, y * half_head)];
     let ([a, b, c], [g, f, e]) = (side(1.0), side(-1.0));
     ([a, b, c, to, e, f, g], part)
-}
-
-/// The data for the arrows of one panel.
-pub(super) struct Arrows<'a> {
-    pub(super) lens: &'a Lens,
-    /// The room for arrows (px).
-    pub(super) room: Rectangle,
-    /// See [`size`].
-    pub(super) size: f64,
-    /// The radius of drawn nodes (px): no arrow is shorter than the diameter.
-    pub(super) node: f64,
-    /// The length of arrows relative to the displacements.
-    pub(super) times: f64,
-    pub(super) colour: Colour,
-    pub(super) halo: Colour,
-}
-
-impl Arrows<'_> {
-    /// Adds an arrow for each node with its opacity, the farthest first. Arrows that would be specks on the nodes are left
-    /// out.
-    pub(super) fn draw(
-        &self,
-        nodes: &[(u32, f64)],
-        rest: &[DVec3],
-        position: &[DVec3],
-        placement: &Placement,
-        marks: &mut Vec<Item>,
-    ) {
-        let shortest = (RING * self.size).max(FREE).max(2.0 * self.node);
-        let arrows = nodes.iter().filter_map(|&(node, opacity)| {
-            let start = placement.place(rest[node as usize]);
-            let end = start + self.times * (position[node as usize] - start);
-            let (from, _) = self.lens.project(start)?;
-            let (to, depth) = self.lens.project(end)?;
-            let (ends, part) = inside([from, to].map(DVec2::from), self.room, shortest)?;
-            Some((depth, arrow(ends, self.size, self.colour, self.halo).faded(opacity * part)?))
-        });
-        marks.extend(farthest_first(arrows.collect()));
-    }
 }
 
 /// The part of an arrow inside a room, and its opacity, which is less than 1 where it is hardly longer than the shortest

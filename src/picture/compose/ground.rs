@@ -5,6 +5,7 @@ use super::draft::Draft;
 use crate::look::FloorStyle;
 use crate::picture::Floor;
 use crate::picture::layout;
+use crate::picture::layout::steps::{MARGIN, NEAR};
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::Staged;
 use crate::picture::shadow::{Casters, Plane, Shade};
@@ -21,14 +22,10 @@ const GENTLY: f64 = 0.3;
 const FARTHEST_SHADOW: f64 = 3.0;
 /// Distance of the camera above which the floor is wider (sizes of the body).
 const USUAL_DISTANCE: f64 = 12.0;
-/// The floor begins to fade at this height above the room for text below the body (px at type of the reference size),
-/// and ends at half that height, so that no grid lies behind the text.
-const FADE_ABOVE: f64 = 45.0;
 /// The most grid cells across a body, so that its lines are a side apart or more: for a lattice, whose cells the grid
 /// repeats, and for any other body, beside which a fine grid would distract.
 const MOST_CELLS: [f64; 2] = [10.0, 5.0];
-/// The least distance of grid lines (px), against moiré, for a floor at this angle at least (its sine).
-const LEAST_CELL: f64 = 8.0;
+/// The least sine of a floor's angle for which its grid is wide enough to show no moiré.
 const FLATTEST: f64 = 0.2;
 /// The darkness of the shadow of a body without surfaces, relative to one with surfaces.
 const SHEER: f64 = 0.38;
@@ -49,8 +46,8 @@ impl Draft<'_> {
         let cell = self.cell();
         let grid = plane.axes.map(|axis| narrow(((self.origin - anchor) / self.side).dot(axis).rem_euclid(cell)));
         let [_, below] = layout::rooms(view, f64::from(self.viewport[3]), self.scale.unit);
-        // Without words it extends to the border.
-        let fade_above = if self.clear == self.viewport { 1.0 } else { (below + FADE_ABOVE) * self.scale.unit };
+        // No grid lies behind text below the body. Without words the floor extends to the border.
+        let fade_above = if self.clear == self.viewport { 1.0 } else { (below + MARGIN) * self.scale.unit };
         Some(Floor {
             normal: narrow_point(plane.normal),
             axes: plane.axes.map(narrow_point),
@@ -140,7 +137,7 @@ impl Draft<'_> {
         // Cameras do not zoom, so cells are the same in all frames.
         let pixels =
             self.lens.focal * self.side / self.framing.distance * libm::sin(camera.elevation).abs().max(FLATTEST);
-        cell(self.composer.extent / self.side, most, LEAST_CELL / pixels)
+        cell(self.composer.extent / self.side, most, NEAR / pixels)
     }
 }
 

@@ -4,11 +4,12 @@ use super::Composer;
 use super::draft::Draft;
 use super::plane_body::PlaneBody;
 use super::plane_marks::node_radius;
-use crate::picture::arrows::{self, Arrows};
+use crate::picture::arrows;
 use crate::picture::layout::Rectangle;
-use crate::picture::layout::steps::{APART, CHART};
+use crate::picture::layout::steps::{APART, CHART, FREE, RING};
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::{self, Site, Staged, Staging};
+use crate::picture::order::farthest_first;
 use crate::picture::pointer::Pointers;
 use crate::picture::surface::SurfaceLines;
 use crate::picture::{Item, Line, Mesh, Obstacles, Panel, Sight, Solid};
@@ -37,7 +38,7 @@ impl Draft<'_> {
         obstacles.arrows(&self.pointers(self.viewport), above);
         under.push(PlaneBody::new(self, region).item());
         self.hands(above);
-        self.arrows(above);
+        self.displacements(above);
         self.without_body(region)
     }
 
@@ -52,7 +53,7 @@ impl Draft<'_> {
         obstacles.fade = self.fading(&obstacles.solids.iter().map(corners).collect::<Vec<_>>());
         let borders = borders.into_iter().map(|border| border.line).chain(lines[of_body..].iter().copied()).collect();
         self.hands(above);
-        self.arrows(above);
+        self.displacements(above);
         Panel {
             floor: self.floor(&staged),
             sound,
@@ -140,26 +141,28 @@ impl Draft<'_> {
         staging.draw(lines)
     }
 
-    /// Displacements.
-    fn arrows(&self, above: &mut Vec<Item>) {
-        let view = &self.scene.view;
+    /// Displacements: an arrow for each node, the farthest first. Arrows that would be specks on the nodes are left out.
+    fn displacements(&self, above: &mut Vec<Item>) {
+        let (view, palette) = (&self.scene.view, &self.composer.palette);
         if !view.visible.displacements || self.diverged || self.position.is_empty() {
             return;
         }
-        let arrows = Arrows {
-            lens: &self.lens,
-            room: self.clear,
-            size: arrows::size(self.element, self.scale.unit),
-            node: if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 },
-            times: view.arrow_scale,
-            colour: match self.scene.runs.get(self.run.run) {
-                Some(run) if view.colour.is_none() => run.line(&self.composer.palette).colour,
-                // An arrow of the run's colour would not stand out among the colours of a field.
-                _ => self.composer.palette.text,
-            },
-            halo: self.composer.palette.background,
+        let size = arrows::size(self.element, self.scale.unit);
+        let node = if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 };
+        let shortest = (RING * size).max(FREE).max(2.0 * node);
+        let colour = match self.scene.runs.get(self.run.run) {
+            Some(run) if view.colour.is_none() => run.line(palette).colour,
+            // An arrow of the run's colour would not stand out among the colours of a field.
+            _ => palette.text,
         };
-        arrows.draw(&self.facing_bearers(), &self.body.rest, &self.position, &self.run.snapshot.placement, above);
+        let arrows = self.facing_bearers().into_iter().filter_map(|(node, opacity)| {
+            let start = self.run.snapshot.placement.place(self.body.rest[node as usize]);
+            let end = start + view.arrow_scale * (self.position[node as usize] - start);
+            let (to, depth) = self.lens.project(end)?;
+            let (ends, part) = arrows::inside([self.pixel(start)?, to.into()], self.clear, shortest)?;
+            Some((depth, arrows::arrow(ends, size, colour, palette.background).faded(opacity * part)?))
+        });
+        above.extend(farthest_first(arrows.collect()));
     }
 
     /// The nodes with arrows and their opacity: 0 if all faces of a node in space are turned away.

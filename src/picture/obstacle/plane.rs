@@ -3,7 +3,7 @@
 use super::Site;
 use super::half_space::{clipped_polygon, half_space};
 use crate::picture::Item;
-use crate::picture::layout::steps::STRONG;
+use crate::picture::layout::steps::{CLOSE, STRONG};
 use crate::picture::page::{Path, point};
 use crate::picture::pointer::Pointers;
 use crate::sim::{Motion, Obstacle, Shape};
@@ -33,7 +33,7 @@ impl PlaneObstacles<'_> {
             };
             let point = obstacle.pose(self.site.time).apply(point, point);
             let going = self.site.going(obstacle, point, self.site.extent);
-            pointers.draw(point, going, going.velocity.dot(normal) > 0.0, 5.0, marks);
+            pointers.draw(point, going, going.velocity.dot(normal) > 0.0, CLOSE, marks);
         }
     }
 
