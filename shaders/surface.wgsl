@@ -189,6 +189,11 @@ fn stripes(hatch: f32) -> f32 {
     return mix(covered, STRIPE, smoothstep(0.2, 0.45, width));
 }
 
+// The dots of flat elements: distance, radius (px in the reference picture) and opacity.
+const DOTS_APART = 7.0;
+const DOT = 1.3;
+const DOT_ALPHA = 0.6;
+
 // The part of a pixel that the dots of a flat element cover.
 fn dots(place: vec2<f32>) -> f32 {
     let scale = panel.line_scale;

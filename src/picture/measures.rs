@@ -24,10 +24,6 @@ measures! {
     /// The dark share and the opacity of the stripes of turned-over elements.
     STRIPE = 0.2;
     STRIPE_ALPHA = 0.62;
-    /// The dots of flat elements: distance, radius and opacity.
-    DOTS_APART = 7.0;
-    DOT = 1.3;
-    DOT_ALPHA = 0.6;
     /// The width of a casing relative to the line's, and the least (px).
     CASING = 0.24;
     LEAST_CASING = 0.6;

@@ -74,7 +74,7 @@ fn surfaces_alone(mut picture: Listed) -> Listed {
 /// The picture without sound elements.
 fn turned_over_alone(picture: &Listed) -> Listed {
     let mut picture = surfaces_alone(picture.clone());
-    ["elements", "dots"].iter().for_each(|part| remove(&mut picture.under, part));
+    remove(&mut picture.under, "elements");
     picture
 }
 

@@ -1,7 +1,7 @@
 //! The body of a panel in the plane, as items straight from its elements.
 
 use super::draft::Draft;
-use crate::colour::{encoded, luminance, mixed};
+use crate::colour::mixed;
 use crate::picture::ears::ears;
 use crate::picture::layout::Rectangle;
 use crate::picture::layout::steps::{BOLD, RING, THIN};
@@ -25,8 +25,6 @@ type Corner = (Vec2, f32);
 struct Set {
     /// Triangles that fill the elements, all clockwise.
     triangles: Vec<[Corner; 3]>,
-    /// The flat elements.
-    flat: Path,
     /// The sides of all elements, as nodes.
     sides: Vec<[u32; 2]>,
     /// Elements without faces.
@@ -60,7 +58,6 @@ impl<'a> PlaneBody<'a> {
         let mut part =
             |name, of_part: Vec<Item>| items.extend((!of_part.is_empty()).then(|| Item::part(name, of_part)));
         part("elements", self.surface(&sound.triangles, self.draft.palette.sound_flat));
-        part("dots", self.dots(&sound.flat));
         part("turned over", self.surface(&turned_over.triangles, self.draft.palette.alarm));
         part("hatch", self.hatch(&turned_over.triangles));
         part("edges", self.lines(&sound, &turned_over));
@@ -83,11 +80,7 @@ impl<'a> PlaneBody<'a> {
             let places =
                 shades.as_ref().map_or_else(|| vec![0.0; nodes.len()], |shades| shades.corners(nodes, element));
             let corners = nodes.iter().zip(places).map(|(&node, place)| (pixel(node), narrow(place)));
-            let filled = triangles(&corners.collect::<Vec<_>>());
-            if is(&run.snapshot.flat) {
-                filled.iter().for_each(|triangle| set.flat.add_polygon(&triangle.map(|(at, _)| at)));
-            }
-            set.triangles.extend(filled);
+            set.triangles.extend(triangles(&corners.collect::<Vec<_>>()));
             set.sides.extend(around(nodes).map(ordered));
         }
         // With a field, coloured strokes replace them.
@@ -121,21 +114,6 @@ impl<'a> PlaneBody<'a> {
         items
     }
 
-    /// Flat elements: grey, unless a field colours them, with dots that are fixed to the body.
-    fn dots(&self, flat: &Path) -> Vec<Item> {
-        if flat.is_empty() {
-            return Vec::new();
-        }
-        let palette = &self.draft.palette;
-        let grey = Item::fill(flat.clone(), encoded([luminance(palette.sound_flat); 3]));
-        // A dash without length is a dot.
-        let apart = DOTS_APART * self.line_scale();
-        let pen = Pen { dash: vec![0.0, apart], ..Pen::solid(2.0 * DOT * self.line_scale()) };
-        let dots = Item::stroke(self.stripes(flat.points(), apart), pen, (palette.edge, DOT_ALPHA.into()));
-        let dots = Item::Clip { path: flat.clone(), items: vec![dots] };
-        if self.ramp.is_empty() { vec![grey, dots] } else { vec![dots] }
-    }
-
     /// The stripes on turned-over elements, fixed to the body.
     fn hatch(&self, triangles: &[[Corner; 3]]) -> Vec<Item> {
         if triangles.is_empty() {
@@ -145,30 +123,23 @@ impl<'a> PlaneBody<'a> {
         // On the colours of a field, vermilion stands out more.
         let colour =
             if self.ramp.is_empty() { (palette.alarm_line, STRIPE_ALPHA.into()) } else { (palette.alarm, 1.0) };
-        let path = whole(triangles);
+        let (path, middle) = (whole(triangles), Vec2::from(self.draft.middle()));
         let period = narrow(RING) * self.line_scale();
-        let pen = Pen { round: false, ..Pen::solid(STRIPE * period) };
-        let stripes = Item::stroke(self.stripes(path.points(), period), pen, colour);
-        vec![Item::Clip { path, items: vec![stripes] }]
-    }
-
-    /// Lines at 45° at a distance (px) across the part of some points in the room. They begin at multiples of the distance
-    /// from the body's middle.
-    fn stripes(&self, points: Vec<Vec2>, apart: f32) -> Path {
+        let across = FRAC_1_SQRT_2 * period * Vec2::ONE;
         let [left, top, right, bottom] = sides(self.room.map(f64::from)).map(narrow);
-        let [from, to] = [Vec2::new(left, top), Vec2::new(right, bottom)];
-        let middle = Vec2::from(self.draft.middle());
-        let [along, across] = [[1.0, -1.0], [1.0, 1.0]].map(|way| FRAC_1_SQRT_2 * apart * Vec2::from(way));
-        let places = points.into_iter().map(|at| at.clamp(from, to) - middle);
-        let places = places.map(|at| Vec2::new(at.dot(along), at.dot(across)) / (apart * apart));
-        // Of the box around the points, which is upright in the turned coordinates.
-        let (low, high) = places.fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(a, b), at| (a.min(at), b.max(at)));
-        let mut path = Path::default();
+        let inside = |at: Vec2| at.clamp(Vec2::new(left, top), Vec2::new(right, bottom)) - middle;
+        let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+        for at in path.points().into_iter().map(inside) {
+            let turned = Vec2::new(at.dot(across.perp()), at.dot(across)) / (period * period);
+            (low, high) = (low.min(turned), high.max(turned));
+        }
+        let mut lines = Path::default();
         for stripe in low.y.floor() as i32..=high.y.ceil() as i32 {
             let on = middle + (narrow(f64::from(stripe)) + 0.5) * across;
-            path.add_line(&[low.x.floor() - 0.5, high.x.ceil() + 0.5].map(|end| on + end * along));
+            lines.add_line(&[low.x - 1.0, high.x + 1.0].map(|end| on + end * across.perp()));
         }
-        path
+        let pen = Pen { round: false, ..Pen::solid(STRIPE * period) };
+        vec![Item::Clip { path, items: vec![Item::stroke(lines, pen, colour)] }]
     }
 
     /// Edges and contours.
