@@ -15,9 +15,6 @@ use crate::colour::Colour;
 use glam::DVec2;
 use std::borrow::Cow;
 
-/// The least size of its type relative to the reference picture, as long as it takes no more than this of the picture.
-const LEAST_UNIT: f64 = 0.66;
-const MOST_HEIGHT: f64 = 0.068;
 /// The least width of the bar with its name, in those of a sample.
 const BAR: f64 = 1.5;
 /// The most ticks.
@@ -83,11 +80,10 @@ impl Legend {
     /// The key of a picture of a size (px) with panels of a scale, with a number of samples, and with or without a bar;
     /// `None` if it could not be read.
     pub(super) fn new(size: [u32; 2], scale: Scale, samples: usize, has_bar: bool) -> Option<Self> {
-        let [width, height] = size.map(f64::from);
-        let roomy = LEAST_UNIT.min(MOST_HEIGHT * height / NAME_ROW);
+        let room = f64::from(size[0]) - 2.0 * scale.margin();
         let bar = if has_bar { BAR } else { 0.0 };
         let needed = (samples as f64 + bar) * TILE + (samples + usize::from(has_bar)).saturating_sub(1) as f64 * MARGIN;
-        let unit = scale.of_type(scale.unit.max(roomy)).min((width - 2.0 * scale.margin()) / needed);
+        let unit = scale.type_unit().min(room / needed);
         Scale::legible(SMALL * unit).then_some(Self { unit, height: NAME_ROW * unit })
     }
 

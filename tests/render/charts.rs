@@ -132,7 +132,7 @@ fn a_short_story_has_a_scale_of_its_own_and_its_events_recur_in_the_panels() {
     assert_eq!(series(&before).len(), 4);
     for (number, words) in [("1", "first turned over at 20 ms"), ("2", "settles at 9 after 102 ms")] {
         let flags: Vec<_> = said(number).into_iter().filter(|word| word.weight == Weight::SemiBold).collect();
-        let [panel, chart] = flags[..] else { panic!("a flag in the panel and one in the chart") };
+        let [chart, panel] = flags[..] else { panic!("a flag in the panel and one in the chart") };
         let [words] = said(words)[..] else { panic!("{words} is not said") };
         assert!((words.baseline - panel.baseline).abs() < 3.0);
         assert!(panel.span[1] < words.span[0] && words.span[0] > 640.0, "in the panel of the springs");
@@ -141,7 +141,7 @@ fn a_short_story_has_a_scale_of_its_own_and_its_events_recur_in_the_panels() {
     // Rings of past events are filled.
     let ring = |picture: &Listed, number: &str| {
         let is_flag = |word: &&TextRun| word.text == number && word.weight == Weight::SemiBold;
-        let word = picture.words.iter().find(is_flag).expect("a number").clone();
+        let word = picture.words.iter().rfind(is_flag).expect("a number").clone();
         let is_below = |curve: &&Curve| {
             let [left, top, right, bottom] = word.bounds();
             curve.points.len() == 1
@@ -389,7 +389,7 @@ fn eight_runs_of_one_model_are_told_apart() {
         for (run, curve) in scene.runs.iter().zip(&own) {
             let line = run.line(&picture.palette);
             assert_eq!((line.colour, line.dash.len()), (curve.colour, curve.dash.len()));
-            let name = picture.words.iter().find(|word| word.text == run.name).expect("a name above the panel");
+            let name = picture.words.iter().rfind(|word| word.text == run.name).expect("a name above the panel");
             let [_, top, right, bottom] = name.bounds();
             let sample = picture.marks.iter().find(|mark| {
                 let [x, y, ..] = mark.rectangle;

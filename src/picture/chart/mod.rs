@@ -21,7 +21,7 @@ pub(super) use series::{name, style};
 pub(super) use stack::{Room, Stack};
 
 use super::caption::Writer;
-use super::layout::steps::{BESIDE, BLOCK, CLOSE, FREE, NEAR, SHORT, SMALL, TICK};
+use super::layout::steps::{BESIDE, CLOSE, FREE, MARGIN, NEAR, SHORT, SMALL, TICK};
 use super::page::{Item, Paint};
 use super::text::Weight;
 use crate::colour::{Colour, mixed};
@@ -105,7 +105,7 @@ impl Axis {
     /// at a moment between.
     fn of_time([left, right]: [f64; 2], unit: f64, [from, to]: [f64; 2], split: Option<f64>) -> Self {
         let stretch = |range: [f64; 2], along: [f64; 2]| {
-            let most = (along[1] - along[0]) * (right - left) / (BLOCK * unit);
+            let most = (along[1] - along[0]) * (right - left) / (MARGIN * unit);
             Stretch { along, ..Stretch::new(Kind::Fixed, range, "s", 1.0, (most as usize).clamp(2, MOST_TIMES)) }
         };
         let Some(split) = split else { return Self(vec![stretch([from, to], [0.0, 1.0])]) };

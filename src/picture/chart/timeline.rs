@@ -10,7 +10,6 @@ use crate::picture::caption::Writer;
 use crate::picture::layout::steps::{APART, BESIDE, GAP, MARGIN, NAME_ROW, NEAR, RING, SHORT, SMALL};
 use crate::picture::layout::{Rectangle, Scale};
 use crate::picture::page::Item;
-use crate::picture::text::TextRun;
 use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::{Diagnostic, Frame, Status};
@@ -31,7 +30,7 @@ pub(in crate::picture) struct Timeline {
     /// The charts that have room, at their places.
     charts: Vec<(Chart, Place)>,
     /// The parts that do not move: those below the curves, and the curves.
-    still: [(Vec<Item>, Vec<Item>, Vec<TextRun>); 2],
+    still: [Vec<Item>; 2],
 }
 
 impl Timeline {
@@ -94,23 +93,18 @@ impl Timeline {
             let has_room = span[1] - span[0] >= LEAST[0];
             if has_room { stack.draw([&mut ground, &mut curves], &room, time, &flags) } else { Vec::new() }
         });
-        let still = [ground, curves].map(|Writer { marks, curves, words, .. }| (marks, curves, words));
+        let still = [ground, curves].map(|writer| writer.items().collect());
         Self { diagnostics, colours, events, charts: charts.unwrap_or_default(), still }
     }
 
     /// Draws the charts with the present moment: a line behind the curves, and circles around the values, which hide
     /// nothing.
     pub(in crate::picture) fn draw(&self, writer: &mut Writer<'_>, frame: &Frame) {
-        let copy = |(marks, curves, words): &(Vec<Item>, Vec<Item>, Vec<TextRun>), writer: &mut Writer<'_>| {
-            writer.marks.extend_from_slice(marks);
-            writer.curves.extend_from_slice(curves);
-            writer.words.extend_from_slice(words);
-        };
-        copy(&self.still[0], writer);
+        writer.marks.extend_from_slice(&self.still[0]);
         for (chart, place) in &self.charts {
             Annotation::Moment { at: frame.time, colour: writer.palette.text }.draw(writer, chart, *place);
         }
-        copy(&self.still[1], writer);
+        writer.curves.extend_from_slice(&self.still[1]);
         for (&diagnostic, (chart, place)) in self.diagnostics.iter().zip(&self.charts) {
             for run in frame.runs.iter().filter(|run| run.snapshot.status == Status::Ok) {
                 let value = diagnostic.of(&run.snapshot.diagnostics);

@@ -40,11 +40,9 @@ impl Composer<'_> {
             [tally, node(Numeral::Count, [writer.count_width(body.elements.len()); 2])]
         });
         let bars = self.bars(panel, &framing, scale).map(|(text, pixels)| writer.bar_width(&text, pixels));
-        let bars: Vec<_> = bars.filter(|_| labels.scale_bar).collect();
-        let bar = bars.first().map(|&first| {
-            let least = bars.iter().copied().fold(first, f64::min);
-            node(Numeral::Bar, [first, least]).stretched().rank(0)
-        });
+        let bars = bars.filter(|_| labels.scale_bar);
+        // The longest bar that fits into spare room is drawn.
+        let bar = bars.reduce(f64::min).map(|least| node(Numeral::Bar, [least; 2]).stretched().rank(0));
         let number = node(Numeral::Number, writer.number_widths(&number)).rank(1);
         let row = count.into_iter().flatten().chain(bar).chain([number]).collect();
         tree::column(&[Node::new(Numeral::Row, 1.0).with(row)], [0.0, 0.0, width, 1.0])

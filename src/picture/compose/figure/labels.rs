@@ -42,21 +42,13 @@ impl Labels {
         Self { room, unit, lines: Vec::new(), surfaces: Vec::new(), boxes: Vec::new() }
     }
 
-    /// The place of a label of a size beside a point, preferably in a direction from it: its upper left corner.
-    pub(super) fn place(&mut self, point: DVec2, away: DVec2, size: DVec2) -> DVec2 {
-        let best = self.best(point, away, size);
-        self.take(best, size)
-    }
-
-    /// The place of a label at the tip of an arrow or, if that is crowded, behind its tail.
-    pub(super) fn place_at_arrow(&mut self, [from, to]: [DVec2; 2], size: DVec2) -> DVec2 {
+    /// The place of a label of a size at the tip of an arrow or, if that is crowded and it may be there, behind its tail:
+    /// its upper left corner.
+    pub(super) fn place(&mut self, [from, to]: [DVec2; 2], size: DVec2, may_be_behind: bool) -> DVec2 {
         let back = (from - to).normalize_or_zero() * CLOSE * self.unit;
-        let (at_tip, mut at_tail) = (self.best(to, to - from, size), self.best(from + back, from - to, size));
-        at_tail.0 += TAIL_COST;
-        self.take(if at_tail.0 < at_tip.0 { at_tail } else { at_tip }, size)
-    }
-
-    fn take(&mut self, (_, corner): (f64, DVec2), size: DVec2) -> DVec2 {
+        let (at_tip, at_tail) = (self.best(to, to - from, size), self.best(from + back, from - to, size));
+        let is_behind = may_be_behind && at_tail.0 + TAIL_COST < at_tip.0;
+        let (_, corner) = if is_behind { at_tail } else { at_tip };
         self.boxes.push([corner.x, corner.y, corner.x + size.x, corner.y + size.y]);
         corner
     }
@@ -121,7 +113,7 @@ mod tests {
     #[test]
     fn labels_stand_where_they_are_wanted_if_nothing_is_in_the_way() {
         let mut labels = Labels::new([0.0, 0.0, 400.0, 400.0], 1.0);
-        let corner = labels.place(DVec2::splat(200.0), DVec2::X, DVec2::new(40.0, 12.0));
+        let corner = labels.place([DVec2::ZERO.with_y(200.0), DVec2::splat(200.0)], DVec2::new(40.0, 12.0), false);
         assert_eq!(corner, DVec2::new(208.0, 194.0));
     }
 
@@ -131,7 +123,7 @@ mod tests {
         let point = DVec2::new(150.0, 100.0);
         labels.lines.push([point, DVec2::new(200.0, 100.0)]);
         let size = DVec2::new(45.0, 14.0);
-        let corners: Vec<_> = (0..3).map(|_| labels.place(point, DVec2::X, size)).collect();
+        let corners: Vec<_> = (0..3).map(|_| labels.place([point - DVec2::X, point], size, false)).collect();
         for (at, corner) in corners.iter().enumerate() {
             let edges = [corner.x, corner.y, corner.x + size.x, corner.y + size.y];
             assert!(edges[0] >= 0.0 && edges[2] <= 200.0 && inside(labels.lines[0], edges) == 0.0, "{edges:?}");

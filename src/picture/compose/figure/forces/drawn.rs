@@ -20,9 +20,11 @@ use crate::picture::{Item, Panel};
 use crate::scene::figure::Forces;
 use glam::{DVec2, DVec3};
 
-/// Opacity of the rest shape, and of edges, nodes and arrows that a body hides.
+/// Opacity of the rest shape, of edges, nodes and arrows that a body hides, and of the casing of the edges of the rest
+/// shape.
 const GHOST: f64 = 0.075;
 const HIDDEN: f64 = 0.3;
+const CASING: f64 = 0.35;
 /// The radius of nodes with short arrows, in lengths of the arrow, and the least one in usual radii.
 const SMALL_NODE: [f64; 2] = [0.3, 0.55];
 /// Forces that would move no node farther than this (sides) are round-off.
@@ -95,6 +97,8 @@ impl Drawn<'_> {
             let opacity = HIDDEN + (1.0 - HIDDEN) * seen_ghost[a].min(seen_ghost[b]);
             let dash = DASH.map(|length| length * line);
             let ends = [ghost[a], ghost[b]].map(|end| end.to_array());
+            // The casing makes the dashes visible on bodies of any colour.
+            above.push(Item::curve(&ends, FREE * line, &[], (palette.background, CASING * opacity)));
             above.push(Item::curve(&ends, THIN * line, &dash, (palette.second_text, opacity)));
         }
         let own = scene.runs[cell.frame.run].line(palette).colour;
@@ -160,7 +164,7 @@ impl Drawn<'_> {
         let widths: Vec<_> = lines.iter().map(|(text, _)| wide(text)).collect();
         let widest = widths.iter().copied().fold(0.0, f64::max);
         let extent = DVec2::new(widest, ASCENT * size + (lines.len() - 1) as f64 * line);
-        let corner = labels.place_at_arrow([from, to], extent);
+        let corner = labels.place([from, to], extent, true);
         // Both lines are aligned at the side of the arrow.
         let on_left = corner.x + 0.5 * extent.x < if corner.x < from.x.min(to.x) { from.x } else { to.x };
         for (row, ((text, colour), width)) in lines.iter().zip(widths).enumerate() {
@@ -199,7 +203,7 @@ impl Drawn<'_> {
             (centre.midpoint(equilibrium), across(equilibrium, now), "R"),
         ] {
             let extent = DVec2::new(writer.fonts.width(letter, Weight::SemiBold, size), size);
-            let corner = labels.place(at, away, extent);
+            let corner = labels.place([at - away, at], extent, false);
             let place = [corner.x, corner.y + ASCENT * size];
             over_lines(writer, letter, Weight::SemiBold, size, palette.text, place);
         }
