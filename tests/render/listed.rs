@@ -28,15 +28,13 @@ pub(super) struct Listed {
 pub(super) struct Mark {
     /// The name of the part; `rectangle`, `line` or `colours` for other shapes.
     pub(super) shape: &'static str,
-    /// Left, top, width and height of its box (px); of an arrow, with room for its halo, a line or
-    /// a floor, the box that is turned around its left upper corner.
+    /// Left, top, width and height of its box (px); of an arrow or a line its start, length and thickness; of a floor
+    /// the box that is turned around its left upper corner.
     pub(super) rectangle: [f32; 4],
     /// The direction of an arrow or a line.
     pub(super) along: [f32; 2],
     /// Its colour.
     pub(super) colour: [u8; 3],
-    /// The colour of its rim, its halo or its diagonal, or again its colour.
-    pub(super) second: [u8; 3],
     /// Its opacity (of 255).
     pub(super) opacity: u8,
 }
@@ -97,7 +95,6 @@ fn read(item: &Item, marks: &mut Vec<Mark>, curves: &mut Vec<Curve>) {
         rectangle: [bounds[0].x, bounds[0].y, bounds[1].x - bounds[0].x, bounds[1].y - bounds[0].y],
         along: Mark::UPRIGHT,
         colour: paint.colour,
-        second: paint.colour,
         opacity: (255.0 * paint.alpha).round() as u8,
     };
     let curve = |points: Vec<Vec2>, width: f32, dash: &[f32], paint: &Paint| Curve {
@@ -123,10 +120,7 @@ fn read(item: &Item, marks: &mut Vec<Mark>, curves: &mut Vec<Curve>) {
             }
             (points, _) => curves.push(curve(points.to_vec(), pen.width, &pen.dash, paint)),
         },
-        Item::Blend { path, colours, .. } => {
-            let first = mark("colours", bounds(path), &colours[0].into());
-            marks.push(Mark { second: colours[colours.len() - 1], ..first });
-        }
+        Item::Blend { path, colours, .. } => marks.push(mark("colours", bounds(path), &colours[0].into())),
         Item::Part { name, items } => marks.push(part(name, items, &mark)),
         Item::Image(_) | Item::Text(_) | Item::Clip { .. } => {}
     }
@@ -156,19 +150,16 @@ fn part(name: &'static str, items: &[Item], mark: &dyn Fn(&'static str, [Vec2; 2
     }
     // Halos come first, rims and diagonals last.
     let is_rimmed = matches!(name, "node" | "struck");
-    let [first, last] = [paints[0], paints[paints.len() - 1]];
-    let (paint, second) = if is_rimmed { (first, last) } else { (last, first) };
-    let whole = Mark { second: second.colour, ..mark(name, [low, high], &paint) };
+    let paint = if is_rimmed { paints[0] } else { paints[paints.len() - 1] };
+    let whole = mark(name, [low, high], &paint);
     match items {
         [Item::Stroke { pen, .. }, Item::Fill { path, .. }] if name == "arrow" => {
             let points = path.points();
             let (from, to) = (points[0].midpoint(points[6]), points[3]);
             let along = (to - from).normalize();
-            // The halo is .147 of a head wide, and fills most of the room for it.
-            let head = pen.width / 0.294;
-            let [pad, height] = [3.0, 23.0].map(|part| part / 17.0 * head);
-            let corner = from - pad * along - 0.5 * height * along.perp();
-            let rectangle = [corner.x, corner.y, from.distance(to) + 2.0 * pad, height];
+            // With its halo.
+            let height = points[2].distance(points[4]) + pen.width;
+            let rectangle = [from.x, from.y, from.distance(to), height];
             Mark { rectangle, along: along.to_array(), ..whole }
         }
         [Item::Fill { path, .. }] if name == "floor" => {

@@ -84,16 +84,11 @@ fn key_arrow(picture: &Listed) -> Option<[f32; 4]> {
     let words = picture.words.iter().find(|word| word.text.starts_with("displacement "))?;
     let [left, top, _, bottom] = words.bounds();
     let is_beside = |mark: &&Mark| {
-        let [x, y, width, height] = mark.rectangle;
-        let middle = y + 0.5 * height;
-        mark.shape == "arrow" && mark.along == Mark::UPRIGHT && x + width < left && top < middle && middle < bottom
+        let [x, y, width, _] = mark.rectangle;
+        mark.shape == "arrow" && mark.along == Mark::UPRIGHT && x + width < left && top < y && y < bottom
     };
     let [x, y, width, height] = picture.marks.iter().rev().find(is_beside)?.rectangle;
-    let (halo, middle) = (3.0 / 23.0 * height, y + 0.5 * height);
-    // The head of a short arrow is lower than its mark.
-    let head = (17.0 / 23.0 * height).min(0.502 * (width - 2.0 * halo));
-    let half = 0.5 * head * (1.0 + 6.0 / 17.0);
-    Some([x, middle - half, x + width, middle + half])
+    Some([x, y - 0.5 * height, x + width, y + 0.5 * height])
 }
 
 #[test]
