@@ -1,6 +1,5 @@
 //! The properties of views, palettes and bodies that only drawing needs.
 
-use super::camera_box::CameraBox;
 use super::palette::Palette;
 use super::print::Print;
 use super::run_lines::DASHES;
@@ -62,14 +61,6 @@ impl Palette {
             colour: readable(colour, self.background, LINE_CONTRAST),
             dash: DASHES[(place + place / colours) % dashes],
         }
-    }
-}
-
-impl CameraBox {
-    /// The larger of its width and height (m).
-    pub(crate) fn size(&self) -> f64 {
-        let [low, high] = self.corners;
-        (high - low).truncate().max_element()
     }
 }
 

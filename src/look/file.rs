@@ -1,6 +1,5 @@
 //! Values of a view as typed, which the scene completes.
 
-use crate::reading::coordinates::Coordinates;
 use crate::sim::Field;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -74,41 +73,6 @@ pub(crate) struct ColourFile {
     /// The colour map.
     #[serde(default)]
     pub(crate) map: ColourMap,
-}
-
-/// A perspective camera. A body in the plane is seen from the front without perspective.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct CameraFile {
-    /// Azimuth to the right, from looking along −z (rad). Only in space. Default: 0.541, which is 31°.
-    pub(crate) azimuth: Option<f64>,
-    /// Elevation above the horizon (rad), below a quarter turn (1.57), so that the camera does not look along its
-    /// up-axis. Only in space. Default: 0.297, which is 17°; under a plate that faces down 0.227, which is 13°.
-    #[schemars(extend("exclusiveMinimum" = -1.57, "exclusiveMaximum" = 1.57))]
-    pub(crate) elevation: Option<f64>,
-    /// Vertical field of view (rad). Default: 0.349, which is 20°.
-    #[schemars(range(min = 0.001, max = 3.0))]
-    pub(crate) field_of_view: Option<f64>,
-    /// The point (m) that a fixed camera looks at. Default: the centre of the body where it would stand on the first
-    /// floor below it, or where it starts.
-    pub(crate) target: Option<Coordinates>,
-    /// Distance of a fixed camera from its target (m). In the plane it gives the scale together with `field_of_view`.
-    /// Default: 8.5 times the longest side of the bounding box at the start. Without a `target`, more if that leaves out
-    /// the body where it starts or stands, or parts of plates, spheres, capsules, boxes and moved nodes within 1.25 body
-    /// sizes of it.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub(crate) distance: Option<f64>,
-    /// Whether the camera follows the centre of mass of each run's body. All panels and frames then have one scale, at
-    /// which the body takes about 60 % of its panel's width at its widest moment. The camera stands still where that
-    /// keeps all runs in view, and if it has a `target` or a `distance`. The whole scene is simulated before the first
-    /// frame is drawn.
-    pub(crate) follow: bool,
-}
-
-impl Default for CameraFile {
-    fn default() -> Self {
-        Self { azimuth: None, elevation: None, field_of_view: None, target: None, distance: None, follow: true }
-    }
 }
 
 /// Named colour maps.

@@ -1,19 +1,17 @@
 //! The look of pictures: view, colours, fonts, colour scales and cameras. A scene has a [`View`], resolved here from
 //! its `[view]` table and from its body, models and surroundings. Nothing here draws.
 
-mod camera_box;
+mod camera;
 mod compared;
 mod contrast;
 #[cfg(feature = "render")]
 mod drawn;
 pub(crate) mod file;
 pub(crate) mod font;
-mod framing;
 mod palette;
 pub(crate) mod print;
 #[cfg(feature = "render")]
 pub(crate) mod ramp;
-mod reach;
 mod resolve;
 mod run_lines;
 mod scene_colours;
@@ -22,13 +20,14 @@ pub(crate) mod typed;
 mod view;
 
 pub use crate::colour::Colour;
-pub(crate) use camera_box::CameraBox;
+pub use camera::Camera;
+pub(crate) use camera::CameraBox;
 pub(crate) use contrast::check_runs;
 pub use file::ColourMap;
 pub use palette::Theme;
 pub use print::Print;
 pub(crate) use resolve::{TypedView, colour};
 pub(crate) use subject::Subject;
-pub use view::{Camera, ColourScale, EdgeStyle, FloorStyle, FontFiles, Ghost, Labels, Style, Traced, View, Visible};
+pub use view::{ColourScale, EdgeStyle, FloorStyle, FontFiles, Ghost, Labels, Style, Traced, View, Visible};
 #[cfg(feature = "render")]
-pub(crate) use {drawn::LineStyle, palette::Palette, ramp::SHADES, view::axes};
+pub(crate) use {drawn::LineStyle, palette::Palette, ramp::SHADES, camera::axes};

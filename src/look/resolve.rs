@@ -1,18 +1,15 @@
 //! Reads a `[view]` table into the view of a body, its runs and its surroundings.
 
+use super::camera::CameraFile;
 use super::compared;
-use super::file::{ArrangementFile, CameraFile, ColourFile, PanelsFile, ShowFile};
-use super::framing;
+use super::file::{ArrangementFile, ColourFile, PanelsFile, ShowFile};
 use super::palette::Palette;
 use super::print::{SizeFile, TextScaleFile, unit};
 use super::subject::Subject;
 use super::typed::TypedColour;
-use super::view::{Camera, ColourScale, FontFiles, View, Visible};
-use crate::reading::captions::rounded;
+use super::view::{ColourScale, FontFiles, View, Visible};
 use crate::reading::collector::{Collector, PathPart, key_path};
-use crate::reading::coordinates::vector;
-use crate::sim::geometry::is_inside;
-use crate::sim::{Dimension, Field};
+use crate::sim::Field;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 
@@ -46,7 +43,7 @@ impl View {
     ) -> Option<Self> {
         let (body, panels, known) = (scene.body, scene.models.len(), report.total());
         let mut view = Self { side: scene.side, has_cells: scene.has_cells, ..Self::default() };
-        view.camera = camera(&get(typed, "camera", report).unwrap_or_default(), scene, report)?;
+        view.camera = get::<CameraFile>(typed, "camera", report).unwrap_or_default().resolve(scene, report)?;
         let size = get(typed, "size", report).unwrap_or(SizeFile::Pixels(view.size));
         (view.size, view.print) = size.resolve(LEAST_SIDE, &key_path!["view", "size"], report)?;
         view.columns = get(typed, "panels", report).map(|arranged| match arranged {
@@ -98,29 +95,6 @@ impl View {
         set(&mut view.edges, typed, "edges", report);
         (report.total() == known).then_some(view)
     }
-}
-
-/// The camera of a view, or `None` after a mistake in its target.
-fn camera(typed: &CameraFile, scene: &Subject<'_>, report: &mut Collector<'_>) -> Option<Camera> {
-    let dimension = scene.body.dimension;
-    let given = [("azimuth", typed.azimuth), ("elevation", typed.elevation)];
-    for (key, _) in given.iter().filter(|(_, value)| dimension == Dimension::Plane && value.is_some()) {
-        let message = format!("`view.camera.{key}` is given, but a body in the plane is seen from the front");
-        report.at_key(&key_path!["view", "camera", *key], message, format!("remove `{key}`"));
-    }
-    let target = match &typed.target {
-        Some(target) => Some(vector(target, dimension, &key_path!["view", "camera", "target"], report)?),
-        None => None,
-    };
-    let chosen = framing::camera(typed, target, scene);
-    let start = &scene.initial.position;
-    if dimension == Dimension::Space && !chosen.follow && is_inside(chosen.eye(), scene.body, start) {
-        let [x, y, z] = chosen.eye().to_array().map(|length| rounded(length, 3));
-        let message = format!("the camera is at [{x}, {y}, {z}], inside the body at its start");
-        let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
-        report.at(&key_path!["view", "camera"], message, help);
-    }
-    Some(chosen)
 }
 
 /// The narrowest range of colours, relative to its larger end: ticks still differ in a few digits.

@@ -19,8 +19,6 @@ pub(crate) struct Subject<'a> {
     pub(crate) gravity: DVec3,
     pub(crate) obstacles: &'a [Obstacle],
     pub(crate) grips: &'a [Grip],
-    /// Simulated time (s).
-    pub(crate) duration: f64,
     /// The name and the time step (s) of each run.
     pub(crate) runs: Vec<(&'a str, f64)>,
     /// The model of each run.

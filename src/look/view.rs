@@ -1,6 +1,7 @@
 //! The view of a scene.
 
-use super::file::{CameraFile, ColourFile, ColourMap, PanelsFile, PathFile, ShowFile};
+use super::camera::{Camera, CameraFile};
+use super::file::{ColourFile, ColourMap, PanelsFile, PathFile, ShowFile};
 use super::palette::{Palette, Theme};
 use super::print::{Print, SizeFile, TextScaleFile};
 use super::typed::{FontFile, TypedColour};
@@ -92,7 +93,7 @@ pub struct View {
     pub floor: FloorStyle,
     /// The lines on surfaces.
     pub edges: EdgeStyle,
-    /// The camera. Default: a camera that shows the body and objects near it.
+    /// The camera. Default: a camera that follows the body.
     #[serde(serialize_with = "open")]
     #[schemars(with = "CameraFile")]
     pub camera: Camera,
@@ -138,7 +139,6 @@ impl Default for View {
                 target: DVec3::ZERO,
                 distance: 1.0,
                 follow: false,
-                near: Vec::new(),
             },
             clock: String::new(),
             columns: None,
@@ -411,41 +411,4 @@ impl Traced {
             Self::Node(node) => position[node as usize],
         }
     }
-}
-
-/// A perspective camera that looks at a point.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Camera {
-    /// Azimuth to the right, from looking along −z (rad).
-    pub azimuth: f64,
-    /// Elevation above the horizon (rad), less than a quarter turn either way.
-    pub elevation: f64,
-    /// Vertical field of view (rad).
-    pub field_of_view: f64,
-    /// The target (m).
-    pub target: DVec3,
-    /// Distance from it (m).
-    pub distance: f64,
-    /// Whether the camera follows the centre of each run's body, from a distance at which the body fills its panel at
-    /// its widest moment.
-    pub follow: bool,
-    /// Points of obstacles and moved nodes that come near the body's start or stand (m). A following camera shows them,
-    /// too, if it can stand still.
-    pub(crate) near: Vec<DVec3>,
-}
-
-impl Camera {
-    /// The place of a fixed camera (m).
-    pub(crate) fn eye(&self) -> DVec3 {
-        let [_, _, towards] = axes(self.azimuth, self.elevation);
-        self.target + self.distance * towards
-    }
-}
-
-/// The unit vectors of a camera with an azimuth and elevation (rad): right, up, and from its target to it.
-pub(crate) fn axes(azimuth: f64, elevation: f64) -> [DVec3; 3] {
-    let [(across, along), (rise, level)] = [azimuth, elevation].map(libm::sincos);
-    let towards = DVec3::new(across * level, rise, along * level);
-    let right = DVec3::new(along, 0.0, -across);
-    [right, towards.cross(right), towards]
 }

@@ -145,7 +145,6 @@ mod tests {
                 target: DVec3::new(0.0, 0.15, 0.0),
                 distance: 2.55,
                 follow: false,
-                near: Vec::new(),
             },
             columns: Some(2),
             side: 0.1,

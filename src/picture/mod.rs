@@ -18,6 +18,7 @@ mod cut;
 mod diagram;
 mod ears;
 mod field;
+mod framing;
 mod ghost;
 mod layout;
 mod legend;
@@ -35,7 +36,6 @@ mod skin;
 mod surface;
 mod tally;
 mod text;
-mod tracking;
 mod wire;
 mod wrap;
 

@@ -78,7 +78,7 @@ fn mistakes_have_the_option_as_their_place() {
         ("body[0].mass=1", "`body` is a table; expected an array"),
         ("time.duration.end=1", "`time.duration` is the number 0.1; expected a table"),
         ("view.labels=[name]", "`[name]` is not TOML; in a shell, quotation marks need others around the whole"),
-        ("view.camera.follow=[false, 1]", "`view.camera.follow` is an array of 2; expected true or false"),
+        ("view.shadow=[false, 1]", "`view.shadow` is an array of 2; expected true or false"),
         // Mistakes in the scene as a whole, at the value that causes them.
         ("body.velocity=[1, 2]", "`body.velocity` has 2 coordinates"),
     ] {

@@ -61,7 +61,7 @@ pub(crate) const SMALL_FRAMES: usize = 7;
 pub(crate) fn lasting(duration: &str) -> String {
     SMALL
         .replace("duration = 0.1", &format!("duration = {duration}"))
-        .replace("[view]", "[view]\ncamera.follow = false")
+        .replace("[view]", "[view]\ncamera.distance = 2")
 }
 
 /// A folder for running the program; removed when dropped.

@@ -60,7 +60,7 @@ fn plain() -> String {
     let (world, view) = text.split_once("[view]").expect("a view");
     let asked = |line: &&str| !["size", "title", "labels", "charts"].iter().any(|key| line.starts_with(key));
     let view: Vec<_> = view.lines().filter(asked).collect();
-    format!("{world}[view]\nsize = [1280, 720]{}\ncamera.follow = false\n", view.join("\n"))
+    format!("{world}[view]\nsize = [1280, 720]{}\ncamera.distance = 2.65\n", view.join("\n"))
 }
 
 /// The scene of Fig. 4(b) with default drawing, and one of its frames.

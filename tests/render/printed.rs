@@ -129,10 +129,11 @@ fn a_browser_shows_flat_panels_as_they_are_drawn() {
             let mut scene = parse(&format!(
                 "time = {{ duration = 1, step = 'T/50', frames_per_second = 50 }}
                 run = [{{ name = 'one', model = {{ kind = 'shape-based', stiffness = 1e3 }} }}]
-                view = {{ size = {SIZE:?}, camera = {{ follow = false }}, {view} }}
+                view = {{ size = {SIZE:?}, {view} }}
                 {world}"
             ));
             scene.view.look = Style::of(theme);
+            scene.view.camera.follow = false;
             let mut frame = frame(&scene, 0);
             changes.iter().for_each(|change| change(&mut frame));
             let pictures = both_without_words(&mut browser, compose(&scene, &frame));

@@ -47,9 +47,10 @@ fn pictures() -> Vec<Listed> {
         let mut scene = parse(&format!(
             "time = {{ duration = 1, step = 'T/50', frames_per_second = 50 }}
             run = [{{ name = 'one', model = {{ kind = 'mass-spring', stiffness = 1e3, springs = 'all' }} }}]
-            view = {{ size = {SIZE:?}, camera = {{ follow = false }}, {view} }}\n{}",
+            view = {{ size = {SIZE:?}, {view} }}\n{}",
             world.join("\n")
         ));
+        scene.view.camera.follow = false;
         let mut frame = frame(&scene, 0);
         change(&mut frame);
         let snapshot = &mut frame.runs[0].snapshot;

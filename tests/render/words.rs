@@ -260,7 +260,7 @@ fn large_type_wraps_and_gives_the_clock_a_place_of_its_own() {
 #[test]
 fn words_stay_where_they_are() {
     for text in [ALL.replace("integrator = 'explicit-euler'", "").replace("step = 0.005, ", ""), {
-        super::plain().replace("camera.follow = false", "")
+        super::plain().replace("camera.distance = 2.65", "")
     }] {
         let scene = parse(&text);
         let (composer, mut runner) = (unknown(&scene), Runner::new(&scene, &all(&scene)));

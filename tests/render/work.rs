@@ -143,7 +143,7 @@ fn bodies_far_larger_than_their_panel_are_drawn_in_bounded_time() {
         let scene = parse(&format!(
             "time = {{ duration = 1, step = 'T/50', frames_per_second = 50 }}
             run = [{{ name = 'one', model = {{ kind = 'shape-based', stiffness = 1e3 }} }}]
-            view = {{ size = [320, 240], camera = {{ follow = false, target = [0.1, 0.1], distance = {distance:e} }} }}
+            view = {{ size = [320, 240], camera = {{ target = [0.1, 0.1], distance = {distance:e} }} }}
             body = {{ lattice = {{ cells = [2, 2], side = 0.2 }} }}"
         ));
         let mut frame = Runner::new(&scene, &[0]).frame(0);

@@ -7,7 +7,7 @@ fn comments_layout_order_and_spelling_of_numbers_do_not_count() {
     let plain = good(&plain()).digest;
     assert_eq!(plain.len(), 64);
     let same = r#"
-        view = { clock = "after first contact", camera = { follow = true }, size = [1_280, 0x2D0] }
+        view = { clock = "after first contact", camera = {}, size = [1_280, 0x2D0] }
         gravity = [0.0, -98e-1, 0]
         title = "3×3×3 cubes dropped on a floor"
         run = [
@@ -39,7 +39,7 @@ fn comments_layout_order_and_spelling_of_numbers_do_not_count() {
 fn a_default_may_be_typed_or_not() {
     let short = format!("{WORLD}[body]\nlattice = {{ cells = [1, 1, 1], side = 1 }}\n[[obstacle]]\nkind = 'floor'\n");
     let long = short.replace("duration = 1", "duration = 1\nstep = 'T/50'\nintegrator = 'semi-implicit-euler'")
-        + "height = 0.0\nrestitution = -0.0\n[view]\nsize = [1280, 720]\ntheme = 'light'\n[view.camera]\nfollow = true\n";
+        + "height = 0.0\nrestitution = -0.0\n[view]\nsize = [1280, 720]\ntheme = 'light'\n";
     assert_eq!(good(&short).digest, good(&long).digest);
 }
 
@@ -62,7 +62,7 @@ fn whatever_changes_the_scene_changes_the_digest() {
         ("friction = 0.3", "friction = 0.4"),
         ("friction = 0.3", ""),
         ("1280", "1281"),
-        ("charts =", "camera.follow = false\ncharts ="),
+        ("charts =", "camera.distance = 3\ncharts ="),
         ("\"Mass-spring\"", "\"mass-spring\""),
     ] {
         assert!(scene.contains(from), "{from}");

@@ -94,7 +94,7 @@ fn unknown_keys() {
     case(PLANE, springs, &format!("{springs}damping_of = 'deformation', "), &format!("15:33 {words}"));
     case(PLANE, "step = 'T/50'", "step = 0", "4:8 expected a number greater than 0 A time step in seconds, or a");
     case(PLANE, "duration = 3", "duration = 3\nfps = 30", "4:1 did you mean `frames_per_second`?");
-    case(PLANE, "mass = 1", "follow = true", "9:1 `follow` belongs to `view.camera`");
+    case(PLANE, "mass = 1", "azimuth = 1", "9:1 `azimuth` belongs to `view.camera`");
     case(SPACE, "side = 0.1", "side = 0.1, rotation = 1", "5:44 `rotation` belongs to `body`");
     case(PLANE, "mass = 1", "\"\" = 1", "9:1 unknown key `` in `body`");
     case(PLANE, "mass = 1", "\"a\\u0007\" = 1", "9:1 unknown key `a\u{fffd}`");
@@ -143,7 +143,7 @@ fn wrong_types() {
         "model = 'shape-based'",
         "12:9 `run[0].model` is the string \"shape-based\"; expected a table",
     );
-    case(PLANE, "[640, 360]", "[640, 360]\ncamera.follow = 1", "21:17 is the whole number 1; expected true or false");
+    case(PLANE, "[640, 360]", "[640, 360]\nshadow = 1", "21:10 is the whole number 1; expected true or false");
     case(SPACE, "[[run]]", "[run]", "6:1 `run` is a table; expected an array write [[run]], with double brackets");
     case(PLANE, "[view]", "[[view]]", "19:1 expected a table write [view], with single brackets");
 }

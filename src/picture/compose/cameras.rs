@@ -1,10 +1,12 @@
 //! The arrangement and the cameras of the panels of a frame.
 
 use super::Composer;
-use crate::look::Traced;
+use crate::look::{CameraBox, Traced};
 use crate::picture::Framing;
-use crate::picture::layout::{Rectangle, Scale};
-use crate::picture::tracking::Shot;
+use crate::picture::framing::{self, Seen, Shot};
+use crate::picture::layout::steps::{CLOSE, RING};
+use crate::picture::layout::{Rectangle, Scale, clear_of_words};
+use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::RunFrame;
 
@@ -12,6 +14,8 @@ use crate::sim::RunFrame;
 /// fewer columns than possible.
 const MOST_COLUMNS: usize = 64;
 const LARGER: f64 = 1.02;
+/// The share of the width of the room for bodies that the widest one takes, so that floors and shadows are seen.
+const FILLED: f64 = 0.7;
 
 impl Composer<'_> {
     /// The number of columns for the panels of some runs: that of the scene, or the one with the largest bodies.
@@ -41,16 +45,34 @@ impl Composer<'_> {
 
     /// The view of a camera that follows, in a panel.
     pub(super) fn shot(&self, viewport: Rectangle, scale: Scale) -> Option<Shot> {
-        Some(self.tracking.as_ref()?.shot(self.scene, (viewport, scale)))
+        let [left, top, width, height] = clear_of_words(viewport, &self.scene.view, scale).map(f64::from);
+        let [above, below] = [CLOSE, RING].map(|length| length * scale.unit);
+        let room = [left, top - above, width.max(1.0), height.max(1.0) + above + below];
+        let lens = framing::from_a_metre(self.scene, viewport, scale);
+        framing::shots(self.seen.as_slice(), &lens, room, FILLED).pop()
     }
 
     /// The target and distance of the camera of a run in a panel.
-    pub(super) fn framing(&self, shot: Option<&Shot>, run: &RunFrame, panel: (Rectangle, Scale)) -> Framing {
+    pub(super) fn framing(&self, shot: Option<&Shot>, run: &RunFrame, (viewport, scale): (Rectangle, Scale)) -> Framing {
         let Scene { view, body, .. } = self.scene;
-        let Some((tracking, shot)) = self.tracking.as_ref().zip(shot) else { return Framing::still(&view.camera) };
+        let Some(shot) = shot else { return Framing::still(&view.camera) };
         let position = &run.shown().position;
         let centre = (position.len() == body.len()).then(|| Traced::Centre.of(body, position));
         let centre = centre.filter(|centre| centre.is_finite()).unwrap_or(view.camera.target);
-        tracking.framing(self.scene, shot, centre, panel)
+        // Panels may differ by a pixel in width, but have one scale.
+        let distance = framing::from_a_metre(self.scene, viewport, scale).focal / shot.pixels;
+        Framing { target: centre + shot.offset, distance, moves: true }
     }
+}
+
+/// What a camera that follows sees in the whole course of a scene; `None` if the camera is fixed, or without a place of the
+/// body.
+pub(super) fn seen(scene: &Scene, history: &History) -> Option<Seen> {
+    let start = CameraBox::new(&scene.view, &scene.body, &scene.initial.position);
+    let moments = history.series.iter().flat_map(|course| {
+        let boxes = course.times.iter().zip(&course.boxes);
+        boxes.map(|(&time, &seen)| (time, seen, course.divergence.is_none()))
+    });
+    let moments: Vec<_> = start.map(|start| (0.0, start, true)).into_iter().chain(moments).collect();
+    scene.view.camera.follow.then(|| Seen::new(scene, &moments, true))?
 }

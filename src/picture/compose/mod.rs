@@ -23,6 +23,7 @@ use super::caption::{self, Writer};
 use super::chart::event::Event;
 use super::chart::timeline::Timeline;
 use super::ears::{Ears, bare_elements};
+use super::framing::{Seen, Shot};
 use super::layout::tree::Solved;
 use super::layout::{Part, Rectangle, Scale, Written};
 use super::number;
@@ -31,7 +32,6 @@ use super::shell::Shell;
 use super::skin::Skin;
 use super::tally::Tally;
 use super::text::Fonts;
-use super::tracking::{Shot, Tracking};
 use super::wire::Edges;
 use super::{Framing, Picture};
 use crate::colour::Colour;
@@ -89,8 +89,8 @@ pub struct Composer<'a> {
     timeline: Option<Timeline>,
     /// The paths of all runs, if the time series are known.
     traced: Vec<TimeSeries>,
-    /// The data of a camera that follows, if it does.
-    tracking: Option<Tracking>,
+    /// The course that a camera sees, if it follows.
+    seen: Option<Seen>,
     /// The boxes of nodes near plates and walls, if the time series are known.
     reach: NearObstacles,
     /// The arrangement of the panels of the first frame, which all frames of the same runs have.
@@ -156,7 +156,7 @@ impl<'a> Composer<'a> {
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
             timeline: None,
             traced: if scene.view.paths.is_empty() { Vec::new() } else { history.series.clone() },
-            tracking: scene.view.camera.follow.then(|| Tracking::new(scene, history)).flatten(),
+            seen: cameras::seen(scene, history),
             reach,
             arranged: OnceLock::new(),
         };

@@ -7,12 +7,11 @@ use crate::picture::Item;
 use crate::picture::chart::spread;
 use crate::picture::field::{self, NOWHERE};
 use crate::picture::layout::Scale;
-use crate::picture::layout::steps::{BESIDE, CLOSE, FREE, GAP, MARGIN, SHORT, STRONG, THIN, TICK};
+use crate::picture::layout::steps::{BESIDE, CLOSE, FREE, GAP, MARGIN, RING, SHORT, STRONG, THIN, TICK};
 use crate::picture::narrow::narrow;
 use crate::picture::obstacle::{HalfSpace, half_space};
 use crate::picture::page::{Image, Path, Step, direction, point, winding};
 use crate::picture::plane::{WHOLE, clipped, from_side, is_inside, sides};
-use crate::picture::tracking::NEARER;
 use crate::sim::Motion;
 use glam::{DVec2, DVec3, Vec2};
 use std::f64::consts::TAU;
@@ -69,7 +68,7 @@ impl Draft<'_> {
         let mut clear = sides(self.clear.map(f64::from));
         if normal.y > LEVEL {
             // Only below a body: below the captions it would look like an underline.
-            clear[3] = (clear[3] + NEARER[1] * unit).min(top + height);
+            clear[3] = (clear[3] + RING * unit).min(top + height);
         }
         if normal.y.abs() < STEEP {
             // Walls may stand beside the text.

@@ -40,17 +40,6 @@ pub(super) struct Loose {
 }
 
 impl Staging<'_> {
-    /// The corners of the drawn part of a plate's surface (m).
-    pub(in crate::picture) fn plate_corners(&self, at: usize) -> Option<[DVec3; 4]> {
-        let obstacle = self.site.obstacles.get(at)?;
-        let Shape::Plate { normal, .. } = obstacle.shape else { return None };
-        let pose = obstacle.pose(self.site.time);
-        let (middle, half) = self.span(at, &pose, normal);
-        let [first, second] = Plane::new(normal, 0.0).axes.map(|axis| pose.rotation * axis);
-        let corner = |[x, y]: [f64; 2]| middle + x * half.x * first + y * half.y * second;
-        Some([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner))
-    }
-
     /// The middle of the drawn part of a plate's surface (m), and half its sides (m), which are the same at all times.
     pub(super) fn span(&self, at: usize, pose: &Pose, normal: DVec3) -> (DVec3, DVec2) {
         let obstacle = &self.site.obstacles[at];

@@ -349,7 +349,6 @@ fn subject(scene: &Scene) -> Subject<'_> {
         gravity: scene.gravity,
         obstacles: &scene.obstacles,
         grips: &scene.grips,
-        duration: scene.duration,
         runs: scene.runs.iter().map(|run| (run.name.as_str(), run.step)).collect(),
         models: scene.runs.iter().map(|run| &*run.model).collect(),
     }

@@ -254,7 +254,6 @@ fn view(parts: &SceneParts, physics: &Physics, report: &mut Collector<'_>) -> Op
         gravity: gravity.unwrap_or_default(),
         obstacles,
         grips: grips.as_deref().unwrap_or_default(),
-        duration: parts.time.as_ref().map_or(0.0, |time| time.duration),
         runs: runs.iter().flatten().map(|run| (run.name.as_str(), run.step)).collect(),
         models: runs.iter().flatten().map(|run| &*run.model).collect(),
     };

@@ -29,7 +29,7 @@ use crate::picture::layout::Scale;
 use crate::picture::layout::steps::GAP;
 use crate::picture::legend::Legend;
 use crate::picture::text::Fonts;
-use crate::picture::{Colour, Framing, Item, Picture};
+use crate::picture::{Colour, Item, Picture};
 use crate::runner::history::History;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
@@ -79,11 +79,9 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
         charts::draw(charts, sheet, moments.histories[0].end, &mut writer, room);
     }
 
+    let framings = cameras::framings(&scenes, sheet, moments, &layout);
     let reaches = cameras::reaches(&scenes, sheet, moments);
-    let cells = cameras::cells(&scenes, &reaches, sheet, moments);
-    let framings = cameras::framings(&scenes, &cells, &layout);
     // The tiles of a scene share data that is computed once.
-    let scenes: Vec<_> = scenes.iter().enumerate().map(|(at, scene)| seen(scene, at, sheet, &framings)).collect();
     let traced = |scene: usize| moments.histories.get(scene).map_or_else(Vec::new, |history| history.series.clone());
     let composers = scenes.iter().zip(reaches).zip(tallies).enumerate();
     let composer = |(at, ((scene, reach), tally))| Composer {
@@ -104,7 +102,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     below.into_iter().for_each(|(place, below)| below.write(&mut writer, &layout, place, with_number));
     if let Some(legend) = legend.filter(|_| bottom < size[1]) {
         let first = &composers[0];
-        let samples = first.samples(legend, layout.tile(0, 0), &framings[0][0], layout.tile_scale);
+        let samples = first.samples(legend, layout.tile(0, 0), &framings[0], layout.tile_scale);
         let of_first = sheet.columns.iter().enumerate().filter(|(_, column)| column.scene == 0);
         let runs = of_first.flat_map(|(at, _)| moments.cells.iter().map(move |row| row[at].clone())).collect();
         let frame = Frame { index: 0, time: 0.0, runs };
@@ -114,7 +112,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::new());
     for (row, cells) in moments.cells.iter().enumerate() {
         for (column, run) in cells.iter().enumerate() {
-            let (composer, framing) = (&composers[sheet.columns[column].scene], &framings[row][column]);
+            let (composer, framing) = (&composers[sheet.columns[column].scene], &framings[column]);
             let draft = Draft::new(composer, layout.tile(row, column), run, framing, layout.tile_scale);
             let [left, top, width, height] = draft.viewport;
             let room = [left, top, width, height - (layout.below_body.ceil() as u32).min(height)];
@@ -122,7 +120,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
             draft.paths(&composer.traced, room, &mut writer.curves);
             panels.push(draft.panel(&mut under, &mut marks));
             // Surfaces without width are invisible.
-            let ends = cameras::collapsed(&scenes[sheet.columns[column].scene], &layout, [row, column], framing, run);
+            let ends = cameras::collapsed(&draft);
             writer.curves.extend(ends.map(|ends| collapsed(ends, layout.tile_scale, palette.outline)));
         }
     }
@@ -151,17 +149,6 @@ fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
         scene
     };
     sheet.scenes.iter().map(one).collect()
-}
-
-/// A scene with the camera of its first tile, so that nothing is drawn for a moved camera.
-fn seen(scene: &Scene, at: usize, sheet: &Sheet, framings: &[Vec<Framing>]) -> Scene {
-    let mut scene = scene.clone();
-    let column = sheet.columns.iter().position(|column| column.scene == at);
-    if let Some(framing) = column.and_then(|column| framings.first()?.get(column)) {
-        let camera = &mut scene.view.camera;
-        (camera.target, camera.distance) = (framing.target, framing.distance);
-    }
-    scene
 }
 
 /// A collapsed body, as a line or a dot.

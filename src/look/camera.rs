@@ -1,0 +1,135 @@
+//! The camera of a view, and the box around a body along its axes.
+
+use super::subject::Subject;
+use super::view::{Traced, View};
+use crate::reading::captions::rounded;
+use crate::reading::collector::{Collector, key_path};
+use crate::reading::coordinates::{Coordinates, vector};
+use crate::sim::geometry::{bounds, is_inside};
+use crate::sim::{Body, Dimension};
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Distance in body sizes at which a body fills a third of the picture's height and has room to jump.
+const DISTANCE: f64 = 8.5;
+
+/// A perspective camera that looks at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Azimuth to the right, from looking along −z (rad).
+    pub azimuth: f64,
+    /// Elevation above the horizon (rad), less than a quarter turn either way.
+    pub elevation: f64,
+    /// Vertical field of view (rad).
+    pub field_of_view: f64,
+    /// The target (m).
+    pub target: DVec3,
+    /// Distance from it (m).
+    pub distance: f64,
+    /// Whether the camera follows the centre of mass of each run's body, in place of the target, from a distance at which
+    /// the body fills its panel at its widest moment.
+    pub follow: bool,
+}
+
+/// A perspective camera. It follows the centre of mass of each run's body. All panels and frames have one scale, at which
+/// the body takes about 60 % of its panel's width at its widest moment, or up to a quarter less to show obstacles near
+/// it. The whole scene is simulated before the first frame is drawn. With a `target` or a `distance` the camera is fixed.
+/// A body in the plane is seen from the front without perspective.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CameraFile {
+    /// Azimuth to the right, from looking along −z (rad). Only in space. Default: 0.541, which is 31°.
+    azimuth: Option<f64>,
+    /// Elevation above the horizon (rad), below a quarter turn (1.57), so that the camera does not look along its
+    /// up-axis. Only in space. Default: 0.297, which is 17°.
+    #[schemars(extend("exclusiveMinimum" = -1.57, "exclusiveMaximum" = 1.57))]
+    elevation: Option<f64>,
+    /// Vertical field of view (rad). Default: 0.349, which is 20°.
+    #[schemars(range(min = 0.001, max = 3.0))]
+    field_of_view: Option<f64>,
+    /// The point (m) that a fixed camera looks at. Default: the middle of the body at the start.
+    target: Option<Coordinates>,
+    /// Distance of a fixed camera from its target (m). In the plane it gives the scale together with `field_of_view`.
+    /// Default: 8.5 times the longest side of the bounding box at the start.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    distance: Option<f64>,
+}
+
+impl CameraFile {
+    /// The camera of a scene, or `None` after a mistake in its target.
+    pub(super) fn resolve(&self, scene: &Subject<'_>, report: &mut Collector<'_>) -> Option<Camera> {
+        let (dimension, start) = (scene.body.dimension, &scene.initial.position);
+        let is_flat = dimension == Dimension::Plane;
+        for (key, _) in [("azimuth", self.azimuth), ("elevation", self.elevation)]
+            .into_iter()
+            .filter(|(_, value)| is_flat && value.is_some())
+        {
+            let message = format!("`view.camera.{key}` is given, but a body in the plane is seen from the front");
+            report.at_key(&key_path!["view", "camera", key], message, format!("remove `{key}`"));
+        }
+        let angle = |typed: Option<f64>, degrees: f64| if is_flat { 0.0 } else { typed.unwrap_or(degrees.to_radians()) };
+        let (low, high) = bounds(start);
+        let target = match &self.target {
+            Some(target) => vector(target, dimension, &key_path!["view", "camera", "target"], report)?,
+            None => low.midpoint(high),
+        };
+        // A body that starts as a point has the size of its rest shape.
+        let size = Some((high - low).max_element()).filter(|&size| size > 0.0).unwrap_or_else(|| scene.body.extent());
+        let camera = Camera {
+            azimuth: angle(self.azimuth, 31.0),
+            elevation: angle(self.elevation, 17.0),
+            field_of_view: self.field_of_view.unwrap_or(20_f64.to_radians()),
+            target,
+            distance: self.distance.unwrap_or(DISTANCE * size),
+            follow: self.target.is_none() && self.distance.is_none(),
+        };
+        let [_, _, towards] = axes(camera.azimuth, camera.elevation);
+        let eye = camera.target + camera.distance * towards;
+        if !is_flat && !camera.follow && is_inside(eye, scene.body, start) {
+            let [x, y, z] = eye.to_array().map(|length| rounded(length, 3));
+            let message = format!("the camera is at [{x}, {y}, {z}], inside the body at its start");
+            let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
+            report.at(&key_path!["view", "camera"], message, help);
+        }
+        Some(camera)
+    }
+}
+
+/// The unit vectors of a camera with an azimuth and elevation (rad): right, up, and from its target to it.
+pub(crate) fn axes(azimuth: f64, elevation: f64) -> [DVec3; 3] {
+    let [(across, along), (rise, level)] = [azimuth, elevation].map(libm::sincos);
+    let towards = DVec3::new(across * level, rise, along * level);
+    let right = DVec3::new(along, 0.0, -across);
+    [right, towards.cross(right), towards]
+}
+
+/// The box around a body at one moment, along the axes of a camera.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct CameraBox {
+    /// The centre of mass of the body (m).
+    pub(crate) centre: DVec3,
+    /// The corners of the box, relative to the centre of mass: to the right, up and towards the camera (m).
+    pub(crate) corners: [DVec3; 2],
+}
+
+impl CameraBox {
+    /// The box around a body whose nodes are at positions (m); `None` if it has none, or not all are finite.
+    pub(crate) fn new(view: &View, body: &Body, position: &[DVec3]) -> Option<Self> {
+        let axes = axes(view.camera.azimuth, view.camera.elevation);
+        let centre = Traced::Centre.of(body, position);
+        let (mut low, mut high) = (DVec3::ZERO, DVec3::ZERO);
+        for way in position.iter().map(|&at| at - centre) {
+            let seen = DVec3::from_array(axes.map(|axis| way.dot(axis)));
+            (low, high) = (low.min(seen), high.max(seen));
+        }
+        (centre.is_finite() && low.is_finite() && high.is_finite()).then_some(Self { centre, corners: [low, high] })
+    }
+
+    /// The larger of its width and height (m).
+    #[cfg(feature = "render")]
+    pub(crate) fn size(&self) -> f64 {
+        let [low, high] = self.corners;
+        (high - low).truncate().max_element()
+    }
+}
