@@ -135,9 +135,7 @@ fn cut(scene: &Scene) -> Option<Mistake> {
         column: 0,
         place: "view.camera".to_owned(),
         message: "the body leaves its panel at the start".to_owned(),
-        help: Some(
-            "move the camera back, or let it follow: leave out `target` and `distance`".to_owned(),
-        ),
+        help: Some("move the camera back, or let it follow: leave out `target` and `distance`".to_owned()),
         excerpt: String::new(),
         marked: 0..0,
     })

@@ -76,8 +76,7 @@ fn cut(summary: &Summary) -> String {
     let warning = |run: &RunSummary| {
         let first = run.cut.first()?;
         let (count, all) = (run.cut.len(), summary.frames.written.unwrap_or(summary.frames.recorded));
-        let help = "move the camera back, or, if it does not follow the body, let it: `view.camera` without `target` and \
-             `distance`";
+        let help = "move the camera back, or let it follow the body: `view.camera` without `target` and `distance`";
         Some(format!(
             "warning: {} leaves its panel in {count} of {all} frames, first in frame {first}; {help}\n",
             run.name

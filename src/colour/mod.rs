@@ -8,15 +8,12 @@
 
 mod difference;
 mod oklab;
-mod typed;
 
 #[cfg(test)]
 pub(crate) use difference::{Lab, cie76, seen_by};
 pub(crate) use difference::{Vision, difference, least_difference};
 pub use difference::{ciede2000, lab};
 pub(crate) use oklab::{Oklab, from_oklab, oklab};
-pub(crate) use typed::names;
-pub(crate) use typed::{UnknownColour, parse, written};
 
 /// An opaque colour: red, green, blue, as sRGB bytes.
 pub type Colour = [u8; 3];
@@ -47,6 +44,11 @@ pub(crate) fn encoded_exactly(linear: [f64; 3]) -> [f64; 3] {
 pub(crate) fn luminance(colour: Colour) -> f64 {
     let [red, green, blue] = linear(colour);
     0.2126 * red + 0.7152 * green + 0.0722 * blue
+}
+
+/// A colour as digits: `#93a5ba`.
+pub(crate) fn written([red, green, blue]: Colour) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 /// The least contrast of words with their ground (WCAG 2.2, AA).

@@ -32,10 +32,7 @@ pub struct Camera {
     pub follow: bool,
 }
 
-/// A perspective camera. It follows the centre of mass of each run's body. All panels and frames have one scale, at which
-/// the body takes about 60 % of its panel's width at its widest moment, or up to a quarter less to show obstacles near
-/// it. The whole scene is simulated before the first frame is drawn. With a `target` or a `distance` the camera is fixed.
-/// A body in the plane is seen from the front without perspective.
+/// A camera as typed. A body in the plane is seen from the front without perspective.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraFile {
@@ -68,7 +65,8 @@ impl CameraFile {
             let message = format!("`view.camera.{key}` is given, but a body in the plane is seen from the front");
             report.at_key(&key_path!["view", "camera", key], message, format!("remove `{key}`"));
         }
-        let angle = |typed: Option<f64>, degrees: f64| if is_flat { 0.0 } else { typed.unwrap_or(degrees.to_radians()) };
+        let angle =
+            |typed: Option<f64>, degrees: f64| if is_flat { 0.0 } else { typed.unwrap_or(degrees.to_radians()) };
         let (low, high) = bounds(start);
         let target = match &self.target {
             Some(target) => vector(target, dimension, &key_path!["view", "camera", "target"], report)?,

@@ -1,6 +1,5 @@
 //! Resolves ghosts and paths.
 
-use super::file::{PathFile, PathPointFile};
 use super::subject::Subject;
 use super::view::{Ghost, Traced};
 use crate::reading::collector::{Collector, PathPart};
@@ -40,31 +39,20 @@ pub(super) fn run(
     Some(run)
 }
 
-/// The points with paths; empty also after a mistake.
-pub(super) fn paths(paths: &[PathFile], scene: &Subject<'_>, report: &mut Collector<'_>) -> Vec<Traced> {
-    if let Some(at) = (1..paths.len()).find(|&at| paths[..at].contains(&paths[at])) {
-        let path = [PathPart::Key("view"), PathPart::Key("paths"), PathPart::Index(at)];
-        report.at(&path, "this path is listed a second time".to_owned(), "remove it".to_owned());
-    }
-    let one = |(at, path): (usize, &PathFile)| match *path {
-        PathFile::Point(PathPointFile::Centre) => Some(Traced::Centre),
-        PathFile::Node(node) => {
-            let path = [PathPart::Key("view"), PathPart::Key("paths"), PathPart::Index(at)];
-            known_node(node, &path, scene, report).map(Traced::Node)
-        }
-    };
-    paths.iter().enumerate().filter_map(one).collect()
-}
-
-/// A node, or `None` after reporting that the body has no such node.
-fn known_node(node: u32, path: &[PathPart<'_>], scene: &Subject<'_>, report: &mut Collector<'_>) -> Option<u32> {
+/// Reports paths that are listed twice, and nodes that the body does not have.
+pub(super) fn check_paths(paths: &[Traced], scene: &Subject<'_>, report: &mut Collector<'_>) {
     let nodes = scene.body.len();
-    if (node as usize) < nodes {
-        return Some(node);
+    for (at, path) in paths.iter().enumerate() {
+        let place = [PathPart::Key("view"), PathPart::Key("paths"), PathPart::Index(at)];
+        if paths[..at].contains(path) {
+            report.at(&place, "this path is listed a second time".to_owned(), "remove it".to_owned());
+        }
+        if let Traced::Node(node) = *path
+            && node as usize >= nodes
+        {
+            report.at(&place, format!("there is no node {node}; the body has {nodes}, counted from 0"), None);
+        }
     }
-    let message = format!("there is no node {node}; the body has {nodes}, counted from 0");
-    report.at(path, message, None);
-    None
 }
 
 /// Reports an unknown run, unless there are mistakes in the runs themselves.

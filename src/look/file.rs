@@ -4,57 +4,14 @@ use crate::sim::Field;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A point with a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub(crate) enum PathFile {
-    /// A node, counted from 0.
-    Node(u32),
-    /// Another point.
-    Point(PathPointFile),
-}
-
-/// A point of the body that is not a node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum PathPointFile {
-    /// The centre of mass.
-    Centre,
-}
-
 /// The arrangement of panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged)]
+#[serde(rename_all = "kebab-case")]
 pub(crate) enum PanelsFile {
-    /// The number of panels in a row.
-    Columns(#[schemars(range(min = 1, max = 64))] u32),
-    /// All panels in one direction.
-    Along(ArrangementFile),
-}
-
-/// Arrangement of panels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum ArrangementFile {
-    /// Side by side.
     Row,
-    /// One below the other.
     Column,
-}
-
-/// A part of the body that can be drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum ShowFile {
-    /// The faces of the elements, with their edges.
-    Surfaces,
-    /// The nodes, as discs.
-    Nodes,
-    /// The springs of mass-spring models, as lines, faint behind surfaces.
-    Springs,
-    /// An arrow to each node from its place in the best-fitting rigid placement of the rest shape. Only for nodes on
-    /// the surface that face the viewer, and for at most 500.
-    Displacements,
+    #[serde(untagged)]
+    Columns(#[schemars(range(min = 1, max = 64))] u32),
 }
 
 /// A scalar field and its colour map.

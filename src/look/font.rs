@@ -1,9 +1,10 @@
 //! Reads the files of fonts.
 
-use super::typed::FontFile;
 use super::view::FontFiles;
 use crate::reading::beside::bytes;
 use crate::reading::collector::{Collector, PathPart};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 use std::sync::Arc;
@@ -13,6 +14,22 @@ const LONGEST: u64 = 64 << 20;
 /// The extensions of font files.
 const ENDINGS: [&str; 3] = ["ttf", "otf", "ttc"];
 const EXPECTED: &str = "expected a TrueType or OpenType font (.ttf, .otf, .ttc)";
+
+/// Font files, TrueType or OpenType (.ttf, .otf, .ttc), beside the scene file.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FontFile {
+    /// The font of all text, TrueType or OpenType (.ttf, .otf, .ttc), beside the scene file. It must have digits and
+    /// Latin letters; other letters that it lacks come from the built-in font. Text is drawn from left to right, one
+    /// glyph for each character, without shaping or kerning. So Latin, Greek, Cyrillic, Chinese, Japanese and Korean
+    /// are supported; Arabic, Hebrew, Devanagari and other scripts that need shaping or run from right to left, and
+    /// combining marks, are not.
+    #[schemars(length(min = 1))]
+    regular: String,
+    /// The font of names and counts. Default: the `regular` font.
+    #[schemars(length(min = 1))]
+    semi_bold: Option<String>,
+}
 
 /// The fonts of a scene, searched in its folder, or `None` after reporting mistakes in them.
 pub(crate) fn read(folder: &Path, typed: &FontFile, report: &mut Collector<'_>) -> Option<FontFiles> {

@@ -30,4 +30,4 @@ pub(crate) use resolve::{TypedView, colour};
 pub(crate) use subject::Subject;
 pub use view::{ColourScale, EdgeStyle, FloorStyle, FontFiles, Ghost, Labels, Style, Traced, View, Visible};
 #[cfg(feature = "render")]
-pub(crate) use {drawn::LineStyle, palette::Palette, ramp::SHADES, camera::axes};
+pub(crate) use {camera::axes, drawn::LineStyle, palette::Palette, ramp::SHADES};

@@ -16,26 +16,32 @@ const TYPE: f64 = 16.0;
 const SCALES: [f64; 2] = [0.5, 3.0];
 
 /// The size of a picture as typed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum SizeFile {
     /// Width and height (px).
     Pixels(#[schemars(inner(range(min = 16, max = 16384)))] [u32; 2]),
     /// For print: width and height (mm), such as `{ mm = [180, 101] }`.
-    Print(PrintFile),
+    Print(Print),
 }
 
 /// A size in print.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct PrintFile {
+pub struct Print {
     /// Width and height (mm).
     #[schemars(inner(range(min = 5.0, max = 2000.0)))]
-    pub(crate) mm: [f64; 2],
+    pub mm: [f64; 2],
     /// Pixels per inch of PNG files, which record it, and of lit bodies in SVG and PDF files.
     #[serde(default = "dpi")]
     #[schemars(range(min = 72.0, max = 1200.0))]
-    pub(crate) dpi: f64,
+    pub dpi: f64,
+    /// The file with the size, for messages, with line and column; both are 0 for an option, and the name is empty for
+    /// the scene's file.
+    #[serde(skip)]
+    pub(crate) file: String,
+    #[serde(skip)]
+    pub(crate) at: (usize, usize),
 }
 
 fn dpi() -> f64 {
@@ -44,34 +50,16 @@ fn dpi() -> f64 {
 
 /// The scale of type as typed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged)]
+#[serde(untagged, deny_unknown_fields)]
 pub(crate) enum TextScaleFile {
     /// A multiple of the usual size.
     Times(#[schemars(range(min = 0.5, max = 3.0))] f64),
     /// In pictures for print: the size of most type, such as `{ pt = 7 }`. Names are larger, numbers at axes smaller.
-    Points(TypeSizeFile),
-}
-
-/// A size of type.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct TypeSizeFile {
-    /// Size of most type (pt).
-    #[schemars(range(min = 5.0, max = 72.0))]
-    pub(crate) pt: f64,
-}
-
-/// The size of a picture in print.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Print {
-    /// Width and height (mm).
-    pub mm: [f64; 2],
-    /// Pixels per inch.
-    pub dpi: f64,
-    /// The file with the size, for messages, with line and column; both are 0 for an option, and the name is empty for
-    /// the scene's file.
-    pub(crate) file: String,
-    pub(crate) at: (usize, usize),
+    Points {
+        /// Size of most type (pt).
+        #[schemars(range(min = 5.0, max = 72.0))]
+        pt: f64,
+    },
 }
 
 impl Print {
@@ -89,10 +77,11 @@ impl SizeFile {
         path: &[PathPart<'_>],
         report: &mut Collector<'_>,
     ) -> Option<([u32; 2], Option<Print>)> {
-        let PrintFile { mm, dpi } = match self {
+        let print = match self {
             Self::Pixels(size) => return Some((size, None)),
-            Self::Print(print) => print,
+            Self::Print(print) => Print { at: report.position(path), ..print },
         };
+        let Print { mm, dpi, .. } = print;
         let sides = mm.map(|length| (length / INCH_MM * dpi).round());
         if sides.iter().any(|&side| side < f64::from(least) || side > MOST_PIXELS) {
             let ([width, height], [wide, high]) = (sides, mm);
@@ -103,7 +92,7 @@ impl SizeFile {
             report.at(path, message, "change `mm` or `dpi`".to_owned());
             return None;
         }
-        Some((sides.map(|side| side as u32), Some(Print { mm, dpi, file: String::new(), at: report.position(path) })))
+        Some((sides.map(|side| side as u32), Some(print)))
     }
 }
 
@@ -116,9 +105,9 @@ impl TextScaleFile {
         path: &[PathPart<'_>],
         report: &mut Collector<'_>,
     ) -> Option<f64> {
-        let TypeSizeFile { pt } = match self {
+        let pt = match self {
             Self::Times(times) => return Some(times),
-            Self::Points(points) => points,
+            Self::Points { pt } => pt,
         };
         let Some(print) = print else {
             let message = format!("type of {pt} pt needs a size in print, but this picture has one in pixels");

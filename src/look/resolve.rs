@@ -2,7 +2,7 @@
 
 use super::camera::CameraFile;
 use super::compared;
-use super::file::{ArrangementFile, ColourFile, PanelsFile, ShowFile};
+use super::file::{ColourFile, PanelsFile};
 use super::palette::Palette;
 use super::print::{SizeFile, TextScaleFile, unit};
 use super::subject::Subject;
@@ -48,24 +48,17 @@ impl View {
         (view.size, view.print) = size.resolve(LEAST_SIDE, &key_path!["view", "size"], report)?;
         view.columns = get(typed, "panels", report).map(|arranged| match arranged {
             PanelsFile::Columns(columns) => columns as usize,
-            PanelsFile::Along(ArrangementFile::Row) => panels.max(1),
-            PanelsFile::Along(ArrangementFile::Column) => 1,
+            PanelsFile::Row => panels.max(1),
+            PanelsFile::Column => 1,
         });
         if let Some(typed) = get::<ColourFile>(typed, "colour", report) {
             view.colour = colour(&typed, std::slice::from_ref(scene), "view", report)?.pop();
         }
-        view.visible = match get::<Vec<ShowFile>>(typed, "show", report) {
-            Some(shown) => Visible {
-                surfaces: shown.contains(&ShowFile::Surfaces),
-                nodes: shown.contains(&ShowFile::Nodes),
-                springs: shown.contains(&ShowFile::Springs),
-                displacements: shown.contains(&ShowFile::Displacements),
-            },
-            None => Visible::usual(body.dimension, body.len()),
-        };
+        view.visible = Visible::usual(body.dimension, body.len());
+        set(&mut view.visible, typed, "show", report);
         let text_scale = get(typed, "text_scale", report).unwrap_or(TextScaleFile::Times(view.look.text_scale));
         let usual = view.columns.unwrap_or(panels.clamp(1, 3));
-        if let TextScaleFile::Points(_) = text_scale {
+        if let TextScaleFile::Points { .. } = text_scale {
             // Type in points has a fixed arrangement.
             view.columns = Some(usual);
         }
@@ -82,8 +75,8 @@ impl View {
         });
         let ghost: Option<String> = get(typed, "ghost", report);
         view.ghost = ghost.and_then(|name| compared::ghost(&name, scene, report));
-        let paths: Vec<_> = get(typed, "paths", report).unwrap_or_default();
-        view.paths = compared::paths(&paths, scene, report);
+        set(&mut view.paths, typed, "paths", report);
+        compared::check_paths(&view.paths, scene, report);
         set(&mut view.title, typed, "title", report);
         set(&mut view.caption, typed, "caption", report);
         [&mut view.title, &mut view.caption].into_iter().for_each(|text| *text = text.trim().to_owned());

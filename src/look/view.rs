@@ -1,15 +1,16 @@
 //! The view of a scene.
 
 use super::camera::{Camera, CameraFile};
-use super::file::{ColourFile, ColourMap, PanelsFile, PathFile, ShowFile};
+use super::file::{ColourFile, ColourMap, PanelsFile};
+use super::font::FontFile;
 use super::palette::{Palette, Theme};
 use super::print::{Print, SizeFile, TextScaleFile};
-use super::typed::{FontFile, TypedColour};
+use super::typed::TypedColour;
 use crate::colour::Colour;
 use crate::sim::{Body, Diagnostic, Dimension, Field};
 use glam::DVec3;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::sync::Arc;
 
@@ -33,7 +34,7 @@ pub struct View {
     #[serde(serialize_with = "open")]
     #[schemars(length(max = 80))]
     pub clock: String,
-    /// Arrangement of the panels, or their number in a row. Default: the number that makes bodies largest.
+    /// The number of panels in a row, or all of them in a `"row"` or a `"column"`. Default: the number that makes bodies largest.
     #[serde(rename = "panels", serialize_with = "open")]
     #[schemars(with = "PanelsFile")]
     pub columns: Option<usize>,
@@ -41,7 +42,7 @@ pub struct View {
     /// edges of elements. Edges of turned-over elements always stand out. Default: surfaces; in the plane also nodes,
     /// unless the body has more than 150.
     #[serde(rename = "show", serialize_with = "open")]
-    #[schemars(with = "Vec<ShowFile>", length(min = 1))]
+    #[schemars(with = "Vec<Part>", length(min = 1))]
     pub visible: Visible,
     /// A scalar field that colours the surfaces of the body, such as `{ by = "strain" }`, or its lines and nodes
     /// without surfaces. All panels share one colour bar, drawn below them. Springs without surfaces have a strain of
@@ -85,7 +86,7 @@ pub struct View {
     /// and nodes, counted from 0, such as `["centre", 26]`. The whole scene is simulated before the first frame is
     /// drawn. Default: none.
     #[serde(serialize_with = "open")]
-    #[schemars(with = "Vec<PathFile>", length(min = 1, max = 64))]
+    #[schemars(length(min = 1, max = 64))]
     pub paths: Vec<Traced>,
     /// Whether bodies and obstacles cast shadows on the floor.
     pub shadow: bool,
@@ -93,7 +94,9 @@ pub struct View {
     pub floor: FloorStyle,
     /// The lines on surfaces.
     pub edges: EdgeStyle,
-    /// The camera. Default: a camera that follows the body.
+    /// The camera. It follows the centre of mass of each run's body. All panels and frames have one scale, at which the
+    /// body takes about 60 % of its panel's width at its widest moment, or up to a fifth less to show obstacles near it.
+    /// The whole scene is simulated before the first frame is drawn. With a `target` or a `distance` the camera is fixed.
     #[serde(serialize_with = "open")]
     #[schemars(with = "CameraFile")]
     pub camera: Camera,
@@ -160,106 +163,75 @@ impl Default for View {
     }
 }
 
-/// The words and signs in panels and below them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(from = "Vec<Label>", into = "Vec<Label>")]
-pub struct Labels {
-    /// A letter before each name.
-    pub letters: bool,
-    /// The name of each run.
-    pub name: bool,
-    /// The model of each run and its parameters.
-    pub model: bool,
-    /// The time, in one panel for all.
-    pub clock: bool,
-    /// The number of turned-over elements.
-    pub count: bool,
-    /// One number that measures the deformation.
-    pub number: bool,
-    /// A bar of a round length.
-    pub scale_bar: bool,
-    /// Keys of colours and arrows.
-    pub legend: bool,
+/// A set that files write as a list of words.
+macro_rules! words {
+    (
+        $(#[$about:meta])* $set:ident,
+        $(#[$about_word:meta])* $word:ident { $($(#[$doc:meta])* $name:ident,)* }
+    ) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct $set {
+            $($(#[$doc])* pub $name: bool,)*
+        }
+
+        $(#[$about_word])*
+        #[derive(Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(rename_all = "kebab-case")]
+        #[allow(non_camel_case_types, reason = "words of files, which are also fields")]
+        pub(super) enum $word { $($(#[$doc])* $name,)* }
+
+        impl $set {
+            /// Nothing.
+            pub const NONE: Self = Self { $($name: false,)* };
+        }
+
+        impl<'de> Deserialize<'de> for $set {
+            fn deserialize<D: Deserializer<'de>>(list: D) -> Result<Self, D::Error> {
+                let words = Vec::<$word>::deserialize(list)?;
+                Ok(Self { $($name: words.contains(&$word::$name),)* })
+            }
+        }
+
+        impl Serialize for $set {
+            fn serialize<S: Serializer>(&self, list: S) -> Result<S::Ok, S::Error> {
+                let words = [$((self.$name, $word::$name),)*].into_iter();
+                list.collect_seq(words.filter(|(is_there, _)| *is_there).map(|(_, word)| word))
+            }
+        }
+    };
 }
 
-impl Labels {
-    /// Nothing.
-    pub const NONE: Self = Self {
-        letters: false,
-        name: false,
-        model: false,
-        clock: false,
-        count: false,
-        number: false,
-        scale_bar: false,
-        legend: false,
-    };
-
-    /// All labels with their words.
-    fn words(&mut self) -> [(Label, &mut bool); 8] {
-        [
-            (Label::Letters, &mut self.letters),
-            (Label::Name, &mut self.name),
-            (Label::Model, &mut self.model),
-            (Label::Clock, &mut self.clock),
-            (Label::Count, &mut self.count),
-            (Label::Number, &mut self.number),
-            (Label::ScaleBar, &mut self.scale_bar),
-            (Label::Legend, &mut self.legend),
-        ]
+words! {
+    /// The words and signs in panels and below them.
+    Labels,
+    /// The name of a label.
+    Label {
+        /// A letter before each name: a, b, c and so on.
+        letters,
+        /// The run's name.
+        name,
+        /// The model and its parameters.
+        model,
+        /// The time, in one panel only.
+        clock,
+        /// The number of turned-over elements.
+        count,
+        /// The shape error; in the plane, the smallest area ratio. Divergence is always shown.
+        number,
+        /// A scale bar (m), in the first panel; in space it holds at the distance of the camera's target.
+        scale_bar,
+        /// The meaning of colours and arrows, below all panels, if there is room.
+        legend,
     }
 }
 
 impl Default for Labels {
     /// All labels except letters.
     fn default() -> Self {
-        Self {
-            letters: false,
-            name: true,
-            model: true,
-            clock: true,
-            count: true,
-            number: true,
-            scale_bar: true,
-            legend: true,
-        }
+        let [name, model, clock, count, number, scale_bar, legend] = [true; 7];
+        Self { letters: false, name, model, clock, count, number, scale_bar, legend }
     }
-}
-
-impl From<Vec<Label>> for Labels {
-    fn from(wanted: Vec<Label>) -> Self {
-        let mut labels = Self::NONE;
-        labels.words().into_iter().for_each(|(label, is_there)| *is_there = wanted.contains(&label));
-        labels
-    }
-}
-
-impl From<Labels> for Vec<Label> {
-    fn from(mut labels: Labels) -> Self {
-        labels.words().into_iter().filter_map(|(label, is_there)| is_there.then_some(label)).collect()
-    }
-}
-
-/// The name of a label.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Label {
-    /// A letter before each name: a, b, c and so on.
-    Letters,
-    /// The run's name.
-    Name,
-    /// The model and its parameters.
-    Model,
-    /// The time, in one panel only.
-    Clock,
-    /// The number of turned-over elements.
-    Count,
-    /// The shape error; in the plane, the smallest area ratio. Divergence is always shown.
-    Number,
-    /// A scale bar (m), in the first panel; in space it holds at the distance of the camera's target.
-    ScaleBar,
-    /// The meaning of colours and arrows, below all panels, if there is room.
-    Legend,
 }
 
 /// The lines on surfaces.
@@ -288,17 +260,22 @@ pub enum FloorStyle {
     None,
 }
 
-/// The drawn parts of a body.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Visible {
-    /// The faces of the elements, with their edges.
-    pub surfaces: bool,
-    /// The nodes, as discs.
-    pub nodes: bool,
-    /// The springs of models that have them, as lines.
-    pub springs: bool,
-    /// An arrow to each node from its place in the best rigid placement of the rest shape.
-    pub displacements: bool,
+words! {
+    /// The drawn parts of a body.
+    #[derive(Default)]
+    Visible,
+    /// A part of the body that can be drawn.
+    Part {
+        /// The faces of the elements, with their edges.
+        surfaces,
+        /// The nodes, as discs.
+        nodes,
+        /// The springs of mass-spring models, as lines, faint behind surfaces.
+        springs,
+        /// An arrow to each node from its place in the best-fitting rigid placement of the rest shape. Only for nodes on
+        /// the surface that face the viewer, and for at most 500.
+        displacements,
+    }
 }
 
 impl Visible {
@@ -392,11 +369,13 @@ pub enum Ghost {
 }
 
 /// A point of a body with a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Traced {
     /// The centre of mass.
     Centre,
-    /// A node.
+    /// A node, counted from 0.
+    #[serde(untagged)]
     Node(u32),
 }
 

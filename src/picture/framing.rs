@@ -96,7 +96,8 @@ impl Seen {
             Shape::Floor { .. } => None,
             Shape::Plate { point, normal } => {
                 let (out, point) = (self.along(pose.rotation * normal), place(point));
-                let corners = (0..8).map(|at| DVec3::select(glam::BVec3::new(at & 1 > 0, at & 2 > 0, at & 4 > 0), low, high));
+                let corners =
+                    (0..8).map(|at| DVec3::select(glam::BVec3::new(at & 1 > 0, at & 2 > 0, at & 4 > 0), low, high));
                 let beside = corners.map(|corner| corner - (corner - point).dot(out) * out);
                 beside.map(|at| [at; 2]).reduce(union)
             }

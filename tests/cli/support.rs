@@ -59,9 +59,7 @@ pub(crate) const SMALL_FRAMES: usize = 7;
 /// [`SMALL`] with another duration (s), which makes it another scene. Its camera is fixed, so that it is not simulated
 /// ahead.
 pub(crate) fn lasting(duration: &str) -> String {
-    SMALL
-        .replace("duration = 0.1", &format!("duration = {duration}"))
-        .replace("[view]", "[view]\ncamera.distance = 2")
+    SMALL.replace("duration = 0.1", &format!("duration = {duration}")).replace("[view]", "[view]\ncamera.distance = 2")
 }
 
 /// A folder for running the program; removed when dropped.

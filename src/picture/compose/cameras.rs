@@ -53,7 +53,12 @@ impl Composer<'_> {
     }
 
     /// The target and distance of the camera of a run in a panel.
-    pub(super) fn framing(&self, shot: Option<&Shot>, run: &RunFrame, (viewport, scale): (Rectangle, Scale)) -> Framing {
+    pub(super) fn framing(
+        &self,
+        shot: Option<&Shot>,
+        run: &RunFrame,
+        (viewport, scale): (Rectangle, Scale),
+    ) -> Framing {
         let Scene { view, body, .. } = self.scene;
         let Some(shot) = shot else { return Framing::still(&view.camera) };
         let position = &run.shown().position;
