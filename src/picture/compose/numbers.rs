@@ -2,10 +2,10 @@
 
 use super::Composer;
 use crate::picture::caption;
+use crate::picture::framing::Shot;
 use crate::picture::layout::steps::{CHART, SHORT};
 use crate::picture::layout::tree::{self, Node, Solved};
 use crate::picture::layout::{Layout, Rectangle, Scale};
-use crate::picture::tracking::Shot;
 use crate::picture::{Framing, number};
 use crate::sim::{RunFrame, Snapshot};
 
