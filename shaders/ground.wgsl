@@ -90,10 +90,10 @@ fn dither(pixel: vec2<f32>) -> f32 {
     return (f32(order) + 0.5) / 64.0 - 0.5;
 }
 
-// The linear light of about 0.8 steps of a byte of sRGB, from the derivative of its curve. A whole step and rounding
-// could change exact bytes, such as the plain background.
-fn byte_step(colour: vec3<f32>) -> vec3<f32> {
-    return sqrt(colour) * (1.2 + 0.7 * colour) / 255.0;
+// The light of about 0.8 steps of a byte of sRGB, from the derivative of its curve. A whole step and rounding could
+// change exact bytes, such as the plain background.
+fn byte_step(light: f32) -> f32 {
+    return sqrt(light) * (1.2 + 0.7 * light) / 255.0;
 }
 
 fn taken(shade: vec4<f32>, layer: f32, on_floor: vec2<f32>) -> f32 {
@@ -113,18 +113,14 @@ fn floor_light(corner: Corner, left: f32) -> vec4<f32> {
     let at = corner.on_floor;
     let pixel = corner.place.xy - ground.viewport.xy;
     let size = ground.viewport.zw;
-    let cells = (at + vec2(ground.first.w, ground.second.w)) / ground.grid.w;
-    let across = vec2(length(vec2(dpdx(cells.x), dpdy(cells.x))), length(vec2(dpdx(cells.y), dpdy(cells.y))));
-    let width = max(across, vec2(1e-6));
     let radius = length(at - ground.middle);
     let round = 1.0 - smoothstep(ground.fade.x, ground.fade.y, radius);
     let side = smoothstep(0.0, SIDE_FADE * size.x, min(pixel.x, size.x - pixel.x));
     let bottom = smoothstep(0.55 * ground.shadow.w, ground.shadow.w, size.y - pixel.y);
     let fade = round * side * bottom;
-    if fade <= 0.0 {
-        return vec4(ground.background.rgb, 1.0);
-    }
-
+    let cells = (at + vec2(ground.first.w, ground.second.w)) / ground.grid.w;
+    let across = vec2(length(vec2(dpdx(cells.x), dpdy(cells.x))), length(vec2(dpdx(cells.y), dpdy(cells.y))));
+    let width = max(across, vec2(1e-6));
     var colour = ground.floor.rgb;
     let thickness = max(panel.line_scale, 1.0);
     let off = abs(fract(cells - 0.5) - 0.5) / width;
@@ -134,7 +130,7 @@ fn floor_light(corner: Corner, left: f32) -> vec4<f32> {
     colour = mix(ground.shadow.rgb, colour, left);
     let faded = mix(ground.background.rgb, colour, fade);
     // Without dithering, wide shadows show the borders of their 256 steps.
-    return vec4(faded + dither(corner.place.xy) * byte_step(faded), 1.0);
+    return vec4(faded + dither(corner.place.xy) * byte_step(faded.g), 0.0);
 }
 
 @fragment

@@ -1,5 +1,7 @@
-// Transparent plates and walls, from the farthest to the nearest, over the finished picture: less where bodies lie behind
+// Transparent plates and walls, from the farthest to the nearest, over bodies and ground: less where bodies lie behind
 // them, and not at all where bodies lie in front.
+
+@group(1) @binding(0) var drawn_depth: texture_depth_2d;
 
 struct PaneCorner {
     @builtin(position) place: vec4<f32>,
@@ -44,30 +46,6 @@ fn pane_corner(
     return PaneCorner(place, grid, from_middle, inward, above, place.xyw, colour, lined);
 }
 
-// The share of a pixel that bodies and their lines cover, and whether a depth is in front of them.
-fn covered_by_bodies(pixel: vec2<f32>, depth: f32) -> vec2<f32> {
-    let inside = pixel - panel.place.xy - panel.region.xy;
-    if any(inside < vec2(0.0)) || any(inside >= panel.region.zw) {
-        return vec2(0.0);
-    }
-    let at = vec2<i32>(pixel - panel.place.xy);
-    let opacity = textureLoad(line_opacity, at, 0);
-    let drawn = max(max(opacity.r, opacity.g), max(opacity.b, opacity.a));
-    let covered = max(textureLoad(body_colour, at, 0).a, drawn);
-    var nearest = load_depth(at);
-    // Outlines extend over the border of their body, where they have the depth of its neighbour.
-    let low = vec2<i32>(panel.region.xy);
-    let high = low + vec2<i32>(panel.region.zw) - 1;
-    let reach = i32(ceil(1.1 * panel.line_scale)) + 1;
-    let count = select(0, 8, covered > 0.0 && nearest <= 0.0);
-    var way = vec2(reach, 0);
-    for (var step = 0; step < count; step++) {
-        nearest = max(nearest, load_depth(clamp(at + way, low, high)));
-        way = select(vec2(-way.y, way.x), vec2(way.x - way.y, way.x + way.y), step == 3);
-    }
-    return vec2(covered, select(0.0, 1.0, nearest < depth));
-}
-
 // The colour of a wall with its grid, and its opacity.
 fn wall(corner: PaneCorner) -> vec4<f32> {
     let across = vec2(
@@ -103,7 +81,8 @@ fn pane_colour(corner: PaneCorner) -> @location(0) vec4<f32> {
     let soft_border = saturate(corner.inward / max(fwidth(corner.inward), 1e-9));
     let is_wall = corner.lined.a > 0.5;
     let own = select(corner.colour, wall(corner), is_wall);
-    let bodies = covered_by_bodies(corner.place.xy, corner.place.z);
-    let left = mix(1.0, bodies.y * select(OVER_BODIES, WALL_OVER_BODIES, is_wall), bodies.x);
+    let behind = textureLoad(drawn_depth, vec2<i32>(corner.place.xy), 0);
+    let over_bodies = select(0.0, select(OVER_BODIES, WALL_OVER_BODIES, is_wall), behind < corner.place.z);
+    let left = select(1.0, over_bodies, behind > 0.0);
     return vec4(own.rgb, own.a * soft_border * left);
 }

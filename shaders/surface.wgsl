@@ -1,6 +1,5 @@
 // Surfaces of bodies and obstacles: lit, with a hatch on turned-over elements, which show through the others. With a
-// scalar field, light is mild and keeps the colours of its scale. Colours are stored as their square roots, which keeps
-// eight bits fine in the dark and is quick to undo.
+// scalar field, light is mild and keeps the colours of its scale.
 //
 // `OCCLUDERS` is the number of obstacles near a body, `TINTED` tells whether a field colours surfaces, and `EDGED` whether
 // surfaces draw the edges of their elements.
@@ -8,6 +7,10 @@
 // The colours of the scale, linear.
 @group(0) @binding(1) var<uniform> ramp: array<vec4<f32>, SHADES>;
 const SHADES = 64;
+
+// The turned-over elements alone: their depth, and their colour with the brightness of the light.
+@group(1) @binding(0) var alarm_depth: texture_depth_2d;
+@group(1) @binding(1) var alarm_colour: texture_2d<f32>;
 
 struct Corner {
     @builtin(position) place: vec4<f32>,
@@ -48,6 +51,9 @@ fn unpack(corner: Corner) {
     panel.floor = corner.up_and_floor.w;
 }
 
+// Width (px in the reference picture) and opacity of edges.
+const EDGE_WIDTH = 1.15;
+const EDGE_ALPHA = 0.80;
 const KEY = vec3<f32>(0.66, 0.635, 0.595);
 const SKY = vec3<f32>(0.60, 0.635, 0.68);
 const GROUND = vec3<f32>(0.27, 0.262, 0.25);
@@ -115,7 +121,7 @@ fn alarm_corner(at: Vertex) -> Corner {
 @vertex
 fn obstacle_corner(at: Vertex) -> Corner {
     panel = panel_data;
-    return corner_at(panel.clip * vec4(at.position, 1.0), at, panel.obstacle);
+    return corner_at(panel.clip * vec4(at.position, 1.0), at, panel.obstacle.rgb);
 }
 
 // A vector rotated by the inverse of a quaternion.
@@ -197,7 +203,7 @@ const DOT_ALPHA = 0.6;
 // The part of a pixel that the dots of a flat element cover.
 fn dots(place: vec2<f32>) -> f32 {
     let scale = panel.line_scale;
-    let from_body = (place + panel.place.xy - panel.place.zw) / (DOTS_APART * scale);
+    let from_body = (place - panel.middle.xy) / (DOTS_APART * scale);
     // Rows at 45°.
     let at = vec2(from_body.x + from_body.y, from_body.y - from_body.x) * 0.70710678;
     let off = length(fract(at) - 0.5) * DOTS_APART * scale;
@@ -222,7 +228,7 @@ fn edged(colour: vec3<f32>, corner: Corner, edge: vec4<f32>, width: f32) -> vec3
 }
 
 fn sound_edged(colour: vec3<f32>, corner: Corner) -> vec3<f32> {
-    return edged(colour, corner, vec4(panel.edge, EDGE_ALPHA), EDGE_WIDTH * panel.line_scale);
+    return edged(colour, corner, vec4(panel.edge.rgb, EDGE_ALPHA), EDGE_WIDTH * panel.line_scale);
 }
 
 fn alarm_edged(colour: vec3<f32>, corner: Corner) -> vec3<f32> {
@@ -261,35 +267,31 @@ fn alarm_surface(corner: Corner) -> TurnedOver {
         colour = mix(tinted(corner, light), corner.own, covered);
         alpha = covered;
     }
-    let stored = sqrt(saturate(alarm_edged(colour, corner)));
-    return TurnedOver(vec4(stored, alpha), vec4(stored, 1.0));
+    let drawn = alarm_edged(colour, corner);
+    return TurnedOver(vec4(drawn, alpha), vec4(drawn, 1.0));
 }
 
-fn opaque(colour: vec3<f32>) -> vec4<f32> {
-    return vec4(sqrt(saturate(colour)), 1.0);
-}
-
-// The stored colour of a surface over the colour behind it.
-fn over_behind(colour: vec3<f32>, corner: Corner) -> vec4<f32> {
+// The colour of a surface over the colour behind it.
+fn over_behind(colour: vec3<f32>, corner: Corner) -> vec3<f32> {
     let at = vec2<i32>(corner.place.xy);
-    let behind = load_alarm_depth(at);
+    let behind = textureLoad(alarm_depth, at, 0);
     let stored = textureLoad(alarm_colour, at, 0);
     if behind <= 0.0 {
-        return opaque(colour);
+        return colour;
     }
     let depth = panel.near / behind - 1.0 / corner.place.w;
     let deep = smoothstep(0.0, THROUGH_DEPTH * panel.soft, depth);
-    let lit = stored.rgb * stored.rgb;
+    let lit = stored.rgb;
     if TINTED {
         // Of a hatch only the stripes are visible, not the colours between them.
         let through = mix(colour, panel.alarm, THROUGH * (1.0 - 0.4 * deep) * stored.a);
-        return opaque(mix(lit, through, smoothstep(0.0, NEAR_DEPTH * panel.soft, depth)));
+        return mix(lit, through, smoothstep(0.0, NEAR_DEPTH * panel.soft, depth));
     }
     let unlit = lit * (UNLIT / max(2.0 * stored.a, 0.05));
     let alarm = mix(lit, unlit, 0.65 * deep);
     // Blue-grey under vermilion would turn pink, so the surface is desaturated first.
     let grey = mix(colour, vec3(dot(colour, LUMINANCE)), 0.7);
-    return opaque(mix(grey, alarm, 1.0 - 0.4 * deep));
+    return mix(grey, alarm, 1.0 - 0.4 * deep);
 }
 
 @fragment
@@ -300,7 +302,7 @@ fn sound_surface(corner: Corner) -> @location(0) vec4<f32> {
     if TINTED {
         colour = tinted(corner, light);
     }
-    return opaque(sound_edged(colour, corner));
+    return vec4(sound_edged(colour, corner), 1.0);
 }
 
 // For panels with turned-over elements behind such surfaces, or with flat elements. A software driver would run all of
@@ -313,14 +315,17 @@ fn sound_before(corner: Corner) -> @location(0) vec4<f32> {
     let dotted = select(0.0, dots(corner.place.xy), is_flat);
     // Flat elements are grey with dots.
     let own = select(corner.own, vec3(dot(corner.own, LUMINANCE)), is_flat);
-    var colour = mix(own, panel.edge, dotted) * light.diffuse + light.gloss;
+    var colour = mix(own, panel.edge.rgb, dotted) * light.diffuse + light.gloss;
     if TINTED {
-        colour = mix(tinted(corner, light), panel.edge, dotted);
+        colour = mix(tinted(corner, light), panel.edge.rgb, dotted);
     }
-    return over_behind(sound_edged(colour, corner), corner);
+    return vec4(over_behind(sound_edged(colour, corner), corner), 1.0);
 }
 
-// The same light on another material, nothing below the floor.
+// The opacity of an obstacle, by which the processor recognises it. The difference to opaque is invisible.
+const OBSTACLE = 254.0 / 255.0;
+
+// The same light on another material, nothing below the floor, and fading at the sides of its room.
 @fragment
 fn obstacle_surface(corner: Corner) -> @location(0) vec4<f32> {
     unpack(corner);
@@ -328,8 +333,12 @@ fn obstacle_surface(corner: Corner) -> @location(0) vec4<f32> {
     let above = dot(corner.position, panel.up) - panel.floor;
     let rise = length(vec2(dpdx(above), dpdy(above)));
     let inside = saturate(above / max(rise, 1e-9) + 0.5);
-    if inside <= 0.0 {
+    let room = panel.fade_room;
+    let within = vec4(corner.place.xy - room.xy, room.zw - corner.place.xy);
+    let left = 1.0 - panel.fade_strength * (1.0 - smoothstep(vec4(0.0), panel.fade_distance, within));
+    let opacity = inside * left.x * left.y * left.z * left.w;
+    if opacity <= 0.0 {
         discard;
     }
-    return vec4(sqrt(saturate(corner.own * light.diffuse + light.gloss) * inside), OBSTACLE * inside);
+    return vec4(corner.own * light.diffuse + light.gloss, OBSTACLE * opacity);
 }

@@ -150,7 +150,7 @@ impl<'a> Drawing<'a> {
         let clock = Clock::thread();
         let pixels = match pixels {
             Pixels::Pending(pending) => {
-                Arc::new(self.renderer.collect(pending).map_err(|error| stopped(self.device.keep, error))?)
+                Arc::new(self.renderer.collect(pending, &picture).map_err(|error| stopped(self.device.keep, error))?)
             }
             Pixels::Drawn(pixels) => pixels,
         };

@@ -4,11 +4,9 @@ mod buffer;
 mod noise;
 mod processor;
 mod read_back;
-mod work;
 
 pub(crate) use buffer::GrowingBuffer;
-pub(crate) use read_back::{Pending, ReadBack};
-pub(crate) use work::Work;
+pub(crate) use read_back::{Layers, Pending, ReadBack};
 
 use std::fmt;
 use std::sync::{Arc, Mutex};
@@ -156,7 +154,6 @@ pub struct Gpu {
     queue: wgpu::Queue,
     description: AdapterDescription,
     trouble: Arc<Mutex<Option<GpuError>>>,
-    work: Arc<Mutex<Vec<Work>>>,
 }
 
 /// The name of a device's adapter in the metadata of files.
@@ -198,7 +195,7 @@ impl Gpu {
         device.on_uncaptured_error(Arc::new(move |error| note(&keep, translate(error))));
         let keep = Arc::clone(&trouble);
         device.set_device_lost_callback(move |_, message| note(&keep, lost(&message)));
-        Ok(Self { device, queue, description, trouble, work: Arc::default() })
+        Ok(Self { device, queue, description, trouble })
     }
 
     /// The device.

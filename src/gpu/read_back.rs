@@ -1,30 +1,22 @@
-//! Reading back pixels of a texture.
+//! Reading back textures.
 
-use super::{Gpu, GpuError, Work, lost};
+use super::{Gpu, GpuError, lost};
 use std::sync::mpsc;
 
 /// Bytes per pixel of the textures that are read back.
 const PIXEL: u32 = 4;
 
-/// The length of a row of `width` pixels in the buffer that a texture is copied to (bytes). Rows begin at multiples of
+/// The length of a row of `width` pixels in the buffer that textures are copied to (bytes). Rows begin at multiples of
 /// 256 bytes.
-pub(crate) fn padded_row(width: u32) -> u32 {
+fn padded_row(width: u32) -> u32 {
     (width * PIXEL).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
 
-/// The pixels of padded rows.
-fn without_padding(rows: &[u8], width: u32) -> Vec<u8> {
-    let rows = rows.chunks_exact(padded_row(width) as usize);
-    let rows: Vec<_> = rows.map(|row| &row[..(width * PIXEL) as usize]).collect();
-    rows.concat()
-}
-
-/// A buffer for reading back one texture after the other.
+/// A buffer for reading back some textures of one size, time and again.
 #[derive(Debug)]
 pub(crate) struct ReadBack {
     buffer: wgpu::Buffer,
-    width: u32,
-    height: u32,
+    size: [u32; 2],
 }
 
 /// A copy in progress, which [`ReadBack::collect`] completes.
@@ -34,33 +26,55 @@ pub(crate) struct Pending {
     submission: wgpu::SubmissionIndex,
 }
 
+/// Textures that were read back.
+#[derive(Clone, Copy)]
+pub(crate) struct Layers<'a> {
+    /// Their rows with padding, one texture after the other.
+    bytes: &'a [u8],
+    size: [usize; 2],
+}
+
+impl<'a> Layers<'a> {
+    /// The pixels of a texture in rows that are this much longer than the texture is wide: [`Self::stride`].
+    pub(crate) fn of<T: bytemuck::Pod>(self, layer: usize) -> &'a [T] {
+        let length = self.stride() * self.size[1] * PIXEL as usize;
+        bytemuck::cast_slice(&self.bytes[layer * length..][..length])
+    }
+
+    /// The distance between two rows (px).
+    pub(crate) fn stride(self) -> usize {
+        (padded_row(self.size[0] as u32) / PIXEL) as usize
+    }
+}
+
 impl ReadBack {
-    /// A buffer for textures of one size (px).
-    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
+    /// A buffer for a number of textures of one size (px).
+    pub(crate) fn new(gpu: &Gpu, size: [u32; 2], count: usize) -> Self {
         let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
             label: Some("read back"),
-            size: u64::from(padded_row(width)) * u64::from(height),
+            size: u64::from(padded_row(size[0])) * u64::from(size[1]) * count as u64,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        Self { buffer, width, height }
+        Self { buffer, size }
     }
 
-    /// Adds the copy of a texture to the commands, submits them and returns at once.
-    pub(crate) fn submit(&self, gpu: &Gpu, mut commands: wgpu::CommandEncoder, texture: &wgpu::Texture) -> Pending {
-        commands.copy_texture_to_buffer(
-            texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &self.buffer,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(padded_row(self.width)),
-                    rows_per_image: None,
-                },
-            },
-            wgpu::Extent3d { width: self.width, height: self.height, depth_or_array_layers: 1 },
-        );
-        gpu.note(Work::Picture);
+    /// Adds the copies of textures to the commands, submits them and returns at once.
+    pub(crate) fn submit(&self, gpu: &Gpu, mut commands: wgpu::CommandEncoder, textures: &[&wgpu::Texture]) -> Pending {
+        let [width, height] = self.size;
+        let row = padded_row(width);
+        for (at, texture) in (0..).zip(textures) {
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: at * u64::from(row) * u64::from(height),
+                bytes_per_row: Some(row),
+                rows_per_image: None,
+            };
+            commands.copy_texture_to_buffer(
+                texture.as_image_copy(),
+                wgpu::TexelCopyBufferInfo { buffer: &self.buffer, layout },
+                wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            );
+        }
         let (sender, mapped) = mpsc::channel();
         commands.map_buffer_on_submit(&self.buffer, wgpu::MapMode::Read, .., move |result| {
             // The receiver is gone when a frame was abandoned.
@@ -69,22 +83,27 @@ impl ReadBack {
         Pending { mapped, submission: gpu.queue().submit([commands.finish()]) }
     }
 
-    /// Waits for the copy and returns its pixels: red, green, blue and opacity of each, in rows from the top left.
+    /// Waits for the copies, and returns what is read from them.
     ///
     /// # Errors
     /// The device was lost or refused a command.
-    pub(crate) fn collect(&self, gpu: &Gpu, pending: Pending) -> Result<Vec<u8>, GpuError> {
+    pub(crate) fn collect<T>(
+        &self,
+        gpu: &Gpu,
+        pending: Pending,
+        read: impl FnOnce(Layers<'_>) -> T,
+    ) -> Result<T, GpuError> {
         let wait = wgpu::PollType::Wait { submission_index: Some(pending.submission), timeout: None };
         let waited = gpu.device().poll(wait);
         gpu.check()?;
         waited.map_err(|error| lost(&error.to_string()))?;
         pending.mapped.recv().map_err(|error| lost(&error.to_string()))?.map_err(|error| lost(&error.to_string()))?;
-        let colours = {
-            let rows = self.buffer.get_mapped_range(..).map_err(|error| lost(&error.to_string()))?;
-            without_padding(&rows, self.width)
+        let result = {
+            let bytes = self.buffer.get_mapped_range(..).map_err(|error| lost(&error.to_string()))?;
+            read(Layers { bytes: &bytes, size: self.size.map(|length| length as usize) })
         };
         self.buffer.unmap();
-        Ok(colours)
+        Ok(result)
     }
 }
 
@@ -95,20 +114,5 @@ mod tests {
     #[test]
     fn rows_begin_at_multiples_of_256_bytes() {
         assert_eq!([1, 63, 64, 65, 127, 1280, 1281].map(padded_row), [256, 256, 256, 512, 512, 5120, 5376]);
-    }
-
-    #[test]
-    fn padding_stays_behind_at_odd_widths() {
-        let (width, height) = (65, 3);
-        let mut rows = vec![0xee; (padded_row(width) * height) as usize];
-        for y in 0..height {
-            for x in 0..width {
-                let at = (y * padded_row(width) + x * 4) as usize;
-                rows[at..at + 4].copy_from_slice(&[x as u8, y as u8, 7, 255]);
-            }
-        }
-        let pixels = without_padding(&rows, width);
-        assert_eq!(pixels.len(), 65 * 3 * 4);
-        assert!(pixels.chunks(4).enumerate().all(|(at, pixel)| pixel == [(at % 65) as u8, (at / 65) as u8, 7, 255]));
     }
 }

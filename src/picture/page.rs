@@ -108,7 +108,7 @@ impl Item {
     }
 
     /// A disc with a rim inside its radius (px).
-    pub(super) fn rimmed(middle: DVec2, radius: f64, colour: Colour, rim: Colour) -> Self {
+    pub(crate) fn rimmed(middle: DVec2, radius: f64, colour: Colour, rim: Colour) -> Self {
         let (middle, radius) = (point(middle), narrow(radius));
         let width = BEAD_RIM * radius;
         // Side by side, because both may be transparent.
@@ -118,7 +118,7 @@ impl Item {
     }
 
     /// The item with a part of the opacity of its paths, from 0 to 1; `None` if they would be invisible.
-    pub(super) fn faded(mut self, part: f64) -> Option<Self> {
+    pub(crate) fn faded(mut self, part: f64) -> Option<Self> {
         let part = narrow(part.clamp(0.0, 1.0));
         self.fade(part);
         (part >= 0.5 / 255.0).then_some(self)

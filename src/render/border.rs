@@ -1,90 +1,97 @@
-//! Smooth borders of surfaces, in pixels that a line between two colours crosses.
+//! Smooth borders of surfaces: a pixel that a line between two colours crosses gets the colour of the other side for the
+//! area there.
 
-use super::RenderError;
-use super::pass::Pass;
-use super::pipeline::{BORDER_FORMAT, Pipeline, Recipe, shader};
-use super::segment::{self, LineBuffer, corners};
-use super::stage::Stage;
-use super::target::Bodies;
-use super::visibility::most_bound;
-use crate::picture::{Line, Picture, Rectangle};
-use std::collections::HashMap;
-use std::ops::Range;
+use super::line::{NEARER, Segment, Tested};
+use crate::picture::{Line, LineKind};
+use glam::Vec2;
 
-const SHADER: &str = include_str!("../../shaders/border.wgsl");
+/// A line is hidden by depths that are nearer by more than this many pixels.
+const HIDDEN_BY: f32 = 6.0;
+/// Beyond this distance (px) from the line, rounding cannot put a pixel on the other side.
+const SURE: f32 = 0.01;
 
-/// The parts of the shader.
-pub(super) fn parts() -> [&'static str; 6] {
-    let [panel, segment, line] = segment::parts();
-    [panel, segment, super::BODIES_SHADER, super::TAPS_SHADER, line, SHADER]
-}
-
-/// The pipelines and the borders of one picture.
-#[derive(Debug)]
-pub(super) struct Borders {
-    module: wgpu::ShaderModule,
-    /// Pipelines for turned-over sets and for others, made when they are first needed. With one for both, a software
-    /// driver would read both depths for each border.
-    pipelines: HashMap<&'static str, Pipeline>,
-    lines: LineBuffer,
-    /// The borders of each panel, in runs that share a pipeline.
-    runs: Vec<Vec<(&'static str, Range<u32>)>>,
-}
-
-impl Borders {
-    pub(super) fn new(stage: &Stage) -> Self {
-        let module = shader(&stage.gpu, "border", &parts());
-        let lines = LineBuffer::new(&stage.gpu, "borders");
-        Self { module, pipelines: HashMap::new(), lines, runs: Vec::new() }
+/// Smooths the pixels of a panel, in rows of a width (px).
+pub(super) fn smooth(tested: &Tested<'_>, pixels: &mut [u8], width: usize) {
+    let region = tested.panel.region;
+    if region[2] < 3 || region[3] < 3 {
+        return;
     }
-
-    /// Uploads the borders of a picture.
-    ///
-    /// # Errors
-    /// There are more borders than the device can bind.
-    pub(super) fn write(&mut self, stage: &Stage, picture: &Picture) -> Result<(), RenderError> {
-        let mut segments = Vec::new();
-        self.runs.clear();
-        for panel in &picture.panels {
-            let projected = segment::projected(panel);
-            let mut run = |borders: &[Line]| {
-                let start = segments.len() as u32;
-                segments.extend(borders.iter().filter_map(&projected));
-                let entry = if borders[0].kind.is_alarm() { "alarm_border_colour" } else { "border_colour" };
-                (entry, start..segments.len() as u32)
-            };
-            let of_one = panel.borders.chunk_by(|one, other| one.kind.is_alarm() == other.kind.is_alarm());
-            self.runs.push(of_one.map(&mut run).filter(|(_, lines)| !lines.is_empty()).collect());
+    let mut gains = Vec::new();
+    for line in &tested.panel.borders {
+        let nearer = if line.kind.is_alarm() { NEARER } else { 0.0 };
+        if let Some(segment) = tested.segment([line.from, line.to], region, nearer) {
+            along(tested, line, &segment, pixels, width, &mut gains);
         }
-        let most = most_bound::<segment::Segment>(&stage.gpu);
-        if segments.len() > most {
-            return Err(RenderError::Lines { count: segments.len(), most });
-        }
-        self.lines.write(&stage.gpu, segments);
-        let sum = wgpu::BlendComponent { dst_factor: wgpu::BlendFactor::One, ..wgpu::BlendComponent::REPLACE };
-        for &(entry, _) in self.runs.iter().flatten() {
-            let build = || {
-                let recipe = Recipe {
-                    groups: &[&stage.panels.layout, &stage.layouts.drawn, &self.lines.layout],
-                    blend: Some(wgpu::BlendState { color: sum, alpha: sum }),
-                    ..Recipe::lines(entry, &self.module, ["segment", entry], BORDER_FORMAT)
-                };
-                recipe.build(&stage.gpu)
-            };
-            self.pipelines.entry(entry).or_insert_with(build);
-        }
-        Ok(())
     }
-
-    /// Draws the borders of all panels.
-    pub(super) fn draw(&self, pass: &mut Pass<'_>, stage: &Stage, bodies: &Bodies, places: &[Rectangle]) {
-        pass.set_bind_group(1, &bodies.drawn, &[]);
-        pass.set_bind_group(2, &self.lines.group, &[]);
-        stage.panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
-            for (entry, lines) in &self.runs[panel] {
-                pass.set_pipeline(&self.pipelines[entry]);
-                pass.draw(corners(lines), 0..1);
-            }
+    // Gains from several lines are summed, because each covers another part of the pixel. Each mixes the pixel with a
+    // neighbour, so the result stays within the colours of all neighbours.
+    gains.sort_unstable_by_key(|(at, _)| *at);
+    let all = gains.chunk_by(|one, other| one.0 == other.0).map(|gains| {
+        let at = gains[0].0;
+        let near = [at, at - 4, at + 4, at - 4 * width, at + 4 * width];
+        let mixed = [0, 1, 2].map(|channel| {
+            let near = near.map(|at| pixels[at + channel]);
+            let (low, high) = near.into_iter().fold((u8::MAX, 0), |(low, high), one| (low.min(one), high.max(one)));
+            let gained: f32 = gains.iter().map(|(_, gain)| gain[channel]).sum();
+            (f32::from(near[0]) + gained).round().clamp(low.into(), high.into()) as u8
         });
+        (at, mixed)
+    });
+    for (at, colour) in all.collect::<Vec<_>>() {
+        pixels[at..at + 3].copy_from_slice(&colour);
+    }
+}
+
+/// The pixels that one line crosses, with the light that each gains.
+fn along(
+    tested: &Tested<'_>,
+    line: &Line,
+    Segment([from, to]): &Segment,
+    pixels: &[u8],
+    width: usize,
+    gains: &mut Vec<(usize, [f32; 3])>,
+) {
+    let [left, top, wide, high] = tested.panel.region.map(|length| length as f32);
+    let way = to - from;
+    let is_flat = way.x.abs() >= way.y.abs();
+    // The axis along which pixels are counted, and the one across.
+    let [one, other] = if is_flat { [0, 1] } else { [1, 0] };
+    if way[one] == 0.0 {
+        return;
+    }
+    let (start, end) = (from[one].min(to[one]), from[one].max(to[one]));
+    let is_crease = matches!(line.kind, LineKind::Edge | LineKind::AlarmEdge);
+    for column in start.floor() as u32..=end.floor() as u32 {
+        let middle = column as f32 + 0.5;
+        let within = (middle + 0.5).min(end) - (middle - 0.5).max(start);
+        let at = from.lerp(*to, ((middle - from[one]) / way[one]).clamp(0.0, 1.0));
+        let row = at[other].floor();
+        let place = |row: f32| if is_flat { Vec2::new(middle, row + 0.5) } else { Vec2::new(row + 0.5, middle) };
+        let [before, own, after] = [row - 1.0, row, row + 1.0].map(place);
+        // All neighbours lie in the region.
+        if own.cmplt(Vec2::new(left, top) + 1.0).any() || own.cmpge(Vec2::new(left + wide, top + high) - 1.0).any() {
+            continue;
+        }
+        let depth = |at: Vec2| if line.kind.is_alarm() { tested.depth_alone(at) } else { tested.depth(at) };
+        let [first, second, here] = [before, after, own].map(depth);
+        // A crease has faces on both sides, so depths before the nearer one hide it. A contour has the surface on one side,
+        // so it is hidden if all depths around it are before it.
+        let beside = if is_crease { first.max(second) } else { first.min(second).min(here) };
+        let is_hidden = tested.distance(at.z) * (1.0 - HIDDEN_BY / tested.panel.sight.focal) > tested.distance(beside);
+        // Hidden edges of a set that is visible through others would count where they end at its outline.
+        if is_hidden || within <= 0.0 || (line.kind == LineKind::AlarmEdge && first.min(second) <= 0.0) {
+            continue;
+        }
+        let colour = |at: Vec2| {
+            let place = 4 * (at.y as usize * width + at.x as usize);
+            [0, 1, 2].map(|channel| f32::from(pixels[place + channel]))
+        };
+        // The side on which the middle of the pixel lies has its own colour.
+        let share = at[other] - row;
+        let one = colour(if share > 0.5 + SURE { own } else { before });
+        let other = colour(if share < 0.5 - SURE { own } else { after });
+        let here = colour(own);
+        let gain = [0, 1, 2].map(|at| within * (share * one[at] + (1.0 - share) * other[at] - here[at]));
+        gains.push((4 * (own.y as usize * width + own.x as usize), gain));
     }
 }

@@ -1,11 +1,8 @@
 //! The floor with its grid and the soft shadows on it.
 
-use super::panel::{Panels, is_visible, limit, linear};
-use super::pass::Pass;
-use super::pipeline::{
-    PICTURE_FORMAT, Pipeline, Recipe, bind, element, group_layout, shader, uniform_entry, written_texture,
-};
-use crate::gpu::{Gpu, GrowingBuffer, Work};
+use super::panel::{Panels, linear};
+use super::pipeline::{Recipe, bind, element, group_layout, shader, texture, uniform_entry};
+use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{CELLS, Floor, Panel, Picture, Rectangle, Shade};
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec2, Vec2, Vec4};
@@ -38,12 +35,10 @@ const MOST_PANELS: usize = 128;
 #[derive(Debug)]
 pub(super) struct Grounds {
     /// The pipelines without shadows and with them.
-    pipelines: [Pipeline; 2],
+    pipelines: [wgpu::RenderPipeline; 2],
     layout: wgpu::BindGroupLayout,
-    uniforms: GrowingBuffer<u8>,
+    uniforms: GrowingBuffer,
     shades: wgpu::Texture,
-    /// The cells of each layer of shadows.
-    cells: Vec<Vec<u8>>,
     bind_group: Option<wgpu::BindGroup>,
 }
 
@@ -66,8 +61,10 @@ impl Grounds {
         let build = |fragment| {
             let recipe = Recipe {
                 groups: &[&panels.layout, &layout],
-                blend: None,
-                ..Recipe::rectangles(fragment, &module, ["corner", fragment], PICTURE_FORMAT)
+                topology: wgpu::PrimitiveTopology::TriangleStrip,
+                // Infinitely far away: a driver leaves out what bodies cover.
+                depth: Some((wgpu::CompareFunction::Equal, false)),
+                ..Recipe::new(fragment, &module, ["corner", fragment])
             };
             recipe.build(gpu)
         };
@@ -76,18 +73,16 @@ impl Grounds {
             layout,
             uniforms: GrowingBuffer::new(gpu, "grounds", wgpu::BufferUsages::UNIFORM, 4 * STRIDE),
             shades: create_shades(gpu, 2),
-            cells: vec![Vec::new(); 2],
             bind_group: None,
         }
     }
 
     /// Uploads the floors of a picture.
     pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
-        let mut bytes = vec![0; STRIDE * picture.panels.len()];
+        let mut bytes = vec![0_u8; STRIDE * picture.panels.len()];
         let layers = (2 * picture.panels.len().clamp(1, MOST_PANELS)) as u32;
         if self.shades.depth_or_array_layers() < layers {
             self.shades = create_shades(gpu, layers);
-            self.cells = vec![Vec::new(); layers as usize];
             self.bind_group = None;
         }
         for (at, panel) in picture.panels.iter().enumerate() {
@@ -100,18 +95,13 @@ impl Grounds {
             let uniform = uniform(picture, panel, floor, at);
             bytes[at * STRIDE..at * STRIDE + size_of::<GroundUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
         }
-        if self.uniforms.write(gpu, bytes) || self.bind_group.is_none() {
+        if self.uniforms.write(gpu, &bytes) || self.bind_group.is_none() {
             self.bind_group = Some(self.bind(gpu));
         }
     }
 
     fn write_shade(&mut self, gpu: &Gpu, layer: usize, shade: &Shade) {
-        if self.cells[layer] == shade.cells {
-            return;
-        }
-        self.cells[layer].clone_from(&shade.cells);
         let origin = wgpu::Origin3d { x: 0, y: 0, z: layer as u32 };
-        gpu.note(Work::Upload("shades", 4 * (CORNERS * CORNERS) as usize));
         gpu.queue().write_texture(
             wgpu::TexelCopyTextureInfo { origin, ..self.shades.as_image_copy() },
             corners_of(&shade.cells).as_flattened(),
@@ -130,15 +120,16 @@ impl Grounds {
         bind(gpu, "ground", &self.layout, &[(0, uniform), (1, shades)])
     }
 
-    /// Draws the floors of all panels.
-    pub(super) fn draw(&self, pass: &mut Pass<'_>, panels: &Panels, picture: &Picture) {
+    /// Draws the floors of all panels, behind all that was drawn.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture) {
         for (at, panel) in picture.panels.iter().enumerate() {
             let Some(floor) = &panel.floor else { continue };
-            limit(pass, panel.viewport);
-            panels.bind_whole(pass, at);
+            panels.bind(pass, at, panel, panel.viewport);
+            let [left, top, width, height] = panel.viewport.map(|length| length as f32);
+            pass.set_viewport(left, top, width, height, 0.0, 0.0);
             pass.set_bind_group(1, self.bind_group.as_ref(), &[(at * STRIDE) as u32]);
             let shadowed = if has_layer(at) { shadowed(panel, floor) } else { None };
-            let lit = shadowed.map_or(vec![panel.viewport], |inner| around(panel.viewport, inner));
+            let lit = shadowed.map_or(vec![visible(panel, floor)], |inner| around(visible(panel, floor), inner));
             for (pipeline, parts) in self.pipelines.iter().zip([lit, shadowed.into_iter().collect()]) {
                 pass.set_pipeline(pipeline);
                 for [left, top, width, height] in parts {
@@ -150,7 +141,13 @@ impl Grounds {
     }
 }
 
-/// The part of a panel in which shadows may lie.
+/// The part of a panel above the lower side at which the floor has faded out.
+fn visible(panel: &Panel, floor: &Floor) -> Rectangle {
+    let [left, top, width, height] = panel.viewport;
+    [left, top, width, height.saturating_sub((0.55 * floor.fade_above) as u32)]
+}
+
+/// The part of that in which shadows may lie.
 fn shadowed(panel: &Panel, floor: &Floor) -> Option<Rectangle> {
     let [left, top, width, height] = panel.viewport;
     let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
@@ -161,13 +158,13 @@ fn shadowed(panel: &Panel, floor: &Floor) -> Option<Rectangle> {
             let at = panel.sight.clip * point.extend(1.0);
             if at.w < panel.sight.near {
                 // The corner lies behind the eye.
-                return Some(panel.viewport);
+                return Some(visible(panel, floor));
             }
             let pixel = (Vec2::new(at.x, -at.y) / at.w * 0.5 + 0.5) * Vec2::new(width as f32, height as f32);
             (low, high) = (low.min(pixel), high.max(pixel));
         }
     }
-    let most = UVec2::new(width, height);
+    let most = UVec2::from_slice(&visible(panel, floor)[2..]);
     let [low, high] = [(low - 1.0).floor(), (high + 1.0).ceil()].map(|at| at.max(Vec2::ZERO).as_uvec2().min(most));
     let size = high.saturating_sub(low);
     (size.min_element() > 0).then_some([left + low.x, top + low.y, size.x, size.y])
@@ -182,7 +179,7 @@ fn around([left, top, width, height]: Rectangle, [x, y, wide, high]: Rectangle) 
         [x + wide, y, right, high],
         [left, y + high, width, bottom],
     ];
-    parts.into_iter().filter(|&part| is_visible(part)).collect()
+    parts.into_iter().filter(|&[_, _, width, height]| width > 0 && height > 0).collect()
 }
 
 fn has_layer(panel: usize) -> bool {
@@ -214,7 +211,8 @@ fn uniform(picture: &Picture, panel: &Panel, floor: &Floor, at: usize) -> Ground
 }
 
 fn create_shades(gpu: &Gpu, layers: u32) -> wgpu::Texture {
-    written_texture(gpu, "shades", [CORNERS, CORNERS, layers], wgpu::TextureFormat::Rgba8Unorm)
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    texture(gpu, "shades", [CORNERS, CORNERS, layers], wgpu::TextureFormat::Rgba8Unorm, usage)
 }
 
 /// The number of corners of cells along each side of a shadow.

@@ -1,41 +1,36 @@
-//! Lit bodies in space, with their floors, obstacles and lines. The passes, in order:
+//! Lit bodies in space, with their floors, obstacles and lines, in this order:
 //!
 //! 1. `surface`: turned-over elements, alone, to be seen through the body, and as surfaces of the body.
-//! 2. `surface`: other elements and solid obstacles over them, in textures no larger than the bodies.
-//! 3. `border`: smooth borders where colours change at a line.
-//! 4. `visibility`, then `line`: edges and contours as opacities, with smooth borders of their own.
-//! 5. `ground`: the floor with its grid and its shadows, into the picture.
-//! 6. `composite`: bodies and lines over the ground.
-//! 7. `stroke`: coloured lines and nodes in space, over the bodies, if there are any.
-//! 8. `pane`: transparent obstacles, before and behind all of this, and `stroke` again for their edges.
+//! 2. `surface`: other elements; `ground`: the floor with its grid and its shadows, where no body is; `surface`: solid
+//!    obstacles.
+//! 3. `pane`: transparent obstacles, less where bodies lie behind them.
+//! 4. `border` smooths pixels that lines between two colours cross, and `line` draws edges, contours, springs and nodes. Both
+//!    need the depths of the picture, which are read back, and no device.
 //!
-//! Every pixel has one sample. All borders are found from the geometry, which costs nothing without borders. Each pass has
-//! one file here and one of the same name in `shaders/`.
+//! Every pixel has one sample. Each pass of the device has one file here and one of the same name in `shaders/`.
 
 use super::pane::Panes;
-use super::panel;
-use super::pass::Pass;
-use super::stage::Stage;
+use super::panel::{self, Panels};
 use super::surface::{Set, Surfaces};
-use super::target::{self, Bodies, Canvas};
-use super::{RenderError, border, composite, ground, line, stroke};
+use super::target::{Behind, Layouts, Target, Targets};
+use super::{RenderError, border, ground, line};
 use crate::gpu::{Gpu, Pending, ReadBack};
-use crate::picture::Picture;
+use crate::picture::{Item, Picture};
+use wgpu::LoadOp;
 
 /// Draws the lit bodies of pictures of one size. The same picture gives the same bytes, whatever was drawn before.
 #[derive(Debug)]
 pub(super) struct Lit {
-    stage: Stage,
+    gpu: Gpu,
+    size: [u32; 2],
+    layouts: Layouts,
+    panels: Panels,
     surfaces: Surfaces,
-    lines: line::Lines,
-    borders: border::Borders,
     grounds: ground::Grounds,
-    composite: composite::Composite,
+    targets: Targets,
     /// Made when first needed.
     panes: Option<Panes>,
-    strokes: Option<stroke::Strokes>,
-    canvas: Canvas,
-    bodies: Option<Bodies>,
+    behind: Option<Behind>,
     read_back: ReadBack,
 }
 
@@ -49,110 +44,121 @@ impl Lit {
         if width.max(height) > longest {
             return Err(RenderError::Size { width, height, longest });
         }
-        let stage = Stage::new(gpu);
+        let (layouts, panels) = (Layouts::new(gpu), Panels::new(gpu));
         let lit = Self {
-            surfaces: Surfaces::new(&stage),
-            lines: line::Lines::new(&stage),
-            borders: border::Borders::new(&stage),
-            grounds: ground::Grounds::new(gpu, &stage.panels),
-            composite: composite::Composite::default(),
+            gpu: gpu.clone(),
+            size,
+            surfaces: Surfaces::new(gpu),
+            grounds: ground::Grounds::new(gpu, &panels),
+            targets: Targets::new(gpu, &layouts, size),
             panes: None,
-            strokes: None,
-            canvas: Canvas::new(gpu, size),
-            bodies: None,
-            read_back: ReadBack::new(gpu, width, height),
-            stage,
+            behind: None,
+            read_back: ReadBack::new(gpu, size, 2),
+            layouts,
+            panels,
         };
         gpu.check()?;
         Ok(lit)
     }
 
-    /// Waits for a submitted picture, and returns its pixels: red, green, blue and opacity of each, in rows from the top left.
-    ///
-    /// # Errors
-    /// The device fails.
-    pub(super) fn collect(&self, pending: Pending) -> Result<Vec<u8>, RenderError> {
-        Ok(self.read_back.collect(&self.stage.gpu, pending)?)
-    }
-
     /// Submits a picture and returns at once. Collect it before the next one is submitted: there is one buffer for
     /// reading back.
-    pub(super) fn submit(&mut self, picture: &Picture) -> Result<Pending, RenderError> {
-        let gpu = self.stage.gpu.clone();
-        let (places, needed) = panel::place(picture);
-        // Items behind surfaces are drawn only where they are read: over turned-over elements, and by lines of turned-over
-        // elements without faces.
-        let has_behind = picture.panels.iter().any(|panel| panel::has_behind(panel) || line::has_alarm(panel));
-        let made = || Bodies::new(&gpu, &self.stage.layouts, target::rounded(needed), has_behind);
-        let bodies = self.bodies.take().filter(|bodies| bodies.suit(needed, has_behind)).unwrap_or_else(made);
-        let bodies = &*self.bodies.insert(bodies);
-        self.stage.panels.write(&gpu, picture, &places);
-        let stage = &self.stage;
-        self.surfaces.write(stage, picture);
-        self.borders.write(stage, picture)?;
-        self.composite.write(stage, picture);
-        self.grounds.write(&gpu, picture);
-        self.lines.write(stage, picture)?;
-        let panes = Panes::are_in(picture).then(|| self.panes.get_or_insert_with(|| Panes::new(stage)));
-        let panes = panes.map(|panes| {
-            panes.write(stage, picture);
+    pub(super) fn submit(&mut self, picture: &Picture) -> Pending {
+        let Self { gpu, size, layouts, .. } = self;
+        if self.behind.is_none() && picture.panels.iter().any(panel::has_behind) {
+            self.behind = Some(Behind::new(gpu, layouts, *size));
+            self.read_back = ReadBack::new(gpu, *size, 3);
+        }
+        self.panels.write(gpu, picture);
+        self.surfaces.write(gpu, &self.panels, layouts, picture);
+        self.grounds.write(gpu, picture);
+        let panes = Panes::are_in(picture).then(|| {
+            let panes = self.panes.get_or_insert_with(|| Panes::new(gpu, &self.panels, layouts));
+            panes.write(gpu, picture);
             &*panes
-        });
-        let strokes = stroke::Strokes::are_in(picture);
-        let strokes = strokes.then(|| self.strokes.get_or_insert_with(|| stroke::Strokes::new(stage)));
-        let strokes = strokes.map(|strokes| {
-            strokes.write(stage, picture);
-            &*strokes
         });
 
         let mut commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let (mut load, mut deep) = (CLEAR, FAR);
-        if has_behind {
-            // One drawing serves both uses: the other surfaces are drawn over it.
-            let targets = [(&bodies.alarm_colour, CLEAR), (&bodies.colour, CLEAR)];
-            let depth = Some((&bodies.alarm_depth, FAR));
-            let mut pass = Pass::begin(&gpu, &mut commands, "turned over", &targets, depth);
-            self.surfaces.draw(&mut pass, stage, bodies, &places, Set::TurnedOver);
-            drop(pass);
-            bodies.copy_depth(&mut commands);
-            (load, deep) = (wgpu::LoadOp::Load, wgpu::LoadOp::Load);
-        }
-        {
-            let depth = Some((&bodies.depth, deep));
-            let mut pass = Pass::begin(&gpu, &mut commands, "bodies", &[(&bodies.colour, load)], depth);
-            for set in [Set::Sound, Set::Obstacles] {
-                self.surfaces.draw(&mut pass, stage, bodies, &places, set);
-            }
-        }
-        {
-            let mut pass = Pass::begin(&gpu, &mut commands, "borders", &[(&bodies.borders, CLEAR)], None);
-            self.borders.draw(&mut pass, stage, bodies, &places);
-        }
-        self.lines.test(&mut commands, stage, bodies, &places);
-        {
-            let mut pass = Pass::begin(&gpu, &mut commands, "lines", &[(&bodies.lines, CLEAR)], None);
-            self.lines.draw(&mut pass, stage, &places);
-        }
         let [r, g, b] = panel::linear(picture.palette.background).to_array().map(f64::from);
-        let background = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });
-        {
-            let mut pass = Pass::begin(&gpu, &mut commands, "picture", &[(&self.canvas.view, background)], None);
-            self.grounds.draw(&mut pass, &stage.panels, picture);
-            self.composite.draw(&mut pass, stage, bodies, picture);
-            if let Some(strokes) = strokes {
-                strokes.draw(&mut pass, stage, bodies, picture, false);
-            }
-            if let Some(panes) = panes {
-                panes.draw(&mut pass, stage, bodies, picture);
-            }
-            if let Some(strokes) = strokes {
-                strokes.draw(&mut pass, stage, bodies, picture, true);
-            }
+        let (mut ground, mut far) = (LoadOp::Clear(wgpu::Color { r, g, b, a: 0.0 }), FAR);
+        let Targets { picture: drawn, depth, .. } = &self.targets;
+        if let Some(Behind { colour, depth: alone, .. }) = &self.behind {
+            // One drawing serves both uses: the other surfaces are drawn over it.
+            let targets = [(colour, LoadOp::Clear(wgpu::Color::TRANSPARENT)), (drawn, ground)];
+            let mut pass = begin(&mut commands, &targets, Some((alone, far)));
+            self.surfaces.draw(&mut pass, &self.panels, picture, Set::TurnedOver);
+            drop(pass);
+            let [from, to] = [alone, depth].map(|target| target.texture.as_image_copy());
+            commands.copy_texture_to_texture(from, to, depth.texture.size());
+            (ground, far) = (LoadOp::Load, LoadOp::Load);
         }
-        Ok(self.read_back.submit(&gpu, commands, &self.canvas.texture))
+        {
+            let mut pass = begin(&mut commands, &[(drawn, ground)], Some((depth, far)));
+            if let Some(behind) = &self.behind {
+                pass.set_bind_group(1, &behind.group, &[]);
+            }
+            self.surfaces.draw(&mut pass, &self.panels, picture, Set::Sound);
+            self.grounds.draw(&mut pass, &self.panels, picture);
+            self.surfaces.draw(&mut pass, &self.panels, picture, Set::Obstacles);
+        }
+        if let Some(panes) = panes {
+            let mut pass = begin(&mut commands, &[(drawn, LoadOp::Load)], None);
+            pass.set_bind_group(1, &self.targets.drawn, &[]);
+            panes.draw(&mut pass, &self.panels, picture);
+        }
+        let textures = [Some(drawn), Some(depth), self.behind.as_ref().map(|behind| &behind.depth)];
+        let textures: Vec<_> = textures.into_iter().flatten().map(|target| &target.texture).collect();
+        self.read_back.submit(gpu, commands, &textures)
+    }
+
+    /// Waits for a submitted picture, and returns the lines over its bodies. Its pixels are red, green, blue and any number, in
+    /// rows from the top left.
+    ///
+    /// # Errors
+    /// The device fails.
+    pub(super) fn collect(
+        &self,
+        pending: Pending,
+        picture: &Picture,
+        pixels: &mut Vec<u8>,
+    ) -> Result<Vec<Item>, RenderError> {
+        let has_behind = self.behind.is_some();
+        Ok(self.read_back.collect(&self.gpu, pending, |layers| {
+            let rows = layers.of::<u8>(0).chunks_exact(4 * layers.stride());
+            rows.for_each(|row| pixels.extend_from_slice(&row[..4 * self.size[0] as usize]));
+            let mut items = Vec::new();
+            for panel in picture.panels.iter().filter(|panel| !panel.sight.flat) {
+                let tested = line::Tested::new(panel, layers, has_behind);
+                border::smooth(&tested, pixels, self.size[0] as usize);
+                items.extend(line::items(&tested, picture));
+            }
+            items
+        })?)
     }
 }
 
-/// Empty: transparent, and infinitely far away.
-const CLEAR: wgpu::LoadOp<wgpu::Color> = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
-const FAR: wgpu::LoadOp<f32> = wgpu::LoadOp::Clear(0.0);
+/// Infinitely far away.
+const FAR: LoadOp<f32> = LoadOp::Clear(0.0);
+
+/// Begins to draw into textures, with the one for depths.
+fn begin<'a>(
+    commands: &'a mut wgpu::CommandEncoder,
+    targets: &[(&'a Target, LoadOp<wgpu::Color>)],
+    depth: Option<(&Target, LoadOp<f32>)>,
+) -> wgpu::RenderPass<'a> {
+    let store = wgpu::StoreOp::Store;
+    let target = |&(target, load): &(&'a Target, _)| {
+        let ops = wgpu::Operations { load, store };
+        Some(wgpu::RenderPassColorAttachment { view: &target.view, depth_slice: None, resolve_target: None, ops })
+    };
+    let targets: Vec<_> = targets.iter().map(target).collect();
+    commands.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &targets,
+        depth_stencil_attachment: depth.map(|(target, load)| wgpu::RenderPassDepthStencilAttachment {
+            view: &target.view,
+            depth_ops: Some(wgpu::Operations { load, store }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
+}

@@ -2,22 +2,16 @@
 //! without lit bodies needs no device.
 
 mod border;
-mod composite;
 mod ground;
 mod line;
 mod lit;
 mod pane;
 mod panel;
-mod pass;
 mod pipeline;
-mod segment;
 #[cfg(test)]
 mod shader_tests;
-mod stage;
-mod stroke;
 mod surface;
 mod target;
-mod visibility;
 
 use crate::gpu::{Gpu, GpuError};
 use crate::picture::{Panel, Picture};
@@ -26,11 +20,6 @@ use image::RgbImage;
 use lit::Lit;
 
 const PANEL_SHADER: &str = include_str!("../../shaders/panel.wgsl");
-const SEGMENT_SHADER: &str = include_str!("../../shaders/segment.wgsl");
-
-/// The shaders that read the drawn bodies, at a pixel and around a point.
-const BODIES_SHADER: &str = include_str!("../../shaders/bodies.wgsl");
-const TAPS_SHADER: &str = include_str!("../../shaders/taps.wgsl");
 
 /// A reason why a picture cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -53,16 +42,6 @@ pub enum RenderError {
         /// Size that the renderer was made for (px).
         expected: [u32; 2],
     },
-    /// A picture has more lines than the device can draw.
-    #[error(
-        "the picture has {count} lines, this device can draw {most}: leave out edges (`view.edges`), draw fewer panels, or a coarser body"
-    )]
-    Lines {
-        /// Edges and contours in the picture, or borders of surfaces.
-        count: usize,
-        /// The most that the device can draw.
-        most: usize,
-    },
     /// There is no device for lit bodies.
     #[error("bodies in space are drawn with light, which needs a graphics device; none was given")]
     NoDevice,
@@ -76,6 +55,8 @@ pub enum RenderError {
 pub struct Renderer {
     size: [u32; 2],
     painter: Painter,
+    /// The last picture: four bytes a pixel.
+    pixels: Vec<u8>,
     gpu: Option<Gpu>,
     /// Made when the first lit body is drawn.
     lit: Option<Lit>,
@@ -84,8 +65,8 @@ pub struct Renderer {
 /// A picture that is being drawn.
 #[derive(Debug)]
 pub(crate) enum Pending {
-    /// Its colour below flat items.
-    Flat([u8; 3]),
+    /// It has none.
+    Flat,
     /// Its lit bodies.
     Lit(crate::gpu::Pending),
 }
@@ -102,7 +83,7 @@ impl Renderer {
             return Err(RenderError::Size { width, height, longest: LONGEST });
         }
         let painter = Painter::new(size.map(|length| length as u16));
-        Ok(Self { size, painter, gpu: gpu.cloned(), lit: None })
+        Ok(Self { size, painter, pixels: Vec::new(), gpu: gpu.cloned(), lit: None })
     }
 
     /// Draws a picture.
@@ -111,7 +92,7 @@ impl Renderer {
     /// The picture has another size, or it has lit bodies and there is no device, or the device fails.
     pub fn draw(&mut self, picture: &Picture) -> Result<RgbImage, RenderError> {
         let pending = self.submit(picture)?;
-        let pixels = self.collect(pending)?;
+        let pixels = self.collect(pending, picture)?;
         let [width, height] = self.size;
         Ok(RgbImage::from_raw(width, height, pixels).expect("three bytes a pixel"))
     }
@@ -130,16 +111,15 @@ impl Renderer {
             }
             let lit = self.lit.as_mut().expect("made above");
             Pending::Lit(if picture.panels.iter().all(is_lit) {
-                lit.submit(picture)?
+                lit.submit(picture)
             } else {
                 let mut bodies = picture.clone();
                 bodies.panels.retain(is_lit);
-                lit.submit(&bodies)?
+                lit.submit(&bodies)
             })
         } else {
-            Pending::Flat(picture.palette.background)
+            Pending::Flat
         };
-        vector::give(&mut self.painter, picture);
         Ok(pending)
     }
 
@@ -147,15 +127,21 @@ impl Renderer {
     ///
     /// # Errors
     /// The device fails.
-    pub(crate) fn collect(&mut self, pending: Pending) -> Result<Vec<u8>, RenderError> {
-        let mut pixels = match pending {
-            Pending::Flat([red, green, blue]) => {
-                [red, green, blue, u8::MAX].repeat(self.size.iter().product::<u32>() as usize)
+    pub(crate) fn collect(&mut self, pending: Pending, picture: &Picture) -> Result<Vec<u8>, RenderError> {
+        self.pixels.clear();
+        let lines = match pending {
+            Pending::Flat => {
+                let [red, green, blue] = picture.palette.background;
+                let count = self.size.iter().product::<u32>() as usize;
+                self.pixels.extend(std::iter::repeat_n([red, green, blue, u8::MAX], count).flatten());
+                Vec::new()
             }
-            Pending::Lit(pending) => self.lit.as_ref().expect("it is drawing").collect(pending)?,
+            Pending::Lit(pending) => {
+                self.lit.as_ref().expect("it is drawing").collect(pending, picture, &mut self.pixels)?
+            }
         };
-        self.painter.paint(&mut pixels);
-        Ok(without_opacity(&pixels))
+        vector::paint(&mut self.painter, picture, &lines, &mut self.pixels);
+        Ok(without_opacity(&self.pixels))
     }
 }
 

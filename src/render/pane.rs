@@ -1,11 +1,9 @@
 //! Transparent obstacles: panes from the farthest to the nearest, over the finished bodies.
 
-use super::panel::{limit, linear};
-use super::pass::Pass;
-use super::pipeline::{PICTURE_FORMAT, Pipeline, Recipe, for_vertices, shader};
-use super::stage::Stage;
-use super::target::Bodies;
-use crate::gpu::GrowingBuffer;
+use super::panel::{Panels, linear};
+use super::pipeline::{Recipe, for_vertices, shader};
+use super::target::Layouts;
+use crate::gpu::{Gpu, GrowingBuffer};
 use crate::picture::{Palette, Pane, PaneCorner, Picture};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
@@ -14,8 +12,8 @@ use std::ops::Range;
 const SHADER: &str = include_str!("../../shaders/pane.wgsl");
 
 /// The parts of the shader.
-pub(super) fn parts() -> [&'static str; 3] {
-    [super::PANEL_SHADER, super::BODIES_SHADER, SHADER]
+pub(super) fn parts() -> [&'static str; 2] {
+    [super::PANEL_SHADER, SHADER]
 }
 
 /// A corner of a pane as the shader reads it.
@@ -40,8 +38,8 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
 /// The pipeline and the panes of one picture. Made for the first picture that has any.
 #[derive(Debug)]
 pub(super) struct Panes {
-    pipeline: Pipeline,
-    corners: GrowingBuffer<Corner>,
+    pipeline: wgpu::RenderPipeline,
+    corners: GrowingBuffer,
     ranges: Vec<Range<u32>>,
 }
 
@@ -51,22 +49,23 @@ impl Panes {
         picture.panels.iter().any(|panel| !panel.obstacles.panes.is_empty())
     }
 
-    pub(super) fn new(stage: &Stage) -> Self {
-        let module = shader(&stage.gpu, "pane", &parts());
+    pub(super) fn new(gpu: &Gpu, panels: &Panels, layouts: &Layouts) -> Self {
+        let module = shader(gpu, "pane", &parts());
         let recipe = Recipe {
-            groups: &[&stage.panels.layout, &stage.layouts.drawn, &stage.layouts.over],
+            groups: &[&panels.layout, &layouts.drawn],
             vertices: &[Some(for_vertices::<Corner>(&ATTRIBUTES))],
-            ..Recipe::lines("pane", &module, ["pane_corner", "pane_colour"], PICTURE_FORMAT)
+            blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+            // Marks of bodies stay.
+            writes: wgpu::ColorWrites::COLOR,
+            depth: None,
+            ..Recipe::new("pane", &module, ["pane_corner", "pane_colour"])
         };
-        Self {
-            pipeline: recipe.build(&stage.gpu),
-            corners: GrowingBuffer::new(&stage.gpu, "panes", wgpu::BufferUsages::VERTEX, 256),
-            ranges: Vec::new(),
-        }
+        let corners = GrowingBuffer::new(gpu, "panes", wgpu::BufferUsages::VERTEX, 1 << 14);
+        Self { pipeline: recipe.build(gpu), corners, ranges: Vec::new() }
     }
 
     /// Uploads the panes of a picture.
-    pub(super) fn write(&mut self, stage: &Stage, picture: &Picture) {
+    pub(super) fn write(&mut self, gpu: &Gpu, picture: &Picture) {
         let mut corners = Vec::new();
         let ranges = picture.panels.iter().map(|panel| {
             let start = corners.len() as u32;
@@ -74,19 +73,16 @@ impl Panes {
             start..corners.len() as u32
         });
         self.ranges = ranges.collect();
-        self.corners.write(&stage.gpu, corners);
+        self.corners.write(gpu, &corners);
     }
 
-    /// Draws the panes of all panels.
-    pub(super) fn draw(&self, pass: &mut Pass<'_>, stage: &Stage, bodies: &Bodies, picture: &Picture) {
+    /// Draws the panes of all panels. The depths of bodies must be bound.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture) {
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(1, &bodies.drawn, &[]);
-        pass.set_bind_group(2, &bodies.over, &[]);
         pass.set_vertex_buffer(0, self.corners.buffer().slice(..));
-        for (at, panel) in picture.panels.iter().enumerate() {
-            limit(pass, panel.viewport);
-            stage.panels.bind_whole(pass, at);
-            pass.draw(self.ranges[at].clone(), 0..1);
+        for (at, (panel, range)) in picture.panels.iter().zip(&self.ranges).enumerate() {
+            panels.bind(pass, at, panel, panel.viewport);
+            pass.draw(range.clone(), 0..1);
         }
     }
 }

@@ -1,87 +1,56 @@
 //! Short forms for making pipelines and bindings.
 
-use crate::gpu::{Gpu, Work};
+use crate::gpu::Gpu;
 use crate::picture::measures;
 
-/// The format of bodies: square roots of linear colours, multiplied with alpha.
-pub(super) const BODY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// The format of the picture, written as linear light. Its opacity tells bodies (1) from obstacles (less) and the ground (0).
+pub(super) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Depth is the near distance over the distance: 1 nearest, 0 infinitely far.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// The format of borders: additions to linear colours, multiplied with alpha.
-pub(super) const BORDER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Opacities of four kinds of lines.
-pub(super) const LINE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-/// The finished picture, written as linear light.
-pub(super) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// A pipeline and its label.
-#[derive(Debug)]
-pub(super) struct Pipeline {
-    pub(super) label: &'static str,
-    pub(super) pipeline: wgpu::RenderPipeline,
-}
-
-/// The properties in which pipelines differ.
+/// A pipeline.
 pub(super) struct Recipe<'a> {
     pub(super) label: &'static str,
     pub(super) shader: &'a wgpu::ShaderModule,
+    /// The entry points of its vertices and of its pixels.
     pub(super) entries: [&'static str; 2],
     pub(super) groups: &'a [&'a wgpu::BindGroupLayout],
     pub(super) vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub(super) topology: wgpu::PrimitiveTopology,
-    pub(super) target: wgpu::TextureFormat,
-    /// The number of targets of that format.
+    /// The number of targets, all in the format of the picture.
     pub(super) targets: usize,
     pub(super) blend: Option<wgpu::BlendState>,
-    pub(super) depth: bool,
+    pub(super) writes: wgpu::ColorWrites,
+    /// The test of depth, if there is one, and whether depths are written.
+    pub(super) depth: Option<(wgpu::CompareFunction, bool)>,
 }
 
 impl<'a> Recipe<'a> {
-    /// Rectangles of four corners without depth, blended by their opacity.
-    pub(super) fn rectangles(
-        label: &'static str,
-        shader: &'a wgpu::ShaderModule,
-        entries: [&'static str; 2],
-        target: wgpu::TextureFormat,
-    ) -> Self {
+    /// Opaque triangles with depth.
+    pub(super) fn new(label: &'static str, shader: &'a wgpu::ShaderModule, entries: [&'static str; 2]) -> Self {
         Self {
             label,
             shader,
             entries,
             groups: &[],
             vertices: &[],
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            target,
+            topology: wgpu::PrimitiveTopology::TriangleList,
             targets: 1,
-            blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-            depth: false,
+            blend: None,
+            writes: wgpu::ColorWrites::ALL,
+            depth: Some((wgpu::CompareFunction::Greater, true)),
         }
     }
 
-    /// Triangles without depth, blended by their opacity: three vertices for each line.
-    pub(super) fn lines(
-        label: &'static str,
-        shader: &'a wgpu::ShaderModule,
-        entries: [&'static str; 2],
-        target: wgpu::TextureFormat,
-    ) -> Self {
-        let topology = wgpu::PrimitiveTopology::TriangleList;
-        Self { topology, ..Self::rectangles(label, shader, entries, target) }
-    }
-
-    /// Opaque triangles with depth, in the textures that hold bodies.
-    pub(super) fn bodies(label: &'static str, shader: &'a wgpu::ShaderModule, entries: [&'static str; 2]) -> Self {
-        let topology = wgpu::PrimitiveTopology::TriangleList;
-        let rectangles = Self::rectangles(label, shader, entries, BODY_FORMAT);
-        Self { topology, blend: None, depth: true, ..rectangles }
-    }
-
-    pub(super) fn build(&self, gpu: &Gpu) -> Pipeline {
-        let layout = pipeline_layout(gpu, self.label, self.groups);
-        gpu.note(Work::Pipeline(self.label));
-        let target =
-            wgpu::ColorTargetState { format: self.target, blend: self.blend, write_mask: wgpu::ColorWrites::ALL };
-        let pipeline = gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    pub(super) fn build(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
+        let groups: Vec<_> = self.groups.iter().map(|group| Some(*group)).collect();
+        let layout = gpu.device().create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(self.label),
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        });
+        let target = wgpu::ColorTargetState { format: PICTURE_FORMAT, blend: self.blend, write_mask: self.writes };
+        gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(self.label),
             layout: Some(&layout),
             vertex: wgpu::VertexState {
@@ -91,10 +60,10 @@ impl<'a> Recipe<'a> {
                 buffers: self.vertices,
             },
             primitive: wgpu::PrimitiveState { topology: self.topology, ..Default::default() },
-            depth_stencil: self.depth.then(|| wgpu::DepthStencilState {
+            depth_stencil: self.depth.map(|(compare, is_written)| wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Greater),
+                depth_write_enabled: Some(is_written),
+                depth_compare: Some(compare),
                 stencil: wgpu::StencilState::default(),
                 bias: wgpu::DepthBiasState::default(),
             }),
@@ -107,48 +76,14 @@ impl<'a> Recipe<'a> {
             }),
             multiview_mask: None,
             cache: None,
-        });
-        Pipeline { label: self.label, pipeline }
+        })
     }
-}
-
-/// A pipeline without any drawing.
-pub(super) fn compute_pipeline(
-    gpu: &Gpu,
-    label: &str,
-    module: &wgpu::ShaderModule,
-    entry: &'static str,
-    groups: &[&wgpu::BindGroupLayout],
-) -> wgpu::ComputePipeline {
-    gpu.note(Work::Pipeline(entry));
-    gpu.device().create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(label),
-        layout: Some(&pipeline_layout(gpu, label, groups)),
-        module,
-        entry_point: Some(entry),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    })
-}
-
-fn pipeline_layout(gpu: &Gpu, label: &str, groups: &[&wgpu::BindGroupLayout]) -> wgpu::PipelineLayout {
-    let groups: Vec<_> = groups.iter().map(|group| Some(*group)).collect();
-    gpu.device().create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(label),
-        bind_group_layouts: &groups,
-        immediate_size: 0,
-    })
 }
 
 /// The layout of a buffer with one element for each vertex.
 pub(super) fn for_vertices<T>(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
     let step_mode = wgpu::VertexStepMode::Vertex;
     wgpu::VertexBufferLayout { array_stride: size_of::<T>() as u64, step_mode, attributes }
-}
-
-/// The layout of a buffer with one element for each instance.
-pub(super) fn for_instances<T>(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
-    wgpu::VertexBufferLayout { step_mode: wgpu::VertexStepMode::Instance, ..for_vertices::<T>(attributes) }
 }
 
 /// The text of a shader from its parts, in order, after the measures that all share.
@@ -168,7 +103,7 @@ pub(super) fn shader(gpu: &Gpu, label: &str, parts: &[&str]) -> wgpu::ShaderModu
 pub(super) fn uniform_entry(binding: u32, size: usize, has_dynamic_offset: bool) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
-        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
         ty: wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
             has_dynamic_offset,
@@ -178,29 +113,11 @@ pub(super) fn uniform_entry(binding: u32, size: usize, has_dynamic_offset: bool)
     }
 }
 
-/// A buffer of any length that is read.
-pub(super) fn storage_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::VERTEX | wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only: true },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    }
-}
-
 /// A texture that is read pixel by pixel.
-pub(super) fn texture_entry(binding: u32, depth: bool) -> wgpu::BindGroupLayoutEntry {
-    let sample_type = match depth {
-        true => wgpu::TextureSampleType::Depth,
-        false => wgpu::TextureSampleType::Float { filterable: false },
-    };
+pub(super) fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
-        visibility: wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
+        visibility: wgpu::ShaderStages::FRAGMENT,
         ty: wgpu::BindingType::Texture {
             sample_type,
             view_dimension: wgpu::TextureViewDimension::D2,
@@ -229,30 +146,19 @@ pub(super) fn bind(
     gpu.device().create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
-/// Textures bound to numbers.
-pub(super) fn bind_textures(
-    gpu: &Gpu,
-    label: &str,
-    layout: &wgpu::BindGroupLayout,
-    views: &[(u32, &wgpu::TextureView)],
-) -> wgpu::BindGroup {
-    let resources: Vec<_> =
-        views.iter().map(|&(binding, view)| (binding, wgpu::BindingResource::TextureView(view))).collect();
-    bind(gpu, label, layout, &resources)
-}
-
 /// One element of a type in a buffer of uniforms, to be moved by a dynamic offset.
 pub(super) fn element<T>(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
     let size = wgpu::BufferSize::new(size_of::<T>() as u64);
     wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size })
 }
 
-/// A texture of a width, a height and a number of layers, with one sample a pixel, written by the processor.
-pub(super) fn written_texture(
+/// A texture of a width, a height and a number of layers, with one sample a pixel.
+pub(super) fn texture(
     gpu: &Gpu,
     label: &str,
     [width, height, layers]: [u32; 3],
     format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
 ) -> wgpu::Texture {
     gpu.device().create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
@@ -261,7 +167,7 @@ pub(super) fn written_texture(
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        usage,
         view_formats: &[],
     })
 }

@@ -3,7 +3,7 @@
 use super::ground::GroundUniform;
 use super::panel::{OccluderUniform, PanelUniform};
 use super::surface::Variant;
-use super::{PANEL_SHADER, border, composite, ground, pane, segment, stroke, visibility};
+use super::{PANEL_SHADER, ground, pane};
 use crate::picture::MOST_OCCLUDERS;
 use std::mem::offset_of;
 
@@ -25,13 +25,7 @@ fn shaders_are_valid() {
             parse(&[&Variant { occluders, tinted, edged }.parts()]);
         }
     }
-    parse(&border::parts());
-    parse(&segment::parts());
-    parse(&visibility::parts(false));
-    parse(&visibility::parts(true));
     parse(&pane::parts());
-    parse(&composite::parts());
-    parse(&stroke::parts());
 }
 
 /// Names and places of the fields of a struct, and its size.
@@ -55,29 +49,11 @@ macro_rules! same_layout {
 fn structs_are_laid_out_alike_on_both_sides() {
     let module = parse(&[PANEL_SHADER, ground::SHADER]);
     same_layout!(module, "Panel", PanelUniform,
-        clip eye near key edging up floor sound element alarm line_scale alarm_line outline_alpha edge focal outline soft
-        obstacle contour_share region place viewport fade_distance fade_room fade_strength occluders);
+        clip eye near key edging up floor sound line_scale alarm contour_share alarm_line soft edge obstacle middle
+        fade_distance fade_room fade_strength occluders);
     same_layout!(module, "Occluder", OccluderUniform, first second rotation);
     same_layout!(module, "Ground", GroundUniform,
         first second middle fade key sky background floor grid shadow viewport);
-}
-
-#[test]
-fn numbers_about_lines_are_the_same_on_both_sides() {
-    let module = parse(&visibility::parts(false));
-    let number = |name: &str| {
-        let found = module.constants.iter().find(|(_, constant)| constant.name.as_deref() == Some(name));
-        let (_, constant) = found.unwrap_or_else(|| panic!("there is no constant {name}"));
-        match module.global_expressions[constant.init] {
-            naga::Expression::Literal(naga::Literal::U32(value)) => value,
-            ref other => panic!("{name} is {other:?}"),
-        }
-    };
-    assert_eq!(number("VISIBILITY_WIDTH"), visibility::WIDTH);
-    assert_eq!(number("CHUNK"), visibility::CHUNK);
-    assert_eq!(number("GROUP"), visibility::GROUP);
-    assert_eq!(number("KIND_BITS"), segment::KIND_BITS);
-    assert_eq!(number("STRENGTH_BITS"), segment::STRENGTH_BITS);
 }
 
 #[test]

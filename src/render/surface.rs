@@ -1,13 +1,11 @@
 //! Surfaces: first the turned-over elements, alone and as seen through the body, then the others and solid obstacles over
 //! them, plain or coloured by a field.
 
-use super::panel::has_behind;
-use super::pass::Pass;
-use super::pipeline::{Pipeline, Recipe, for_vertices, shader};
-use super::stage::Stage;
-use super::target::Bodies;
-use crate::gpu::GrowingBuffer;
-use crate::picture::{MOST_OCCLUDERS, Mesh, Picture, Rectangle};
+use super::panel::{Panels, has_behind};
+use super::pipeline::{Recipe, for_vertices, shader};
+use super::target::Layouts;
+use crate::gpu::{Gpu, GrowingBuffer};
+use crate::picture::{MOST_OCCLUDERS, Mesh, Picture};
 use bytemuck::{Pod, Zeroable};
 use std::cell::OnceCell;
 use std::collections::HashMap;
@@ -58,7 +56,7 @@ impl Variant {
     pub(super) fn parts(self) -> String {
         let Self { occluders, tinted, edged } = self;
         let constants = format!("const OCCLUDERS = {occluders}u;\nconst TINTED = {tinted};\nconst EDGED = {edged};\n");
-        [&constants, super::PANEL_SHADER, super::BODIES_SHADER, SHADER].concat()
+        [&constants, super::PANEL_SHADER, SHADER].concat()
     }
 }
 
@@ -74,27 +72,27 @@ pub(super) enum Set {
 #[derive(Debug)]
 pub(super) struct Surfaces {
     /// Made when first needed.
-    pipelines: HashMap<(&'static str, Variant), Pipeline>,
+    pipelines: HashMap<(&'static str, Variant), wgpu::RenderPipeline>,
     variant: Variant,
-    corners: GrowingBuffer<Corner>,
-    indices: GrowingBuffer<u32>,
+    corners: GrowingBuffer,
+    indices: GrowingBuffer,
     /// The indices of the sets of each panel, and the label of the pipeline of each.
     ranges: Vec<[(&'static str, Range<u32>); 3]>,
 }
 
 impl Surfaces {
-    pub(super) fn new(stage: &Stage) -> Self {
+    pub(super) fn new(gpu: &Gpu) -> Self {
         Self {
             pipelines: HashMap::new(),
             variant: Variant { occluders: 0, tinted: false, edged: false },
-            corners: GrowingBuffer::new(&stage.gpu, "vertices", wgpu::BufferUsages::VERTEX, 1024),
-            indices: GrowingBuffer::new(&stage.gpu, "indices", wgpu::BufferUsages::INDEX, 4096),
+            corners: GrowingBuffer::new(gpu, "vertices", wgpu::BufferUsages::VERTEX, 1 << 16),
+            indices: GrowingBuffer::new(gpu, "indices", wgpu::BufferUsages::INDEX, 1 << 14),
             ranges: Vec::new(),
         }
     }
 
     /// Uploads the meshes of a picture, and makes the pipelines that it needs.
-    pub(super) fn write(&mut self, stage: &Stage, picture: &Picture) {
+    pub(super) fn write(&mut self, gpu: &Gpu, panels: &Panels, layouts: &Layouts, picture: &Picture) {
         let (mut corners, mut indices) = (Vec::new(), Vec::new());
         let mut add = |label: &'static str, meshes: &mut dyn Iterator<Item = &Mesh>| {
             let start = indices.len() as u32;
@@ -120,46 +118,50 @@ impl Surfaces {
             ]
         });
         self.ranges = ranges.collect();
-        self.corners.write(&stage.gpu, corners);
-        self.indices.write(&stage.gpu, indices);
+        self.corners.write(gpu, &corners);
+        self.indices.write(gpu, &indices);
         self.variant = Variant::of(picture);
         let module = OnceCell::new();
         for (label, _) in self.ranges.iter().flatten().filter(|(_, range)| !range.is_empty()) {
             // Panels share pipelines.
             self.pipelines.entry((*label, self.variant)).or_insert_with(|| {
-                let module = module.get_or_init(|| shader(&stage.gpu, "surface", &[&self.variant.parts()]));
-                made(stage, module, label)
+                let module = module.get_or_init(|| shader(gpu, "surface", &[&self.variant.parts()]));
+                made(gpu, [&panels.layout, &layouts.behind], module, label)
             });
         }
     }
 
-    /// Draws a set of all panels. What lies behind must have been drawn.
-    pub(super) fn draw(&self, pass: &mut Pass<'_>, stage: &Stage, bodies: &Bodies, places: &[Rectangle], set: Set) {
+    /// Draws a set of all panels. What lies behind must have been drawn, and be bound.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, panels: &Panels, picture: &Picture, set: Set) {
         pass.set_vertex_buffer(0, self.corners.buffer().slice(..));
         pass.set_index_buffer(self.indices.buffer().slice(..), wgpu::IndexFormat::Uint32);
-        if set == Set::Sound {
-            pass.set_bind_group(1, &bodies.behind, &[]);
-        }
-        stage.panels.draw_regions(pass, places.iter().copied(), |pass, panel| {
-            let (label, range) = &self.ranges[panel][set as usize];
-            if let Some(pipeline) = self.pipelines.get(&(*label, self.variant)) {
-                pass.set_pipeline(pipeline);
-                pass.draw_indexed(range.clone());
+        for (at, (panel, ranges)) in picture.panels.iter().zip(&self.ranges).enumerate() {
+            let (label, range) = &ranges[set as usize];
+            if !range.is_empty() && panel.region[2] > 0 && panel.region[3] > 0 {
+                pass.set_pipeline(&self.pipelines[&(*label, self.variant)]);
+                panels.bind(pass, at, panel, panel.region);
+                pass.draw_indexed(range.clone(), 0, 0..1);
             }
-        });
+        }
     }
 }
 
-/// The pipeline of a label.
-fn made(stage: &Stage, module: &wgpu::ShaderModule, label: &'static str) -> Pipeline {
-    let (panel, behind) = (&stage.panels.layout, &stage.layouts.behind);
-    let (entries, groups, targets) = match label {
+/// The pipeline of a label, with the layouts of panels and of what lies behind surfaces.
+fn made(
+    gpu: &Gpu,
+    groups: [&wgpu::BindGroupLayout; 2],
+    module: &wgpu::ShaderModule,
+    label: &'static str,
+) -> wgpu::RenderPipeline {
+    // Opacities of obstacles stay in the picture, as marks.
+    let over = wgpu::BlendState { alpha: wgpu::BlendComponent::REPLACE, ..wgpu::BlendState::ALPHA_BLENDING };
+    let (entries, groups, targets, blend) = match label {
         // As seen through the body, and as surfaces of it.
-        "turned over" => (["alarm_corner", "alarm_surface"], &[panel][..], 2),
-        "sound, before others" => (["sound_corner", "sound_before"], &[panel, behind][..], 1),
-        "obstacles" => (["obstacle_corner", "obstacle_surface"], &[panel][..], 1),
-        _ => (["sound_corner", "sound_surface"], &[panel][..], 1),
+        "turned over" => (["alarm_corner", "alarm_surface"], &groups[..1], 2, None),
+        "sound, before others" => (["sound_corner", "sound_before"], &groups[..], 1, None),
+        "obstacles" => (["obstacle_corner", "obstacle_surface"], &groups[..1], 1, Some(over)),
+        _ => (["sound_corner", "sound_surface"], &groups[..1], 1, None),
     };
     let vertices = &[Some(for_vertices::<Corner>(&ATTRIBUTES))];
-    Recipe { groups, vertices, targets, ..Recipe::bodies(label, module, entries) }.build(&stage.gpu)
+    Recipe { groups, vertices, targets, blend, ..Recipe::new(label, module, entries) }.build(gpu)
 }

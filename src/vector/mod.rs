@@ -151,10 +151,10 @@ fn halo(picture: &Picture, run: &TextRun) -> Option<Item> {
     run.has_halo.then(|| Item::stroke(outlines(picture, run), pen, picture.palette.background))
 }
 
-/// Gives a painter the flat items of a picture. Lit bodies below them, if there are any, come with their ground.
-pub(crate) fn give(painter: &mut Painter, picture: &Picture) {
-    let ground = lit(picture).next().is_none().then(|| ground(picture));
-    painter.take(ground.iter().chain(&picture.under).chain(&picture.above), picture);
+/// Paints a picture over the pixels of its lit bodies, whose lines are given, or over its background.
+pub(crate) fn paint(painter: &mut Painter, picture: &Picture, lines: &[Item], pixels: &mut [u8]) {
+    painter.take(picture.under.iter().chain(lines).chain(&picture.above), picture);
+    painter.paint(pixels);
 }
 
 /// The part of a lit panel that is not empty.

@@ -4,6 +4,7 @@ use super::Composer;
 use super::draft::Draft;
 use super::plane_marks::node_radius;
 use crate::look::ColourScale;
+use crate::picture::shell::boundaries;
 use crate::picture::surface::{Lines, SurfaceLines, Surroundings};
 use crate::picture::wire::Wire;
 use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
@@ -41,7 +42,7 @@ impl Draft<'_> {
             flat: &self.run.snapshot.flat,
             shades: self.shades.as_ref(),
         };
-        let sets = self.composer.shell.boundaries(self.body, &self.run.snapshot.turned_over);
+        let sets = boundaries(self.body, &self.run.snapshot.turned_over);
         let total = sets.iter().map(Vec::len).sum();
         let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
         surroundings.add(&sets[0], total, kinds, &mut sound, lines);

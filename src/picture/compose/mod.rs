@@ -28,7 +28,6 @@ use super::layout::tree::Solved;
 use super::layout::{Part, Rectangle, Scale, Written};
 use super::number;
 use super::shadow;
-use super::shell::Shell;
 use super::skin::Skin;
 use super::tally::Tally;
 use super::text::Fonts;
@@ -64,8 +63,6 @@ pub struct Composer<'a> {
     descriptions: Vec<String>,
     /// The signed area of each polygon of a body in the plane.
     rest_areas: Vec<f64>,
-    /// The faces on its outside, and the faces between elements.
-    shell: Shell,
     /// The surface of the body, and the edges of its triangles if it casts a shadow.
     skin: Skin,
     seams: Vec<shadow::Edge>,
@@ -146,7 +143,6 @@ impl<'a> Composer<'a> {
             tally,
             descriptions,
             rest_areas: areas,
-            shell: if visible.surfaces { Shell::new(body) } else { Shell::default() },
             seams: if throws_shadow { shadow::edges(&skin.triangles) } else { Vec::new() },
             skin,
             ears,

@@ -12,7 +12,7 @@ use crate::picture::obstacle::{self, Site, Staged, Staging};
 use crate::picture::order::farthest_first;
 use crate::picture::pointer::Pointers;
 use crate::picture::surface::SurfaceLines;
-use crate::picture::{Item, Line, Mesh, Obstacles, Panel, Sight, Solid};
+use crate::picture::{Item, Line, Obstacles, Panel, Sight, Solid};
 use crate::sim::geometry;
 use glam::DVec3;
 
@@ -48,7 +48,7 @@ impl Draft<'_> {
         let [sound, turned_over] = self.surfaces(&mut lines);
         let SurfaceLines { drawn: mut lines, borders } = lines;
         let of_body = lines.len();
-        let (mut obstacles, staged) = self.obstacles([&sound, &turned_over], &mut lines, above);
+        let (mut obstacles, staged) = self.obstacles(&mut lines, above);
         let corners = |solid: &Solid| solid.mesh.vertices.iter().map(|vertex| self.place(vertex.position)).collect();
         obstacles.fade = self.fading(&obstacles.solids.iter().map(corners).collect::<Vec<_>>());
         let borders = borders.into_iter().map(|border| border.line).chain(lines[of_body..].iter().copied()).collect();
@@ -125,7 +125,7 @@ impl Draft<'_> {
     }
 
     /// All obstacles in space but the ground, with their lines and marks.
-    fn obstacles(&self, surfaces: [&Mesh; 2], lines: &mut Vec<Line>, above: &mut Vec<Item>) -> (Obstacles, Staged) {
+    fn obstacles(&self, lines: &mut Vec<Line>, above: &mut Vec<Item>) -> (Obstacles, Staged) {
         let staging = Staging {
             site: self.site(),
             cell: self.cell(),
@@ -137,7 +137,6 @@ impl Draft<'_> {
             reach: &self.composer.reach,
         };
         staging.arrows(&self.pointers(self.viewport), above);
-        staging.pierced(&surfaces, lines);
         staging.draw(lines)
     }
 

@@ -4,7 +4,6 @@
 mod half_space;
 mod near;
 mod occluder;
-mod pierced;
 mod plane;
 mod shapes;
 mod slab;

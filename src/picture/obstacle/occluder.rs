@@ -2,7 +2,6 @@
 
 use super::half_space::half_space;
 use super::near::REACH;
-use super::pierced::height;
 use super::space::Staging;
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::{MOST_OCCLUDERS, Occluder};
@@ -62,6 +61,25 @@ impl Staging<'_> {
             rotation: turn.to_array().map(narrow),
             radius: narrow(radius / self.site.side),
             is_clear: matches!(obstacle.shape, Shape::Floor { .. } | Shape::Plate { .. }),
+        }
+    }
+}
+
+/// The distance of a point from a solid shape before it moves (m); negative inside.
+fn height(shape: &Shape, point: DVec3) -> f64 {
+    match *shape {
+        Shape::Floor { normal, height } => normal.dot(point) - height,
+        Shape::Plate { point: surface, normal } => normal.dot(point - surface),
+        Shape::Sphere { centre, radius } => point.distance(centre) - radius,
+        Shape::Capsule { from, to, radius } => {
+            let along = to - from;
+            let squared = along.length_squared();
+            let share = if squared > 0.0 { ((point - from).dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
+            point.distance(from + share * along) - radius
+        }
+        Shape::Box { centre, half, rotation } => {
+            let beyond = (rotation.conjugate() * (point - centre)).abs() - half;
+            beyond.max(DVec3::ZERO).length() + beyond.max_element().min(0.0)
         }
     }
 }
