@@ -3,14 +3,13 @@
 use super::palette::Palette;
 use crate::colour::{Colour, LINE_CONTRAST, Vision, contrast, difference, readable, written};
 use crate::reading::collector::{Collector, PathPart};
-use std::fmt;
 
 /// The least difference of turned-over elements from others, for any colour vision (CIEDE2000).
 const LEAST_DIFFERENCE: f64 = 20.0;
 
 /// Checks the contrast of runs' chosen colours with the background, and their difference from turned-over elements.
 pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &mut Collector<'_>) {
-    let like_alarm = |colour| TooLike::find(colour, palette.alarm);
+    let like_alarm = |colour| too_like(colour, palette.alarm);
     for (at, &colour) in chosen.iter().enumerate() {
         let Some(colour) = colour else { continue };
         let path = [PathPart::Key("run"), PathPart::Index(at), PathPart::Key("colour")];
@@ -40,26 +39,13 @@ pub(crate) fn check_runs(chosen: &[Option<Colour>], palette: &Palette, report: &
     }
 }
 
-/// A resemblance to the colour of turned-over elements.
-struct TooLike {
-    difference: f64,
-    vision: Vision,
-}
-
-impl TooLike {
-    /// The resemblance of a colour for the eyes that see the least difference; `None` if it differs enough for all.
-    fn find(colour: Colour, alarm: Colour) -> Option<Self> {
-        let seen = Vision::ALL.map(|vision| Self { difference: difference(colour, alarm, vision), vision });
-        let nearest = seen.into_iter().min_by(|one, other| one.difference.total_cmp(&other.difference));
-        nearest.filter(|nearest| nearest.difference < LEAST_DIFFERENCE)
-    }
-}
-
-impl fmt::Display for TooLike {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (eyes, found) = (self.vision.name(), rounded_down(self.difference));
-        write!(out, "to {eyes} they differ by {found} (CIEDE2000); expected at least {LEAST_DIFFERENCE}")
-    }
+/// How little a colour differs from that of turned-over elements, for the eyes that see the least difference; `None` if it
+/// differs enough for all.
+fn too_like(colour: Colour, alarm: Colour) -> Option<String> {
+    let seen = Vision::ALL.map(|vision| (difference(colour, alarm, vision), vision.name()));
+    let (found, eyes) = seen.into_iter().min_by(|one, other| one.0.total_cmp(&other.0))?;
+    let found = Some(found).filter(|found| *found < LEAST_DIFFERENCE).map(rounded_down)?;
+    Some(format!("to {eyes} they differ by {found} (CIEDE2000); expected at least {LEAST_DIFFERENCE}"))
 }
 
 /// A number rounded down to one decimal, so that a value just below a limit does not seem to meet it.
