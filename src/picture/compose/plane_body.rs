@@ -216,19 +216,20 @@ fn triangles(corners: &[Corner]) -> Vec<[Corner; 3]> {
     if winding(&corners.iter().map(|(at, _)| *at).collect::<Vec<_>>()) < 0.0 {
         corners.reverse();
     }
-    if let [a, b, c] = corners[..] {
-        return vec![[a, b, c]];
-    }
     let points: Vec<_> = corners.iter().map(|(at, _)| DVec2::from(at.to_array().map(f64::from))).collect();
-    if let Some(ears) = ears(&points) {
-        return ears.into_iter().map(|ear| ear.map(|at| corners[at as usize])).collect();
-    }
-    let sum = corners.iter().fold(Corner::default(), |sum, one| (sum.0 + one.0, sum.1 + one.1));
-    let count = narrow_count(corners.len());
-    let middle = (sum.0 / count, sum.1 / count);
-    let sides = corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&from, &to)| [from, to, middle]);
+    let filled: Vec<[Corner; 3]> = match (&corners[..], ears(&points)) {
+        (&[a, b, c], _) => vec![[a, b, c]],
+        (_, Some(ears)) => ears.into_iter().map(|ear| ear.map(|at| corners[at as usize])).collect(),
+        _ => {
+            let sum = corners.iter().fold(Corner::default(), |sum, one| (sum.0 + one.0, sum.1 + one.1));
+            let count = narrow_count(corners.len());
+            let middle = (sum.0 / count, sum.1 / count);
+            corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&from, &to)| [from, to, middle]).collect()
+        }
+    };
     // Where sides cross, some are the other way round.
-    sides.map(|[a, b, c]| if winding(&[a.0, b.0, c.0]) < 0.0 { [b, a, c] } else { [a, b, c] }).collect()
+    let clockwise = |[a, b, c]: [Corner; 3]| if winding(&[a.0, b.0, c.0]) < 0.0 { [b, a, c] } else { [a, b, c] };
+    filled.into_iter().map(clockwise).collect()
 }
 
 fn whole(triangles: &[[Corner; 3]]) -> Path {
