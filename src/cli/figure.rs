@@ -1,7 +1,7 @@
 //! `figure`: the paper's figures, and figures of the user.
 
 use super::console;
-use super::failure::{Failure, Status, warn_of_figure};
+use super::failure::{Failure, Status, note, warn_of_figure};
 use super::interrupt;
 use super::options::{DeviceOptions, PrintOptions, ThemeOption, ThreadOptions, number_in, size};
 use super::record;
@@ -167,10 +167,13 @@ impl FigureCommand {
     fn make(&self, figure: &Figure, path: &Path, gpu: Option<&Gpu>) -> Result<Option<(Made, Value)>, Failure> {
         let file = AtomicFile::create(path)?;
         let Some(moments) = self.take(figure) else { return Ok(None) };
-        let picture = compose_figure(figure, &moments).map_err(|error| {
-            let [width, height] = figure.size;
-            Failure::usage(format!("{}: at {width}×{height} {error}", figure.name))
-        })?;
+        let [width, height] = figure.size;
+        let (picture, left_out) = compose_figure(figure, &moments)
+            .map_err(|error| Failure::usage(format!("{}: at {width}×{height} {error}", figure.name)))?;
+        if !self.printing.quiet && !left_out.is_empty() {
+            let left_out = left_out.join("; ");
+            note(&format!("{}: not everything has room in {width}×{height}: {left_out}", figure.name));
+        }
         let gpu = gpu.filter(|_| figure.is_lit());
         let tags = Tags::of_figure(figure, &moments, &adapter_name(gpu)).texts();
         let title = &figure.title;

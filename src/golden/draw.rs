@@ -188,7 +188,7 @@ fn draw_figure(
     if is_drawn {
         let [width, height] = figure.size;
         let no_room = |error| DrawError::NoRoom(format!("{}: at {width}×{height} {error}", figure.name));
-        let picture = compose_figure(&figure, &moments).map_err(no_room)?;
+        let (picture, _) = compose_figure(&figure, &moments).map_err(no_room)?;
         let image = Renderer::new(gpu, figure.size)?.draw(&picture)?;
         let texts = Tags::of_figure(&figure, &moments, &adapter_name(gpu.filter(|_| figure.is_lit()))).texts();
         files.insert(format!("{}.png", figure.name), encode(figure.size, image.as_raw(), &texts, Compression::Small));

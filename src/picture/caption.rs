@@ -1,9 +1,11 @@
 //! The text of panels: names, clock, counts and numbers, and the lines between panels.
 
-use super::layout::steps::{BESIDE, BOLD, MARGIN, NEAR, STRONG};
-use super::layout::{Baselines, Layout, Part, Rectangle, Scale};
+use super::layout::steps::{APART, BESIDE, BOLD, MARGIN, NEAR, STRONG};
+use super::layout::tree::Solved;
+use super::layout::{self, Baselines, Layout, Part, Rectangle, Scale};
 use super::tally::Tally;
 use super::text::{Fonts, TextRun, Weight};
+use super::wrap::{balanced, cut, wrapped};
 use super::{Item, Panel, number};
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette};
@@ -109,21 +111,42 @@ impl Number {
 }
 
 impl Writer<'_> {
-    /// The title above all panels.
-    pub(super) fn title(&mut self, layout: &Layout, lines: &[String]) {
-        // The title and the words of panels have the same left edge.
-        let (margin, size) = (self.scale.margin(), layout.around.heading());
-        for (line, baseline) in lines.iter().zip(layout.baselines(Part::Title, size)) {
-            self.left(line, Weight::SemiBold, size, self.palette.text, margin, baseline);
+    /// The lines of a title and of a caption in a room of a width (px), with type of a scale.
+    pub(super) fn titles(&self, scale: Scale, [title, caption]: [&str; 2], room: f64) -> [Vec<String>; 2] {
+        [
+            balanced(self.fonts, title, Weight::SemiBold, Part::Title.size(scale), room),
+            wrapped(self.fonts, caption, Weight::Regular, Part::Caption.size(scale), room),
+        ]
+    }
+
+    /// Writes lines into the boxes of a part of a page, from a left end (px), as many as have room, with type of a scale.
+    pub(super) fn lines(&mut self, page: &Solved<Part>, part: Part, scale: Scale, lines: &[String], left: f64) {
+        let (weight, colour) = match part {
+            Part::Title | Part::Label(_) => (Weight::SemiBold, self.palette.text),
+            _ => (Weight::Regular, self.palette.second_text),
+        };
+        let baselines: Vec<_> = layout::baselines(page, part, scale).collect();
+        for (line, &baseline) in cut(lines.to_vec(), baselines.len()).iter().zip(&baselines) {
+            self.left(line, weight, part.size(scale), colour, left, baseline);
         }
     }
 
-    /// The caption below all panels.
-    pub(super) fn caption(&mut self, layout: &Layout, lines: &[String]) {
-        let (margin, size) = (self.scale.margin(), layout.around.caption());
-        for (line, baseline) in lines.iter().zip(layout.baselines(Part::Caption, size)) {
-            self.left(line, Weight::Regular, size, self.palette.second_text, margin, baseline);
-        }
+    /// The lowest baseline of a title and a caption below it that leaves a length free at its right, in a room of a width
+    /// (px).
+    pub(super) fn beside(
+        &self,
+        page: &Solved<Part>,
+        scale: Scale,
+        titles: &[Vec<String>],
+        [length, room]: [f64; 2],
+    ) -> Option<f64> {
+        let parts = [(Part::Title, Weight::SemiBold), (Part::Caption, Weight::Regular)].into_iter().zip(titles);
+        let lines = parts.flat_map(|((part, weight), lines)| {
+            let widths = lines.iter().map(move |line| self.fonts.width(line, weight, part.size(scale)));
+            layout::baselines(page, part, scale).zip(widths)
+        });
+        let free = lines.filter(|(_, taken)| taken + APART * scale.unit + length <= room);
+        free.map(|(baseline, _)| baseline).last()
     }
 
     /// Letter, name and second line, upper left. `taken` (px) is kept free at the right of each line.

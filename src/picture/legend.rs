@@ -12,6 +12,7 @@ use super::layout::tree::{self, Node};
 use super::page::{Path, point};
 use super::text::Weight;
 use crate::colour::Colour;
+use crate::look::View;
 use glam::DVec2;
 use std::borrow::Cow;
 
@@ -77,14 +78,21 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// The key of a picture of a size (px) with panels of a scale, with a number of samples, and with or without a bar;
-    /// `None` if it could not be read.
-    pub(super) fn new(size: [u32; 2], scale: Scale, samples: usize, has_bar: bool) -> Option<Self> {
-        let room = f64::from(size[0]) - 2.0 * scale.margin();
+    /// The key of a view with panels of a scale; `None` if there is nothing to explain.
+    pub(super) fn of(view: &View, scale: Scale) -> Option<Self> {
+        let samples = [view.visible.displacements, view.ghost.is_some(), !view.paths.is_empty()];
+        let samples = samples.iter().filter(|&&is_shown| is_shown).count();
+        view.wants_legend().then(|| Self::new(view.size, scale, samples, view.colour.is_some()))
+    }
+
+    /// The key of a picture of a size (px) with panels of a scale, with a number of samples, and with or without a bar. A
+    /// key that could not be read has no room.
+    pub(super) fn new(size: [u32; 2], scale: Scale, samples: usize, has_bar: bool) -> Self {
+        let room = f64::from(size[0].max(1)) - 2.0 * scale.margin();
         let bar = if has_bar { BAR } else { 0.0 };
         let needed = (samples as f64 + bar) * TILE + (samples + usize::from(has_bar)).saturating_sub(1) as f64 * MARGIN;
         let unit = scale.type_unit().min(room / needed);
-        Scale::legible(SMALL * unit).then_some(Self { unit, height: NAME_ROW * unit })
+        Self { unit, height: if Scale::legible(SMALL * unit) { NAME_ROW * unit } else { f64::INFINITY } }
     }
 
     /// Draws the key from a height on in a picture of a width (px).

@@ -66,6 +66,11 @@ impl Tally {
         Self { rows: Vec::new(), are_layers: false, count: self.count }
     }
 
+    /// Whether it has squares in rows, if they have room.
+    pub(super) fn has_rows(&self) -> bool {
+        !self.rows.is_empty()
+    }
+
     /// Whether its rows are several layers of the body.
     pub(super) fn has_layers(&self) -> bool {
         self.are_layers && self.rows.len() > 1

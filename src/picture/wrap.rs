@@ -51,6 +51,17 @@ pub(super) fn balanced(fonts: &Fonts, text: &str, weight: Weight, size: f64, roo
     best
 }
 
+/// As many lines as fit. If some are left out, the last one ends in an ellipsis.
+pub(super) fn cut(mut lines: Vec<String>, room: usize) -> Vec<String> {
+    let is_cut = lines.len() > room;
+    lines.truncate(room);
+    if let Some(last) = lines.last_mut().filter(|_| is_cut) {
+        last.pop();
+        last.push('…');
+    }
+    lines
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -465,6 +465,7 @@ fn several_charts_have_one_axis_of_time() {
     assert_eq!(one.points[0][0], other.points[0][0]);
     assert_eq!((circles(&picture).len(), said("3 s").len(), said("Mass-spring").len()), (4, 1, 3));
     // Charts without room leave the others in place.
+    scene.view.title = "A title".to_owned();
     scene.view.charts.extend([Diagnostic::Kinetic, Diagnostic::ShapeError, Diagnostic::Elastic, Diagnostic::Momentum]);
     let shown = moments(&compose(&scene, &frame)).len();
     assert!((2..6).contains(&shown), "{shown}");

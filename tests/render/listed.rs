@@ -228,7 +228,7 @@ impl<'a> Composer<'a> {
 
 /// A figure with its list read back.
 pub(super) fn compose_figure(figure: &Figure, moments: &Moments) -> Result<Listed, impl std::fmt::Debug> {
-    picture::compose_figure(figure, moments).map(Listed::from)
+    picture::compose_figure(figure, moments).map(|(picture, _)| Listed::from(picture))
 }
 
 /// Makes items larger, with their places. Text stands where it stands at its usual size.

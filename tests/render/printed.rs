@@ -206,7 +206,7 @@ fn a_browser_shows_each_shipped_picture_in_the_plane_as_it_is_drawn() {
                 if figure.is_lit() {
                     continue;
                 }
-                compose_figure(&figure, &Moments::new(&figure)).expect("room")
+                compose_figure(&figure, &Moments::new(&figure)).expect("room").0
             } else {
                 let scene = Scene::load(&path, &Limits::default()).expect("a scene that ships");
                 if scene.is_lit() {

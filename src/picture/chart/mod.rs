@@ -18,7 +18,7 @@ pub(super) use layer::simplified;
 pub use names::Name;
 pub(super) use names::spread;
 pub(super) use series::{name, style};
-pub(super) use stack::{Room, Stack};
+pub(super) use stack::Stack;
 
 use super::caption::Writer;
 use super::layout::steps::{BESIDE, CLOSE, FREE, MARGIN, NEAR, SHORT, SMALL, TICK};

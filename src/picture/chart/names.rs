@@ -4,8 +4,8 @@ use super::series::Series;
 use super::{Chart, Place};
 use crate::colour::Colour;
 use crate::picture::caption::Writer;
-use crate::picture::layout::steps::{BESIDE, FREE, HAIR, SMALL};
-use crate::picture::layout::{CURVE_NAME, Scale};
+use crate::picture::layout::Scale;
+use crate::picture::layout::steps::{BESIDE, FREE, GAP, HAIR, SMALL};
 use crate::picture::text::{Fonts, Weight};
 
 /// The opacity of a leader line. It is dotted if its curve ends early, or it would look like a part of the curve.
@@ -36,12 +36,12 @@ pub(super) struct Shortened {
 }
 
 impl Shortened {
-    /// The names of runs in a room of a width and a height (px). `None` for a single run, which needs no name, and if no
+    /// The names of runs in a room of a width (px). `None` for a single run, which needs no name, and if no
     /// name would be legible.
-    pub(super) fn new(fonts: &Fonts, series: &[Series], unit: f64, [width, height]: [f64; 2]) -> Option<Self> {
+    pub(super) fn new(fonts: &Fonts, series: &[Series], unit: f64, width: f64) -> Option<Self> {
         let size = SMALL * unit;
         let room = width - BESIDE * unit;
-        let has_room = fitting(height, unit) > 0 && room >= LEAST_ROOM * size && Scale::legible(size);
+        let has_room = room >= LEAST_ROOM * size && Scale::legible(size);
         if series.iter().all(|one| one.points.is_empty()) || series.len() < 2 || !has_room {
             return None;
         }
@@ -70,8 +70,8 @@ pub(super) fn write(writer: &mut Writer<'_>, chart: &Chart, place: Place, names:
     let mut named: Vec<_> = names.iter().take(fitting(bottom - top, unit)).map(|one| (one, end(one))).collect();
     named.sort_by(|(_, [_, one]), (_, [_, other])| one.total_cmp(other));
     let heights: Vec<_> = named.iter().map(|&(_, [_, y])| y).collect();
-    let half = 0.5 * CURVE_NAME * unit;
-    let places = spread(&heights, CURVE_NAME * unit, [top + half, bottom - half]);
+    let half = 0.5 * GAP * unit;
+    let places = spread(&heights, GAP * unit, [top + half, bottom - half]);
     let left = place.right + BESIDE * unit;
     for (&(Name { text, colour, .. }, [x, y]), &height) in named.iter().zip(&places) {
         let is_early = x < place.right - 1.0;
@@ -90,7 +90,7 @@ pub(super) fn write(writer: &mut Writer<'_>, chart: &Chart, place: Place, names:
 
 /// The number of names that fit above each other into a height (px).
 fn fitting(height: f64, unit: f64) -> usize {
-    (height / (CURVE_NAME * unit) + 1e-6) as usize
+    (height / (GAP * unit) + 1e-6) as usize
 }
 
 /// The places nearest to given rising ones that are at least `apart` from each other and within two ends (isotonic

@@ -8,7 +8,7 @@ use super::series::{self, Series};
 use super::{Chart, Place};
 use crate::picture::caption::Writer;
 use crate::picture::layout::steps::{BESIDE, NEAR, ROW, SHORT, SMALL};
-use crate::picture::layout::{CURVE_NAME, Scale};
+use crate::picture::layout::{Room, Scale};
 use crate::picture::number;
 use crate::picture::text::{Fonts, Weight};
 use crate::reading::captions::elements;
@@ -143,20 +143,6 @@ fn cross(series: &Series) -> Option<Annotation> {
     series.diverged.map(|at| Annotation::Cross { line: series.points.clone(), at, colour })
 }
 
-/// The room of charts (px).
-pub(in crate::picture) struct Room {
-    /// The middle of the rings above all charts.
-    pub rings: f64,
-    /// Left and right end of all charts.
-    pub span: [f64; 2],
-    /// The left end of their names.
-    pub names: Option<f64>,
-    /// Top and bottom of each chart.
-    pub charts: Vec<[f64; 2]>,
-    /// The extent of names at the ends of curves above and below each chart.
-    pub beyond: [f64; 2],
-}
-
 /// Charts above each other.
 pub(in crate::picture) struct Stack {
     quantities: Vec<Quantity>,
@@ -168,7 +154,7 @@ pub(in crate::picture) struct Stack {
 }
 
 impl Stack {
-    /// Charts of diagnostics, each with the time series of scenes, with room for the names of runs (px).
+    /// Charts of diagnostics, each with the time series of scenes, with a width for the names of runs (px).
     ///
     /// # Panics
     /// If there is no scene.
@@ -176,7 +162,7 @@ impl Stack {
         diagnostics: &[Diagnostic],
         of_scenes: &[(&Scene, &History)],
         writer: &Writer<'_>,
-        room: [f64; 2],
+        room: f64,
         label: impl Fn(&str) -> String,
     ) -> Self {
         let (fonts, scale) = (writer.fonts, writer.scale);
@@ -198,10 +184,10 @@ impl Stack {
         self.ends.as_ref().map_or(0.0, |ends| ends.width)
     }
 
-    /// The height that the names of all curves of a chart need (px in the reference picture).
-    pub(in crate::picture) fn ends_height(&self) -> f64 {
+    /// The most names at the ends of the curves of a chart.
+    pub(in crate::picture) fn names(&self) -> usize {
         let names = self.quantities.iter().map(|one| one.series.len()).max().unwrap_or(0);
-        self.ends.as_ref().map_or(0.0, |_| names as f64 * CURVE_NAME)
+        self.ends.as_ref().map_or(0, |_| names)
     }
 
     pub(in crate::picture) fn count(&self) -> usize {
@@ -236,7 +222,7 @@ impl Stack {
         let count = placed.len();
         for (at, (one, (chart, place))) in self.quantities.iter().zip(&mut placed).enumerate() {
             if let Some(names) = self.ends.as_ref().map(|ends| ends.at(&one.series)) {
-                chart.annotations.push(Annotation::Names { names, beyond: room.beyond });
+                chart.annotations.push(Annotation::Names { names, beyond: [room.beyond; 2] });
             }
             chart.ground(ground, *place, at + 1 == count);
             chart.curves(curves, *place);
@@ -245,7 +231,7 @@ impl Stack {
             if chart.layers.iter().any(|layer| layer.has_band(chart, *place)) {
                 notes.extend(BAND);
             }
-            let free = place.bottom - place.top + room.beyond.iter().sum::<f64>() - scale.caption();
+            let free = place.bottom - place.top + 2.0 * room.beyond - scale.caption();
             let fitting = if Scale::legible(SMALL * unit) { (free / (SHORT * unit)).max(0.0) as usize } else { 0 };
             notes.truncate(fitting);
             one.write_name(ground, &notes, [left, 0.5 * (place.top + place.bottom)]);

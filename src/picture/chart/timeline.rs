@@ -3,20 +3,18 @@
 
 use super::annotation::{Annotation, Flag};
 use super::event::{self, Event};
-use super::stack::{Room, Stack};
+use super::stack::Stack;
 use super::{Chart, Place};
 use crate::picture::Colour;
 use crate::picture::caption::Writer;
-use crate::picture::layout::steps::{APART, BESIDE, GAP, MARGIN, NAME_ROW, NEAR, RING, SHORT, SMALL};
-use crate::picture::layout::{Rectangle, Scale};
+use crate::picture::layout::steps::MARGIN;
+use crate::picture::layout::{Layout, Room};
 use crate::picture::page::Item;
 use crate::runner::history::History;
 use crate::scene::Scene;
 use crate::sim::{Diagnostic, Frame, Status};
 
-/// The narrowest and the lowest chart (px), and the largest shares of the room for names of charts and for the names at
-/// the ends of curves.
-const LEAST: [f64; 2] = [MARGIN, SMALL];
+/// The largest shares of the room for names of charts and for the names at the ends of curves.
 const NAME: f64 = 0.3;
 const NAMES: f64 = 0.22;
 
@@ -34,23 +32,20 @@ pub(in crate::picture) struct Timeline {
 }
 
 impl Timeline {
-    /// The charts of all runs of a history of a scene, as many charts as a number in a room (px) of the picture of
-    /// a writer. `explained` returns the number of events of a run whose words fit into its panel.
+    /// The charts of all runs of a history of a scene, as many charts as have boxes in a layout, in the
+    /// picture of a writer. `explained` returns the number of events of a run whose words fit into its panel.
     pub(in crate::picture) fn new<'w>(
         history: &History,
         scene: &Scene,
         writer: impl Fn() -> Writer<'w>,
-        room: Option<(Rectangle, usize)>,
+        layout: &Layout,
         explained: impl Fn(&[&Event]) -> usize,
     ) -> Self {
         let [mut ground, mut curves] = [writer(), writer()];
-        let (unit, diagnostics) = (ground.scale.type_unit(), scene.view.charts.clone());
-        let ([left, top, width, height], count) =
-            room.map_or_else(Default::default, |(room, count)| (room.map(f64::from), count));
-        let beyond = if count > 1 { [BESIDE; 2] } else { [NEAR, SHORT] };
-        let beyond = beyond.map(|length| length * unit);
-        let names_room = [NAMES * width, height / count.max(1) as f64];
-        let stack = Stack::new(&diagnostics, &[(scene, history)], &ground, names_room, str::to_owned);
+        let diagnostics = scene.view.charts.clone();
+        let side = layout.scale.margin();
+        let width = f64::from(scene.view.size[0]) - 2.0 * side;
+        let stack = Stack::new(&diagnostics, &[(scene, history)], &ground, NAMES * width, str::to_owned);
         let colours = stack.first().iter().map(|one| (one.run, one.style.colour)).collect();
         let mut events = event::events(diagnostics[0], stack.first(), scene.body.extent(), history.end);
         // A number without an explanation in its panel would mean nothing.
@@ -63,15 +58,11 @@ impl Timeline {
                 is_kept
             });
         }
-        // Rings of flags need room above the charts.
-        let above = if events.is_empty() { GAP } else { NAME_ROW };
-        let gaps = count.saturating_sub(1) as f64;
-        let chart = (height - (above + SHORT + gaps * APART) * unit) / count.max(1) as f64;
-        let is_drawn = room.is_some() && history.end > 0.0 && Scale::legible(SMALL * unit);
-        let charts = (is_drawn && chart >= LEAST[1]).then(|| {
-            let has_names = stack.names_width <= NAME * width;
-            let names = if has_names { stack.names_width } else { 0.0 };
-            let span = [left + stack.numbers_width + names, left + width - stack.ends_width()].map(f64::round);
+        let has_names = stack.names_width <= NAME * width;
+        let left = side + stack.numbers_width + if has_names { stack.names_width } else { 0.0 };
+        let span = [left, side + width - stack.ends_width()];
+        let room = Room::new(&layout.parts, ground.scale, span, has_names.then_some(side), !events.is_empty());
+        let charts = room.filter(|_| history.end > 0.0 && span[1] - span[0] >= MARGIN).map(|room| {
             let flag = |(number, event): (usize, &Event)| {
                 let own = stack.first().iter().find(|one| one.run == event.run);
                 let colour = own.map_or(ground.palette.axis, |one| one.style.colour);
@@ -79,19 +70,7 @@ impl Timeline {
             };
             let flags: Vec<_> = (1..).zip(&events).map(flag).collect();
             let time = ([0.0, history.end], event::split(stack.first(), history.end));
-            let ends = |at: usize| {
-                let top = top + above * unit + at as f64 * (chart + APART * unit);
-                [top, top + chart].map(f64::round)
-            };
-            let room = Room {
-                rings: top + RING * unit,
-                span,
-                names: has_names.then_some(left),
-                charts: (0..count).map(ends).collect(),
-                beyond,
-            };
-            let has_room = span[1] - span[0] >= LEAST[0];
-            if has_room { stack.draw([&mut ground, &mut curves], &room, time, &flags) } else { Vec::new() }
+            stack.draw([&mut ground, &mut curves], &room, time, &flags)
         });
         let still = [ground, curves].map(|writer| writer.items().collect());
         Self { diagnostics, colours, events, charts: charts.unwrap_or_default(), still }

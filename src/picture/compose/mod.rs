@@ -25,7 +25,7 @@ use super::chart::timeline::Timeline;
 use super::ears::{Ears, bare_elements};
 use super::framing::{Seen, Shot};
 use super::layout::tree::Solved;
-use super::layout::{Part, Rectangle, Scale, Written};
+use super::layout::{Part, Rectangle, Scale, Written, baselines};
 use super::number;
 use super::shadow;
 use super::skin::Skin;
@@ -170,7 +170,7 @@ impl<'a> Composer<'a> {
         let layout = self.words().around(&runs, self.columns(&runs)).layout;
         let (panel, in_panel) = (layout.panels.first().filter(|_| layout.written.events), self.writer(layout.scale));
         let explained = |events: &[&Event]| panel.map_or(0, |&panel| in_panel.explained(panel, events));
-        Some(Timeline::new(history, scene, || self.writer(layout.around), layout.charts(), explained))
+        Some(Timeline::new(history, scene, || self.writer(layout.around), &layout, explained))
     }
 
     /// The words of its pictures.
@@ -197,7 +197,7 @@ impl<'a> Composer<'a> {
             }
         };
         let Arranged { around, shot, .. } = arranged;
-        let Around { layout, title, caption, legend, clock_above } = around;
+        let Around { layout, titles, legend, .. } = around;
         let scale = layout.scale;
         let places = layout.panels.iter().zip(&frame.runs);
         let framings = places.map(|(&panel, run)| self.framing(shot.as_ref(), run, (panel, scale)));
@@ -207,11 +207,14 @@ impl<'a> Composer<'a> {
         let hairlines = std::mem::take(&mut writer.marks);
         self.write(frame, arranged, framings.first(), &mut writer);
         self.timeline.iter().for_each(|timeline| timeline.draw(&mut writer, frame));
-        writer.title(layout, title);
-        if let Some(baseline) = layout.baselines(Part::Clock, layout.around.title()).next().filter(|_| *clock_above) {
+        // The title and the words of panels have the same left edge.
+        let margin = scale.margin();
+        for (part, lines) in [Part::Title, Part::Caption].into_iter().zip(titles) {
+            writer.lines(&layout.parts, part, layout.around, lines, margin);
+        }
+        if let Some(baseline) = baselines(&layout.parts, Part::Clock, layout.around).next() {
             writer.clock_alone(layout.around, [f64::from(size[0]), baseline], frame.time, &view.clock);
         }
-        writer.caption(layout, caption);
         let place = layout.parts.get(Part::Legend).zip(layout.panels.first());
         if let Some(((legend, ([_, top, width, _], &panel)), framing)) = legend.zip(place).zip(framings.first()) {
             let samples = self.samples(legend, panel, framing, scale);
@@ -305,17 +308,6 @@ impl<'a> Composer<'a> {
         let areas = body.elements.iter().zip(&self.rest_areas).filter(|(_, rest)| **rest != 0.0);
         areas.map(|(nodes, rest)| area(nodes, &snapshot.position) / rest).reduce(f64::min)
     }
-}
-
-/// As many lines as fit. If some are left out, the last one ends in an ellipsis.
-fn cut(mut lines: Vec<String>, room: usize) -> Vec<String> {
-    let is_cut = lines.len() > room;
-    lines.truncate(room);
-    if let Some(last) = lines.last_mut().filter(|_| is_cut) {
-        last.pop();
-        last.push('…');
-    }
-    lines
 }
 
 /// The nodes with arrows: those on the surface, and those of elements without faces.

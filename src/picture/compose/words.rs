@@ -1,18 +1,14 @@
 //! The words of a scene's pictures: their places, which are the same in all frames, and words without room.
 
-use super::{Composer, cut};
+use super::Composer;
 use crate::look::{Ghost, Labels, LineStyle, Palette, View};
 use crate::picture::caption::{self, Heading, Writer};
 use crate::picture::chart::{event, style};
-use crate::picture::layout::{Layout, Part, Scale, Wanted};
+use crate::picture::layout::{self, Layout, Part, Scale, Wanted};
 use crate::picture::legend::Legend;
-use crate::picture::text::{Fonts, Weight};
-use crate::picture::wrap::{balanced, wrapped};
+use crate::picture::text::Fonts;
 use crate::runner::history::History;
 use crate::scene::Scene;
-
-/// The most lines of titles and captions.
-const MOST_LINES: [usize; 2] = [4, 200];
 
 /// From this number of panels on, only the first one has the part of descriptions that all share.
 const MANY: usize = 4;
@@ -32,9 +28,8 @@ pub(super) struct Words<'a> {
 #[derive(Debug)]
 pub(super) struct Around {
     pub(super) layout: Layout,
-    /// Lines of the title and of the caption, as many as have room.
-    pub(super) title: Vec<String>,
-    pub(super) caption: Vec<String>,
+    /// The lines of the title and of the caption.
+    pub(super) titles: [Vec<String>; 2],
     /// The key of colours and arrows.
     pub(super) legend: Option<Legend>,
     /// Whether the clock stands above all panels, because it has no room beside the heading of one.
@@ -49,13 +44,15 @@ impl<'a> Words<'a> {
     /// The text around the panels of some runs, in columns.
     pub(super) fn around(&self, runs: &[usize], columns: usize) -> Around {
         let (view, scale, panels) = (self.view(), Layout::around(self.view()), runs.len());
-        let [title, caption] = self.lines(scale);
-        let legend = self.legend(scale);
+        let (writer, width) = (self.writer(scale), f64::from(view.size[0]));
+        // Panels' margins are no wider than the margins around them.
+        let titles = writer.titles(scale, [&view.title, &view.caption], width - 2.0 * scale.margin());
+        let legend = Legend::of(view, scale);
         let wanted = Wanted {
-            title: title.len().min(MOST_LINES[0]),
-            clock: false,
+            titles: titles.each_ref().map(Vec::len),
+            charts: [view.charts.len(), panels],
             legend: legend.map(|legend| legend.height),
-            caption: caption.len().min(MOST_LINES[1]),
+            ..Wanted::default()
         };
         let mut layout = Layout::new(view, panels, columns, wanted);
         // If names are long or type is large, the clock has a row of its own.
@@ -63,37 +60,8 @@ impl<'a> Words<'a> {
         if clock_above {
             layout = Layout::new(view, panels, columns, Wanted { clock: true, ..wanted });
         }
-        let (title, caption) = (cut(title, layout.lines(Part::Title)), cut(caption, layout.lines(Part::Caption)));
-        Around {
-            title,
-            caption,
-            legend: legend.filter(|_| layout.parts.get(Part::Legend).is_some()),
-            layout,
-            clock_above,
-        }
-    }
-
-    /// All lines of title and caption.
-    fn lines(&self, around: Scale) -> [Vec<String>; 2] {
-        let view = self.view();
-        // Panels' margins are no wider than the margins around them.
-        let room = f64::from(view.size[0]) - 2.0 * around.margin();
-        let lines = |text: &str, weight: Weight, size: f64, wrap: fn(&Fonts, &str, Weight, f64, f64) -> Vec<String>| {
-            if Scale::legible(size) { wrap(self.fonts, text, weight, size, room) } else { Vec::new() }
-        };
-        [
-            lines(&view.title, Weight::SemiBold, around.heading(), balanced),
-            lines(&view.caption, Weight::Regular, around.caption(), wrapped),
-        ]
-    }
-
-    /// The key of colours and arrows, if there are any.
-    fn legend(&self, around: Scale) -> Option<Legend> {
-        let view = self.view();
-        let samples = [view.visible.displacements, view.ghost.is_some(), !view.paths.is_empty()];
-        let samples = samples.iter().filter(|&&is_shown| is_shown).count();
-        let size = view.size.map(|length| length.max(1));
-        view.wants_legend().then(|| Legend::new(size, around, samples, view.colour.is_some())).flatten()
+        let legend = legend.filter(|_| layout.parts.get(Part::Legend).is_some());
+        Around { titles, legend, layout, clock_above }
     }
 
     /// The words below the clock.
@@ -129,7 +97,7 @@ impl<'a> Words<'a> {
             letter: if labels.letters { caption::letter(at) } else { String::new() },
             name: shown(labels.name, names.get(at).copied().unwrap_or_default()),
             names,
-            sample: self.sample(runs[at], layout.charts().is_some()),
+            sample: self.sample(runs[at], layout.parts.get(Part::Chart).is_some()),
             second: if labels.model { self.description(at, runs) } else { String::new() },
         }
     }
@@ -160,28 +128,16 @@ impl<'a> Words<'a> {
 
     /// The words without room in pictures of some runs, each with the consequence.
     fn left_out(&self, runs: &[usize], columns: usize) -> Vec<String> {
-        let (view, around) = (self.view(), self.around(runs, columns));
-        let layout = &around.layout;
-        let [title, caption] = self.lines(layout.around);
-        let has = |one: fn(Labels) -> bool| one(view.labels) && !one(layout.written.labels);
-        let mut told: Vec<String> = [
-            (around.title != title || title.is_empty() && !view.title.is_empty(), "the title is cut off"),
-            (around.caption != caption || caption.is_empty() && !view.caption.is_empty(), "the caption is cut off"),
-            (view.wants_legend() && around.legend.is_none(), "the key of colours, lines and arrows is left out"),
-            (!view.charts.is_empty() && layout.charts().is_none(), "the charts are left out"),
-            (around.clock_above && layout.lines(Part::Clock) == 0, "the clock is left out"),
-            (layout.written.left_out.contains(&Part::Events), "panels do not name the events of the chart"),
-            (has(|labels| labels.model), "panels do not describe the models"),
-            (has(|labels| labels.count || labels.number), "panels have no numbers"),
-            (has(|labels| labels.name), "panels have no names"),
-        ]
-        .into_iter()
-        .filter(|(is_so, _)| *is_so)
-        .map(|(_, what)| what.to_owned())
-        .collect();
-        if let Some((_, shown)) = layout.charts().filter(|(_, shown)| *shown < view.charts.len()) {
-            told.push(format!("only {shown} of {} charts have room", view.charts.len()));
-        }
+        let (view, Around { layout, .. }) = (self.view(), self.around(runs, columns));
+        let Labels { name, model, count, number, .. } = view.labels;
+        let is_missed = |part: &Part| match part {
+            Part::Name => name,
+            Part::Second => model,
+            Part::Numbers => count || number,
+            _ => true,
+        };
+        let in_panels: Vec<_> = layout.written.left_out.iter().copied().filter(is_missed).collect();
+        let mut told = layout::told(&layout.parts, &in_panels);
         let writer = self.writer(layout.scale);
         if let Some((&diagnostic, &panel)) =
             view.charts.first().zip(layout.panels.first()).filter(|_| layout.written.events)
@@ -193,7 +149,7 @@ impl<'a> Words<'a> {
         }
         let names = self.names(runs);
         for (at, &panel) in layout.panels.iter().enumerate().take(runs.len()) {
-            let heading = self.heading(at, runs, &names, layout);
+            let heading = self.heading(at, runs, &names, &layout);
             let room = f64::from(panel[2]) - 2.0 * layout.scale.margin();
             for (is_shortened, what) in writer.is_shortened(&heading, room).into_iter().zip(["name", "description"]) {
                 if is_shortened {

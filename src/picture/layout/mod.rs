@@ -1,25 +1,27 @@
-//! The layout of a picture: a tree of boxes for the page, and one for the words of each panel. It does not depend on
-//! the frame, so nothing jumps.
+//! The layout of a picture: a tree of boxes for its page, and one for the words of each panel of a frame. It does not
+//! depend on the frame, so nothing jumps. A frame is a sheet of one moment; the boxes in parentheses are only in sheets.
 //!
 //! ```text
 //! title
-//! (clock, where names leave it no room)
-//! ┌ panel ──────────┬ panel ──────────┐
-//! │ name            │ name      clock │
-//! │ events          │ events          │
-//! │      body       │      body       │
-//! │ count    number │ count    number │
-//! └─────────────────┴─────────────────┘
-//! chart of all runs
+//! caption, in figures                (key)
+//! clock, where names leave it no room
+//!            (heading)         (heading)
+//! (words)  ┌ panel ──────────┬ panel ──────────┐
+//! (beside) │ name            │ name      clock │
+//! (the)    │ events          │ events          │
+//! (row)    │      body       │      body       │
+//!          │ count    number │ count    number │
+//!          └─────────────────┴─────────────────┘
+//! charts of all runs
 //! keys of colours and arrows
-//! caption
+//! caption, in frames
 //! ```
 
 pub(super) mod steps;
 pub(super) mod tree;
 
 use crate::look::{Labels, View, print};
-use steps::{BESIDE, GAP, MARGIN, NAME_ROW, NEAR, ROW, SHORT, SMALL, TALL_ROW};
+use steps::{APART, BESIDE, CHART, GAP, MARGIN, NAME_ROW, NEAR, ROW, SHORT, SMALL, TALL_ROW, TILE};
 use tree::{Node, Place, Solved};
 
 /// Smaller type cannot be read in any picture and is left out (px).
@@ -27,21 +29,11 @@ const SMALLEST_TYPE: f64 = 5.0;
 /// The parts of a picture that panels keep without and with a chart, and the part of a panel that its body keeps.
 const PANELS: [f64; 2] = [0.45, 0.36];
 const BODY: f64 = 0.46;
-/// The height of a chart of a few curves, the least height besides its curves (px in the reference picture), the lowest
-/// chart (px), and the largest part of the picture for it.
-const CHART: f64 = 122.0;
-const LEAST_CHART_ROOM: f64 = 54.0;
-const LEAST_CHART: f64 = 14.0;
+/// The largest part of a picture for a chart.
 const CHART_SHARE: f64 = 0.3;
-/// The height of a further chart (px in the reference picture).
-const FURTHER: f64 = 84.0;
-/// The distance of names at the ends of curves, the height of their room in a chart of the usual height (px in the
-/// reference picture), and the most names that make a chart higher.
-pub(super) const CURVE_NAME: f64 = 15.0;
-const CURVE_NAMES: f64 = 94.0;
-const MOST_NAMES: usize = 8;
-/// The height of the rows of numbers in a panel, with the count above its words (px in the reference picture).
-const NUMBERS: [f64; 2] = [28.0, 20.0];
+/// The most lines of titles, and the most names at the ends of curves that make a chart higher.
+const MOST_LINES: usize = 4;
+const MOST_NAMES: usize = 10;
 /// The least distance of lines, and the height of letters, in sizes of their type.
 const LINE: f64 = 1.25;
 pub(super) const ASCENT: f64 = 0.77;
@@ -54,12 +46,19 @@ pub(crate) type Rectangle = [u32; 4];
 pub(super) enum Part {
     Edge,
     Title,
+    Caption,
     Clock,
+    Key,
+    Heading,
     Row,
     Panel,
     Chart,
     Legend,
-    Caption,
+    // Beside the panels of a row: the room of its words, and the name, the line and the note of a row.
+    Words,
+    Label(usize),
+    Sample(usize),
+    Note(usize),
     // In a panel.
     Name,
     Second,
@@ -68,7 +67,181 @@ pub(super) enum Part {
     Numbers,
 }
 
-/// The places of all parts of a picture.
+impl Part {
+    /// The size of its type (px).
+    pub(super) fn size(self, scale: Scale) -> f64 {
+        match self {
+            Self::Title => scale.heading(),
+            Self::Clock => scale.title(),
+            Self::Note(_) | Self::Chart => scale.small(),
+            _ => scale.caption(),
+        }
+    }
+
+    /// The height of a line of it (px).
+    pub(super) fn height(self, scale: Scale) -> f64 {
+        let step = match self {
+            Self::Title => MARGIN,
+            Self::Clock | Self::Numbers => NAME_ROW,
+            Self::Label(_) | Self::Note(_) => SHORT,
+            Self::Sample(_) => return BESIDE * scale.type_unit(),
+            _ => ROW,
+        };
+        (step * scale.type_unit()).max(LINE * self.size(scale))
+    }
+
+    /// The box for a line of it. Type that cannot be read has no room.
+    pub(super) fn line(self, scale: Scale) -> Node<Self> {
+        // The most important parts have the highest ranks.
+        let rank = match self {
+            Self::Clock => 6,
+            Self::Title | Self::Heading => 5,
+            Self::Caption | Self::Label(_) => 2,
+            Self::Sample(_) => 1,
+            _ => 0,
+        };
+        let height = if Scale::legible(self.size(scale)) { self.height(scale) } else { f64::INFINITY };
+        Node::new(self, height).rank(rank)
+    }
+
+    /// What is told of a picture in which a box of it has no room.
+    fn loss(self) -> Option<&'static str> {
+        Some(match self {
+            Self::Title => "the title is cut off",
+            Self::Caption => "the caption is cut off",
+            Self::Clock => "the clock is left out",
+            Self::Key => "the key of turned-over elements is left out",
+            Self::Heading => "headings of columns are cut off",
+            Self::Legend => "the key of colours, lines and arrows is left out",
+            Self::Words => "rows and charts have no names",
+            Self::Label(_) => "names of rows are cut off",
+            Self::Sample(_) => "rows do not show the lines of their runs",
+            Self::Note(_) => "notes of rows are cut off",
+            Self::Name => "panels have no names",
+            Self::Second => "panels do not describe the models",
+            Self::Events => "panels do not name the events of the chart",
+            Self::Numbers => "panels have no numbers",
+            Self::Edge | Self::Row | Self::Panel | Self::Chart | Self::Body => return None,
+        })
+    }
+}
+
+/// The boxes without room in words, each kind once.
+pub(super) fn told(page: &Solved<Part>, in_panels: &[Part]) -> Vec<String> {
+    let mut told: Vec<String> = Vec::new();
+    for loss in page.left_out.iter().chain(in_panels).filter_map(|part| part.loss()) {
+        if !told.iter().any(|other| other == loss) {
+            told.push(loss.to_owned());
+        }
+    }
+    let shown = page.all(Part::Chart).count();
+    match shown + page.left_out.iter().filter(|&&part| part == Part::Chart).count() {
+        all if all == shown => {}
+        _ if shown == 0 => told.push("the charts are left out".to_owned()),
+        all => told.push(format!("only {shown} of {all} charts have room")),
+    }
+    told
+}
+
+/// The requested parts of a page around its rows of panels.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Wanted {
+    /// The numbers of lines of the title and of the caption.
+    pub(super) titles: [usize; 2],
+    /// Whether the caption is below the title instead of below everything.
+    pub(super) is_figure: bool,
+    /// A row for the clock.
+    pub(super) clock: bool,
+    /// The number of lines of the headings of columns.
+    pub(super) headings: usize,
+    /// The number of charts, and of the names at the ends of their curves.
+    pub(super) charts: [usize; 2],
+    /// The height of a key of colours and arrows (px).
+    pub(super) legend: Option<f64>,
+}
+
+/// The boxes of a page with some rows of panels, from top to bottom.
+pub(super) fn page(scale: Scale, wanted: Wanted, rows: impl Iterator<Item = Node<Part>>) -> Vec<Node<Part>> {
+    let (unit, type_unit) = (scale.unit, scale.type_unit());
+    let Wanted { titles: [title, caption], is_figure, clock, headings, charts: [charts, names], legend } = wanted;
+    let lines = |part: Part, count: usize, gap: f64| {
+        let too_many = move |at: usize| part == Part::Title && at >= MOST_LINES;
+        let apart = move |at: usize| if at == 0 { gap * unit } else { 0.0 };
+        (0..count).map(move |at| part.line(scale).after(if too_many(at) { f64::INFINITY } else { apart(at) }))
+    };
+    let [above, below] = if is_figure { [caption, 0] } else { [0, caption] };
+    let header = lines(Part::Title, title, 0.0).chain(lines(Part::Caption, above, 0.0));
+    let header = header.chain(lines(Part::Clock, clock.into(), 0.0)).chain(lines(Part::Heading, headings, GAP));
+    let header: Vec<_> = header.collect();
+    let top = (!header.is_empty()).then(|| Node::new(Part::Edge, MARGIN * unit));
+    // The names at the ends of curves need room above each other. Curves do not grow with words.
+    let names = (names.min(MOST_NAMES) as f64 * GAP - (CHART - NAME_ROW)).max(0.0) * type_unit;
+    let charts = (0..charts).map(|at| {
+        let words = if at == 0 { NAME_ROW + SHORT } else { APART } * type_unit;
+        let is_legible = Scale::legible(Part::Chart.size(scale));
+        let gap = if at == 0 { GAP * unit } else { 0.0 };
+        let chart = Node::new(Part::Chart, words + names + (CHART - NAME_ROW - SHORT) * unit);
+        let chart = chart.least(words + APART * unit).most(TILE * unit).share(CHART_SHARE);
+        // Of several charts, as many are drawn as have room.
+        chart.after(if is_legible { gap } else { f64::INFINITY }).rank(if at == 0 { 3 } else { 1 })
+    });
+    let charts: Vec<_> = charts.collect();
+    let has_parts_below = !charts.is_empty() || legend.is_some() || caption > 0;
+    top.into_iter()
+        .chain(header)
+        .chain(rows)
+        .chain(charts)
+        .chain(legend.map(|height| Node::new(Part::Legend, height).after(GAP * unit).rank(4)))
+        .chain(lines(Part::Caption, below, if legend.is_some() { BESIDE } else { GAP }))
+        .chain([Node::new(Part::Edge, if is_figure || has_parts_below { SHORT * unit } else { 0.0 })])
+        .collect()
+}
+
+/// The box of a row of panels, up to a height (px): the least part of its share of a picture (px), with or without charts.
+pub(super) fn row(most: f64, share: f64, has_charts: bool) -> Node<Part> {
+    Node::new(Part::Row, most).least(PANELS[usize::from(has_charts)] * share)
+}
+
+/// The room of charts (px).
+pub(super) struct Room {
+    /// The middle of the rings above all charts.
+    pub(super) rings: f64,
+    /// Left and right end of all charts.
+    pub(super) span: [f64; 2],
+    /// The left end of their names.
+    pub(super) names: Option<f64>,
+    /// Top and bottom of each chart.
+    pub(super) charts: Vec<[f64; 2]>,
+    /// The extent of names at the ends of curves above and below each chart.
+    pub(super) beyond: f64,
+}
+
+impl Room {
+    /// The room between two sides in the boxes of a page, with a place for the names of the charts; `None` without boxes.
+    /// Rings need room above the charts.
+    pub(super) fn new(
+        page: &Solved<Part>,
+        scale: Scale,
+        span: [f64; 2],
+        names: Option<f64>,
+        has_rings: bool,
+    ) -> Option<Self> {
+        let (unit, count) = (scale.type_unit(), page.all(Part::Chart).count());
+        let whole: f64 = page.all(Part::Chart).map(|place| place[3]).sum();
+        let top = page.get(Part::Chart)?[1];
+        let above = if has_rings { NAME_ROW } else { GAP };
+        let words = (above + SHORT + (count as f64 - 1.0) * APART) * unit;
+        let (first, height) = (top + above * unit, (whole - words) / count as f64);
+        let chart = |at: usize| {
+            let top = first + at as f64 * (height + APART * unit);
+            [top, top + height].map(f64::round)
+        };
+        let charts = (0..count).map(chart).collect();
+        Some(Self { rings: top + BESIDE * unit, span: span.map(f64::round), names, charts, beyond: BESIDE * unit })
+    }
+}
+
+/// The places of all parts of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Layout {
     /// Sizes of type and lines in panels.
@@ -92,48 +265,15 @@ impl Layout {
         let rows = count.div_ceil(columns).max(1);
         let around = Self::around(view);
         let scale = Scale::new(size, [0, 0, size[0] / columns as u32, size[1] / rows as u32]).within(view);
-        let [unit, type_unit] = [around.unit, around.type_unit()];
-        let line = |part, step: f64, size: f64| Node::new(part, (step * type_unit).max(LINE * size));
-        let first = |at: usize, gap: f64| if at == 0 { gap * unit } else { 0.0 };
-        // The most important parts have the highest ranks.
-        let title = |at| line(Part::Title, MARGIN, around.heading()).after(first(at, MARGIN)).rank(4);
-        let caption = |at| {
-            let gap = if wanted.legend.is_some() { BESIDE } else { GAP };
-            line(Part::Caption, ROW, around.caption()).after(first(at, gap)).rank(1)
-        };
         let panels = |row: usize| {
             let key = |column: usize| if row * columns + column < count { Part::Panel } else { Part::Edge };
             (0..columns).map(|column| Node::new(key(column), 0.0).stretched()).collect()
         };
-        // The names at the ends of curves need room above each other.
-        let names = (count.min(MOST_NAMES) as f64 * CURVE_NAME - CURVE_NAMES).max(0.0);
-        let has_chart = !view.charts.is_empty() && Scale::legible(SMALL * type_unit);
-        let chart = Node::new(Part::Chart, (CHART + names) * type_unit)
-            .least(LEAST_CHART_ROOM * type_unit + LEAST_CHART)
-            .after(GAP * unit)
-            .share(CHART_SHARE)
-            .rank(2);
-        // Of several charts, as many are drawn as have room.
-        let further = Node::new(Part::Chart, (FURTHER + names) * type_unit).rank(0);
-        let least = PANELS[usize::from(has_chart)] * height / rows as f64;
         // Without a title, all panels have the margin of the picture above their words.
         let apart = |row: usize| if row > 0 && !view.title.is_empty() { BESIDE * scale.unit } else { 0.0 };
-        let row = |row| Node::new(Part::Row, least).after(apart(row)).stretched().with(panels(row));
-        // Below no title, the clock needs a margin.
-        let above_clock = if wanted.title > 0 { 0.0 } else { MARGIN * unit };
-        let clock = wanted.clock.then(|| line(Part::Clock, NAME_ROW, around.title()).after(above_clock).rank(5));
-        let bottom = if has_parts_below(view) { SHORT * unit } else { 0.0 };
-        let nodes: Vec<_> = (0..wanted.title)
-            .map(title)
-            .chain(clock)
-            .chain((0..rows).map(row))
-            .chain(has_chart.then_some(chart))
-            .chain((1..view.charts.len()).filter(|_| has_chart).map(|_| further.clone()))
-            .chain(wanted.legend.map(|height| Node::new(Part::Legend, height).after(GAP * unit).rank(3)))
-            .chain((0..wanted.caption).map(caption))
-            .chain([Node::new(Part::Edge, bottom)])
-            .collect();
-        let parts = tree::column(&nodes, [0.0, 0.0, width, height]);
+        let row = row(f64::INFINITY, height / rows as f64, wanted.charts[0] > 0);
+        let of_panels = (0..rows).map(|at| row.clone().after(apart(at)).with(panels(at)));
+        let parts = tree::column(&page(around, wanted, of_panels), [0.0, 0.0, width, height]);
         let panels: Vec<_> = parts.all(Part::Panel).map(whole).collect();
         let written = written(view, panels.first().map_or(height, |panel| f64::from(panel[3])), scale.unit);
         Self { scale, around, panels, written, parts }
@@ -143,46 +283,17 @@ impl Layout {
     pub(super) fn around(view: &View) -> Scale {
         Scale { unit: unit(view), ..Scale::REFERENCE }.within(view)
     }
-
-    /// The number of lines of a part that have room.
-    pub(super) fn lines(&self, part: Part) -> usize {
-        self.parts.all(part).count()
-    }
-
-    /// The baselines of the lines of a part with type of a size (px).
-    pub(super) fn baselines(&self, part: Part, size: f64) -> impl Iterator<Item = f64> {
-        self.parts.all(part).map(move |place| place[1] + ASCENT * size)
-    }
-
-    /// The room of all charts, inside the margins, and their number.
-    pub(super) fn charts(&self) -> Option<(Rectangle, usize)> {
-        let [_, top, width, _] = self.parts.get(Part::Chart)?;
-        let height = self.parts.all(Part::Chart).map(|[_, _, _, height]| height).sum::<f64>();
-        let side = self.scale.margin().min(width / 2.0);
-        let room = [side, top, width - 2.0 * side, height].map(|length| length.round() as u32);
-        Some((room, self.lines(Part::Chart)))
-    }
 }
 
-/// Whether a view has something to show below its panels.
-fn has_parts_below(view: &View) -> bool {
-    !view.charts.is_empty() || view.wants_legend() || !view.caption.is_empty()
+/// The baselines of the lines of a part, with type of a scale (px).
+pub(super) fn baselines(page: &Solved<Part>, part: Part, scale: Scale) -> impl Iterator<Item = f64> {
+    page.all(part).map(move |place| place[1] + ASCENT * part.size(scale))
 }
 
 /// A place in whole pixels, so that adjacent places have no gap between them.
 pub(super) fn whole([left, top, width, height]: Place) -> Rectangle {
     let [left, top, right, bottom] = [left, top, left + width, top + height].map(|at| at.round().max(0.0) as u32);
     [left, top, right - left, bottom - top]
-}
-
-/// The requested parts around panels: the number of lines of the title, a row for the clock, a key of a height (px), and
-/// the number of lines of the caption.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Wanted {
-    pub(super) title: usize,
-    pub(super) clock: bool,
-    pub(super) legend: Option<f64>,
-    pub(super) caption: usize,
 }
 
 /// Pixels of the picture of a view per pixel of the reference picture.
@@ -300,7 +411,8 @@ impl Scale {
     fn within(self, view: &View) -> Self {
         // The outermost words keep the margins of the picture.
         let above = if view.title.is_empty() { MARGIN } else { BESIDE };
-        let below = if has_parts_below(view) { BESIDE } else { SHORT + BESIDE };
+        let has_parts_below = !view.charts.is_empty() || view.wants_legend() || !view.caption.is_empty();
+        let below = if has_parts_below { BESIDE } else { SHORT + BESIDE };
         Self { least: SMALL * unit(view) * view.look.text_scale.min(1.0), edges: [above, below], ..self.with(view) }
     }
 
@@ -314,12 +426,6 @@ impl Scale {
         length * self.type_factor
     }
 
-    /// A height of type within margins, given in the reference picture with its margins (px). Inside the margin, rows
-    /// are scaled like their type.
-    pub(super) fn row(self, height: f64) -> f64 {
-        (MARGIN + (height - MARGIN) * self.type_factor) * self.unit
-    }
-
     /// The heights of the rows of a name, a second line and events in a panel (px).
     fn rows(self) -> [f64; 3] {
         let row = |step: f64, size: f64| (step * self.type_unit()).max(LINE * size);
@@ -328,8 +434,8 @@ impl Scale {
 
     /// The heights of the rows of a count and of the words below it (px).
     fn numbers(self) -> [f64; 2] {
-        let [count, words] = NUMBERS.map(|step| step * self.type_unit());
-        [count.max(ASCENT * self.title() + 0.5 * self.caption()), words.max(LINE * self.caption())]
+        let words = (SHORT * self.type_unit()).max(LINE * self.caption());
+        [ASCENT * self.title() + 0.5 * self.caption(), words]
     }
 
     /// Size of the title above all panels (px).
@@ -453,7 +559,8 @@ mod tests {
 
     /// The parts of a page of a size in words: each with its first and last pixel down, then the parts without room.
     fn said((size, caption): ([u32; 2], usize)) -> String {
-        let wanted = Wanted { title: 1, clock: true, legend: Some(0.05 * f64::from(size[1])), caption };
+        let legend = Some(0.05 * f64::from(size[1]));
+        let wanted = Wanted { titles: [1, caption], clock: true, legend, charts: [1, 3], ..Wanted::default() };
         let layout = Layout::new(&view(size), 3, 2, wanted);
         let named = [Part::Title, Part::Clock, Part::Row, Part::Chart, Part::Legend, Part::Caption];
         let lines = named.iter().flat_map(|&part| layout.parts.all(part).map(move |place| (part, place)));
@@ -464,12 +571,13 @@ mod tests {
 
     #[test]
     fn the_least_important_parts_are_left_out_first() {
-        let large = "Title 47–95, Clock 95–135, Row 135–437, Row 451–753, Chart 772–917, Legend 936–990, Caption 1004–1030, \
+        let large = "Title 47–95, Clock 95–135, Row 135–438, Row 452–756, Chart 775–917, Legend 936–990, Caption 1004–1030, \
                      Caption 1030–1056, without []; panels without [Events]";
-        let low = "Title 40–80, Clock 80–114, Row 114–279, Row 289–454, Chart 470–592, Legend 608–644, Caption 656–678, \
+        let low = "Title 40–80, Clock 80–114, Row 114–280, Row 290–456, Chart 472–592, Legend 608–644, Caption 656–678, \
                    Caption 678–700, without []; panels without [Second, Events]";
-        let small = "Title 11–22, Clock 22–32, Row 32–97, Row 99–164, Legend 169–179, Caption 182–188, Caption 188–194, \
-                     without []; panels without [Second, Events, Numbers]";
+        // Type that cannot be read has no room.
+        let small = "Title 11–22, Clock 22–32, Row 32–105, Row 107–180, Legend 184–194, \
+                     without [Chart, Caption, Caption]; panels without [Second, Events, Numbers]";
         assert_eq!([([1280, 1080], 2), ([1280, 720], 2), ([300, 200], 2)].map(said), [large, low, small]);
         let crowded = said(([1280, 720], 12));
         assert!(crowded.contains("without [Caption, "), "{crowded}");

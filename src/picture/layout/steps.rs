@@ -32,15 +32,15 @@ pub(in crate::picture) const ROW: f64 = 22.0;
 /// Rows of words with rings, and rows of names and counts.
 pub(in crate::picture) const TALL_ROW: f64 = 24.0;
 pub(in crate::picture) const NAME_ROW: f64 = 34.0;
-/// Between numbers along an axis; samples of lines.
+/// Between numbers along an axis and between charts; the lowest curves; samples of lines.
 pub(in crate::picture) const APART: f64 = 30.0;
 /// The margin of a picture; rows of its title; between parts of one row.
 pub(in crate::picture) const MARGIN: f64 = 40.0;
-/// The usual length of arrows in keys.
+/// The usual length of arrows in keys; the lowest bodies of sheets.
 pub(in crate::picture) const BLOCK: f64 = 60.0;
 /// Beside a body, for the words at its arrows.
 pub(in crate::picture) const ROOM: f64 = 84.0;
-/// The longest scale bars.
+/// The longest scale bars; a chart with its words.
 pub(in crate::picture) const CHART: f64 = 120.0;
-/// The width of a sample with its words in a key.
+/// The width of a sample with its words in a key; a tile of a sheet with usual lines; the highest chart.
 pub(in crate::picture) const TILE: f64 = 240.0;

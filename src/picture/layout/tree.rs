@@ -111,7 +111,7 @@ fn fill<K: Copy + PartialEq>(nodes: &[Node<K>], place: Place, axis: usize, solve
 
 /// The lengths of boxes that share a length, `None` for those without room. Boxes without a rank get their least
 /// lengths, then each of the others, from the highest rank, if it still has room and no box of its key before it is
-/// left out. Then all get as much as they want, then the rest.
+/// left out. Then these get as much as they want, then all, then the rest.
 fn lengths<K: PartialEq>(nodes: &[Node<K>], length: f64) -> Vec<Option<f64>> {
     let length = length.max(0.0);
     let limit = |node: &Node<K>, most: f64| most.min(node.share * length).max(node.least);
@@ -128,7 +128,8 @@ fn lengths<K: PartialEq>(nodes: &[Node<K>], length: f64) -> Vec<Option<f64>> {
     }
     let smaller = (length / taken(&given).max(f64::MIN_POSITIVE)).min(1.0);
     given.iter_mut().flatten().for_each(|given| *given *= smaller);
-    for most in [|node: &Node<K>| node.wanted, |node: &Node<K>| node.most] {
+    let ranked = |node: &Node<K>| if node.rank.is_some() { node.wanted } else { node.least };
+    for most in [ranked, |node: &Node<K>| node.wanted, |node: &Node<K>| node.most] {
         // Spare room is shared alike, until the first boxes have enough.
         loop {
             let spare = length - taken(&given);

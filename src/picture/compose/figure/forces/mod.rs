@@ -76,14 +76,14 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
         let column = Node::new(part, 0.0).stretched().with(inside.to_vec());
         Node::new(Part::Edge, length).with(vec![column; columns])
     };
-    let last = header::write(&mut writer, figure, &[], false);
+    let last = header::write(&mut writer, figure);
     let has_notes = runs.len() > 1 && forces.notes.iter().any(|note| !note.is_empty());
     let page = [
         Node::new(Part::Edge, if last > 0.0 { last + APART * unit } else { MARGIN * unit }),
         in_columns(Part::Name, NAME_ROW * type_unit, &[]),
         in_columns(Part::Note, if has_notes { ROW * type_unit } else { 0.0 }, &[]),
         Node::new(Part::Cells, 0.0).stretched(),
-        Node::new(Part::Key, key.map_or(0.0, |key| key.height)).after(GAP * unit),
+        Node::new(Part::Key, key.height).after(GAP * unit).rank(0),
         Node::new(Part::Edge, SHORT * unit),
     ];
     let page = tree::column(&page, [0.0, 0.0, width, height]);
@@ -146,7 +146,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     for (at, place_of_scene) in places.all(Part::Scene).enumerate().filter(|_| runs.len() > 1 && rows > 1) {
         write(&scenes[place(at).0].title, Weight::SemiBold, scale.caption(), palette.text, place_of_scene);
     }
-    if let Some((key, [_, top, ..])) = key.zip(page.get(Part::Key)) {
+    if let Some([_, top, ..]) = page.get(Part::Key) {
         let side = scenes[0].view.side * pixels;
         let share = round_below(key.arrow_length() / side);
         let arrow = if forces.vectors {

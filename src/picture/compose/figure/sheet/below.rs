@@ -1,26 +1,24 @@
 //! The text below the bodies of a contact sheet: tallies, counts and diagnostics, and the key of the tallies.
 
-use super::sheet_layout::{SheetLayout, TALLY_RAISED};
+use super::sheet_layout::SheetLayout;
 use crate::picture::caption::{Writer, diverged, wider};
 use crate::picture::compose::Composer;
-use crate::picture::layout::Scale;
-use crate::picture::tally::{self, Tally};
+use crate::picture::layout::steps::{BESIDE, NEAR, SHORT};
+use crate::picture::layout::{Part, Scale};
+use crate::picture::tally::{self, Tally, hollow, struck};
 use crate::picture::text::Weight;
-use crate::picture::{chart, number};
+use crate::picture::{Colour, chart, number};
 use crate::reading::captions::elements;
 use crate::scene::Scene;
 use crate::sim::{Diagnostic, RunFrame, Snapshot, Status};
 
-/// Size of diagnostics (px in the reference picture).
-const NUMBER: f64 = 14.0;
-/// The size of tallies relative to those of panels, their largest share of a tile's width, and the gap between
-/// tally, count and number (px in the reference picture).
+/// The size of tallies relative to those of panels, and their largest share of a tile's width.
 const TALLY: f64 = 0.54;
 const TALLY_SHARE: f64 = 0.6;
-const COUNT_GAP: f64 = 10.0;
-const NUMBER_GAP: f64 = 18.0;
 /// Half the height of digits, in sizes of type.
 const X_MIDDLE: f64 = 0.36;
+/// The meaning of a hollow square.
+const FLAT: &str = "flat: volume below 1 %";
 
 /// The tallies of all scenes in one style: squares for all, or bars.
 pub(super) fn tallies(scenes: &[Scene], scale: Scale, layout: &SheetLayout) -> Vec<Tally> {
@@ -35,37 +33,64 @@ fn size_of_tallies(scale: Scale, layout: &SheetLayout) -> (Scale, f64) {
     (scale.with_unit(TALLY * scale.unit), TALLY_SHARE * layout.words_width(scale))
 }
 
-/// Wordings of the key of turned-over elements, from the longest to the shortest.
-pub(super) fn key(scenes: &[Scene], tallies: &[Tally], scale: Scale, layout: &SheetLayout) -> Vec<String> {
-    let (scale, room) = size_of_tallies(scale, layout);
-    let kinds: Vec<_> = scenes.iter().flat_map(|scene| elements(&scene.body)).map(|(_, kind)| kind).collect();
-    let same = kinds.first().filter(|first| kinds.iter().all(|kind| kind == *first));
-    let kind = same.and_then(|kind| kind.strip_suffix('s')).unwrap_or("element");
-    let mut wordings = vec!["turned over".to_owned()];
-    let several = scenes.iter().any(|scene| scene.body.elements.len() > 1);
-    if several && tallies.iter().all(|tally| tally.has_squares(scale, room)) {
-        wordings.push(format!("turned over (one square per {kind})"));
-        if tallies.iter().all(Tally::has_layers) {
-            wordings.push(format!("turned over (one square per {kind}, lowest layer at the bottom)"));
+/// The key of struck squares and, if there are any, of hollow ones.
+pub(super) struct Key {
+    /// The meaning of struck squares, from the longest to the shortest wording.
+    pub(super) wordings: Vec<String>,
+    has_flat: bool,
+}
+
+impl Key {
+    pub(super) fn new(scenes: &[Scene], tallies: &[Tally], has_flat: bool) -> Self {
+        let kinds: Vec<_> = scenes.iter().flat_map(|scene| elements(&scene.body)).map(|(_, kind)| kind).collect();
+        let same = kinds.first().filter(|first| kinds.iter().all(|kind| kind == *first));
+        let kind = same.and_then(|kind| kind.strip_suffix('s')).unwrap_or("element");
+        let mut wordings = vec!["turned over".to_owned()];
+        let several = scenes.iter().any(|scene| scene.body.elements.len() > 1);
+        if several && tallies.iter().all(Tally::has_rows) {
+            if tallies.iter().all(Tally::has_layers) {
+                wordings.push(format!("turned over (a square per {kind}, in layers)"));
+                wordings.push(format!("turned over (one square per {kind}, lowest layer at the bottom)"));
+            } else {
+                wordings.push(format!("turned over (one square per {kind})"));
+            }
+        }
+        wordings.reverse();
+        Self { wordings, has_flat }
+    }
+
+    /// The width of a square with its words (px).
+    fn one(writer: &Writer<'_>, text: &str) -> f64 {
+        (BESIDE + NEAR) * writer.scale.type_unit() + writer.fonts.width(text, Weight::Regular, writer.scale.caption())
+    }
+
+    /// The width with a wording (px).
+    pub(super) fn width(&self, writer: &Writer<'_>, text: &str) -> f64 {
+        let flat = if self.has_flat { Self::one(writer, FLAT) + SHORT * writer.scale.type_unit() } else { 0.0 };
+        flat + Self::one(writer, text)
+    }
+
+    /// Writes a wording that ends at a place on a baseline (px).
+    pub(super) fn write(&self, writer: &mut Writer<'_>, text: &str, [right, baseline]: [f64; 2]) {
+        let (scale, palette) = (writer.scale, writer.palette);
+        let side = (BESIDE * scale.type_unit()).round().max(2.0);
+        let flat = self.has_flat.then_some((FLAT, right - self.width(writer, text)));
+        for (text, left) in flat.into_iter().chain([(text, right - Self::one(writer, text))]) {
+            let square = [left.round(), (baseline - X_MIDDLE * scale.caption() - side / 2.0).round(), side, side];
+            let marks = if text == FLAT { hollow(square, palette).to_vec() } else { vec![struck(square, palette)] };
+            writer.marks.extend(marks);
+            let right = left + Self::one(writer, text);
+            writer.right(text, Weight::Regular, scale.caption(), palette.second_text, right, baseline);
         }
     }
-    wordings.reverse();
-    wordings
 }
 
 /// The text below the body of a tile.
 pub(super) struct Below<'a> {
-    /// The tally, if there is one, and the turned-over and the flat elements.
-    tally: Option<&'a Tally>,
-    states: [&'a [bool]; 2],
-    tally_width: f64,
-    /// The number of turned-over elements or, if there are none, of flat ones; empty if unknown.
-    count: String,
-    is_alarm: bool,
-    /// A diagnostic; empty for none.
-    number: String,
-    /// Wordings for a run that diverges, from long to short; empty if it does not.
-    diverged: Vec<String>,
+    /// The tally, if there is one, the turned-over and the flat elements, and its width (px).
+    tally: Option<(&'a Tally, [&'a [bool]; 2], f64)>,
+    /// The number of turned-over elements or, if there are none, of flat ones, then a diagnostic; or that the run diverges.
+    texts: Vec<(String, Weight, f64, Colour)>,
 }
 
 impl<'a> Below<'a> {
@@ -77,84 +102,65 @@ impl<'a> Below<'a> {
         run: &'a RunFrame,
         number: Option<Diagnostic>,
     ) -> Self {
-        let Snapshot { turned_over: over, flat, .. } = &run.snapshot;
-        let diverged = match run.shown().status {
-            Status::Diverged(divergence) => {
-                let when = format!("{} at {}", diverged(run), number::time(divergence.time));
-                let whole = wider(run).map(|wider| format!("{when}, {wider}"));
-                whole.into_iter().chain([when, diverged(run).to_owned()]).collect()
-            }
-            Status::Ok => Vec::new(),
-        };
-        let tally = (!over.is_empty()).then_some(&composer.tally);
+        let (scale, palette) = (writer.scale, writer.palette);
+        if let Status::Diverged(divergence) = run.shown().status {
+            let when = format!("{} at {}", diverged(run), number::time(divergence.time));
+            let whole = wider(run).map(|wider| format!("{when}, {wider}"));
+            let mut wordings = whole.into_iter().chain([when, diverged(run).to_owned()]);
+            let wide = |text: &String| writer.fonts.width(text, Weight::SemiBold, scale.caption());
+            let fitting = wordings.find(|text| wide(text) <= layout.words_width(scale));
+            let text = |text| (text, Weight::SemiBold, scale.caption(), palette.text);
+            return Self { tally: None, texts: fitting.map(text).into_iter().collect() };
+        }
+        let Snapshot { turned_over: over, flat, diagnostics, .. } = &run.snapshot;
+        if over.is_empty() {
+            return Self { tally: None, texts: Vec::new() };
+        }
         let states = [&over[..], &flat[..]];
-        let (scale, room) = size_of_tallies(writer.scale, layout);
-        let count = run.snapshot.diagnostics.turned_over;
+        let (smaller, room) = size_of_tallies(scale, layout);
+        let width = composer.tally.width(smaller, room);
         let flattened = flat.iter().filter(|&&flat| flat).count();
-        Self {
-            tally,
-            states,
-            tally_width: tally.map_or(0.0, |tally| tally.width(scale, room)),
-            count: match count {
-                _ if over.is_empty() => String::new(),
-                0 if flattened > 0 => format!("{flattened} flat"),
-                count => number::count(count),
-            },
-            is_alarm: count > 0,
-            number: number.and_then(|diagnostic| text(diagnostic, composer.scene, run)).unwrap_or_default(),
-            diverged,
-        }
+        let (count, colour) = match diagnostics.turned_over {
+            0 if flattened > 0 => (format!("{flattened} flat"), palette.second_text),
+            0 => (number::count(0), palette.second_text),
+            count => (number::count(count), palette.alarm_text),
+        };
+        let number = number.and_then(|diagnostic| text(diagnostic, composer.scene, run));
+        let number = number.map(|text| (text, Weight::Regular, scale.small(), palette.second_text));
+        let texts = std::iter::once((count, Weight::SemiBold, scale.caption(), colour)).chain(number).collect();
+        Self { tally: Some((&composer.tally, states, width)), texts }
     }
 
-    /// Width of tally and count (px).
-    fn counted(&self, writer: &Writer<'_>) -> f64 {
-        let gap = if self.count.is_empty() { 0.0 } else { COUNT_GAP * writer.scale.type_unit() };
-        self.tally_width + gap + writer.fonts.width(&self.count, Weight::SemiBold, writer.scale.caption())
+    /// The width of the tally and of a number of texts (px).
+    fn width(&self, writer: &Writer<'_>, most: usize) -> f64 {
+        let gap = BESIDE * writer.scale.type_unit();
+        let texts = self.texts.iter().take(most);
+        let texts = texts.map(|(text, weight, size, _)| gap + writer.fonts.width(text, *weight, *size)).sum::<f64>();
+        self.tally.map_or(-gap, |(.., width)| width) + texts
     }
 
-    /// Whether the diagnostic has room, too.
-    pub(super) fn has_room(&self, writer: &Writer<'_>, layout: &SheetLayout) -> bool {
-        let size = NUMBER * writer.scale.type_unit();
-        let number = NUMBER_GAP * writer.scale.type_unit() + writer.fonts.width(&self.number, Weight::Regular, size);
-        self.number.is_empty()
-            || Scale::legible(size) && self.counted(writer) + number <= layout.words_width(writer.scale)
+    /// Whether the tally and a number of texts have room.
+    pub(super) fn has_room(&self, writer: &Writer<'_>, layout: &SheetLayout, most: usize) -> bool {
+        let is_legible = self.texts.iter().take(most).all(|&(_, _, size, _)| Scale::legible(size));
+        is_legible && self.width(writer, most) <= layout.words_width(writer.scale)
     }
 
-    /// Writes tally, count and, if it has room in all tiles, the diagnostic; or that the run diverged.
-    pub(super) fn write(
-        self,
-        writer: &mut Writer<'_>,
-        layout: &SheetLayout,
-        [row, column]: [usize; 2],
-        with_number: bool,
-    ) {
-        let (scale, palette, fonts) = (writer.scale, writer.palette, writer.fonts);
-        let size = scale.caption();
-        if !layout.has_tally || !Scale::legible(size) {
-            return;
+    /// Writes the tally and a number of texts into a tile.
+    pub(super) fn write(&self, writer: &mut Writer<'_>, layout: &SheetLayout, tile: [usize; 2], most: usize) {
+        let scale = writer.scale;
+        let [left, top, width, height] = layout.tile(tile[0], tile[1]).map(f64::from);
+        let bottom = top + height - NEAR * scale.unit;
+        let baseline = bottom - 0.5 * TALLY * tally::HEIGHT * scale.type_unit() + X_MIDDLE * Part::Numbers.size(scale);
+        let mut left = (left + 0.5 * (width - self.width(writer, most))).round();
+        if let Some((tally, states, width)) = self.tally {
+            let (smaller, room) = size_of_tallies(scale, layout);
+            tally.draw(states, writer.palette, smaller, room, [left, bottom.round()], &mut writer.marks);
+            left += width + BESIDE * scale.type_unit();
         }
-        let [left, top, width, height] = layout.tile(row, column).map(f64::from);
-        let (middle, bottom) = (left + 0.5 * width, top + height - TALLY_RAISED * scale.unit);
-        let baseline = bottom - 0.5 * TALLY * tally::HEIGHT * scale.type_unit() + X_MIDDLE * size;
-        if !self.diverged.is_empty() {
-            let wide = |text: &str| fonts.width(text, Weight::SemiBold, size);
-            let Some(text) = self.diverged.iter().find(|text| wide(text) <= layout.words_width(scale)) else { return };
-            return writer.left(text, Weight::SemiBold, size, palette.text, middle - 0.5 * wide(text), baseline);
+        for (text, weight, size, colour) in self.texts.iter().take(most) {
+            writer.left(text, *weight, *size, *colour, left, baseline);
+            left += writer.fonts.width(text, *weight, *size) + BESIDE * scale.type_unit();
         }
-        let small = NUMBER * scale.type_unit();
-        let number = if with_number { &self.number[..] } else { "" };
-        let gap = if number.is_empty() { 0.0 } else { NUMBER_GAP * scale.type_unit() };
-        let counted = self.counted(writer);
-        let left = (middle - 0.5 * (counted + gap + fonts.width(number, Weight::Regular, small))).round();
-        let corner = [left, bottom.round()];
-        let (scale, room) = size_of_tallies(scale, layout);
-        if let Some(tally) = self.tally {
-            tally.draw(self.states, palette, scale, room, corner, &mut writer.marks);
-        }
-        let colour = if self.is_alarm { palette.alarm_text } else { palette.second_text };
-        let count_left = left + counted - fonts.width(&self.count, Weight::SemiBold, size);
-        writer.left(&self.count, Weight::SemiBold, size, colour, count_left, baseline);
-        writer.left(number, Weight::Regular, small, palette.second_text, left + counted + gap, baseline);
     }
 }
 

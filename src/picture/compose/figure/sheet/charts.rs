@@ -1,9 +1,8 @@
 //! Charts below the tiles: diagnostics of all rows over the time of their scene, with the moments of the columns.
 
 use crate::picture::caption::{self, Writer};
-use crate::picture::chart::{Flag, Room, Stack};
-use crate::picture::layout::Scale;
-use crate::picture::layout::steps::SMALL;
+use crate::picture::chart::{Flag, Stack};
+use crate::picture::layout::Room;
 use crate::runner::history::History;
 use crate::scene::figure::Sheet;
 
@@ -18,13 +17,13 @@ pub(super) fn stack(sheet: &Sheet, histories: &[History], writer: &Writer<'_>, w
         labels.next().filter(|first| labels.all(|label| label == *first)).map_or(run, |label| label).to_owned()
     };
     let of_scenes: Vec<_> = sheet.scenes.iter().zip(histories).collect();
-    Stack::new(&sheet.charts, &of_scenes, writer, [NAMES * width, f64::INFINITY], label)
+    Stack::new(&sheet.charts, &of_scenes, writer, NAMES * width, label)
 }
 
 /// Draws as many charts as have room, up to the last moment (s), with a line through all of them at the moment of each
 /// column, with the column's letter in a ring above.
 pub(super) fn draw(stack: &Stack, sheet: &Sheet, end: f64, writer: &mut Writer<'_>, room: &Room) {
-    if !Scale::legible(SMALL * writer.scale.type_unit()) || end <= 0.0 {
+    if end <= 0.0 {
         return;
     }
     let colour = writer.palette.second_text;

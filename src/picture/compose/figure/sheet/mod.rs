@@ -20,13 +20,12 @@ mod headings;
 mod rows;
 mod sheet_layout;
 
-use super::header;
 use crate::look::{ColourScale, Ghost, Labels, View, print};
 use crate::picture::caption::Writer;
 use crate::picture::compose::Composer;
 use crate::picture::compose::draft::Draft;
-use crate::picture::layout::Scale;
-use crate::picture::layout::steps::GAP;
+use crate::picture::layout::steps::{FREE, NEAR};
+use crate::picture::layout::{self, Part, Room, Scale, Wanted};
 use crate::picture::legend::Legend;
 use crate::picture::text::Fonts;
 use crate::picture::{Colour, Item, Picture};
@@ -35,48 +34,72 @@ use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::{Figure, Sheet};
 use crate::sim::Frame;
-use below::Below;
+use below::{Below, Key};
 use glam::DVec2;
+use headings::Headings;
 use rows::RowLabels;
 use sheet_layout::SheetLayout;
 
-/// Width of bodies that are a line or a point (px at the tile's scale).
-const COLLAPSED: [f64; 2] = [3.0, 9.0];
-
-pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Picture {
+/// Composes a sheet, and tells what has no room in it.
+pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> (Picture, Vec<String>) {
     let size = figure.size.map(|length| length.max(1));
-    let unit = print::unit_of_sheet(size);
-    let scale = Scale::at(unit).with(&View { look: figure.look.clone(), ..View::default() });
+    let scale = Scale::at(print::unit_of_sheet(size)).with(&View { look: figure.look.clone(), ..View::default() });
     let fonts = Fonts::new(&figure.look.font);
     let palette = &figure.look.palette();
     let mut writer = Writer::new(palette, &fonts, scale);
     let scenes = plain(figure, sheet);
+    let (width, margin) = (f64::from(size[0]), scale.margin());
+    let room = width - 2.0 * margin;
 
-    let legend = legend(&scenes, size, scale);
+    let mut titles = writer.titles(scale, [&figure.title, &figure.caption], room);
+    if titles[0].is_empty() {
+        // The key stands beside the title or the caption.
+        titles[0].push(String::new());
+    }
+    let legend = Legend::of(&scenes[0].view, scale);
     let has_charts = !sheet.charts.is_empty();
-    let charts = has_charts.then(|| charts::stack(sheet, &moments.histories, &writer, f64::from(size[0])));
+    let charts = has_charts.then(|| charts::stack(sheet, &moments.histories, &writer, width));
     let shows_runs = |scene: &Scene| matches!(scene.view.ghost, Some(Ghost::Run(_))) || !scene.view.paths.is_empty();
     let with_sample = has_charts || scenes.iter().any(shows_runs);
-    let labels = RowLabels::new(sheet, &fonts, scale, with_sample, f64::from(size[0]));
-    let below = legend.map_or(0, |legend| (legend.height + GAP * unit).round() as u32);
-    let bottom = size[1] - below.min(size[1] / 2);
-    let layout_below = |header: f64, writer: &Writer<'_>| {
-        SheetLayout::new(sheet, writer, [size[0], bottom], header, labels.width, charts.as_ref())
+    let labels = RowLabels::new(sheet, &writer, with_sample, width);
+    let wanted = Wanted {
+        titles: titles.each_ref().map(Vec::len),
+        is_figure: true,
+        charts: charts.as_ref().map_or([0; 2], |charts| [charts.count(), charts.names()]),
+        legend: legend.map(|legend| legend.height),
+        ..Wanted::default()
     };
-    // The width of tiles does not depend on the header, whose key explains tallies.
-    let layout = layout_below(0.0, &writer);
+    let beside = charts.as_ref().map_or([0.0; 2], |charts| [charts.names_width, charts.numbers_width]);
+    let plan = |wanted: Wanted, pitch: f64| SheetLayout::new(sheet, (size, scale), wanted, &labels, beside, pitch);
+    // The width of tiles does not depend on what is above them.
+    let layout = plan(wanted, f64::INFINITY);
+    let pitch = f64::from(layout.tile_size()[0]);
     let tallies = below::tallies(&scenes, scale, &layout);
+    let headings = Headings::new(sheet, &writer, pitch);
+    let wanted = Wanted { headings: headings.lines(), ..wanted };
+    let layout = plan(wanted, pitch);
     let has_flat = moments.cells.iter().flatten().any(|run| run.snapshot.flat.contains(&true));
-    let key = below::key(&scenes, &tallies, scale, &layout);
-    let header = header::write(&mut writer, figure, &key, has_flat);
-    let layout = layout_below(header, &writer);
-    labels.write(&mut writer, &layout, sheet);
-    for (column, heading) in layout.headings.iter().enumerate() {
-        let left = f64::from(layout.tile(0, column)[0]);
-        heading.write(&mut writer, [left, layout.headings_baseline]);
+    let key = Key::new(&scenes, &tallies, has_flat);
+    let is_beside = |text: &&String| {
+        let length = key.width(&writer, text);
+        writer.beside(&layout.page, scale, &titles, [length, room]).map(|baseline| [width - margin, baseline])
+    };
+    let key_place = key.wordings.iter().find_map(|text| Some((text, is_beside(&text)?)));
+    if let Some((text, place)) = key_place {
+        key.write(&mut writer, text, place);
     }
-    if let (Some(charts), Some(room)) = (&charts, &layout.charts) {
-        charts::draw(charts, sheet, moments.histories[0].end, &mut writer, room);
+    for (part, lines) in [Part::Title, Part::Caption].into_iter().zip(&titles) {
+        writer.lines(&layout.page, part, scale, lines, margin);
+    }
+    labels.write(&mut writer, &layout, sheet);
+    headings.write(&mut writer, &layout);
+    if let Some(charts) = &charts {
+        let [left, _, tile, _] = layout.tile(0, 0).map(f64::from);
+        let right = left + tile * sheet.columns.len() as f64 - charts.ends_width();
+        let names = layout.page.get(Part::Words).map(|[left, ..]| left);
+        if let Some(room) = Room::new(&layout.page, scale, [left, right], names, true) {
+            charts::draw(charts, sheet, moments.histories[0].end, &mut writer, &room);
+        }
     }
 
     let framings = cameras::framings(&scenes, sheet, moments, &layout);
@@ -98,15 +121,25 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
             below.push(([row, column], Below::new(&writer, &layout, composer, run, sheet.number)));
         }
     }
-    let with_number = below.iter().all(|(_, below)| below.has_room(&writer, &layout));
-    below.into_iter().for_each(|(place, below)| below.write(&mut writer, &layout, place, with_number));
-    if let Some(legend) = legend.filter(|_| bottom < size[1]) {
+    // All tiles have the same parts.
+    let fits = |&most: &usize| below.iter().all(|(_, below)| below.has_room(&writer, &layout, most));
+    let most = [2, 1].into_iter().find(fits).filter(|_| layout.page.get(Part::Numbers).is_some());
+    for (place, below) in &below {
+        most.iter().for_each(|&most| below.write(&mut writer, &layout, *place, most));
+    }
+    if let Some((legend, [_, top, ..])) = legend.zip(layout.page.get(Part::Legend)) {
         let first = &composers[0];
         let samples = first.samples(legend, layout.tile(0, 0), &framings[0], layout.tile_scale);
         let of_first = sheet.columns.iter().enumerate().filter(|(_, column)| column.scene == 0);
         let runs = of_first.flat_map(|(at, _)| moments.cells.iter().map(move |row| row[at].clone())).collect();
         let frame = Frame { index: 0, time: 0.0, runs };
-        legend.draw(&mut writer, [size[0], bottom].map(f64::from), &samples, first.bar(&frame).as_ref());
+        legend.draw(&mut writer, [width, top], &samples, first.bar(&frame).as_ref());
+    }
+    let lost = [(key_place.is_none(), Part::Key), (headings.is_cut, Part::Heading), (most.is_none(), Part::Numbers)];
+    let lost: Vec<_> = lost.into_iter().filter(|(is_lost, _)| *is_lost).map(|(_, part)| part).collect();
+    let mut left_out = layout::told(&layout.page, &lost);
+    if sheet.number.is_some() && most == Some(1) {
+        left_out.push("panels do not show `sheet.number`".to_owned());
     }
 
     let (mut under, mut marks, mut panels) = (Vec::new(), Vec::new(), Vec::new());
@@ -127,7 +160,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> Pict
     writer.over_bodies(&panels);
     marks.extend(writer.items());
     let ramp = composers.first().map_or_else(Vec::new, |composer| composer.ramp.clone());
-    Picture { size, palette: *palette, fonts, ramp, panels, under, above: marks }
+    (Picture { size, palette: *palette, fonts, ramp, panels, under, above: marks }, left_out)
 }
 
 /// The scenes for their tiles: without words, in the look of the figure.
@@ -154,16 +187,7 @@ fn plain(figure: &Figure, sheet: &Sheet) -> Vec<Scene> {
 /// A collapsed body, as a line or a dot.
 fn collapsed(ends: [DVec2; 2], scale: Scale, colour: Colour) -> Item {
     let is_dot = ends[0].distance(ends[1]) < 1.0;
-    let width = scale.line() * if is_dot { COLLAPSED[1] } else { COLLAPSED[0] };
+    let width = scale.line() * if is_dot { NEAR } else { FREE };
     let points = ends.map(|end| end.to_array());
     Item::curve(&points[..if is_dot { 1 } else { 2 }], width, &[], colour)
-}
-
-/// The key of colours and arrows, if there are any.
-fn legend(scenes: &[Scene], size: [u32; 2], scale: Scale) -> Option<Legend> {
-    let view = &scenes.first()?.view;
-    let samples = [view.visible.displacements, view.ghost.is_some(), !view.paths.is_empty()];
-    let samples = samples.iter().filter(|&&is_shown| is_shown).count();
-    let any = view.labels.legend && (samples > 0 || view.colour.is_some());
-    any.then(|| Legend::new(size, scale, samples, view.colour.is_some())).flatten()
 }
