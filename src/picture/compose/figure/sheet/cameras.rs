@@ -1,4 +1,4 @@
-//! The cameras of a sheet: one scale for all bodies that can be compared, so that the tiles of a column are one view.
+//! The cameras of a sheet: one scale for all bodies that can be compared, and one view for the tiles of a column.
 
 use super::sheet_layout::SheetLayout;
 use crate::look::CameraBox;
@@ -9,11 +9,10 @@ use crate::runner::history::NearObstacles;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::Sheet;
+use crate::sim::geometry;
 use crate::sim::{RunFrame, Status};
 use glam::DVec2;
 
-/// If bodies in one view of all tiles would be smaller than this part of them, each column has a view.
-const SMALLEST: f64 = 0.30;
 /// Bodies whose sizes differ by more than this factor are not shown at one scale.
 const UNLIKE: f64 = 3.0;
 /// A body is collapsed if no node is farther than this from a line (px).
@@ -44,13 +43,9 @@ pub(super) fn framings(scenes: &[Scene], sheet: &Sheet, moments: &Moments, layou
         let first = scene(kind[0].0);
         let [width, height] = layout.tile_size();
         let lens = framing::from_a_metre(first, [0, 0, width, height], layout.tile_scale);
+        let on_ground = geometry::ground(&first.obstacles, 0.0).is_some();
         let of_columns: Vec<_> = kind.iter().map(|(_, seen)| *seen).collect();
-        let of_all = of_columns.iter().copied().reduce(Seen::join);
-        let mut shots = framing::shots(of_all.as_slice(), &lens, room, 1.0);
-        if shots[0].pixels * first.body.extent() < SMALLEST * room[2].min(room[3]) {
-            shots = framing::shots(&of_columns, &lens, room, 1.0);
-        }
-        for ((column, _), shot) in kind.iter().zip(shots.iter().cycle()) {
+        for ((column, _), shot) in kind.iter().zip(framing::shots(&of_columns, &lens, room, 1.0, on_ground)) {
             framings[*column] = Framing { target: shot.offset, distance: lens.focal / shot.pixels, moves: false };
         }
     }
