@@ -245,18 +245,21 @@ impl Writer<'_> {
         self.right(&label, Weight::Regular, caption, self.palette.second_text, room.right, room.top + lines.second);
     }
 
+    /// The width of the clock followed by its label (px) at any time.
+    pub(super) fn clock_width(&self, around: Scale, label: &str) -> f64 {
+        let beside = if label.is_empty() { 0.0 } else { around.gap() };
+        let time = self.fonts.width(WIDEST_TIME, Weight::Regular, around.title());
+        time + beside + self.fonts.width(label, Weight::Regular, around.caption())
+    }
+
     /// The clock followed by its label, at the right of a picture of a width, with its baseline at a height (px).
     pub(super) fn clock_alone(&mut self, around: Scale, [width, baseline]: [f64; 2], time: f64, label: &str) {
-        let right = width - self.scale.margin();
-        let time = number::time(time);
-        let beside = if label.is_empty() { 0.0 } else { around.gap() };
-        let room =
-            right - self.scale.margin() - beside - self.fonts.width(WIDEST_TIME, Weight::Regular, around.title());
+        let (right, palette) = (width - self.scale.margin(), self.palette);
+        let room = right - self.scale.margin() - self.clock_width(around, "") - around.gap();
         let label = self.fonts.shortened(label, Weight::Regular, around.caption(), room);
-        let palette = self.palette;
         self.right(&label, Weight::Regular, around.caption(), palette.second_text, right, baseline);
-        let right = right - self.fonts.width(&label, Weight::Regular, around.caption()) - beside;
-        self.right(&time, Weight::Regular, around.title(), palette.text, right, baseline);
+        let beside = self.clock_width(around, &label) - self.clock_width(around, "");
+        self.right(&number::time(time), Weight::Regular, around.title(), palette.text, right - beside, baseline);
     }
 
     /// Tally and count, lower left, each between two places from the left margin (px).

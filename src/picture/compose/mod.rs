@@ -197,7 +197,7 @@ impl<'a> Composer<'a> {
             }
         };
         let Arranged { around, shot, .. } = arranged;
-        let Around { layout, titles, legend, .. } = around;
+        let Around { layout, titles, legend, clock_above } = around;
         let scale = layout.scale;
         let places = layout.panels.iter().zip(&frame.runs);
         let framings = places.map(|(&panel, run)| self.framing(shot.as_ref(), run, (panel, scale)));
@@ -212,7 +212,8 @@ impl<'a> Composer<'a> {
         for (part, lines) in [Part::Title, Part::Caption].into_iter().zip(titles) {
             writer.lines(&layout.parts, part, layout.around, lines, margin);
         }
-        if let Some(baseline) = baselines(&layout.parts, Part::Clock, layout.around).next() {
+        let clock = clock_above.and_then(|part| baselines(&layout.parts, part, layout.around).next());
+        if let Some(baseline) = clock {
             writer.clock_alone(layout.around, [f64::from(size[0]), baseline], frame.time, &view.clock);
         }
         let place = layout.parts.get(Part::Legend).zip(layout.panels.first());
@@ -250,7 +251,7 @@ impl<'a> Composer<'a> {
     /// Writes the words of all panels.
     fn write(&self, frame: &Frame, arranged: &Arranged, framing: Option<&Framing>, writer: &mut Writer<'_>) {
         let &Arranged { columns, ref around, ref numbers, .. } = arranged;
-        let (layout, with_clock) = (&around.layout, !around.clock_above);
+        let (layout, with_clock) = (&around.layout, around.clock_above.is_none());
         let words = self.words();
         let runs: Vec<_> = frame.runs.iter().map(|run| run.run).collect();
         let names = words.names(&runs);

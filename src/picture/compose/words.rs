@@ -6,7 +6,7 @@ use crate::picture::caption::{self, Heading, Writer};
 use crate::picture::chart::{event, style};
 use crate::picture::layout::{self, Layout, Part, Scale, Wanted};
 use crate::picture::legend::Legend;
-use crate::picture::text::Fonts;
+use crate::picture::text::{Fonts, Weight};
 use crate::runner::history::History;
 use crate::scene::Scene;
 
@@ -32,8 +32,8 @@ pub(super) struct Around {
     pub(super) titles: [Vec<String>; 2],
     /// The key of colours and arrows.
     pub(super) legend: Option<Legend>,
-    /// Whether the clock stands above all panels, because it has no room beside the heading of one.
-    pub(super) clock_above: bool,
+    /// The row of the clock above all panels, if it has no room beside the heading of one.
+    pub(super) clock_above: Option<Part>,
 }
 
 impl<'a> Words<'a> {
@@ -55,9 +55,13 @@ impl<'a> Words<'a> {
             ..Wanted::default()
         };
         let mut layout = Layout::new(view, panels, columns, wanted);
-        // If names are long or type is large, the clock has a row of its own.
-        let clock_above = self.is_crowded(&layout, runs, columns);
-        if clock_above {
+        // If names are long or type is large, the clock is beside a short title, or in a row of its own.
+        let room = width - 2.0 * scale.margin() - scale.gap() - writer.clock_width(scale, &view.clock);
+        let title =
+            matches!(&titles[0][..], [line] if self.fonts.width(line, Weight::SemiBold, scale.heading()) < room);
+        let row = if title { Part::Title } else { Part::Clock };
+        let clock_above = self.is_crowded(&layout, runs, columns).then_some(row);
+        if clock_above == Some(Part::Clock) {
             layout = Layout::new(view, panels, columns, Wanted { clock: true, ..wanted });
         }
         let legend = legend.filter(|_| layout.parts.get(Part::Legend).is_some());

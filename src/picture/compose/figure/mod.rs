@@ -1,7 +1,6 @@
 //! Figures: pictures of several scenes on one sheet.
 
 mod forces;
-mod header;
 mod labels;
 mod sheet;
 
@@ -24,6 +23,6 @@ pub(crate) struct NoRoom;
 pub(crate) fn compose_figure(figure: &Figure, moments: &Moments) -> Result<(Picture, Vec<String>), NoRoom> {
     match &figure.content {
         Content::Sheet(sheet) => Ok(sheet::compose(figure, sheet, moments)),
-        Content::Forces(forces) => Ok((forces::compose(figure, forces, moments)?, Vec::new())),
+        Content::Forces(forces) => forces::compose(figure, forces, moments),
     }
 }

@@ -14,15 +14,15 @@
 mod cell;
 mod drawn;
 
-use super::{NoRoom, header};
+use super::NoRoom;
 use crate::look::Labels;
 use crate::picture::Item;
 use crate::picture::Picture;
 use crate::picture::caption::Writer;
 use crate::picture::compose::Composer;
-use crate::picture::layout::steps::{APART, GAP, MARGIN, NAME_ROW, ROOM, ROW, SHORT};
+use crate::picture::layout::steps::{GAP, MARGIN, NAME_ROW, ROOM, ROW};
 use crate::picture::layout::tree::{self, Node};
-use crate::picture::layout::{ASCENT, Scale};
+use crate::picture::layout::{self, ASCENT, Part, Scale, Wanted};
 use crate::picture::legend::{Legend, Sample, SampleKind};
 use crate::picture::number::round_below;
 use crate::picture::text::{Fonts, Weight};
@@ -35,21 +35,8 @@ use cell::Cell;
 use drawn::Drawn;
 use glam::DVec2;
 
-/// The boxes of a diagram.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Part {
-    Edge,
-    Name,
-    Note,
-    Cells,
-    Cell,
-    Scene,
-    Body,
-    Key,
-}
-
-/// Composes a diagram.
-pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Result<Picture, NoRoom> {
+/// Composes a diagram, and tells what has no room in it.
+pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Result<(Picture, Vec<String>), NoRoom> {
     let scenes: Vec<Scene> = forces.scenes.iter().map(|scene| bare(scene, figure)).collect();
     let composers: Vec<_> = scenes.iter().map(|scene| Composer::new(scene, &History::default())).collect();
     let fonts = Fonts::new(&figure.look.font);
@@ -76,17 +63,20 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
         let column = Node::new(part, 0.0).stretched().with(inside.to_vec());
         Node::new(Part::Edge, length).with(vec![column; columns])
     };
-    let last = header::write(&mut writer, figure);
+    let titles = writer.titles(scale, [&figure.title, &figure.caption], width - 2.0 * scale.margin());
+    let lines = titles.each_ref().map(Vec::len);
+    let wanted = Wanted { titles: lines, is_figure: true, legend: Some(key.height), ..Wanted::default() };
     let has_notes = runs.len() > 1 && forces.notes.iter().any(|note| !note.is_empty());
-    let page = [
-        Node::new(Part::Edge, if last > 0.0 { last + APART * unit } else { MARGIN * unit }),
+    let rows_of_page = [
+        Node::new(Part::Edge, if lines == [0; 2] { MARGIN } else { GAP } * unit),
         in_columns(Part::Name, NAME_ROW * type_unit, &[]),
-        in_columns(Part::Note, if has_notes { ROW * type_unit } else { 0.0 }, &[]),
-        Node::new(Part::Cells, 0.0).stretched(),
-        Node::new(Part::Key, key.height).after(GAP * unit).rank(0),
-        Node::new(Part::Edge, SHORT * unit),
+        in_columns(Part::Second, if has_notes { ROW * type_unit } else { 0.0 }, &[]),
+        layout::row(f64::INFINITY, height, false),
     ];
-    let page = tree::column(&page, [0.0, 0.0, width, height]);
+    let page = tree::column(&layout::page(scale, wanted, rows_of_page.into_iter()), [0.0, 0.0, width, height]);
+    for (part, lines) in [Part::Title, Part::Caption].into_iter().zip(&titles) {
+        writer.lines(&page, part, scale, lines, scale.margin());
+    }
 
     // Bodies of one scale are aligned in columns and rows, which share the height by their needs.
     let extents: Vec<_> = cells.iter().map(Cell::extent).collect();
@@ -96,12 +86,12 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     };
     let of_rows: Vec<_> = extents.chunks(columns).map(joined).collect();
     let [low, high] = joined(&of_rows);
-    let scene = Node::new(Part::Scene, if runs.len() > 1 && rows > 1 { ROW * type_unit } else { 0.0 });
+    let scene = Node::new(Part::Heading, if runs.len() > 1 && rows > 1 { ROW * type_unit } else { 0.0 });
     let scene = scene.after(GAP * unit);
     // Labels need room on all sides.
     let beside = ROOM * if forces.numbers { type_unit } else { unit };
     let words = (if runs.len() > 1 && rows > 1 { 3.0 } else { 2.0 }) * ROW * type_unit + GAP * unit;
-    let place_of_cells = page.get(Part::Cells).unwrap_or_default();
+    let place_of_cells = page.get(Part::Row).unwrap_or_default();
     let needed: f64 = of_rows.iter().map(|[low, high]| high.y - low.y).sum();
     let across = (width / columns as f64 - 2.0 * beside) / (high.x - low.x).max(1e-9);
     let down = (place_of_cells[3] - rows as f64 * words) / needed.max(1e-9);
@@ -111,12 +101,12 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     }
     let body = Node::new(Part::Body, 0.0).stretched();
     let row = |[low, high]: &[DVec2; 2]| {
-        in_columns(Part::Cell, words + (high.y - low.y) * pixels, &[scene.clone(), body.clone()]).stretched()
+        in_columns(Part::Panel, words + (high.y - low.y) * pixels, &[scene.clone(), body.clone()]).stretched()
     };
     let places = tree::column(&of_rows.iter().map(row).collect::<Vec<_>>(), place_of_cells);
 
     let (mut panels, mut under, mut above) = (Vec::new(), Vec::new(), Vec::new());
-    let bodies = places.all(Part::Cell).zip(places.all(Part::Body));
+    let bodies = places.all(Part::Panel).zip(places.all(Part::Body));
     for ((at, cell), (room, [left, top, width, height])) in cells.iter().enumerate().zip(bodies) {
         let [lowest, highest] = of_rows[at / columns].map(|end| end.y);
         let from_middle = DVec2::new(-low.midpoint(high).x, lowest.midpoint(highest));
@@ -136,17 +126,17 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
         let text = fonts.shortened(text, weight, size, width - 2.0 * scale.margin());
         writer.left(&text, weight, size, colour, left + scale.margin(), top + ASCENT * size);
     };
-    for (column, (name, note)) in page.all(Part::Name).zip(page.all(Part::Note)).enumerate() {
+    for (column, (name, note)) in page.all(Part::Name).zip(page.all(Part::Second)).enumerate() {
         let text = if runs.len() > 1 { &runs[column].name } else { &scenes[column].title };
         write(text, Weight::SemiBold, scale.title(), palette.text, name);
         if has_notes {
             write(&forces.notes[column], Weight::Regular, scale.caption(), palette.second_text, note);
         }
     }
-    for (at, place_of_scene) in places.all(Part::Scene).enumerate().filter(|_| runs.len() > 1 && rows > 1) {
+    for (at, place_of_scene) in places.all(Part::Heading).enumerate().filter(|_| runs.len() > 1 && rows > 1) {
         write(&scenes[place(at).0].title, Weight::SemiBold, scale.caption(), palette.text, place_of_scene);
     }
-    if let Some([_, top, ..]) = page.get(Part::Key) {
+    if let Some([_, top, ..]) = page.get(Part::Legend) {
         let side = scenes[0].view.side * pixels;
         let share = round_below(key.arrow_length() / side);
         let arrow = if forces.vectors {
@@ -166,7 +156,8 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
         key.draw(&mut writer, [width, top], &samples, None);
     }
     above.extend(writer.items());
-    Ok(Picture { size: figure.size, palette, fonts, ramp: Vec::new(), panels, under, above })
+    let picture = Picture { size: figure.size, palette, fonts, ramp: Vec::new(), panels, under, above };
+    Ok((picture, layout::told(&page, &[])))
 }
 
 /// A scene for a diagram: in the figure's colours, without fields, charts, words, arrows and floors.

@@ -78,7 +78,7 @@ impl SheetLayout {
     /// The part of a tile at the picture's origin that its body may touch: left, top, right and bottom (px).
     pub(super) fn body_room(&self) -> [f64; 4] {
         let [width, height] = self.tile.map(f64::from);
-        let beside = (0.075 * width).max(2.0).min(0.25 * width);
+        let beside = (0.085 * width).max(2.0).min(0.25 * width);
         let above = (0.045 * height).max(2.0).min(0.25 * height);
         [beside, above, width - beside, (height - self.below_body).max(0.5 * height)]
     }
