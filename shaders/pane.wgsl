@@ -27,9 +27,7 @@ const CREASE_ALPHA = 0.85;
 // Below this height above the floor (soft units) a wall is this much darker.
 const CREASE_HEIGHT = 0.8;
 const CREASE_SHADE = 0.10;
-// The opacity of a pane in front of bodies, relative to its own, so that they stay visible.
-const OVER_BODIES = 0.6;
-// A wall in front of bodies hides even less of them.
+// The opacity of a wall in front of bodies, relative to its own: it hides even less of them than a plate.
 const WALL_OVER_BODIES = 0.35;
 @vertex
 fn pane_corner(

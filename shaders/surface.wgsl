@@ -51,9 +51,6 @@ fn unpack(corner: Corner) {
     panel.floor = corner.up_and_floor.w;
 }
 
-// Width (px in the reference picture) and opacity of edges.
-const EDGE_WIDTH = 1.15;
-const EDGE_ALPHA = 0.80;
 const KEY = vec3<f32>(0.66, 0.635, 0.595);
 const SKY = vec3<f32>(0.60, 0.635, 0.68);
 const GROUND = vec3<f32>(0.27, 0.262, 0.25);
@@ -66,8 +63,6 @@ const CONTACT_LIGHT = 0.72;
 // the key light.
 const TAKEN = 0.75;
 const KEY_TAKEN = 0.8;
-// The turned-over set is drawn this much nearer (sides), so that it wins where it shares faces with the other one.
-const NEARER = 0.02;
 // A face turned away is this much farther back, relative to the distance.
 const BACK_FACE = 1e-5;
 // From this depth (soft units) behind the visible surface on, a turned-over element is equally visible.

@@ -140,9 +140,8 @@ impl DeviceOptions {
             return Ok(None);
         }
         let gpu = Gpu::new(&self.adapter)?;
-        let longest = gpu.longest_side();
-        if let Some([width, height]) = sizes.find(|size| size.iter().any(|&side| side > longest)) {
-            let adapter = gpu.description();
+        if let Some([width, height]) = sizes.find(|size| size[0].max(size[1]) > gpu.longest_side(*size)) {
+            let (adapter, longest) = (gpu.description(), gpu.longest_side([width, height]));
             bail!("{width}×{height} is too large: {adapter} draws up to {longest} pixels a side");
         }
         Ok(Some(gpu))

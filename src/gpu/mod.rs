@@ -183,7 +183,6 @@ impl Gpu {
             required_limits: wgpu::Limits {
                 max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
                 max_buffer_size: adapter.limits().max_buffer_size,
-                max_storage_buffer_binding_size: adapter.limits().max_storage_buffer_binding_size,
                 ..wgpu::Limits::downlevel_defaults()
             },
             ..Default::default()
@@ -213,9 +212,11 @@ impl Gpu {
         &self.description
     }
 
-    /// The longest side of a picture that the device can draw (px).
-    pub(crate) fn longest_side(&self) -> u32 {
-        self.device.limits().max_texture_dimension_2d
+    /// The longest side of pictures that the device can draw and read back (px); less for a size with too many pixels.
+    pub(crate) fn longest_side(&self, size: [u32; 2]) -> u32 {
+        let limits = self.device.limits();
+        let longest = limits.max_texture_dimension_2d;
+        read_back::longest_side(size, limits.max_buffer_size).map_or(longest, |other| longest.min(other))
     }
 
     /// The first error of the device since the last call. Commands fail asynchronously, so check before using their

@@ -12,6 +12,21 @@ fn padded_row(width: u32) -> u32 {
     (width * PIXEL).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
 
+/// The largest number of textures that are read back.
+const MOST: usize = 3;
+
+/// The size of the buffer for a number of textures of one size (bytes).
+fn bytes([width, height]: [u32; 2], count: usize) -> u64 {
+    u64::from(padded_row(width)) * u64::from(height) * count as u64
+}
+
+/// The longest side of pictures whose textures a buffer can hold (px), for a size that is too large for it.
+pub(super) fn longest_side(size: [u32; 2], buffer: u64) -> Option<u32> {
+    let square = (buffer / (u64::from(PIXEL) * MOST as u64)).isqrt();
+    // A row of this length has no padding.
+    (bytes(size, MOST) > buffer).then(|| u32::try_from(square).unwrap_or(u32::MAX) / 64 * 64)
+}
+
 /// A buffer for reading back some textures of one size, time and again.
 #[derive(Debug)]
 pub(crate) struct ReadBack {
@@ -52,11 +67,17 @@ impl ReadBack {
     pub(crate) fn new(gpu: &Gpu, size: [u32; 2], count: usize) -> Self {
         let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
             label: Some("read back"),
-            size: u64::from(padded_row(size[0])) * u64::from(size[1]) * count as u64,
+            size: bytes(size, count),
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
         Self { buffer, size }
+    }
+
+    /// Makes room for a number of textures. The old buffer goes first, because there may be no memory for both.
+    pub(crate) fn grow(&mut self, gpu: &Gpu, count: usize) {
+        self.buffer.destroy();
+        *self = Self::new(gpu, self.size, count);
     }
 
     /// Adds the copies of textures to the commands, submits them and returns at once.
@@ -114,5 +135,10 @@ mod tests {
     #[test]
     fn rows_begin_at_multiples_of_256_bytes() {
         assert_eq!([1, 63, 64, 65, 127, 1280, 1281].map(padded_row), [256, 256, 256, 512, 512, 5120, 5376]);
+    }
+
+    #[test]
+    fn buffers_limit_the_size_of_pictures() {
+        assert_eq!([[16384, 16384], [16384, 10922]].map(|size| longest_side(size, 1 << 31)), [Some(13376), None]);
     }
 }

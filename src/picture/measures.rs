@@ -11,25 +11,35 @@ macro_rules! measures {
 
 // Widths and distances in pixels of the reference picture.
 measures! {
-    /// Edges of turned-over elements, and elements without faces.
+    /// Edges of elements in space.
+    EDGE_WIDTH = 1.15;
+    EDGE_ALPHA = 0.80;
+    /// Edges of turned-over elements.
     ALARM_EDGE_WIDTH = 1.5;
     ALARM_EDGE_ALPHA = 0.95;
-    BAR_WIDTH = 2.2;
-    BAR_ALPHA = 0.85;
-    /// Elements smaller than this (px) get fainter edges, or edges would cover everything.
-    SMALL_ELEMENT = 26.0;
-    /// Between these sizes of elements (px) edges fade out, because so close together they would flicker.
-    SMALLEST_ELEMENT = 4.0;
-    FADING_ELEMENT = 8.0;
     /// The dark share and the opacity of the stripes of turned-over elements.
     STRIPE = 0.2;
     STRIPE_ALPHA = 0.62;
-    /// The width of a casing relative to the line's, and the least (px).
-    CASING = 0.24;
-    LEAST_CASING = 0.6;
-    /// The rim of a node in space, relative to its radius.
-    BEAD_RIM = 0.32;
+    /// Turned-over elements, springs and nodes are drawn this much nearer (sides), so that they win where they share faces
+    /// with other elements.
+    NEARER = 0.02;
+    /// The opacity of a plate in front of bodies, relative to its own, so that they stay visible.
+    OVER_BODIES = 0.6;
 }
+
+/// Elements without faces.
+pub(crate) const BAR_WIDTH: f32 = 2.2;
+pub(crate) const BAR_ALPHA: f32 = 0.85;
+/// Elements smaller than this (px) get fainter edges, or edges would cover everything.
+pub(crate) const SMALL_ELEMENT: f32 = 26.0;
+/// Between these sizes of elements (px) edges fade out, because so close together they would flicker.
+pub(crate) const SMALLEST_ELEMENT: f32 = 4.0;
+const FADING_ELEMENT: f32 = 8.0;
+/// The width of a casing relative to the line's, and the least (px).
+pub(crate) const CASING: f32 = 0.24;
+pub(crate) const LEAST_CASING: f32 = 0.6;
+/// The rim of a node in space, relative to its radius.
+pub(crate) const BEAD_RIM: f32 = 0.32;
 
 /// The opacity of the edges of elements of a size (px), relative to that of large ones.
 pub(crate) fn edging(element: f32) -> f32 {

@@ -50,6 +50,7 @@ pub(crate) use layout::Rectangle;
 #[cfg(test)]
 pub(crate) use page::winding;
 pub(crate) use page::{Image, Item, Paint, Path, Pen, Step};
+pub(crate) use plane::{clipped, sides};
 pub(crate) use shadow::{CELLS, Shade};
 pub(crate) use text::{Face, Fonts, Glyph, TextRun, Weight};
 
@@ -68,7 +69,7 @@ pub struct Picture {
     pub(crate) ramp: Vec<Colour>,
     /// A panel for each run shown.
     pub(crate) panels: Vec<Panel>,
-    /// Flat items below the bodies.
+    /// Flat items below the marks: bodies in the plane and their surroundings.
     pub(crate) under: Vec<Item>,
     /// Flat items above the bodies: marks, then curves, then text.
     pub(crate) above: Vec<Item>,

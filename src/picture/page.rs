@@ -79,7 +79,7 @@ impl Item {
     }
 
     /// Items inside a part of the picture.
-    pub(super) fn inside(room: Rectangle, items: Vec<Self>) -> Self {
+    pub(crate) fn inside(room: Rectangle, items: Vec<Self>) -> Self {
         let [left, top, width, height] = room.map(|length| narrow(f64::from(length)));
         Self::Clip { path: Path::rectangle(Vec2::new(left, top), Vec2::new(width, height)), items }
     }

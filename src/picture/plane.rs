@@ -4,7 +4,7 @@ use glam::DVec2;
 
 /// The part of a straight line inside a rectangle, which is given by its four sides, as a range of multiples of a
 /// direction from a point of the line (Liang and Barsky).
-pub(super) fn clipped(
+pub(crate) fn clipped(
     start: DVec2,
     along: DVec2,
     [left, top, right, bottom]: [f64; 4],
@@ -25,7 +25,7 @@ pub(super) fn clipped(
 }
 
 /// The left, top, right and bottom side of a rectangle of a width and a height (px).
-pub(super) fn sides([left, top, width, height]: [f64; 4]) -> [f64; 4] {
+pub(crate) fn sides([left, top, width, height]: [f64; 4]) -> [f64; 4] {
     [left, top, left + width, top + height]
 }
 

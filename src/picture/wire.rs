@@ -1,6 +1,7 @@
 //! Lines instead of surfaces: the springs of a model, or the edges of the elements.
 
 use super::field::{self, NOWHERE};
+use super::measures::SMALL_ELEMENT;
 use super::narrow::{narrow, narrow_point};
 use super::order::farthest_first;
 use super::{Bead, Second, Stroke};
@@ -19,9 +20,7 @@ const BARE: f64 = 2.0;
 const CASED: f64 = 1.9;
 /// Opacity of a spring behind a surface (of 255).
 const BEHIND: f64 = 28.0;
-/// Smaller elements (px) get thinner lines, down to this part of their width, and fainter ones behind surfaces, or
-/// lines would cover everything.
-const SMALL_ELEMENT: f64 = 26.0;
+/// Small elements get thinner lines, down to this part of their width, and fainter ones behind surfaces.
 const THINNEST: f64 = 0.2;
 /// Springs of smaller elements (px) are left out behind surfaces: even the faintest would be too many.
 const SEEN_THROUGH: f64 = 8.0;
@@ -240,7 +239,7 @@ impl Wire<'_> {
     }
 
     fn straight(&self, ends: [DVec3; 2], colours: [Colour; 2], width: f64) -> Placed {
-        let strength = (self.element / SMALL_ELEMENT).clamp(0.0, 1.0);
+        let strength = (self.element / f64::from(SMALL_ELEMENT)).clamp(0.0, 1.0);
         let behind = (BEHIND * strength * strength).round() as u8;
         let stroke = Stroke {
             ends: ends.map(|end| self.relative(end)),

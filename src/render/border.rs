@@ -1,7 +1,8 @@
 //! Smooth borders of surfaces: a pixel that a line between two colours crosses gets the colour of the other side for the
 //! area there.
 
-use super::line::{NEARER, Segment, Tested};
+use super::line::{Depths, Segment};
+use crate::picture::measures::NEARER;
 use crate::picture::{Line, LineKind};
 use glam::Vec2;
 
@@ -11,16 +12,16 @@ const HIDDEN_BY: f32 = 6.0;
 const SURE: f32 = 0.01;
 
 /// Smooths the pixels of a panel, in rows of a width (px).
-pub(super) fn smooth(tested: &Tested<'_>, pixels: &mut [u8], width: usize) {
-    let region = tested.panel.region;
+pub(super) fn smooth(depths: &Depths<'_>, pixels: &mut [u8], width: usize) {
+    let region = depths.panel.region;
     if region[2] < 3 || region[3] < 3 {
         return;
     }
     let mut gains = Vec::new();
-    for line in &tested.panel.borders {
+    for line in &depths.panel.borders {
         let nearer = if line.kind.is_alarm() { NEARER } else { 0.0 };
-        if let Some(segment) = tested.segment([line.from, line.to], region, nearer) {
-            along(tested, line, &segment, pixels, width, &mut gains);
+        if let Some(segment) = depths.segment([line.from, line.to], region, nearer) {
+            along(depths, line, &segment, pixels, width, &mut gains);
         }
     }
     // Gains from several lines are summed, because each covers another part of the pixel. Each mixes the pixel with a
@@ -44,14 +45,14 @@ pub(super) fn smooth(tested: &Tested<'_>, pixels: &mut [u8], width: usize) {
 
 /// The pixels that one line crosses, with the light that each gains.
 fn along(
-    tested: &Tested<'_>,
+    depths: &Depths<'_>,
     line: &Line,
     Segment([from, to]): &Segment,
     pixels: &[u8],
     width: usize,
     gains: &mut Vec<(usize, [f32; 3])>,
 ) {
-    let [left, top, wide, high] = tested.panel.region.map(|length| length as f32);
+    let [left, top, wide, high] = depths.panel.region.map(|length| length as f32);
     let way = to - from;
     let is_flat = way.x.abs() >= way.y.abs();
     // The axis along which pixels are counted, and the one across.
@@ -72,12 +73,12 @@ fn along(
         if own.cmplt(Vec2::new(left, top) + 1.0).any() || own.cmpge(Vec2::new(left + wide, top + high) - 1.0).any() {
             continue;
         }
-        let depth = |at: Vec2| if line.kind.is_alarm() { tested.depth_alone(at) } else { tested.depth(at) };
+        let depth = |at: Vec2| if line.kind.is_alarm() { depths.depth_alone(at) } else { depths.depth(at) };
         let [first, second, here] = [before, after, own].map(depth);
         // A crease has faces on both sides, so depths before the nearer one hide it. A contour has the surface on one side,
         // so it is hidden if all depths around it are before it.
         let beside = if is_crease { first.max(second) } else { first.min(second).min(here) };
-        let is_hidden = tested.distance(at.z) * (1.0 - HIDDEN_BY / tested.panel.sight.focal) > tested.distance(beside);
+        let is_hidden = depths.distance(at.z) * (1.0 - HIDDEN_BY / depths.panel.sight.focal) > depths.distance(beside);
         // Hidden edges of a set that is visible through others would count where they end at its outline.
         if is_hidden || within <= 0.0 || (line.kind == LineKind::AlarmEdge && first.min(second) <= 0.0) {
             continue;

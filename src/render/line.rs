@@ -3,37 +3,34 @@
 
 use super::panel::palette;
 use crate::gpu::Layers;
-use crate::picture::measures::{ALARM_EDGE_WIDTH, BAR_ALPHA, BAR_WIDTH, CASING, LEAST_CASING, edging};
+use crate::picture::measures::{
+    ALARM_EDGE_ALPHA, ALARM_EDGE_WIDTH, BAR_ALPHA, BAR_WIDTH, CASING, EDGE_ALPHA, EDGE_WIDTH, LEAST_CASING, NEARER,
+    OVER_BODIES, edging,
+};
 use crate::picture::{
-    Bead, Colour, Item, Line, LineKind, Paint, Palette, PaneCorner, Panel, Path, Pen, Picture, Rectangle, Second, Step,
-    Stroke,
+    Bead, Colour, Item, Line, LineKind, Paint, Palette, Pane, Panel, Path, Pen, Picture, Rectangle, Second, Step,
+    Stroke, clipped, sides,
 };
 use glam::{DVec2, DVec3, DVec4, Vec2, Vec3};
 use std::collections::HashSet;
 
-/// Widths of edges and contours (px in the reference picture), from the widest contour to the narrowest.
-const EDGE_WIDTH: f32 = 1.15;
+/// Widths of hidden edges and of contours (px in the reference picture), from the widest contour to the narrowest.
 const HIDDEN_WIDTH: f32 = 0.9;
 const OUTLINE_WIDTH: f32 = 2.0;
 const FOLD_WIDTH: f32 = 1.7;
 const STEP_WIDTH: f32 = 1.5;
-/// Opacities of visible and of hidden edges, and of contours inside the body and behind it.
-const EDGE_ALPHA: f32 = 0.80;
+/// Opacities of hidden edges, and of contours inside the body and behind it.
 const HIDDEN_ALPHA: f32 = 0.16;
 const STEP_ALPHA: f32 = 0.85;
 const FOLD_ALPHA: f32 = 0.80;
 /// Opacities of edges of turned-over elements: visible, behind other elements, and behind turned-over ones.
-const ALARM_ALPHAS: [f32; 3] = [0.95, 0.62, 0.15];
+const ALARM_ALPHAS: [f32; 3] = [ALARM_EDGE_ALPHA, 0.62, 0.15];
 /// Folds inside the turned-over set of elements smaller than this (px) are fainter.
 const SMALL_FOLDED: f32 = 8.0;
 /// Width (px in the reference picture) and opacity of the edges of plates.
 const PLATE_EDGE: f32 = 1.35;
 const PLATE_EDGE_ALPHA: f32 = 0.86;
-/// The opacity of a plate in front of bodies, relative to its own, as in the shader.
-const OVER_BODIES: f32 = 0.6;
 
-/// Lines of turned-over elements, springs and nodes are this much nearer (sides), like surfaces of turned-over elements.
-pub(super) const NEARER: f32 = 0.02;
 /// A line lies this much in front of its surface, relative to the distance, and fades over the second range of depths in
 /// front of the surface and behind it, so that it does not appear suddenly.
 const OFFSET: f32 = 0.0016;
@@ -48,36 +45,65 @@ const TAPS: [Vec2; 4] =
     [Vec2::new(0.125, 0.375), Vec2::new(-0.375, 0.125), Vec2::new(0.375, -0.125), Vec2::new(-0.125, -0.375)];
 /// The exponent by which the painter, which blends bytes (sRGB), comes near blending of linear light.
 const IN_BYTES: f32 = 0.55;
+/// Between these greens a colour is neither dark nor light.
+const MEDIUM: [f32; 2] = [96.0, 160.0];
+/// The step of the colours of a gradient (bytes).
+const GRADED: f32 = 8.0;
 /// The number of opacities of lines.
 const LEVELS: usize = 8;
 
 /// A panel with the depths of its bodies.
 #[derive(Debug)]
-pub(super) struct Tested<'a> {
+pub(super) struct Depths<'a> {
     pub(super) panel: &'a Panel,
     /// The opacities of pixels, and the depths of all bodies and of turned-over elements alone.
     marks: &'a [[u8; 4]],
-    depths: &'a [f32],
+    all: &'a [f32],
     alone: Option<&'a [f32]>,
     stride: usize,
-    /// The corners of plates (px and depth), with the part of a line that each leaves visible behind it.
-    plates: Vec<(Vec<Vec3>, f32)>,
+    plates: Vec<Plate>,
 }
 
-impl<'a> Tested<'a> {
+/// The visible part of a plate.
+#[derive(Debug)]
+struct Plate {
+    /// The corners (px), with their depths.
+    corners: Vec<DVec3>,
+    /// The normal of its depths over the picture.
+    normal: DVec3,
+    /// The part of a line that it leaves visible behind it.
+    left: f32,
+}
+
+impl<'a> Depths<'a> {
     pub(super) fn new(panel: &'a Panel, layers: Layers<'a>, has_behind: bool) -> Self {
         let alone = has_behind.then(|| layers.of(2));
-        let (marks, depths, stride) = (layers.of(0), layers.of(1), layers.stride());
-        let tested = Self { panel, marks, depths, alone, stride, plates: Vec::new() };
-        let corner = |corner: &PaneCorner| tested.place(tested.clipped(corner.position), 0.0).as_vec3();
+        let (marks, all, stride) = (layers.of(0), layers.of(1), layers.stride());
+        let depths = Self { panel, marks, all, alone, stride, plates: Vec::new() };
         let panes = panel.obstacles.panes.iter().filter(|pane| !pane.grid);
-        let plates = panes.map(|pane| (pane.corners.iter().map(corner).collect(), 1.0 - OVER_BODIES * pane.alpha));
-        Self { plates: plates.collect(), ..tested }
+        Self { plates: panes.filter_map(|pane| depths.plate(pane)).collect(), ..depths }
+    }
+
+    /// A plate; `None` if it lies behind the viewer, or is seen from its edge and covers nothing.
+    fn plate(&self, pane: &Pane) -> Option<Plate> {
+        let corners: Vec<_> = pane.corners.iter().map(|corner| self.in_clip_space(corner.position)).collect();
+        let sides = around(&corners).filter_map(|(&a, &b)| self.before_eye([a, b])).flatten();
+        let corners: Vec<_> = sides.map(|at| self.place(at, 0.0)).collect();
+        let first = *corners.first()?;
+        let normal: DVec3 = around(&corners).map(|(&a, &b)| (a - first).cross(b - first)).sum();
+        (normal.z.abs() > 1e-3).then_some(Plate { corners, normal, left: 1.0 - OVER_BODIES * pane.alpha })
     }
 
     /// A point in clip space. Double precision keeps lines that reach far beyond the picture in their places.
-    fn clipped(&self, at: [f32; 3]) -> DVec4 {
+    fn in_clip_space(&self, at: [f32; 3]) -> DVec4 {
         self.panel.sight.clip.as_dmat4() * Vec3::from(at).as_dvec3().extend(1.0)
+    }
+
+    /// The part of a line in clip space that is before the near plane.
+    fn before_eye(&self, [a, b]: [DVec4; 2]) -> Option<[DVec4; 2]> {
+        let near = f64::from(self.panel.sight.near);
+        let cut = |from: DVec4, to| if from.w < near { from.lerp(to, (near - from.w) / (to.w - from.w)) } else { from };
+        (a.w.max(b.w) >= near).then(|| [cut(a, b), cut(b, a)])
     }
 
     /// The place of a point in clip space in the picture (px), and its depth, this much nearer (sides). Depths are linear on
@@ -92,29 +118,27 @@ impl<'a> Tested<'a> {
 
     /// The part of a line that plates in front of it leave visible.
     fn through_plates(&self, at: &Sample) -> f32 {
-        let is_before = |corners: &[Vec3]| {
-            let around = || corners.iter().zip(corners.iter().cycle().skip(1));
-            let side = |(a, b): (&Vec3, &Vec3)| (b - a).truncate().perp_dot(at.middle - a.truncate());
-            if around().map(side).any(|side| side < 0.0) && around().map(side).any(|side| side > 0.0) {
-                return false;
-            }
-            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-            let off = (at.middle - corners[0].truncate()).dot(normal.truncate());
-            corners[0].z - off / normal.z > at.depth * (1.0 + OFFSET)
+        let is_before = |plate: &&Plate| {
+            let off = at.middle.as_dvec2() - plate.corners[0].truncate();
+            let depth = plate.corners[0].z - off.dot(plate.normal.truncate()) / plate.normal.z;
+            let at_side = |(a, b): (&DVec3, &DVec3)| (b - a).truncate().perp_dot(at.middle.as_dvec2() - a.truncate());
+            let sides = || around(&plate.corners).map(at_side);
+            let is_inside = sides().all(|side| side >= 0.0) || sides().all(|side| side <= 0.0);
+            is_inside && depth > f64::from(at.depth * (1.0 + OFFSET))
         };
-        self.plates.iter().filter(|(corners, _)| is_before(corners)).map(|(_, left)| left).product()
+        self.plates.iter().filter(is_before).map(|plate| plate.left).product()
     }
 
-    /// The place of the pixel at a point, or of the nearest pixel of the region.
-    pub(super) fn pixel(&self, at: Vec2) -> usize {
-        let [left, top, width, height] = self.panel.region;
+    /// The place of the pixel at a point, or of the nearest pixel of the panel.
+    fn pixel(&self, at: Vec2) -> usize {
+        let [left, top, width, height] = self.panel.viewport;
         let within = |at: f32, start: u32, length: u32| (at.max(0.0) as u32).clamp(start, start + length - 1) as usize;
         within(at.y, top, height) * self.stride + within(at.x, left, width)
     }
 
     /// The depth of bodies at a point: 0 on the ground.
     pub(super) fn depth(&self, at: Vec2) -> f32 {
-        self.depths[self.pixel(at)]
+        self.all[self.pixel(at)]
     }
 
     /// The depth of turned-over elements alone.
@@ -136,21 +160,10 @@ impl<'a> Tested<'a> {
 
     /// The part of a line in a rectangle (px), this much nearer (sides).
     pub(super) fn segment(&self, ends: [[f32; 3]; 2], within: Rectangle, nearer: f32) -> Option<Segment> {
-        let near = f64::from(self.panel.sight.near);
-        let [mut a, mut b] = ends.map(|end| self.clipped(end));
-        if a.w < near && b.w < near {
-            return None;
-        }
-        if a.w < near {
-            a = a.lerp(b, (near - a.w) / (b.w - a.w));
-        } else if b.w < near {
-            b = b.lerp(a, (near - b.w) / (a.w - b.w));
-        }
-        let [from, to] = [a, b].map(|end| self.place(end, nearer));
-        let [left, top, width, height] = within.map(f64::from);
-        let room = [DVec2::new(left, top), DVec2::new(left + width, top + height)];
-        let [start, end] = shares_within(from.truncate(), to.truncate(), room)?;
-        Some(Segment([start, end].map(|share| from.lerp(to, share).as_vec3())))
+        let [from, to] = self.before_eye(ends.map(|end| self.in_clip_space(end)))?.map(|end| self.place(end, nearer));
+        let (start, way) = (from.truncate(), (to - from).truncate());
+        let shares = clipped(start, way, sides(within.map(f64::from)), [0.0, 1.0])?;
+        Some(Segment(shares.map(|share| from.lerp(to, share).as_vec3())))
     }
 
     /// The visibility of an edge, and the part of it behind a body.
@@ -209,7 +222,7 @@ impl<'a> Tested<'a> {
     }
 
     /// The opacities of a line at a sample, relative to those of up to three pens.
-    fn look(&self, line: &Line, at: &Sample) -> [usize; 3] {
+    fn levels(&self, line: &Line, at: &Sample) -> [usize; 3] {
         // Obstacles fade at the sides of their room.
         let faded = || TAPS.map(|tap| self.obstacle(at.middle + 4.0 * tap)).into_iter().fold(0.0, f32::max);
         let opacities = match line.kind {
@@ -264,7 +277,8 @@ impl<'a> Tested<'a> {
                 });
                 let [from, to] = stroke.colours;
                 let plain = std::array::from_fn(|at| {
-                    (f32::from(from[at]) + share * (f32::from(to[at]) - f32::from(from[at]))).round() as u8 & !7
+                    let [from, to] = [from[at], to[at]].map(f32::from);
+                    (((from + share * (to - from)) / GRADED).round() * GRADED) as u8
                 });
                 let colour = match stroke.second {
                     Second::OnBody(other) if inside > 0.5 => other,
@@ -288,27 +302,33 @@ impl<'a> Tested<'a> {
         }
     }
 
-    /// A node.
+    /// A node; `None` if it is hidden or outside the panel.
     fn bead(&self, bead: &Bead) -> Option<Item> {
-        let segment = self.segment([bead.at; 2], self.panel.viewport, NEARER)?;
-        let (at, _) = segment.samples().next()?;
+        let [at, _] = self.before_eye([self.in_clip_space(bead.at); 2])?.map(|at| self.place(at, NEARER).as_vec3());
+        let middle = at.truncate();
+        let [left, top, width, height] = self.panel.viewport.map(|length| length as f32);
+        let corner = Vec2::new(left, top);
+        if middle.distance(middle.clamp(corner, corner + Vec2::new(width, height))) > bead.radius {
+            return None;
+        }
         // It is cut off by depths in front of a ball twice as large, and fades over its radius.
         let radius = (bead.radius / self.panel.sight.focal).min(0.25);
-        let front = at.depth * (1.0 + OFFSET) / (1.0 - 2.0 * radius);
+        let front = at.z * (1.0 + OFFSET) / (1.0 - 2.0 * radius);
         let shown = |depth: f32| 0.5 + 0.5 * (front - depth) / (radius.max(FADED) * depth.max(1e-9));
         let around = [Vec2::ZERO, Vec2::X, -Vec2::X, Vec2::Y, -Vec2::Y];
         let [seen] = mean(|tap| {
-            let shown = around.map(|way| shown(self.depth(at.middle + tap + 1.5 * way)).clamp(0.0, 1.0));
+            let shown = around.map(|way| shown(self.depth(middle + tap + 1.5 * way)).clamp(0.0, 1.0));
             [shown.iter().sum::<f32>() / around.len() as f32]
         });
-        Item::rimmed(at.middle.as_dvec2(), bead.radius.into(), bead.colour, bead.rim).faded(seen.into())
+        Item::rimmed(middle.as_dvec2(), bead.radius.into(), bead.colour, bead.rim).faded(seen.into())
     }
 }
 
 /// Adds a line to items: to the last one, if it looks alike.
 fn add(path: &Path, width: f32, colour: Colour, alpha: f32, items: &mut Vec<Item>) {
     // Opacities are meant for linear light, in which dark lines cover less, and light ones more.
-    let alpha = if colour[1] < 128 { 1.0 - (1.0 - alpha).powf(IN_BYTES) } else { alpha.powf(IN_BYTES) };
+    let (dark, light) = (1.0 - (1.0 - alpha).powf(IN_BYTES), alpha.powf(IN_BYTES));
+    let alpha = dark + smooth(colour[1].into(), MEDIUM[0], MEDIUM[1]) * (light - dark);
     let (pen, paint) = (Pen { round: false, ..Pen::solid(width) }, Paint { colour, alpha });
     match items.last_mut() {
         Some(Item::Stroke { path: last, pen: other, paint: same }) if *other == pen && *same == paint => {
@@ -318,9 +338,9 @@ fn add(path: &Path, width: f32, colour: Colour, alpha: f32, items: &mut Vec<Item
     }
 }
 
-/// The pen of lines of one look.
+/// Lines of one pen.
 #[derive(Clone, Copy)]
-enum Ink {
+enum Style {
     Hidden,
     HiddenBar,
     Edge,
@@ -335,7 +355,7 @@ enum Ink {
     ObstacleOutline,
 }
 
-impl Ink {
+impl Style {
     /// All, in the order of drawing.
     const ALL: [Self; 12] = [
         Self::Hidden,
@@ -352,7 +372,7 @@ impl Ink {
         Self::ObstacleOutline,
     ];
 
-    /// The pens of a kind of lines.
+    /// The styles of a kind of lines.
     fn of(kind: LineKind) -> [Self; 3] {
         match kind {
             LineKind::Edge => [Self::Hidden, Self::Edge, Self::Edge],
@@ -366,7 +386,7 @@ impl Ink {
     }
 
     /// Width (px), colour and opacity in a panel.
-    fn look(self, panel: &Panel, palette: &Palette) -> (f32, Colour, f32) {
+    fn pen(self, panel: &Panel, palette: &Palette) -> (f32, Colour, f32) {
         let Palette { edge, outline, alarm_line, outline_alpha, .. } = *palette;
         let (strength, scale) = (edging(panel.sight.element), panel.sight.line_scale);
         // Small bodies would be mostly outline.
@@ -388,54 +408,48 @@ impl Ink {
     }
 }
 
-/// The lines and nodes of a panel, in the order in which they are drawn.
-pub(super) fn items(tested: &Tested<'_>, picture: &Picture) -> Vec<Item> {
-    let panel = tested.panel;
+/// The lines and nodes of a panel, in the order in which they are drawn; `None` if there are none.
+pub(super) fn item(depths: &Depths<'_>, picture: &Picture) -> Option<Item> {
+    let panel = depths.panel;
     let (mut items, palette) = (Vec::new(), palette(picture, panel));
-    if panel.region[2] == 0 || panel.region[3] == 0 {
-        return items;
-    }
-    let mut paths: Vec<[Path; LEVELS]> = Ink::ALL.map(|_| Default::default()).into();
+    let mut paths: Vec<[Path; LEVELS]> = Style::ALL.map(|_| Default::default()).into();
     let mut drawn = HashSet::new();
-    for line in &panel.lines {
+    let lines = if panel.region[2..].contains(&0) { &[] } else { &panel.lines[..] };
+    for line in lines {
         let nearer = if line.kind.is_alarm() { NEARER } else { 0.0 };
-        let Some(segment) = tested.segment([line.from, line.to], panel.region, nearer) else { continue };
-        let looks: Vec<_> = segment.samples().map(|(at, _)| tested.look(line, &at)).collect();
-        for (at, ink) in Ink::of(line.kind).into_iter().enumerate() {
-            for (run, look) in runs(&looks.iter().map(|look| look[at]).collect::<Vec<_>>()) {
-                let part = segment.part(run, looks.len());
-                // Coverage of a line drawn twice would add up: both sets of elements have contours along common edges.
-                if look > 0 && drawn.insert((ink as usize, key(&part))) {
-                    paths[ink as usize][look - 1].0.extend(part.0);
-                }
+        let Some(segment) = depths.segment([line.from, line.to], panel.region, nearer) else { continue };
+        let levels: Vec<_> = segment.samples().map(|(at, _)| depths.levels(line, &at)).collect();
+        for (at, style) in Style::of(line.kind).into_iter().enumerate() {
+            let levels: Vec<_> = levels.iter().map(|levels| levels[at]).collect();
+            // Coverage of a line drawn twice would add up: both sets of elements have contours along common edges.
+            if levels.iter().all(|&level| level == 0) || !drawn.insert((style as usize, segment.key())) {
+                continue;
+            }
+            for (run, level) in runs(&levels).into_iter().filter(|&(_, level)| level > 0) {
+                paths[style as usize][level - 1].0.extend(segment.part(run, levels.len()).0);
             }
         }
     }
-    for (ink, paths) in Ink::ALL.into_iter().zip(paths) {
-        let (width, colour, alpha) = ink.look(panel, &palette);
-        for (level, path) in (1..).zip(paths).filter(|(_, path)| !path.0.is_empty()) {
+    for (style, paths) in Style::ALL.into_iter().zip(paths) {
+        let (width, colour, alpha) = style.pen(panel, &palette);
+        for (level, path) in (1..).zip(paths).filter(|(_, path)| !path.is_empty()) {
             add(&path, width, colour, alpha * level as f32 / LEVELS as f32, &mut items);
         }
     }
-    let left = |at: &Sample| tested.through_plates(at);
-    panel.strokes.iter().for_each(|stroke| tested.stroke(stroke, 1.0, left, &mut items));
-    items.extend(panel.beads.iter().filter_map(|bead| tested.bead(bead)));
+    let left = |at: &Sample| depths.through_plates(at);
+    panel.strokes.iter().for_each(|stroke| depths.stroke(stroke, 1.0, left, &mut items));
+    items.extend(panel.beads.iter().filter_map(|bead| depths.bead(bead)));
     for &ends in &panel.obstacles.edges {
         let (colours, width) = ([palette.pane_edge; 2], PLATE_EDGE * panel.sight.line_scale);
         let edge = Stroke { ends, colours, second: Second::None, behind: 0, width };
-        tested.stroke(&edge, PLATE_EDGE_ALPHA, |_| 1.0, &mut items);
+        depths.stroke(&edge, PLATE_EDGE_ALPHA, |_| 1.0, &mut items);
     }
-    items
+    (!items.is_empty()).then(|| Item::inside(panel.viewport, items))
 }
 
-/// The ends of a line in quarters of a pixel, the lower one first.
-fn key(line: &Path) -> [[i32; 2]; 2] {
-    let mut ends = [0, 1].map(|at| match line.0[at] {
-        Step::Move(end) | Step::Line(end) => (4.0 * end).round().as_ivec2().to_array(),
-        Step::Cubic(_) | Step::Close => [0; 2],
-    });
-    ends.sort_unstable();
-    ends
+/// Consecutive corners of a polygon.
+fn around<T>(corners: &[T]) -> impl Iterator<Item = (&T, &T)> {
+    corners.iter().zip(corners.iter().cycle().skip(1))
 }
 
 /// A line in the picture: its ends (px), with their depths.
@@ -468,6 +482,13 @@ impl Segment {
             let here = from.lerp(to, share);
             (Sample { middle: here.truncate(), along, depth: here.z }, share)
         })
+    }
+
+    /// Its ends in quarters of a pixel, the lower one first.
+    fn key(&self) -> [[i32; 2]; 2] {
+        let mut ends = self.0.map(|end| (4.0 * end.truncate()).round().as_ivec2().to_array());
+        ends.sort_unstable();
+        ends
     }
 
     /// The part around consecutive samples of a number.
@@ -510,39 +531,4 @@ fn mean<const COUNT: usize>(of: impl Fn(Vec2) -> [f32; COUNT]) -> [f32; COUNT] {
 fn smooth(at: f32, from: f32, to: f32) -> f32 {
     let share = ((at - from) / (to - from)).clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)
-}
-
-/// The ends of a line's part in a rectangle, as shares of the line.
-fn shares_within(from: DVec2, to: DVec2, [low, high]: [DVec2; 2]) -> Option<[f64; 2]> {
-    let way = to - from;
-    let (mut start, mut end) = (0.0_f64, 1.0_f64);
-    for axis in 0..2 {
-        if way[axis] == 0.0 {
-            if from[axis] < low[axis] || from[axis] > high[axis] {
-                return None;
-            }
-            continue;
-        }
-        let [one, other] = [low, high].map(|side| (side[axis] - from[axis]) / way[axis]);
-        (start, end) = (start.max(one.min(other)), end.min(one.max(other)));
-    }
-    (start <= end).then_some([start, end])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_are_cut_to_what_may_be_seen() {
-        let room = [DVec2::ZERO, DVec2::new(10.0, 5.0)];
-        let within = |from: [f64; 2], to: [f64; 2]| shares_within(from.into(), to.into(), room);
-        assert_eq!(within([1.0, 1.0], [9.0, 4.0]), Some([0.0, 1.0]));
-        assert_eq!(within([-10.0, 2.0], [30.0, 2.0]), Some([0.25, 0.5]));
-        assert_eq!(within([3.0, -1e3], [3.0, -1.0]), None);
-        assert_eq!(within([-1.0, 6.0], [12.0, 6.0]), None);
-        assert_eq!(within([4.0, 4.0], [4.0, 4.0]), Some([0.0, 1.0]));
-        // The line passes a corner.
-        assert_eq!(within([-2.0, 4.0], [4.0, 10.0]), None);
-    }
 }

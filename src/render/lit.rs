@@ -7,7 +7,7 @@
 //! 4. `border` smooths pixels that lines between two colours cross, and `line` draws edges, contours, springs and nodes. Both
 //!    need the depths of the picture, which are read back, and no device.
 //!
-//! Every pixel has one sample. Each pass of the device has one file here and one of the same name in `shaders/`.
+//! Every pixel has one sample. The passes `surface`, `ground` and `pane` have one file here and one in `shaders/`.
 
 use super::pane::Panes;
 use super::panel::{self, Panels};
@@ -40,7 +40,7 @@ impl Lit {
     /// # Errors
     /// The device fails.
     pub(super) fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, RenderError> {
-        let ([width, height], longest) = (size, gpu.longest_side());
+        let ([width, height], longest) = (size, gpu.longest_side(size));
         if width.max(height) > longest {
             return Err(RenderError::Size { width, height, longest });
         }
@@ -67,7 +67,7 @@ impl Lit {
         let Self { gpu, size, layouts, .. } = self;
         if self.behind.is_none() && picture.panels.iter().any(panel::has_behind) {
             self.behind = Some(Behind::new(gpu, layouts, *size));
-            self.read_back = ReadBack::new(gpu, *size, 3);
+            self.read_back.grow(gpu, 3);
         }
         self.panels.write(gpu, picture);
         self.surfaces.write(gpu, &self.panels, layouts, picture);
@@ -111,8 +111,8 @@ impl Lit {
         self.read_back.submit(gpu, commands, &textures)
     }
 
-    /// Waits for a submitted picture, and returns the lines over its bodies. Its pixels are red, green, blue and any number, in
-    /// rows from the top left.
+    /// Waits for a submitted picture, and returns the lines over its bodies. Its pixels are red, green, blue and full opacity,
+    /// in rows from the top left.
     ///
     /// # Errors
     /// The device fails.
@@ -126,11 +126,13 @@ impl Lit {
         Ok(self.read_back.collect(&self.gpu, pending, |layers| {
             let rows = layers.of::<u8>(0).chunks_exact(4 * layers.stride());
             rows.for_each(|row| pixels.extend_from_slice(&row[..4 * self.size[0] as usize]));
+            // The painter needs full opacity. Marks of bodies and obstacles are read from the layer.
+            pixels.as_chunks_mut::<4>().0.iter_mut().for_each(|pixel| pixel[3] = u8::MAX);
             let mut items = Vec::new();
-            for panel in picture.panels.iter().filter(|panel| !panel.sight.flat) {
-                let tested = line::Tested::new(panel, layers, has_behind);
-                border::smooth(&tested, pixels, self.size[0] as usize);
-                items.extend(line::items(&tested, picture));
+            for panel in picture.panels.iter().filter(|panel| !panel.sight.flat && !panel.viewport[2..].contains(&0)) {
+                let depths = line::Depths::new(panel, layers, has_behind);
+                border::smooth(&depths, pixels, self.size[0] as usize);
+                items.extend(line::item(&depths, picture));
             }
             items
         })?)

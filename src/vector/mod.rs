@@ -127,7 +127,7 @@ pub fn write(page: &Page<'_>, format: Format) -> Result<Vec<u8>, VectorError> {
     let images: Vec<_> = page.bodies.map_or_else(Vec::new, |pixels| {
         lit(picture).filter_map(|panel| image(page, panel, pixels)).map(Item::Image).collect()
     });
-    let items = [&ground].into_iter().chain(&picture.under).chain(&images).chain(&picture.above);
+    let items = [&ground].into_iter().chain(&images).chain(&picture.under).chain(&picture.above);
     Ok(match format {
         Format::Svg => svg::file(page, items, &subsets),
         Format::Pdf => pdf::file(page, items, &subsets),
@@ -153,7 +153,7 @@ fn halo(picture: &Picture, run: &TextRun) -> Option<Item> {
 
 /// Paints a picture over the pixels of its lit bodies, whose lines are given, or over its background.
 pub(crate) fn paint(painter: &mut Painter, picture: &Picture, lines: &[Item], pixels: &mut [u8]) {
-    painter.take(picture.under.iter().chain(lines).chain(&picture.above), picture);
+    painter.take(lines.iter().chain(&picture.under).chain(&picture.above), picture);
     painter.paint(pixels);
 }
 

@@ -45,7 +45,8 @@ impl Painter {
         items.for_each(|item| self.item(item, picture));
     }
 
-    /// Paints the items over pixels: red, green, blue and full opacity of each, in rows from the top left.
+    /// Paints the items over pixels: red, green, blue and full opacity of each, which the painter relies on, in rows from the
+    /// top left.
     pub(crate) fn paint(&mut self, pixels: &mut [u8]) {
         let settings = RasterizerSettings { target_init: TargetInit::SrcOver, ..RasterizerSettings::default() };
         let [width, height] = self.size;

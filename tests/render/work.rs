@@ -22,6 +22,18 @@ fn pictures_in_the_plane_need_no_device() {
     assert_eq!(lit, Err(RenderError::NoDevice));
 }
 
+#[test]
+fn pictures_do_not_depend_on_those_before_them() {
+    let Some(gpu) = gpu("pictures_do_not_depend_on_those_before_them") else { return };
+    let (scene, mut frame) = fig4b(0);
+    let mut renderer = renderer(gpu, scene.view.size);
+    let drawn = [false, true, false].map(|turned_over| {
+        frame.runs[0].snapshot.turned_over[13] = turned_over;
+        renderer.draw(&compose(&scene, &frame)).expect("the device works")
+    });
+    assert!(drawn[0] == drawn[2] && drawn[0] != drawn[1]);
+}
+
 /// Patterns on bodies are made only where a panel shows them.
 #[test]
 fn bodies_far_larger_than_their_panel_are_drawn_in_bounded_time() {
