@@ -5,7 +5,7 @@ use super::layout::Rectangle;
 use super::layout::steps::{CHART, GAP, HAIR};
 use super::narrow::narrow;
 use super::page::{Path, Pen, point};
-use super::plane::{clipped, sides};
+use super::plane::{cut, sides};
 use crate::colour::{Colour, mixed};
 use glam::DVec2;
 
@@ -85,9 +85,8 @@ fn outline([from, to]: [DVec2; 2], width: f64) -> ([DVec2; 7], f64) {
 
 /// The part of an arrow inside a room, and its opacity, which is less than 1 where it is hardly longer than the shortest
 /// (px). Long arrows are cut rather than left out, or the remaining small ones would mislead.
-pub(super) fn inside([from, to]: [DVec2; 2], room: Rectangle, shortest: f64) -> Option<([DVec2; 2], f64)> {
-    let shares = clipped(from, to - from, sides(room.map(f64::from)), [0.0, 1.0])?;
-    let ends = shares.map(|share| from.lerp(to, share));
+pub(super) fn inside(ends: [DVec2; 2], room: Rectangle, shortest: f64) -> Option<([DVec2; 2], f64)> {
+    let ends = cut(ends, sides(room.map(f64::from)))?;
     let longer = ends[0].distance(ends[1]) / shortest - 1.0;
     (longer > 0.0).then_some((ends, (longer / FADING).min(1.0)))
 }

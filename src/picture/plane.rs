@@ -24,6 +24,26 @@ pub(crate) fn clipped(
     (to > from).then_some([from, to])
 }
 
+/// The part of the straight line between two points inside a rectangle, which is given by its four sides.
+pub(super) fn cut([from, to]: [DVec2; 2], sides: [f64; 4]) -> Option<[DVec2; 2]> {
+    Some(clipped(from, to - from, sides, [0.0, 1.0])?.map(|share| from.lerp(to, share)))
+}
+
+/// The pieces of a line through points inside a rectangle, which is given by its four sides.
+pub(super) fn pieces(points: &[[f64; 2]], sides: [f64; 4]) -> Vec<Vec<[f64; 2]>> {
+    // A point is a line without a length.
+    let points = if let &[only] = points { &[only; 2] } else { points };
+    let mut pieces: Vec<Vec<_>> = Vec::new();
+    for ends in points.windows(2).filter_map(|two| cut([two[0].into(), two[1].into()], sides)) {
+        let [from, to] = ends.map(|end| end.to_array());
+        match pieces.last_mut() {
+            Some(piece) if piece.last() == Some(&from) => piece.push(to),
+            _ => pieces.push(vec![from, to]),
+        }
+    }
+    pieces
+}
+
 /// The left, top, right and bottom side of a rectangle of a width and a height (px).
 pub(crate) fn sides([left, top, width, height]: [f64; 4]) -> [f64; 4] {
     [left, top, left + width, top + height]
@@ -61,6 +81,24 @@ mod tests {
         let [from, to] = clip(DVec2::new(10.0, 20.0), slant).unwrap();
         assert!(from.abs() < 1e-12 && (to - 30.0 * 2.0_f64.sqrt()).abs() < 1e-12, "{from} {to}");
         assert_eq!(clip(DVec2::new(60.0, 0.0), slant), None);
+    }
+
+    #[test]
+    fn lines_leave_at_the_border_and_come_back() {
+        let room = [f64::NEG_INFINITY, 0.0, f64::INFINITY, 10.0];
+        let points = [[0.0, 5.0], [1.0, -5.0], [2.0, -55.0], [3.0, 5.0], [4.0, 25.0], [5.0, -15.0]];
+        let expected: [&[[f64; 2]]; 3] = [
+            &[[0.0, 5.0], [0.5, 0.0]],
+            &[[2.0 + 55.0 / 60.0, 0.0], [3.0, 5.0], [3.25, 10.0]],
+            &[[4.375, 10.0], [4.625, 0.0]],
+        ];
+        let off = |(one, other): (&[f64; 2], &[f64; 2])| DVec2::from(*one).distance((*other).into());
+        let found = pieces(&points, room);
+        assert!(found.iter().zip(expected).all(|(one, other)| one.len() == other.len()), "{found:?}");
+        assert!(found.iter().flatten().zip(expected.concat().iter()).all(|two| off(two) < 1e-12), "{found:?}");
+        assert_eq!(pieces(&points, sides([0.0, -100.0, 5.0, 200.0])), [points]);
+        assert_eq!(pieces(&points[..1], room), [[points[0]; 2]]);
+        assert!(pieces(&[], room).is_empty() && pieces(&[[0.0, 1e300], [1.0, 1e300]], room).is_empty());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::listed::{Composer, Curve, Listed, compose_figure};
 use super::{fig4b, unknown};
 use localshape::look::{Ghost, Style, Theme, Traced};
-use localshape::picture::Panel;
+use localshape::picture::{Panel, TextRun};
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::runner::moments::Moments;
@@ -22,6 +22,21 @@ fn inside(panel: [u32; 4], point: [f32; 2]) -> bool {
     (left..=left + width).contains(&point[0]) && (top..=top + height).contains(&point[1])
 }
 
+/// Whether a curve is cut off at the words of a panel, and begins and ends there if it leaves them.
+fn is_between_words(curve: &Curve, panel: &Panel, picture: &Listed) -> bool {
+    let Some([left, top, width, height]) = curve.room else { return false };
+    let around = panel.viewport.map(|length| length as f32);
+    let words = picture.words.iter().filter(|run| inside(panel.viewport, [run.span[0], run.baseline]));
+    let is_apart = |run: &TextRun| run.baseline <= top || run.baseline - 0.7 * run.size >= top + height;
+    let is_near = |&[x, y]: &[f32; 2]| {
+        (left - 40.0..=left + width + 40.0).contains(&x) && (top - 40.0..=top + height + 40.0).contains(&y)
+    };
+    [left, width] == [around[0], around[2]]
+        && words.into_iter().all(is_apart)
+        && height > 0.5 * around[3]
+        && curve.points.iter().all(is_near)
+}
+
 #[test]
 fn a_ghost_has_the_colour_of_its_run_and_is_not_in_its_own_panel() {
     let (mut scene, frame) = fig4b(4);
@@ -37,6 +52,8 @@ fn a_ghost_has_the_colour_of_its_run_and_is_not_in_its_own_panel() {
             let picture = unknown(&scene).compose(&frame);
             let found = outlines(&picture, colour);
             assert!(!found.is_empty());
+            let is_clear = |curve: &Curve| picture.panels.iter().any(|panel| is_between_words(curve, panel, &picture));
+            assert!(found.iter().all(|curve| is_clear(curve)), "{ghost:?}");
             let of = |curve: &Curve| picture.panels.iter().position(|panel| inside(panel.viewport, curve.points[0]));
             let mut has: Vec<_> = found.iter().map(|curve| of(curve).expect("in a panel")).collect();
             has.dedup();
@@ -108,6 +125,7 @@ fn paths_end_where_bodies_are_and_begin_where_they_started() {
             let colour = scene.runs[run.run].line(palette).colour;
             let here = |curve: &&Curve| curve.colour == colour && inside(panel.viewport, curve.points[0]);
             let of_run: Vec<_> = picture.curves.iter().filter(here).collect();
+            assert!(of_run.iter().all(|curve| is_between_words(curve, panel, &picture)));
             let (dots, lines): (Vec<_>, Vec<_>) = of_run.into_iter().partition(|curve| curve.points.len() == 1);
             assert_eq!(dots.len(), 2);
             // The dot of the node lies on a corner of the body, the dot of the centre inside of all corners.

@@ -51,17 +51,24 @@ pub(super) struct Curve {
     pub(super) dash: Vec<f32>,
     pub(super) colour: [u8; 3],
     pub(super) alpha: f32,
+    /// The rectangle outside of which it is not drawn: left, top, width and height (px).
+    pub(super) room: Option<[f32; 4]>,
 }
 
 impl From<Picture> for Listed {
     fn from(picture: Picture) -> Self {
         let ([mut floors, mut marks], mut curves) = ([Vec::new(), Vec::new()], Vec::new());
         picture.under.iter().for_each(|item| read(item, &mut floors, &mut curves));
-        let above = picture.above.iter().flat_map(|item| match item {
-            Item::Clip { items, .. } => &items[..],
-            item => std::slice::from_ref(item),
-        });
-        above.for_each(|item| read(item, &mut marks, &mut curves));
+        for item in &picture.above {
+            let (items, room) = match item {
+                Item::Clip { path, items } => (&items[..], Some(bounds(path))),
+                item => (std::slice::from_ref(item), None),
+            };
+            let first = curves.len();
+            items.iter().for_each(|item| read(item, &mut marks, &mut curves));
+            let room = room.map(|[low, high]| [low.x, low.y, high.x - low.x, high.y - low.y]);
+            curves[first..].iter_mut().for_each(|curve| curve.room = room);
+        }
         let words = picture.words().cloned().collect();
         Self { picture, floors, marks, curves, words }
     }
@@ -103,6 +110,7 @@ fn read(item: &Item, marks: &mut Vec<Mark>, curves: &mut Vec<Curve>) {
         dash: dash.to_vec(),
         colour: paint.colour,
         alpha: paint.alpha,
+        room: None,
     };
     match item {
         Item::Fill { path, paint } => {

@@ -1,6 +1,6 @@
 //! Signs and words in charts: moments, values, divergences, and flags with letters or numbers.
 
-use super::layer::{pixels, within};
+use super::layer::pixels;
 use super::names::{self, DOTS, Name, spread};
 use super::{Chart, Place};
 use crate::colour::Colour;
@@ -9,6 +9,7 @@ use crate::picture::layout::Scale;
 use crate::picture::layout::steps::{CLOSE, FREE, HAIR, NEAR, RING, SMALL, STRONG, THIN, TICK};
 use crate::picture::narrow::narrow;
 use crate::picture::page::{self, Item, Path, Pen};
+use crate::picture::plane::pieces;
 use crate::picture::text::Weight;
 
 /// Opacities of the line of a moment, and of the lines of flags.
@@ -67,7 +68,7 @@ impl Annotation {
         match self {
             &Self::Moment { at, colour } => {
                 let x = place.x(&chart.x, at);
-                let ends = [[x, place.borders()[0]], [x, place.bottom + TICK * place.unit]];
+                let ends = [[x, place.borders()[1]], [x, place.bottom + TICK * place.unit]];
                 writer.curves.push(place.curve(&ends, THIN, &[], (colour, MOMENT)));
             }
             &Self::Ring { at, colour } => {
@@ -108,10 +109,10 @@ fn cross(writer: &mut Writer<'_>, chart: &Chart, place: Place, (line, at): (&[[f
 }
 
 /// The last piece of a line within the borders of its chart, if the line leaves it there for good.
-fn leaving(points: &[[f64; 2]], borders: [f64; 2]) -> Option<[[f64; 2]; 2]> {
-    let inside = |y: f64| (borders[0]..=borders[1]).contains(&y);
+fn leaving(points: &[[f64; 2]], borders: [f64; 4]) -> Option<[[f64; 2]; 2]> {
+    let inside = |y: f64| (borders[1]..=borders[3]).contains(&y);
     let at = points.iter().rposition(|&[_, y]| inside(y)).filter(|&at| at + 1 < points.len())?;
-    let part = within(&points[at..at + 2], borders).pop()?;
+    let part = pieces(&points[at..at + 2], borders).pop()?;
     part.last_chunk().copied()
 }
 

@@ -6,6 +6,7 @@ use crate::colour::Colour;
 use crate::picture::caption::Writer;
 use crate::picture::layout::steps::{BESIDE, FREE, HAIR, MARGIN, STRONG};
 use crate::picture::page::{self, Item, Path};
+use crate::picture::plane::pieces;
 
 /// The strengths of the colours of areas and of bands.
 const AREA: f64 = 0.16;
@@ -88,7 +89,7 @@ impl Layer {
                     dense
                         .iter()
                         .for_each(|&span| band(writer, place, of_line, span, 0.5 * BESIDE * place.line, *colour));
-                    for part in outside(&points, &dense).iter().flat_map(|part| within(part, place.borders())) {
+                    for part in outside(&points, &dense).iter().flat_map(|part| pieces(part, place.borders())) {
                         writer.curves.push(place.curve(&simplified(&part), *width, dash, *colour));
                     }
                 }
@@ -228,30 +229,6 @@ fn outside(points: &[[f64; 2]], spans: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     ends.zip(starts).map(part).filter(|part| !part.is_empty()).collect()
 }
 
-/// The parts of a curve between an upper and a lower border.
-pub(super) fn within(points: &[[f64; 2]], [top, bottom]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
-    let is_inside = |point: &[f64; 2]| (top..=bottom).contains(&point[1]);
-    if points.len() < 2 {
-        return points.iter().filter(|point| is_inside(point)).map(|&point| vec![point]).collect();
-    }
-    let mut parts: Vec<Vec<[f64; 2]>> = Vec::new();
-    let mut is_open = false;
-    for two in points.windows(2) {
-        let [from, to] = [two[0], two[1]];
-        let crossing = |y: f64| [from[0] + (to[0] - from[0]) * ((y - from[1]) / (to[1] - from[1])).clamp(0.0, 1.0), y];
-        let end = |point: [f64; 2]| if is_inside(&point) { point } else { crossing(point[1].clamp(top, bottom)) };
-        // Both ends may be on one side of both borders.
-        if from[1].max(to[1]) >= top && from[1].min(to[1]) <= bottom {
-            if !is_open {
-                parts.push(vec![end(from)]);
-            }
-            parts.last_mut().into_iter().for_each(|part| part.push(end(to)));
-        }
-        is_open = is_inside(&to);
-    }
-    parts
-}
-
 /// A curve with fewer points, with all others hardly away from it (Douglas and Peucker).
 pub(in crate::picture) fn simplified(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut kept = vec![false; points.len()];
@@ -302,22 +279,6 @@ mod tests {
         let points = [[0.0, 0.0], [1.0, 0.01], [2.0, f64::NAN], [3.0, f64::INFINITY], [4.0, 1.0]];
         let found = pixels(&points, &chart, &chart.x.0[0], place);
         assert!(found.len() == 2 && found[0][0] == 100.0 && found[1] == [400.0, 0.0], "{found:?}");
-    }
-
-    #[test]
-    fn curves_leave_at_the_border_and_come_back() {
-        let points = [[0.0, 5.0], [1.0, -5.0], [2.0, -50.0], [3.0, 5.0], [4.0, 25.0], [5.0, -15.0]];
-        let parts = within(&points, [0.0, 10.0]);
-        let expected: [&[[f64; 2]]; 3] = [
-            &[[0.0, 5.0], [0.5, 0.0]],
-            &[[2.0 + 50.0 / 55.0, 0.0], [3.0, 5.0], [3.25, 10.0]],
-            &[[4.375, 10.0], [4.625, 0.0]],
-        ];
-        assert_eq!(parts, expected);
-        assert_eq!(within(&points, [-100.0, 100.0]), [points]);
-        assert!(within(&[], [0.0, 1.0]).is_empty());
-        assert_eq!(within(&[[3.0, 0.5]], [0.0, 1.0]), [[[3.0, 0.5]]]);
-        assert!(within(&[[0.0, 1e300], [1.0, 1e300]], [0.0, 1.0]).is_empty());
     }
 
     #[test]

@@ -74,9 +74,9 @@ impl Place {
         self.bottom + (SHORT - FREE) * self.unit
     }
 
-    /// The heights between which curves are drawn.
-    fn borders(self) -> [f64; 2] {
-        [self.top - CLOSE * self.unit, self.bottom + CLOSE * self.unit]
+    /// The sides within which curves are drawn: they leave at the top and at the bottom only.
+    fn borders(self) -> [f64; 4] {
+        [f64::NEG_INFINITY, self.top - CLOSE * self.unit, f64::INFINITY, self.bottom + CLOSE * self.unit]
     }
 
     /// The horizontal place of a value (px).

@@ -5,8 +5,10 @@ use crate::look::Palette;
 use crate::picture::Framing;
 use crate::picture::camera::Lens;
 use crate::picture::field::Shades;
+use crate::picture::layout::steps::SHORT;
 use crate::picture::layout::{self, Rectangle, Scale};
 use crate::picture::narrow::narrow_point;
+use crate::picture::plane::sides;
 use crate::picture::shadow::key_light;
 use crate::scene::Scene;
 use crate::sim::{Body, Dimension, RunFrame, Snapshot, Status};
@@ -115,6 +117,12 @@ impl<'a> Draft<'a> {
     pub(super) fn between_words(&self) -> Rectangle {
         let ([left, _, width, _], [_, top, _, height]) = (self.viewport, self.clear);
         [left, top, width, height]
+    }
+
+    /// The sides of a part of the picture and of some room around it, where lines are cut: their ends are not seen (px).
+    pub(super) fn around(&self, room: Rectangle) -> [f64; 4] {
+        let ([left, top, right, bottom], more) = (sides(room.map(f64::from)), SHORT * self.scale.line());
+        [left - more, top - more, right + more, bottom + more]
     }
 
     /// The pixel of a point (m), if it is before the camera.

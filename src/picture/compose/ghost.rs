@@ -54,7 +54,7 @@ impl Draft<'_> {
         let triangles: Vec<_> =
             skin.triangles.iter().map(|corners| corners.map(|at| skin.nodes[at as usize])).collect();
         let bars = self.composer.bare.iter().flat_map(|&element| self.body.topology().edges_of(element));
-        let path = ghost::outline(&pixels, &triangles, &bars.collect::<Vec<_>>());
+        let path = ghost::outline(&pixels, &triangles, &bars.collect::<Vec<_>>(), self.around(room));
         let [width, halo] = [STRONG, TICK].map(|width| narrow(width * self.scale.line()));
         let dash = ghost::DASH.map(|length| narrow(length * self.scale.line())).to_vec();
         let casing = Item::stroke(path.clone(), Pen::solid(halo), (self.composer.palette.background, HALO_ALPHA));

@@ -7,6 +7,7 @@ use crate::picture::Item;
 use crate::picture::chart::simplified;
 use crate::picture::layout::Rectangle;
 use crate::picture::layout::steps::{STRONG, THIN};
+use crate::picture::plane::pieces;
 use crate::runner::history::TimeSeries;
 use glam::DVec2;
 
@@ -56,13 +57,12 @@ impl Draft<'_> {
             let way = path.iter().take(past).copied().chain([now]);
             let seen: Vec<_> = way.map(|at| self.pixel(at).map(|pixel| pixel.to_array())).collect();
             // Points behind the camera divide the line.
-            let lines: Vec<Vec<_>> =
-                seen.split(Option::is_none).map(|part| part.iter().flatten().copied().collect()).collect();
+            let parts = seen.split(Option::is_none).map(|part| part.iter().flatten().copied().collect::<Vec<_>>());
+            let parts = parts.filter(|part| part.len() > 1);
+            let lines: Vec<_> = parts.flat_map(|part| pieces(&part, self.around(room))).collect();
             for (more, paint) in [(STRONG, (halo, HALO_ALPHA)), (0.0, (colour, 1.0))] {
                 let line = self.scale.line();
-                let curve =
-                    |line: &Vec<_>| Item::curve(&simplified(line), (width + more) * self.scale.line(), &[], paint);
-                items.extend(lines.iter().filter(|line| line.len() > 1).map(curve));
+                items.extend(lines.iter().map(|way| Item::curve(&simplified(way), (width + more) * line, &[], paint)));
                 let dot = |pixel: DVec2| Item::disc(pixel.to_array(), (DOT * width + 0.75 * more) * line, paint.0);
                 items.extend(self.pixel(now).map(dot));
             }
