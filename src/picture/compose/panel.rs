@@ -37,7 +37,7 @@ impl Draft<'_> {
         self.nodes(above);
         obstacles.arrows(&self.pointers(self.viewport), above);
         under.push(PlaneBody::new(self, region).item());
-        self.hands(above);
+        self.grips(above);
         self.displacements(above);
         self.without_body(region)
     }
@@ -52,7 +52,7 @@ impl Draft<'_> {
         let corners = |solid: &Solid| solid.mesh.vertices.iter().map(|vertex| self.place(vertex.position)).collect();
         obstacles.fade = self.fading(&obstacles.solids.iter().map(corners).collect::<Vec<_>>());
         let borders = borders.into_iter().map(|border| border.line).chain(lines[of_body..].iter().copied()).collect();
-        self.hands(above);
+        self.grips(above);
         self.displacements(above);
         Panel {
             floor: self.floor(&staged),
@@ -140,7 +140,8 @@ impl Draft<'_> {
         staging.draw(lines)
     }
 
-    /// Displacements: an arrow for each node, the farthest first. Arrows that would be specks on the nodes are left out.
+    /// Displacements: an arrow for each node, the farthest first, in the colour of text as in the key: paths and fields have
+    /// others. Arrows that would be specks on the nodes are left out.
     fn displacements(&self, above: &mut Vec<Item>) {
         let (view, palette) = (&self.scene.view, &self.composer.palette);
         if !view.visible.displacements || self.diverged || self.position.is_empty() {
@@ -149,17 +150,12 @@ impl Draft<'_> {
         let size = arrows::size(self.element, self.scale.unit);
         let node = if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 };
         let shortest = (RING * size).max(FREE).max(2.0 * node);
-        let colour = match self.scene.runs.get(self.run.run) {
-            Some(run) if view.colour.is_none() => run.line(palette).colour,
-            // An arrow of the run's colour would not stand out among the colours of a field.
-            _ => palette.text,
-        };
         let arrows = self.facing_bearers().into_iter().filter_map(|(node, opacity)| {
             let start = self.run.snapshot.placement.place(self.body.rest[node as usize]);
             let end = start + view.arrow_scale * (self.position[node as usize] - start);
             let (to, depth) = self.lens.project(end)?;
             let (ends, part) = arrows::inside([self.pixel(start)?, to.into()], self.clear, shortest)?;
-            Some((depth, arrows::arrow(ends, size, colour, palette.background).faded(opacity * part)?))
+            Some((depth, arrows::arrow(ends, size, palette.text, palette.background).faded(opacity * part)?))
         });
         above.extend(farthest_first(arrows.collect()));
     }
