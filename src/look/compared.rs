@@ -50,7 +50,8 @@ pub(super) fn check_paths(paths: &[Traced], scene: &Subject<'_>, report: &mut Co
         if let Traced::Node(node) = *path
             && node as usize >= nodes
         {
-            report.at(&place, format!("there is no node {node}; the body has {nodes}, counted from 0"), None);
+            let last = nodes.saturating_sub(1);
+            report.at(&place, format!("there is no node {node}; the body has nodes 0 to {last}"), None);
         }
     }
 }

@@ -108,11 +108,6 @@ fn open<T, S: Serializer>(_: &T, serializer: S) -> Result<S::Ok, S::Error> {
 }
 
 impl View {
-    /// Whether frames depend on the course of the scene besides the chart.
-    pub(crate) fn looks_ahead(&self) -> bool {
-        !self.paths.is_empty()
-    }
-
     /// The runs that pictures of other runs need, each with the key that names it.
     pub(crate) fn compared(&self) -> [Option<(&'static str, usize)>; 2] {
         let ghost = if let Some(Ghost::Run(run)) = self.ghost { Some(run) } else { None };
@@ -123,7 +118,7 @@ impl View {
     /// Whether there are colours, lines or arrows to explain.
     #[cfg(feature = "render")]
     pub(crate) fn wants_legend(&self) -> bool {
-        let shown = [self.visible.displacements, self.colour.is_some(), self.ghost.is_some(), self.looks_ahead()];
+        let shown = [self.visible.displacements, self.colour.is_some(), self.ghost.is_some(), !self.paths.is_empty()];
         self.labels.legend && shown.contains(&true)
     }
 }

@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 /// The least size of bodies that leave room to obstacles, relative to bodies without obstacles.
 const SMALLER: f64 = 0.8;
 /// Obstacles are near up to this distance (sizes of the body).
-const NEAR: f64 = 0.5;
+const REACH: f64 = 0.5;
 /// Growing bodies count up to this many times their largest side at the start and at rest, and diverged ones up to the
 /// largest one that has not diverged: otherwise all other bodies would be too small.
 const MOST_GROWTH: f64 = 1.7;
@@ -62,7 +62,7 @@ impl Seen {
             all.widest = all.widest.max(corners[1].x - corners[0].x);
             all.bodies = union(all.bodies, place(corners));
             if at % moments.len().div_ceil(MOMENTS) == 0 {
-                let beside = [corners[0] - NEAR * body.extent(), corners[1] + NEAR * body.extent()];
+                let beside = [corners[0] - REACH * body.extent(), corners[1] + REACH * body.extent()];
                 let near = scene.obstacles.iter().filter_map(|obstacle| {
                     let [low, high] = all.around(obstacle, *time, beside.map(|corner| centre + corner))?;
                     let near = [(low - centre).max(beside[0]), (high - centre).min(beside[1])];

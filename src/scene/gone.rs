@@ -43,7 +43,7 @@ const GONE: &[Gone] = &[
     value("run.model.rotation", "closed-form", "write `\"robust\"`"),
     value("run.model.rotation", "davenport", "write `\"robust\"`"),
     value("view.background", "transparent", "write a colour"),
-    key("view.camera.follow", "remove it; a camera without `target` and `distance` follows the body"),
+    key("view.camera.follow", "for `false`, write `target` or `distance`, which fix the camera; for `true`, remove it: the camera follows the body"),
     key("view.colours", "remove it; `theme`, `background`, and `colour` in each `[[run]]` remain"),
     key("view.difference", "write `colour = { by = \"distance\", to = \"RUN\" }`"),
     key("view.difference_of", "remove it"),

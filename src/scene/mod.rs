@@ -122,7 +122,7 @@ impl Scene {
             _ => false,
         };
         let needed = !view.charts.is_empty()
-            || view.looks_ahead()
+            || !view.paths.is_empty()
             || view.camera.follow
             || (!is_flat && self.obstacles.iter().any(has_size));
         needed.then_some(&view.charts[..])

@@ -400,7 +400,7 @@ fn paths_are_read() {
     assert_eq!(good(&view("paths = ['centre', 3]")).view.paths, [Traced::Centre, Traced::Node(3)]);
     for (typed, expected) in [
         ("paths = ['middle']", "20:10 \"middle\""),
-        ("paths = [0, 4]", "20:13 there is no node 4; the body has 4, counted from 0"),
+        ("paths = [0, 4]", "20:13 there is no node 4; the body has nodes 0 to 3"),
         ("paths = [1, 'centre', 1]", "20:23 this path is listed a second time"),
     ] {
         expect(&bad(&view(typed)), 0, expected);

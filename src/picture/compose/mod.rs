@@ -43,7 +43,7 @@ use crate::sim::{Body, Dimension, Frame, Snapshot, Status};
 use draft::Draft;
 pub(crate) use figure::compose_figure;
 use glam::DVec3;
-use numbers::Numeral;
+use numbers::NumberPart;
 use std::sync::OnceLock;
 use words::{Around, Words};
 pub(crate) use words::{left_out, type_left_out};
@@ -103,7 +103,7 @@ struct Arranged {
     /// The view of a camera that follows.
     shot: Option<Shot>,
     /// The part of panels' widths for tallies.
-    numbers: Solved<Numeral>,
+    numbers: Solved<NumberPart>,
 }
 
 impl<'a> Composer<'a> {
@@ -271,20 +271,20 @@ impl<'a> Composer<'a> {
                 writer.clock(viewport, frame.time, words.clock_label(layout));
             }
             let place = |numeral| numbers.get(numeral).map(|[left, _, width, _]| [left, left + width]);
-            let count = place(Numeral::Tally).zip(place(Numeral::Count));
+            let count = place(NumberPart::Tally).zip(place(NumberPart::Count));
             // The shown state of a run that diverges lacks the present number of turned-over elements.
             if let Some((tally, count)) = count.filter(|_| run.shown().status == Status::Ok) {
                 writer.count(viewport, [tally, count], &self.tally, run.shown());
             }
             let mut taken = count.map_or(0.0, |(_, [_, end])| end);
             // All panels have one scale, so there is one bar.
-            if let Some((framing, between)) = framing.zip(place(Numeral::Bar)).filter(|_| at == 0) {
+            if let Some((framing, between)) = framing.zip(place(NumberPart::Bar)).filter(|_| at == 0) {
                 let end = writer.scale_bar(viewport, between, self.bars(viewport, framing, writer.scale));
                 taken = end.unwrap_or(taken);
             }
             match caption::divergence(run) {
                 Some(divergence) => writer.number(viewport, taken, &divergence),
-                None if labels.number && place(Numeral::Number).is_some() => {
+                None if labels.number && place(NumberPart::Number).is_some() => {
                     let usual = caption::number(self.extent, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
                     writer.number(viewport, taken, &usual);
                 }

@@ -14,7 +14,7 @@ const TALLY: [f64; 2] = [0.36, 0.12];
 
 /// The boxes of the row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Numeral {
+pub(super) enum NumberPart {
     Row,
     Tally,
     Count,
@@ -25,7 +25,7 @@ pub(super) enum Numeral {
 impl Composer<'_> {
     /// The boxes of the row in each panel, from its left margin on (px). They are those of the start, so that nothing
     /// comes and goes.
-    pub(super) fn numbers(&self, layout: &Layout, shot: Option<&Shot>) -> Solved<Numeral> {
+    pub(super) fn numbers(&self, layout: &Layout, shot: Option<&Shot>) -> Solved<NumberPart> {
         let (body, labels, scale) = (&*self.scene.body, layout.written.labels, layout.scale);
         let Some(&panel) = layout.panels.first() else { return tree::column(&[], [0.0; 4]) };
         let snapshot = Snapshot { position: self.scene.initial.position.clone(), ..Snapshot::default() };
@@ -36,23 +36,23 @@ impl Composer<'_> {
         let node = |numeral, [wanted, least]: [f64; 2]| Node::new(numeral, wanted).least(least).after(scale.gap());
         let count = (labels.count && !body.elements.is_empty()).then(|| {
             let tally = self.tally.width(scale, TALLY[0] * width);
-            let tally = Node::new(Numeral::Tally, tally).least(TALLY[1] * width);
-            [tally, node(Numeral::Count, [writer.count_width(body.elements.len()); 2])]
+            let tally = Node::new(NumberPart::Tally, tally).least(TALLY[1] * width);
+            [tally, node(NumberPart::Count, [writer.count_width(body.elements.len()); 2])]
         });
         let bars = self.bars(panel, &framing, scale).map(|(text, pixels)| writer.bar_width(&text, pixels));
         let bars = bars.filter(|_| labels.scale_bar);
         // The longest bar that fits into spare room is drawn.
-        let bar = bars.reduce(f64::min).map(|least| node(Numeral::Bar, [least; 2]).stretched().rank(0));
-        let number = node(Numeral::Number, writer.number_widths(&number)).rank(1);
+        let bar = bars.reduce(f64::min).map(|least| node(NumberPart::Bar, [least; 2]).stretched().rank(0));
+        let number = node(NumberPart::Number, writer.number_widths(&number)).rank(1);
         let row = count.into_iter().flatten().chain(bar).chain([number]).collect();
-        tree::column(&[Node::new(Numeral::Row, 1.0).with(row)], [0.0, 0.0, width, 1.0])
+        tree::column(&[Node::new(NumberPart::Row, 1.0).with(row)], [0.0, 0.0, width, 1.0])
     }
 
     /// Whether the scale bar of some runs in columns has no room.
     pub(super) fn lacks_bar(&self, runs: &[usize], columns: usize) -> bool {
         let layout = self.words().around(runs, columns).layout;
         let shot = layout.panels.first().and_then(|&panel| self.shot(panel, layout.scale));
-        let has_bar = || self.numbers(&layout, shot.as_ref()).get(Numeral::Bar).is_some();
+        let has_bar = || self.numbers(&layout, shot.as_ref()).get(NumberPart::Bar).is_some();
         self.scene.view.labels.scale_bar && !layout.panels.is_empty() && !has_bar()
     }
 

@@ -365,8 +365,8 @@ pub(super) fn written(view: &View, height: f64, unit: f64) -> Written {
     }
 }
 
-/// The heights for words above and below the body in a panel of a height (px), with `unit` pixels per pixel of the
-/// reference picture (px in the reference picture).
+/// The heights for words above and below the body (px in the reference picture), in a panel of a height (px), where the
+/// pixels of the reference picture have a size of `unit` pixels.
 pub(super) fn rooms(view: &View, height: f64, unit: f64) -> [f64; 2] {
     written(view, height, unit).rooms.map(|room| room / unit)
 }
