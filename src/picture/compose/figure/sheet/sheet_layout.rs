@@ -19,6 +19,8 @@ const TILE_LIMITS: [f64; 2] = [0.34, 1.0];
 /// The places of all parts (px).
 pub(super) struct SheetLayout {
     pub(super) page: Solved<Part>,
+    /// The sizes of the picture.
+    size: [u32; 2],
     /// The left side of the first column, and the top of the first row.
     origin: [u32; 2],
     /// The sizes of a tile.
@@ -61,6 +63,7 @@ impl SheetLayout {
         let tile = [pitch, high].map(|length| length.floor().max(1.0));
         let tile_unit = TILE_LINES * tile[0].min(tile[1]) / TILE;
         Self {
+            size,
             origin: [left, top].map(|at| at.round() as u32),
             tile: tile.map(|length| length as u32),
             tile_scale: scale.with_unit(tile_unit.clamp(TILE_LIMITS[0] * unit, TILE_LIMITS[1] * unit)),
@@ -69,10 +72,13 @@ impl SheetLayout {
         }
     }
 
-    /// The place of a tile.
+    /// The place of a tile. More tiles than pixels lie over each other at the border of the picture.
     pub(super) fn tile(&self, row: usize, column: usize) -> Rectangle {
-        let ([left, top], [width, height]) = (self.origin, self.tile);
-        [left + width * column as u32, top + height * row as u32, width, height]
+        let place = |axis: usize, at: usize| {
+            let start = self.origin[axis] + self.tile[axis] * at as u32;
+            start.min(self.size[axis].saturating_sub(self.tile[axis]))
+        };
+        [place(0, column), place(1, row), self.tile[0], self.tile[1]]
     }
 
     /// The part of a tile at the picture's origin that its body may touch: left, top, right and bottom (px).
