@@ -75,6 +75,16 @@ impl Seen {
         (!moments.is_empty()).then_some(all)
     }
 
+    /// Gives each the heights and depths of all, so that one ground is at one height.
+    pub(super) fn level(all: &mut [Self]) {
+        let both = all.iter().map(|seen| [seen.bodies, seen.all]);
+        let Some([bodies, of_all]) = both.reduce(|[a, b], [c, d]| [union(a, c), union(b, d)]) else { return };
+        for seen in all {
+            let across = |own: [DVec3; 2], common: [DVec3; 2]| [0, 1].map(|end| common[end].with_x(own[end].x));
+            (seen.bodies, seen.all) = (across(seen.bodies, bodies), across(seen.all, of_all));
+        }
+    }
+
     /// The components of a vector along the axes.
     fn along(&self, way: DVec3) -> DVec3 {
         DVec3::from_array(self.axes.map(|axis| way.dot(axis)))
@@ -121,8 +131,8 @@ impl Seen {
 }
 
 /// One scale for cameras in equal rooms: left, top, width and height (px). The widest body takes at most the `filled` share
-/// of the width. The lowest points of `level` bodies are at one height. The lens is a metre from its target.
-pub(super) fn shots(all: &[Seen], lens: &Lens, room: [f64; 4], filled: f64, level: bool) -> Vec<Shot> {
+/// of the width. The lens is a metre from its target.
+pub(super) fn shots(all: &[Seen], lens: &Lens, room: [f64; 4], filled: f64) -> Vec<Shot> {
     let fit = |[low, high]: [DVec3; 2]| {
         let half = 0.5 * (high - low);
         let least = |side: f64, room: f64| room / (2.0 * side + room * nearness(lens, half));
@@ -131,13 +141,7 @@ pub(super) fn shots(all: &[Seen], lens: &Lens, room: [f64; 4], filled: f64, leve
     let least = |scale: &dyn Fn(&Seen) -> f64| all.iter().map(scale).fold(f64::INFINITY, f64::min);
     let most = least(&|seen| fit(seen.bodies).min(filled * room[2] / seen.widest));
     let pixels = least(&|seen| fit(seen.all)).clamp(SMALLER * most, most);
-    let half = |seen: &Seen| 0.5 * (seen.bodies[1].y - seen.bodies[0].y);
-    let highest = all.iter().map(half).fold(0.0, f64::max);
-    let shot = |seen: &Seen| {
-        let raised = if level { highest - half(seen) } else { 0.0 };
-        Shot { offset: seen.target(lens, room, pixels) + raised * seen.axes[1], pixels }
-    };
-    all.iter().map(shot).collect()
+    all.iter().map(|seen| Shot { offset: seen.target(lens, room, pixels), pixels }).collect()
 }
 
 /// How much larger the outline of a box with these half sides (m) is seen than its middle, for each pixel of its size

@@ -49,7 +49,7 @@ impl Composer<'_> {
         let [above, below] = [CLOSE, RING].map(|length| length * scale.unit);
         let room = [left, top - above, width.max(1.0), height.max(1.0) + above + below];
         let lens = framing::from_a_metre(self.scene, viewport, scale);
-        framing::shots(self.seen.as_slice(), &lens, room, FILLED, false).pop()
+        framing::shots(self.seen.as_slice(), &lens, room, FILLED).pop()
     }
 
     /// The target and distance of the camera of a run in a panel.

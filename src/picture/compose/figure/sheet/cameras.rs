@@ -43,9 +43,11 @@ pub(super) fn framings(scenes: &[Scene], sheet: &Sheet, moments: &Moments, layou
         let first = scene(kind[0].0);
         let [width, height] = layout.tile_size();
         let lens = framing::from_a_metre(first, [0, 0, width, height], layout.tile_scale);
-        let on_ground = geometry::ground(&first.obstacles, 0.0).is_some();
-        let of_columns: Vec<_> = kind.iter().map(|(_, seen)| *seen).collect();
-        for ((column, _), shot) in kind.iter().zip(framing::shots(&of_columns, &lens, room, 1.0, on_ground)) {
+        let mut of_columns: Vec<_> = kind.iter().map(|(_, seen)| *seen).collect();
+        if geometry::ground(&first.obstacles, 0.0).is_some() {
+            Seen::level(&mut of_columns);
+        }
+        for ((column, _), shot) in kind.iter().zip(framing::shots(&of_columns, &lens, room, 1.0)) {
             framings[*column] = Framing { target: shot.offset, distance: lens.focal / shot.pixels, moves: false };
         }
     }
