@@ -6,7 +6,7 @@ use super::caption::Writer;
 use super::chart::axis::{Kind, Stretch};
 use super::chart::{Axis, Chart, Place};
 use super::ghost;
-use super::layout::Scale;
+use super::layout::{SMALLEST_TYPE, Scale};
 use super::layout::steps::{BESIDE, BLOCK, MARGIN, NAME_ROW, SHORT, SMALL, STRONG, TEXT, TILE};
 use super::layout::tree::{self, Node};
 use super::page::{Path, point};
@@ -91,7 +91,8 @@ impl Legend {
         let room = f64::from(size[0].max(1)) - 2.0 * scale.margin();
         let bar = if has_bar { BAR } else { 0.0 };
         let needed = (samples as f64 + bar) * TILE + (samples + usize::from(has_bar)).saturating_sub(1) as f64 * MARGIN;
-        let unit = scale.type_unit().min(room / needed);
+        // A picture with a field needs its key at any size.
+        let unit = scale.type_unit().max(SMALLEST_TYPE / SMALL).min(room / needed);
         Self { unit, height: if Scale::legible(SMALL * unit) { NAME_ROW * unit } else { f64::INFINITY } }
     }
 

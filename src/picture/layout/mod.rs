@@ -25,7 +25,7 @@ use steps::{APART, BESIDE, CHART, GAP, MARGIN, NAME_ROW, NEAR, ROW, SHORT, SMALL
 use tree::{Node, Place, Solved};
 
 /// Smaller type cannot be read in any picture and is left out (px).
-const SMALLEST_TYPE: f64 = 5.0;
+pub(super) const SMALLEST_TYPE: f64 = 5.0;
 /// The parts of a picture that panels keep without and with a chart, and the part of a panel that its body keeps.
 const PANELS: [f64; 2] = [0.45, 0.36];
 const BODY: f64 = 0.46;
