@@ -1,12 +1,11 @@
-//! The camera of a view, and the box around a body along its axes.
+//! The camera of a view.
 
 use super::subject::Subject;
-use super::view::{Traced, View};
 use crate::reading::captions::rounded;
 use crate::reading::collector::{Collector, key_path};
 use crate::reading::coordinates::{Coordinates, vector};
+use crate::sim::Dimension;
 use crate::sim::geometry::{bounds, is_inside};
-use crate::sim::{Body, Dimension};
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -100,34 +99,4 @@ pub(crate) fn axes(azimuth: f64, elevation: f64) -> [DVec3; 3] {
     let towards = DVec3::new(across * level, rise, along * level);
     let right = DVec3::new(along, 0.0, -across);
     [right, towards.cross(right), towards]
-}
-
-/// The box around a body at one moment, along the axes of a camera.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct CameraBox {
-    /// The centre of mass of the body (m).
-    pub(crate) centre: DVec3,
-    /// The corners of the box, relative to the centre of mass: to the right, up and towards the camera (m).
-    pub(crate) corners: [DVec3; 2],
-}
-
-impl CameraBox {
-    /// The box around a body whose nodes are at positions (m); `None` if it has none, or not all are finite.
-    pub(crate) fn new(view: &View, body: &Body, position: &[DVec3]) -> Option<Self> {
-        let axes = axes(view.camera.azimuth, view.camera.elevation);
-        let centre = Traced::Centre.of(body, position);
-        let (mut low, mut high) = (DVec3::ZERO, DVec3::ZERO);
-        for way in position.iter().map(|&at| at - centre) {
-            let seen = DVec3::from_array(axes.map(|axis| way.dot(axis)));
-            (low, high) = (low.min(seen), high.max(seen));
-        }
-        (centre.is_finite() && low.is_finite() && high.is_finite()).then_some(Self { centre, corners: [low, high] })
-    }
-
-    /// The larger of its width and height (m).
-    #[cfg(feature = "render")]
-    pub(crate) fn size(&self) -> f64 {
-        let [low, high] = self.corners;
-        (high - low).truncate().max_element()
-    }
 }

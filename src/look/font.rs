@@ -1,11 +1,11 @@
 //! Reads the files of fonts.
 
-use super::view::FontFiles;
 use crate::reading::beside::bytes;
 use crate::reading::collector::{Collector, PathPart};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -29,6 +29,24 @@ pub(crate) struct FontFile {
     /// The font of names and counts. Default: the `regular` font.
     #[schemars(length(min = 1))]
     semi_bold: Option<String>,
+}
+
+/// The fonts of a scene, as the bytes of checked files. The built-in font takes the place of missing ones.
+#[derive(Clone, Default, PartialEq, Eq)]
+pub struct FontFiles {
+    /// The font of all text.
+    pub regular: Option<Arc<[u8]>>,
+    /// The font of names and counts; the regular one by default.
+    pub semi_bold: Option<Arc<[u8]>>,
+}
+
+impl fmt::Debug for FontFiles {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Lengths instead of millions of bytes.
+        let bytes = |font: &Option<Arc<[u8]>>| font.as_ref().map(|font| font.len());
+        let [regular, semi_bold] = [bytes(&self.regular), bytes(&self.semi_bold)];
+        f.debug_struct("FontFiles").field("regular", &regular).field("semi_bold", &semi_bold).finish()
+    }
 }
 
 /// The fonts of a scene, searched in its folder, or `None` after reporting mistakes in them.

@@ -2,6 +2,7 @@
 //! its `[view]` table and from its body, models and surroundings. Nothing here draws.
 
 mod camera;
+mod camera_box;
 mod compared;
 mod contrast;
 #[cfg(feature = "render")]
@@ -21,13 +22,14 @@ mod view;
 
 pub use crate::colour::Colour;
 pub use camera::Camera;
-pub(crate) use camera::CameraBox;
+pub(crate) use camera_box::CameraBox;
 pub(crate) use contrast::check_runs;
 pub use file::ColourMap;
+pub use font::FontFiles;
 pub use palette::Theme;
 pub use print::Print;
 pub(crate) use resolve::{TypedView, colour};
 pub(crate) use subject::Subject;
-pub use view::{ColourScale, EdgeStyle, FloorStyle, FontFiles, Ghost, Labels, Style, Traced, View, Visible};
+pub use view::{ColourScale, EdgeStyle, FloorStyle, Ghost, Labels, Style, Traced, View, Visible};
 #[cfg(feature = "render")]
 pub(crate) use {camera::axes, drawn::LineStyle, palette::Palette, ramp::SHADES};

@@ -3,11 +3,12 @@
 use super::camera::CameraFile;
 use super::compared;
 use super::file::{ColourFile, PanelsFile};
+use super::font::FontFiles;
 use super::palette::Palette;
 use super::print::{SizeFile, TextScaleFile, unit};
 use super::subject::Subject;
 use super::typed::TypedColour;
-use super::view::{ColourScale, FontFiles, View, Visible};
+use super::view::{ColourScale, View, Visible};
 use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::sim::Field;
 use serde::de::DeserializeOwned;

@@ -2,7 +2,7 @@
 
 use super::camera::{Camera, CameraFile};
 use super::file::{ColourFile, ColourMap, PanelsFile};
-use super::font::FontFile;
+use super::font::{FontFile, FontFiles};
 use super::palette::{Palette, Theme};
 use super::print::{Print, SizeFile, TextScaleFile};
 use super::typed::TypedColour;
@@ -11,8 +11,6 @@ use crate::sim::{Body, Diagnostic, Dimension, Field};
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::fmt;
-use std::sync::Arc;
 
 /// The drawing of a scene. Plain data, kept also in builds without the renderer, so that every scene can be checked.
 ///
@@ -333,24 +331,6 @@ impl Style {
 impl Default for Style {
     fn default() -> Self {
         Self::of(Theme::default())
-    }
-}
-
-/// The fonts of a scene, as the bytes of checked files. The built-in font takes the place of missing ones.
-#[derive(Clone, Default, PartialEq, Eq)]
-pub struct FontFiles {
-    /// The font of all text.
-    pub regular: Option<Arc<[u8]>>,
-    /// The font of names and counts; the regular one by default.
-    pub semi_bold: Option<Arc<[u8]>>,
-}
-
-impl fmt::Debug for FontFiles {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Lengths instead of millions of bytes.
-        let bytes = |font: &Option<Arc<[u8]>>| font.as_ref().map(|font| font.len());
-        let [regular, semi_bold] = [bytes(&self.regular), bytes(&self.semi_bold)];
-        f.debug_struct("FontFiles").field("regular", &regular).field("semi_bold", &semi_bold).finish()
     }
 }
 

@@ -91,7 +91,7 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> (Pic
     for (part, lines) in [Part::Title, Part::Caption].into_iter().zip(&titles) {
         writer.lines(&layout.page, part, scale, lines, margin);
     }
-    labels.write(&mut writer, &layout, sheet);
+    labels.write(&mut writer, &layout.page, sheet);
     headings.write(&mut writer, &layout);
     if let Some(charts) = &charts {
         let [left, _, tile, _] = layout.tile(0, 0).map(f64::from);

@@ -1,9 +1,8 @@
 //! The names and notes of the rows of a sheet.
 
-use super::sheet_layout::SheetLayout;
 use crate::picture::caption::Writer;
 use crate::picture::chart::style;
-use crate::picture::layout::tree::Node;
+use crate::picture::layout::tree::{Node, Solved};
 use crate::picture::layout::{Part, Scale};
 use crate::picture::number;
 use crate::picture::text::Weight;
@@ -59,8 +58,8 @@ impl RowLabels {
     }
 
     /// Writes the words beside all rows, as far as there is room.
-    pub(super) fn write(&self, writer: &mut Writer<'_>, layout: &SheetLayout, sheet: &Sheet) {
-        let (scale, palette, page) = (writer.scale, writer.palette, &layout.page);
+    pub(super) fn write(&self, writer: &mut Writer<'_>, page: &Solved<Part>, sheet: &Sheet) {
+        let (scale, palette) = (writer.scale, writer.palette);
         let Some([left, ..]) = page.get(Part::Words) else { return };
         for (row, [label, note]) in self.rows.iter().enumerate() {
             writer.lines(page, Part::Label(row), scale, label, left);
