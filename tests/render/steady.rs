@@ -74,7 +74,8 @@ fn between([from, to]: [&Frame; 2], part: f64) -> Vec<Frame> {
         .collect()
 }
 
-/// Draws frames without text, which contains changing numbers.
+/// Draws frames without text, which contains changing numbers, and without keys, whose bars tell whether values lie beyond
+/// them.
 struct Camera(Renderer);
 
 impl Camera {
@@ -83,7 +84,9 @@ impl Camera {
     }
 
     fn shot(&mut self, scene: &Scene, frame: &Frame) -> RgbImage {
-        let mut picture = unknown(scene).compose(frame);
+        let mut scene = scene.clone();
+        scene.view.labels.legend = false;
+        let mut picture = unknown(&scene).compose(frame);
         picture.mute();
         self.0.draw(&picture).expect("the device works")
     }
