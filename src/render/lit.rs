@@ -53,7 +53,7 @@ impl Lit {
             targets: Targets::new(gpu, &layouts, size),
             panes: None,
             behind: None,
-            read_back: ReadBack::new(gpu, size, 2),
+            read_back: ReadBack::new(size),
             layouts,
             panels,
         };
@@ -62,12 +62,11 @@ impl Lit {
     }
 
     /// Submits a picture and returns at once. Collect it before the next one is submitted: there is one buffer for
-    /// reading back.
+    /// each texture that is read back.
     pub(super) fn submit(&mut self, picture: &Picture) -> Pending {
         let Self { gpu, size, layouts, .. } = self;
         if self.behind.is_none() && picture.panels.iter().any(panel::has_behind) {
             self.behind = Some(Behind::new(gpu, layouts, *size));
-            self.read_back.grow(gpu, 3);
         }
         self.panels.write(gpu, picture);
         self.surfaces.write(gpu, &self.panels, layouts, picture);
