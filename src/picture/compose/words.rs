@@ -170,6 +170,10 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<String> {
     let composer = Composer::new(scene, &History::default());
     let runs: Vec<_> = (0..scene.runs.len()).collect();
     let words = composer.words();
+    // A thumbnail needs no words.
+    if !Scale::legible(Layout::around(&scene.view).title()) {
+        return Vec::new();
+    }
     let columns = composer.columns(&runs);
     // The course of the scene may change the arrangement, between that of the start and side by side.
     let last = if scene.view.columns.is_none() { runs.len().max(columns) } else { columns };
