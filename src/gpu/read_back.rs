@@ -37,7 +37,6 @@ pub(crate) struct ReadBack {
 pub(crate) struct Pending {
     /// One message for each texture.
     mapped: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
-    count: usize,
     submission: wgpu::SubmissionIndex,
 }
 
@@ -67,7 +66,8 @@ impl ReadBack {
         Self { buffers: Vec::new(), size }
     }
 
-    /// Adds the copies of textures to the commands, submits them and returns at once.
+    /// Adds the copies of textures to the commands, submits them and returns at once. There are never fewer textures than
+    /// before.
     pub(crate) fn submit(
         &mut self,
         gpu: &Gpu,
@@ -100,7 +100,7 @@ impl ReadBack {
                 let _ = sender.send(result);
             });
         }
-        Pending { mapped, count: textures.len(), submission: gpu.queue().submit([commands.finish()]) }
+        Pending { mapped, submission: gpu.queue().submit([commands.finish()]) }
     }
 
     /// Waits for the copies, and returns what is read from them.
@@ -118,15 +118,14 @@ impl ReadBack {
         gpu.check()?;
         waited.map_err(|error| lost(&error.to_string()))?;
         let lost = |error: &dyn std::fmt::Display| lost(&error.to_string());
-        let buffers = &self.buffers[..pending.count];
-        for _ in buffers {
+        for _ in &self.buffers {
             pending.mapped.recv().map_err(|error| lost(&error))?.map_err(|error| lost(&error))?;
         }
         let result = {
-            let bytes: Result<Vec<_>, _> = buffers.iter().map(|buffer| buffer.get_mapped_range(..)).collect();
+            let bytes: Result<Vec<_>, _> = self.buffers.iter().map(|buffer| buffer.get_mapped_range(..)).collect();
             read(Layers { bytes: &bytes.map_err(|error| lost(&error))?, width: self.size[0] })
         };
-        buffers.iter().for_each(wgpu::Buffer::unmap);
+        self.buffers.iter().for_each(wgpu::Buffer::unmap);
         Ok(result)
     }
 }

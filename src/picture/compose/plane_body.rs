@@ -14,8 +14,8 @@ use crate::sim::geometry::{around, ordered};
 use glam::{DVec2, DVec3, Vec2};
 use std::f32::consts::FRAC_1_SQRT_2;
 
-/// The opacity of edges.
-const EDGE_ALPHA: f64 = 0.56;
+/// The opacity of edges, which are fainter than on lit bodies.
+const FLAT_EDGE_ALPHA: f64 = 0.56;
 
 /// A corner: its pixel, and its place on the scale of a field.
 type Corner = (Vec2, f32);
@@ -152,7 +152,7 @@ impl<'a> PlaneBody<'a> {
         let edged = if self.draft.scene.view.edges.are_drawn()[0] { faint } else { 0.0 };
         let alarm_alpha = f64::from(ALARM_EDGE_ALPHA);
         let all = [
-            (edges, THIN, palette.edge, EDGE_ALPHA * edged),
+            (edges, THIN, palette.edge, FLAT_EDGE_ALPHA * edged),
             (sound.bars.clone(), BAR_WIDTH.into(), palette.edge, BAR_ALPHA.into()),
             (alarm_edges, ALARM_EDGE_WIDTH.into(), alarm, alarm_alpha * faint),
             (turned_over.bars.clone(), ALARM_EDGE_WIDTH.into(), alarm, alarm_alpha),
