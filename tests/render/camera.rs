@@ -171,3 +171,28 @@ fn what_leaves_its_panel_is_known() {
         assert_eq!(picture.panels[0].is_cut, cut, "{camera}");
     }
 }
+
+/// A following camera shows an obstacle near the body whole, if the body gets at most a fifth smaller for it.
+#[test]
+fn bodies_leave_room_to_obstacles_near_them() {
+    let seen = |obstacle: &str| {
+        let scene = parse(&format!(
+            "time = {{ duration = 0.1, frames_per_second = 10 }}
+            body.lattice = {{ cells = [2, 2, 2], side = 0.1 }}
+            run = [{{ name = 'one', model = {{ kind = 'shape-based', stiffness = 1e4 }} }}]
+            obstacle = [{obstacle}]"
+        ));
+        film(&scene, 1).swap_remove(0).1
+    };
+    let alone = seen("");
+    for ball in ["centre = [0.16, 0.1, 0], radius = 0.04", "centre = [0.20, 0.1, 0], radius = 0.08"] {
+        let beside = seen(&format!("{{ kind = 'sphere', {ball} }}"));
+        let panel = &beside.panels[0];
+        let smaller = panel.sight.element / alone.panels[0].sight.element;
+        assert!((0.8..=1.0).contains(&smaller), "{ball}: {smaller}");
+        let corners = panel.obstacles.solids[0].mesh.vertices.iter();
+        for at in corners.map(|corner| panel.sight.clip * glam::Vec3::from(corner.position).extend(1.0)) {
+            assert!(at.x.abs() <= at.w && at.y.abs() <= at.w, "{ball}: {at}");
+        }
+    }
+}
