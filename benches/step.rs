@@ -35,7 +35,7 @@ struct Case {
 
 impl Case {
     fn new(name: &'static str, scene: &Scene, run: usize, threads: usize) -> Self {
-        let count = scene.body.elements.len() as u64;
+        let count = scene.bodies[0].body.elements.len() as u64;
         let mut world = scene.world(run);
         world.set_crew(Crew::new(threads));
         Self { name, world, count, steps: (WORK / count).max(LEAST), threads, times: Vec::new() }

@@ -342,7 +342,7 @@ fn models_of_the_caller_are_checked_by_their_own_words() {
     let scene =
         |model: Idle| Scene::builder("own", BodyBuilder::polygon(3, 1.0)).run("One", RunBuilder::own(Arc::new(model)));
     let built = scene(idle(100.0)).build(&Limits::default()).unwrap();
-    assert_eq!((built.digest.as_str(), built.runs[0].model.stiffness()), ("", 100.0));
+    assert_eq!((built.digest.as_str(), built.runs[0].models[0].stiffness()), ("", 100.0));
     let refused = |scene: SceneBuilder, limits: &Limits, expected: &str| {
         let message = scene.build(limits).unwrap_err().to_string();
         assert!(message.starts_with("own: ") && message.contains(expected), "{message}");

@@ -5,6 +5,7 @@ use super::hull::{Hulls, bounds};
 use super::lists::IndexLists;
 use super::topology::{Elements, Faces, assign_faces};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// A deformable body at rest. It is immutable, and all runs of a scene share it.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +54,28 @@ impl Body {
             None => Elements { nodes: &elements, kinds: &kinds, hulls: &hulls, rest: &rest }.shared_faces(),
         };
         Self { dimension, rest, mass, elements, kinds, hulls, faces }
+    }
+
+    /// All bodies as one, with the nodes, elements and faces of the first before those of the second, and so on.
+    ///
+    /// # Panics
+    /// If there is no body, or if one is in the plane and another in space.
+    pub(crate) fn joined(bodies: &[Arc<Self>]) -> Arc<Self> {
+        let (first, others) = bodies.split_first().expect("at least one body");
+        let mut whole = Arc::clone(first);
+        for body in others {
+            // The first other body makes a copy of the first one.
+            let whole = Arc::make_mut(&mut whole);
+            assert_eq!(whole.dimension, body.dimension, "bodies of one dimension");
+            let (node, element) = (whole.len() as u32, whole.elements.len() as u32);
+            whole.rest.extend(&body.rest);
+            whole.mass.extend(&body.mass);
+            whole.elements.append(&body.elements, node);
+            whole.kinds.extend(&body.kinds);
+            whole.hulls.append(&body.hulls, node, element);
+            whole.faces.append(&body.faces, node, element);
+        }
+        whole
     }
 
     /// The elements with their faces, edges and named springs.

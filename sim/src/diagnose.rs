@@ -3,7 +3,7 @@
 use super::body::Body;
 
 use super::crew::Crew;
-use super::diagnostics::{Facts, Lazy};
+use super::diagnostics::{BodyFacts, Lazy};
 use super::element;
 use super::element::ElementKind;
 use super::gather::Group;
@@ -63,15 +63,13 @@ impl Diagnose {
     pub(super) fn facts<'a>(
         &'a self,
         state: Nodes<'a>,
-        gravity: DVec3,
         global_rotations: f64,
         report: impl FnOnce() -> Report + 'a,
         crew: &'a Crew,
-    ) -> Facts<'a> {
-        Facts {
+    ) -> BodyFacts<'a> {
+        BodyFacts {
             mass: &self.body.mass,
             state,
-            gravity,
             global_rotations,
             report: Lazy::new(Box::new(report)),
             volumes: Lazy::new(Box::new(move || self.volumes(state.position, crew))),
@@ -283,7 +281,7 @@ fn mean(points: &[DVec3]) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::diagnostics::{Diagnostic, Diagnostics, is_flat, is_turned_over};
+    use super::super::diagnostics::{Diagnostic, Diagnostics, Facts, is_flat, is_turned_over};
     use super::*;
     use crate::element::{Dimension, Solids};
     use crate::lists::IndexLists;
@@ -300,7 +298,8 @@ mod tests {
 
     fn diagnostics(diagnose: &Diagnose, state: &State) -> Diagnostics {
         let crew = Crew::new(1);
-        Diagnostics::of(&diagnose.facts(state.nodes(), DVec3::ZERO, 0.0, Report::default, &crew), Diagnostic::ALL)
+        let bodies = [diagnose.facts(state.nodes(), 0.0, Report::default, &crew)];
+        Diagnostics::of(Facts { bodies: &bodies, gravity: DVec3::ZERO }, Diagnostic::ALL)
     }
 
     /// An element with seven corners has no table of faces: its volume is the affine estimate.

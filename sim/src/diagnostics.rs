@@ -14,13 +14,11 @@ use std::fmt;
 /// A value that is computed when it is first used.
 pub(super) type Lazy<'a, T> = LazyCell<T, Box<dyn FnOnce() -> T + 'a>>;
 
-/// The quantities from which diagnostics are computed.
-pub(super) struct Facts<'a> {
+/// The quantities of one body from which diagnostics are computed.
+pub(super) struct BodyFacts<'a> {
     /// Mass of each node (kg).
     pub(super) mass: &'a [f64],
     pub(super) state: Nodes<'a>,
-    /// Acceleration of gravity (m/s²).
-    pub(super) gravity: DVec3,
     /// Rotations that the global solver has computed.
     pub(super) global_rotations: f64,
     /// Energy and residuals from the model.
@@ -55,17 +53,7 @@ pub(super) fn is_turned_over(now: f64, at_rest: f64) -> bool {
     now * at_rest < -NO_SIGN * at_rest * at_rest
 }
 
-impl Facts<'_> {
-    /// The sum over all nodes, in order, of a function of mass (kg), position (m) and velocity (m/s).
-    fn sum<T: Default + std::ops::AddAssign>(&self, of_node: impl Fn(f64, DVec3, DVec3) -> T) -> T {
-        let Nodes { position, velocity } = self.state;
-        let mut sum = T::default();
-        for ((&mass, &position), &velocity) in self.mass.iter().zip(position).zip(velocity) {
-            sum += of_node(mass, position, velocity);
-        }
-        sum
-    }
-
+impl BodyFacts<'_> {
     /// Whether each element has turned over.
     pub(super) fn turned_over(&self) -> impl Iterator<Item = bool> {
         self.volumes.iter().zip(self.volumes_at_rest).map(|(&now, &at_rest)| is_turned_over(now, at_rest))
@@ -76,12 +64,48 @@ impl Facts<'_> {
         self.volumes.iter().zip(self.volumes_at_rest).map(|(&now, &at_rest)| is_flat(now, at_rest))
     }
 
-    /// RMS distance of the nodes from the placement (m).
-    fn shape_error(&self) -> f64 {
+    /// The sum of the squared distances of the nodes from the placement (m²).
+    fn squared_distances(&self) -> f64 {
         let Placement { centre, turn, .. } = *self.placement;
         let squared = self.centred.iter().zip(self.state.position);
-        let squared = squared.map(|(&rest, &now)| (now - centre - turn * rest).length_squared());
-        (squared.sum::<f64>() / self.state.position.len() as f64).sqrt()
+        squared.map(|(&rest, &now)| (now - centre - turn * rest).length_squared()).sum()
+    }
+}
+
+/// The facts of some bodies, whose diagnostics are computed together.
+#[derive(Clone, Copy)]
+pub(super) struct Facts<'f, 'a> {
+    pub(super) bodies: &'f [BodyFacts<'a>],
+    /// Acceleration of gravity (m/s²).
+    pub(super) gravity: DVec3,
+}
+
+impl<'a> Facts<'_, 'a> {
+    /// The sum over all nodes, in order, of a function of mass (kg), position (m) and velocity (m/s).
+    fn sum<T: Default + std::ops::AddAssign>(self, of_node: impl Fn(f64, DVec3, DVec3) -> T) -> T {
+        let mut sum = T::default();
+        for BodyFacts { mass, state: Nodes { position, velocity }, .. } in self.bodies {
+            for ((&mass, &position), &velocity) in mass.iter().zip(*position).zip(*velocity) {
+                sum += of_node(mass, position, velocity);
+            }
+        }
+        sum
+    }
+
+    /// The sum of a number of each body.
+    fn total(self, of_body: impl Fn(&BodyFacts<'a>) -> f64) -> f64 {
+        self.bodies.iter().map(of_body).sum()
+    }
+
+    /// The numbers of the bodies that have one, reduced to one; NaN if no body has any.
+    fn reduced(self, of_body: impl Fn(&BodyFacts<'a>) -> f64, reduce: impl Fn(f64, f64) -> f64) -> f64 {
+        self.bodies.iter().map(of_body).filter(|number| !number.is_nan()).reduce(reduce).unwrap_or(f64::NAN)
+    }
+
+    /// RMS distance of the nodes from the placements of their bodies (m).
+    fn shape_error(self) -> f64 {
+        let nodes: usize = self.bodies.iter().map(|body| body.state.position.len()).sum();
+        (self.total(BodyFacts::squared_distances) / nodes as f64).sqrt()
     }
 }
 
@@ -151,7 +175,7 @@ macro_rules! diagnostics {
 
         impl Diagnostics {
             /// The wanted diagnostics; the others are zero.
-            pub(super) fn of($facts: &Facts<'_>, wanted: &[Diagnostic]) -> Self {
+            pub(super) fn of($facts: Facts<'_, '_>, wanted: &[Diagnostic]) -> Self {
                 use Diagnostic::{Elastic, Energy, Gravitational, Kinetic};
                 let is_part = |one| wanted.contains(&Energy) && [Kinetic, Elastic, Gravitational].contains(&one);
                 let is_wanted = |one| wanted.contains(&one) || is_part(one);
@@ -222,7 +246,8 @@ diagnostics! { facts:
         facts.sum(|mass, _, velocity| 0.5 * mass * velocity.length_squared());
 
     /// Elastic energy (J).
-    Elastic, elastic: f64, "elastic energy", "J", Frames = facts.report.energy.unwrap_or(f64::NAN);
+    Elastic, elastic: f64, "elastic energy", "J", Frames =
+        facts.total(|body| body.report.energy.unwrap_or(f64::NAN));
 
     /// Potential energy in the field of gravity (J), zero at the origin.
     Gravitational, gravitational: f64, "energy in gravity", "J", Frames =
@@ -236,16 +261,18 @@ diagnostics! { facts:
         facts.sum(|mass, position, velocity| position.cross(velocity) * mass);
 
     /// The largest angular acceleration that errors of the rotations cause (rad/s²), α of Eq. (18).
-    Residual, residual: f64, "residual α", "rad/s²", Frames = facts.report.residual(Report::ROTATION).unwrap_or(f64::NAN);
+    Residual, residual: f64, "residual α", "rad/s²", Frames =
+        facts.reduced(|body| body.report.residual(Report::ROTATION).unwrap_or(f64::NAN), f64::max);
 
     /// Number of elements that have turned over.
     TurnedOver, turned_over: usize, "turned over", "", Summaries =
-        facts.turned_over().filter(|&turned| turned).count();
+        facts.bodies.iter().flat_map(BodyFacts::turned_over).filter(|&turned| turned).count();
 
     /// Total signed volume divided by the volume at rest; in the plane, area.
-    VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries = facts.volumes.iter().sum::<f64>() / facts.volume_at_rest;
+    VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries =
+        facts.total(|body| body.volumes.iter().sum()) / facts.total(|body| body.volume_at_rest);
 
-    /// RMS distance of the nodes from the best rigid placement of the rest shape (m).
+    /// RMS distance of the nodes from the best rigid placement of the rest shape of their body (m).
     ShapeError, shape_error: f64, "shape error", "m", Summaries = facts.shape_error();
 
     /// Total energy (J): kinetic, elastic and gravitational.
@@ -253,7 +280,8 @@ diagnostics! { facts:
 
     /// Number of rotations since the start that needed the global solver, because the element was pressed flat, turned
     /// inside out, or turned far in one step.
-    GlobalRotations, global_rotations: f64, "global rotations", "", Frames = facts.global_rotations;
+    GlobalRotations, global_rotations: f64, "global rotations", "", Frames =
+        facts.reduced(|body| body.global_rotations, std::ops::Add::add);
 }
 
 impl Diagnostic {

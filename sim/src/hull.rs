@@ -47,6 +47,15 @@ impl Hulls {
         hulls
     }
 
+    /// Appends the hulls of another body, whose nodes and elements are counted from the given ones.
+    pub(crate) fn append(&mut self, others: &Self, node: u32, element: u32) {
+        let end = self.faces.len();
+        self.elements.extend(others.elements.iter().map(|other| element + other));
+        self.starts.pop();
+        self.starts.extend(others.starts.iter().map(|start| end + start));
+        self.faces.append(&others.faces, node);
+    }
+
     /// The faces of one element: none if it has a table of faces or if all its nodes are on a line; one if they are in
     /// a plane.
     pub(crate) fn of(&self, element: usize) -> impl ExactSizeIterator<Item = &[u32]> + Clone {

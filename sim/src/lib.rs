@@ -18,6 +18,7 @@
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod alike;
+mod assembly;
 mod body;
 mod contact;
 mod crew;
@@ -47,6 +48,7 @@ mod system;
 mod topology;
 mod world;
 
+pub use assembly::Assembly;
 pub use body::Body;
 pub use contact::{Contact, FrictionOf, Obstacle, Placed, Shape};
 pub use crew::Crew;

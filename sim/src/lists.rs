@@ -20,6 +20,13 @@ impl IndexLists {
         self.offsets.push(self.indices.len());
     }
 
+    /// Appends all lists of others, whose indices are counted from `first`.
+    pub(crate) fn append(&mut self, others: &Self, first: u32) {
+        let end = self.indices.len();
+        self.offsets.extend(others.offsets[1..].iter().map(|offset| end + offset));
+        self.indices.extend(others.indices.iter().map(|index| first + index));
+    }
+
     /// The number of lists.
     pub fn len(&self) -> usize {
         self.offsets.len() - 1

@@ -5,14 +5,14 @@ use super::placement::Placement;
 use super::state::Status;
 use glam::DVec3;
 
-/// The state of one run at one moment, with its diagnostics.
+/// The state of all bodies of one run at one moment, with its diagnostics.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Snapshot {
     /// Number of steps taken (0: the start).
     pub step: u64,
     /// Time of that step (s). The clock of a diverged run keeps counting: its last state is shown at later times.
     pub time: f64,
-    /// Position of each node (m).
+    /// Position of each node (m), body after body.
     pub position: Vec<DVec3>,
     /// Velocity of each node (m/s).
     pub velocity: Vec<DVec3>,
@@ -21,12 +21,14 @@ pub struct Snapshot {
     pub turned_over: Vec<bool>,
     /// Whether each element is flat: its volume is below a hundredth of that at rest, and it has not turned over.
     pub flat: Vec<bool>,
-    /// The best rigid placement of the rest shape.
-    pub placement: Placement,
+    /// The best rigid placement of the rest shape of each body.
+    pub placements: Vec<Placement>,
     /// The values of the requested field, one for each node or each element; empty if no field was requested.
     pub field: Vec<f64>,
-    /// The requested energies, momenta and measures of shape. The others are zero.
+    /// The requested energies, momenta and measures of shape of all bodies together. The others are zero.
     pub diagnostics: Diagnostics,
+    /// The same of each body.
+    pub of_bodies: Vec<Diagnostics>,
     /// Whether the run has diverged.
     pub status: Status,
 }

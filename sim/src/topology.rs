@@ -19,6 +19,16 @@ pub struct Faces {
     pub outer: Vec<Option<u32>>,
 }
 
+impl Faces {
+    /// Appends the faces of another body, whose nodes and elements are counted from the given ones.
+    pub(crate) fn append(&mut self, others: &Self, node: u32, element: u32) {
+        self.nodes.append(&others.nodes, node);
+        let moved = |side: &Option<u32>| side.map(|other| element + other);
+        self.inner.extend(others.inner.iter().map(moved));
+        self.outer.extend(others.outer.iter().map(moved));
+    }
+}
+
 /// The elements of a body with the faces of each.
 #[derive(Clone, Copy, Debug)]
 pub struct Elements<'a> {

@@ -3,12 +3,12 @@
 use super::body::Body;
 use super::crew::Crew;
 use super::diagnose::Diagnose;
-use super::diagnostics::{Diagnostic, Diagnostics, Facts};
+use super::diagnostics::{BodyFacts, Diagnostic, Diagnostics, Facts};
 use super::dynamics::{Dynamics, SpeedLimit};
 use super::field::Field;
 use super::integrate::{ByForces, Integrator, Method, Scales};
 use super::kernel::{ByKernel, Scheme};
-use super::model::{ElasticModel, Known, Report};
+use super::model::{ElasticModel, Known, Report, Scratch};
 use super::part::{Forces, Part};
 use super::snapshot::Snapshot;
 use super::state::{Divergence, Memory, State, Status};
@@ -319,72 +319,95 @@ impl World {
         self.dynamics.report(&self.system.parts[part], &self.state, None, &self.crew)
     }
 
-    /// α of Eq. (18) of each element of the first part (rad/s²) in the last step, which must be one of an Euler method
+    /// α of Eq. (18) of each element of a part (rad/s²) in the last step, which must be one of an Euler method
     /// that began with the nodes at `before` (m); empty for a model without rotations. It uses the rotations of the
     /// step itself, and so costs much less than [`Self::report`].
-    pub fn residuals(&self, before: &[glam::DVec3]) -> Vec<f64> {
-        let part = &self.system.parts[0];
+    ///
+    /// # Panics
+    /// If there is no such part.
+    pub fn residuals(&self, part: usize, before: &[glam::DVec3]) -> Vec<f64> {
+        let part = &self.system.parts[part];
         part.forces.residuals(&before[part.nodes.clone()], &self.state.memory.model[part.memory.clone()])
     }
 
-    /// The diagnostics of the first part in the present state, without copying positions and velocities.
+    /// The internal forces on each node in the present state (N).
+    pub fn forces(&self) -> Vec<glam::DVec3> {
+        let Self { system, state, .. } = self;
+        let (mut forces, mut scratch) = (vec![glam::DVec3::ZERO; state.position.len()], Scratch::default());
+        for part in &system.parts {
+            let memory = &state.memory.model[part.memory.clone()];
+            let on_nodes = &mut forces[part.nodes.clone()];
+            part.forces.add_forces(part.nodes_of(state.nodes()), memory, &mut memory.to_vec(), &mut scratch, on_nodes);
+        }
+        forces
+    }
+
+    /// The diagnostics of all bodies in the present state, without copying positions and velocities.
     pub fn diagnostics(&self) -> Diagnostics {
         self.some_diagnostics(Diagnostic::ALL)
     }
 
     /// The diagnostics in `wanted`. The others are zero and cost no time.
     pub fn some_diagnostics(&self, wanted: &[Diagnostic]) -> Diagnostics {
-        Diagnostics::of(&self.facts(&self.system.parts[0], || self.report(0)), wanted)
-    }
-
-    fn facts<'a>(&'a self, part: &'a Part, report: impl FnOnce() -> Report + 'a) -> Facts<'a> {
-        let global_rotations = part.global_rotations(&self.state.memory.model);
-        part.diagnose.facts(
-            part.nodes_of(self.state.nodes()),
-            self.system.gravity,
-            global_rotations,
-            report,
-            &self.crew,
-        )
-    }
-
-    /// The present state of the first part with its diagnostics.
-    pub fn snapshot(&self) -> Snapshot {
-        self.snapshot_of(0)
-    }
-
-    /// The present state of a part with its diagnostics.
-    ///
-    /// # Panics
-    /// If there is no such part.
-    pub fn snapshot_of(&self, part: usize) -> Snapshot {
-        let Self { system, dynamics, state, crew, field, wanted, .. } = self;
-        let part = &system.parts[part];
-        let nodes = part.nodes_of(state.nodes());
-        let mut energies = Vec::new();
-        let known = (*field == Some(Field::ElasticEnergy)).then(|| {
-            energies.resize(part.body.len(), 0.0);
-            let mut share = |_: usize, nodes: &[u32], shares: &[f64]| {
-                nodes.iter().zip(shares).for_each(|(&node, share)| energies[node as usize] += share);
-            };
-            dynamics.report(part, state, Some(&mut share), crew)
+        let bodies = self.system.parts.iter().map(|part| {
+            let report = || self.dynamics.report(part, &self.state, None, &self.crew);
+            self.facts(part, report)
         });
-        let facts = self.facts(part, move || known.unwrap_or_else(|| dynamics.report(part, state, None, crew)));
-        let diagnostics = Diagnostics::of(&facts, wanted);
-        let (turned_over, flat, placement) = (facts.turned_over().collect(), facts.flat().collect(), *facts.placement);
-        let values = |field: Field| field.values(&part.body, nodes, &placement, energies, crew);
-        let field = field.map_or_else(Vec::new, values);
+        let bodies: Vec<_> = bodies.collect();
+        Diagnostics::of(Facts { bodies: &bodies, gravity: self.system.gravity }, wanted)
+    }
+
+    fn facts<'a>(&'a self, part: &'a Part, report: impl FnOnce() -> Report + 'a) -> BodyFacts<'a> {
+        let global_rotations = part.global_rotations(&self.state.memory.model);
+        part.diagnose.facts(part.nodes_of(self.state.nodes()), global_rotations, report, &self.crew)
+    }
+
+    /// The present state of all bodies with its diagnostics.
+    pub fn snapshot(&self) -> Snapshot {
+        let Self { system, dynamics, state, crew, field, wanted, .. } = self;
+        let (mut bodies, mut energies) = (Vec::new(), Vec::new());
+        for part in &system.parts {
+            let mut of_nodes = Vec::new();
+            let known = (*field == Some(Field::ElasticEnergy)).then(|| {
+                of_nodes.resize(part.body.len(), 0.0);
+                let mut share = |_: usize, nodes: &[u32], shares: &[f64]| {
+                    nodes.iter().zip(shares).for_each(|(&node, share)| of_nodes[node as usize] += share);
+                };
+                dynamics.report(part, state, Some(&mut share), crew)
+            });
+            bodies.push(self.facts(part, move || known.unwrap_or_else(|| dynamics.report(part, state, None, crew))));
+            energies.push(of_nodes);
+        }
+        let of = |bodies: &[BodyFacts<'_>]| Diagnostics::of(Facts { bodies, gravity: system.gravity }, wanted);
+        let of_bodies: Vec<_> = bodies.iter().map(std::slice::from_ref).map(of).collect();
+        let diagnostics = match of_bodies[..] {
+            [alone] => alone,
+            _ => of(&bodies),
+        };
+        let placements: Vec<_> = bodies.iter().map(|body| *body.placement).collect();
+        let (turned_over, flat) = (
+            bodies.iter().flat_map(BodyFacts::turned_over).collect(),
+            bodies.iter().flat_map(BodyFacts::flat).collect(),
+        );
+        let parts = system.parts.iter().zip(&placements).zip(energies);
+        let values = |((part, placement), energies): ((&Part, _), _)| {
+            field.map_or_else(Vec::new, |field| {
+                field.values(&part.body, part.nodes_of(state.nodes()), placement, energies, crew)
+            })
+        };
+        let field = parts.flat_map(values).collect();
         Snapshot {
-            step: self.state.steps,
-            time: self.state.steps as f64 * self.system.step,
-            position: nodes.position.to_vec(),
-            velocity: nodes.velocity.to_vec(),
+            step: state.steps,
+            time: state.steps as f64 * system.step,
+            position: state.position.clone(),
+            velocity: state.velocity.clone(),
             turned_over,
             flat,
-            placement,
+            placements,
             field,
             diagnostics,
-            status: self.state.status,
+            of_bodies,
+            status: state.status,
         }
     }
 }

@@ -255,7 +255,7 @@ impl FigureCommand {
     /// Simulates the states that a figure shows; `None` if it was interrupted.
     fn take(&self, figure: &Figure) -> Option<Moments> {
         let mut taking = Taking::new(figure, Scope::Summaries);
-        let slice = figure.scenes().iter().map(|scene| record::slice(&scene.body)).min().unwrap_or(1);
+        let slice = figure.scenes().iter().map(|scene| record::slice(scene.runs[0].body())).min().unwrap_or(1);
         let bar = self.printing.progress(&figure.name, 0);
         while !interrupt::requested()
             && let Some([done, all]) = taking.advance(slice)
@@ -313,7 +313,7 @@ fn numbers(figure: &Figure, moments: &Moments) -> Value {
         Content::Forces(forces) => {
             let of_scene = |(scene, found): (&Scene, &Vec<Forces>)| {
                 let runs = scene.runs.iter().zip(found).map(|(run, found)| {
-                    let unit = run.model.stiffness() * scene.view.side;
+                    let unit = run.models[0].stiffness() * scene.view.side;
                     let forces: Vec<_> = found.on_nodes.iter().map(|force| (*force / unit).to_array()).collect();
                     json!({ "run": run.name, "forces_over_stiffness_and_side": forces })
                 });

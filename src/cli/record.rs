@@ -311,7 +311,7 @@ impl<'a> Recording<'a> {
         if simulation.ahead {
             bar.set_message("simulating ahead");
         }
-        let slice = slice(&self.scene.body);
+        let slice = slice(self.scene.runs[0].body());
         self.sound = simulation.frames.states().cloned().collect();
         // Runs that diverged between the last frame and the checkpoint.
         for ((summary, &run), sound) in self.summary.runs.iter().zip(&self.runs).zip(&mut self.sound) {

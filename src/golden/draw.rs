@@ -295,11 +295,12 @@ mod tests {
             assert!(compare(&scene, 0).passes(), "{}: {}", path.display(), compare(&scene, 0));
             let run = scene.runs.len() - 1;
             let mut moved = scene.clone();
-            let node = moved.initial.position.iter().rposition(|at| at.length() > 0.0);
+            let position = &mut moved.runs[run].initial.position;
+            let node = position.iter().rposition(|at| at.length() > 0.0);
             match node {
-                Some(node) => moved.initial.position[node] *= 1.0 + 1e-9,
+                Some(node) => position[node] *= 1.0 + 1e-9,
                 // All nodes start at the origin, where no error is relative: a thousand-millionth of the element's side.
-                None => moved.initial.position[0].x = 1e-10,
+                None => position[0].x = 1e-10,
             }
             let found = compare(&moved, run);
             assert_eq!(found.verdict(), Verdict::StateMoved, "{}", path.display());

@@ -142,7 +142,7 @@ impl StatesWriter {
         before: Option<Course>,
     ) -> Result<Self, OutputError> {
         let path = folder.join(STATES_FILE);
-        let nodes = scene.body.len();
+        let nodes = scene.runs[0].body().len();
         let mut arrays = vec![Array { name: "time".to_owned(), shape: String::new(), offset: 0, length: 8 }];
         let mut record = 8;
         let step = |run: usize| scene.runs[run].step;
@@ -177,7 +177,7 @@ impl StatesWriter {
         };
         let length = course.frames.len() as u64 * record;
         let spool = open_growing(&folder.join(SPOOL), length).map_err(OutputError::writing(&path))?;
-        Ok(Self { path, spool, body: Arc::clone(&scene.body), arrays, record, own_time, origin, course })
+        Ok(Self { path, spool, body: Arc::clone(scene.runs[0].body()), arrays, record, own_time, origin, course })
     }
 
     /// Appends one frame, with the state of each run in it.

@@ -88,7 +88,7 @@ fn place(npz: &mut Npz, course: &Course, scene: &Scene, run: usize) -> Result<Ru
         let names: Vec<_> = course.runs.iter().map(|run| format!("“{}”", run.name)).collect();
         return Err(format!("has no states of “{name}”, only of {}; choose among these with --only", names.join(", ")));
     };
-    let nodes = scene.body.len() as u64;
+    let nodes = scene.runs[0].body().len() as u64;
     let stored = &course.runs[run];
     let frames = stored.digests.len() as u64;
     let mut array = |quantity: &str, is_row: &dyn Fn(&[u64]) -> bool| {

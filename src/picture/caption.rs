@@ -438,7 +438,7 @@ mod tests {
         let body = BodyBuilder::lattice(Lattice::new([1; 3], 0.1)).mass(1.0);
         let shape = shape_based::Parameters { damping: Some(60.0), ..shape_based::Parameters::new(1e4) };
         let scene = Scene::builder("cube", body).run("shape", shape).build(&Limits::default()).expect("a scene");
-        let caption = short_description(scene.runs[0].model.as_ref(), &scene.body);
+        let caption = short_description(scene.runs[0].models[0].as_ref(), scene.runs[0].body());
         assert_eq!(caption, "1 cube, k = 10 kN/m, ζ = 0.3, exact rotations");
     }
 

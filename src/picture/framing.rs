@@ -47,8 +47,8 @@ pub(super) struct Shot {
 impl Seen {
     /// The boxes of moments of a scene; `None` without moments.
     pub(super) fn new(scene: &Scene, moments: &[Moment], follows: bool) -> Option<Self> {
-        let (view, body) = (&scene.view, &*scene.body);
-        let start = CameraBox::new(view, body, &scene.initial.position)?;
+        let (view, body) = (&scene.view, &**scene.runs[0].body());
+        let start = CameraBox::new(view, body, &scene.runs[0].initial.position)?;
         let usual = start.size().max(body.extent()).max(f64::MIN_POSITIVE);
         let sound = moments.iter().filter(|(_, _, is_sound)| *is_sound).map(|(_, seen, _)| seen.size());
         let most = sound.reduce(f64::max).unwrap_or(f64::INFINITY).clamp(usual, MOST_GROWTH * usual);
@@ -153,7 +153,7 @@ fn nearness(lens: &Lens, half: DVec3) -> f64 {
 /// The camera of a panel at a distance of a metre.
 pub(super) fn from_a_metre(scene: &Scene, viewport: Rectangle, scale: Scale) -> Lens {
     let framing = Framing { target: DVec3::ZERO, distance: 1.0, moves: false };
-    Lens::new(&scene.view, &framing, scene.body.dimension, viewport.map(f64::from), scale.unit)
+    Lens::new(&scene.view, &framing, scene.dimension(), viewport.map(f64::from), scale.unit)
 }
 
 /// The box around two boxes.

@@ -63,7 +63,7 @@ impl Cause {
         const FAR: f64 = 0.5;
         let (end, at) = (divergence.time, world.state().position[node]);
         let begin = end - scene.runs[run].step;
-        let body = &scene.body;
+        let body = scene.runs[0].body();
         let size = |element: usize| {
             let nodes: Vec<_> =
                 body.elements.iter().nth(element).into_iter().flatten().map(|&node| body.rest[node as usize]).collect();
@@ -75,7 +75,7 @@ impl Cause {
         let obstacles = scene.obstacles.iter().enumerate().map(|(number, obstacle)| {
             (format!("obstacle[{number}]"), way(obstacle.pose(begin), obstacle.pose(end), obstacle.pivot))
         });
-        let grips = scene.grips.iter().filter(|grip| grip.holds(begin) && grip.holds(end));
+        let grips = scene.runs[0].grips.iter().filter(|grip| grip.holds(begin) && grip.holds(end));
         let grips = grips.map(|grip| ("the grabbed part".to_owned(), way(grip.pose(begin), grip.pose(end), at)));
         let (name, way) = obstacles.chain(grips).max_by(|one, other| one.1.total_cmp(&other.1))?;
         (way > FAR * size).then(|| {
@@ -123,7 +123,7 @@ impl Cause {
 
 /// The most steps of a scene that each part of the search simulates.
 fn most_steps(scene: &Scene) -> u64 {
-    MOST_ELEMENT_STEPS / (scene.body.elements.len() as u64).max(1)
+    MOST_ELEMENT_STEPS / (scene.runs[0].body().elements.len() as u64).max(1)
 }
 
 #[cfg(test)]

@@ -68,7 +68,7 @@ impl TimeSeries {
         self.times.push(time);
         self.diagnostics.push(diagnostics);
         if scene.view.camera.follow {
-            self.boxes.extend(CameraBox::new(&scene.view, &scene.body, position));
+            self.boxes.extend(CameraBox::new(&scene.view, scene.runs[0].body(), position));
         }
         self.reach.add(scene, time, position);
     }
@@ -88,7 +88,7 @@ impl NearObstacles {
     /// Adds nodes at positions (m) at a time (s).
     pub(crate) fn add(&mut self, scene: &Scene, time: f64, position: &[DVec3]) {
         self.0.resize(scene.obstacles.len(), None);
-        let extent = scene.body.extent();
+        let extent = scene.runs[0].body().extent();
         let (low, high) = geometry::bounds(position);
         if (high - low).max_element() > Self::MOST_GROWTH * extent {
             return;

@@ -30,7 +30,7 @@ impl Fitting {
 
 /// Whether a state with nodes at `position` (m) fits.
 pub(crate) fn fits(scene: &Scene, position: &[DVec3]) -> bool {
-    radius(position) <= FITS * radius(&scene.body.rest).max(radius(&scene.initial.position))
+    radius(position) <= FITS * radius(&scene.runs[0].body().rest).max(radius(&scene.runs[0].initial.position))
 }
 
 /// The search for the last fitting state of a run that diverges. It simulates the run again. So only runs pay for it
@@ -119,7 +119,9 @@ mod tests {
         let alone = Runner::new(&scene, &[2]).frame(scene.last_frame());
         let last_fit = alone.runs[0].last_fit.as_deref().expect("it diverged");
         let LastFit { snapshot, times_wider } = last_fit;
-        assert!(fits(&scene, &snapshot.position) && radius(&snapshot.position) > 1.1 * radius(&scene.body.rest));
+        assert!(
+            fits(&scene, &snapshot.position) && radius(&snapshot.position) > 1.1 * radius(&scene.runs[0].body().rest)
+        );
         for frame in &frames {
             let run = &frame.runs[1];
             let expected = (run.snapshot.step > snapshot.step).then_some(last_fit);
@@ -173,7 +175,12 @@ mod tests {
         let scene = scene();
         let mut stretched = scene.clone();
         // A body that grows without end, by its initial speed.
-        stretched.initial.velocity.iter_mut().zip(&scene.initial.position).for_each(|(speed, at)| *speed = *at * 60.0);
+        stretched.runs[0]
+            .initial
+            .velocity
+            .iter_mut()
+            .zip(&scene.runs[0].initial.position)
+            .for_each(|(speed, at)| *speed = *at * 60.0);
         let mut runner = Runner::new(&stretched, &[0]);
         let wide = (1..40)
             .map(|frame| runner.frame(frame))

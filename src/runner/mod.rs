@@ -61,7 +61,8 @@ impl<'a> Runner<'a> {
     pub(crate) fn among(all: usize, scene: &'a Scene, runs: &[usize]) -> Self {
         /// The least number of elements for each additional thread within a run.
         const LEAST: usize = 2000;
-        let threads = (rayon::current_num_threads() / all.max(1)).min(scene.body.elements.len() / LEAST).max(1);
+        let threads =
+            (rayon::current_num_threads() / all.max(1)).min(scene.runs[0].body().elements.len() / LEAST).max(1);
         let running = |&run: &usize| {
             let mut world = scene.world(run);
             world.set_crew(Crew::new(threads));
@@ -72,7 +73,7 @@ impl<'a> Runner<'a> {
                 notes: Vec::new(),
                 wanted: Vec::new(),
                 traced: Vec::new(),
-                body: Arc::clone(&scene.body),
+                body: Arc::clone(scene.runs[0].body()),
                 series: TimeSeries::new(run),
                 threads,
                 is_drawn: true,
@@ -266,10 +267,12 @@ impl Scene {
     pub fn world(&self, run: usize) -> World {
         let run = &self.runs[run];
         let surroundings =
-            Surroundings { gravity: self.gravity, obstacles: self.obstacles.clone(), grips: self.grips.clone() };
+            Surroundings { gravity: self.gravity, obstacles: self.obstacles.clone(), grips: run.grips.clone() };
         let tolerance = run.tolerance.unwrap_or(Integrator::TOLERANCE);
         let stepping = Stepping { integrator: run.integrator, step: run.step, tolerance, kernel: run.kernel };
-        let mut world = World::new(&self.body, self.initial.clone(), run.model.as_ref(), surroundings, stepping);
+        let bodies = run.bodies.bodies().iter().map(Arc::clone);
+        let parts: Vec<_> = bodies.zip(run.models.iter().map(|model| &**model)).collect();
+        let mut world = World::of_parts(&parts, run.initial.clone(), surroundings, stepping);
         world.show(self.view.colour.map(|scale| scale.field));
         world
     }

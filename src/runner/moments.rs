@@ -224,8 +224,7 @@ impl<'a> Taking<'a> {
                 let of_run = |scene: &Scene, run: usize| {
                     let mut world = scene.world(run);
                     world.want(&self.wanted);
-                    let on_nodes = scene.runs[run].model.forces_at_start(&scene.body, &scene.initial);
-                    Forces { snapshot: world.snapshot(), on_nodes }
+                    Forces { snapshot: world.snapshot(), on_nodes: world.forces() }
                 };
                 let of_scene = |scene: &Scene| (0..scene.runs.len()).map(|run| of_run(scene, run)).collect();
                 Moments { forces: forces.scenes.iter().map(of_scene).collect(), ..Moments::default() }

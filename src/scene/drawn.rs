@@ -12,7 +12,7 @@ impl Scene {
         view.labels.clock
             || self.time_series().is_some()
             || self.obstacles.iter().any(|obstacle| obstacle.motion != Motion::Still)
-            || self.grips.iter().any(is_moved)
+            || self.runs.iter().flat_map(|run| &run.grips).any(is_moved)
     }
 
     /// The diagnostics of a frame in its picture: the number of each run, and the present value in a chart.

@@ -46,13 +46,13 @@ use crate::reading::collector::{Collector, key_path};
 use crate::reading::words::{list, nearest, quoted};
 use crate::sim::geometry;
 use crate::sim::model::{ElasticModel, Report};
-use crate::sim::{Body, Dimension, Grip, Integrator, Obstacle, Shape};
+use crate::sim::{Assembly, Body, Dimension, Grip, Integrator, Obstacle, Shape};
 use crate::sim::{Diagnostic, Kernel, Moment, State};
 use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A resolved scene: one body, one world, several runs.
+/// A resolved scene: bodies, their surroundings, and several runs.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The title; the file's stem by default.
@@ -70,29 +70,44 @@ pub struct Scene {
     pub duration: f64,
     /// Frames per second of simulated time (1/s).
     pub frames_per_second: f64,
-    /// The body, shared by all runs.
-    pub body: Arc<Body>,
-    /// The initial state of the body, the same in all runs.
-    pub initial: State,
+    /// The bodies.
+    pub bodies: Vec<SceneBody>,
     /// The runs, one for each panel.
     pub runs: Vec<Run>,
     /// The obstacles, in the order in which they act.
     pub obstacles: Vec<Obstacle>,
-    /// Kinematic constraints: nodes that are held or dragged.
-    pub grips: Vec<Grip>,
     /// The view.
     pub view: View,
     /// Warnings: allowed, but probably mistakes.
     pub warnings: Vec<Mistake>,
 }
 
-/// One model on the scene's body, and one panel of the picture.
+/// A body of a scene.
+#[derive(Clone, Debug)]
+pub struct SceneBody {
+    /// Its name, unique in its scene; empty if it is the only body and has none.
+    pub name: String,
+    /// The body at rest.
+    pub body: Arc<Body>,
+    /// Its initial positions and velocities.
+    pub initial: State,
+}
+
+/// Bodies of the scene with their models, and one panel of the picture.
 #[derive(Clone, Debug)]
 pub struct Run {
     /// Unique in its scene.
     pub name: String,
-    /// The elastic model.
-    pub model: Arc<dyn ElasticModel>,
+    /// The places of its bodies in [`Scene::bodies`].
+    pub of: Vec<usize>,
+    /// Its bodies. Runs of the same bodies share them.
+    pub bodies: Arc<Assembly>,
+    /// The initial state of all its bodies.
+    pub initial: State,
+    /// The elastic model of each body.
+    pub models: Vec<Arc<dyn ElasticModel>>,
+    /// Kinematic constraints: nodes that are held or dragged, counted over all its bodies.
+    pub grips: Vec<Grip>,
     /// The integrator.
     pub integrator: Integrator,
     /// Time step ΔT (s); the time between frames for an integrator that chooses its steps.
@@ -114,7 +129,7 @@ impl Scene {
     /// Charts, paths, cameras that follow, and the drawn sizes of plates and walls show it.
     pub(crate) fn time_series(&self) -> Option<&[Diagnostic]> {
         let view = &self.view;
-        let is_flat = self.body.dimension == Dimension::Plane;
+        let is_flat = self.dimension() == Dimension::Plane;
         let ground = geometry::ground(&self.obstacles, 0.0);
         let has_size = |one: &Obstacle| match one.shape {
             Shape::Plate { .. } => true,
@@ -144,16 +159,18 @@ impl Scene {
     /// The message for a diagnostic that no run has, with the diagnostics that charts can show; `None` if a run may
     /// have it.
     fn lacks(&self, diagnostic: Diagnostic) -> Option<&'static str> {
-        let has = |has: &dyn Fn(&dyn ElasticModel) -> bool| self.runs.iter().any(|run| has(&*run.model));
+        let has = |has: &dyn Fn(&dyn ElasticModel, &SceneBody) -> bool| {
+            self.runs.iter().any(|run| run.parts(self).any(|(model, body)| has(model, body)))
+        };
         // Only the model can tell, from its forces.
-        let has_residual = |model: &dyn ElasticModel| {
-            let (forces, memory) = (model.prepare(&self.body), model.start(&self.body, &self.initial.position));
-            let report = forces.report(self.initial.nodes(), &memory, &mut |_, _, _| ());
+        let has_residual = |model: &dyn ElasticModel, SceneBody { body, initial, .. }: &SceneBody| {
+            let (forces, memory) = (model.prepare(body), model.start(body, &initial.position));
+            let report = forces.report(initial.nodes(), &memory, &mut |_, _, _| ());
             report.residual(Report::ROTATION).is_some()
         };
         let (exists, why) = match diagnostic {
             Diagnostic::GlobalRotations => (
-                has(&|model| model.shape_based().is_some_and(|model| model.counts_global(&self.body))),
+                has(&|model, of| model.shape_based().is_some_and(|model| model.counts_global(&of.body))),
                 "only shape-based models in space count them; plot another diagnostic, such as \"turned_over\"",
             ),
             Diagnostic::Residual => (
@@ -166,11 +183,34 @@ impl Scene {
     }
 }
 
+impl Run {
+    /// All its bodies as one.
+    pub fn body(&self) -> &Arc<Body> {
+        self.bodies.whole()
+    }
+
+    /// Each model with its body.
+    pub(crate) fn parts<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = (&'a dyn ElasticModel, &'a SceneBody)> {
+        self.models.iter().map(|model| &**model).zip(self.of.iter().map(|&body| &scene.bodies[body]))
+    }
+
+    /// The shortest period of a node of any of its bodies (s).
+    pub(crate) fn shortest_period(&self) -> f64 {
+        let parts = self.models.iter().zip(self.bodies.bodies());
+        parts.map(|(model, body)| model.shortest_period(body)).fold(f64::INFINITY, f64::min)
+    }
+}
+
 impl Scene {
     /// Whether its pictures need a graphics device: bodies in space are lit.
     #[cfg(feature = "render")]
     pub(crate) fn is_lit(&self) -> bool {
-        self.body.dimension == Dimension::Space
+        self.dimension() == Dimension::Space
+    }
+
+    /// Whether its bodies are in the plane or in space.
+    pub(crate) fn dimension(&self) -> Dimension {
+        self.bodies[0].body.dimension
     }
 
     /// Gives the runs their places.

@@ -9,7 +9,7 @@ impl Scene {
     /// The largest stable step of a run.
     pub(crate) fn stability(&self, run: usize) -> Stability {
         let run = &self.runs[run];
-        Stability::of(&self.body, run.model.as_ref(), run.integrator, &self.grips, self.duration)
+        Stability::of(run.body(), run.models[0].as_ref(), run.integrator, &run.grips, self.duration)
     }
 
     /// The message and remedy for a run whose step is more than 0.9 of the largest stable one, with that share. Runs
@@ -18,7 +18,7 @@ impl Scene {
     pub(super) fn near_limit(&self, number: usize) -> Option<(f64, [String; 2])> {
         const NEAR: f64 = 0.9;
         let run = &self.runs[number];
-        let certain = Stability::certain(&self.body, run.model.as_ref(), run.integrator)?;
+        let certain = Stability::certain(run.body(), run.models[0].as_ref(), run.integrator)?;
         if run.step <= NEAR * certain || run.tolerance.is_some() {
             return None;
         }
@@ -40,7 +40,7 @@ impl Scene {
     /// The message and remedy for a run that is unstable with any step: explicit Euler without damping.
     pub(super) fn never_stable(&self, number: usize) -> Option<[String; 2]> {
         let run = &self.runs[number];
-        let is_undamped = run.model.bound(&self.body).is_some_and(|bound| bound.damping == 0.0);
+        let is_undamped = run.models[0].bound(run.body()).is_some_and(|bound| bound.damping == 0.0);
         (run.integrator == Integrator::ExplicitEuler && is_undamped).then(|| {
             let name = quoted(&run.name);
             [
@@ -56,7 +56,7 @@ impl Scene {
     pub(super) fn rebound_gain(&self, number: usize, largest: f64) -> Option<f64> {
         const GAIN: f64 = 0.2;
         let run = &self.runs[number];
-        let is_undamped = run.model.bound(&self.body).is_some_and(|bound| bound.damping == 0.0);
+        let is_undamped = run.models[0].bound(run.body()).is_some_and(|bound| bound.damping == 0.0);
         let is_elastic = self.obstacles.iter().any(|obstacle| obstacle.restitution == 1.0);
         let has_limit = run.tolerance.is_none() && largest > 0.0 && largest.is_finite();
         let share = run.step / largest;

@@ -1,6 +1,6 @@
 //! The contents of a scene in words and numbers, as `check` prints them.
 
-use super::{Scene, stability};
+use super::{Run, Scene, stability};
 use crate::reading::captions::{self, description, typed};
 use crate::reading::words::{count, ends, list, short};
 use crate::sim::geometry::bounds;
@@ -86,7 +86,7 @@ pub struct RunSummary {
 impl Scene {
     /// The contents of the scene.
     pub fn summary(&self) -> SceneSummary {
-        let body = &self.body;
+        let body = self.runs[0].body();
         let coordinates = |vector: DVec3| match body.dimension {
             Dimension::Plane => vec![vector.x, vector.y],
             Dimension::Space => vector.to_array().to_vec(),
@@ -94,11 +94,11 @@ impl Scene {
         let (low, high) = bounds(&body.rest);
         let of_kind = |(number, name): (usize, &str)| format!("{} {name}", count(number as u128));
         let last = self.last_frame();
-        let run = |(at, run): (usize, &super::Run)| {
+        let run = |(at, run): (usize, &Run)| {
             let Stability { largest, stretched } = self.stability(at);
             RunSummary {
                 name: run.name.clone(),
-                model: description(run.model.as_ref(), body),
+                model: description(run.models[0].as_ref(), run.body()),
                 integrator: typed(&run.integrator),
                 kernel: run.kernel,
                 step: run.step,
@@ -117,7 +117,7 @@ impl Scene {
             element_count: body.elements.len(),
             elements: captions::elements(body).into_iter().map(of_kind).collect(),
             extent: coordinates(high - low),
-            start: corners(&self.initial.position, body.dimension),
+            start: corners(&self.runs[0].initial.position, body.dimension),
             mass: body.mass.iter().sum(),
             gravity: coordinates(self.gravity),
             duration: self.duration,
@@ -134,13 +134,13 @@ impl Scene {
 
     /// The nodes that are held or dragged, and when.
     fn constraints(&self, held: bool) -> Vec<String> {
-        let wanted = self.grips.iter().filter(|grip| (grip.motion == Motion::Still) == held);
+        let wanted = self.runs[0].grips.iter().filter(|grip| (grip.motion == Motion::Still) == held);
         wanted.map(|grip| constraint(grip, self.duration)).collect()
     }
 
     /// The cycle T = 2π√(m/k) of the lightest node and the stiffest run (s). Steps may be fractions of it.
     pub fn cycle(&self) -> f64 {
-        self.runs.iter().map(|run| run.model.shortest_period(&self.body)).fold(f64::INFINITY, f64::min)
+        self.runs.iter().map(Run::shortest_period).fold(f64::INFINITY, f64::min)
     }
 
     fn picture(&self) -> String {
@@ -152,7 +152,7 @@ impl Scene {
             (runs, Some(columns)) if columns >= runs => format!("{runs} panels in a row"),
             (runs, Some(columns)) => format!("{runs} panels, {columns} in a row"),
         };
-        let from = match self.body.dimension {
+        let from = match self.dimension() {
             Dimension::Plane => "from the front".to_owned(),
             Dimension::Space => {
                 let [across, up] = [view.camera.azimuth, view.camera.elevation].map(|angle| angle.to_degrees().round());

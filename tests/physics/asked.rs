@@ -55,7 +55,7 @@ impl ForceModel for CountingForces {
 fn count(scene: &mut Scene) -> Arc<AtomicUsize> {
     let reports = Arc::new(AtomicUsize::new(0));
     for run in &mut scene.runs {
-        run.model = Arc::new(Counting { model: Arc::clone(&run.model), reports: Arc::clone(&reports) });
+        run.models[0] = Arc::new(Counting { model: Arc::clone(&run.models[0]), reports: Arc::clone(&reports) });
     }
     reports
 }
@@ -94,7 +94,7 @@ fn pictures_ask_for_energies_only_where_they_show_them() {
                 assert!(!is_shown || some.to_bits() == all.to_bits() && some != 0.0, "{diagnostic:?}: {some}");
             }
             assert_eq!(some.snapshot.turned_over, all.snapshot.turned_over);
-            assert_eq!(some.snapshot.placement, all.snapshot.placement);
+            assert_eq!(some.snapshot.placements, all.snapshot.placements);
         }
     }
 }

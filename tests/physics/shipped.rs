@@ -33,7 +33,8 @@ fn explicit_euler_blows_up_a_spinning_block() {
 fn a_bar_that_is_stretched_and_let_go_comes_back_with_the_shape_model() {
     let scene = shipped("stretch", &[]);
     let at = |run: &str, seconds| after(&scene, run, seconds);
-    let right: Vec<usize> = (0..scene.body.len()).filter(|&node| scene.initial.position[node].x > 0.29).collect();
+    let right: Vec<usize> =
+        (0..scene.bodies[0].body.len()).filter(|&node| scene.runs[0].initial.position[node].x > 0.29).collect();
     let (grabbed, pulled) = (at("Local shape", 0.499), at("Local shape", 1.5));
     for &node in &right {
         let way = pulled.position[node] - grabbed.position[node];
@@ -42,10 +43,11 @@ fn a_bar_that_is_stretched_and_let_go_comes_back_with_the_shape_model() {
     }
     let end = at("Local shape", 4.0);
     assert_eq!(end.diagnostics.turned_over, 0);
-    let held: Vec<usize> = (0..scene.body.len()).filter(|&node| scene.initial.position[node].x < -0.29).collect();
+    let held: Vec<usize> =
+        (0..scene.bodies[0].body.len()).filter(|&node| scene.runs[0].initial.position[node].x < -0.29).collect();
     assert_eq!(held.len(), 9);
     for node in held {
-        assert_eq!(end.position[node], scene.initial.position[node]);
+        assert_eq!(end.position[node], scene.runs[0].initial.position[node]);
     }
 }
 
@@ -167,7 +169,7 @@ fn alpha_follows_from_what_a_step_leaves_behind() {
             let asked = world.report(0).residual(Report::ROTATION).expect("rotations");
             let before = world.state().position.clone();
             world.advance(1);
-            let left = world.residuals(&before);
+            let left = world.residuals(0, &before);
             assert_eq!(left.len(), 2);
             assert_eq!(left.into_iter().fold(0.0, f64::max).to_bits(), asked.to_bits(), "{rotation}");
             largest = largest.max(asked);

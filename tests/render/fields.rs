@@ -63,7 +63,7 @@ fn pixel(picture: &Listed, panel: usize, point: glam::Vec3) -> glam::Vec2 {
 #[test]
 fn corners_stand_on_the_scale_where_their_values_do() {
     let (scene, mut frame) = with_field(Field::Speed, [2.0, 6.0], 4);
-    let count = scene.body.len();
+    let count = scene.bodies[0].body.len();
     frame.runs[0].snapshot.field = (0..count).map(|node| node as f64).collect();
     let picture = compose(&scene, &frame);
     assert_eq!(picture.ramp.len(), SHADES);
@@ -240,8 +240,8 @@ fn arrows_end_at_their_nodes() {
             let near = |point: glam::Vec2, of_start: bool| {
                 frame.runs.iter().enumerate().any(|(panel, run)| {
                     let snapshot = &run.snapshot;
-                    (0..scene.body.len()).any(|node| {
-                        let start = snapshot.placement.place(scene.body.rest[node]);
+                    (0..scene.bodies[0].body.len()).any(|node| {
+                        let start = snapshot.placements[0].place(scene.bodies[0].body.rest[node]);
                         let at = if of_start { start } else { snapshot.position[node] };
                         // The camera looks at the origin of the panel's coordinates.
                         let relative = (at - scene.view.camera.target) / scene.view.side;

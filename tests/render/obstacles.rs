@@ -167,7 +167,7 @@ fn a_plate_reaches_as_far_as_bodies_slide_on_it() {
         assert!(plate[0] < body[0] && body[1] < plate[1], "{index}: {body:?} {plate:?}");
     }
     let way = frame(&scene, scene.last_frame()).runs[0].snapshot.position[0].x;
-    assert!(way > 8.0 * scene.body.extent(), "{way}");
+    assert!(way > 8.0 * scene.bodies[0].body.extent(), "{way}");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use localshape::picture::{LineKind, Mesh, TextRun, Weight};
 use localshape::runner::Runner;
 use localshape::runner::history::History;
 use localshape::scene::{Limits, Scene};
-use localshape::sim::{Divergence, Field, Frame, Status};
+use localshape::sim::{Assembly, Divergence, Field, Frame, Status};
 use std::collections::HashMap;
 
 /// A scene with other cells, runs and view.
@@ -62,7 +62,7 @@ fn both_sets_are_closed_surfaces_that_look_outward() {
     let snapshot = &mut frame.runs[1].snapshot;
     // The lowest layer of the 27 cubes: those with the lowest centres.
     let height = |element: usize| -> f64 {
-        scene.body.elements[element].iter().map(|&node| scene.body.rest[node as usize].y).sum()
+        scene.bodies[0].body.elements[element].iter().map(|&node| scene.bodies[0].body.rest[node as usize].y).sum()
     };
     let mut order: Vec<_> = (0..27).collect();
     order.sort_by(|&a, &b| height(a).total_cmp(&height(b)));
@@ -208,10 +208,13 @@ fn few_elements_are_counted_in_squares() {
 /// The scene of Fig. 4(b) with all lengths and speeds times a factor.
 fn scaled(factor: f64) -> (Scene, Frame) {
     let (mut scene, mut frame) = fig4b(4);
-    let mut body = (*scene.body).clone();
+    let mut body = (*scene.bodies[0].body).clone();
     body.rest.iter_mut().for_each(|at| *at *= factor);
-    scene.body = std::sync::Arc::new(body);
-    scene.initial.position.iter_mut().chain(&mut scene.initial.velocity).for_each(|at| *at *= factor);
+    let bodies = std::sync::Arc::new(Assembly::new(vec![std::sync::Arc::new(body)]));
+    for run in &mut scene.runs {
+        run.bodies = bodies.clone();
+        run.initial.position.iter_mut().chain(&mut run.initial.velocity).for_each(|at| *at *= factor);
+    }
     scene.view.side *= factor;
     scene.view.camera.target *= factor;
     scene.view.camera.distance *= factor;
@@ -348,7 +351,7 @@ fn an_element_of_any_shape_is_drawn_by_its_hull() {
     // A cube without one corner: three squares and four triangles.
     let nodes = "[[0,0,0],[1,0,0],[0,1,0],[0,0,1],[1,1,0],[1,0,1],[0,1,1]]";
     let (scene, picture) = one_element(nodes, 7);
-    assert_eq!(scene.body.faces.nodes.len(), 7);
+    assert_eq!(scene.bodies[0].body.faces.nodes.len(), 7);
     let panel = &picture.panels[0];
     assert_eq!(panel.sound.triangles.len(), 3 * 2 + 4);
     assert_eq!(panel.lines.iter().filter(|line| line.kind == LineKind::Edge).count(), 12);
@@ -511,7 +514,7 @@ fn the_more_strained_springs_lie_above_and_have_the_colours_of_the_key() {
     let strokes = &compose(&scene, &frame).panels[0].strokes;
     let ends = localshape::look::ramp::ramp(scale.map, Theme::Light);
     let full = |colour| colour == ends[0] || colour == ends[ends.len() - 1];
-    let springs = scene.runs[1].model.springs().len();
+    let springs = scene.runs[1].models[0].springs().len();
     let first = strokes.iter().position(|stroke| full(stroke.colours[0])).expect("some are strained so far");
     let above = &strokes[first..springs];
     // These springs are in the same step of strain.
@@ -523,8 +526,8 @@ fn the_more_strained_springs_lie_above_and_have_the_colours_of_the_key() {
 fn springs_show_their_own_strain_without_its_sign_unless_the_range_has_one() {
     let (mut scene, _) = fig4b(0);
     scene.view.visible = localshape::look::Visible { springs: true, ..Default::default() };
-    let (body, frame) = (scene.body.clone(), Runner::new(&scene, &[0, 1]).frame(4));
-    let springs = scene.runs[1].model.springs().to_vec();
+    let (body, frame) = (scene.bodies[0].body.clone(), Runner::new(&scene, &[0, 1]).frame(4));
+    let springs = scene.runs[1].models[0].springs().to_vec();
     let strain = |[a, b]: [u32; 2]| {
         let length = |points: &[glam::DVec3]| points[a as usize].distance(points[b as usize]);
         length(&frame.runs[1].snapshot.position) / length(&body.rest) - 1.0

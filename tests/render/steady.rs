@@ -65,7 +65,7 @@ fn between([from, to]: [&Frame; 2], part: f64) -> Vec<Frame> {
                 now.time = from.time + share * (to.time - from.time);
                 let ends = from.position.iter().zip(&to.position);
                 now.position = ends.map(|(a, &b)| a.lerp(b, share)).collect();
-                now.placement.centre = from.placement.centre.lerp(to.placement.centre, share);
+                now.placements[0].centre = from.placements[0].centre.lerp(to.placements[0].centre, share);
                 let fields = from.field.iter().zip(&to.field);
                 now.field = fields.map(|(a, b)| a + share * (b - a)).collect();
             }
@@ -147,12 +147,12 @@ fn nothing_flickers_in_slow_motion() {
         let mut runner = Runner::new(&scene, &all(&scene));
         let [from, to] = [index, index + 1].map(|index| runner.frame(index));
         if file.starts_with("scenes") {
-            scene.view.camera.target = from.runs[0].snapshot.placement.centre;
+            scene.view.camera.target = from.runs[0].snapshot.placements[0].centre;
         }
         // Obstacles move at most two pixels from one frame of these scenes to the next.
         let part = SLOW / way(&scene, &from, &to).max(2.0);
         assert_steady(&format!("{file} {index}"), &film(gpu, &scene, &between([&from, &to], part)));
-        if scene.body.dimension == Dimension::Space {
+        if scene.bodies[0].body.dimension == Dimension::Space {
             assert_steady(&format!("around {file} {index}"), &around(gpu, &mut scene, &from));
         }
     }

@@ -127,17 +127,17 @@ const BY_NUMPY: [&[u8]; 2] = [include_bytes!("numpy.npz"), include_bytes!("numpy
 fn archives_written_by_numpy_are_read_compressed_or_not() {
     for bytes in BY_NUMPY {
         let scene = good(bytes, SCENE);
-        let body = &scene.body;
+        let body = &scene.bodies[0].body;
         assert_eq!(body.kinds, [ElementKind::Hexahedron, ElementKind::Pyramid]);
         assert_eq!(&body.elements[1], [4, 5, 7, 6, 8]);
         assert_eq!(body.rest[8], DVec3::new(0.5, 0.5, 1.5));
-        assert_eq!(scene.initial.position[8], DVec3::new(0.75, 0.75, 2.25));
-        assert_eq!(scene.initial.position[1], DVec3::new(1.5, 0.0, 0.0));
-        assert!(scene.initial.velocity.iter().all(|&velocity| velocity == -DVec3::Y));
+        assert_eq!(scene.runs[0].initial.position[8], DVec3::new(0.75, 0.75, 2.25));
+        assert_eq!(scene.runs[0].initial.position[1], DVec3::new(1.5, 0.0, 0.0));
+        assert!(scene.runs[0].initial.velocity.iter().all(|&velocity| velocity == -DVec3::Y));
         assert_eq!(body.mass[8], 9.0);
         assert_eq!((&body.faces.nodes[0], &body.faces.nodes[1]), (&[4, 5, 7, 6][..], &[4, 5, 8][..]));
         assert_eq!((body.faces.inner[0], body.faces.outer[0]), (Some(0), Some(1)));
-        assert!(description(scene.runs[1].model.as_ref(), body).starts_with("2 springs,"));
+        assert!(description(scene.runs[1].models[0].as_ref(), body).starts_with("2 springs,"));
     }
     assert_eq!(good(BY_NUMPY[0], SCENE).digest, good(BY_NUMPY[1], SCENE).digest);
 }
@@ -156,8 +156,8 @@ fn a_body_from_a_file_is_the_same_as_one_in_the_scene() {
         "nodes = [[0, 0], [1, 0], [1, 1], [0, 1]]\nelements = [[0, 1, 2], [0, 2, 3]]\nmass = 2\nlowest = 3\nrotation.angle = 0.1\noffset = [1, 2]\nvelocity = [0, -1]",
     );
     let typed = super::good(&typed);
-    assert_eq!(scene.body, typed.body);
-    assert_eq!(scene.initial, typed.initial);
+    assert_eq!(scene.bodies[0].body, typed.bodies[0].body);
+    assert_eq!(scene.runs[0].initial, typed.runs[0].initial);
     assert_eq!(scene.view.side, typed.view.side);
 }
 
@@ -179,7 +179,7 @@ fn every_type_and_order_of_numbers_means_the_same() {
     let compressed = archive(&square(), CompressionMethod::Deflated);
     for other in [narrow, by_columns, padded, compressed] {
         let other = good(&other, SCENE);
-        assert_eq!((&other.body, &other.digest), (&plain.body, &plain.digest));
+        assert_eq!((&other.bodies[0].body, &other.digest), (&plain.bodies[0].body, &plain.digest));
     }
 }
 
@@ -279,7 +279,11 @@ fn heads_of_every_length_and_version() {
     };
     for version in [1, 2, 3] {
         for length in [70, 118, 255, 256, 300, 511, 1000, 4096] {
-            assert_eq!(good(&file(version, length, length as u32), SCENE).body, plain.body, "{version}, {length}");
+            assert_eq!(
+                good(&file(version, length, length as u32), SCENE).bodies[0].body,
+                plain.bodies[0].body,
+                "{version}, {length}"
+            );
         }
         // With a length that is slightly too small or too large the numbers begin elsewhere.
         for told in [117, 119, 126] {
@@ -340,7 +344,7 @@ fn elements_that_are_all_wrong_in_one_way_have_one_mistake() {
     let right = [0, 1, 2, 3, 4, 5, 6, 7];
     let turned = [4, 5, 6, 7, 0, 1, 2, 3];
     let around = [0, 1, 3, 2, 4, 5, 7, 6];
-    assert_eq!(good(&row_of_cubes(|_| right), SCENE).body.elements.len(), 12);
+    assert_eq!(good(&row_of_cubes(|_| right), SCENE).bodies[0].body.elements.len(), 12);
     wrong(
         &row_of_cubes(|_| turned),
         &["all 12 elements of `body.npz: elements` are turned inside out at rest write convex = true in [body] \
@@ -407,7 +411,7 @@ fn hexahedra_in_the_order_of_other_programs_are_told_from_turned_ones() {
             CompressionMethod::Stored,
         )
     };
-    assert_eq!(good(&ring([0, 1, 2, 3, 4, 5, 6, 7]), SCENE).body.elements.len(), 12);
+    assert_eq!(good(&ring([0, 1, 2, 3, 4, 5, 6, 7]), SCENE).bodies[0].body.elements.len(), 12);
     for other in [[0, 1, 3, 2, 4, 5, 7, 6], [4, 5, 7, 6, 0, 1, 3, 2]] {
         wrong(&ring(other), &["all 12 elements of `body.npz: elements` list their corners around their sides"]);
     }
@@ -639,7 +643,7 @@ fn any_bytes_in_an_archive() {
             }
             place.put_body(&bytes);
             match place.load(SCENE, &small) {
-                Ok(scene) => assert!(scene.initial.position.iter().all(|at| at.is_finite())),
+                Ok(scene) => assert!(scene.runs[0].initial.position.iter().all(|at| at.is_finite())),
                 Err(error) => assert!(error.mistakes().iter().all(|mistake| mistake.line > 0), "{error}"),
             }
         }
@@ -650,5 +654,5 @@ fn any_bytes_in_an_archive() {
 fn the_path_is_taken_from_the_scene_and_not_from_the_current_folder() {
     let place = Place::new(&with(|_| ()));
     assert!(!Path::new("body.npz").exists());
-    assert_eq!(place.load(SCENE, &Limits::default()).unwrap().body.len(), 4);
+    assert_eq!(place.load(SCENE, &Limits::default()).unwrap().bodies[0].body.len(), 4);
 }

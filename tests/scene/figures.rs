@@ -186,14 +186,14 @@ fn captions_say_what_the_scenes_are() {
         };
         for scene in figure.scenes() {
             for run in &scene.runs {
-                let words = description(run.model.as_ref(), &scene.body);
+                let words = description(run.models[0].as_ref(), &scene.bodies[0].body);
                 let part =
                     |name: &str| words.split(", ").find_map(|part| part.strip_prefix(name)).expect("a parameter");
                 says(format!("stiffness {},", part("k = ")));
                 says(format!("damping ratio {},", part("ζ = ")));
             }
-            assert!(scene.body.mass.iter().all(|&mass| mass == scene.body.mass[0]));
-            says(format!("{} kg per node,", scene.body.mass[0]));
+            assert!(scene.bodies[0].body.mass.iter().all(|&mass| mass == scene.bodies[0].body.mass[0]));
+            says(format!("{} kg per node,", scene.bodies[0].body.mass[0]));
             for obstacle in &scene.obstacles {
                 if obstacle.restitution > 0.0 {
                     says(format!("restitution {},", obstacle.restitution));
@@ -205,7 +205,7 @@ fn captions_say_what_the_scenes_are() {
         assert!(parts >= 6, "{name}");
     }
     // "dropped from … m", and how long that takes.
-    let lowest = |scene: &Scene| scene.initial.position.iter().fold(f64::INFINITY, |low, at| low.min(at.y));
+    let lowest = |scene: &Scene| scene.runs[0].initial.position.iter().fold(f64::INFINITY, |low, at| low.min(at.y));
     let figure = Figure::built_in("fig4a").expect("one of the names");
     let scene = &figure.scenes()[0];
     let (height, gravity) = (lowest(scene), -scene.gravity.y);
@@ -215,7 +215,7 @@ fn captions_say_what_the_scenes_are() {
     let figure = Figure::built_in("fig4b").expect("one of the names");
     let scene = &figure.scenes()[0];
     assert_eq!(lowest(scene), 0.0);
-    let height = scene.initial.velocity[0].y.powi(2) / (-2.0 * scene.gravity.y);
+    let height = scene.runs[0].initial.velocity[0].y.powi(2) / (-2.0 * scene.gravity.y);
     assert!(figure.title.contains(&format!("dropped from {height:.0} m")), "{}", figure.title);
     assert!((height - height.round()).abs() < 1e-3, "{height}");
 }

@@ -139,10 +139,10 @@ fn convex_elements_may_list_their_nodes_in_any_order() {
     let octahedron =
         "[body]\nnodes = [[1,0,0],[0,-1,0],[0,0,1],[-1,0,0],[0,1,0],[0,0,-1]]\nelements = [[0,1,2,3,4,5]]\n";
     let scene = good(&format!("{head}{octahedron}convex = true"));
-    assert!(description(scene.runs[0].model.as_ref(), &scene.body).starts_with("12 springs"));
-    assert_eq!(scene.body.faces.nodes.len(), 8);
+    assert!(description(scene.runs[0].models[0].as_ref(), &scene.bodies[0].body).starts_with("12 springs"));
+    assert_eq!(scene.bodies[0].body.faces.nodes.len(), 8);
     let cloth = "[body]\nnodes = [[0,0,0],[1,0,0],[1,1,0],[0,1,0]]\nelements = [[0,1,2,3]]\n";
-    assert_eq!(good(&format!("{head}{cloth}convex = true")).body.faces.nodes.len(), 1);
+    assert_eq!(good(&format!("{head}{cloth}convex = true")).bodies[0].body.faces.nodes.len(), 1);
     let error = bad(&format!("{head}{cloth}")).to_string();
     assert!(error.contains("no volume: its nodes are in a plane, or not in their order"), "{error}");
     assert!(error.contains("write convex = true in [body]"), "{error}");
@@ -214,7 +214,10 @@ fn nodes_in_two_hands_at_once() {
     case(WORLD, twice, "4:9 node 1 is held by `hold[0]` and held by `hold[1]` at once, from 0 s on");
     // Consecutive holds are correct.
     let scene = good(&format!("{WORLD}{}", both.replace("nodes = [1, 2]", "nodes = [1, 2]\nuntil = 0.2")));
-    assert_eq!(scene.grips.iter().map(|grip| (grip.from, grip.until)).collect::<Vec<_>>(), [(0.0, 0.2), (0.2, 0.5)]);
+    assert_eq!(
+        scene.runs[0].grips.iter().map(|grip| (grip.from, grip.until)).collect::<Vec<_>>(),
+        [(0.0, 0.2), (0.2, 0.5)]
+    );
 }
 
 #[test]
@@ -252,8 +255,8 @@ fn regions_hold_the_nodes_that_start_in_them() {
         "{WORLD}[[hold]]\nnodes = {{ of = [0.1, 0.2, 0.05], within = 0.11 }}\n\
          [[hold]]\nnodes = {{ low = [-0.1, 0.1, -0.05], high = [-0.1, 0.1, 0.05] }}"
     ));
-    assert_eq!(scene.grips[0].nodes, [5, 8, 10, 11]);
-    assert_eq!(scene.grips[1].nodes, [0, 6]);
+    assert_eq!(scene.runs[0].grips[0].nodes, [5, 8, 10, 11]);
+    assert_eq!(scene.runs[0].grips[1].nodes, [0, 6]);
 }
 
 /// Coordinates of a lattice are sums, such as ±0.30000000000000004 m, and thirds, which are not typed in full.
@@ -262,7 +265,7 @@ fn nodes_on_the_border_of_a_region_are_in_it() {
     let held = |body: &str, region: &str| {
         let world = WORLD.replace("[2, 1, 1], side = 0.1 }, offset = [0, 0.1, 0]", body);
         let scene = good(&format!("{world}[[hold]]\nnodes = {{ {region} }}"));
-        (scene.grips[0].nodes.len(), scene.summary().to_string(), scene.warnings)
+        (scene.runs[0].grips[0].nodes.len(), scene.summary().to_string(), scene.warnings)
     };
     let bar = "[6, 2, 2], side = 0.1 }";
     assert_eq!(held(bar, "low = [-0.3, 0, -0.1], high = [-0.3, 0.2, 0.1]").0, 9);
@@ -292,7 +295,7 @@ fn many_hands_in_turn() {
     let turns = 20_000;
     let hold = |at: usize| format!("[[hold]]\nnodes = [1]\nfrom = {at}\nuntil = {}\n", at + 1);
     let mut holds: Vec<String> = (0..turns).map(hold).collect();
-    assert_eq!(good(&format!("{WORLD}{}", holds.concat())).grips.len(), turns);
+    assert_eq!(good(&format!("{WORLD}{}", holds.concat())).runs[0].grips.len(), turns);
     holds[7] = hold(7).replace("until = 8", "until = 9.5");
     let told = "node 1 is held by `hold[7]` and held by `hold[8]` at once, from 8 s until 9 s";
     let later = "node 1 is held by `hold[7]` and held by `hold[9]` at once, from 9 s until 9.5 s";
@@ -372,10 +375,10 @@ fn a_summary_tells_of_obstacles_and_grips() {
 fn a_spin_turns_about_the_middle() {
     let spin = |world: &str, spin: &str| good(&world.replace("offset", &format!("spin = {spin}, offset")));
     let scene = spin(WORLD, "{ axis = [0, 2, 0], rate = 3 }");
-    for (position, velocity) in scene.initial.position.iter().zip(&scene.initial.velocity) {
+    for (position, velocity) in scene.runs[0].initial.position.iter().zip(&scene.runs[0].initial.velocity) {
         assert!((*velocity - DVec3::new(3.0 * position.z, 0.0, -3.0 * position.x)).length() < 1e-15);
     }
     let scene = spin(PLANE, "{ rate = -2 }");
-    assert!((scene.initial.velocity[0] - DVec3::new(-0.1, 0.2, 0.0)).length() < 1e-15);
+    assert!((scene.runs[0].initial.velocity[0] - DVec3::new(-0.1, 0.2, 0.0)).length() < 1e-15);
     case(&WORLD.replace("offset", "spin = { rate = 1 }, offset"), "", "0:62 `body.spin` has no `axis`");
 }

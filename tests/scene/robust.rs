@@ -43,8 +43,8 @@ fn scenes() -> Vec<String> {
 fn read(text: &str) -> bool {
     match Scene::parse(text, "mutated.toml", &SMALL) {
         Ok(scene) => {
-            let mut coordinates = scene.initial.position.iter().chain(&scene.initial.velocity);
-            assert!(coordinates.all(|vector| vector.is_finite()) && scene.body.len() <= 5000);
+            let mut coordinates = scene.runs[0].initial.position.iter().chain(&scene.runs[0].initial.velocity);
+            assert!(coordinates.all(|vector| vector.is_finite()) && scene.bodies[0].body.len() <= 5000);
             assert!(scene.runs.iter().all(|run| run.step > 0.0 && run.step.is_finite()));
             assert!(!scene.summary().to_string().is_empty());
             true

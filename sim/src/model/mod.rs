@@ -11,7 +11,7 @@ pub mod shape_based;
 use super::body::Body;
 #[doc(hidden)]
 pub use super::mode::Mode;
-use super::state::{Nodes, State};
+use super::state::Nodes;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -160,16 +160,6 @@ pub trait ElasticModel: Debug + Send + Sync {
 
     /// Precomputes what the evaluation of the forces on `body` needs.
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel>;
-}
-
-impl dyn ElasticModel + '_ {
-    /// The internal forces (N) on each node of a body, with the initial memory of the model for this state.
-    pub fn forces_at_start(&self, body: &Arc<Body>, state: &State) -> Vec<DVec3> {
-        let (model, memory) = (self.prepare(body), self.start(body, &state.position));
-        let mut forces = vec![DVec3::ZERO; body.len()];
-        model.add_forces(state.nodes(), &memory, &mut memory.clone(), &mut Scratch::default(), &mut forces);
-        forces
-    }
 }
 
 /// Models that have vectorised steps.

@@ -85,7 +85,7 @@ pub(crate) fn stepped(
 
 /// Internal forces (N) at a state.
 pub(crate) fn forces(body: &Arc<Body>, model: &dyn ElasticModel, state: &State) -> Vec<DVec3> {
-    model.forces_at_start(body, state)
+    world(body, state.clone(), model, 1e-3, Surroundings::default()).forces()
 }
 
 /// A model's forces with the memory that goes with them.

@@ -95,7 +95,7 @@ impl Series {
 
 /// The name of a diagnostic of a scene in a picture.
 pub(in crate::picture) fn name(diagnostic: Diagnostic, scene: &Scene) -> &'static str {
-    match (diagnostic, scene.body.dimension) {
+    match (diagnostic, scene.dimension()) {
         (Diagnostic::VolumeRatio, Dimension::Plane) => "area ratio",
         _ => diagnostic.name(),
     }

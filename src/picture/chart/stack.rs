@@ -72,15 +72,18 @@ impl Quantity {
             // Counts are bounded by the number of elements, so diverged runs are shown in full.
             range: series::range(&series, !is_count),
             series,
-            extent: scene.body.extent(),
+            extent: scene.runs[0].body().extent(),
         };
         let unit = match one.values(MOST_TICKS) {
-            _ if is_count => match elements(&scene.body)[..] {
-                _ if of_scenes.iter().any(|(other, _)| elements(&other.body) != elements(&scene.body)) => {
+            _ if is_count => match elements(scene.runs[0].body())[..] {
+                _ if of_scenes
+                    .iter()
+                    .any(|(other, _)| elements(other.runs[0].body()) != elements(scene.runs[0].body())) =>
+                {
                     "elements".to_owned()
                 }
                 [(count, name)] => format!("of {} {name}", number::count(count)),
-                _ => format!("of {} elements", number::count(scene.body.elements.len())),
+                _ => format!("of {} elements", number::count(scene.runs[0].body().elements.len())),
             },
             Some(values) => values.unit,
             None => "none".to_owned(),

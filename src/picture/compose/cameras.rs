@@ -59,7 +59,7 @@ impl Composer<'_> {
         run: &RunFrame,
         (viewport, scale): (Rectangle, Scale),
     ) -> Framing {
-        let Scene { view, body, .. } = self.scene;
+        let (view, body) = (&self.scene.view, self.scene.runs[run.run].body());
         let Some(shot) = shot else { return Framing::still(&view.camera) };
         let position = &run.shown().position;
         let centre = (position.len() == body.len()).then(|| Traced::Centre.of(body, position));
@@ -73,7 +73,7 @@ impl Composer<'_> {
 /// What a camera that follows sees in the whole course of a scene; `None` if the camera is fixed, or without a place of the
 /// body.
 pub(super) fn seen(scene: &Scene, history: &History) -> Option<Seen> {
-    let start = CameraBox::new(&scene.view, &scene.body, &scene.initial.position);
+    let start = CameraBox::new(&scene.view, scene.runs[0].body(), &scene.runs[0].initial.position);
     let moments = history.series.iter().flat_map(|course| {
         let boxes = course.times.iter().zip(&course.boxes);
         boxes.map(|(&time, &seen)| (time, seen, course.divergence.is_none()))

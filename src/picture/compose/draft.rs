@@ -71,7 +71,7 @@ impl<'a> Draft<'a> {
         scale: Scale,
     ) -> Self {
         let scene = composer.scene;
-        let (view, body) = (&scene.view, &*scene.body);
+        let (view, body) = (&scene.view, &**scene.runs[0].body());
         let greyed = run.shown().status != Status::Ok;
         let diverged = greyed && run.last_fit.is_none();
         let run = Shown { run: run.run, snapshot: run.shown() };

@@ -32,9 +32,8 @@ impl Draft<'_> {
         let Some((_, colour)) = self.composer.ghost() else { return };
         match self.scene.view.ghost {
             Some(Ghost::Rest) => {
-                let placement = &self.run.snapshot.placement;
-                let position: Vec<_> = self.body.rest.iter().map(|&rest| placement.place(rest)).collect();
-                self.outline(&position, colour, room, curves);
+                let bodies = &self.scene.runs[self.run.run].bodies;
+                self.outline(&bodies.placed(&self.run.snapshot.placements), colour, room, curves);
             }
             Some(Ghost::Run(run)) if run != self.run.run => {
                 let other = others.iter().find(|other| other.run == run);

@@ -23,7 +23,7 @@ impl Draft<'_> {
     /// Marks all nodes that are held at the panel's time.
     pub(super) fn grips(&self, marks: &mut Vec<Item>) {
         let time = self.run.snapshot.time;
-        let held: Vec<_> = self.scene.grips.iter().filter(|grip| grip.holds(time)).collect();
+        let held: Vec<_> = self.scene.runs[0].grips.iter().filter(|grip| grip.holds(time)).collect();
         if self.diverged || held.is_empty() || self.position.is_empty() {
             return;
         }

@@ -48,11 +48,11 @@ impl Composer<'_> {
 
     /// The strains of a run's springs on a scale.
     fn strains(&self, run: &RunFrame, scale: &ColourScale) -> Vec<f64> {
-        let (body, position) = (&*self.scene.body, &run.shown().position);
+        let (body, position) = (&**self.scene.runs[0].body(), &run.shown().position);
         if position.len() != body.len() {
             return Vec::new();
         }
-        let springs = self.scene.runs[run.run].model.springs();
+        let springs = self.scene.runs[run.run].models[0].springs();
         springs.iter().map(|&ends| scale.of_spring(spring_strain(body, position, ends))).collect()
     }
 

@@ -113,7 +113,7 @@ impl<'a> Composer<'a> {
     /// Charts and paths show the time series. A camera that follows takes its scale from them, and plates and walls
     /// their size. With an empty history there are no charts and paths, and all scales are those of the start.
     pub fn new(scene: &'a Scene, history: &History) -> Self {
-        let body = &*scene.body;
+        let body = &**scene.runs[0].body();
         let areas = match body.dimension {
             Dimension::Plane => body.elements.iter().map(|nodes| area(nodes, &body.rest)).collect(),
             Dimension::Space => Vec::new(),
@@ -123,7 +123,7 @@ impl<'a> Composer<'a> {
         let descriptions = scene
             .runs
             .iter()
-            .map(|run| number::counted(caption::short_description(run.model.as_ref(), body)))
+            .map(|run| number::counted(caption::short_description(run.models[0].as_ref(), body)))
             .collect();
         let ears = Ears::new(body);
         let skin = Skin::new(body, &ears);
@@ -148,7 +148,7 @@ impl<'a> Composer<'a> {
             ears,
             bare,
             extent,
-            start_box: bounds(&scene.initial.position).into(),
+            start_box: bounds(&scene.runs[0].initial.position).into(),
             soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
             timeline: None,
             traced: if scene.view.paths.is_empty() { Vec::new() } else { history.series.clone() },
@@ -296,13 +296,13 @@ impl<'a> Composer<'a> {
     /// Pixels per metre at the target.
     fn pixels_a_metre(&self, viewport: Rectangle, framing: &Framing, scale: Scale) -> f64 {
         let Self { scene, .. } = self;
-        let lens = Lens::new(&scene.view, framing, scene.body.dimension, viewport.map(f64::from), scale.unit);
+        let lens = Lens::new(&scene.view, framing, scene.dimension(), viewport.map(f64::from), scale.unit);
         lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
     }
 
     /// The smallest signed area of a polygon over its area at rest, for bodies in the plane.
     fn smallest_area_ratio(&self, snapshot: &Snapshot) -> Option<f64> {
-        let body = &*self.scene.body;
+        let body = &**self.scene.runs[0].body();
         if self.rest_areas.is_empty() || snapshot.position.len() != body.len() {
             return None;
         }

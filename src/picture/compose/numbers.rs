@@ -26,9 +26,9 @@ impl Composer<'_> {
     /// The boxes of the row in each panel, from its left margin on (px). They are those of the start, so that nothing
     /// comes and goes.
     pub(super) fn numbers(&self, layout: &Layout, shot: Option<&Shot>) -> Solved<NumberPart> {
-        let (body, labels, scale) = (&*self.scene.body, layout.written.labels, layout.scale);
+        let (body, labels, scale) = (&**self.scene.runs[0].body(), layout.written.labels, layout.scale);
         let Some(&panel) = layout.panels.first() else { return tree::column(&[], [0.0; 4]) };
-        let snapshot = Snapshot { position: self.scene.initial.position.clone(), ..Snapshot::default() };
+        let snapshot = Snapshot { position: self.scene.runs[0].initial.position.clone(), ..Snapshot::default() };
         let number = caption::number(self.extent, &snapshot, self.smallest_area_ratio(&snapshot));
         let framing = self.framing(shot, &RunFrame::new(0, snapshot), (panel, scale));
         let writer = self.writer(scale);

@@ -151,7 +151,7 @@ impl Draft<'_> {
         let node = if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 };
         let shortest = (RING * size).max(FREE).max(2.0 * node);
         let arrows = self.facing_bearers().into_iter().filter_map(|(node, opacity)| {
-            let start = self.run.snapshot.placement.place(self.body.rest[node as usize]);
+            let start = self.run.snapshot.placements[0].place(self.body.rest[node as usize]);
             let end = start + view.arrow_scale * (self.position[node as usize] - start);
             let (to, depth) = self.lens.project(end)?;
             let (ends, part) = arrows::inside([self.pixel(start)?, to.into()], self.clear, shortest)?;

@@ -300,15 +300,16 @@ impl Scenes<'_, '_, '_> {
             let message = "there is a single run, and nothing to compare it with";
             self.report.at_key(&key_path!["forces", "compare"], message, None);
         }
-        let stiffness = self.scenes[0].runs[0].model.stiffness();
+        let stiffness = self.scenes[0].runs[0].models[0].stiffness();
         for (index, scene) in self.scenes.iter().enumerate() {
-            if scene.runs.iter().any(|run| run.model.stiffness() != stiffness) {
+            if scene.runs.iter().any(|run| run.models[0].stiffness() != stiffness) {
                 let message =
                     format!("a run has another stiffness than the first, {stiffness} N/m: forces would have two units");
                 self.report.at(&path(index), message, "give all runs the same stiffness");
             }
-            if scene.body.len() > MOST_NODES {
-                let message = format!("the body has {} nodes, whose forces would hide each other", scene.body.len());
+            if scene.runs[0].body().len() > MOST_NODES {
+                let message =
+                    format!("the body has {} nodes, whose forces would hide each other", scene.runs[0].body().len());
                 self.report.at(&path(index), message, format!("expected at most {MOST_NODES}"));
             }
         }
@@ -342,15 +343,15 @@ impl Scenes<'_, '_, '_> {
 /// The scene's part of the input of views.
 fn subject(scene: &Scene) -> Subject<'_> {
     Subject {
-        body: &scene.body,
-        initial: &scene.initial,
+        body: scene.runs[0].body(),
+        initial: &scene.runs[0].initial,
         side: scene.view.side,
         has_cells: scene.view.has_cells,
         gravity: scene.gravity,
         obstacles: &scene.obstacles,
-        grips: &scene.grips,
+        grips: &scene.runs[0].grips,
         runs: scene.runs.iter().map(|run| (run.name.as_str(), run.step)).collect(),
-        models: scene.runs.iter().map(|run| &*run.model).collect(),
+        models: scene.runs.iter().map(|run| &*run.models[0]).collect(),
     }
 }
 

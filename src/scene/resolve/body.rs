@@ -12,11 +12,12 @@ use crate::scene::limits::{BodySize, Excess, Limits};
 use crate::sim::{Body, Dimension, Solids, State};
 use glam::DVec3;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A body, its initial state, and the other settings of `[body]`.
 #[derive(Debug)]
 pub(super) struct ResolvedBody {
-    pub(super) body: Body,
+    pub(super) body: Arc<Body>,
     /// The initial state.
     pub(super) initial: State,
     /// Springs listed by hand.
@@ -89,7 +90,7 @@ fn generated(
     if report.total() > before {
         return None;
     }
-    let body = Body::new(dimension, rest, mass, elements, solids(file), None);
+    let body = Arc::new(Body::new(dimension, rest, mass, elements, solids(file), None));
     let of_cells = generator.side();
     let side = of_cells.unwrap_or_else(|| elements::mean_edge(&body));
     Some(ResolvedBody { body, initial, springs: None, side, has_cells: of_cells.is_some() })
@@ -180,7 +181,7 @@ fn listed(
     if flawed || report.total() > before || elements.is_empty() {
         return None;
     }
-    let body = Body::new(dimension, rest, mass, elements, solids, faces.as_ref());
+    let body = Arc::new(Body::new(dimension, rest, mass, elements, solids, faces.as_ref()));
     let side = elements::mean_edge(&body);
     Some(ResolvedBody { body, initial, springs, side, has_cells: false })
 }

@@ -14,7 +14,7 @@ use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFi
 use super::generate::Generator;
 use super::limits::Limits;
 use super::structure::ValidFile;
-use super::{Run, Scene};
+use super::{Run, Scene, SceneBody};
 use crate::look::{self, FontFiles, TypedView, View, font};
 use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::coordinates::{direction, vector};
@@ -29,7 +29,6 @@ use serde_json::{Map, Value as Json};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::slice;
-use std::sync::Arc;
 
 /// The parts of a scene file without mistakes in their structure.
 #[derive(Debug, Serialize)]
@@ -210,11 +209,9 @@ fn resolve(
         gravity: physics.gravity?,
         duration: time.duration,
         frames_per_second: time.frames_per_second,
-        body: Arc::new(body.body),
-        initial: body.initial,
+        bodies: vec![SceneBody { name: String::new(), body: body.body, initial: body.initial }],
         runs: physics.runs?,
         obstacles: physics.obstacles?,
-        grips: physics.grips?,
         view: view?,
         warnings: Vec::new(),
     };
@@ -255,7 +252,7 @@ fn view(parts: &SceneParts, physics: &Physics, report: &mut Collector<'_>) -> Op
         obstacles,
         grips: grips.as_deref().unwrap_or_default(),
         runs: runs.iter().flatten().map(|run| (run.name.as_str(), run.step)).collect(),
-        models: runs.iter().flatten().map(|run| &*run.model).collect(),
+        models: runs.iter().flatten().map(|run| &*run.models[0]).collect(),
     };
     let view = View::read(parts.view.as_ref()?, &around, parts.font.clone().unwrap_or_default(), report)?;
     let chosen: Vec<_> = parts.runs.iter().map(|run| Some(run.as_ref()?.colour?.0)).collect();
@@ -279,7 +276,7 @@ fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
         );
     }
     let steps = (0..scene.runs.len()).fold(0, |all: u64, run| all.saturating_add(scene.frame_step(run, last)));
-    let corners = scene.body.elements.indices().len().max(8);
+    let corners = scene.runs[0].body().elements.indices().len().max(8);
     let seconds = steps as f64 * corners as f64 * CORNER;
     if seconds > LONG {
         let hours = seconds / 3600.0;
@@ -288,7 +285,7 @@ fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
             ..10_000.0 => format!("{:.0} days", hours / 24.0),
             _ => format!("{:.0} years", hours / 8766.0),
         };
-        let (steps, elements) = (count(steps.into()), scene.body.elements.len());
+        let (steps, elements) = (count(steps.into()), scene.runs[0].body().elements.len());
         let message = format!(
             "{steps} steps of all runs × {} element{} take about {long} on one processor",
             count(elements as u128),

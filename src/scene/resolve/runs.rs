@@ -8,7 +8,7 @@ use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::scene::step::NamedStep;
 use crate::sim::model::ElasticModel;
 use crate::sim::stability::Stability;
-use crate::sim::{Grip, Integrator, Kernel};
+use crate::sim::{Assembly, Grip, Integrator, Kernel};
 use std::sync::Arc;
 
 /// The most steps of a run. Beyond, double precision cannot distinguish the times of two steps.
@@ -24,6 +24,7 @@ pub(super) fn resolve(
 ) -> Option<Vec<Run>> {
     check_names(typed, report);
     let body = body?;
+    let bodies = Arc::new(Assembly::from(&body.body));
     let models: Vec<_> = (0..)
         .zip(typed)
         .map(|(at, run)| {
@@ -88,7 +89,7 @@ pub(super) fn resolve(
             );
             return None;
         }
-        if let Some(reason) = integrator.refusal(|| model.prepare(&Arc::new(body.body.clone()))) {
+        if let Some(reason) = integrator.refusal(|| model.prepare(&body.body)) {
             let path = match run.integrator {
                 Some(_) => key_path!["run", at, "integrator"].to_vec(),
                 None => key_path!["time", "integrator"].to_vec(),
@@ -108,7 +109,20 @@ pub(super) fn resolve(
             report.at(&path, message, "remove it, or write \"reference\"");
             return None;
         }
-        runs.push(Run { name: run.name.clone(), model, integrator, step, tolerance, kernel, place: 0, colour });
+        runs.push(Run {
+            name: run.name.clone(),
+            of: vec![0],
+            bodies: Arc::clone(&bodies),
+            initial: body.initial.clone(),
+            models: vec![model],
+            grips: grips.unwrap_or_default().to_vec(),
+            integrator,
+            step,
+            tolerance,
+            kernel,
+            place: 0,
+            colour,
+        });
     }
     Some(runs)
 }
@@ -149,14 +163,12 @@ fn limits(
 ) -> Vec<(f64, usize)> {
     let is_auto = |step: &Option<StepFile>| matches!(step, Some(StepFile::Named(NamedStep::Auto)));
     let takes_scenes = |run: &RunFile| run.step.is_none() && is_auto(&time.step);
-    let shared = std::cell::OnceCell::new();
     let limit = |(run, model): (&Option<RunFile>, &Arc<dyn ElasticModel>)| {
         let Some(run) = run.as_ref().filter(|run| is_auto(&run.step) || takes_scenes(run)) else {
             return f64::INFINITY;
         };
-        let body = shared.get_or_init(|| Arc::new(body.body.clone()));
         let integrator = run.integrator.unwrap_or(time.integrator);
-        Stability::of(body, model.as_ref(), integrator, grips, time.duration).largest
+        Stability::of(&body.body, model.as_ref(), integrator, grips, time.duration).largest
     };
     let limits: Vec<f64> = typed.iter().zip(models).map(limit).collect();
     let mut limits: Vec<_> = limits.into_iter().zip(0..).collect();

@@ -12,7 +12,7 @@ mod text;
 use crate::folder::Notes;
 use crate::progress::Watch;
 use crate::study::{Findings, Study};
-use localshape::scene::{Run, description};
+use localshape::scene::description;
 use localshape::sim::stability::Stability as Limit;
 use localshape::sim::{Diagnostic, Status};
 use localshape::{Limits, Scene};
@@ -169,16 +169,17 @@ pub(crate) struct Grid {
 impl Grid {
     fn new(scene: &Scene, run: usize, damping: f64) -> Option<Self> {
         let mut scene = scene.clone();
-        let model = scene.runs[run].model.scaled(1.0, damping)?;
-        scene.runs[run].model = model;
-        let cycle = scene.runs[run].model.shortest_period(&scene.body);
-        let Scene { body, runs, grips, duration, .. } = &scene;
-        let predicted = Limit::of(body, runs[run].model.as_ref(), runs[run].integrator, grips, *duration);
+        let model = scene.runs[run].models[0].scaled(1.0, damping)?;
+        scene.runs[run].models[0] = model;
+        let one = &scene.runs[run];
+        let (model, body) = (one.models[0].as_ref(), one.body());
+        let cycle = model.shortest_period(body);
+        let predicted = Limit::of(body, model, one.integrator, &one.grips, scene.duration);
         let limit = (predicted.largest > 0.0 && predicted.largest.is_finite()).then_some(predicted.largest);
         Some(Self {
             run,
             damping,
-            rate: scene.runs[run].model.stiffness() / scene.body.lightest(),
+            rate: model.stiffness() / body.lightest(),
             unit: limit.unwrap_or(cycle * std::f64::consts::FRAC_1_PI),
             limit: limit.map(|limit| limit / cycle),
             stretched: limit.and_then(|limit| Some(predicted.stretched? / limit)),
@@ -242,10 +243,11 @@ fn outcome(scene: &Scene, cell: &Cell, watch: &Watch<'_>) -> Option<Outcome> {
     const STRETCH: u64 = 4096;
     let mut scene = scene.clone();
     scene.gravity *= cell.speed * cell.speed;
-    scene.initial.velocity.iter_mut().for_each(|velocity| *velocity *= cell.speed);
     let run = &mut scene.runs[cell.run];
-    let stiffness = cell.rate * scene.body.lightest() / run.model.stiffness();
-    run.model = run.model.scaled(stiffness, stiffness.sqrt() * cell.damping).expect("grids are of models that can be");
+    run.initial.velocity.iter_mut().for_each(|velocity| *velocity *= cell.speed);
+    let stiffness = cell.rate * scene.bodies[0].body.lightest() / run.models[0].stiffness();
+    run.models[0] =
+        run.models[0].scaled(stiffness, stiffness.sqrt() * cell.damping).expect("grids are of models that can be");
     run.step = cell.step;
     let mut world = scene.world(cell.run);
     let mut left = (scene.duration / cell.step).ceil() as u64;
@@ -279,12 +281,12 @@ impl Results {
 
     /// The name of a map, its impacts and damping if the protocol has several, and the model.
     pub(crate) fn words(&self, grid: &Grid, speed: f64) -> [String; 3] {
-        let Run { name, model, .. } = &self.scene.runs[grid.run];
+        let run = &self.scene.runs[grid.run];
         let Protocol { speeds, dampings, .. } = &self.protocol;
         let speed = (speeds.len() > 1).then(|| format!("impacts {} × as fast", short(speed)));
         let damping = (dampings.len() > 1).then(|| format!("{} × the damping", short(grid.damping)));
         let conditions: Vec<_> = speed.into_iter().chain(damping).collect();
-        [name.clone(), conditions.join(", "), description(model.as_ref(), &self.scene.body)]
+        [run.name.clone(), conditions.join(", "), description(run.models[0].as_ref(), run.body())]
     }
 
     /// The largest share up to which every step, with every stiffness, has one of these outcomes; 0 for none.

@@ -17,7 +17,7 @@ use crate::spread::Spread;
 use crate::study::{Findings, Study};
 use glam::{DVec3, DVec4, Vec4Swizzles};
 use localshape::sim::model::Report;
-use localshape::sim::{Body, Dimension, IndexLists, Solids, State, Status};
+use localshape::sim::{Assembly, State, Status};
 use localshape::{Limits, Scene};
 use printed::{Printed, ROWS, Row, STIFFNESSES};
 use rayon::prelude::*;
@@ -258,20 +258,19 @@ fn start(orientation: &Orientation, cases: &[Case]) -> Scene {
 
 /// The cubes of several starts as one body.
 fn crowd<'a>(starts: impl Iterator<Item = &'a Scene>, first: &Scene) -> Scene {
-    let (mut rest, mut mass, mut elements) = (Vec::new(), Vec::new(), IndexLists::default());
-    let mut initial = State::default();
+    let (mut bodies, mut initial) = (Vec::new(), State::default());
     for start in starts {
-        let before = rest.len() as u32;
-        for nodes in start.body.elements.iter() {
-            elements.push(&nodes.iter().map(|node| before + node).collect::<Vec<_>>());
-        }
-        rest.extend_from_slice(&start.body.rest);
-        mass.extend_from_slice(&start.body.mass);
-        initial.position.extend_from_slice(&start.initial.position);
-        initial.velocity.extend_from_slice(&start.initial.velocity);
+        let run = &start.runs[0];
+        bodies.push(Arc::clone(run.body()));
+        initial.position.extend_from_slice(&run.initial.position);
+        initial.velocity.extend_from_slice(&run.initial.velocity);
     }
-    let body = Body::new(Dimension::Space, rest, mass, elements, Solids::Ordered, None);
-    Scene { body: Arc::new(body), initial, ..first.clone() }
+    let bodies = Arc::new(Assembly::from(Assembly::new(bodies).whole()));
+    let mut scene = first.clone();
+    for run in &mut scene.runs {
+        (run.bodies, run.initial) = (Arc::clone(&bodies), initial.clone());
+    }
+    scene
 }
 
 /// Simulates one or more starts in one case.
@@ -293,7 +292,7 @@ fn measure_starts(starts: &[Scene], case: usize, evaluations: u64, watch: &Watch
             break;
         }
         // They are not needed before the first cube has landed.
-        let alphas = if has_landed.contains(&true) { world.residuals(&before) } else { Vec::new() };
+        let alphas = if has_landed.contains(&true) { world.residuals(0, &before) } else { Vec::new() };
         for (at, residuals) in residuals.iter_mut().enumerate() {
             if !has_landed[at] {
                 // Only the floor can make a corner move upwards.

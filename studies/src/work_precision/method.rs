@@ -100,8 +100,8 @@ impl Method {
 
     /// The model of a run, with the rotations of this method; `None` if the model has no choice of them.
     pub(crate) fn model(self, subject: &Subject) -> Option<Arc<dyn ElasticModel>> {
-        let model = &subject.scene.runs[subject.run].model;
-        let has_choice = subject.scene.body.dimension == Dimension::Space;
+        let model = &subject.scene.runs[subject.run].models[0];
+        let has_choice = subject.scene.bodies[0].body.dimension == Dimension::Space;
         let with = |rotation| -> Option<Arc<dyn ElasticModel>> {
             Some(Arc::new(ShapeBased { rotation, ..model.shape_based().filter(|_| has_choice)?.clone() }))
         };
@@ -113,7 +113,7 @@ impl Method {
 
     /// Why it cannot advance a model; `None` if it can.
     pub(crate) fn refusal(self, subject: &Subject, model: &dyn ElasticModel) -> Option<&'static str> {
-        self.integrator().0.refusal(|| model.prepare(&subject.scene.body))
+        self.integrator().0.refusal(|| model.prepare(&subject.scene.bodies[0].body))
     }
 
     /// Whether it has vectorised steps for a model.
@@ -172,7 +172,7 @@ impl Attempt {
         let run = &mut scene.runs[subject.run];
         run.kernel = if self.method.is_fast(model.as_ref()) { Kernel::Fast } else { Kernel::Reference };
         run.step = scene.duration / self.steps as f64;
-        (run.integrator, run.tolerance, run.model) = (integrator, Some(self.tolerance), model);
+        (run.integrator, run.tolerance, run.models[0]) = (integrator, Some(self.tolerance), model);
         let mut world = scene.world(subject.run);
         if let Some(composition) = composition {
             world.set_method(Box::new(ByComposition::new(composition)));

@@ -162,13 +162,13 @@ pub(crate) fn measure(effort: Effort, subjects: &[Subject], watch: &Watch<'_>) -
 /// Measures one run.
 fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Comparison> {
     let Subject { name, scene, .. } = subject;
-    let (methods, size) = (subject.methods(), scene.body.extent());
+    let (methods, size) = (subject.methods(), scene.bodies[0].body.extent());
     let usual = Method::DEFAULT.model(subject).expect("a model of scenes");
     let most = f64::from(effort.evaluations).min(effort.seconds / seconds_per_evaluation(subject, &usual)).max(1024.0);
     let why = |one: Method| Some((one, one.refusal(subject, one.model(subject)?.as_ref())?));
     let mut found = Comparison {
         name: name.clone(),
-        words: description(usual.as_ref(), &scene.body),
+        words: description(usual.as_ref(), &scene.bodies[0].body),
         duration: scene.duration,
         cycle: scene.cycle(),
         reference: Err(String::new()),

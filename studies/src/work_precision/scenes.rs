@@ -44,7 +44,7 @@ fn subject(name: &str, text: &str, deform: Option<&dyn Fn(DVec3) -> DVec3>) -> S
     let mut scene = Scene::parse(text, "study", &Limits::default())
         .unwrap_or_else(|error| panic!("a scene without mistakes: {error}"));
     if let Some(deform) = deform {
-        let position = &mut scene.initial.position;
+        let position = &mut scene.runs[0].initial.position;
         let middle = position.iter().sum::<DVec3>() / position.len() as f64;
         position.iter_mut().for_each(|at| *at = middle + deform(*at - middle));
     }

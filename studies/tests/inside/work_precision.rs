@@ -73,7 +73,7 @@ fn an_error_is_the_largest_over_the_whole_time() {
     let (methods, model) = (subject.methods(), Method::VERLET.model(subject).expect("its own"));
     let (exact, _) = reference(subject, &methods, 65_536.0).expect("there is one");
     let attempt = Attempt::new(Method::VERLET, 512.0, 1.0);
-    let (mut last, mut largest, size) = (0.0, 0.0, subject.scene.body.extent());
+    let (mut last, mut largest, size) = (0.0, 0.0, subject.scene.bodies[0].body.extent());
     attempt.run(subject, &model, 1e6, |moment, positions| {
         last = farthest(positions, &exact[moment]) / size;
         largest = larger(largest, last);

@@ -33,28 +33,28 @@ impl<'a> Cell<'a> {
         let scene = composer.scene;
         let snapshot = runs[run].snapshot.clone();
         let ways = |run: usize| {
-            let stiffness = scene.runs[run].model.stiffness();
+            let stiffness = scene.runs[run].models[0].stiffness();
             runs[run].on_nodes.iter().map(|&force| force / stiffness).collect::<Vec<_>>()
         };
         Self {
             composer,
             ways: ways(run),
             compared: compare.map(|run| (run, ways(run))),
-            ghost: scene.body.rest.iter().map(|&at| snapshot.placement.place(at)).collect(),
-            framing: Framing { target: snapshot.placement.centre, ..Framing::still(&scene.view.camera) },
+            ghost: scene.runs[run].bodies.placed(&snapshot.placements),
+            framing: Framing { target: snapshot.placements[0].centre, ..Framing::still(&scene.view.camera) },
             frame: RunFrame::new(run, snapshot),
         }
     }
 
     /// The middle of the nodes (m).
     pub(super) fn middle(&self) -> DVec3 {
-        self.frame.snapshot.placement.centre
+        self.frame.snapshot.placements[0].centre
     }
 
     /// The box around the contents, seen from far away: to the right and up from the middle of the body (m).
     pub(super) fn extent(&self) -> [DVec2; 2] {
         let (scene, position) = (self.composer.scene, &self.frame.snapshot.position);
-        let lens = Lens::new(&scene.view, &self.framing, scene.body.dimension, [0.0, 0.0, 64.0, 64.0], 1.0);
+        let lens = Lens::new(&scene.view, &self.framing, scene.dimension(), [0.0, 0.0, 64.0, 64.0], 1.0);
         let ways = self.compared.iter().map(|(_, ways)| ways).chain([&self.ways]);
         let tips = ways.flat_map(|ways| position.iter().zip(ways).map(|(&at, &way)| at + way));
         let all = position.iter().chain(&self.ghost).copied().chain(tips);

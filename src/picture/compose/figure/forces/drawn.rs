@@ -88,10 +88,10 @@ impl Drawn<'_> {
         let [left, top, right, bottom] = sides(self.room);
         let inset = FREE * unit;
         let mut labels = Labels::new([left + inset, top + inset, right - inset, bottom - inset], unit);
-        let faces = scene.body.faces.nodes.iter();
+        let faces = scene.runs[0].body().faces.nodes.iter();
         labels.surfaces = faces.map(|face| face.iter().map(|&node| nodes[node as usize]).collect()).collect();
         let seen_ghost = self.seen(&cell.ghost);
-        for edge in Edges::new(&scene.body).all {
+        for edge in Edges::new(scene.runs[0].body()).all {
             let [a, b] = edge.map(|node| node as usize);
             labels.lines.extend([[nodes[a], nodes[b]], [ghost[a], ghost[b]]]);
             let opacity = HIDDEN + (1.0 - HIDDEN) * seen_ghost[a].min(seen_ghost[b]);

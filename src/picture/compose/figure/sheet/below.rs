@@ -22,7 +22,7 @@ const FLAT: &str = "flat: volume below 1 %";
 
 /// The tallies of all scenes in one style: squares for all, or bars.
 pub(super) fn tallies(scenes: &[Scene], scale: Scale, layout: &SheetLayout) -> Vec<Tally> {
-    let tallies: Vec<_> = scenes.iter().map(|scene| Tally::new(&scene.body, scene.view.side)).collect();
+    let tallies: Vec<_> = scenes.iter().map(|scene| Tally::new(scene.runs[0].body(), scene.view.side)).collect();
     let (scale, room) = size_of_tallies(scale, layout);
     let have_squares = tallies.iter().all(|tally| tally.has_squares(scale, room));
     if have_squares { tallies } else { tallies.iter().map(Tally::as_bar).collect() }
@@ -42,11 +42,12 @@ pub(super) struct Key {
 
 impl Key {
     pub(super) fn new(scenes: &[Scene], tallies: &[Tally], has_flat: bool) -> Self {
-        let kinds: Vec<_> = scenes.iter().flat_map(|scene| elements(&scene.body)).map(|(_, kind)| kind).collect();
+        let kinds: Vec<_> =
+            scenes.iter().flat_map(|scene| elements(scene.runs[0].body())).map(|(_, kind)| kind).collect();
         let same = kinds.first().filter(|first| kinds.iter().all(|kind| kind == *first));
         let kind = same.and_then(|kind| kind.strip_suffix('s')).unwrap_or("element");
         let mut wordings = vec!["turned over".to_owned()];
-        let several = scenes.iter().any(|scene| scene.body.elements.len() > 1);
+        let several = scenes.iter().any(|scene| scene.runs[0].body().elements.len() > 1);
         if several && tallies.iter().all(Tally::has_rows) {
             if tallies.iter().all(Tally::has_layers) {
                 wordings.push(format!("turned over (a square per {kind}, in layers)"));
@@ -172,6 +173,6 @@ fn text(diagnostic: Diagnostic, scene: &Scene, run: &RunFrame) -> Option<String>
     if !value.is_finite() || diagnostic == Diagnostic::TurnedOver {
         return None;
     }
-    let value = number::value(diagnostic, value, scene.body.extent());
+    let value = number::value(diagnostic, value, scene.runs[0].body().extent());
     Some(format!("{name} {value}"))
 }

@@ -29,7 +29,7 @@ pub(super) fn framings(scenes: &[Scene], sheet: &Sheet, moments: &Moments, layou
     for column in columns {
         let moment = |run: &RunFrame| {
             let shown = run.shown();
-            let seen = CameraBox::new(&scene(column).view, &scene(column).body, &shown.position)?;
+            let seen = CameraBox::new(&scene(column).view, scene(column).runs[0].body(), &shown.position)?;
             Some((shown.time, seen, run.snapshot.status == Status::Ok))
         };
         let of_runs: Vec<_> = moments.cells.iter().filter_map(|row| moment(&row[column])).collect();
@@ -58,9 +58,9 @@ pub(super) fn framings(scenes: &[Scene], sheet: &Sheet, moments: &Moments, layou
 fn are_alike([one, other]: [&Scene; 2]) -> bool {
     let seen = [one, other].map(|scene| {
         let camera = &scene.view.camera;
-        (scene.body.dimension, camera.azimuth, camera.elevation, camera.field_of_view)
+        (scene.dimension(), camera.azimuth, camera.elevation, camera.field_of_view)
     });
-    let [small, large] = [one, other].map(|scene| scene.body.extent());
+    let [small, large] = [one, other].map(|scene| scene.runs[0].body().extent());
     seen[0] == seen[1] && small.max(large) <= UNLIKE * small.min(large)
 }
 
