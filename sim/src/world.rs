@@ -349,12 +349,26 @@ impl World {
 
     /// The diagnostics in `wanted`. The others are zero and cost no time.
     pub fn some_diagnostics(&self, wanted: &[Diagnostic]) -> Diagnostics {
+        self.diagnostics_by_body(wanted).0
+    }
+
+    /// The diagnostics in `wanted` of all bodies together, and those of each. The others are zero and cost no time.
+    pub fn diagnostics_by_body(&self, wanted: &[Diagnostic]) -> (Diagnostics, Vec<Diagnostics>) {
         let bodies = self.system.parts.iter().map(|part| {
             let report = || self.dynamics.report(part, &self.state, None, &self.crew);
             self.facts(part, report)
         });
-        let bodies: Vec<_> = bodies.collect();
-        Diagnostics::of(Facts { bodies: &bodies, gravity: self.system.gravity }, wanted)
+        self.of_facts(&bodies.collect::<Vec<_>>(), wanted)
+    }
+
+    fn of_facts(&self, bodies: &[BodyFacts<'_>], wanted: &[Diagnostic]) -> (Diagnostics, Vec<Diagnostics>) {
+        let of = |bodies: &[BodyFacts<'_>]| Diagnostics::of(Facts { bodies, gravity: self.system.gravity }, wanted);
+        let of_bodies: Vec<_> = bodies.iter().map(std::slice::from_ref).map(of).collect();
+        let all = match of_bodies[..] {
+            [alone] => alone,
+            _ => of(bodies),
+        };
+        (all, of_bodies)
     }
 
     fn facts<'a>(&'a self, part: &'a Part, report: impl FnOnce() -> Report + 'a) -> BodyFacts<'a> {
@@ -378,12 +392,7 @@ impl World {
             bodies.push(self.facts(part, move || known.unwrap_or_else(|| dynamics.report(part, state, None, crew))));
             energies.push(of_nodes);
         }
-        let of = |bodies: &[BodyFacts<'_>]| Diagnostics::of(Facts { bodies, gravity: system.gravity }, wanted);
-        let of_bodies: Vec<_> = bodies.iter().map(std::slice::from_ref).map(of).collect();
-        let diagnostics = match of_bodies[..] {
-            [alone] => alone,
-            _ => of(&bodies),
-        };
+        let (diagnostics, of_bodies) = self.of_facts(&bodies, wanted);
         let placements: Vec<_> = bodies.iter().map(|body| *body.placement).collect();
         let (turned_over, flat) = (
             bodies.iter().flat_map(BodyFacts::turned_over).collect(),

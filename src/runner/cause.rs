@@ -4,14 +4,14 @@ use super::last_fit::fits;
 use crate::reading::captions::quantity;
 use crate::scene::{Run, Scene};
 use crate::sim::geometry::bounds;
-use crate::sim::{Crew, Divergence, Integrator, Pose, State, Status, World};
+use crate::sim::{Crew, Divergence, Grip, Integrator, Pose, State, Status};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// The place and the cause of a divergence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Cause {
-    /// The first node whose speed became too large or not a number.
+    /// The first node of its body whose speed became too large or not a number.
     pub(crate) node: usize,
     /// The cause and the remedy, as sentences in one line.
     #[serde(rename = "cause")]
@@ -34,7 +34,7 @@ impl Cause {
         divergence: Divergence,
         threads: usize,
     ) -> Option<Self> {
-        if divergence.step - sound.steps > most_steps(scene) {
+        if divergence.step - sound.steps > most_steps(&scene.runs[run]) {
             return None;
         }
         let mut world = scene.world(run);
@@ -44,26 +44,28 @@ impl Cause {
         let (mut begin, mut fitting) = (sound.clone(), sound.clone());
         while world.status() == Status::Ok && world.steps() < divergence.step {
             world.advance(STRIDE.min(divergence.step - world.steps()));
-            if world.status() == Status::Ok && fits(scene, &world.state().position) {
+            if world.status() == Status::Ok && fits(&scene.runs[run], &world.state().position) {
                 begin = std::mem::replace(&mut fitting, world.state().clone());
             }
         }
         let (node, fastest) = world.runaway()?;
         let speed = quantity(fastest, "m/s");
-        let element = divergence.element.map_or(String::new(), |element| format!(" of element {element}"));
-        let what = format!("node {node}{element} would move faster than {speed}");
-        let why = Self::too_fast(scene, run, &world, node, divergence);
+        let why = Self::too_fast(scene, run, world.state().position[node], divergence);
         let why = why.unwrap_or_else(|| Self::by_steps(scene, run, &begin, divergence, threads));
-        Some(Self { node, words: format!("{what}: {why}") })
+        let (run, part) = (&scene.runs[run], divergence.part);
+        let node = node - run.bodies.nodes(part).start;
+        let element = divergence.element.map_or(String::new(), |element| format!(" of element {element}"));
+        let body = run.body_names(scene).nth(part).map_or(String::new(), |name| format!(" of “{name}”"));
+        Some(Self { node, words: format!("node {node}{element}{body} would move faster than {speed}: {why}") })
     }
 
-    /// The cause of a divergence by something that moves too far in one step, if there is one.
-    fn too_fast(scene: &Scene, run: usize, world: &World, node: usize, divergence: Divergence) -> Option<String> {
+    /// The cause of a divergence at a point (m) by something that moves too far in one step, if there is one.
+    fn too_fast(scene: &Scene, run: usize, at: DVec3, divergence: Divergence) -> Option<String> {
         /// The distance of a step in sizes of an element.
         const FAR: f64 = 0.5;
-        let (end, at) = (divergence.time, world.state().position[node]);
-        let begin = end - scene.runs[run].step;
-        let body = scene.runs[0].body();
+        let (run, end) = (&scene.runs[run], divergence.time);
+        let begin = end - run.step;
+        let body = &run.bodies.bodies()[divergence.part];
         let size = |element: usize| {
             let nodes: Vec<_> =
                 body.elements.iter().nth(element).into_iter().flatten().map(|&node| body.rest[node as usize]).collect();
@@ -75,7 +77,9 @@ impl Cause {
         let obstacles = scene.obstacles.iter().enumerate().map(|(number, obstacle)| {
             (format!("obstacle[{number}]"), way(obstacle.pose(begin), obstacle.pose(end), obstacle.pivot))
         });
-        let grips = scene.runs[0].grips.iter().filter(|grip| grip.holds(begin) && grip.holds(end));
+        let nodes = run.bodies.nodes(divergence.part);
+        let is_near = |grip: &&Grip| grip.nodes.iter().any(|&node| nodes.contains(&(node as usize)));
+        let grips = run.grips.iter().filter(|grip| grip.holds(begin) && grip.holds(end)).filter(is_near);
         let grips = grips.map(|grip| ("the grabbed part".to_owned(), way(grip.pose(begin), grip.pose(end), at)));
         let (name, way) = obstacles.chain(grips).max_by(|one, other| one.1.total_cmp(&other.1))?;
         (way > FAR * size).then(|| {
@@ -92,7 +96,7 @@ impl Cause {
             _ => "",
         };
         let mut finer = scene.clone();
-        let mut left = most_steps(scene);
+        let mut left = most_steps(&scene.runs[run]);
         let mut tried = None;
         for halving in (1..=HALVINGS).filter(|_| !integrator.is_adaptive()) {
             let parts = 1_u64 << halving;
@@ -110,7 +114,7 @@ impl Cause {
             state.memory.integrator.clear();
             world.set_state(state);
             world.advance(steps);
-            if world.status() == Status::Ok && fits(scene, &world.state().position) {
+            if world.status() == Status::Ok && fits(&scene.runs[run], &world.state().position) {
                 let [long, short] = [step, step / parts as f64].map(|step| quantity(step, "s"));
                 return format!("steps of {long} are too long; with steps of {short} it does not diverge there{hint}");
             }
@@ -121,9 +125,9 @@ impl Cause {
     }
 }
 
-/// The most steps of a scene that each part of the search simulates.
-fn most_steps(scene: &Scene) -> u64 {
-    MOST_ELEMENT_STEPS / (scene.runs[0].body().elements.len() as u64).max(1)
+/// The most steps of a run that each part of the search simulates.
+fn most_steps(run: &Run) -> u64 {
+    MOST_ELEMENT_STEPS / (run.body().elements.len() as u64).max(1)
 }
 
 #[cfg(test)]

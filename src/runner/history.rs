@@ -3,7 +3,7 @@
 //! frames.
 
 use crate::look::CameraBox;
-use crate::scene::Scene;
+use crate::scene::{Run, Scene};
 use crate::sim::geometry;
 use crate::sim::{Diagnostics, Divergence, Moment, Shape, World};
 use glam::DVec3;
@@ -36,12 +36,14 @@ pub struct TimeSeries {
     pub times: Vec<f64>,
     /// The diagnostics at each of these times. Diagnostics that were not requested are zero.
     pub diagnostics: Vec<Diagnostics>,
+    /// The same of each body of the run; empty for a run of one body.
+    pub of_bodies: Vec<Vec<Diagnostics>>,
     /// The positions (m) of each point of the body that leaves a path ([`crate::look::View::paths`]), at each of these
     /// times.
     pub paths: Vec<Vec<DVec3>>,
-    /// The boxes around the body at these times, if the scene's camera follows it.
+    /// The boxes around the bodies at these times, if the scene's camera follows them.
     pub(crate) boxes: Vec<CameraBox>,
-    /// The boxes around its nodes near plates and walls.
+    /// The boxes around their nodes near plates and walls.
     pub(crate) reach: NearObstacles,
     /// The divergence of the run, if it diverged.
     pub divergence: Option<Divergence>,
@@ -50,8 +52,8 @@ pub struct TimeSeries {
 impl TimeSeries {
     /// An empty time series of a run.
     pub(crate) fn new(run: usize) -> Self {
-        let (times, diagnostics, paths, boxes, reach) = Default::default();
-        Self { run, times, diagnostics, paths, boxes, reach, divergence: None }
+        let (times, diagnostics, of_bodies, paths, boxes, reach) = Default::default();
+        Self { run, times, diagnostics, of_bodies, paths, boxes, reach, divergence: None }
     }
 
     /// Whether it has the same run and the same quantities as an empty one.
@@ -59,18 +61,28 @@ impl TimeSeries {
         let moments = self.times.len();
         self.run == empty.run
             && self.diagnostics.len() == moments
+            && self.of_bodies.len() == empty.of_bodies.len()
+            && self.of_bodies.iter().all(|body| body.len() == moments)
             && self.paths.len() == empty.paths.len()
             && self.paths.iter().all(|path| path.len() == moments)
     }
 
-    /// Records the state at a time (s): diagnostics, and nodes at positions (m).
-    pub(crate) fn note(&mut self, scene: &Scene, time: f64, diagnostics: Diagnostics, position: &[DVec3]) {
+    /// Records the state at a time (s): diagnostics of all bodies together and of each, and nodes at positions (m).
+    pub(crate) fn note(
+        &mut self,
+        scene: &Scene,
+        time: f64,
+        (all, of_bodies): (Diagnostics, Vec<Diagnostics>),
+        position: &[DVec3],
+    ) {
+        let run = &scene.runs[self.run];
         self.times.push(time);
-        self.diagnostics.push(diagnostics);
+        self.diagnostics.push(all);
+        self.of_bodies.iter_mut().zip(of_bodies).for_each(|(series, of_body)| series.push(of_body));
         if scene.view.camera.follow {
-            self.boxes.extend(CameraBox::new(&scene.view, scene.runs[0].body(), position));
+            self.boxes.extend(CameraBox::new(&scene.view, run.body(), position));
         }
-        self.reach.add(scene, time, position);
+        self.reach.add(scene, run, time, position);
     }
 }
 
@@ -80,15 +92,20 @@ impl TimeSeries {
 pub(crate) struct NearObstacles(pub(crate) Vec<Option<[DVec3; 2]>>);
 
 impl NearObstacles {
-    /// Nodes are near a plate or a wall up to this distance (sizes of the body).
+    /// Nodes are near a plate or a wall up to this distance (sizes of their body).
     const NEAR: f64 = 0.6;
     /// A body that has grown more than this many times is about to diverge, and does not count.
     const MOST_GROWTH: f64 = 10.0;
 
-    /// Adds nodes at positions (m) at a time (s).
-    pub(crate) fn add(&mut self, scene: &Scene, time: f64, position: &[DVec3]) {
+    /// Adds the nodes of a run at positions (m) at a time (s).
+    pub(crate) fn add(&mut self, scene: &Scene, run: &Run, time: f64, position: &[DVec3]) {
         self.0.resize(scene.obstacles.len(), None);
-        let extent = scene.runs[0].body().extent();
+        for (at, body) in run.bodies.bodies().iter().enumerate() {
+            self.add_body(scene, time, body.extent(), &position[run.bodies.nodes(at)]);
+        }
+    }
+
+    fn add_body(&mut self, scene: &Scene, time: f64, extent: f64, position: &[DVec3]) {
         let (low, high) = geometry::bounds(position);
         if (high - low).max_element() > Self::MOST_GROWTH * extent {
             return;

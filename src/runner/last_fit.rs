@@ -1,11 +1,11 @@
 //! The drawn state of a run that diverged: the last one that is not much wider than the body.
 
-use crate::scene::Scene;
+use crate::scene::{Run, Scene};
 use crate::sim::{Crew, Divergence, LastFit, State, Status, World};
 use glam::DVec3;
 
-/// A state fits if its nodes lie within this many times the radius of the body at rest or at the start, whichever is
-/// larger. Sound motions seldom stretch a body so far, and diverging ones have hardly begun to.
+/// A state fits if the nodes of each body lie within this many times the radius of the body at rest or at the start,
+/// whichever is larger. Sound motions seldom stretch a body so far, and diverging ones have hardly begun to.
 const FITS: f64 = 1.5;
 /// The number of steps between tests of a state. From the last fitting one on, each step is tested.
 const STRIDE: u64 = 64;
@@ -21,29 +21,37 @@ pub(crate) struct Fitting {
 
 impl Fitting {
     /// The last fit with a state, in the world of its run, which takes the state, and the final width of the body
-    /// relative to it.
+    /// that grew most relative to it.
     pub(crate) fn new(world: &mut World, state: State, times_wider: f64) -> Self {
         world.set_state(state.clone());
         Self { state, shown: LastFit { snapshot: world.snapshot(), times_wider } }
     }
 }
 
-/// Whether a state with nodes at `position` (m) fits.
-pub(crate) fn fits(scene: &Scene, position: &[DVec3]) -> bool {
-    radius(position) <= FITS * radius(&scene.runs[0].body().rest).max(radius(&scene.runs[0].initial.position))
+/// Whether a state of a run with nodes at `position` (m) fits.
+pub(crate) fn fits(run: &Run, position: &[DVec3]) -> bool {
+    let at_rest = run.bodies.bodies().iter().map(|body| radius(&body.rest));
+    let usual = at_rest.zip(radii(run, &run.initial.position));
+    radii(run, position).zip(usual).all(|(now, (at_rest, at_start))| now <= FITS * at_rest.max(at_start))
+}
+
+/// The radius of each body of a run with nodes at `position` (m).
+fn radii<'a>(run: &'a Run, position: &'a [DVec3]) -> impl Iterator<Item = f64> + 'a {
+    (0..run.of.len()).map(|body| radius(&position[run.bodies.nodes(body)]))
 }
 
 /// The search for the last fitting state of a run that diverges. It simulates the run again. So only runs pay for it
 /// that diverge or have a state that does not fit.
 pub(crate) struct Search {
+    run: usize,
     world: World,
     /// The last tested step.
     last: u64,
     stride: u64,
     /// The last state that fits so far.
     fitting: State,
-    /// The divergence, and the radius there (m).
-    end: Option<(Divergence, f64)>,
+    /// The divergence, and the radius of each body there (m).
+    end: Option<(Divergence, Vec<f64>)>,
 }
 
 impl Search {
@@ -53,15 +61,15 @@ impl Search {
         world.set_crew(Crew::new(threads));
         let last = world.steps_at(scene.moment(scene.last_frame()));
         let fitting = world.state().clone();
-        Self { world, last, stride: STRIDE, fitting, end: None }
+        Self { run, world, last, stride: STRIDE, fitting, end: None }
     }
 
     /// Searches through about this many steps, and returns the result at the end: the inner `None` means that the run
     /// does not diverge.
     pub(crate) fn advance(&mut self, scene: &Scene, most_steps: u64) -> Option<Option<Fitting>> {
-        let mut left = most_steps;
+        let (mut left, run) = (most_steps, &scene.runs[self.run]);
         loop {
-            let Self { world, last, stride, fitting, end } = self;
+            let Self { world, last, stride, fitting, end, .. } = self;
             if world.steps() < *last {
                 if left == 0 {
                     return None;
@@ -71,16 +79,17 @@ impl Search {
                 world.advance(steps);
                 if let Status::Diverged(divergence) = world.status() {
                     *last = divergence.step - 1;
-                    *end = Some((divergence, radius(&world.state().position)));
-                } else if fits(scene, &world.state().position) {
+                    *end = Some((divergence, radii(run, &world.state().position).collect()));
+                } else if fits(run, &world.state().position) {
                     fitting.clone_from(world.state());
                 }
                 continue;
             }
-            let Some((divergence, widest)) = *end else { return Some(None) };
+            let Some((divergence, widest)) = end else { return Some(None) };
             if *stride == 1 {
-                let times_wider = widest / radius(&fitting.position);
-                fitting.status = Status::Diverged(divergence);
+                let grown = widest.iter().zip(radii(run, &fitting.position)).map(|(widest, fitting)| widest / fitting);
+                let times_wider = grown.reduce(f64::max).expect("a run has a body");
+                fitting.status = Status::Diverged(*divergence);
                 let fitting = fitting.clone();
                 return Some(Some(Fitting::new(world, fitting, times_wider)));
             }
@@ -120,7 +129,7 @@ mod tests {
         let last_fit = alone.runs[0].last_fit.as_deref().expect("it diverged");
         let LastFit { snapshot, times_wider } = last_fit;
         assert!(
-            fits(&scene, &snapshot.position) && radius(&snapshot.position) > 1.1 * radius(&scene.runs[0].body().rest)
+            fits(&scene.runs[2], &snapshot.position) && radius(&snapshot.position) > 1.1 * radius(&scene.runs[2].body().rest)
         );
         for frame in &frames {
             let run = &frame.runs[1];
@@ -134,7 +143,7 @@ mod tests {
         let mut widest = 0.0;
         while world.status() == Status::Ok {
             world.advance(1);
-            assert!(!fits(&scene, &world.state().position), "step {}", world.steps());
+            assert!(!fits(&scene.runs[2], &world.state().position), "step {}", world.steps());
             widest = radius(&world.state().position);
         }
         assert_eq!(snapshot.status, world.status());
@@ -184,7 +193,7 @@ mod tests {
         let mut runner = Runner::new(&stretched, &[0]);
         let wide = (1..40)
             .map(|frame| runner.frame(frame))
-            .filter(|frame| !fits(&stretched, &frame.runs[0].snapshot.position));
+            .filter(|frame| !fits(&stretched.runs[0], &frame.runs[0].snapshot.position));
         let shown: Vec<_> = wide.map(|frame| frame.runs[0].last_fit.is_none()).collect();
         assert!(!shown.is_empty() && shown.iter().all(|&itself| itself), "{shown:?}");
     }

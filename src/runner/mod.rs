@@ -61,9 +61,10 @@ impl<'a> Runner<'a> {
     pub(crate) fn among(all: usize, scene: &'a Scene, runs: &[usize]) -> Self {
         /// The least number of elements for each additional thread within a run.
         const LEAST: usize = 2000;
-        let threads =
-            (rayon::current_num_threads() / all.max(1)).min(scene.runs[0].body().elements.len() / LEAST).max(1);
+        let share = rayon::current_num_threads() / all.max(1);
         let running = |&run: &usize| {
+            let body = scene.runs[run].body();
+            let threads = share.min(body.elements.len() / LEAST).max(1);
             let mut world = scene.world(run);
             world.set_crew(Crew::new(threads));
             Running {
@@ -73,7 +74,7 @@ impl<'a> Runner<'a> {
                 notes: Vec::new(),
                 wanted: Vec::new(),
                 traced: Vec::new(),
-                body: Arc::clone(scene.runs[0].body()),
+                body: Arc::clone(body),
                 series: TimeSeries::new(run),
                 threads,
                 is_drawn: true,
@@ -117,6 +118,8 @@ impl<'a> Runner<'a> {
             running.wanted = wanted.to_vec();
             running.traced = self.scene.view.paths.clone();
             running.series.paths = vec![Vec::new(); running.traced.len()];
+            let bodies = self.scene.runs[running.run].of.len();
+            running.series.of_bodies = vec![Vec::new(); if bodies > 1 { bodies } else { 0 }];
             running.notes = history::moments(self.scene, &running.world, closer, shown);
         }
         self
@@ -208,7 +211,7 @@ impl Running {
 
     /// Whether pictures show the present state.
     fn shows_itself(&self, scene: &Scene) -> bool {
-        self.world.status() == Status::Ok && fits(scene, &self.world.state().position)
+        self.world.status() == Status::Ok && fits(&scene.runs[self.run], &self.world.state().position)
     }
 
     /// Searches for the drawn state through about this many steps. Returns whether it is known or not needed.
@@ -250,7 +253,7 @@ impl Running {
 
     /// Records the present state after a step.
     fn note(&mut self, scene: &Scene, step: u64) {
-        let diagnostics = self.world.some_diagnostics(&self.wanted);
+        let diagnostics = self.world.diagnostics_by_body(&self.wanted);
         let position = &self.world.state().position;
         self.series.note(scene, step as f64 * self.step, diagnostics, position);
         for (traced, path) in self.traced.iter().zip(&mut self.series.paths) {

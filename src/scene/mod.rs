@@ -189,6 +189,11 @@ impl Run {
         self.bodies.whole()
     }
 
+    /// The names of its bodies in order; none if its only body has no name.
+    pub(crate) fn body_names<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = &'a str> {
+        self.of.iter().map(|&body| &*scene.bodies[body].name).filter(|name| !name.is_empty())
+    }
+
     /// Each model with its body.
     pub(crate) fn parts<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = (&'a dyn ElasticModel, &'a SceneBody)> {
         self.models.iter().map(|model| &**model).zip(self.of.iter().map(|&body| &scene.bodies[body]))

@@ -70,7 +70,7 @@ pub(super) fn reaches(scenes: &[Scene], sheet: &Sheet, moments: &Moments) -> Vec
     for (column, run) in moments.cells.iter().flat_map(|row| row.iter().enumerate()) {
         let at = sheet.columns[column].scene;
         if run.snapshot.status == Status::Ok {
-            reaches[at].add(&scenes[at], run.snapshot.time, &run.snapshot.position);
+            reaches[at].add(&scenes[at], &scenes[at].runs[run.run], run.snapshot.time, &run.snapshot.position);
         }
     }
     reaches
