@@ -7,18 +7,14 @@ use super::diagnostics::Diagnostics;
 use super::model::ForceModel;
 use super::state::Nodes;
 use std::ops::Range;
-use std::sync::{Arc, LazyLock};
-
-/// Forces that are prepared at their first use. Vectorised steps need none, and forces of large bodies take several times the memory
-/// of a state.
-pub(crate) type Forces = LazyLock<Box<dyn ForceModel>, Box<dyn FnOnce() -> Box<dyn ForceModel> + Send>>;
+use std::sync::Arc;
 
 /// One body in a simulation, and the ranges of its nodes and its memory in the [`State`](super::State).
 pub(crate) struct Part {
     /// The body.
     pub body: Arc<Body>,
     /// The forces of its model.
-    pub forces: Forces,
+    pub forces: Box<dyn ForceModel>,
     /// The range of its nodes.
     pub nodes: Range<usize>,
     /// The range of its model's memory in [`Memory::model`](super::state::Memory::model).

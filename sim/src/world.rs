@@ -8,8 +8,8 @@ use super::dynamics::{Dynamics, SpeedLimit};
 use super::field::Field;
 use super::integrate::{ByForces, Integrator, Method, Scales};
 use super::kernel::{ByKernel, Scheme};
-use super::model::{ElasticModel, Known, Report, Scratch};
-use super::part::{Forces, Part};
+use super::model::{ElasticModel, Report, Scratch};
+use super::part::Part;
 use super::snapshot::Snapshot;
 use super::state::{Divergence, Memory, State, Status};
 use super::system::{Surroundings, System};
@@ -27,7 +27,7 @@ pub struct Stepping {
     /// The error that an adaptive method allows in each of its substeps, as a share of the size of the body. Others ignore it.
     pub tolerance: f64,
     /// The code that computes a step. The reference code is used for a model without vectorised steps
-    /// ([`ElasticModel::known`]) and for several bodies together.
+    /// ([`ElasticModel::vectorised`]) and for several bodies together.
     pub kernel: Kernel,
 }
 
@@ -54,7 +54,7 @@ pub enum Kernel {
 impl Kernel {
     /// The fastest one that a model has with an integrator.
     pub fn of(model: &dyn ElasticModel, integrator: Integrator) -> Self {
-        if model.known().is_some() && Scheme::of(integrator).is_some() { Self::Fast } else { Self::Reference }
+        if model.vectorised().is_some() && Scheme::of(integrator).is_some() { Self::Fast } else { Self::Reference }
     }
 }
 
@@ -130,27 +130,20 @@ impl World {
         }
         let Stepping { integrator, step, tolerance, kernel } = stepping;
         let fast = match bodies {
-            [(_, model)] if kernel == Kernel::Fast => model.known().zip(Scheme::of(integrator)),
+            [(_, model)] if kernel == Kernel::Fast => model.vectorised().zip(Scheme::of(integrator)),
             _ => None,
         };
         let (mut parts, mut limit) = (Vec::new(), None::<SpeedLimit>);
         let (mut first_node, mut mass) = (0, Vec::with_capacity(nodes));
         let mut scales = Scales { length: 0.0, time: f64::INFINITY };
         for (body, model) in bodies {
-            let forces = match fast {
-                Some((Known::ShapeBased(model), _)) => prepared_late(model.clone(), body),
-                Some((Known::MassSpring(model), _)) => prepared_late(model.clone(), body),
-                None => {
-                    let forces = model.prepare(body);
-                    Forces::new(Box::new(|| forces))
-                }
-            };
+            let forces = model.prepare(body);
             let nodes = first_node..first_node + body.len();
             let start = model.start(body, &state.position[nodes.clone()]);
             let first = state.memory.model.len();
             state.memory.model.extend(start);
             let memory = first..state.memory.model.len();
-            let counts_global = model.shape_based().is_some_and(|model| model.counts_global(body));
+            let counts_global = model.counts_global(body);
             let diagnose = Diagnose::new(body);
             let part = Part { body: Arc::clone(body), forces, nodes, memory, counts_global, diagnose };
             let period = model.shortest_period(body);
@@ -419,10 +412,4 @@ impl World {
             status: state.status,
         }
     }
-}
-
-/// The forces of a model with vectorised steps, made at their first use.
-fn prepared_late(model: impl ElasticModel + 'static, body: &Arc<Body>) -> Forces {
-    let body = Arc::clone(body);
-    Forces::new(Box::new(move || model.prepare(&body)))
 }

@@ -170,7 +170,7 @@ impl Scene {
         };
         let (exists, why) = match diagnostic {
             Diagnostic::GlobalRotations => (
-                has(&|model, of| model.shape_based().is_some_and(|model| model.counts_global(&of.body))),
+                has(&|model, of| model.counts_global(&of.body)),
                 "only shape-based models in space count them; plot another diagnostic, such as \"turned_over\"",
             ),
             Diagnostic::Residual => (

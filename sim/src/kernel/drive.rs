@@ -1,20 +1,14 @@
 //! Kernels as [`Dynamics`]: the choice of the kernel for a model and a body, and contact and grips between steps.
 
-use super::general::{Constants, General};
-use super::lattice::{self, LatticeStepper};
-use super::report::{Elastic, Energy};
-use super::springs::Stencil;
-use super::stepper::{Rollback, Scheme, Stepper};
-use super::{Around, PlaceNode, Rotation};
+use super::report::Energy;
+use super::stepper::{Rollback, Scheme};
+use super::{Around, Compiled, Conditions, PlaceNode, Vectorised};
 use crate::body::Body;
 use crate::contact::{Bound, Floor, Obstacle, Placed};
 use crate::crew::Crew;
 use crate::dynamics::{Dynamics, Runaway, SpeedLimit};
-use crate::element::Dimension;
 use crate::lanes::Set;
-use crate::model::mass_spring::MassSpring;
-use crate::model::shape_based::{RotationReading, ShapeBased};
-use crate::model::{Known, Report, Share};
+use crate::model::{Report, Share};
 use crate::part::Part;
 use crate::state::{Memory, State};
 use crate::system::System;
@@ -34,57 +28,13 @@ pub(crate) struct ByKernel {
 
 impl ByKernel {
     /// The kernel for a model on a body.
-    pub(crate) fn new(body: &Arc<Body>, model: Known<'_>, scheme: Scheme, gravity: DVec3, step: f64) -> Self {
+    pub(crate) fn new(body: &Arc<Body>, model: &dyn Vectorised, scheme: Scheme, gravity: DVec3, step: f64) -> Self {
         /// Relative to the size of the body. Round-off, 1e-15 of the distance from the origin, decides whether a node
         /// is on a surface, so this suffices for bodies that are nearer than a billion times their size.
         const MARGIN: f64 = 1e-3;
-        let (stepper, stiffness, of) = match model {
-            Known::ShapeBased(model) => {
-                let rotation = rotation(body, model);
-                let stepper = shape_based(body, model, rotation, scheme, gravity, step);
-                (stepper, model.stiffness, Elastic::Elements(rotation))
-            }
-            Known::MassSpring(model) => {
-                let springs = Arc::clone(&model.springs);
-                (mass_spring(body, model, gravity, step), model.stiffness, Elastic::Springs(springs))
-            }
-        };
-        let energy = Energy { set: Set::best(), body: Arc::clone(body), stiffness, of };
+        let conditions = Conditions { scheme, gravity, step, set: Set::best() };
+        let Compiled { stepper, energy } = model.compile(body, &conditions);
         Self { rollback: Rollback::new(stepper, scheme), energy, constraints: None, margin: MARGIN * body.extent() }
-    }
-}
-
-fn rotation(body: &Body, model: &ShapeBased) -> Rotation {
-    match model.rotation {
-        // Eq. (9) is the optimum.
-        _ if body.dimension == Dimension::Plane => Rotation::Optimum,
-        RotationReading::Robust => Rotation::Optimum,
-        _ => Rotation::Arctangent { passes: model.passes },
-    }
-}
-
-fn shape_based(
-    body: &Body,
-    model: &ShapeBased,
-    rotation: Rotation,
-    scheme: Scheme,
-    gravity: DVec3,
-    step: f64,
-) -> Box<dyn Stepper> {
-    let &ShapeBased { stiffness, damping, .. } = model;
-    let parameters = lattice::Parameters { stiffness, damping, rotation, gravity, step };
-    if let Some(lattice) = LatticeStepper::new(body, parameters, scheme, Set::best()) {
-        return Box::new(lattice);
-    }
-    Box::new(General::new(body, rotation, Constants { stiffness, damping, gravity, step }, Set::best()))
-}
-
-fn mass_spring(body: &Body, model: &MassSpring, gravity: DVec3, step: f64) -> Box<dyn Stepper> {
-    let MassSpring { stiffness, damping, springs } = model;
-    let constants = Constants { stiffness: *stiffness, damping: *damping, gravity, step };
-    match Stencil::new(springs, &body.rest, &body.mass, constants, Set::best()) {
-        Some(stencil) => Box::new(stencil),
-        None => Box::new(General::springs(body, springs, constants, Set::best())),
     }
 }
 

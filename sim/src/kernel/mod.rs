@@ -11,10 +11,10 @@ pub(crate) mod general;
 pub(crate) mod lattice;
 mod memory;
 pub mod peak;
-mod report;
+pub(crate) mod report;
 mod rotation;
 pub(crate) mod springs;
-pub(crate) mod stepper;
+mod stepper;
 mod tally;
 pub(crate) mod update;
 
@@ -25,9 +25,40 @@ pub(crate) use drive::ByKernel;
 pub(crate) use report::strains;
 pub(crate) use stepper::Scheme;
 
+use crate::body::Body;
 use crate::contact::{Bound, Floor};
+use crate::lanes::Set;
 use glam::DVec3;
+use report::Energy;
 use std::ops::Range;
+use std::sync::Arc;
+use stepper::Stepper;
+
+/// A model with vectorised steps and energies.
+pub trait Vectorised {
+    /// The code for a body.
+    #[doc(hidden)]
+    fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled;
+}
+
+/// How a body is stepped.
+#[derive(Clone, Copy)]
+pub struct Conditions {
+    /// How positions and velocities are advanced.
+    pub(crate) scheme: Scheme,
+    /// Acceleration of gravity (m/s²).
+    pub(crate) gravity: DVec3,
+    /// ΔT (s).
+    pub(crate) step: f64,
+    /// The vectors.
+    pub(crate) set: Set,
+}
+
+/// The vectorised code of a model for a body.
+pub struct Compiled {
+    pub(crate) stepper: Box<dyn Stepper>,
+    pub(crate) energy: Energy,
+}
 
 /// How the rotations of elements in space are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,8 +5,12 @@
 //!
 //! Energy: `E = k/2 Σ (|p| − L)²`. A mirror image has the same energy, so an element that has turned over stays so.
 
-use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
+use super::{ElasticModel, ForceModel, Late, Misfit, Report, Scratch, Share, TypedModel, Vectorised, blocks};
 use crate::body::Body;
+use crate::kernel::general::{Constants, General};
+use crate::kernel::report::{Elastic, Energy};
+use crate::kernel::springs::Stencil;
+use crate::kernel::{Compiled, Conditions};
 use crate::mode::Mode;
 use crate::state::Nodes;
 use crate::topology::Springs;
@@ -123,17 +127,27 @@ impl ElasticModel for MassSpring {
         Some(Mode { stiffness: self.stiffness * most, damping: self.damping * most })
     }
 
-    fn known(&self) -> Option<Known<'_>> {
-        Some(Known::MassSpring(self))
+    fn vectorised(&self) -> Option<&dyn Vectorised> {
+        Some(self)
     }
 
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
-        let length = |&[i, j]: &[u32; 2]| (body.rest[i as usize] - body.rest[j as usize]).length();
-        Box::new(SpringForces {
-            natural_length: self.springs.iter().map(length).collect(),
-            gather: blocks::SignedGather::new(body.len(), &self.springs),
-            model: self.clone(),
-        })
+        let (model, body) = (self.clone(), Arc::clone(body));
+        Late::boxed(move || SpringForces::new(model, &body))
+    }
+}
+
+impl Vectorised for MassSpring {
+    fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled {
+        let &Conditions { gravity, step, set, .. } = conditions;
+        let Self { stiffness, damping, springs } = self;
+        let constants = Constants { stiffness: *stiffness, damping: *damping, gravity, step };
+        let of = Elastic::Springs(Arc::clone(springs));
+        let energy = Energy { set, body: Arc::clone(body), stiffness: *stiffness, of };
+        match Stencil::new(springs, &body.rest, &body.mass, constants, set) {
+            Some(stencil) => Compiled { stepper: Box::new(stencil), energy },
+            None => Compiled { stepper: Box::new(General::springs(body, springs, constants, set)), energy },
+        }
     }
 }
 
@@ -144,6 +158,15 @@ struct SpringForces {
     natural_length: Vec<f64>,
     /// Adds up the spring forces of each node; a spring acts on its second node with the opposite force.
     gather: blocks::SignedGather,
+}
+
+impl SpringForces {
+    fn new(model: MassSpring, body: &Body) -> Self {
+        let length = |&[i, j]: &[u32; 2]| (body.rest[i as usize] - body.rest[j as usize]).length();
+        let natural_length = model.springs.iter().map(length).collect();
+        let gather = blocks::SignedGather::new(body.len(), &model.springs);
+        Self { model, natural_length, gather }
+    }
 }
 
 impl ForceModel for SpringForces {

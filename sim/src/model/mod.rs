@@ -9,15 +9,17 @@ pub mod mass_spring;
 pub mod shape_based;
 
 use super::body::Body;
+pub use super::kernel::Vectorised;
 #[doc(hidden)]
 pub use super::mode::Mode;
+use super::rotation::RotationReading;
 use super::state::Nodes;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt::Debug;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 /// Defines [`ModelParameters`] from a list of models.
 macro_rules! models {
@@ -140,16 +142,23 @@ pub trait ElasticModel: Debug + Send + Sync {
         &[]
     }
 
-    /// The model as vectorised steps support it; `None` for a model that has the reference code only.
-    #[doc(hidden)]
-    fn known(&self) -> Option<Known<'_>> {
+    /// This model, if it has vectorised steps; `None` for a model that has the reference code only.
+    fn vectorised(&self) -> Option<&dyn Vectorised> {
         None
     }
 
-    /// The model of section 3 of the paper, if it is that one, with all its choices.
+    /// This model with its rotations computed by another method; `None` for a model without that choice on a body.
     #[doc(hidden)]
-    fn shape_based(&self) -> Option<&shape_based::ShapeBased> {
+    fn with_rotation(&self, body: &Body, rotation: RotationReading) -> Option<Arc<dyn ElasticModel>> {
+        let _ = (body, rotation);
         None
+    }
+
+    /// Whether the last number of the memory counts the rotations that the
+    /// [global solver](crate::rotation::davenport1968) has computed.
+    fn counts_global(&self, body: &Body) -> bool {
+        let _ = body;
+        false
     }
 
     /// The memory at the start, with the nodes of `body` at `position` (m). Its length never changes.
@@ -158,18 +167,8 @@ pub trait ElasticModel: Debug + Send + Sync {
         Vec::new()
     }
 
-    /// Precomputes what the evaluation of the forces on `body` needs.
+    /// The evaluation of the forces on `body`. Vectorised steps make it, too, and may never use it.
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel>;
-}
-
-/// Models that have vectorised steps.
-#[doc(hidden)]
-#[derive(Clone, Copy, Debug)]
-pub enum Known<'a> {
-    /// The model of section 3 of the paper.
-    ShapeBased(&'a shape_based::ShapeBased),
-    /// The model of section 2 of the paper.
-    MassSpring(&'a mass_spring::MassSpring),
 }
 
 /// The internal forces of a body, as a pure function: the same nodes and the same memory give the same forces and the
@@ -214,6 +213,38 @@ pub trait ForceModel: Send + Sync {
     fn residuals(&self, position: &[DVec3], memory: &[f64]) -> Vec<f64> {
         let _ = (position, memory);
         Vec::new()
+    }
+}
+
+/// Forces that are prepared at their first use. Vectorised steps need none, and forces of large bodies take several times the
+/// memory of a state.
+struct Late<F>(LazyLock<F, Box<dyn FnOnce() -> F + Send>>);
+
+impl<F: ForceModel + 'static> Late<F> {
+    fn boxed(prepare: impl FnOnce() -> F + Send + 'static) -> Box<dyn ForceModel> {
+        Box::new(Self(LazyLock::new(Box::new(prepare))))
+    }
+}
+
+impl<F: ForceModel> ForceModel for Late<F> {
+    fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]) {
+        self.0.add_forces(at, memory, next, scratch, forces);
+    }
+
+    fn is_damped(&self) -> bool {
+        self.0.is_damped()
+    }
+
+    fn depends_on_history(&self) -> bool {
+        self.0.depends_on_history()
+    }
+
+    fn report(&self, at: Nodes<'_>, memory: &[f64], share: &mut Share<'_>) -> Report {
+        self.0.report(at, memory, share)
+    }
+
+    fn residuals(&self, position: &[DVec3], memory: &[f64]) -> Vec<f64> {
+        self.0.residuals(position, memory)
     }
 }
 

@@ -9,9 +9,13 @@
 //! The centre of an element is the unweighted mean of its nodes: with a centre of mass, unequal masses would give a net
 //! internal force.
 
-use super::{ElasticModel, ForceModel, Known, Misfit, Report, Scratch, Share, TypedModel, blocks};
+use super::{ElasticModel, ForceModel, Late, Misfit, Report, Scratch, Share, TypedModel, Vectorised, blocks};
 use crate::body::Body;
 use crate::element::Dimension;
+use crate::kernel::general::{Constants, General};
+use crate::kernel::lattice::{self, LatticeStepper};
+use crate::kernel::report::{Elastic, Energy};
+use crate::kernel::{Compiled, Conditions, Rotation};
 use crate::mode::Mode;
 pub use crate::rotation::RotationReading;
 use crate::rotation::{self, davenport1968, linear_update, planar};
@@ -170,14 +174,20 @@ impl ElasticModel for ShapeBased {
     }
 
     /// The readings for comparison and the damping of deformation have the reference code only.
-    fn known(&self) -> Option<Known<'_>> {
-        let is_known = matches!(self.rotation, RotationReading::Arctangent | RotationReading::Robust)
+    fn vectorised(&self) -> Option<&dyn Vectorised> {
+        let is_vectorised = matches!(self.rotation, RotationReading::Arctangent | RotationReading::Robust)
             && (self.damping == 0.0 || self.damping_of == DampingReading::RelativeMotion);
-        is_known.then_some(Known::ShapeBased(self))
+        is_vectorised.then_some(self)
     }
 
-    fn shape_based(&self) -> Option<&ShapeBased> {
-        Some(self)
+    fn with_rotation(&self, body: &Body, rotation: RotationReading) -> Option<Arc<dyn ElasticModel>> {
+        // In the plane all methods are Eq. (9).
+        (body.dimension == Dimension::Space)
+            .then(|| -> Arc<dyn ElasticModel> { Arc::new(Self { rotation, ..self.clone() }) })
+    }
+
+    fn counts_global(&self, body: &Body) -> bool {
+        self.solver(body.dimension).counts()
     }
 
     /// The rotations that are optimal for the initial positions, which need not be the identity. In space they are followed by the
@@ -201,7 +211,27 @@ impl ElasticModel for ShapeBased {
     }
 
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
-        Box::new(Elements::new(self.clone(), body))
+        let (model, body) = (self.clone(), Arc::clone(body));
+        Late::boxed(move || Elements::new(model, &body))
+    }
+}
+
+impl Vectorised for ShapeBased {
+    fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled {
+        let (&Self { stiffness, damping, .. }, &Conditions { scheme, gravity, step, set }) = (self, conditions);
+        let rotation = match self.rotation {
+            // Eq. (9) is the optimum.
+            _ if body.dimension == Dimension::Plane => Rotation::Optimum,
+            RotationReading::Robust => Rotation::Optimum,
+            _ => Rotation::Arctangent { passes: self.passes },
+        };
+        let energy = Energy { set, body: Arc::clone(body), stiffness, of: Elastic::Elements(rotation) };
+        let parameters = lattice::Parameters { stiffness, damping, rotation, gravity, step };
+        let constants = Constants { stiffness, damping, gravity, step };
+        match LatticeStepper::new(body, parameters, scheme, set) {
+            Some(lattice) => Compiled { stepper: Box::new(lattice), energy },
+            None => Compiled { stepper: Box::new(General::new(body, rotation, constants, set)), energy },
+        }
     }
 }
 
@@ -246,11 +276,6 @@ impl ShapeBased {
     pub fn new(stiffness: f64) -> Self {
         let (rotation, damping_of) = (RotationReading::Robust, DampingReading::RelativeMotion);
         Self { stiffness, damping: 0.0, passes: 2, rotation, damping_of }
-    }
-
-    /// Whether the last number of the memory is that of the rotations that the global solver has computed.
-    pub fn counts_global(&self, body: &Body) -> bool {
-        self.solver(body.dimension).counts()
     }
 
     fn solver(&self, dimension: Dimension) -> Solver {

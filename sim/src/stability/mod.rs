@@ -14,8 +14,7 @@ use super::element::Dimension;
 use super::grip::Grip;
 use super::integrate::Integrator;
 use super::mode::Mode;
-use super::model::mass_spring::MassSpring;
-use super::model::{ElasticModel, ForceModel, Known, Scratch};
+use super::model::{ElasticModel, ForceModel, Scratch};
 use super::state::Nodes;
 use glam::DVec3;
 use std::sync::Arc;
@@ -57,10 +56,8 @@ impl Stability {
         let mut is_free = vec![true; body.len()];
         let holding = grips.iter().filter(|grip| grip.from <= 0.0 && grip.until >= duration);
         holding.flat_map(|grip| &grip.nodes).for_each(|&node| is_free[node as usize] = false);
-        let stretched = match model.known() {
-            Some(Known::MassSpring(model)) => Some(stretched(body, model, &is_free).largest_step(integrator)),
-            _ => None,
-        };
+        let has_springs = !model.springs().is_empty();
+        let stretched = has_springs.then(|| stretched(body, model, &is_free).largest_step(integrator));
         Self { largest: Linear::new(body, model, is_free).largest_step(integrator), stretched }
     }
 
@@ -100,11 +97,11 @@ fn start(body: &Body, is_free: &[bool]) -> Vec<DVec3> {
 
 /// The stiffness and damping of springs that are stretched without limit: each resists motion in all directions as along itself. No
 /// state exceeds them.
-fn stretched(body: &Body, model: &MassSpring, is_free: &[bool]) -> Mode {
+fn stretched(body: &Body, model: &dyn ElasticModel, is_free: &[bool]) -> Mode {
     let scale: Vec<f64> = body.mass.iter().map(|mass| 1.0 / mass.sqrt()).collect();
     let product = |from: &[DVec3], to: &mut [DVec3]| {
         to.fill(DVec3::ZERO);
-        for &[i, j] in &*model.springs {
+        for &[i, j] in model.springs() {
             let [i, j] = [i as usize, j as usize];
             let stretch = from[i] * scale[i] - from[j] * scale[j];
             to[i] += stretch * scale[i];
@@ -113,9 +110,9 @@ fn stretched(body: &Body, model: &MassSpring, is_free: &[bool]) -> Mode {
         let fixed = to.iter_mut().zip(is_free).filter(|(_, is_free)| !**is_free);
         fixed.for_each(|(to, _)| *to = DVec3::ZERO);
     };
-    let most = most_products(2 * model.springs.len());
+    let most = most_products(2 * model.springs().len());
     let (value, _) = lanczos::largest(&start(body, is_free), most, false, product);
-    Mode { stiffness: model.stiffness * value, damping: model.damping * value }
+    Mode { stiffness: model.stiffness() * value, damping: model.damping() * value }
 }
 
 /// The forces of a model around rest.

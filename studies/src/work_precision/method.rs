@@ -7,8 +7,8 @@ use crate::table::typed;
 use glam::DVec3;
 use localshape::sim::integrate::{ByComposition, Composition};
 use localshape::sim::model::ElasticModel;
-use localshape::sim::model::shape_based::{RotationReading, ShapeBased};
-use localshape::sim::{Dimension, Integrator, Kernel, Status, World};
+use localshape::sim::model::shape_based::RotationReading;
+use localshape::sim::{Integrator, Kernel, Status, World};
 use std::sync::Arc;
 
 /// An integrator, with a solver of rotations.
@@ -101,10 +101,7 @@ impl Method {
     /// The model of a run, with the rotations of this method; `None` if the model has no choice of them.
     pub(crate) fn model(self, subject: &Subject) -> Option<Arc<dyn ElasticModel>> {
         let model = &subject.scene.runs[subject.run].models[0];
-        let has_choice = subject.scene.bodies[0].body.dimension == Dimension::Space;
-        let with = |rotation| -> Option<Arc<dyn ElasticModel>> {
-            Some(Arc::new(ShapeBased { rotation, ..model.shape_based().filter(|_| has_choice)?.clone() }))
-        };
+        let with = |rotation| model.with_rotation(&subject.scene.bodies[0].body, rotation);
         match self {
             Self::Reading(rotation) => with(rotation),
             _ => with(RotationReading::Robust).or_else(|| Some(Arc::clone(model))),
