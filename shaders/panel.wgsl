@@ -9,6 +9,8 @@ struct Occluder {
     rotation: vec4<f32>,
 }
 
+const BODIES = 5;
+
 struct Panel {
     // From the panel's coordinates to clip space of its viewport; depth is near / distance.
     clip: mat4x4<f32>,
@@ -21,9 +23,6 @@ struct Panel {
     // The floor's outward normal, and its height along the normal.
     up: vec3<f32>,
     floor: f32,
-    // Colour of sound elements; thickness of lines relative to the reference.
-    sound: vec3<f32>,
-    line_scale: f32,
     // Colour of turned-over elements; width of contours of bodies, from 0 to 1.
     alarm: vec3<f32>,
     contour_share: f32,
@@ -33,8 +32,11 @@ struct Panel {
     // Colours of the edges of sound elements and of obstacles.
     edge: vec4<f32>,
     obstacle: vec4<f32>,
-    // The middle of the body in the picture (px).
-    middle: vec4<f32>,
+    // The middle of the body in the picture (px); thickness of lines relative to the reference.
+    middle: vec3<f32>,
+    line_scale: f32,
+    // Colours of sound elements, for each body.
+    bodies: array<vec4<f32>, BODIES>,
     // The distances over which solid obstacles fade from the left, upper, right and lower side of their room (px); these
     // sides (px); and the strength of the fading at each.
     fade_distance: vec4<f32>,

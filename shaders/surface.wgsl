@@ -104,7 +104,9 @@ fn moved_nearer(position: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
 @vertex
 fn sound_corner(at: Vertex) -> Corner {
     panel = panel_data;
-    return corner_at(corner_place(at.position, at.normal), at, panel.sound);
+    // Without a field, the shade of a body is −1 minus its number.
+    let body = u32(max(-at.shade, 1.0)) - 1u;
+    return corner_at(corner_place(at.position, at.normal), at, panel_data.bodies[body].rgb);
 }
 
 @vertex

@@ -25,7 +25,7 @@ pub(crate) struct LineStyle {
 impl Palette {
     /// The colour of signs on sound elements in the plane: the edges' colour, a third of the way to the elements'.
     pub(crate) fn sign(&self) -> Colour {
-        std::array::from_fn(|at| ((2 * u16::from(self.edge[at]) + u16::from(self.sound_flat[at])) / 3) as u8)
+        std::array::from_fn(|at| ((2 * u16::from(self.edge[at]) + u16::from(self.bodies_flat[0][at])) / 3) as u8)
     }
 
     /// The tint of ghosts of shapes on the background.
@@ -39,11 +39,12 @@ impl Palette {
             let grey = from_oklab(Oklab([oklab(colour).0[0], 0.0, 0.0]));
             mixed(grey, self.background, GREYED)
         };
-        let Self { sound, sound_flat, node, alarm, alarm_line, edge, outline, spring, spring_on_body, .. } = *self;
-        let [sound, sound_flat, node, alarm] = [sound, sound_flat, node, alarm].map(grey);
+        let Self { bodies, bodies_flat, node, alarm, alarm_line, edge, outline, spring, spring_on_body, .. } = *self;
+        let [bodies, bodies_flat] = [bodies, bodies_flat].map(|colours| colours.map(grey));
+        let [node, alarm] = [node, alarm].map(grey);
         let [alarm_line, edge, outline] = [alarm_line, edge, outline].map(grey);
         let [spring, spring_on_body] = [spring, spring_on_body].map(grey);
-        Self { sound, sound_flat, node, alarm, alarm_line, edge, outline, spring, spring_on_body, ..*self }
+        Self { bodies, bodies_flat, node, alarm, alarm_line, edge, outline, spring, spring_on_body, ..*self }
     }
 
     /// The legible colour for words on the background that is nearest to a given one.

@@ -32,4 +32,9 @@ pub(crate) use resolve::{TypedView, colour};
 pub(crate) use subject::Subject;
 pub use view::{ColourScale, EdgeStyle, FloorStyle, Ghost, Labels, Style, Traced, View, Visible};
 #[cfg(feature = "render")]
-pub(crate) use {camera::axes, drawn::LineStyle, palette::Palette, ramp::SHADES};
+pub(crate) use {
+    camera::axes,
+    drawn::LineStyle,
+    palette::{BODIES, Palette},
+    ramp::SHADES,
+};

@@ -15,6 +15,9 @@ pub enum Theme {
     Dark,
 }
 
+/// The number of colours of bodies. Further bodies have the first ones again.
+pub(crate) const BODIES: usize = 5;
+
 /// The colours of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Palette {
@@ -28,10 +31,10 @@ pub(crate) struct Palette {
     pub shadow: Colour,
     /// The share of that colour in full shadow of the key light and of the sky.
     pub shadow_strength: [f32; 2],
-    /// An element in space that is not turned over, before lighting.
-    pub sound: Colour,
-    /// An element in the plane that is not turned over.
-    pub sound_flat: Colour,
+    /// Elements in space that are not turned over, before lighting: a colour for each body of a run.
+    pub bodies: [Colour; BODIES],
+    /// The same in the plane.
+    pub bodies_flat: [Colour; BODIES],
     /// A node in the plane.
     pub node: Colour,
     /// A turned-over element, before lighting.
@@ -103,8 +106,8 @@ const LIGHT: Palette = Palette {
     grid: [0xc9, 0xce, 0xd6],
     shadow: [0x2d, 0x36, 0x45],
     shadow_strength: [0.38, 0.52],
-    sound: [0x93, 0xa5, 0xba],
-    sound_flat: [0xb9, 0xc7, 0xd6],
+    bodies: [[0x93, 0xa5, 0xba], [0x59, 0x5c, 0x98], [0xd5, 0xda, 0xff], [0x71, 0x5c, 0x6a], [0x7b, 0x80, 0xbf]],
+    bodies_flat: [[0xb9, 0xc7, 0xd6], [0x87, 0x8c, 0xcc], [0xfd, 0xf1, 0xa6], [0x93, 0x91, 0x94], [0xd1, 0xbb, 0xa9]],
     node: [0xff, 0xff, 0xff],
     alarm: [0xe2, 0x66, 0x1c],
     alarm_line: [0x5a, 0x1f, 0x00],
@@ -146,8 +149,8 @@ const DARK: Palette = Palette {
     grid: [0x3b, 0x45, 0x52],
     shadow: [0x00, 0x00, 0x00],
     shadow_strength: [0.62, 0.70],
-    sound: [0xa3, 0xb5, 0xca],
-    sound_flat: [0x6f, 0x83, 0x9b],
+    bodies: [[0xa3, 0xb5, 0xca], [0x59, 0x5c, 0x98], [0x8e, 0x4a, 0x61], [0x65, 0x81, 0x8a], [0x89, 0x8e, 0xce]],
+    bodies_flat: [[0x6f, 0x83, 0x9b], [0xa6, 0xb7, 0xa2], [0x3f, 0x40, 0x79], [0x5f, 0x53, 0x00], [0x51, 0x53, 0x51]],
     node: [0xee, 0xf2, 0xf6],
     alarm: [0xf2, 0x7a, 0x2e],
     alarm_line: [0x3d, 0x14, 0x00],
@@ -234,13 +237,30 @@ mod tests {
         seen.map(|(one, other)| measure(lab(one), lab(other))).fold(f64::INFINITY, f64::min)
     }
 
+    /// The difference is that of the colours alone: names in the key tell bodies apart where light brings colours nearer.
+    #[test]
+    fn bodies_differ_from_each_other() {
+        for theme in [LIGHT, DARK] {
+            for colours in [theme.bodies, theme.bodies_flat] {
+                for (at, &one) in colours.iter().enumerate() {
+                    for &other in &colours[..at] {
+                        let found = apart(linear(one), linear(other), ciede2000);
+                        assert!(found >= 13.0, "{one:x?} and {other:x?} differ by {found:.1}");
+                    }
+                }
+            }
+        }
+    }
+
     #[test]
     fn turned_over_elements_differ_from_others() {
         let mut least = [f64::INFINITY; 4];
         for theme in [LIGHT, DARK] {
-            let [sound, flat, tally, alarm] = [theme.sound, theme.sound_flat, theme.tally, theme.alarm].map(linear);
-            for measure in [ciede2000, cie76] {
-                for sound in [sound, flat, tally] {
+            let [tally, alarm] = [theme.tally, theme.alarm].map(linear);
+            for (measure, sound) in
+                [ciede2000, cie76].into_iter().flat_map(|one| theme.bodies.map(|body| (one, linear(body))))
+            {
+                for sound in theme.bodies_flat.map(linear).into_iter().chain([sound, tally]) {
                     let found = apart(sound, alarm, measure);
                     least[0] = least[0].min(found);
                     assert!(found >= 20.0, "as they are: {found:.1}");

@@ -248,7 +248,8 @@ pub(crate) struct Mesh {
     pub vertices: Vec<Vertex>,
     /// Its triangles, counter-clockwise from outside the set that it bounds.
     pub triangles: Vec<[u32; 3]>,
-    /// The place of each corner on the scale of a field, from 0 to 1; −1 without a value. Empty if no field is shown.
+    /// The place of each corner on the scale of a field, from 0 to 1; −1 without a value, and −1 minus the number of its body
+    /// if bodies have colours of their own. Empty if there is neither.
     pub shades: Vec<f32>,
     /// Coordinates of each corner that are 0 or 255 at the edges of its element. Empty if edges are lines.
     pub edges: Vec<[u8; 4]>,

@@ -6,11 +6,12 @@ use super::cut::{Cuts, Grid, Grids};
 use super::ears::Ears;
 use super::field::Shades;
 use super::measures::SMALLEST_ELEMENT;
-use super::narrow::{narrow, narrow_point};
+use super::narrow::{narrow, narrow_count, narrow_point};
 use super::shell::Side;
 use super::{Line, LineKind, Mesh, Vertex};
-use crate::sim::Body;
+use crate::look::BODIES;
 use crate::sim::geometry::{around, ordered};
+use crate::sim::{Assembly, Body};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -56,6 +57,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) flat: &'a [bool],
     /// The field that colours the surfaces.
     pub(super) shades: Option<&'a Shades>,
+    /// The bodies, if each has a colour of its own.
+    pub(super) bodies: Option<&'a Assembly>,
     /// Whether edges of sound elements are drawn in front of surfaces, and behind them.
     pub(super) edges: [bool; 2],
 }
@@ -232,7 +235,7 @@ impl Surroundings<'_> {
         // The memory for uncut faces.
         mesh.vertices.reserve(4 * faces.len());
         mesh.triangles.reserve(2 * faces.len());
-        mesh.shades.reserve(if self.shades.is_some() { 4 * faces.len() } else { 0 });
+        mesh.shades.reserve(if self.shades.is_some() || self.bodies.is_some() { 4 * faces.len() } else { 0 });
         // Edges of turned-over elements are always drawn.
         let is_edged = self.is_fine() && (self.edges[0] || kinds.edge != LineKind::Edge);
         // Faces on the far side of the body are drawn last: the others hide them, so that they need no light.
@@ -414,6 +417,10 @@ impl Surroundings<'_> {
             }));
         }
         mesh.triangles.extend(triangles.iter().map(|triangle| triangle.map(|at| base + at)));
+        if let Some(bodies) = self.bodies {
+            let body = bodies.body_of_node(nodes[0] as usize) % BODIES;
+            mesh.shades.resize(mesh.vertices.len(), -1.0 - narrow_count(body));
+        }
     }
 
     /// Contours within one face. On a bilinear patch they run where its normal is at right angles to the line of sight,

@@ -2,6 +2,7 @@
 
 use super::pipeline::{bind, element, group_layout, uniform_entry};
 use crate::gpu::{Gpu, GrowingBuffer};
+use crate::look::BODIES;
 use crate::picture::measures::edging;
 use crate::picture::{Colour, MOST_OCCLUDERS, Occluder, Palette, Panel, Picture, Rectangle, SHADES};
 use bytemuck::{Pod, Zeroable};
@@ -18,15 +19,15 @@ pub(super) struct PanelUniform {
     pub(super) edging: f32,
     pub(super) up: Vec3,
     pub(super) floor: f32,
-    pub(super) sound: Vec3,
-    pub(super) line_scale: f32,
     pub(super) alarm: Vec3,
     pub(super) contour_share: f32,
     pub(super) alarm_line: Vec3,
     pub(super) soft: f32,
     pub(super) edge: Vec4,
     pub(super) obstacle: Vec4,
-    pub(super) middle: Vec4,
+    pub(super) middle: Vec3,
+    pub(super) line_scale: f32,
+    pub(super) bodies: [Vec4; BODIES],
     pub(super) fade_distance: Vec4,
     pub(super) fade_room: Vec4,
     pub(super) fade_strength: Vec4,
@@ -79,15 +80,15 @@ fn uniform(picture: &Picture, panel: &Panel) -> PanelUniform {
         up: panel.floor.as_ref().map_or(Vec3::Y, |floor| floor.normal),
         // Without a floor, it lies far below everything.
         floor: panel.floor.as_ref().map_or(-1e6, |floor| floor.height),
-        sound: linear(palette.sound),
-        line_scale: sight.line_scale,
         alarm: linear(palette.alarm),
         contour_share: sight.contour_share,
         alarm_line: linear(palette.alarm_line),
         soft: sight.soft,
         edge: linear(palette.edge).extend(1.0),
         obstacle: linear(palette.obstacle).extend(1.0),
-        middle: Vec2::from(sight.middle).extend(0.0).extend(0.0),
+        middle: Vec2::from(sight.middle).extend(0.0),
+        line_scale: sight.line_scale,
+        bodies: palette.bodies.map(|colour| linear(colour).extend(1.0)),
         fade_room: Vec4::from_array(panel.obstacles.fade.map_or([0.0; 4], |fade| fade.room)),
         fade_distance: panel.obstacles.fade.map_or(Vec4::ONE, |fade| Vec2::from(fade.distance).xyxy()),
         fade_strength: Vec4::from_array(panel.obstacles.fade.map_or([0.0; 4], |fade| fade.strength)),
@@ -106,7 +107,7 @@ pub(super) fn palette(picture: &Picture, panel: &Panel) -> Palette {
 }
 
 /// The distance between the data of two panels in the buffer (bytes): a multiple of 256, to which devices may align it.
-const STRIDE: usize = 512;
+const STRIDE: usize = 768;
 
 /// The data of all panels, and the scale of a field.
 #[derive(Debug)]

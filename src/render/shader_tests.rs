@@ -49,7 +49,7 @@ macro_rules! same_layout {
 fn structs_are_laid_out_alike_on_both_sides() {
     let module = parse(&[PANEL_SHADER, ground::SHADER]);
     same_layout!(module, "Panel", PanelUniform,
-        clip eye near key edging up floor sound line_scale alarm contour_share alarm_line soft edge obstacle middle
+        clip eye near key edging up floor alarm contour_share alarm_line soft edge obstacle middle line_scale bodies
         fade_distance fade_room fade_strength occluders);
     same_layout!(module, "Occluder", OccluderUniform, first second rotation);
     same_layout!(module, "Ground", GroundUniform,

@@ -476,11 +476,11 @@ fn greys_have_no_hue_and_keep_their_order() {
     for theme in [Theme::Light, Theme::Dark] {
         let palette = Palette::of(theme);
         let grey = palette.greyed();
-        for colour in [grey.sound, grey.sound_flat, grey.alarm, grey.edge, grey.outline] {
+        for colour in [grey.bodies[0], grey.bodies_flat[0], grey.alarm, grey.edge, grey.outline] {
             let [least, most] = [colour.iter().min(), colour.iter().max()].map(|byte| *byte.expect("three"));
             assert!(most - least <= 8, "{theme:?}: {colour:?}");
         }
-        assert!(contrast(grey.outline, palette.background) > contrast(grey.sound, palette.background));
+        assert!(contrast(grey.outline, palette.background) > contrast(grey.bodies[0], palette.background));
     }
 }
 

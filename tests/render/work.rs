@@ -17,7 +17,7 @@ fn pictures_in_the_plane_need_no_device() {
     let image = renderer.draw(&picture).expect("no device is needed");
     assert_eq!(renderer.draw(&picture), Ok(image.clone()));
     let colours: BTreeSet<_> = image.pixels().map(|pixel| pixel.0).collect();
-    assert!(colours.contains(&picture.palette.background) && colours.contains(&picture.palette.sound_flat));
+    assert!(colours.contains(&picture.palette.background) && colours.contains(&picture.palette.bodies_flat[0]));
     // Lit bodies do.
     let (scene, frame) = fig4b(0);
     let lit = Renderer::new(None, scene.view.size).and_then(|mut renderer| renderer.draw(&compose(&scene, &frame)));

@@ -41,6 +41,7 @@ impl Draft<'_> {
             element: self.element,
             flat: &self.run.snapshot.flat,
             shades: self.shades.as_ref(),
+            bodies: self.coloured_bodies(),
         };
         let sets = boundaries(self.body, &self.run.snapshot.turned_over);
         let total = sets.iter().map(Vec::len).sum();

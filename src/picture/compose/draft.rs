@@ -11,7 +11,7 @@ use crate::picture::narrow::narrow_point;
 use crate::picture::plane::sides;
 use crate::picture::shadow::key_light;
 use crate::scene::Scene;
-use crate::sim::{Body, Dimension, RunFrame, Snapshot, Status};
+use crate::sim::{Assembly, Body, Dimension, RunFrame, Snapshot, Status};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
@@ -111,6 +111,12 @@ impl<'a> Draft<'a> {
             palette: if greyed { composer.palette.greyed() } else { composer.palette },
             lens,
         }
+    }
+
+    /// The bodies of the run, if each has a colour of its own.
+    pub(super) fn coloured_bodies(&self) -> Option<&'a Assembly> {
+        let bodies = &*self.scene.runs[self.run.run].bodies;
+        (bodies.bodies().len() > 1 && self.shades.is_none()).then_some(bodies)
     }
 
     /// The part of the panel without words, over its whole width.

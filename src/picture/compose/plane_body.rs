@@ -2,6 +2,7 @@
 
 use super::draft::Draft;
 use crate::colour::mixed;
+use crate::look::BODIES;
 use crate::picture::ears::ears;
 use crate::picture::layout::Rectangle;
 use crate::picture::layout::steps::{BOLD, RING, THIN};
@@ -25,6 +26,8 @@ type Corner = (Vec2, f32);
 struct Set {
     /// Triangles that fill the elements, all clockwise.
     triangles: Vec<[Corner; 3]>,
+    /// The number of triangles up to the end of each body.
+    ends: Vec<usize>,
     /// The sides of all elements, as nodes.
     sides: Vec<[u32; 2]>,
     /// Elements without faces.
@@ -57,8 +60,8 @@ impl<'a> PlaneBody<'a> {
         let [sound, turned_over] = self.sets();
         let mut part =
             |name, of_part: Vec<Item>| items.extend((!of_part.is_empty()).then(|| Item::part(name, of_part)));
-        part("elements", self.surface(&sound.triangles, self.draft.palette.sound_flat));
-        part("turned over", self.surface(&turned_over.triangles, self.draft.palette.alarm));
+        part("elements", self.surface(&sound, self.draft.palette.bodies_flat));
+        part("turned over", self.surface(&turned_over, [self.draft.palette.alarm; BODIES]));
         part("hatch", self.hatch(&turned_over.triangles));
         part("edges", self.lines(&sound, &turned_over));
         part("strokes", self.strokes([&sound, &turned_over]));
@@ -73,15 +76,19 @@ impl<'a> PlaneBody<'a> {
             return sets;
         }
         let pixel = |node: u32| self.pixels[node as usize];
-        for (nodes, (inner, outer)) in body.faces.nodes.iter().zip(body.faces.inner.iter().zip(&body.faces.outer)) {
-            let element = inner.or(*outer);
-            let is = |flags: &[bool]| element.is_some_and(|at| flags.get(at as usize).copied().unwrap_or(false));
-            let set = &mut sets[usize::from(is(&run.snapshot.turned_over))];
-            let places =
-                shades.as_ref().map_or_else(|| vec![0.0; nodes.len()], |shades| shades.corners(nodes, element));
-            let corners = nodes.iter().zip(places).map(|(&node, place)| (pixel(node), narrow(place)));
-            set.triangles.extend(triangles(&corners.collect::<Vec<_>>()));
-            set.sides.extend(around(nodes).map(ordered));
+        let (bodies, faces) = (&self.draft.scene.runs[run.run].bodies, &body.faces);
+        for of_body in (0..bodies.bodies().len()).map(|body| bodies.faces(body)) {
+            for face in of_body {
+                let (nodes, element) = (&faces.nodes[face], faces.inner[face].or(faces.outer[face]));
+                let is = |flags: &[bool]| element.is_some_and(|at| flags.get(at as usize).copied().unwrap_or(false));
+                let set = &mut sets[usize::from(is(&run.snapshot.turned_over))];
+                let places =
+                    shades.as_ref().map_or_else(|| vec![0.0; nodes.len()], |shades| shades.corners(nodes, element));
+                let corners = nodes.iter().zip(places).map(|(&node, place)| (pixel(node), narrow(place)));
+                set.triangles.extend(triangles(&corners.collect::<Vec<_>>()));
+                set.sides.extend(around(nodes).map(ordered));
+            }
+            sets.iter_mut().for_each(|set| set.ends.push(set.triangles.len()));
         }
         // With a field, coloured strokes replace them.
         if shades.is_none() {
@@ -93,14 +100,18 @@ impl<'a> PlaneBody<'a> {
         sets
     }
 
-    /// Elements in a colour, or in the colours of a field.
-    fn surface(&self, triangles: &[[Corner; 3]], plain: Colour) -> Vec<Item> {
+    /// The elements of each body in its colour, or in the colours of a field.
+    fn surface(&self, set: &Set, plain: [Colour; BODIES]) -> Vec<Item> {
+        let triangles = &set.triangles;
         if triangles.is_empty() {
             return Vec::new();
         }
         let last = narrow_count(self.ramp.len().saturating_sub(1));
-        let plain = if self.ramp.is_empty() { plain } else { self.draft.palette.sound_flat };
-        let mut items = vec![Item::fill(whole(triangles), plain)];
+        let plain = if self.ramp.is_empty() { plain } else { [self.draft.palette.bodies_flat[0]; BODIES] };
+        let begins = std::iter::once(0).chain(set.ends.iter().copied());
+        let of_bodies = begins.zip(&set.ends).zip(plain.into_iter().cycle()).filter(|((begin, end), _)| begin < *end);
+        let fill = |((begin, &end), colour)| Item::fill(whole(&triangles[begin..end]), colour);
+        let mut items: Vec<_> = of_bodies.map(fill).collect();
         for (band, &colour) in self.ramp.iter().enumerate() {
             // Values beyond the scale have the colours of its ends. Each band reaches under the next one, so that no seam
             // is seen between them.
