@@ -53,7 +53,24 @@ pub(super) fn is_turned_over(now: f64, at_rest: f64) -> bool {
     now * at_rest < -NO_SIGN * at_rest * at_rest
 }
 
+/// The sum of numbers of bodies, with the same bits for any order of the bodies.
+fn total(of_bodies: impl Iterator<Item = f64>) -> f64 {
+    let mut of_bodies: Vec<f64> = of_bodies.collect();
+    of_bodies.sort_by(f64::total_cmp);
+    of_bodies.into_iter().sum()
+}
+
 impl BodyFacts<'_> {
+    /// The sum over its nodes, in order, of a function of mass (kg), position (m) and velocity (m/s).
+    fn sum<T: Default + std::ops::AddAssign>(&self, of_node: impl Fn(f64, DVec3, DVec3) -> T) -> T {
+        let Nodes { position, velocity } = self.state;
+        let nodes = self.mass.iter().zip(position).zip(velocity);
+        nodes.fold(T::default(), |mut sum, ((&mass, &position), &velocity)| {
+            sum += of_node(mass, position, velocity);
+            sum
+        })
+    }
+
     /// Whether each element has turned over.
     pub(super) fn turned_over(&self) -> impl Iterator<Item = bool> {
         self.volumes.iter().zip(self.volumes_at_rest).map(|(&now, &at_rest)| is_turned_over(now, at_rest))
@@ -81,20 +98,20 @@ pub(super) struct Facts<'f, 'a> {
 }
 
 impl<'a> Facts<'_, 'a> {
-    /// The sum over all nodes, in order, of a function of mass (kg), position (m) and velocity (m/s).
-    fn sum<T: Default + std::ops::AddAssign>(self, of_node: impl Fn(f64, DVec3, DVec3) -> T) -> T {
-        let mut sum = T::default();
-        for BodyFacts { mass, state: Nodes { position, velocity }, .. } in self.bodies {
-            for ((&mass, &position), &velocity) in mass.iter().zip(*position).zip(*velocity) {
-                sum += of_node(mass, position, velocity);
-            }
-        }
-        sum
+    /// The sum over all nodes of a function of mass (kg), position (m) and velocity (m/s).
+    fn sum(self, of_node: impl Fn(f64, DVec3, DVec3) -> f64) -> f64 {
+        self.total(|body| body.sum(&of_node))
+    }
+
+    /// The same for vectors.
+    fn sum_of_vectors(self, of_node: impl Fn(f64, DVec3, DVec3) -> DVec3) -> DVec3 {
+        let of_bodies: Vec<DVec3> = self.bodies.iter().map(|body| body.sum(&of_node)).collect();
+        DVec3::from_array([0, 1, 2].map(|axis| total(of_bodies.iter().map(|sum| sum[axis]))))
     }
 
     /// The sum of a number of each body.
     fn total(self, of_body: impl Fn(&BodyFacts<'a>) -> f64) -> f64 {
-        self.bodies.iter().map(of_body).sum()
+        total(self.bodies.iter().map(of_body))
     }
 
     /// The numbers of the bodies that have one, reduced to one; NaN if no body has any.
@@ -254,11 +271,11 @@ diagnostics! { facts:
         facts.sum(|mass, position, _| -(mass * facts.gravity.dot(position)));
 
     /// Momentum (kg m/s); as one number, its length.
-    Momentum, momentum: DVec3, "momentum", "kg m/s", Frames = facts.sum(|mass, _, velocity| velocity * mass);
+    Momentum, momentum: DVec3, "momentum", "kg m/s", Frames = facts.sum_of_vectors(|mass, _, velocity| velocity * mass);
 
     /// Angular momentum about the origin (kg m²/s); as one number, its length.
     AngularMomentum, angular_momentum: DVec3, "angular momentum", "kg m²/s", Frames =
-        facts.sum(|mass, position, velocity| position.cross(velocity) * mass);
+        facts.sum_of_vectors(|mass, position, velocity| position.cross(velocity) * mass);
 
     /// The largest angular acceleration that errors of the rotations cause (rad/s²), α of Eq. (18).
     Residual, residual: f64, "residual α", "rad/s²", Frames =

@@ -15,7 +15,7 @@ use crate::runner::moments::{Forces, Moments, Taking};
 use crate::scene::figure::built_in::NAMES;
 use crate::scene::figure::{Content, Figure};
 use crate::scene::{Limits, Scene, SceneError};
-use crate::sim::{self, Chosen, RunFrame, Scope, Snapshot};
+use crate::sim::{self, Chosen, Diagnostics, RunFrame, Scope, Snapshot};
 use clap::{Args, ValueHint};
 use serde_json::{Value, json};
 use std::collections::VecDeque;
@@ -255,7 +255,7 @@ impl FigureCommand {
     /// Simulates the states that a figure shows; `None` if it was interrupted.
     fn take(&self, figure: &Figure) -> Option<Moments> {
         let mut taking = Taking::new(figure, Scope::Summaries);
-        let slice = figure.scenes().iter().map(|scene| record::slice(scene.runs[0].body())).min().unwrap_or(1);
+        let slice = record::slice(figure.scenes().iter().flat_map(|scene| &scene.runs));
         let bar = self.printing.progress(&figure.name, 0);
         while !interrupt::requested()
             && let Some([done, all]) = taking.advance(slice)
@@ -307,15 +307,24 @@ impl Made {
 }
 
 /// The numbers of a figure: for a diagram of forces, forces over stiffness of every run in sides; for a sheet, what
-/// each cell shows (SI).
+/// each cell shows (SI). Several bodies of a run also have theirs.
 fn numbers(figure: &Figure, moments: &Moments) -> Value {
     match &figure.content {
         Content::Forces(forces) => {
             let of_scene = |(scene, found): (&Scene, &Vec<Forces>)| {
                 let runs = scene.runs.iter().zip(found).map(|(run, found)| {
-                    let unit = run.models[0].stiffness() * scene.view.side;
-                    let forces: Vec<_> = found.on_nodes.iter().map(|force| (*force / unit).to_array()).collect();
-                    json!({ "run": run.name, "forces_over_stiffness_and_side": forces })
+                    let of_body = |body: usize| {
+                        let unit = run.models[body].stiffness() * scene.view.side;
+                        found.on_nodes[run.bodies.nodes(body)].iter().map(move |force| (*force / unit).to_array())
+                    };
+                    let forces: Vec<_> = (0..run.of.len()).flat_map(of_body).collect();
+                    let mut entry = json!({ "run": run.name, "forces_over_stiffness_and_side": forces });
+                    let bodies = (0..).zip(run.several(scene)).map(|(at, (name, _))| {
+                        let forces: Vec<_> = of_body(at).collect();
+                        json!({ "name": name, "forces_over_stiffness_and_side": forces })
+                    });
+                    add_bodies(&mut entry, bodies.collect());
+                    entry
                 });
                 json!({ "scene": scene.title, "runs": runs.collect::<Vec<_>>() })
             };
@@ -324,28 +333,44 @@ fn numbers(figure: &Figure, moments: &Moments) -> Value {
         Content::Sheet(sheet) => {
             let cell = |row: usize, column: usize| {
                 let (scene, run, _) = sheet.cell(row, column);
-                let RunFrame { snapshot: Snapshot { time, diagnostics, status, .. }, .. } = &moments.cells[row][column];
-                let number = sheet.number.map(|number| number.of(diagnostics)).filter(|number| number.is_finite());
+                let RunFrame { snapshot: Snapshot { time, diagnostics, of_bodies, status, .. }, .. } =
+                    &moments.cells[row][column];
+                let (scene, number) = (&sheet.scenes[scene], |all: &Diagnostics| {
+                    sheet.number.map(|number| number.of(all)).filter(|number| number.is_finite())
+                });
+                let described = |mut entry: Value, all: &Diagnostics| {
+                    record::merge(&mut entry, json!(Chosen::within(Scope::Summaries, all)));
+                    entry
+                };
                 let diverged = match status {
                     sim::Status::Diverged(divergence) => Some(divergence.time),
                     sim::Status::Ok => None,
                 };
                 let mut cell = json!({
                     "diverged_at": diverged,
-                    "number": number,
-                    "scene": sheet.scenes[scene].title,
-                    "run": sheet.scenes[scene].runs[run].name,
+                    "number": number(diagnostics),
+                    "scene": scene.title,
+                    "run": scene.runs[run].name,
                     "time": time,
                 });
-                let described = json!(Chosen::within(Scope::Summaries, diagnostics));
-                let both = cell.as_object_mut().zip(described.as_object());
-                both.into_iter().for_each(|(cell, described)| cell.extend(described.clone()));
+                cell = described(cell, diagnostics);
+                let bodies = scene.runs[run].several(scene).zip(of_bodies);
+                let bodies =
+                    bodies.map(|((name, _), all)| described(json!({ "name": name, "number": number(all) }), all));
+                add_bodies(&mut cell, bodies.collect());
                 cell
             };
             let rows = 0..sheet.rows.len();
             let all = rows.map(|row| (0..sheet.columns.len()).map(|column| cell(row, column)).collect::<Vec<_>>());
             json!(all.collect::<Vec<_>>())
         }
+    }
+}
+
+/// Adds the entries of several bodies to that of their run.
+fn add_bodies(entry: &mut Value, bodies: Vec<Value>) {
+    if !bodies.is_empty() {
+        record::merge(entry, json!({ "bodies": bodies }));
     }
 }
 

@@ -12,8 +12,8 @@ use crate::output::{
 use crate::reading::setting::Setting;
 use crate::runner::cause::Cause;
 use crate::runner::{Frames, Next, Progress, Runner};
-use crate::scene::Scene;
-use crate::sim::{self, Body, Frame, State};
+use crate::scene::{Run, Scene};
+use crate::sim::{self, Frame, State};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Value, json};
 use std::error::Error;
@@ -211,7 +211,7 @@ impl<'a> Recording<'a> {
             Ok(()) => Outcome::Done,
         };
         if let Some(last) = &self.last {
-            summary.note_last(last);
+            summary.note_last(self.scene, last);
         }
         let drawing = rest(&self.times);
         if let Some(draw) = &mut self.times.draw {
@@ -311,7 +311,7 @@ impl<'a> Recording<'a> {
         if simulation.ahead {
             bar.set_message("simulating ahead");
         }
-        let slice = slice(self.scene.runs[0].body());
+        let slice = slice(self.runs.iter().map(|&run| &self.scene.runs[run]));
         self.sound = simulation.frames.states().cloned().collect();
         // Runs that diverged between the last frame and the checkpoint.
         for ((summary, &run), sound) in self.summary.runs.iter().zip(&self.runs).zip(&mut self.sound) {
@@ -387,11 +387,12 @@ struct Simulation<'a> {
     read_from: Option<PathBuf>,
 }
 
-/// Steps of each run between tests for an interruption: some milliseconds, at some 2 ns for each corner of an element,
-/// and ten times that with the reference code. A frame seldom takes more.
-pub(super) fn slice(body: &Body) -> u64 {
+/// Steps of each of some runs between tests for an interruption: some milliseconds, at some 2 ns for each corner of an
+/// element, and ten times that with the reference code. A frame seldom takes more.
+pub(super) fn slice<'a>(runs: impl IntoIterator<Item = &'a Run>) -> u64 {
     const CORNERS: usize = 2_500_000;
-    (CORNERS / body.elements.indices().len().max(1)).max(1) as u64
+    let corners = runs.into_iter().map(|run| run.body().elements.indices().len()).max();
+    (CORNERS / corners.unwrap_or(0).max(1)).max(1) as u64
 }
 
 /// Processor time of all threads of the pool so far.

@@ -1,7 +1,7 @@
 //! The summary after a scene.
 
 use super::console::columns;
-use crate::output::{Outcome, RunStatus, RunSummary, Spent, Summary};
+use crate::output::{Numbers, Outcome, RunStatus, RunSummary, Spent, Summary};
 use crate::reading::captions::quantity;
 use crate::reading::words::short;
 use crate::sim::Diagnostic;
@@ -12,7 +12,7 @@ use std::path::Path;
 pub(super) fn report(summary: &Summary, folder: &Path, timings: bool) -> String {
     let mut text = format!("{}\n{}\n", summary.scene.title, made(summary, folder));
     let heads = ["run", "status", "turned over", "shape error"].map(str::to_owned);
-    let rows: Vec<_> = std::iter::once(heads).chain(summary.runs.iter().map(row)).collect();
+    let rows: Vec<_> = std::iter::once(heads).chain(summary.runs.iter().flat_map(rows)).collect();
     text += &columns(&rows, [false, false, true, true]);
     text += &causes(summary);
     text += &cut(summary);
@@ -46,23 +46,31 @@ fn made(summary: &Summary, folder: &Path) -> String {
     }
 }
 
-fn row(run: &RunSummary) -> [String; 4] {
-    let status = match run.status {
+/// The row of a run, and one of each of its bodies if there are several.
+fn rows(run: &RunSummary) -> Vec<[String; 4]> {
+    let status = match &run.status {
         RunStatus::Ok => "ok".to_owned(),
-        RunStatus::Diverged { time, step, element } => {
-            let element = element.map(|element| format!(", element {element}")).unwrap_or_default();
-            format!("diverged at {} s (step {step}{element})", short(time))
+        RunStatus::Diverged { time, step, body, element } => {
+            let element = element.map(|element| format!("element {element}"));
+            let place: Vec<_> = element.into_iter().chain(body.clone()).collect();
+            let place = if place.is_empty() { String::new() } else { format!(", {}", place.join(" of ")) };
+            format!("diverged at {} s (step {step}{place})", short(*time))
         }
     };
-    let (turned_over, shape_error) = match &run.last {
-        Some(last) => {
-            let number = |diagnostic| last.diagnostics.get(diagnostic);
-            let shape_error = quantity(number(Diagnostic::ShapeError), "m");
-            (number(Diagnostic::TurnedOver).to_string(), shape_error)
-        }
-        None => Default::default(),
+    let row = |name: String, status: String, numbers: Option<&Numbers>| {
+        let (turned_over, shape_error) = match numbers {
+            Some(Numbers { diagnostics, .. }) => {
+                let shape_error = quantity(diagnostics.get(Diagnostic::ShapeError), "m");
+                (diagnostics.get(Diagnostic::TurnedOver).to_string(), shape_error)
+            }
+            None => Default::default(),
+        };
+        [name, status, turned_over, shape_error]
     };
-    [run.name.clone(), status, turned_over, shape_error]
+    let all = row(run.name.clone(), status, run.last.as_ref().map(|last| &last.all));
+    let bodies = run.last.iter().flat_map(|last| &last.bodies);
+    let of_bodies = bodies.map(|body| row(format!("  {}", body.name), String::new(), Some(&body.numbers)));
+    std::iter::once(all).chain(of_bodies).collect()
 }
 
 /// Why runs diverged, one line each.

@@ -71,7 +71,7 @@ pub(super) fn one_frame(
         Frames::new(runner, &[frame], waiting)
     });
     let bar = options.printing.progress(&scene.title, frames.steps()[1]);
-    let (slice, mut history) = (record::slice(scene.runs[0].body()), None);
+    let (slice, mut history) = (record::slice(runs.iter().map(|&run| &scene.runs[run])), None);
     while !interrupt::requested() {
         let next = pool.install(|| frames.next(slice)).map_err(OutputError::writing(folder))?;
         bar.set_position(frames.steps()[0]);

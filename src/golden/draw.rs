@@ -5,7 +5,7 @@ use super::record::{DIGITS, Record};
 use super::said;
 use super::states::{State, States};
 use crate::gpu::{AdapterChoice, Gpu, InitError, adapter_name};
-use crate::output::{Compression, Tags, encode, frame_file_name, state_digest};
+use crate::output::{Compression, Tags, encode, frame_file_name, recorded, state_digest};
 use crate::picture::{Composer, compose_figure};
 use crate::render::{RenderError, Renderer};
 use crate::runner::history::History;
@@ -125,7 +125,8 @@ fn draw_scene(
         Some(wanted) => runner.with_time_series(wanted),
         None => runner,
     };
-    let frames: Vec<u64> = frames_with_digests(last, runs.len(), &drawn).into_iter().collect();
+    let digests = scene.runs.iter().map(|run| run.of.len()).sum();
+    let frames: Vec<u64> = frames_with_digests(last, digests, &drawn).into_iter().collect();
     let waiting = wanted.map(|_| tempfile::tempfile()).transpose()?;
     let mut frames = Frames::new(runner, &frames, waiting);
     let (mut course, mut composer) = (History::default(), None);
@@ -145,8 +146,9 @@ fn draw_scene(
         let index = frame.index;
         for run in &frame.runs {
             let name = &scene.runs[run.run].name;
-            add(&mut states, name, index, &run.snapshot, with_positions.contains(&index));
-            if let Status::Diverged(Divergence { time, step, .. }) = run.snapshot.status {
+            add(&mut states, name, (&scene, run.run), index, &run.snapshot, with_positions.contains(&index));
+            if let Status::Diverged(Divergence { time, step, part, .. }) = run.snapshot.status {
+                let (name, _) = recorded(name, &scene, run.run).swap_remove(part);
                 let words =
                     || format!("{name} diverged at {time:.3e} s (step {step}) and is not advanced from there on");
                 stopped.entry(run.run).or_insert_with(words);
@@ -180,8 +182,8 @@ fn draw_figure(
     }
     let moments = taking.finish();
     let mut states = States::default();
-    for (name, snapshot) in moments.states(&figure) {
-        add(&mut states, &name, 0, snapshot, true);
+    for (name, of, snapshot) in moments.runs_and_states(&figure) {
+        add(&mut states, &name, of, 0, snapshot, true);
     }
     let mut files = BTreeMap::new();
     let is_drawn = gpu.is_some() || !figure.is_lit();
@@ -198,12 +200,21 @@ fn draw_figure(
     Ok(Some(Drawn::new(record, files, is_drawn, Vec::new())))
 }
 
-/// Adds the state of a snapshot, with its positions on request.
-fn add(states: &mut States, run: &str, frame: u64, snapshot: &Snapshot, with_positions: bool) {
-    let run = states.run_mut(run);
-    run.nodes = snapshot.position.len();
-    let positions = with_positions.then(|| snapshot.position.clone());
-    run.states.insert(frame, State { digest: state_digest(snapshot), positions });
+/// Adds the states of a run's snapshot under a name, with their positions on request.
+fn add(
+    states: &mut States,
+    name: &str,
+    (scene, run): (&Scene, usize),
+    frame: u64,
+    snapshot: &Snapshot,
+    with_positions: bool,
+) {
+    for (name, nodes) in recorded(name, scene, run) {
+        let run = states.run_mut(&name);
+        run.nodes = nodes.len();
+        let positions = with_positions.then(|| snapshot.position[nodes.clone()].to_vec());
+        run.states.insert(frame, State { digest: state_digest(snapshot, nodes), positions });
+    }
 }
 
 /// The size to draw in (px): that of the golden, or a small one for a new golden.
@@ -214,9 +225,9 @@ fn size([width, height]: [u32; 2], golden: &Golden) -> [u32; 2] {
     })
 }
 
-/// The frames of a scene whose digests a record has: as many as fit, and all of `others`.
-fn frames_with_digests(last: u64, runs: usize, others: &BTreeSet<u64>) -> BTreeSet<u64> {
-    let row = 5 + (DIGITS + 1) * runs;
+/// The frames of a scene whose digests a record has, so many of each frame: as many as fit, and all of `others`.
+fn frames_with_digests(last: u64, digests: usize, others: &BTreeSet<u64>) -> BTreeSet<u64> {
+    let row = 5 + (DIGITS + 1) * digests;
     // With powers of two, a scene that becomes longer still has frames in common with its golden.
     let stride = ((last as usize + 1) * row).div_ceil(ROOM_FOR_DIGESTS).next_power_of_two();
     (0..=last).step_by(stride).chain(others.iter().copied()).chain(frames_with_positions(last)).collect()
@@ -251,7 +262,7 @@ mod tests {
             let scene = if number == moved_run { moved } else { scene };
             let mut runner = Runner::new(scene, &[number]);
             for frame in (0..=scene.last_frame()).take(4) {
-                add(&mut states, &run.name, frame, &runner.frame(frame).runs[0].snapshot, true);
+                add(&mut states, &run.name, (scene, number), frame, &runner.frame(frame).runs[0].snapshot, true);
             }
         }
         let record = Record { size: [320, 200], frames: [0].into(), states, ..Record::default() };

@@ -6,10 +6,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// The states of several runs.
+/// The states of several runs. The bodies of a run of several are recorded like runs of their own, named `RUN · BODY`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct States {
-    /// One for each run, in the order of the scene.
+    /// In the order of the scene.
     pub(super) runs: Vec<Run>,
     /// The stride of nodes whose positions are known, from the first one.
     pub(super) every: usize,
@@ -17,7 +17,7 @@ pub(super) struct States {
     pub(super) quantum: f64,
 }
 
-/// The states of one run.
+/// The states of one run, or of one of its several bodies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Run {
     pub(super) name: String,
@@ -27,7 +27,7 @@ pub(super) struct Run {
     pub(super) states: BTreeMap<u64, State>,
 }
 
-/// One run at one frame.
+/// A run or body at one frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct State {
     /// Digest of all positions and velocities in hexadecimal digits, complete or shortened.
@@ -83,7 +83,7 @@ pub(crate) struct Displacement {
     pub(crate) precision: f64,
 }
 
-/// The change of a run.
+/// The change of a run or body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Change {
@@ -96,10 +96,10 @@ pub(crate) enum Change {
     New,
 }
 
-/// A run with unexpected states.
+/// A run, or one of its several bodies, with unexpected states.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Moved {
-    /// Name of the run.
+    /// Name of the run, with that of the body.
     pub(crate) run: String,
     /// The change.
     pub(crate) change: Change,

@@ -1,9 +1,9 @@
-//! `diagnostics.csv`: one row for each run and frame.
+//! `diagnostics.csv`: one row for each run and frame, and further ones for each of several bodies.
 
 use super::atomic::open_growing;
 use super::{OutputError, exact, rows_as_csv};
 use crate::scene::Scene;
-use crate::sim::{Diagnostic, Frame, RunFrame, Snapshot, Status, Value};
+use crate::sim::{Diagnostic, Diagnostics, Frame, RunFrame, Snapshot, Status, Value};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::{self, File};
@@ -12,6 +12,9 @@ use std::path::{Path, PathBuf};
 
 /// The name of the file in its folder.
 pub(crate) const DIAGNOSTICS_FILE: &str = "diagnostics.csv";
+
+/// The body of rows on all bodies of a run together.
+const ALL: &str = "all";
 
 /// Its name until it is finished.
 const UNFINISHED: &str = ".localshape-diagnostics.partial";
@@ -41,7 +44,9 @@ impl<'a> DiagnosticsWriter<'a> {
     /// Creates the file in `folder`.
     pub(crate) fn create(folder: &Path, scene: &'a Scene) -> Result<Self, OutputError> {
         let mut writer = Self::open(folder, scene, Rows::default())?;
-        writer.append(&rows_as_csv([cells("", 0, &Snapshot::default()).into_iter().map(|(head, _)| head)]))?;
+        let none = Snapshot::default();
+        let heads = cells("", ALL, 0, &none, &none.diagnostics).into_iter().map(|(head, _)| head);
+        writer.append(&rows_as_csv([heads]))?;
         Ok(writer)
     }
 
@@ -66,15 +71,19 @@ impl<'a> DiagnosticsWriter<'a> {
         Ok(Self { scene, file, hidden, path, written: before, digest: Sha256::new() })
     }
 
-    /// Appends the rows of one frame, one for each run in it.
+    /// Appends the rows of one frame: for each run in it one on all its bodies, then one on each if it has several.
     ///
     /// # Errors
     /// If they cannot be written; rows written before stay.
     pub(crate) fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
-        let runs = &self.scene.runs;
-        let row =
-            |run: &RunFrame| cells(&runs[run.run].name, frame.index, &run.snapshot).into_iter().map(|(_, cell)| cell);
-        self.append(&rows_as_csv(frame.runs.iter().map(row)))
+        let scene = self.scene;
+        let rows = frame.runs.iter().flat_map(|RunFrame { run, snapshot, .. }| {
+            let run = &scene.runs[*run];
+            let of_bodies = run.several(scene).map(|(body, _)| body).zip(&snapshot.of_bodies);
+            let rows = std::iter::once((ALL, &snapshot.diagnostics)).chain(of_bodies);
+            rows.map(|(body, diagnostics)| cells(&run.name, body, frame.index, snapshot, diagnostics))
+        });
+        self.append(&rows_as_csv(rows.map(|row| row.into_iter().map(|(_, cell)| cell))))
     }
 
     fn append(&mut self, text: &[u8]) -> Result<(), OutputError> {
@@ -120,17 +129,21 @@ fn digest_of(file: &mut File) -> io::Result<Sha256> {
 }
 
 /// The cells of a row, each with the heading of its column; `docs/files.md` explains them.
-fn cells(name: &str, frame: u64, snapshot: &Snapshot) -> Vec<(String, String)> {
+fn cells(run: &str, body: &str, frame: u64, snapshot: &Snapshot, diagnostics: &Diagnostics) -> Vec<(String, String)> {
     let status = match snapshot.status {
         Status::Ok => "ok",
         Status::Diverged(_) => "diverged",
     };
     let plain = |head: &str, cell: String| (head.to_owned(), cell);
-    let mut cells =
-        vec![plain("run", name.to_owned()), plain("frame", frame.to_string()), plain("time", exact(snapshot.time))];
+    let mut cells = vec![
+        plain("run", run.to_owned()),
+        plain("body", body.to_owned()),
+        plain("frame", frame.to_string()),
+        plain("time", exact(snapshot.time)),
+    ];
     for diagnostic in Diagnostic::ALL {
         let key = diagnostic.key();
-        match diagnostic.value(&snapshot.diagnostics) {
+        match diagnostic.value(diagnostics) {
             Value::Count(count) => cells.push(plain(key, count.to_string())),
             Value::Number(number) => cells.push(plain(key, exact(number))),
             Value::Vector(vector) => {

@@ -27,7 +27,7 @@ mod timing;
 pub(crate) use atomic::{AtomicFile, folder_of, open_growing, write_whole};
 pub(crate) use checkpoint::{Checkpoint, Manifest, waiting_states};
 pub(crate) use diagnostics::{DIAGNOSTICS_FILE, DiagnosticsWriter};
-pub(crate) use digest::state_digest;
+pub(crate) use digest::{recorded, state_digest};
 pub(crate) use error::{OutputError, is_folder, read_file};
 pub(crate) use folder::{Access, Claimed, Folder, Whose};
 pub use frame_folder::FrameFolder;
@@ -36,7 +36,7 @@ pub(crate) use lock::FolderLock;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
 pub(crate) use states::{STATES_FILE, StatesWriter};
 pub(crate) use stored::StoredStates;
-pub(crate) use summary::{Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary, document};
+pub(crate) use summary::{Numbers, Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary, document};
 pub(crate) use timing::{Clock, thread_time};
 pub use timing::{Spent, Timings};
 #[cfg(feature = "render")]

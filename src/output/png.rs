@@ -1,10 +1,10 @@
 //! Pictures as PNG files, with metadata in text chunks.
 
-use super::{OutputError, exact, state_digest};
+use super::{OutputError, exact, recorded, state_digest};
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::Figure;
-use crate::sim::{Frame, RunFrame};
+use crate::sim::{Frame, Snapshot};
 use std::fs::File;
 use std::io::{BufReader, Write};
 use std::path::Path;
@@ -45,7 +45,8 @@ pub struct Tags {
     pub shows: Shown,
     /// `localshape:scene`: the digests of its scenes, one line each.
     pub scenes: Vec<String>,
-    /// `localshape:state`: digest and name of each state shown, one line each.
+    /// `localshape:state`: digest and name of each state shown, one line each. Runs of several bodies have a state for
+    /// each body.
     pub states: Vec<(String, String)>,
     /// `localshape:version`: the version of this crate that drew it.
     pub version: String,
@@ -67,20 +68,26 @@ pub enum Shown {
     Figure(String),
 }
 
+/// The digest and the name of each recorded state of a run.
+fn states(name: &str, scene: &Scene, run: usize, snapshot: &Snapshot) -> Vec<(String, String)> {
+    let states = recorded(name, scene, run).into_iter();
+    states.map(|(name, nodes)| (state_digest(snapshot, nodes), name)).collect()
+}
+
 impl Tags {
     /// The tags of a frame of `scene` drawn by `adapter`.
     pub fn of_frame(scene: &Scene, frame: &Frame, adapter: &str) -> Self {
-        let state = |run: &RunFrame| (state_digest(&run.snapshot), scene.runs[run.run].name.clone());
+        let states = frame.runs.iter().flat_map(|of| states(&scene.runs[of.run].name, scene, of.run, &of.snapshot));
         let shows = Shown::Frame { frame: frame.index, time: frame.time };
-        Self::new(shows, vec![scene.digest.clone()], frame.runs.iter().map(state).collect(), adapter)
+        Self::new(shows, vec![scene.digest.clone()], states.collect(), adapter)
     }
 
     /// The tags of a figure that shows `moments`, drawn by `adapter`; its states are [`Moments::states`].
     pub fn of_figure(figure: &Figure, moments: &Moments, adapter: &str) -> Self {
         let scenes = figure.scenes().iter().map(|scene| scene.digest.clone()).collect();
-        let states = moments.states(figure).into_iter();
-        let states = states.map(|(name, snapshot)| (state_digest(snapshot), name)).collect();
-        Self::new(Shown::Figure(figure.name.clone()), scenes, states, adapter)
+        let shown = moments.runs_and_states(figure).into_iter();
+        let states = shown.flat_map(|(name, (scene, run), snapshot)| states(&name, scene, run, snapshot));
+        Self::new(Shown::Figure(figure.name.clone()), scenes, states.collect(), adapter)
     }
 
     fn new(shows: Shown, scenes: Vec<String>, states: Vec<(String, String)>, adapter: &str) -> Self {

@@ -1,10 +1,10 @@
-//! `states.npz`: a body, and its positions and velocities in every frame, for analysis in other programs.
+//! `states.npz`: bodies, and their positions and velocities in every frame, for analysis in other programs.
 
 use super::atomic::open_growing;
 use super::{AtomicFile, OutputError, Whose};
 use crate::runner::history::History;
-use crate::scene::Scene;
-use crate::sim::{Body, Divergence, Frame, State, Status};
+use crate::scene::{Run, Scene};
+use crate::sim::{Assembly, Divergence, Frame, State, Status};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -31,8 +31,10 @@ pub(super) const COURSE: &str = "localshape";
 /// of the first run, and a run with another time step has its own `NAME.time` (F). Scenes allow only names of runs that
 /// are valid in an archive.
 ///
-/// The body is stored once: `rest` (N × 3, m) and `mass` (N, kg). The nodes of each element (`elements`) and of each
-/// face on the surface of the body (`faces`) are 64-bit integers, with -1 at the end of shorter rows.
+/// The bodies of the first run are stored once: `rest` (N × 3, m) and `mass` (N, kg). The nodes of each element
+/// (`elements`) and of each face on the surface of a body (`faces`) are 64-bit integers, with -1 at the end of shorter
+/// rows. A scene of several bodies also has their names (`bodies`) and the place of each node's body among them (`body`,
+/// N). Runs of other bodies have all these arrays but `bodies` of their own: `NAME.rest` and so on.
 ///
 /// For drawing, the archive also has the memory of models and constraints, `NAME.memory` (F × M), and the array of
 /// bytes `localshape` with an [`Origin`] and a [`Course`].
@@ -43,7 +45,9 @@ pub(super) const COURSE: &str = "localshape";
 pub(crate) struct StatesWriter {
     path: PathBuf,
     spool: File,
-    body: Arc<Body>,
+    /// The names of the scene's bodies, if it has several.
+    names: Vec<String>,
+    meshes: Vec<Mesh>,
     arrays: Vec<Array>,
     /// Length of one frame in the temporary file (bytes).
     record: u64,
@@ -87,6 +91,16 @@ pub(super) struct StoredRun {
     /// The SHA-256 of positions, velocities and memory of each frame. Single frames are read, and the archive's own
     /// checksums cover all frames.
     pub(super) digests: Vec<[u8; 32]>,
+}
+
+/// The bodies of a run.
+#[derive(Debug)]
+struct Mesh {
+    /// What the names of its arrays begin with.
+    prefix: String,
+    bodies: Arc<Assembly>,
+    /// The places of the bodies in the scene.
+    of: Vec<usize>,
 }
 
 /// One array of the archive, and its part of each record.
@@ -142,7 +156,6 @@ impl StatesWriter {
         before: Option<Course>,
     ) -> Result<Self, OutputError> {
         let path = folder.join(STATES_FILE);
-        let nodes = scene.runs[0].body().len();
         let mut arrays = vec![Array { name: "time".to_owned(), shape: String::new(), offset: 0, length: 8 }];
         let mut record = 8;
         let step = |run: usize| scene.runs[run].step;
@@ -154,7 +167,7 @@ impl StatesWriter {
                 arrays.push(Array { name, shape: String::new(), offset: record, length: 8 });
                 record += 8;
             }
-            let model = state.memory.model.len();
+            let (nodes, model) = (state.position.len(), state.memory.model.len());
             let memory = model + state.memory.constraints.len();
             let nodes_of = format!(" {nodes}, 3");
             for (quantity, shape, length) in [
@@ -169,6 +182,15 @@ impl StatesWriter {
             let name = scene.runs[run].name.clone();
             stored.push(StoredRun { name, model, divergence: None, last_fit: None, digests: Vec::new() });
         }
+        let mesh = |&run: &usize| {
+            let is_first = Arc::ptr_eq(&scene.runs[run].bodies, &scene.runs[runs[0]].bodies);
+            let Run { name, bodies, of, .. } = &scene.runs[run];
+            let prefix = if is_first { String::new() } else { format!("{name}.") };
+            Mesh { prefix, bodies: Arc::clone(bodies), of: of.clone() }
+        };
+        let is_own = |(at, mesh): &(usize, Mesh)| *at == 0 || !mesh.prefix.is_empty();
+        let meshes = runs.iter().map(mesh).enumerate().filter(is_own).map(|(_, mesh)| mesh).collect();
+        let names = scene.bodies.iter().map(|body| body.name.clone()).filter(|_| scene.bodies.len() > 1).collect();
         let origin = Origin::of(&Whose::of(scene));
         let course = match before {
             Some(before) if before.fits(&stored) => before,
@@ -177,7 +199,7 @@ impl StatesWriter {
         };
         let length = course.frames.len() as u64 * record;
         let spool = open_growing(&folder.join(SPOOL), length).map_err(OutputError::writing(&path))?;
-        Ok(Self { path, spool, body: Arc::clone(scene.runs[0].body()), arrays, record, own_time, origin, course })
+        Ok(Self { path, spool, names, meshes, arrays, record, own_time, origin, course })
     }
 
     /// Appends one frame, with the state of each run in it.
@@ -268,7 +290,10 @@ impl StatesWriter {
                 archive.write_all(&part)?;
             }
         }
-        fill_body(archive, &self.body)?;
+        for mesh in &self.meshes {
+            fill_mesh(archive, mesh, self.names.len() > 1)?;
+        }
+        fill_names(archive, &self.names)?;
         let mut bytes = postcard::to_allocvec(&self.origin).expect("plain data");
         bytes.extend(postcard::to_allocvec(&self.course).expect("plain data"));
         begin(archive, COURSE, "|u1", &format!("({},)", bytes.len()), bytes.len() as u64)?;
@@ -276,17 +301,41 @@ impl StatesWriter {
     }
 }
 
-/// Writes the arrays of a body.
-fn fill_body(archive: &mut ZipWriter<BufWriter<&mut File>>, body: &Body) -> io::Result<()> {
-    let nodes = body.len();
-    begin(archive, "rest", "<f8", &format!("({nodes}, 3)"), 24 * nodes as u64)?;
+/// Writes the arrays of the bodies of a run, with the body of each node if there are `several`.
+fn fill_mesh(archive: &mut ZipWriter<BufWriter<&mut File>>, mesh: &Mesh, several: bool) -> io::Result<()> {
+    let Mesh { prefix, bodies, of } = mesh;
+    let (body, nodes) = (&**bodies.whole(), bodies.whole().len());
+    let name = |array: &str| format!("{prefix}{array}");
+    begin(archive, &name("rest"), "<f8", &format!("({nodes}, 3)"), 24 * nodes as u64)?;
     body.rest.iter().try_for_each(|rest| archive.write_all(&vector_bytes(rest)))?;
-    begin(archive, "mass", "<f8", &format!("({nodes},)"), 8 * nodes as u64)?;
+    begin(archive, &name("mass"), "<f8", &format!("({nodes},)"), 8 * nodes as u64)?;
     body.mass.iter().try_for_each(|mass| archive.write_all(&mass.to_le_bytes()))?;
-    fill_lists(archive, "elements", 2, body.elements.iter())?;
+    fill_lists(archive, &name("elements"), 2, body.elements.iter())?;
     let faces = &body.faces;
     let bounds = |&face: &usize| faces.inner[face].is_none() || faces.outer[face].is_none();
-    fill_lists(archive, "faces", 3, (0..faces.nodes.len()).filter(bounds).map(|face| &faces.nodes[face]))
+    fill_lists(archive, &name("faces"), 3, (0..faces.nodes.len()).filter(bounds).map(|face| &faces.nodes[face]))?;
+    if several {
+        begin(archive, &name("body"), "<i8", &format!("({nodes},)"), 8 * nodes as u64)?;
+        let places = of.iter().enumerate().flat_map(|(at, &place)| bodies.nodes(at).map(move |_| place as i64));
+        places.into_iter().try_for_each(|place| archive.write_all(&place.to_le_bytes()))?;
+    }
+    Ok(())
+}
+
+/// Writes the names of several bodies: characters of 32 bits, with zeros at the end of shorter names.
+fn fill_names(archive: &mut ZipWriter<BufWriter<&mut File>>, names: &[String]) -> io::Result<()> {
+    let Some(longest) = names.iter().map(|name| name.chars().count()).max() else { return Ok(()) };
+    begin(
+        archive,
+        "bodies",
+        &format!("<U{longest}"),
+        &format!("({},)", names.len()),
+        4 * (longest * names.len()) as u64,
+    )?;
+    names.iter().try_for_each(|name| {
+        let padded = name.chars().map(u32::from).chain(std::iter::repeat(0)).take(longest);
+        archive.write_all(&padded.flat_map(u32::to_le_bytes).collect::<Vec<_>>())
+    })
 }
 
 /// Writes lists of nodes as rows of the same length, at least `least`.

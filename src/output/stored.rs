@@ -83,12 +83,11 @@ fn course(npz: &mut Npz, scene: &Scene) -> Result<Course, String> {
 
 /// The arrays of a run of the scene.
 fn place(npz: &mut Npz, course: &Course, scene: &Scene, run: usize) -> Result<RunArrays, String> {
-    let name = &scene.runs[run].name;
+    let (name, nodes) = (&scene.runs[run].name, scene.runs[run].body().len() as u64);
     let Some(run) = course.runs.iter().position(|stored| stored.name == *name) else {
         let names: Vec<_> = course.runs.iter().map(|run| format!("“{}”", run.name)).collect();
         return Err(format!("has no states of “{name}”, only of {}; choose among these with --only", names.join(", ")));
     };
-    let nodes = scene.runs[0].body().len() as u64;
     let stored = &course.runs[run];
     let frames = stored.digests.len() as u64;
     let mut array = |quantity: &str, is_row: &dyn Fn(&[u64]) -> bool| {

@@ -3,7 +3,7 @@
 use super::{OutputError, Timings, state_digest, write_whole};
 use crate::runner::cause::Cause;
 use crate::scene::Scene;
-use crate::sim::{Chosen, Frame, Scope, Status};
+use crate::sim::{Chosen, Diagnostics, Divergence, Frame, Scope, Status};
 use serde::Serialize;
 use std::path::{Component, Path, PathBuf};
 
@@ -95,6 +95,9 @@ pub(crate) struct FrameSummary {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct RunSummary {
     pub name: String,
+    /// The names of its bodies; absent if its only body has no name.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<String>,
     /// Time step (s).
     pub time_step: f64,
     /// The number of steps that this command has simulated; after a divergence steps are only counted.
@@ -105,7 +108,7 @@ pub(crate) struct RunSummary {
     /// The cause of its divergence; absent if it did not diverge, or if its states are read from a file.
     #[serde(flatten)]
     pub cause: Option<Cause>,
-    /// The frames drawn by this command in which its body leaves its panel; absent if there are none.
+    /// The frames drawn by this command in which a body leaves its panel; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cut: Vec<u64>,
     /// The last frame that this command recorded; `null` before the first.
@@ -113,7 +116,7 @@ pub(crate) struct RunSummary {
 }
 
 /// The outcome of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "status", rename_all = "kebab-case")]
 pub(crate) enum RunStatus {
     /// It has not diverged.
@@ -124,7 +127,10 @@ pub(crate) enum RunStatus {
         time: f64,
         /// Number of the rejected step.
         step: u64,
-        /// The first element with the node that exceeded the speed limit.
+        /// The body of the node that exceeded the speed limit; absent if it has no name.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+        /// The first element of that body with the node.
         element: Option<usize>,
     },
 }
@@ -136,12 +142,42 @@ pub(crate) struct LastState {
     pub frame: u64,
     /// Time (s).
     pub time: f64,
+    /// All bodies together.
+    #[serde(flatten)]
+    pub all: Numbers,
+    /// Each body, if there are several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<BodyNumbers>,
+}
+
+/// One of several bodies in the last recorded frame of its run.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct BodyNumbers {
+    pub name: String,
+    #[serde(flatten)]
+    pub numbers: Numbers,
+}
+
+/// Numbers that describe a state.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Numbers {
     #[serde(flatten)]
     pub diagnostics: Chosen,
     /// A diagnostic that goldens do not record; `null` for a model without it.
     pub global_rotations: Option<u64>,
     /// Digest of the state.
     pub state: String,
+}
+
+impl Numbers {
+    fn new(diagnostics: &Diagnostics, state: String) -> Self {
+        let global_rotations = Some(diagnostics.global_rotations).filter(|count| count.is_finite());
+        Self {
+            diagnostics: Chosen::within(Scope::Summaries, diagnostics),
+            global_rotations: global_rotations.map(|count| count as u64),
+            state,
+        }
+    }
 }
 
 impl Summary {
@@ -151,6 +187,7 @@ impl Summary {
             let run = &scene.runs[run];
             RunSummary {
                 name: run.name.clone(),
+                bodies: run.body_names(scene).map(str::to_owned).collect(),
                 time_step: run.step,
                 steps: 0,
                 status: RunStatus::Ok,
@@ -182,21 +219,24 @@ impl Summary {
     }
 
     /// Records the last frame.
-    pub(crate) fn note_last(&mut self, frame: &Frame) {
+    pub(crate) fn note_last(&mut self, scene: &Scene, frame: &Frame) {
         for (summary, run) in self.runs.iter_mut().zip(&frame.runs) {
-            let snapshot = &run.snapshot;
+            let (snapshot, run) = (&run.snapshot, &scene.runs[run.run]);
             summary.status = match snapshot.status {
                 Status::Ok => RunStatus::Ok,
-                Status::Diverged(at) => RunStatus::Diverged { time: at.time, step: at.step, element: at.element },
+                Status::Diverged(Divergence { time, step, part, element }) => {
+                    RunStatus::Diverged { time, step, body: summary.bodies.get(part).cloned(), element }
+                }
+            };
+            let of_body = |((name, nodes), diagnostics): ((&str, _), _)| {
+                let numbers = Numbers::new(diagnostics, state_digest(snapshot, nodes));
+                BodyNumbers { name: name.to_owned(), numbers }
             };
             summary.last = Some(LastState {
                 frame: frame.index,
                 time: snapshot.time,
-                diagnostics: Chosen::within(Scope::Summaries, &snapshot.diagnostics),
-                global_rotations: Some(snapshot.diagnostics.global_rotations)
-                    .filter(|count| count.is_finite())
-                    .map(|count| count as u64),
-                state: state_digest(snapshot),
+                all: Numbers::new(&snapshot.diagnostics, state_digest(snapshot, 0..snapshot.position.len())),
+                bodies: run.several(scene).zip(&snapshot.of_bodies).map(of_body).collect(),
             });
         }
     }

@@ -129,7 +129,8 @@ mod tests {
         let last_fit = alone.runs[0].last_fit.as_deref().expect("it diverged");
         let LastFit { snapshot, times_wider } = last_fit;
         assert!(
-            fits(&scene.runs[2], &snapshot.position) && radius(&snapshot.position) > 1.1 * radius(&scene.runs[2].body().rest)
+            fits(&scene.runs[2], &snapshot.position)
+                && radius(&snapshot.position) > 1.1 * radius(&scene.runs[2].body().rest)
         );
         for frame in &frames {
             let run = &frame.runs[1];

@@ -49,6 +49,7 @@ use crate::sim::model::{ElasticModel, Report};
 use crate::sim::{Assembly, Body, Dimension, Grip, Integrator, Obstacle, Shape};
 use crate::sim::{Diagnostic, Kernel, Moment, State};
 use glam::DVec3;
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -192,6 +193,12 @@ impl Run {
     /// The names of its bodies in order; none if its only body has no name.
     pub(crate) fn body_names<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = &'a str> {
         self.of.iter().map(|&body| &*scene.bodies[body].name).filter(|name| !name.is_empty())
+    }
+
+    /// The name and the nodes of each of its bodies, if it has several.
+    pub(crate) fn several<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = (&'a str, Range<usize>)> + Clone {
+        let bodies = if self.of.len() > 1 { self.of.len() } else { 0 };
+        (0..bodies).map(|body| (&*scene.bodies[self.of[body]].name, self.bodies.nodes(body)))
     }
 
     /// Each model with its body.

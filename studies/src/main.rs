@@ -147,6 +147,14 @@ impl OfScene {
                 "{path}: `time.duration` is 0: nothing moves, and there is nothing to measure; make it longer"
             )));
         }
+        if let Some(run) = scene.runs.iter().find(|run| run.models.len() != 1) {
+            return Err(Failure::usage(format!(
+                "{}: “{}” has {} bodies with models, and a study measures one; give each run one body",
+                path.display(),
+                run.name,
+                run.models.len()
+            )));
+        }
         Ok(Some(scene))
     }
 }

@@ -134,7 +134,7 @@ fn files_of_others_under_our_names_are_refused_unless_told() {
     place.run("simulate small.toml -o out --overwrite").good();
     assert_eq!(place.read("out/frame_00003.png"), "mine");
     assert_eq!(place.read("out/frame_3.png"), "mine");
-    assert!(place.read("out/diagnostics.csv").starts_with("run,frame,"));
+    assert!(place.read("out/diagnostics.csv").starts_with("run,body,frame,"));
 }
 
 #[test]

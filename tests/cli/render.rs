@@ -192,7 +192,7 @@ fn frames_diagnostics_and_summary() {
         [("Local shape", last(0, &place).as_str().unwrap()), ("Mass-spring", last(1, &place).as_str().unwrap())]
     );
     let table = place.read("output/small/diagnostics.csv");
-    let time = table.lines().last().unwrap().split(',').nth(2).unwrap();
+    let time = table.lines().last().unwrap().split(',').nth(3).unwrap();
     assert_eq!(tags.shows, Shown::Frame { frame: 6, time: time.parse().unwrap() });
 }
 

@@ -8,7 +8,7 @@ use localshape::sim::Diagnostic;
 use serde_json::Value;
 use std::io::Read;
 
-const HEADS: &str = "run,frame,time,kinetic,elastic,gravitational,momentum_x,momentum_y,momentum_z,angular_momentum_x,\
+const HEADS: &str = "run,body,frame,time,kinetic,elastic,gravitational,momentum_x,momentum_y,momentum_z,angular_momentum_x,\
                      angular_momentum_y,angular_momentum_z,residual,turned_over,volume_ratio,shape_error,energy,global_rotations,status";
 
 /// The rows of a table without its headings.
@@ -31,18 +31,18 @@ fn diagnostics_of_each_run_and_frame() {
     assert_eq!(rows.len(), 2 * SMALL_FRAMES);
     assert_eq!((rows[0][0], rows[1][0]), ("Local shape", "Mass-spring"));
     // Twelve nodes of one kilogram at 2 m/s.
-    assert_eq!(rows[0][3].parse::<f64>().unwrap(), 24.0);
-    assert_eq!(rows[0][7].parse::<f64>().unwrap(), -24.0);
+    assert_eq!(rows[0][4].parse::<f64>().unwrap(), 24.0);
+    assert_eq!(rows[0][8].parse::<f64>().unwrap(), -24.0);
     // A model without rotations has no residual.
-    assert!(rows.iter().all(|row| (row[12] == "nan") == (row[0] == "Mass-spring")), "{table}");
+    assert!(rows.iter().all(|row| (row[13] == "nan") == (row[0] == "Mass-spring")), "{table}");
     let digits = |number: &str| number.chars().take_while(|&c| c != 'e').filter(char::is_ascii_digit).count();
-    assert!(rows.iter().all(|row| digits(row[2]) == 17 && digits(row[3]) == 17), "{table}");
-    assert!(rows.iter().all(|row| row[18] == "ok"));
+    assert!(rows.iter().all(|row| digits(row[3]) == 17 && digits(row[4]) == 17), "{table}");
+    assert!(rows.iter().all(|row| row[19] == "ok"));
     // The sum of all energies.
     let number = |text: &str| text.parse::<f64>().unwrap();
-    let sum = |row: &[&str]| number(row[3]) + number(row[4]) + number(row[5]);
-    assert!(rows.iter().all(|row| number(row[16]) == sum(row)), "{table}");
-    assert!(rows.iter().any(|row| number(row[4]) > 0.0 && number(row[5]) > 0.0), "{table}");
+    let sum = |row: &[&str]| number(row[4]) + number(row[5]) + number(row[6]);
+    assert!(rows.iter().all(|row| number(row[17]) == sum(row)), "{table}");
+    assert!(rows.iter().any(|row| number(row[5]) > 0.0 && number(row[6]) > 0.0), "{table}");
 }
 
 /// Each number is in the column of its name.
@@ -145,7 +145,7 @@ fn some_frames_of_one_run() {
     let (all, some) = (place.read("all/diagnostics.csv"), place.read("some/diagnostics.csv"));
     let wanted: Vec<_> = rows(&all)
         .into_iter()
-        .filter(|row| row[0] == "Mass-spring" && ["1", "3", "5", "6"].contains(&row[1]))
+        .filter(|row| row[0] == "Mass-spring" && ["1", "3", "5", "6"].contains(&row[2]))
         .collect();
     assert_eq!(wanted.len(), 4);
     assert_eq!(rows(&some), wanted);
@@ -280,13 +280,16 @@ fn everything_in_the_files_is_documented() {
         assert!(told.starts_with(&(first + &meaning[1..])), "{told} / {meaning}");
     }
 
-    let file = std::fs::File::open(place.path("output/small/states.npz")).unwrap();
-    let archive = zip::ZipArchive::new(file).unwrap();
     let general = |name: &str| {
         let name = name.trim_end_matches(".npy");
         name.split_once('.').map_or(name.to_owned(), |(_, quantity)| format!("NAME.{quantity}"))
     };
-    let mut arrays: Vec<_> = archive.file_names().map(|name| general(name.unwrap_or_default().as_ref())).collect();
+    let arrays_of = |scene: &str| -> Vec<String> {
+        let file = std::fs::File::open(place.path(format!("output/{scene}/states.npz"))).unwrap();
+        let archive = zip::ZipArchive::new(file).unwrap();
+        archive.file_names().map(|name| general(name.unwrap_or_default().as_ref())).collect()
+    };
+    let mut arrays = arrays_of("small");
     let mut told = documented("states.npz");
     told.sort();
     arrays.sort();
@@ -349,7 +352,7 @@ fn states_of_every_frame() {
     assert_eq!((time[0], velocity[1]), (0.0, -2.0));
     // The times are those of the diagnostics, to the last bit.
     let table = place.read("output/small/diagnostics.csv");
-    let times: Vec<f64> = rows(&table).iter().step_by(2).map(|row| row[2].parse().unwrap()).collect();
+    let times: Vec<f64> = rows(&table).iter().step_by(2).map(|row| row[3].parse().unwrap()).collect();
     assert_eq!(time, times);
     // The lowest nodes start on the floor.
     assert_eq!(position[..36].chunks(3).map(|node| node[1]).fold(f64::INFINITY, f64::min), 0.0);
@@ -437,7 +440,7 @@ fn states_of_runs_with_steps_of_their_own() {
     let (head, times) = array(&place, file, "Mass-spring.time");
     assert_eq!(head, "{'descr': '<f8', 'fortran_order': False, 'shape': (7,), }");
     let table = place.read("output/own/diagnostics.csv");
-    let recorded: Vec<f64> = rows(&table).iter().skip(1).step_by(2).map(|row| row[2].parse().unwrap()).collect();
+    let recorded: Vec<f64> = rows(&table).iter().skip(1).step_by(2).map(|row| row[3].parse().unwrap()).collect();
     assert_eq!(times, recorded);
     assert_ne!(times, array(&place, file, "time").1);
     assert_eq!(array(&place, file, "Mass-spring.position").1.len(), 7 * 12 * 3);

@@ -245,7 +245,7 @@ fn outcome(scene: &Scene, cell: &Cell, watch: &Watch<'_>) -> Option<Outcome> {
     scene.gravity *= cell.speed * cell.speed;
     let run = &mut scene.runs[cell.run];
     run.initial.velocity.iter_mut().for_each(|velocity| *velocity *= cell.speed);
-    let stiffness = cell.rate * scene.bodies[0].body.lightest() / run.models[0].stiffness();
+    let stiffness = cell.rate * run.body().lightest() / run.models[0].stiffness();
     run.models[0] =
         run.models[0].scaled(stiffness, stiffness.sqrt() * cell.damping).expect("grids are of models that can be");
     run.step = cell.step;

@@ -101,7 +101,7 @@ impl Method {
     /// The model of a run, with the rotations of this method; `None` if the model has no choice of them.
     pub(crate) fn model(self, subject: &Subject) -> Option<Arc<dyn ElasticModel>> {
         let model = &subject.scene.runs[subject.run].models[0];
-        let with = |rotation| model.with_rotation(&subject.scene.bodies[0].body, rotation);
+        let with = |rotation| model.with_rotation(subject.body(), rotation);
         match self {
             Self::Reading(rotation) => with(rotation),
             _ => with(RotationReading::Robust).or_else(|| Some(Arc::clone(model))),
@@ -110,7 +110,7 @@ impl Method {
 
     /// Why it cannot advance a model; `None` if it can.
     pub(crate) fn refusal(self, subject: &Subject, model: &dyn ElasticModel) -> Option<&'static str> {
-        self.integrator().0.refusal(|| model.prepare(&subject.scene.bodies[0].body))
+        self.integrator().0.refusal(|| model.prepare(subject.body()))
     }
 
     /// Whether it has vectorised steps for a model.

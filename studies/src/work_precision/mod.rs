@@ -24,6 +24,7 @@ use crate::turns::{Clock, take_turns};
 use count::Counting;
 use localshape::Scene;
 use localshape::scene::description;
+use localshape::sim::Body;
 use localshape::sim::model::ElasticModel;
 use method::{Attempt, End, Method};
 use reference::{farthest, larger, reference};
@@ -97,6 +98,11 @@ pub(crate) struct Subject {
 }
 
 impl Subject {
+    /// The body of the run.
+    fn body(&self) -> &Arc<Body> {
+        self.scene.runs[self.run].body()
+    }
+
     /// The methods that can advance the run, with their models.
     fn methods(&self) -> Vec<(Method, Arc<dyn ElasticModel>)> {
         let all = Method::ALL.into_iter().filter_map(|one| Some((one, one.model(self)?)));
@@ -162,13 +168,13 @@ pub(crate) fn measure(effort: Effort, subjects: &[Subject], watch: &Watch<'_>) -
 /// Measures one run.
 fn compare(effort: Effort, subject: &Subject, watch: &Watch<'_>) -> Option<Comparison> {
     let Subject { name, scene, .. } = subject;
-    let (methods, size) = (subject.methods(), scene.bodies[0].body.extent());
+    let (methods, size) = (subject.methods(), subject.body().extent());
     let usual = Method::DEFAULT.model(subject).expect("a model of scenes");
     let most = f64::from(effort.evaluations).min(effort.seconds / seconds_per_evaluation(subject, &usual)).max(1024.0);
     let why = |one: Method| Some((one, one.refusal(subject, one.model(subject)?.as_ref())?));
     let mut found = Comparison {
         name: name.clone(),
-        words: description(usual.as_ref(), &scene.bodies[0].body),
+        words: description(usual.as_ref(), subject.body()),
         duration: scene.duration,
         cycle: scene.cycle(),
         reference: Err(String::new()),

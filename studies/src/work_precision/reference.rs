@@ -36,7 +36,7 @@ pub(super) fn reference(
         return Err("the body diverges also with small steps: there is no finite reference".to_owned());
     };
     let apart = one.iter().zip(&other).map(|(one, other)| farthest(one, other));
-    let error = apart.fold(0.0, larger) / subject.scene.bodies[0].body.extent();
+    let error = apart.fold(0.0, larger) / subject.body().extent();
     // NaN is not an agreement.
     if error.is_nan() || error > MOST_APART {
         return Err(format!(
