@@ -42,7 +42,7 @@ impl View {
         font: FontFiles,
         report: &mut Collector<'_>,
     ) -> Option<Self> {
-        let (body, panels, known) = (scene.body, scene.models.len(), report.total());
+        let (body, panels, known) = (scene.body, scene.runs.len(), report.total());
         let mut view = Self { side: scene.side, has_cells: scene.has_cells, ..Self::default() };
         view.camera = get::<CameraFile>(typed, "camera", report).unwrap_or_default().resolve(scene, report)?;
         let size = get(typed, "size", report).unwrap_or(SizeFile::Pixels(view.size));
@@ -72,7 +72,7 @@ impl View {
         view.look.theme = Palette::theme_on(view.look.background, view.look.theme);
         view.look.font = font;
         view.clock = get(typed, "clock", report).unwrap_or_else(|| {
-            if scene.grips.is_empty() { "after release".to_owned() } else { "after the start".to_owned() }
+            if scene.is_gripped { "after the start".to_owned() } else { "after release".to_owned() }
         });
         let ghost: Option<String> = get(typed, "ghost", report);
         view.ghost = ghost.and_then(|name| compared::ghost(&name, scene, report));

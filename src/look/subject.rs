@@ -1,16 +1,18 @@
-//! The subject of a view: a body, its runs and its surroundings.
+//! The subject of a view: bodies, its runs and its surroundings.
 
 use crate::sim::Body;
 
 use crate::sim::geometry::{self, bounds};
 use crate::sim::model::ElasticModel;
-use crate::sim::{Field, Grip, Obstacle, State};
+use crate::sim::{Field, Obstacle, State};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
 /// The data on which default values of a view depend.
 pub(crate) struct Subject<'a> {
+    /// All bodies of the scene as one.
     pub(crate) body: &'a Body,
+    /// The initial state of all bodies.
     pub(crate) initial: &'a State,
     /// Mean length of the elements' edges (m).
     pub(crate) side: f64,
@@ -18,11 +20,12 @@ pub(crate) struct Subject<'a> {
     pub(crate) has_cells: bool,
     pub(crate) gravity: DVec3,
     pub(crate) obstacles: &'a [Obstacle],
-    pub(crate) grips: &'a [Grip],
+    /// Whether nodes are held or dragged.
+    pub(crate) is_gripped: bool,
     /// The name and the time step (s) of each run.
     pub(crate) runs: Vec<(&'a str, f64)>,
-    /// The model of each run.
-    pub(crate) models: Vec<&'a dyn ElasticModel>,
+    /// Each model of all runs with its body.
+    pub(crate) parts: Vec<(&'a dyn ElasticModel, &'a Body)>,
 }
 
 impl Subject<'_> {
@@ -36,7 +39,7 @@ impl Subject<'_> {
             Field::Displacement => LARGE * side,
             Field::Distance => LARGE * self.body.extent(),
             Field::ElasticEnergy => {
-                let stiffness = self.models.iter().fold(0.0, |most: f64, model| most.max(model.stiffness()));
+                let stiffness = self.parts.iter().fold(0.0, |most: f64, (model, _)| most.max(model.stiffness()));
                 0.5 * stiffness * (LARGE * side) * (LARGE * side)
             }
             Field::Speed => {
@@ -47,7 +50,7 @@ impl Subject<'_> {
                 let pushed = self.obstacles.iter().map(|obstacle| obstacle.motion.greatest_speed(side));
                 let fastest = pushed.fold((start * start + fall * fall).sqrt(), f64::max);
                 // A body that nothing else moves oscillates at its own frequency.
-                let periods = self.models.iter().map(|model| model.shortest_period(self.body));
+                let periods = self.parts.iter().map(|(model, body)| model.shortest_period(body));
                 let swing = LARGE * side * TAU / periods.fold(f64::INFINITY, f64::min);
                 if fastest > 0.0 { fastest } else { swing }
             }

@@ -1,7 +1,7 @@
 //! The digest of a scene's meaning.
 
 use super::file::{BodyFile, Coordinates, Positive};
-use super::schema::{SCHEMA, variants, without_nulls};
+use super::schema::{SCHEMA, by_name, variants, without_nulls};
 use crate::look::print::SizeFile;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -12,7 +12,8 @@ use std::io::{self, BufWriter, Write};
 /// Digests of the files that a scene names.
 #[derive(Debug, Default)]
 pub(super) struct FileDigests {
-    pub(super) body: Option<String>,
+    /// The file of each body.
+    pub(super) bodies: Vec<Option<String>>,
     /// The font file.
     pub(super) regular: Option<String>,
     /// The font file for names and counts.
@@ -20,7 +21,8 @@ pub(super) struct FileDigests {
 }
 
 /// SHA-256 of the typed scene as canonical JSON, 64 hexadecimal digits. `typed` is the scene without the lists of its
-/// body. `lists` has them: they may have millions of entries, and are written without a copy.
+/// bodies. `lists` has those of each body: they may have millions of entries, and are written without a copy. One body is
+/// a table in canonical JSON, several are a list.
 ///
 /// Canonical JSON has sorted keys, every number in the shortest form that reads back to the same double, and no key
 /// with its default. So comments, layout, order of keys, the notation of numbers (`1e4` or `10000.0`) and explicit
@@ -28,11 +30,11 @@ pub(super) struct FileDigests {
 /// describes only in words, such as `passes = 2`, changes the digest when typed.
 ///
 /// The name of a file is replaced by the digest of its content.
-pub(super) fn digest(typed: &impl Serialize, lists: &BodyFile, files: FileDigests) -> String {
+pub(super) fn digest(typed: &impl Serialize, lists: &[BodyFile], files: FileDigests) -> String {
     // The types have only finite numbers and text keys, which JSON can represent.
     let mut value = serde_json::to_value(typed).unwrap_or_default();
-    if let Some(body) = files.body {
-        value["body"]["file"] = body.into();
+    for (at, file) in files.bodies.into_iter().enumerate() {
+        file.into_iter().for_each(|file| value["body"][at]["file"] = file.into());
     }
     if let Some(regular) = files.regular {
         value["view"]["font"] = json!({ "regular": regular, "semi_bold": files.semi_bold });
@@ -42,6 +44,9 @@ pub(super) fn digest(typed: &impl Serialize, lists: &BodyFile, files: FileDigest
     }
     without_nulls(&mut value);
     without_defaults(&mut value, &SCHEMA);
+    let schema_of_body = &SCHEMA["properties"]["body"]["anyOf"][0];
+    let bodies = value["body"].as_array_mut().into_iter().flatten();
+    bodies.for_each(|body| without_defaults(body, schema_of_body));
     // Tables in which only defaults were typed.
     let is_empty = |value: &Value| *value == json!({});
     if let Some(Value::Object(view)) = value.get_mut("view") {
@@ -51,10 +56,12 @@ pub(super) fn digest(typed: &impl Serialize, lists: &BodyFile, files: FileDigest
         value.as_object_mut().map(|scene| scene.remove("view"));
     }
     value.sort_all_objects();
-    let mut body = table(&value["body"]);
-    body.extend(listed(lists));
+    let bodies = value["body"].as_array().into_iter().flatten().zip(lists);
+    let mut bodies: Vec<_> =
+        bodies.map(|(body, lists)| Part::Table(table(body).into_iter().chain(listed(lists)).collect())).collect();
     let mut scene = table(&value);
-    scene.insert("body", Part::Table(body));
+    let bodies = if bodies.len() == 1 { bodies.remove(0) } else { Part::List(bodies) };
+    scene.insert("body", bodies);
     let mut hash = Hash(Sha256::new());
     serde_json::to_writer(BufWriter::new(&mut hash), &scene).expect("hashing cannot fail");
     hash.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
@@ -66,6 +73,7 @@ pub(super) fn digest(typed: &impl Serialize, lists: &BodyFile, files: FileDigest
 enum Part<'a> {
     Value(&'a Value),
     Table(BTreeMap<&'a str, Part<'a>>),
+    List(Vec<Part<'a>>),
     Points(&'a [Coordinates]),
     Indices(&'a [Vec<u32>]),
     Pairs(&'a [[u32; 2]]),
@@ -118,7 +126,7 @@ fn without_defaults(value: &mut Value, schema: &Value) {
         Value::Object(table) => {
             table.retain(|key, value| schema["properties"][key].get("default") != Some(value));
             for (key, value) in table.iter_mut() {
-                without_defaults(value, &schema["properties"][key]);
+                without_defaults(value, schema["properties"].get(key).or(by_name(schema)).unwrap_or(&Value::Null));
             }
         }
         Value::Array(items) => items.iter_mut().for_each(|item| without_defaults(item, &schema["items"])),

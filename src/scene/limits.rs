@@ -1,13 +1,13 @@
 //! Untrusted sizes are validated here before anything is allocated.
 
-use super::file::RunFile;
+use super::file::ModelFile;
 use crate::reading::words::{count, size};
 use std::collections::BTreeMap;
 
 /// The largest accepted scene. Larger scenes are refused before memory is allocated for them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Nodes of the body.
+    /// Nodes of all bodies.
     pub nodes: u64,
     /// Nodes of all elements, counted once for each run.
     pub corners: u64,
@@ -50,9 +50,21 @@ pub(super) struct Excess {
     pub(super) message: String,
     /// The remedy.
     pub(super) help: String,
-    /// The run with the most springs, if there are too many.
-    pub(super) run: Option<usize>,
+    /// The place to change.
+    pub(super) place: Place,
 }
+
+/// The place of an excess.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// The largest body.
+    Body(usize),
+    /// The model with the most springs: a run, and a place among its models.
+    Model(usize, usize),
+}
+
+/// The bodies of a run and their models; `None` for models with mistakes, which have no springs.
+pub(super) type Parts<'a> = Vec<(usize, Option<&'a ModelFile>)>;
 
 impl BodySize {
     /// A body without listed springs: its number of nodes, and its number of elements for each number of nodes.
@@ -72,49 +84,68 @@ impl BodySize {
         each.fold(0, u128::saturating_add)
     }
 
-    /// The limit that the body with its runs exceeds, and the remedy: `less` makes the body smaller. A run with a
-    /// mistake has no springs.
-    pub(super) fn beyond(&self, runs: &[Option<RunFile>], limits: &Limits, less: &str) -> Option<Excess> {
-        let of_run = |run: &RunFile| run.model.most_springs(&self.elements, self.springs);
-        let springs_of_run: Vec<u128> = runs.iter().map(|run| run.as_ref().map_or(0, of_run)).collect();
-        let springs = springs_of_run.iter().copied().fold(0, u128::saturating_add);
-        let corners = self.corners().saturating_mul(runs.len().max(1) as u128);
-        let memory = self.least_memory();
-
-        let several =
-            |number: u128, one: &str| format!("{} {one}{}", count(number), if number == 1 { "" } else { "s" });
-        let (nodes, elements) = (several(self.nodes, "node"), several(self.count(), "element"));
-        let parts = match springs {
-            0 => format!("{nodes} and {elements}"),
-            _ => format!("{nodes}, {elements} and up to {}", several(springs, "spring")),
-        };
-        let makes = if self.is_bound { "makes up to" } else { "makes" };
-        let asked = format!("this {makes} {parts}, at least {} of memory", size(memory));
-        let allow = |less: &str| format!("{less}, or allow it with --allow-large (in code, `Limits::NONE`)");
-        let excess = |message, help| Some(Excess { message, help, run: None });
-        if self.nodes.max(self.count()) > u128::from(u32::MAX) {
-            excess(format!("{asked}: more nodes or elements than 32-bit indices can count"), less.to_owned())
-        } else if self.nodes > limits.nodes.into() {
-            excess(format!("{asked}; the limit is {} nodes", count(limits.nodes.into())), allow(less))
-        } else if corners > limits.corners.into() {
-            let [found, limit] = [corners, limits.corners.into()].map(count);
-            let message = format!("{asked}; the elements of all runs have {found} nodes, and the limit is {limit}");
-            excess(message, allow(less))
-        } else if springs > limits.springs.into() {
-            let message = format!("{asked}; the limit is {} springs", count(limits.springs.into()));
-            let help = allow("put fewer springs on each element, such as springs = \"edges\"");
-            Some(Excess { message, help, run: (0..runs.len()).max_by_key(|&run| springs_of_run[run]) })
-        } else if !is_given(memory) {
-            let help = "make the body smaller, or take a larger machine";
-            excess(format!("{asked}, more than this machine has"), help.to_owned())
-        } else {
-            None
-        }
-    }
-
-    /// The least memory of the body with one run (bytes), roughly: a block of a million cubes takes some tenths more.
+    /// The least memory of the body in one run (bytes), roughly: a block of a million cubes takes some tenths more.
     fn least_memory(&self) -> u128 {
         self.nodes.saturating_add(self.corners()).saturating_mul(100)
+    }
+}
+
+/// The limit that the bodies with their runs exceed, and the remedy: `less` makes a body smaller.
+pub(super) fn excess(
+    bodies: &[BodySize],
+    runs: &[Parts<'_>],
+    limits: &Limits,
+    less: impl Fn(usize) -> &'static str,
+) -> Option<Excess> {
+    let all = |of: &dyn Fn(&BodySize) -> u128| bodies.iter().map(of).fold(0, u128::saturating_add);
+    let [nodes, elements, own] = [all(&|body| body.nodes), all(&BodySize::count), all(&BodySize::corners)];
+    let memory = all(&BodySize::least_memory);
+    let parts = || runs.iter().flatten();
+    let corners = parts().map(|&(body, _)| bodies[body].corners()).fold(0, u128::saturating_add).max(own);
+    let springs_of = |&(body, model): &(usize, Option<&ModelFile>)| {
+        let BodySize { elements, springs, .. } = &bodies[body];
+        model.map_or(0, |model| model.most_springs(elements, *springs))
+    };
+    let springs = parts().map(springs_of).fold(0, u128::saturating_add);
+
+    let several = |number: u128, one: &str| format!("{} {one}{}", count(number), if number == 1 { "" } else { "s" });
+    let parts = match springs {
+        0 => format!("{} and {}", several(nodes, "node"), several(elements, "element")),
+        _ => {
+            let [nodes, elements] = [several(nodes, "node"), several(elements, "element")];
+            format!("{nodes}, {elements} and up to {}", several(springs, "spring"))
+        }
+    };
+    let makes = match (bodies.len(), bodies.iter().any(|body| body.is_bound)) {
+        (1, false) => "this makes",
+        (1, true) => "this makes up to",
+        (_, false) => "all bodies together make",
+        (_, true) => "all bodies together make up to",
+    };
+    let asked = format!("{makes} {parts}, at least {} of memory", size(memory));
+    let allow = |less: &str| format!("{less}, or allow it with --allow-large (in code, `Limits::NONE`)");
+    let largest = (0..bodies.len()).max_by_key(|&body| (bodies[body].nodes, bodies[body].corners()))?;
+    let less = less(largest);
+    let excess = |message, help| Some(Excess { message, help, place: Place::Body(largest) });
+    if nodes.max(elements) > u128::from(u32::MAX) {
+        excess(format!("{asked}: more nodes or elements than 32-bit indices can count"), less.to_owned())
+    } else if nodes > limits.nodes.into() {
+        excess(format!("{asked}; the limit is {} nodes", count(limits.nodes.into())), allow(less))
+    } else if corners > limits.corners.into() {
+        let [found, limit] = [corners, limits.corners.into()].map(count);
+        let message = format!("{asked}; the elements of all runs have {found} nodes, and the limit is {limit}");
+        excess(message, allow(less))
+    } else if springs > limits.springs.into() {
+        let message = format!("{asked}; the limit is {} springs", count(limits.springs.into()));
+        let help = allow("put fewer springs on each element, such as springs = \"edges\"");
+        let models = (0..).zip(runs).flat_map(|(run, parts)| (0..).zip(parts).map(move |(at, part)| (run, at, part)));
+        let (run, at, _) = models.max_by_key(|(_, _, part)| springs_of(part))?;
+        Some(Excess { message, help, place: Place::Model(run, at) })
+    } else if !is_given(memory) {
+        let help = "make the body smaller, or take a larger machine";
+        excess(format!("{asked}, more than this machine has"), help.to_owned())
+    } else {
+        None
     }
 }
 
@@ -128,49 +159,75 @@ fn is_given(memory: u128) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::slice;
 
-    fn runs<const N: usize>(models: [&str; N]) -> Vec<Option<RunFile>> {
-        let run =
-            |model| toml::from_str(&format!("name = 'a'\nmodel = {{ kind = {model}, stiffness = 1e4 }}")).unwrap();
-        models.map(|model| Some(run(model))).into()
+    fn models<const N: usize>(models: [&str; N]) -> [ModelFile; N] {
+        let model =
+            |kind: &str| toml::from_str::<toml::Table>(&format!("model = {{ kind = {kind}, stiffness = 1e4 }}"));
+        models.map(|kind| model(kind).unwrap()["model"].clone().try_into().unwrap())
     }
 
     fn block(side: u128) -> BodySize {
         BodySize::new((side + 1).pow(3), [(8, side.pow(3))])
     }
 
-    fn beyond(size: &BodySize, runs: &[Option<RunFile>], limits: &Limits) -> Option<Excess> {
-        size.beyond(runs, limits, "use fewer cells")
+    /// The excess of a body with a run for each model.
+    fn beyond(size: &BodySize, models: &[ModelFile], limits: &Limits) -> Option<Excess> {
+        let runs: Vec<_> = models.iter().map(|model| vec![(0, Some(model))]).collect();
+        excess(slice::from_ref(size), &runs, limits, |_| "use fewer cells")
     }
 
     #[test]
     fn the_default_allows_a_block_of_two_hundred_cells_a_side_and_not_of_a_thousand() {
         let limits = Limits::default();
-        assert_eq!(beyond(&block(200), &runs(["'shape-based'", "'mass-spring'"]), &limits), None);
-        let Excess { message, help, run } = beyond(&block(1000), &runs(["'shape-based'"]), &limits).unwrap();
+        assert_eq!(beyond(&block(200), &models(["'shape-based'", "'mass-spring'"]), &limits), None);
+        let Excess { message, help, place } = beyond(&block(1000), &models(["'shape-based'"]), &limits).unwrap();
         assert!(message.starts_with("this makes 1 003 003 001 nodes and 1 000 000 000 elements"), "{message}");
-        assert!(help.contains("fewer cells") && run.is_none(), "{help}");
-        let many = runs(["'shape-based'"; 4]);
+        assert!(help.contains("fewer cells") && place == Place::Body(0), "{help}");
+        let many = models(["'shape-based'"; 4]);
         assert!(beyond(&block(200), &many, &limits).unwrap().message.contains("of all runs"));
     }
 
     #[test]
     fn springs_are_counted_by_the_topology_asked_for() {
         let polygon = BodySize::new(60_000, [(60_000, 1)]);
-        let excess = |model| beyond(&polygon, &runs(["'shape-based'", model]), &Limits::default());
-        let Excess { message, help, run } = excess("'mass-spring', springs = 'all'").unwrap();
+        let found = |model| beyond(&polygon, &models(["'shape-based'", model]), &Limits::default());
+        let Excess { message, help, place } = found("'mass-spring', springs = 'all'").unwrap();
         assert!(message.contains("up to 1 799 970 000 springs"), "{message}");
-        assert!(help.contains("springs = \"edges\"") && run == Some(1), "{help}");
+        assert!(help.contains("springs = \"edges\"") && place == Place::Model(1, 0), "{help}");
         // The default topology has the diagonals of the polygon, which is its own face.
-        assert!(excess("'mass-spring'").is_some());
-        assert_eq!(excess("'mass-spring', springs = 'edges'"), None);
-        assert_eq!(excess("'shape-based'"), None);
+        assert!(found("'mass-spring'").is_some());
+        assert_eq!(found("'mass-spring', springs = 'edges'"), None);
+        assert_eq!(found("'shape-based'"), None);
+    }
+
+    #[test]
+    fn all_bodies_of_all_runs_count() {
+        let [model] = models(["'mass-spring', springs = 'edges'"]);
+        let sizes = [block(1), block(3), block(2)];
+        let found = |runs: &[&[usize]], limits| {
+            let run = |of: &&[usize]| of.iter().map(|&body| (body, Some(&model))).collect();
+            excess(&sizes, &runs.iter().map(run).collect::<Vec<_>>(), &limits, |_| "use fewer cells")
+        };
+        let limits = Limits { nodes: 8 + 64 + 27, corners: 8 + 216 + 64 + 8, ..Limits::NONE };
+        let springs = 24 * (1 + 27 + 8 + 1);
+        let [all, again]: [&[usize]; 2] = [&[0, 1, 2], &[0]];
+        assert_eq!(found(&[all, again], Limits { springs, ..limits }), None);
+        assert!(
+            found(&[all, again], Limits { springs: springs - 1, ..limits })
+                .is_some_and(|one| one.place == Place::Model(0, 1))
+        );
+        let Excess { message, place, .. } = found(&[all, again, again], limits).unwrap();
+        assert!(message.contains("the elements of all runs have 304 nodes"), "{message}");
+        assert_eq!(place, Place::Body(1));
+        let message = found(&[all], Limits { nodes: limits.nodes - 1, ..limits }).unwrap().message;
+        assert!(message.starts_with("all bodies together make 99 nodes, 36 elements"), "{message}");
     }
 
     #[test]
     fn nodes_and_elements_must_be_counted_by_32_bits() {
-        let runs = runs(["'shape-based'"]);
-        let message = |count| beyond(&BodySize::new(2, [(2, count)]), &runs, &Limits::NONE).map(|one| one.message);
+        let models = models(["'shape-based'"]);
+        let message = |count| beyond(&BodySize::new(2, [(2, count)]), &models, &Limits::NONE).map(|one| one.message);
         assert!(!message((1 << 32) - 1).is_some_and(|message| message.contains("32-bit")));
         assert!(message(1 << 32).unwrap().contains("32-bit"));
     }
@@ -178,14 +235,14 @@ mod tests {
     #[test]
     fn what_no_machine_gives_is_said_beforehand() {
         let enormous = BodySize::new(8, [(usize::MAX, 1)]);
-        let message = beyond(&enormous, &runs(["'shape-based'"]), &Limits::NONE).unwrap().message;
+        let message = beyond(&enormous, &models(["'shape-based'"]), &Limits::NONE).unwrap().message;
         assert!(message.contains("more than this machine has"), "{message}");
-        assert_eq!(beyond(&block(1), &runs(["'shape-based'"]), &Limits::NONE), None);
+        assert_eq!(beyond(&block(1), &models(["'shape-based'"]), &Limits::NONE), None);
     }
 
     #[test]
     fn no_size_overflows() {
-        let all = runs(["'shape-based'", "'mass-spring', springs = 'all'"]);
+        let all = models(["'shape-based'", "'mass-spring', springs = 'all'"]);
         let enormous = BodySize::new(u128::MAX, [(usize::MAX, u128::MAX), (3, u128::MAX)]);
         assert!(beyond(&enormous, &all, &Limits::NONE).is_some());
     }

@@ -57,7 +57,7 @@ impl Scene {
     ///     model = { kind = 'shape-based', stiffness = 1e4 }
     /// ";
     /// let scene = Scene::parse(text, "cubes.toml", &Limits::default())?;
-    /// assert_eq!((scene.name.as_str(), scene.body.len()), ("cubes", 64));
+    /// assert_eq!((scene.name.as_str(), scene.bodies[0].body.len()), ("cubes", 64));
     ///
     /// let wrong = text.replace("side", "size");
     /// let error = Scene::parse(&wrong, "cubes.toml", &Limits::default()).unwrap_err();
@@ -210,7 +210,7 @@ fn syntax(source: &Source<'_>, errors: &[toml::de::Error], name: &str) -> Mistak
             let (found, text) = (error.message(), source.text().get(span.clone()).unwrap_or_default());
             let not_toml = || format!("this is not TOML: {found}");
             let (message, help) = if found == "duplicate key" {
-                let is_list = ["run", "obstacle", "hold", "grab"].contains(&text);
+                let is_list = ["body", "run", "obstacle", "hold", "grab"].contains(&text);
                 let help = is_list.then(|| format!("write `[[{text}]]` before each of several"));
                 (format!("`{text}` is given a second time"), help)
             } else if let Some((comma, [whole, part])) = decimal_comma(source.text(), span.start) {

@@ -125,6 +125,24 @@ pub struct Run {
     pub colour: Option<Colour>,
 }
 
+/// Some bodies of a scene together.
+#[derive(Clone, Debug)]
+pub(crate) struct Together {
+    pub(crate) bodies: Arc<Assembly>,
+    /// The initial state of all of them.
+    pub(crate) initial: State,
+}
+
+impl Together {
+    /// Bodies with their initial states.
+    pub(crate) fn new<'a>(all: impl Iterator<Item = (&'a Arc<Body>, &'a State)> + Clone) -> Self {
+        let bodies = all.clone().map(|(body, _)| Arc::clone(body)).collect();
+        let joined = |part: fn(&State) -> &[DVec3]| all.clone().flat_map(|(_, state)| part(state)).copied().collect();
+        let initial = State::new(joined(|state| &state.position), joined(|state| &state.velocity));
+        Self { bodies: Arc::new(Assembly::new(bodies)), initial }
+    }
+}
+
 impl Scene {
     /// The diagnostics whose time series pictures need; `None` if pictures do not show the course of the whole scene.
     /// Charts, paths, cameras that follow, and the drawn sizes of plates and walls show it.
@@ -206,10 +224,14 @@ impl Run {
         self.models.iter().map(|model| &**model).zip(self.of.iter().map(|&body| &scene.bodies[body]))
     }
 
+    /// Each model with its body at rest.
+    pub(crate) fn models_and_bodies(&self) -> impl Iterator<Item = (&dyn ElasticModel, &Body)> {
+        self.models.iter().map(|model| &**model).zip(self.bodies.bodies().iter().map(|body| &**body))
+    }
+
     /// The shortest period of a node of any of its bodies (s).
     pub(crate) fn shortest_period(&self) -> f64 {
-        let parts = self.models.iter().zip(self.bodies.bodies());
-        parts.map(|(model, body)| model.shortest_period(body)).fold(f64::INFINITY, f64::min)
+        self.models_and_bodies().map(|(model, body)| model.shortest_period(body)).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -218,6 +240,11 @@ impl Scene {
     #[cfg(feature = "render")]
     pub(crate) fn is_lit(&self) -> bool {
         self.dimension() == Dimension::Space
+    }
+
+    /// All its bodies together.
+    pub(crate) fn together(&self) -> Together {
+        Together::new(self.bodies.iter().map(|one| (&one.body, &one.initial)))
     }
 
     /// Whether its bodies are in the plane or in space.

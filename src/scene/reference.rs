@@ -1,7 +1,7 @@
 //! The reference of scene files and figure files as Markdown, made from their schemas.
 
 use super::figure;
-use super::schema::{choices, schema, variants};
+use super::schema::{by_name, choices, schema, variants};
 use super::structure::expect::{first_sentence, range};
 use serde_json::Value;
 
@@ -134,13 +134,13 @@ fn description(schema: &Value) -> &str {
     schema["description"].as_str().unwrap_or_default()
 }
 
-/// The table that a key holds, alone, in an array or as one of several alternatives.
+/// The table that a key holds, alone, in an array, by name, or as one of several alternatives.
 fn table_of(schema: &Value) -> Option<&Value> {
     if schema["properties"].is_object() || variants(schema).is_some() {
         return Some(schema);
     }
     let alternatives = schema["anyOf"].as_array().into_iter().flatten();
-    schema.get("items").into_iter().chain(alternatives).find_map(table_of)
+    schema.get("items").into_iter().chain(by_name(schema)).chain(alternatives).find_map(table_of)
 }
 
 /// The type of a value in words, with its range.
@@ -176,7 +176,7 @@ fn kind(schema: &Value) -> String {
                 (None, None) => format!("array of {entries}"),
             }
         }
-        _ => "table".into(),
+        _ => by_name(schema).map_or_else(|| "table".into(), |entry| format!("table of {}", plural(&kind(entry)))),
     }
 }
 

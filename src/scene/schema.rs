@@ -26,8 +26,8 @@ pub(super) static SCHEMA: LazyLock<Value> = LazyLock::new(|| schema_of::<SceneFi
 /// builders are documented.
 pub(super) static SCHEMA_OF_CODE: LazyLock<Value> = LazyLock::new(|| {
     let mut schema = schema();
-    let required = schema["properties"]["run"]["items"]["required"].as_array_mut();
-    required.expect("keys that a run needs").retain(|key| key != "model");
+    let run = schema["properties"]["run"]["items"].as_object_mut();
+    run.expect("a table").shift_remove("oneOf").expect("keys that a run needs");
     undescribe(&mut schema);
     schema
 });
@@ -160,4 +160,9 @@ pub(super) fn choices(schema: &Value) -> Option<Vec<&str>> {
     }
     let branches = schema.get("oneOf")?.as_array()?;
     branches.iter().map(choices).collect::<Option<Vec<_>>>().map(|lists| lists.concat())
+}
+
+/// The schema of the entries of a table whose keys are names, such as `models`.
+pub(super) fn by_name(schema: &Value) -> Option<&Value> {
+    schema.get("additionalProperties").filter(|entry| entry.is_object())
 }

@@ -1,6 +1,6 @@
 //! Predictions of the stability of a scene's runs.
 
-use super::{RunSummary, Scene};
+use super::{Run, RunSummary, Scene};
 use crate::reading::words::{quoted, short};
 use crate::sim::Integrator;
 use crate::sim::stability::Stability;
@@ -9,7 +9,7 @@ impl Scene {
     /// The largest stable step of a run.
     pub(crate) fn stability(&self, run: usize) -> Stability {
         let run = &self.runs[run];
-        Stability::of(run.body(), run.models[0].as_ref(), run.integrator, &run.grips, self.duration)
+        Stability::of_parts(&run.bodies, &run.models, run.integrator, &run.grips, self.duration)
     }
 
     /// The message and remedy for a run whose step is more than 0.9 of the largest stable one, with that share. Runs
@@ -18,7 +18,8 @@ impl Scene {
     pub(super) fn near_limit(&self, number: usize) -> Option<(f64, [String; 2])> {
         const NEAR: f64 = 0.9;
         let run = &self.runs[number];
-        let certain = Stability::certain(run.body(), run.models[0].as_ref(), run.integrator)?;
+        let certain = |(model, body)| Stability::certain(body, model, run.integrator);
+        let certain = run.models_and_bodies().map(certain).reduce(|one, other| Some(one?.min(other?)))??;
         if run.step <= NEAR * certain || run.tolerance.is_some() {
             return None;
         }
@@ -40,7 +41,7 @@ impl Scene {
     /// The message and remedy for a run that is unstable with any step: explicit Euler without damping.
     pub(super) fn never_stable(&self, number: usize) -> Option<[String; 2]> {
         let run = &self.runs[number];
-        let is_undamped = run.models[0].bound(run.body()).is_some_and(|bound| bound.damping == 0.0);
+        let is_undamped = run.is_undamped();
         (run.integrator == Integrator::ExplicitEuler && is_undamped).then(|| {
             let name = quoted(&run.name);
             [
@@ -56,7 +57,7 @@ impl Scene {
     pub(super) fn rebound_gain(&self, number: usize, largest: f64) -> Option<f64> {
         const GAIN: f64 = 0.2;
         let run = &self.runs[number];
-        let is_undamped = run.models[0].bound(run.body()).is_some_and(|bound| bound.damping == 0.0);
+        let is_undamped = run.is_undamped();
         let is_elastic = self.obstacles.iter().any(|obstacle| obstacle.restitution == 1.0);
         let has_limit = run.tolerance.is_none() && largest > 0.0 && largest.is_finite();
         let share = run.step / largest;
@@ -67,6 +68,13 @@ impl Scene {
     pub(crate) fn too_large_steps(&self) -> Vec<String> {
         let near = (0..self.runs.len()).filter_map(|run| self.near_limit(run));
         near.filter(|(share, _)| *share > 1.0).map(|(_, words)| words.join(": ")).collect()
+    }
+}
+
+impl Run {
+    /// Whether a body of it is known to have no damping.
+    fn is_undamped(&self) -> bool {
+        self.models_and_bodies().any(|(model, body)| model.bound(body).is_some_and(|bound| bound.damping == 0.0))
     }
 }
 

@@ -82,7 +82,7 @@ fn unknown_keys() {
         PLANE,
         "mass = 1",
         "hue = 1",
-        "9:1 unknown key `hue` in `body` known here: lattice, polygon, fan, disc, bars, nodes,",
+        "9:1 unknown key `hue` in `body` known here: name, lattice, polygon, fan, disc, bars,",
     );
     case(PLANE, "mass = 1", "colour = 1", "9:1 `colour` belongs to `run` or `view`; known");
     case(PLANE, "mass = 1", "friction = 1", "9:1 `friction` belongs to `obstacle`");

@@ -8,8 +8,8 @@
 mod lanczos;
 mod limits;
 
+use super::assembly::Assembly;
 use super::body::Body;
-
 use super::element::Dimension;
 use super::grip::Grip;
 use super::integrate::Integrator;
@@ -59,6 +59,32 @@ impl Stability {
         let has_springs = !model.springs().is_empty();
         let stretched = has_springs.then(|| stretched(body, model, &is_free).largest_step(integrator));
         Self { largest: Linear::new(body, model, is_free).largest_step(integrator), stretched }
+    }
+
+    /// Predicts the largest step that is stable for all bodies of a run, each with its model, as [`Self::of`] for each. Grips
+    /// number the nodes of all bodies.
+    pub fn of_parts(
+        bodies: &Assembly,
+        models: &[Arc<dyn ElasticModel>],
+        integrator: Integrator,
+        grips: &[Grip],
+        duration: f64,
+    ) -> Self {
+        let own_grips = |body: usize| {
+            let own = bodies.nodes(body);
+            let nodes = |grip: &Grip| -> Vec<u32> {
+                let nodes = grip.nodes.iter().filter(|&&node| own.contains(&(node as usize)));
+                nodes.map(|node| node - own.start as u32).collect()
+            };
+            grips.iter().map(|grip| Grip { nodes: nodes(grip), ..grip.clone() }).collect::<Vec<_>>()
+        };
+        let parts = bodies.bodies().iter().zip(models).enumerate();
+        let each = parts.map(|(at, (body, model))| Self::of(body, &**model, integrator, &own_grips(at), duration));
+        let none = Self { largest: f64::INFINITY, stretched: None };
+        each.fold(none, |least, one| Self {
+            largest: least.largest.min(one.largest),
+            stretched: least.stretched.into_iter().chain(one.stretched).reduce(f64::min),
+        })
     }
 
     /// A step (s) that is stable for certain, without computing eigenvalues: 0 if none is known, `None` for models that do not

@@ -5,7 +5,7 @@ use crate::scene::file::{
     Start, StartShape,
 };
 
-/// Builds the body of a scene: rest shape, masses and initial state.
+/// Builds a body of a scene: rest shape, masses and initial state.
 ///
 /// The rest shape is rotated by [`Self::rotation`], moved by [`Self::offset`], set down by [`Self::lowest`] and thrown
 /// with [`Self::velocity`], in this order. Coordinates are two in the plane and three in space.
@@ -54,6 +54,9 @@ impl BodyBuilder {
     }
 
     setters! {
+        /// The name, which [`RunBuilder::bodies`](super::RunBuilder::bodies) and
+        /// [`RunBuilder::by_body`](super::RunBuilder::by_body) use, and result files.
+        name(name: impl Into<String>) 0.name = Some(name.into());
         /// Reads elements in space as the convex hulls of their nodes, in any order.
         convex() 0.convex = true;
         /// Springs as pairs of nodes, for mass-spring models without a named topology. Only with [`Self::arrays`].

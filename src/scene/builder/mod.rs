@@ -23,8 +23,8 @@ use super::file::{
     BodyFile, Coordinates, GrabFile, HoldFile, ModelFile, MotionPath, NodesFile, RegionFile, RunFile, SceneFile,
     StepFile, TimeFile,
 };
-use super::resolve::SceneParts;
 use super::resolve::lists::check_unwritten;
+use super::resolve::{SceneParts, places};
 use super::schema::SCHEMA_OF_CODE;
 use super::step::NamedStep;
 use super::{Limits, Scene, structure};
@@ -61,7 +61,7 @@ impl Scene {
     ///     .obstacle(ObstacleBuilder::floor(0.0).restitution(0.3))
     ///     .run("Local shape", shape_based::Parameters::new(1e4))
     ///     .build(&Limits::default())?;
-    /// assert_eq!((scene.body.len(), scene.last_frame()), (64, 60));
+    /// assert_eq!((scene.bodies[0].body.len(), scene.last_frame()), (64, 60));
     /// # Ok::<(), localshape::scene::SceneError>(())
     /// ```
     ///
@@ -89,7 +89,7 @@ impl Scene {
                 frames_per_second: 60.0,
                 integrator: Integrator::default(),
             },
-            body: body.0,
+            body: vec![body.0],
             run: Vec::new(),
             obstacle: Vec::new(),
             hold: Vec::new(),
@@ -119,7 +119,13 @@ impl SceneBuilder {
         frames_per_second(rate: f64) 0.time.frames_per_second = rate;
     }
 
-    /// Adds a run: a model on the body, and a panel of the picture. Names are unique. A [`RunBuilder`] gives the run
+    /// Adds a body. Each of several bodies needs a unique [name](BodyBuilder::name).
+    pub fn body(mut self, body: BodyBuilder) -> Self {
+        self.0.body.push(body.0);
+        self
+    }
+
+    /// Adds a run: a model on the bodies, and a panel of the picture. Names are unique. A [`RunBuilder`] gives the run
     /// more settings than its model.
     pub fn run(mut self, name: impl Into<String>, run: impl Into<RunBuilder>) -> Self {
         self.0.run.push(RunFile { name: name.into(), ..run.into().0 });
@@ -204,7 +210,8 @@ impl SceneBuilder {
         let Self(mut file) = self;
         let name = file.title.clone().unwrap_or_default();
         // Long lists are checked in place.
-        let mut lists = if file.body.nodes.is_some() { file.body.take_lists() } else { BodyFile::default() };
+        let take = |body: &mut BodyFile| body.nodes.is_some().then(|| body.take_lists());
+        let lists: Vec<_> = file.body.iter_mut().map(take).collect();
         let values = toml::Value::try_from(&file).expect("numbers, texts, and lists and tables of them");
         let digits = digits(&values);
         let tree = tree(values, &mut digits.iter());
@@ -213,9 +220,11 @@ impl SceneBuilder {
         let mut report = Collector::new(&source, &root);
         let checked = structure::check(&SCHEMA_OF_CODE, &root, &mut report);
         let before = report.total();
-        if lists.nodes.is_some() {
-            file.body.swap_lists(&mut lists);
-            check_unwritten(&file.body, &mut report);
+        let places = places(file.body.len(), file.body.len() > 1);
+        for ((body, lists), place) in file.body.iter_mut().zip(lists).zip(places) {
+            let Some(mut lists) = lists else { continue };
+            body.swap_lists(&mut lists);
+            check_unwritten(body, place, &mut report);
         }
         let is_flawed = report.total() > before;
         match SceneParts::of(file, &checked, is_flawed).scene(&name, limits, &mut report) {
@@ -261,7 +270,7 @@ fn tree<'t>(value: toml::Value, digits: &mut impl Iterator<Item = &'t String>) -
     Spanned::new(0..0, inner)
 }
 
-/// Builds a run with more settings than a model: its own time step, integrator, kernel or colour, or a model of your
+/// Builds a run with more settings than a model: its own bodies, time step, integrator, kernel or colour, or a model of your
 /// own.
 ///
 /// ```
@@ -286,17 +295,48 @@ impl RunBuilder {
         Self::of(ModelFile::Typed(model.into()))
     }
 
+    /// A run with a model for each of its bodies, by name.
+    ///
+    /// ```
+    /// use localshape::scene::{BodyBuilder, Lattice, Limits, RunBuilder, Scene};
+    /// use localshape::sim::model::{mass_spring, shape_based};
+    ///
+    /// let cube = BodyBuilder::lattice(Lattice::new([3, 3, 3], 0.1)).name("cube");
+    /// let brick = BodyBuilder::lattice(Lattice::new([6, 3, 3], 0.1)).name("brick").offset([1.0, 0.0, 0.0]);
+    /// let shape = shape_based::Parameters::new(1e4);
+    /// let models = [("cube", shape.clone().into()), ("brick", mass_spring::Parameters::new(1e4).into())];
+    /// let scene = Scene::builder("pair", cube)
+    ///     .body(brick)
+    ///     .run("Both", RunBuilder::by_body(models))
+    ///     .run("Cube alone", RunBuilder::new(shape).bodies(["cube"]))
+    ///     .build(&Limits::default())?;
+    /// assert_eq!((scene.bodies.len(), scene.runs[0].body().len(), scene.runs[1].body().len()), (2, 64 + 112, 64));
+    /// # Ok::<(), localshape::scene::SceneError>(())
+    /// ```
+    pub fn by_body(models: impl IntoIterator<Item = (impl Into<String>, ModelParameters)>) -> Self {
+        let models = models.into_iter().map(|(name, model)| (name.into(), ModelFile::Typed(model)));
+        Self(RunFile { models: Some(models.collect()), ..Self::empty() })
+    }
+
     /// A run with a model of your own. The scene then has no digest.
     pub fn own(model: Arc<dyn ElasticModel>) -> Self {
         Self::of(ModelFile::Own(model))
     }
 
     fn of(model: ModelFile) -> Self {
-        let (name, step, tolerance, integrator, kernel, colour) = Default::default();
-        Self(RunFile { name, model, step, tolerance, integrator, kernel, colour })
+        Self(RunFile { model: Some(model), ..Self::empty() })
+    }
+
+    /// A run without a model.
+    fn empty() -> RunFile {
+        let (name, bodies, model, models, step, tolerance, integrator, kernel, colour) = Default::default();
+        RunFile { name, bodies, model, models, step, tolerance, integrator, kernel, colour }
     }
 
     setters! {
+        /// The names of the bodies of this run, instead of all.
+        bodies(names: impl IntoIterator<Item = impl Into<String>>)
+            0.bodies = Some(names.into_iter().map(Into::into).collect());
         /// Time step ΔT of this run (s).
         step(seconds: f64) 0.step = Some(StepFile::Seconds(seconds));
         /// The number of steps of this run in the shortest period T = 2π√(m/k) of all runs.

@@ -7,7 +7,7 @@ use crate::look::{self, Subject};
 use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::words::list;
 use crate::scene::structure::ValidFile;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Run, Scene, SceneError, Together};
 use crate::sim::Diagnostic;
 use serde::Deserialize;
 use serde_json::Value;
@@ -184,7 +184,8 @@ impl Scenes<'_, '_, '_> {
         let Self { report, mut scenes, .. } = self;
         share_lines(&mut scenes);
         if let Some(typed) = &file.colour {
-            let subjects: Vec<_> = scenes.iter().map(subject).collect();
+            let all: Vec<_> = scenes.iter().map(Scene::together).collect();
+            let subjects: Vec<_> = scenes.iter().zip(&all).map(|(scene, bodies)| subject(scene, bodies)).collect();
             let scales = look::colour(typed, &subjects, "sheet", report).unwrap_or_default();
             scenes.iter_mut().zip(scales).for_each(|(scene, scale)| scene.view.colour = Some(scale));
         }
@@ -302,14 +303,15 @@ impl Scenes<'_, '_, '_> {
         }
         let stiffness = self.scenes[0].runs[0].models[0].stiffness();
         for (index, scene) in self.scenes.iter().enumerate() {
-            if scene.runs.iter().any(|run| run.models[0].stiffness() != stiffness) {
+            if scene.runs.iter().flat_map(|run| &run.models).any(|model| model.stiffness() != stiffness) {
                 let message =
                     format!("a run has another stiffness than the first, {stiffness} N/m: forces would have two units");
                 self.report.at(&path(index), message, "give all runs the same stiffness");
             }
-            if scene.runs[0].body().len() > MOST_NODES {
-                let message =
-                    format!("the body has {} nodes, whose forces would hide each other", scene.runs[0].body().len());
+            let nodes = scene.runs.iter().map(|run| run.body().len()).max().unwrap_or_default();
+            if nodes > MOST_NODES {
+                let bodies = if scene.bodies.len() == 1 { "the body has" } else { "the bodies of a run have" };
+                let message = format!("{bodies} {nodes} nodes, whose forces would hide each other");
                 self.report.at(&path(index), message, format!("expected at most {MOST_NODES}"));
             }
         }
@@ -341,17 +343,17 @@ impl Scenes<'_, '_, '_> {
 }
 
 /// The scene's part of the input of views.
-fn subject(scene: &Scene) -> Subject<'_> {
+fn subject<'a>(scene: &'a Scene, together: &'a Together) -> Subject<'a> {
     Subject {
-        body: scene.runs[0].body(),
-        initial: &scene.runs[0].initial,
+        body: together.bodies.whole(),
+        initial: &together.initial,
         side: scene.view.side,
         has_cells: scene.view.has_cells,
         gravity: scene.gravity,
         obstacles: &scene.obstacles,
-        grips: &scene.runs[0].grips,
+        is_gripped: scene.runs.iter().any(|run| !run.grips.is_empty()),
         runs: scene.runs.iter().map(|run| (run.name.as_str(), run.step)).collect(),
-        models: scene.runs.iter().map(|run| &*run.models[0]).collect(),
+        parts: scene.runs.iter().flat_map(Run::models_and_bodies).collect(),
     }
 }
 

@@ -1,11 +1,28 @@
 //! The body as typed.
 
 use super::{Coordinates, Positive};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Serialize, Serializer};
 use std::mem::swap;
 
-/// The body: exactly one of `lattice`, `polygon`, `fan`, `disc`, `bars` and `file`, or explicit `nodes` and `elements`.
+/// The most bodies of a scene.
+const MOST: usize = 1000;
+
+/// The schema of the bodies of a scene: one table, or a list of several.
+pub(super) fn one_or_several(generator: &mut SchemaGenerator) -> Schema {
+    let body = generator.subschema_for::<BodyFile>();
+    json_schema!({ "anyOf": [body, { "type": "array", "items": body, "minItems": 1, "maxItems": MOST }] })
+}
+
+/// Writes the bodies of a scene: one as a table, several as a list.
+pub(super) fn written<S: Serializer>(bodies: &[BodyFile], serializer: S) -> Result<S::Ok, S::Error> {
+    match bodies {
+        [only] => only.serialize(serializer),
+        several => several.serialize(serializer),
+    }
+}
+
+/// A body: exactly one of `lattice`, `polygon`, `fan`, `disc`, `bars` and `file`, or explicit `nodes` and `elements`.
 ///
 /// At the start `rotation`, `offset`, `lowest`, `velocity` and `spin` are applied in this order. The rest shape stays
 /// as it is.
@@ -26,6 +43,9 @@ use std::mem::swap;
     }
 ))]
 pub(in crate::scene) struct BodyFile {
+    /// Unique name, which `bodies` and `models` of runs use, and result files. Each of several bodies needs one.
+    #[schemars(length(min = 1, max = 80))]
+    pub(in crate::scene) name: Option<String>,
     /// A block of equal cells: `{ cells = [3, 3, 3], side = 0.1 }` for cubes, `cells = [3, 3]` for squares in the
     /// plane. The block stands on y = 0, centred on x = 0 and z = 0. Nodes are numbered with x fastest, then y, then z.
     pub(in crate::scene) lattice: Option<Lattice>,

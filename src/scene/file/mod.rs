@@ -21,7 +21,7 @@ pub use crate::reading::coordinates::Coordinates;
 use crate::sim::model::{ElasticModel, Misfit, ModelParameters};
 use crate::sim::{Body, Integrator, Kernel};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -29,8 +29,8 @@ use std::sync::Arc;
 /// precision.
 pub(super) const LARGEST: f64 = 1e30;
 
-/// A scene: one body, one world, and several runs with one elastic model each.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+/// A scene: bodies, one world, and several runs.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct SceneFile {
     /// The subject of the scene. Default: the file's name.
@@ -40,8 +40,11 @@ pub(in crate::scene) struct SceneFile {
     pub(in crate::scene) gravity: Option<Coordinates>,
     /// Duration, time step and frame rate.
     pub(in crate::scene) time: TimeFile,
-    /// The body, the same in all runs.
-    pub(in crate::scene) body: BodyFile,
+    /// The body, or several as `[[body]]`, each with a `name`. Several bodies are all in the plane or all in space. They go
+    /// through each other. Their order is the order of rows in result files.
+    #[serde(serialize_with = "body::written")]
+    #[schemars(schema_with = "body::one_or_several")]
+    pub(in crate::scene) body: Vec<BodyFile>,
     /// The runs, with one panel of the picture each.
     #[schemars(length(min = 1, max = 256))]
     pub(in crate::scene) run: Vec<RunFile>,
@@ -73,7 +76,7 @@ pub(in crate::scene) struct TimeFile {
     #[schemars(range(min = 0.0))]
     pub(in crate::scene) duration: f64,
     /// Time step ΔT: seconds, a fraction of the cycle T such as `"T/50"` or `"0.02 T"`, or `"auto"`. T = 2π√(m/k), with
-    /// the mass of the lightest node and the largest stiffness of all runs. `"auto"` takes equal steps between two
+    /// the mass of the lightest node and the largest stiffness of all bodies and runs. `"auto"` takes equal steps between two
     /// frames, at most half of the largest step that is predicted to be stable for every run without a step of its own.
     /// `localshape check` prints that prediction.
     #[schemars(extend("default" = "T/50"))]
@@ -110,17 +113,27 @@ impl StepFile {
     pub(in crate::scene) const DEFAULT: Self = Self::Named(NamedStep::Divided(50.0));
 }
 
-/// One run: a model on the scene's body.
+/// One run: bodies of the scene with their models.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["model"] }, { "required": ["models"] }]))]
 pub(in crate::scene) struct RunFile {
     /// Unique name, shown above the panel and used by `--only` and in result files.
     #[schemars(length(min = 1, max = 80))]
     pub(in crate::scene) name: String,
-    /// The elastic model and its parameters.
-    #[serde(skip_serializing_if = "ModelFile::is_own")]
-    #[schemars(with = "ModelParameters")]
-    pub(in crate::scene) model: ModelFile,
+    /// The names of the bodies of this run, such as `["coarse"]`. So the same thing in another discretisation stands beside
+    /// it. The order of names does not matter. Default: all bodies of the scene.
+    #[schemars(length(min = 1))]
+    pub(in crate::scene) bodies: Option<Vec<String>>,
+    /// The elastic model of all bodies of the run, and its parameters. Each run has `model` or `models`.
+    #[serde(skip_serializing_if = "is_unwritten")]
+    #[schemars(with = "Option<ModelParameters>")]
+    pub(in crate::scene) model: Option<ModelFile>,
+    /// The elastic model of each body of the run by its name, in place of `model`: `{ cube = { kind = "shape-based",
+    /// stiffness = 1e4 }, ball = { kind = "mass-spring", stiffness = 1e4 } }`.
+    #[serde(serialize_with = "write_models")]
+    #[schemars(with = "Option<BTreeMap<String, ModelParameters>>")]
+    pub(in crate::scene) models: Option<BTreeMap<String, ModelFile>>,
     /// Time step of this run, with the T of `[time]`. `"auto"` uses the prediction of this run alone. Default: that of
     /// `[time]`.
     pub(in crate::scene) step: Option<StepFile>,
@@ -139,7 +152,42 @@ pub(in crate::scene) struct RunFile {
     pub(in crate::scene) colour: Option<TypedColour>,
 }
 
-/// The elastic model of a run.
+/// What moves the bodies of a run.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::scene) enum RunSource<'a> {
+    /// One model for all of them.
+    Model(&'a ModelFile),
+    /// A model for each, by name.
+    Models(&'a BTreeMap<String, ModelFile>),
+}
+
+impl RunFile {
+    /// What moves its bodies; `None` after a mistake.
+    pub(in crate::scene) fn source(&self) -> Option<RunSource<'_>> {
+        let model = self.model.as_ref().map(RunSource::Model);
+        model.or_else(|| self.models.as_ref().map(RunSource::Models))
+    }
+
+    /// Whether it has a model of the caller's own.
+    pub(in crate::scene) fn has_own_model(&self) -> bool {
+        self.model.iter().chain(self.models.iter().flat_map(BTreeMap::values)).any(ModelFile::is_own)
+    }
+}
+
+/// Whether a file would have no model: none is given, or one of the caller's own.
+fn is_unwritten(model: &Option<ModelFile>) -> bool {
+    model.as_ref().is_none_or(ModelFile::is_own)
+}
+
+/// Writes models by name, without those of the caller's own.
+fn write_models<S: Serializer>(models: &Option<BTreeMap<String, ModelFile>>, to: S) -> Result<S::Ok, S::Error> {
+    match models {
+        None => to.serialize_none(),
+        Some(models) => to.collect_map(models.iter().filter(|(_, model)| !model.is_own())),
+    }
+}
+
+/// The elastic model of a body.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(untagged, from = "ModelParameters")]
 pub(in crate::scene) enum ModelFile {

@@ -2,21 +2,23 @@
 
 use super::lists::{Lists, check_count, check_exclusive};
 use super::motion::axis;
-use super::{direction, elements, vector};
+use super::{Place, direction, elements, vector};
 use crate::reading::captions::typed;
-use crate::reading::collector::{Collector, PathPart, key_path};
+use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::quoted;
-use crate::scene::file::{BodyFile, Cells, Coordinates, Lattice, RunFile, SideFile, StartShape};
+use crate::scene::file::{BodyFile, Cells, Coordinates, Lattice, SideFile, StartShape};
 use crate::scene::generate::{Generator, Made, brought_to_start};
-use crate::scene::limits::{BodySize, Excess, Limits};
+use crate::scene::limits::BodySize;
 use crate::sim::{Body, Dimension, Solids, State};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A body, its initial state, and the other settings of `[body]`.
+/// A body, its initial state, and the other settings of its table.
 #[derive(Debug)]
 pub(super) struct ResolvedBody {
+    /// Empty if it has none.
+    pub(super) name: String,
     pub(super) body: Arc<Body>,
     /// The initial state.
     pub(super) initial: State,
@@ -28,32 +30,120 @@ pub(super) struct ResolvedBody {
     pub(super) has_cells: bool,
 }
 
-/// Whether a body is in the plane or in space, by the first coordinates given.
-pub(super) fn dimension(file: &BodyFile, beside: Option<&Lists>) -> Option<Dimension> {
-    if let Some(generator) = Generator::of(file) {
-        return Some(generator.dimension());
+impl ResolvedBody {
+    /// The body in messages.
+    pub(super) fn in_words(&self) -> String {
+        in_words(&self.name)
     }
-    let listed = || Some(if file.nodes.as_ref()?.first()?.0.len() == 2 { Dimension::Plane } else { Dimension::Space });
-    beside.map(|lists| lists.dimension).or_else(listed)
 }
 
-/// The body, or `None` after reporting every mistake in it. `flawed` lists keys that were left out because of mistakes.
-/// `beside` has the lists of the body's file.
-pub(super) fn resolve(
-    file: &BodyFile,
-    beside: Option<Lists>,
+/// A body with this name in messages.
+pub(super) fn in_words(name: &str) -> String {
+    if name.is_empty() { "the body".to_owned() } else { format!("the body {}", quoted(name)) }
+}
+
+/// A body as typed, with the lists of its own file.
+#[derive(Debug)]
+pub(super) struct TypedBody<'a> {
+    file: &'a BodyFile,
+    place: Place,
+    content: Content<'a>,
+    /// Whether keys were left out because of mistakes, or lists have some.
     flawed: bool,
-    runs: &[Option<RunFile>],
-    limits: &Limits,
-    report: &mut Collector<'_>,
-) -> Option<ResolvedBody> {
-    match Generator::of(file) {
-        Some(generator) => generated(file, generator, runs, limits, report),
-        None => {
-            let before = report.total();
-            let lists = if file.file.is_some() { beside? } else { Lists::typed(file, report)? };
-            let flawed = flawed || report.total() > before;
-            listed(file, lists, flawed, runs, limits, report)
+}
+
+/// The nodes and elements of a body before it is made.
+#[derive(Debug)]
+enum Content<'a> {
+    Generated(Generator<'a>),
+    Listed(Lists),
+}
+
+impl<'a> TypedBody<'a> {
+    /// The body of a table; `None` if it has no nodes and elements. Points with another number of coordinates are
+    /// reported. `flawed` tells whether keys were left out because of mistakes. `beside` has the lists of the body's
+    /// file.
+    pub(super) fn new(
+        file: &'a BodyFile,
+        beside: Option<Lists>,
+        place: Place,
+        flawed: bool,
+        report: &mut Collector<'_>,
+    ) -> Option<Self> {
+        let before = report.total();
+        let content = match Generator::of(file) {
+            Some(generator) => Content::Generated(generator),
+            None if file.file.is_some() => Content::Listed(beside?),
+            None => Content::Listed(Lists::typed(file, &place, report)?),
+        };
+        Some(Self { file, place, content, flawed: flawed || report.total() > before })
+    }
+
+    /// Whether the body is in the plane or in space, by the first coordinates given.
+    pub(super) fn dimension(&self) -> Dimension {
+        match &self.content {
+            Content::Generated(generator) => generator.dimension(),
+            Content::Listed(lists) => lists.dimension,
+        }
+    }
+
+    /// Its size before it is made.
+    pub(super) fn size(&self) -> BodySize {
+        match &self.content {
+            Content::Generated(generator) => generator.size(),
+            Content::Listed(lists) => {
+                let mut elements = BTreeMap::new();
+                lists.elements.iter().for_each(|list| *elements.entry(list.len()).or_default() += 1);
+                let springs = lists.springs.as_ref().map(|springs| springs.len() as u128);
+                BodySize { springs, ..BodySize::new(lists.nodes.len() as u128, elements) }
+            }
+        }
+    }
+
+    /// How to make it smaller.
+    pub(super) fn less(&self) -> &'static str {
+        match self.content {
+            Content::Generated(Generator::Lattice(_)) => "use fewer cells",
+            Content::Generated(Generator::Polygon(_) | Generator::Fan(_)) => "use fewer sides",
+            Content::Generated(Generator::Disc(_)) => "use fewer rings or sectors",
+            Content::Generated(Generator::Bars(_)) => "use fewer bars",
+            Content::Listed(_) => "use fewer nodes",
+        }
+    }
+
+    /// Reports that it is too large.
+    pub(super) fn too_large(&self, message: String, help: String, report: &mut Collector<'_>) {
+        let at = |keys: &[&'static str]| {
+            self.place.iter().copied().chain(keys.iter().map(|&key| PathPart::Key(key))).collect::<Vec<_>>()
+        };
+        let path = match (&self.content, &self.file.file) {
+            (Content::Generated(Generator::Lattice(_)), _) => at(&["lattice", "cells"]),
+            (Content::Generated(Generator::Polygon(_)), _) => at(&["polygon", "sides"]),
+            (Content::Generated(Generator::Fan(_)), _) => at(&["fan", "sides"]),
+            (Content::Generated(Generator::Disc(_)), _) => at(&["disc"]),
+            (Content::Generated(Generator::Bars(_)), _) => at(&["bars", "count"]),
+            (Content::Listed(_), Some(name)) => {
+                return report.at(&at(&["file"]), format!("`{name}`: {message}"), help);
+            }
+            (Content::Listed(_), None) => return report.at_key(&at(&["nodes"]), message, help),
+        };
+        report.at(&path, message, help);
+    }
+
+    /// Reports mistakes in settings of a body that is too large to be made.
+    pub(super) fn check(&self, report: &mut Collector<'_>) {
+        if let Content::Generated(generator) = self.content {
+            check_generator(generator, &self.place, report);
+            check_start(self.file, &self.place, generator.dimension(), report);
+        }
+    }
+
+    /// The body, or `None` after reporting every mistake in it.
+    pub(super) fn resolve(self, report: &mut Collector<'_>) -> Option<ResolvedBody> {
+        let Self { file, place, content, flawed } = self;
+        match content {
+            Content::Generated(generator) => generated(file, generator, &place, report),
+            Content::Listed(lists) => listed(file, lists, flawed, report),
         }
     }
 }
@@ -62,44 +152,29 @@ pub(super) fn resolve(
 fn generated(
     file: &BodyFile,
     generator: Generator<'_>,
-    runs: &[Option<RunFile>],
-    limits: &Limits,
+    place: &Place,
     report: &mut Collector<'_>,
 ) -> Option<ResolvedBody> {
     let before = report.total();
     let dimension = generator.dimension();
-    let along = check_generator(generator, report);
-    let (path, less) = match generator {
-        Generator::Lattice(_) => (key_path!["body", "lattice", "cells"].to_vec(), "use fewer cells"),
-        Generator::Polygon(_) => (key_path!["body", "polygon", "sides"].to_vec(), "use fewer sides"),
-        Generator::Fan(_) => (key_path!["body", "fan", "sides"].to_vec(), "use fewer sides"),
-        Generator::Disc(_) => (key_path!["body", "disc"].to_vec(), "use fewer rings or sectors"),
-        Generator::Bars(_) => (key_path!["body", "bars", "count"].to_vec(), "use fewer bars"),
-    };
-    if let Some(Excess { message, help, run }) = generator.size().beyond(runs, limits, less) {
-        match run {
-            Some(run) => report.at(&springs_of(run), message, help),
-            None => report.at(&path, message, help),
-        }
-        check_start(file, dimension, report);
-        return None;
-    }
+    let along = check_generator(generator, place, report);
     let Made { nodes: rest, elements } = generator.make(along?);
     let mass = vec![file.mass.unwrap_or(1.0); rest.len()];
-    let initial = start(file, rest.clone(), None, dimension, report);
+    let initial = start(file, place, rest.clone(), None, dimension, report);
     if report.total() > before {
         return None;
     }
     let body = Arc::new(Body::new(dimension, rest, mass, elements, solids(file), None));
     let of_cells = generator.side();
     let side = of_cells.unwrap_or_else(|| elements::mean_edge(&body));
-    Some(ResolvedBody { body, initial, springs: None, side, has_cells: of_cells.is_some() })
+    let name = file.name.clone().unwrap_or_default();
+    Some(ResolvedBody { name, body, initial, springs: None, side, has_cells: of_cells.is_some() })
 }
 
 /// Checks of a generator that the schema cannot express. Returns the direction of bars; that of other generators has no
 /// meaning.
-fn check_generator(generator: Generator<'_>, report: &mut Collector<'_>) -> Option<DVec3> {
-    let at = |key, inner| key_path!["body", key, inner];
+fn check_generator(generator: Generator<'_>, place: &Place, report: &mut Collector<'_>) -> Option<DVec3> {
+    let at = |key, inner| key_path![place; key, inner];
     match generator {
         Generator::Lattice(Lattice { cells, side, elements, .. }) => {
             let axes = cells.len();
@@ -109,20 +184,22 @@ fn check_generator(generator: Generator<'_>, report: &mut Collector<'_>) -> Opti
                 _ => None,
             };
             if let Some((typed, place, other)) = wrong {
-                let [typed, other] = [typed, other].map(quoted);
+                let ([typed, other], path) = ([typed, other].map(quoted), at("lattice", "elements"));
                 let message =
-                    format!("`body.lattice.elements` is {typed}, but the lattice is {place}: it has {axes} `cells`");
-                report.at(&at("lattice", "elements"), message, format!("use {other}, or other `cells`"));
+                    format!("`{}` is {typed}, but the lattice is {place}: it has {axes} `cells`", written(&path));
+                report.at(&path, message, format!("use {other}, or other `cells`"));
             }
             let sides = match side {
                 SideFile::PerAxis(sides) => sides.len(),
                 SideFile::Equal(_) => axes,
             };
             if sides != axes {
+                let path = at("lattice", "side");
                 let message = format!(
-                    "`body.lattice.side` has {sides} entries, and `cells` has {axes}; expected one for each axis"
+                    "`{}` has {sides} entries, and `cells` has {axes}; expected one for each axis",
+                    written(&path)
                 );
-                report.at(&at("lattice", "side"), message, "or one number for all");
+                report.at(&path, message, "or one number for all");
             }
             (wrong.is_none() && sides == axes).then_some(DVec3::X)
         }
@@ -136,29 +213,9 @@ fn check_generator(generator: Generator<'_>, report: &mut Collector<'_>) -> Opti
 }
 
 /// A body of listed nodes and elements.
-fn listed(
-    file: &BodyFile,
-    lists: Lists,
-    flawed: bool,
-    runs: &[Option<RunFile>],
-    limits: &Limits,
-    report: &mut Collector<'_>,
-) -> Option<ResolvedBody> {
+fn listed(file: &BodyFile, lists: Lists, flawed: bool, report: &mut Collector<'_>) -> Option<ResolvedBody> {
     let before = report.total();
-    let mut elements = BTreeMap::new();
-    lists.elements.iter().for_each(|list| *elements.entry(list.len()).or_default() += 1);
-    let springs = lists.springs.as_ref().map(|springs| springs.len() as u128);
-    let size = BodySize { springs, ..BodySize::new(lists.nodes.len() as u128, elements) };
-    if let Some(Excess { message, help, run }) = size.beyond(runs, limits, "use fewer nodes") {
-        match (run, &file.file) {
-            (Some(run), _) => report.at(&springs_of(run), message, help),
-            (None, None) => report.at_key(&key_path!["body", "nodes"], message, help),
-            (None, Some(name)) => {
-                report.at(&key_path!["body", "file"], format!("`{name}`: {message}"), help);
-            }
-        }
-        return None;
-    }
+    let place = lists.source.body.clone();
     let (dimension, solids) = (lists.dimension, solids(file));
     elements::check(&lists, solids, flawed, report);
     let count = lists.nodes.len();
@@ -177,13 +234,14 @@ fn listed(
     }
     let Lists { nodes: rest, elements, springs, faces, positions, velocities, masses, .. } = lists;
     let mass = masses.unwrap_or_else(|| vec![file.mass.unwrap_or(1.0); count]);
-    let initial = start(file, positions.unwrap_or_else(|| rest.clone()), velocities, dimension, report);
+    let initial = start(file, &place, positions.unwrap_or_else(|| rest.clone()), velocities, dimension, report);
     if flawed || report.total() > before || elements.is_empty() {
         return None;
     }
     let body = Arc::new(Body::new(dimension, rest, mass, elements, solids, faces.as_ref()));
     let side = elements::mean_edge(&body);
-    Some(ResolvedBody { body, initial, springs, side, has_cells: false })
+    let name = file.name.clone().unwrap_or_default();
+    Some(ResolvedBody { name, body, initial, springs, side, has_cells: false })
 }
 
 /// The interpretation of elements with four, five, six and eight nodes.
@@ -191,20 +249,16 @@ fn solids(file: &BodyFile) -> Solids {
     if file.convex { Solids::Convex } else { Solids::Ordered }
 }
 
-/// The place of a run's springs.
-fn springs_of(run: usize) -> [PathPart<'static>; 4] {
-    key_path!["run", run, "model", "springs"]
-}
-
 /// The initial positions and velocities of the body, from its listed positions (m) and velocities (m/s), if any.
 fn start(
     file: &BodyFile,
+    place: &Place,
     mut position: Vec<DVec3>,
     velocities: Option<Vec<DVec3>>,
     dimension: Dimension,
     report: &mut Collector<'_>,
 ) -> State {
-    let (shape, turn, spin, offset, velocity) = check_start(file, dimension, report);
+    let (shape, turn, spin, offset, velocity) = check_start(file, place, dimension, report);
     if let Some((shape, direction, seed)) = shape {
         brought_to_start(&mut position, shape, direction, seed, dimension);
     }
@@ -231,12 +285,13 @@ fn start(
 #[expect(clippy::type_complexity, reason = "the list of all settings of a start")]
 fn check_start(
     file: &BodyFile,
+    place: &Place,
     dimension: Dimension,
     report: &mut Collector<'_>,
 ) -> (Option<(StartShape, DVec3, u32)>, Option<(DVec3, f64)>, Option<DVec3>, DVec3, DVec3) {
     let shape = file.start.as_ref().and_then(|typed| {
-        check_use(typed.shape, report);
-        let path = key_path!["body", "start", "direction"];
+        check_use(typed.shape, place, report);
+        let path = key_path![place; "start", "direction"];
         let along = match &typed.direction {
             // Reported above.
             Some(_) if !typed.shape.has_direction() => DVec3::X,
@@ -246,30 +301,30 @@ fn check_start(
         Some((typed.shape, along, typed.seed))
     });
     let turn = file.rotation.as_ref().and_then(|typed| {
-        let path = key_path!["body", "rotation"];
+        let path = key_path![place; "rotation"];
         Some((axis(typed.axis.as_ref(), dimension, &path, report)?, typed.angle))
     });
     let spin = file.spin.as_ref().and_then(|typed| {
-        let path = key_path!["body", "spin"];
+        let path = key_path![place; "spin"];
         Some(axis(typed.axis.as_ref(), dimension, &path, report)? * typed.rate)
     });
     let mut optional = |typed: &Option<Coordinates>, key| match typed {
-        Some(typed) => vector(typed, dimension, &key_path!["body", key], report).unwrap_or_default(),
+        Some(typed) => vector(typed, dimension, &key_path![place; key], report).unwrap_or_default(),
         None => DVec3::ZERO,
     };
     (shape, turn, spin, optional(&file.offset, "offset"), optional(&file.velocity, "velocity"))
 }
 
 /// Reports keys of a start that do not belong to its shape.
-fn check_use(shape: StartShape, report: &mut Collector<'_>) {
+fn check_use(shape: StartShape, place: &Place, report: &mut Collector<'_>) {
     let about = [
         ("direction", shape.has_direction(), "lines, planes and mirror images"),
         ("seed", shape.is_random(), "clouds"),
     ];
     for (key, used, about) in about {
-        let path = key_path!["body", "start", key];
+        let path = key_path![place; "start", key];
         if !used && report.is_typed(&path) {
-            let message = format!("`body.start.{key}` is about {about}, but the shape is {}", quoted(&typed(&shape)));
+            let message = format!("`{}` is about {about}, but the shape is {}", written(&path), quoted(&typed(&shape)));
             report.at_key(&path, message, "remove it, or use another shape");
         }
     }

@@ -6,44 +6,70 @@ use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::{count, fine};
 use crate::scene::file::{GrabFile, HoldFile, NodesFile, RegionFile};
 use crate::scene::summary::corners;
-use crate::sim::{Body, Dimension, Grip, Motion};
+use crate::sim::{Assembly, Body, Dimension, Grip, Motion};
 use glam::DVec3;
 use std::cell::OnceCell;
 use std::collections::{BTreeMap, HashMap};
+
+/// A constraint: nodes of bodies of the scene, when they are held, and how they move.
+#[derive(Debug)]
+pub(super) struct SceneGrip {
+    /// The nodes of each body of the scene, in rising order.
+    nodes: Vec<Vec<u32>>,
+    /// Start (s).
+    from: f64,
+    /// End (s).
+    until: f64,
+    motion: Motion,
+}
+
+impl SceneGrip {
+    /// The constraint in a run of some of the bodies; `None` if it concerns none of them.
+    pub(super) fn in_run(&self, of: &[usize], bodies: &Assembly) -> Option<Grip> {
+        let placed = |(at, &body): (usize, &usize)| {
+            let first = bodies.nodes(at).start as u32;
+            self.nodes[body].iter().map(move |node| first + node)
+        };
+        let nodes: Vec<u32> = of.iter().enumerate().flat_map(placed).collect();
+        let Self { from, until, ref motion, .. } = *self;
+        (!nodes.is_empty()).then(|| Grip { nodes, from, until, motion: motion.clone() })
+    }
+}
 
 /// The constraints, `hold` first, or `None` after reporting every mistake in them.
 pub(super) fn resolve(
     holds: &[Option<HoldFile>],
     grabs: &[Option<GrabFile>],
-    body: &ResolvedBody,
+    bodies: &[ResolvedBody],
     report: &mut Collector<'_>,
-) -> Option<Vec<Grip>> {
-    let mut named: Vec<(String, Vec<PathPart<'_>>, Grip)> = Vec::new();
-    let layers = OnceCell::new();
+) -> Option<Vec<SceneGrip>> {
+    let mut named: Vec<(String, Vec<PathPart<'_>>, SceneGrip)> = Vec::new();
+    let layers = vec![OnceCell::new(); bodies.len()];
+    let dimension = bodies.first()?.body.dimension;
     for (at, typed) in holds.iter().enumerate() {
         let Some(typed) = typed else { continue };
         let path = key_path!["hold", at].to_vec();
         let until = typed.until.unwrap_or(f64::INFINITY);
-        let nodes = nodes(&typed.nodes, body, &layers, &path, report);
+        let nodes = nodes(&typed.nodes, bodies, &layers, &path, report);
         if until <= typed.from {
             let message = format!("`hold[{at}]` ends at {until} s, not later than it begins at {} s", typed.from);
             report.at(&key_path![path; "until"], message, None);
         } else if let Some(nodes) = nodes {
-            let grip = Grip { nodes, from: typed.from, until, motion: Motion::Still };
+            let grip = SceneGrip { nodes, from: typed.from, until, motion: Motion::Still };
             named.push((format!("held by `hold[{at}]`"), path, grip));
         }
     }
     for (at, typed) in grabs.iter().enumerate() {
         let Some(typed) = typed else { continue };
         let grab = key_path!["grab", at].to_vec();
-        let nodes = nodes(&typed.nodes, body, &layers, &grab, report);
+        let nodes = nodes(&typed.nodes, bodies, &layers, &grab, report);
         let path = key_path![grab; "path"];
         if typed.path.repeat {
             let message = format!("`grab[{at}].path` repeats, so the nodes would never be released");
             report.at_key(&key_path![path; "repeat"], message, "remove `repeat`".to_owned());
             continue;
         }
-        let motion = motion::keys(&typed.path, body.body.dimension, &path, report);
+        let motion = motion::keys(&typed.path, dimension, &path, report);
         let [from, until] =
             [typed.path.keys.first(), typed.path.keys.last()].map(|key| key.map_or(0.0, |key| key.time));
         if typed.path.keys.len() == 1 {
@@ -51,10 +77,10 @@ pub(super) fn resolve(
                 format!("`grab[{at}].path` has a single key: nodes grabbed at {from} s would be released at once");
             report.at(&path, message, "add a key, or write [[hold]] for nodes that stay where they are");
         } else if let (Some(nodes), Some(motion)) = (nodes, motion) {
-            named.push((format!("grabbed by `grab[{at}]`"), grab, Grip { nodes, from, until, motion }));
+            named.push((format!("grabbed by `grab[{at}]`"), grab, SceneGrip { nodes, from, until, motion }));
         }
     }
-    check_overlaps(&named, report);
+    check_overlaps(&named, bodies, report);
     (named.len() == holds.len() + grabs.len()).then(|| named.into_iter().map(|(_, _, grip)| grip).collect())
 }
 
@@ -80,13 +106,18 @@ pub(super) fn check_steps(
 }
 
 /// Reports nodes in two constraints at the same time.
-fn check_overlaps(named: &[(String, Vec<PathPart<'_>>, Grip)], report: &mut Collector<'_>) {
-    let mut holders: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+fn check_overlaps(
+    named: &[(String, Vec<PathPart<'_>>, SceneGrip)],
+    bodies: &[ResolvedBody],
+    report: &mut Collector<'_>,
+) {
+    let mut holders: BTreeMap<(usize, u32), Vec<usize>> = BTreeMap::new();
     for (at, (_, _, grip)) in named.iter().enumerate() {
-        grip.nodes.iter().for_each(|&node| holders.entry(node).or_default().push(at));
+        let nodes = grip.nodes.iter().enumerate().flat_map(|(body, nodes)| nodes.iter().map(move |&node| (body, node)));
+        nodes.for_each(|node| holders.entry(node).or_default().push(at));
     }
     // One node is enough: others of the same two constraints have the same cause.
-    let mut clashes: BTreeMap<[usize; 2], u32> = BTreeMap::new();
+    let mut clashes: BTreeMap<[usize; 2], (usize, u32)> = BTreeMap::new();
     for (node, mut grips) in holders {
         let time = |grip: usize| (named[grip].2.from, named[grip].2.until);
         grips.sort_by(|&a, &b| time(a).0.total_cmp(&time(b).0));
@@ -101,28 +132,38 @@ fn check_overlaps(named: &[(String, Vec<PathPart<'_>>, Grip)], report: &mut Coll
             }
         }
     }
-    for ([second, first], node) in clashes {
+    for ([second, first], (body, node)) in clashes {
         let ((other, _, one), (words, path, two)) = (&named[first], &named[second]);
         let (from, until) = (one.from.max(two.from), one.until.min(two.until));
         let until = if until.is_finite() { format!("until {until} s") } else { "on".into() };
-        let message = format!("node {node} is {other} and {words} at once, from {from} s {until}");
+        let message = format!("node {node}{} is {other} and {words} at once, from {from} s {until}", of(body, bodies));
         let help = "assign each node to one of them at a time".to_owned();
         report.at(&key_path![path; "nodes"], message, help);
     }
 }
 
-/// The selected nodes, in rising order.
+/// The owner of a node in messages, which only one of several bodies needs.
+fn of(body: usize, bodies: &[ResolvedBody]) -> String {
+    if bodies.len() == 1 { String::new() } else { format!(" of {}", bodies[body].in_words()) }
+}
+
+/// The selected nodes of each body, in rising order.
 fn nodes(
     typed: &NodesFile,
-    body: &ResolvedBody,
-    layers: &OnceCell<Vec<Layers>>,
+    bodies: &[ResolvedBody],
+    layers: &[OnceCell<Vec<Layers>>],
     path: &[PathPart<'_>],
     report: &mut Collector<'_>,
-) -> Option<Vec<u32>> {
+) -> Option<Vec<Vec<u32>>> {
     let path = key_path![path; "nodes"];
-    match typed {
-        NodesFile::List(list) => listed(list, body.body.len(), &path, report),
-        NodesFile::Region(region) => within(region, body, layers, &path, report),
+    match (typed, bodies) {
+        (NodesFile::List(list), [only]) => Some(vec![listed(list, only.body.len(), &path, report)?]),
+        (NodesFile::List(_), _) => {
+            let message = format!("`{}` is a list of nodes, but the scene has {} bodies", written(&path), bodies.len());
+            report.at(&path, message, "give a region of nodes instead");
+            None
+        }
+        (NodesFile::Region(region), _) => within(region, bodies, layers, &path, report),
     }
 }
 
@@ -144,20 +185,24 @@ fn listed(list: &[u32], count: usize, path: &[PathPart<'_>], report: &mut Collec
 
 fn within(
     region: &RegionFile,
-    body: &ResolvedBody,
-    layers: &OnceCell<Vec<Layers>>,
+    bodies: &[ResolvedBody],
+    layers: &[OnceCell<Vec<Layers>>],
     path: &[PathPart<'_>],
     report: &mut Collector<'_>,
-) -> Option<Vec<u32>> {
-    let dimension = body.body.dimension;
+) -> Option<Vec<Vec<u32>>> {
+    let dimension = bodies[0].body.dimension;
     let mut point = |typed, key| vector(typed, dimension, &key_path![path; key], report);
-    let position = &body.initial.position;
     // The end of a lattice may be at -0.30000000000000004 m, but is typed as -0.3.
-    let close = ROUND_OFF * body.body.extent();
-    let nodes: Vec<u32> = match region {
+    let close = |body: &ResolvedBody| ROUND_OFF * body.body.extent();
+    let inside = |body: &ResolvedBody, is_inside: &dyn Fn(DVec3, f64) -> bool| -> Vec<u32> {
+        let position = (0..).zip(&body.initial.position);
+        position.filter(|(_, at)| is_inside(**at, close(body))).map(|(node, _)| node).collect()
+    };
+    let nodes: Vec<Vec<u32>> = match region {
         RegionFile { of: Some(of), within: Some(within), .. } => {
             let middle = point(of, "of")?;
-            (0..).zip(position).filter(|(_, at)| at.distance(middle) <= *within + close).map(|(node, _)| node).collect()
+            let is_inside = |at: DVec3, close: f64| at.distance(middle) <= *within + close;
+            bodies.iter().map(|body| inside(body, &is_inside)).collect()
         }
         RegionFile { low: Some(low), high: Some(high), .. } => {
             let (low, high) = (point(low, "low"), point(high, "high"));
@@ -167,19 +212,21 @@ fn within(
                 report.at(&key_path![path; "low"], message, None);
                 return None;
             }
-            let is_inside = |at: &DVec3| at.cmpge(low - close).all() && at.cmple(high + close).all();
-            let nodes: Vec<u32> = (0..).zip(position).filter(|(_, at)| is_inside(at)).map(|(node, _)| node).collect();
-            let layers = layers.get_or_init(|| layers_of(&body.body));
-            warn_of_rest(&nodes, layers, position, dimension, path, report);
+            let is_inside = |at: DVec3, close: f64| at.cmpge(low - close).all() && at.cmple(high + close).all();
+            let nodes: Vec<Vec<u32>> = bodies.iter().map(|body| inside(body, &is_inside)).collect();
+            for ((body, nodes), layers) in bodies.iter().zip(&nodes).zip(layers) {
+                warn_of_rest(nodes, layers.get_or_init(|| layers_of(&body.body)), body, path, report);
+            }
             nodes
         }
         // The schema rules this out.
         _ => return None,
     };
-    if nodes.is_empty() {
+    if nodes.iter().all(Vec::is_empty) {
         let message = format!("`{}` is a region without nodes at the start", written(path));
-        let help = format!("the body starts {}", between(position, dimension));
-        report.at(path, message, help);
+        let all: Vec<DVec3> = bodies.iter().flat_map(|body| &body.initial.position).copied().collect();
+        let start = if bodies.len() == 1 { "the body starts" } else { "the bodies start" };
+        report.at(path, message, format!("{start} {}", between(&all, dimension)));
         return None;
     }
     Some(nodes)
@@ -189,6 +236,7 @@ fn within(
 const ROUND_OFF: f64 = 1e-9;
 
 /// Nodes with equal coordinates along one axis at rest, such as the layers of a lattice.
+#[derive(Clone)]
 struct Layers {
     /// The layer of each node.
     of: Vec<u32>,
@@ -219,11 +267,11 @@ fn layers_of(body: &Body) -> Vec<Layers> {
 fn warn_of_rest(
     nodes: &[u32],
     layers: &[Layers],
-    position: &[DVec3],
-    dimension: Dimension,
+    body: &ResolvedBody,
     path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) {
+    let (position, dimension) = (&body.initial.position, body.body.dimension);
     let taken = layers.iter().map(|layers| {
         let mut taken = vec![0; layers.sizes.len()];
         nodes.iter().for_each(|&node| taken[layers.of[node as usize] as usize] += 1);
@@ -243,10 +291,11 @@ fn warn_of_rest(
             several => (format!("{} layers", count(several as u128)), "these layers start"),
         };
         let message = format!(
-            "`{}` takes {} of the {} nodes of {what} of the body",
+            "`{}` takes {} of the {} nodes of {what} of {}",
             written(path),
             count(nodes.len() as u128),
             count(whole.len() as u128),
+            body.in_words(),
         );
         report.warn(path, message, format!("{these} {}", between(&whole, dimension)));
     }

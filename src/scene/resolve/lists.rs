@@ -1,6 +1,6 @@
 //! The lists of a body: typed in the scene, or in a file beside it.
 
-use super::vector;
+use super::{Place, vector};
 use crate::reading::beside::{missing, similar};
 use crate::reading::collector::{Collector, Help, PathPart, key_path, written};
 use crate::reading::words::{count, list, nearest};
@@ -15,40 +15,40 @@ use std::path::Path;
 
 /// The place of the lists.
 #[derive(Clone, Debug)]
-pub(super) enum ListSource {
-    /// The scene.
-    Scene,
-    /// A file of this name.
-    File(String),
+pub(super) struct ListSource {
+    /// The place of the body in the scene.
+    pub(super) body: Place,
+    /// The name of the file that has the lists; `None` if the scene has them.
+    pub(super) file: Option<String>,
 }
 
 impl ListSource {
     /// The name of a list or an entry in messages.
     pub(super) fn name(&self, key: &str, at: &[usize]) -> String {
         let indices: String = at.iter().map(|index| format!("[{index}]")).collect();
-        match self {
-            Self::Scene => format!("body.{key}{indices}"),
-            Self::File(file) => format!("{file}: {key}{indices}"),
+        match &self.file {
+            None => format!("{}.{key}{indices}", written(&self.body)),
+            Some(file) => format!("{file}: {key}{indices}"),
         }
     }
 
     /// Reports a mistake in an entry of a list.
     pub(super) fn report(&self, report: &mut Collector<'_>, key: &str, at: &[usize], message: String, help: impl Help) {
-        match self {
-            Self::Scene => {
+        match self.file {
+            None => {
                 let indices = at.iter().map(|&index| PathPart::Index(index));
-                let path: Vec<_> = key_path!["body", key].into_iter().chain(indices).collect();
+                let path: Vec<_> = key_path![self.body; key].into_iter().chain(indices).collect();
                 report.at(&path, message, help);
             }
-            Self::File(_) => self.report_in_file(report, key, at, message, help.text()),
+            Some(_) => self.report_in_file(report, key, at, message, help.text()),
         }
     }
 
     /// Reports a mistake about a whole list.
     pub(super) fn report_key(&self, report: &mut Collector<'_>, key: &str, message: String) {
-        match self {
-            Self::Scene => report.at_key(&key_path!["body", key], message, None),
-            Self::File(_) => self.report_in_file(report, key, &[], message, None),
+        match self.file {
+            None => report.at_key(&key_path![self.body; key], message, None),
+            Some(_) => self.report_in_file(report, key, &[], message, None),
         }
     }
 
@@ -63,7 +63,7 @@ impl ListSource {
     ) {
         let named = message.contains(&format!("`{}", self.name(key, &at[..at.len().min(1)])));
         let message = if named { message } else { format!("`{}`: {message}", self.name(key, at)) };
-        report.at(&key_path!["body", "file"], message, help);
+        report.at(&key_path![self.body; "file"], message, help);
     }
 }
 
@@ -87,13 +87,13 @@ pub(super) struct Lists {
 
 impl Lists {
     /// The lists of a scene with nodes. Points with another number of coordinates are reported.
-    pub(super) fn typed(file: &BodyFile, report: &mut Collector<'_>) -> Option<Self> {
+    pub(super) fn typed(file: &BodyFile, place: &Place, report: &mut Collector<'_>) -> Option<Self> {
         let nodes = file.nodes.as_ref()?;
         let dimension = if nodes.first()?.0.len() == 2 { Dimension::Plane } else { Dimension::Space };
         let mut points = |typed: &Option<Vec<Coordinates>>, key| {
             let mut points = Vec::new();
             for (at, coordinates) in typed.as_ref()?.iter().enumerate() {
-                let path = key_path!["body", key, at];
+                let path = key_path![place; key, at];
                 points.push(vector(coordinates, dimension, &path, report).unwrap_or_default());
             }
             Some(points)
@@ -101,7 +101,7 @@ impl Lists {
         let all =
             |typed: &Option<Vec<Vec<u32>>>| Some(typed.as_ref()?.iter().map(Vec::as_slice).collect::<IndexLists>());
         Some(Self {
-            source: ListSource::Scene,
+            source: ListSource { body: place.clone(), file: None },
             dimension,
             nodes: points(&file.nodes, "nodes")?,
             elements: all(&file.elements).unwrap_or_default(),
@@ -114,10 +114,16 @@ impl Lists {
     }
 
     /// The lists of a file, or `None` after reporting its mistakes.
-    pub(super) fn read(folder: &Path, name: &str, limits: &Limits, report: &mut Collector<'_>) -> Option<Self> {
+    pub(super) fn read(
+        folder: &Path,
+        name: &str,
+        place: &Place,
+        limits: &Limits,
+        report: &mut Collector<'_>,
+    ) -> Option<Self> {
         let path = folder.join(name);
         let whole = |report: &mut Collector<'_>, message: String, help: Option<String>| {
-            report.at(&key_path!["body", "file"], format!("`{name}` {message}"), help);
+            report.at(&key_path![place; "file"], format!("`{name}` {message}"), help);
         };
         if !path.exists() {
             whole(report, missing(&path), similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?")));
@@ -137,7 +143,8 @@ impl Lists {
             }
         };
         let before = report.total();
-        let mut reader = Reader { npz, source: ListSource::File(name.to_owned()), limits, report };
+        let source = ListSource { body: place.clone(), file: Some(name.to_owned()) };
+        let mut reader = Reader { npz, source, limits, report };
         let lists = reader.lists();
         (report.total() == before).then_some(lists).flatten()
     }
@@ -194,9 +201,10 @@ fn beyond(number: f64) -> Option<String> {
 }
 
 /// Reports numbers out of range and too short lists in scenes made in code. In files the schema finds them.
-pub(in crate::scene) fn check_unwritten(file: &BodyFile, report: &mut Collector<'_>) {
+pub(in crate::scene) fn check_unwritten(file: &BodyFile, place: Place, report: &mut Collector<'_>) {
+    let source = ListSource { body: place, file: None };
     let mut say = |key: &str, at: &[usize], message: String| {
-        ListSource::Scene.report(report, key, at, format!("`{}` {message}", ListSource::Scene.name(key, at)), None);
+        source.report(report, key, at, format!("`{}` {message}", source.name(key, at)), None);
     };
     for (key, points) in [("nodes", &file.nodes), ("positions", &file.positions), ("velocities", &file.velocities)] {
         for (row, Coordinates(point)) in points.iter().flatten().enumerate() {
@@ -281,9 +289,9 @@ impl Reader<'_, '_> {
     fn array(&mut self, key: &str) -> Option<Array> {
         let found = self.optional_head(key);
         if found.is_none() {
-            let ListSource::File(file) = &self.source else { return None };
+            let file = self.source.file.as_ref()?;
             let message = format!("`{file}` has no array `{key}`");
-            self.report.at(&key_path!["body", "file"], message, None);
+            self.report.at(&key_path![self.source.body; "file"], message, None);
         }
         found.flatten()
     }
@@ -464,7 +472,7 @@ pub(super) fn check_count(source: &ListSource, key: &str, length: usize, nodes: 
 /// Reports a key of the scene that conflicts with an array of the file.
 pub(super) fn check_exclusive(lists: &Lists, typed: bool, key: &str, array: &str, report: &mut Collector<'_>) {
     if typed {
-        let path = key_path!["body", key];
+        let path = key_path![lists.source.body; key];
         let message = format!("`{}` and `{}` exclude each other", written(&path), lists.source.name(array, &[]));
         report.at_key(&path, message, "keep one");
     }

@@ -2,6 +2,7 @@
 //! mistakes are not used.
 
 mod body;
+mod choice;
 mod elements;
 mod grips;
 pub(super) mod lists;
@@ -12,23 +13,31 @@ mod runs;
 use super::digest::{FileDigests, digest};
 use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFile, SceneFile, TimeFile};
 use super::generate::Generator;
-use super::limits::Limits;
+use super::limits;
+use super::limits::{BodySize, Excess, Limits};
 use super::structure::ValidFile;
-use super::{Run, Scene, SceneBody};
+use super::{Run, Scene, SceneBody, Together};
 use crate::look::{self, FontFiles, TypedView, View, font};
-use crate::reading::collector::{Collector, PathPart, key_path};
+use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::words::{count, short};
-use crate::sim::{Grip, Obstacle};
-use body::ResolvedBody;
+use crate::sim::{Body, Dimension, Obstacle};
+use body::{ResolvedBody, TypedBody};
+use choice::Choice;
+use elements::mean_edge;
 use glam::DVec3;
+use grips::SceneGrip;
 use lists::Lists;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeSet;
+use std::mem::take;
 use std::path::Path;
 use std::slice;
+
+/// The place of a body in a file: `body`, or `body[1]` among several.
+pub(super) type Place = Vec<PathPart<'static>>;
 
 /// The parts of a scene file without mistakes in their structure.
 #[derive(Debug, Serialize)]
@@ -36,10 +45,14 @@ pub(super) struct SceneParts {
     title: Option<String>,
     gravity: Option<Coordinates>,
     time: Option<TimeFile>,
-    body: Option<BodyFile>,
-    /// The lists in the body's own file, if it has no mistakes.
+    #[serde(rename = "body")]
+    bodies: Vec<Option<BodyFile>>,
+    /// The place of each body in the file.
     #[serde(skip)]
-    beside: Option<Lists>,
+    places: Vec<Place>,
+    /// The lists in the own file of each body, if it has no mistakes.
+    #[serde(skip)]
+    beside: Vec<Option<Lists>>,
     /// Top-level keys with mistakes in or below them.
     #[serde(skip)]
     flawed: BTreeSet<String>,
@@ -61,16 +74,23 @@ impl SceneParts {
     /// The valid parts of a checked file. A body's own file is searched in `folder`.
     pub(super) fn new(checked: &ValidFile, folder: &Path, limits: &Limits, report: &mut Collector<'_>) -> Self {
         let file = &checked.valid;
-        let body: Option<BodyFile> = part(file, "body", report).map(|mut body: BodyFile| {
-            // Lists beside a generator or a file are a mistake, which was reported.
-            if body.file.is_some() || Generator::of(&body).is_some() {
-                (body.nodes, body.elements, body.springs, body.faces) = (None, None, None, None);
-                (body.positions, body.velocities, body.masses) = (None, None, None);
-            }
-            body
-        });
-        let read_lists = |body: &BodyFile| Lists::read(folder, body.file.as_ref()?, limits, report);
-        let beside = body.as_ref().filter(|body| Generator::of(body).is_none()).and_then(read_lists);
+        let mut bodies: Vec<Option<BodyFile>> = match file.get("body") {
+            Some(Json::Array(_)) => several(file, "body", report),
+            _ => vec![part(file, "body", report)],
+        };
+        // Lists beside a generator or a file are a mistake, which was reported.
+        let has_lists = |body: &&mut BodyFile| body.file.is_none() && Generator::of(body).is_none();
+        bodies
+            .iter_mut()
+            .flatten()
+            .filter(|body| !has_lists(body))
+            .for_each(|body| body.swap_lists(&mut BodyFile::default()));
+        let places = places(bodies.len(), file.get("body").is_some_and(Json::is_array));
+        let read_lists = |(body, place): (&Option<BodyFile>, &Place)| {
+            let body = body.as_ref().filter(|body| Generator::of(body).is_none())?;
+            Lists::read(folder, body.file.as_ref()?, place, limits, report)
+        };
+        let beside = bodies.iter().zip(&places).map(read_lists).collect();
         let view: Option<TypedView> =
             if file.contains_key("view") { part(file, "view", report) } else { Some(TypedView::default()) };
         let font = match view.as_ref().and_then(|view| view.get("font")) {
@@ -83,7 +103,8 @@ impl SceneParts {
             title: part(file, "title", report),
             gravity: part(file, "gravity", report),
             time: part(file, "time", report),
-            body,
+            bodies,
+            places,
             beside,
             flawed: checked.flawed.clone(),
             runs: several(file, "run", report),
@@ -96,19 +117,25 @@ impl SceneParts {
     }
 
     /// The valid parts of a scene made in code. `flawed` tells whether its separately checked long lists had a mistake.
-    pub(super) fn of(file: SceneFile, checked: &ValidFile, flawed: bool) -> Self {
+    pub(super) fn of(mut file: SceneFile, checked: &ValidFile, flawed: bool) -> Self {
         fn entries<T>(entries: Vec<T>, key: &str, checked: &ValidFile) -> Vec<Option<T>> {
             let is_sound = |at: usize| !checked.valid.get(key).is_some_and(|valid| valid[at].is_null());
             entries.into_iter().enumerate().map(|(at, entry)| Some(entry).filter(|_| is_sound(at))).collect()
         }
         let is_sound = |key: &str| !checked.flawed.contains(key);
+        let places = places(file.body.len(), file.body.len() > 1);
+        let bodies: Vec<_> = match &mut file.body[..] {
+            [only] => vec![Some(take(only)).filter(|_| is_sound("body"))],
+            _ => entries(take(&mut file.body), "body", checked),
+        };
         let lists = if flawed { BTreeSet::from(["body".to_owned()]) } else { BTreeSet::new() };
         Self {
             title: file.title,
             gravity: file.gravity.filter(|_| is_sound("gravity")),
             time: Some(file.time).filter(|_| is_sound("time")),
-            body: Some(file.body).filter(|_| is_sound("body")),
-            beside: None,
+            beside: bodies.iter().map(|_| None).collect(),
+            bodies,
+            places,
             flawed: &checked.flawed | &lists,
             runs: entries(file.run, "run", checked),
             obstacles: entries(file.obstacle, "obstacle", checked),
@@ -121,7 +148,7 @@ impl SceneParts {
 
     /// The scene, or `None` after any mistake.
     pub(super) fn scene(mut self, name: &str, limits: &Limits, report: &mut Collector<'_>) -> Option<Scene> {
-        let has_own_models = self.runs.iter().flatten().any(|run| run.model.is_own());
+        let has_own_models = self.runs.iter().flatten().any(|run| run.has_own_model());
         let has_digest = report.total() == 0 && !has_own_models;
         let digest = if has_digest { self.digest() } else { String::new() };
         let scene = resolve(self, name, &digest, limits, report)?;
@@ -134,13 +161,22 @@ impl SceneParts {
             Some(font) => [&font.regular, &font.semi_bold].map(|font| font.as_ref().map(|bytes| font::digest(bytes))),
             None => [None, None],
         };
-        let files = FileDigests { body: self.beside.as_ref().map(Lists::digest), regular, semi_bold };
-        let mut lists = BodyFile::default();
-        self.body.iter_mut().for_each(|body| body.swap_lists(&mut lists));
+        let bodies = self.beside.iter().map(|lists| lists.as_ref().map(Lists::digest)).collect();
+        let files = FileDigests { bodies, regular, semi_bold };
+        let mut lists = vec![BodyFile::default(); self.bodies.len()];
+        let swap = |bodies: &mut [Option<BodyFile>], lists: &mut [BodyFile]| {
+            bodies.iter_mut().flatten().zip(lists).for_each(|(body, lists)| body.swap_lists(lists));
+        };
+        swap(&mut self.bodies, &mut lists);
         let digest = digest(self, &lists, files);
-        self.body.iter_mut().for_each(|body| body.swap_lists(&mut lists));
+        swap(&mut self.bodies, &mut lists);
         digest
     }
+}
+
+/// The places of bodies in a file, in a list or alone.
+pub(super) fn places(count: usize, is_list: bool) -> Vec<Place> {
+    (0..count).map(|at| if is_list { key_path!["body", at].to_vec() } else { key_path!["body"].to_vec() }).collect()
 }
 
 fn part<T: DeserializeOwned>(file: &Map<String, Json>, key: &str, report: &mut Collector<'_>) -> Option<T> {
@@ -174,9 +210,9 @@ const MOST_FRAMES: f64 = 1e7;
 /// The physics. A part is `None` if it has a mistake, or depends on a part with one.
 struct Physics {
     gravity: Option<DVec3>,
-    body: Option<ResolvedBody>,
+    bodies: Option<Vec<ResolvedBody>>,
     obstacles: Option<Vec<Obstacle>>,
-    grips: Option<Vec<Grip>>,
+    grips: Option<Vec<SceneGrip>>,
     runs: Option<Vec<Run>>,
 }
 
@@ -188,7 +224,7 @@ fn resolve(
     limits: &Limits,
     report: &mut Collector<'_>,
 ) -> Option<Scene> {
-    let beside = parts.beside.take();
+    let beside = take(&mut parts.beside);
     let physics = physics(&parts, beside, limits, report);
     let view = view(&parts, &physics, report);
     if let (0, Some(runs)) = (report.total(), &physics.runs) {
@@ -200,7 +236,7 @@ fn resolve(
     if report.total() > 0 {
         return None;
     }
-    let (time, body) = (parts.time.as_ref()?, physics.body?);
+    let (time, bodies) = (parts.time.as_ref()?, physics.bodies?);
     let mut scene = Scene {
         title: parts.title.clone().unwrap_or_else(|| name.into()),
         name: name.into(),
@@ -209,7 +245,10 @@ fn resolve(
         gravity: physics.gravity?,
         duration: time.duration,
         frames_per_second: time.frames_per_second,
-        bodies: vec![SceneBody { name: String::new(), body: body.body, initial: body.initial }],
+        bodies: bodies
+            .into_iter()
+            .map(|ResolvedBody { name, body, initial, .. }| SceneBody { name, body, initial })
+            .collect(),
         runs: physics.runs?,
         obstacles: physics.obstacles?,
         view: view?,
@@ -222,37 +261,127 @@ fn resolve(
     Some(scene)
 }
 
-fn physics(parts: &SceneParts, beside: Option<Lists>, limits: &Limits, report: &mut Collector<'_>) -> Physics {
-    let dimension = parts.body.as_ref().and_then(|file| body::dimension(file, beside.as_ref()));
-    let read_body = |file| body::resolve(file, beside, parts.flawed.contains("body"), &parts.runs, limits, report);
-    let body = parts.body.as_ref().and_then(read_body);
+fn physics(parts: &SceneParts, beside: Vec<Option<Lists>>, limits: &Limits, report: &mut Collector<'_>) -> Physics {
+    let flawed = parts.flawed.contains("body");
+    let names = check_body_names(parts, report);
+    let choices = choice::resolve(&parts.runs, parts.bodies.len(), names.as_deref(), report);
+    let typed = parts.bodies.iter().zip(&parts.places).zip(beside);
+    let typed: Vec<_> = typed
+        .map(|((file, place), beside)| TypedBody::new(file.as_ref()?, beside, place.clone(), flawed, report))
+        .collect();
+    let dimension = dimension(parts, &typed, report);
+    let bodies = bodies(typed, &choices, limits, report);
     let gravity = match (&parts.gravity, dimension) {
         (Some(typed), Some(dimension)) => vector(typed, dimension, &key_path!["gravity"], report),
         _ => Some(DVec3::ZERO),
     };
-    let obstacles = obstacles::resolve(&parts.obstacles, dimension, body.as_ref(), report);
-    let grips = body.as_ref().and_then(|body| grips::resolve(&parts.holds, &parts.grabs, body, report));
+    let sound: Vec<_> = bodies.iter().flatten().collect();
+    let obstacles = obstacles::resolve(&parts.obstacles, dimension, &sound, report);
+    let is_plural = bodies.len() > 1;
+    let bodies: Option<Vec<_>> = bodies.into_iter().collect();
+    let bodies = bodies.filter(|bodies| bodies.iter().all(|body| Some(body.body.dimension) == dimension));
+    let grips = bodies.as_ref().and_then(|bodies| grips::resolve(&parts.holds, &parts.grabs, bodies, report));
     if let Some(time) = parts.time.as_ref().filter(|_| !parts.flawed.contains("time")) {
         check_frames(time, report);
     }
-    let runs = runs::resolve(&parts.runs, parts.time.as_ref(), body.as_ref(), grips.as_deref(), report);
-    Physics { gravity, body, obstacles, grips, runs }
+    let runs = runs::resolve(&parts.runs, &choices, parts.time.as_ref(), bodies.as_deref(), grips.as_deref(), report);
+    if let (true, Some(names), Some(_)) = (is_plural, names, &runs) {
+        choice::warn_of_unused(&choices, &names, &parts.places, report);
+    }
+    Physics { gravity, bodies, obstacles, grips, runs }
+}
+
+/// The names of the bodies, empty for one without; `None` if a name has a mistake, or may be left out because of one.
+fn check_body_names<'a>(parts: &'a SceneParts, report: &mut Collector<'_>) -> Option<Vec<&'a str>> {
+    let (known, name) = (report.total(), |body: &'a BodyFile| body.name.as_deref());
+    let named = parts.places.iter().cloned().zip(parts.bodies.iter().map(|body| body.as_ref().and_then(name)));
+    choice::check_names(["body", "bodies"], named, report);
+    if parts.bodies.len() > 1 {
+        for (body, place) in parts.bodies.iter().zip(&parts.places) {
+            if body.as_ref().is_some_and(|body| body.name.is_none()) {
+                let message = format!("`{}` has no `name`, which each of several bodies needs", written(place));
+                report.at(place, message, "such as name = \"cube\"");
+            }
+        }
+    }
+    let is_table = parts.places.iter().any(|place| place.len() == 1);
+    let are_known = report.total() == known && !(is_table && parts.flawed.contains("body"));
+    let names = parts.bodies.iter().map(|body| body.as_ref().map(|body| name(body).unwrap_or_default()));
+    names.collect::<Option<_>>().filter(|_| are_known)
+}
+
+/// Whether the bodies are in the plane or in space. Bodies that differ from the first are reported.
+fn dimension(parts: &SceneParts, typed: &[Option<TypedBody<'_>>], report: &mut Collector<'_>) -> Option<Dimension> {
+    let mut dimensions = typed.iter().enumerate().filter_map(|(at, body)| Some((at, body.as_ref()?.dimension())));
+    let (first, dimension) = dimensions.next()?;
+    let words = |dimension| if dimension == Dimension::Plane { "in the plane" } else { "in space" };
+    for (at, other) in dimensions.filter(|(_, other)| *other != dimension) {
+        let [one, two] = [first, at].map(|at| written(&parts.places[at]));
+        let message = format!("`{two}` is {}, but `{one}` is {}", words(other), words(dimension));
+        report.at(&parts.places[at], message, "expected all bodies of a scene in the plane, or all in space");
+    }
+    Some(dimension)
+}
+
+/// The bodies; `None` for one with a mistake. If they are too large together, none is made.
+fn bodies<'a>(
+    typed: Vec<Option<TypedBody<'_>>>,
+    choices: &[Option<Choice<'a>>],
+    limits: &Limits,
+    report: &mut Collector<'_>,
+) -> Vec<Option<ResolvedBody>> {
+    let size = |body: &Option<TypedBody<'_>>| body.as_ref().map_or_else(|| BodySize::new(0, []), TypedBody::size);
+    let sizes: Vec<_> = typed.iter().map(size).collect();
+    let run = |choice: Option<&Choice<'a>>| match choice {
+        Some(choice) => choice.of.iter().zip(&choice.models).map(|(&body, typed)| (body, Some(typed.model))).collect(),
+        None => (0..sizes.len()).map(|body| (body, None)).collect(),
+    };
+    let runs: Vec<limits::Parts<'a>> = choices.iter().map(|choice| run(choice.as_ref())).collect();
+    let less = |body: usize| typed[body].as_ref().map_or("", TypedBody::less);
+    let Some(Excess { message, help, place }) = limits::excess(&sizes, &runs, limits, less) else {
+        return typed.into_iter().map(|body| body?.resolve(report)).collect();
+    };
+    match place {
+        limits::Place::Body(body) => {
+            typed[body].iter().for_each(|body| body.too_large(message.clone(), help.clone(), report));
+        }
+        limits::Place::Model(run, at) => {
+            let path = choices[run].as_ref().map(|choice| &choice.models[at].path);
+            path.into_iter().for_each(|path| report.at(&key_path![path; "springs"], message.clone(), help.clone()));
+        }
+    }
+    typed.iter().flatten().for_each(|body| body.check(report));
+    typed.iter().map(|_| None).collect()
+}
+
+/// The common length of the edges of all bodies, the side of cells if all of them have equal cells; else the mean.
+fn side(bodies: &[ResolvedBody], together: &Body) -> (f64, bool) {
+    let first = &bodies[0];
+    let is_common = bodies.iter().all(|body| (body.side, body.has_cells) == (first.side, first.has_cells));
+    if is_common { (first.side, first.has_cells) } else { (mean_edge(together), false) }
 }
 
 /// The view, which `look` resolves.
 fn view(parts: &SceneParts, physics: &Physics, report: &mut Collector<'_>) -> Option<View> {
-    let Physics { gravity, body, obstacles, grips, runs } = physics;
-    let (body, obstacles) = (body.as_ref()?, obstacles.as_ref()?);
+    let Physics { gravity, bodies, obstacles, grips, runs } = physics;
+    let (bodies, obstacles) = (bodies.as_ref()?, obstacles.as_ref()?);
+    // A run of all bodies has them together.
+    let of_all = runs.iter().flatten().find(|run| run.of.len() == bodies.len());
+    let made =
+        if of_all.is_none() { Some(Together::new(bodies.iter().map(|one| (&one.body, &one.initial)))) } else { None };
+    let of_all = of_all.map(|run| (run.body(), &run.initial));
+    let (body, initial) = of_all.or_else(|| made.as_ref().map(|made| (made.bodies.whole(), &made.initial)))?;
+    let (side, has_cells) = side(bodies, body);
     let around = look::Subject {
-        body: &body.body,
-        initial: &body.initial,
-        side: body.side,
-        has_cells: body.has_cells,
+        body,
+        initial,
+        side,
+        has_cells,
         gravity: gravity.unwrap_or_default(),
         obstacles,
-        grips: grips.as_deref().unwrap_or_default(),
+        is_gripped: grips.as_ref().is_some_and(|grips| !grips.is_empty()),
         runs: runs.iter().flatten().map(|run| (run.name.as_str(), run.step)).collect(),
-        models: runs.iter().flatten().map(|run| &*run.models[0]).collect(),
+        parts: runs.iter().flatten().flat_map(Run::models_and_bodies).collect(),
     };
     let view = View::read(parts.view.as_ref()?, &around, parts.font.clone().unwrap_or_default(), report)?;
     let chosen: Vec<_> = parts.runs.iter().map(|run| Some(run.as_ref()?.colour?.0)).collect();

@@ -14,7 +14,7 @@ use glam::{DQuat, DVec3};
 pub(super) fn resolve(
     typed: &[Option<ObstacleFile>],
     dimension: Option<Dimension>,
-    body: Option<&ResolvedBody>,
+    bodies: &[&ResolvedBody],
     report: &mut Collector<'_>,
 ) -> Option<Vec<Obstacle>> {
     let dimension = dimension?;
@@ -23,9 +23,7 @@ pub(super) fn resolve(
         let Some(typed) = obstacle else { continue };
         let path = key_path!["obstacle", at];
         let Some(obstacle) = one(typed, dimension, &path, report) else { continue };
-        if let Some(body) = body {
-            check_start(&obstacle, body, &path, report);
-        }
+        bodies.iter().for_each(|body| check_start(&obstacle, body, &path, report));
         obstacles.push(obstacle);
     }
     (obstacles.len() == typed.len()).then_some(obstacles)
@@ -112,7 +110,7 @@ const TOUCHING: f64 = 1e-9;
 
 /// Reports obstacles that contain nodes at the start, and obstacles that start inside the body.
 fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[PathPart<'_>], report: &mut Collector<'_>) {
-    let placed = obstacle.at(0.0, 1.0);
+    let (placed, of) = (obstacle.at(0.0, 1.0), body.in_words());
     let name = match obstacle.shape {
         Shape::Floor { .. } => "floor",
         Shape::Plate { .. } => "plate",
@@ -130,7 +128,7 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[PathPart<'_>], 
     });
     if let Some((node, depth)) = deepest {
         let message =
-            format!("the body starts inside this {name}: node {node} lies {} below its surface", quantity(depth, "m"));
+            format!("{of} starts inside this {name}: node {node} lies {} below its surface", quantity(depth, "m"));
         let help = match obstacle.shape {
             Shape::Floor { .. } => "move the floor, or set the body on it with `lowest` or `offset` in [body]",
             _ => "move one of them; a path can move the obstacle there later",
@@ -150,7 +148,7 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[PathPart<'_>], 
         let [x, y, z] = point.to_array().map(|at| rounded(at, 4) + 0.0);
         let point =
             if body.body.dimension == Dimension::Plane { format!("[{x}, {y}]") } else { format!("[{x}, {y}, {z}]") };
-        let message = format!("this {name} starts inside the body, at {point}, between its nodes");
+        let message = format!("this {name} starts inside {of}, at {point}, between its nodes");
         report.at(path, message, "move one of them; only nodes collide with an obstacle, from outside");
     }
 }

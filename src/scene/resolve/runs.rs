@@ -1,45 +1,97 @@
 //! The runs: models, steps and integrators.
 
 use super::body::ResolvedBody;
+use super::choice::{Choice, check_names};
+use super::grips::SceneGrip;
 use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::words;
-use crate::scene::Run;
 use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::scene::step::NamedStep;
+use crate::scene::{Run, Together};
 use crate::sim::model::ElasticModel;
 use crate::sim::stability::Stability;
-use crate::sim::{Assembly, Grip, Integrator, Kernel};
+use crate::sim::{Body, Grip, Integrator, Kernel};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The most steps of a run. Beyond, double precision cannot distinguish the times of two steps.
 const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
 
+/// The bodies of a run with their models and constraints.
+struct Parts {
+    together: Together,
+    models: Vec<Arc<dyn ElasticModel>>,
+    grips: Vec<Grip>,
+}
+
+impl Parts {
+    /// Each model with its body.
+    fn iter(&self) -> impl Iterator<Item = (&dyn ElasticModel, &Arc<Body>)> {
+        self.models.iter().map(|model| &**model).zip(self.together.bodies.bodies())
+    }
+
+    /// The code that computes steps fastest.
+    fn fastest(&self, integrator: Integrator) -> Kernel {
+        let mut kernels = self.models.iter().map(|model| Kernel::of(&**model, integrator));
+        kernels.find(|kernel| *kernel != Kernel::Fast).unwrap_or(Kernel::Fast)
+    }
+}
+
+/// The bodies of a scene at some places.
+fn together(bodies: &[ResolvedBody], of: &[usize]) -> Together {
+    Together::new(of.iter().map(|&body| (&bodies[body].body, &bodies[body].initial)))
+}
+
+/// The bodies of each run with their models; `None` after a mistake in a model.
+fn parts(
+    choices: &[Option<Choice<'_>>],
+    bodies: &[ResolvedBody],
+    grips: &[SceneGrip],
+    report: &mut Collector<'_>,
+) -> Option<Vec<Parts>> {
+    // Runs of the same bodies share them.
+    let mut known: BTreeMap<&[usize], Together> = BTreeMap::new();
+    let mut all = Vec::with_capacity(choices.len());
+    for choice in choices {
+        let Some(Choice { of, models }) = choice else {
+            all.push(None);
+            continue;
+        };
+        let together = known.entry(of).or_insert_with(|| together(bodies, of)).clone();
+        let resolved = of.iter().zip(models).map(|(&body, typed)| {
+            let ResolvedBody { body, springs, .. } = &bodies[body];
+            let model = typed.model.resolve(body, springs.as_deref());
+            let path = |key| key_path![typed.path; key];
+            model.map_err(|misfit| report.at(&path(misfit.key), misfit.message, None)).ok()
+        });
+        // All misfits are reported.
+        let models: Vec<_> = resolved.collect();
+        let models = models.into_iter().collect::<Option<Vec<_>>>();
+        let grips = grips.iter().filter_map(|grip| grip.in_run(of, &together.bodies)).collect();
+        all.push(models.map(|models| Parts { together, models, grips }));
+    }
+    all.into_iter().collect()
+}
+
 /// The runs, or `None` if a part that they need has a mistake.
-pub(super) fn resolve(
-    typed: &[Option<RunFile>],
+pub(super) fn resolve<'a>(
+    typed: &'a [Option<RunFile>],
+    choices: &[Option<Choice<'_>>],
     time: Option<&TimeFile>,
-    body: Option<&ResolvedBody>,
-    grips: Option<&[Grip]>,
+    bodies: Option<&[ResolvedBody]>,
+    grips: Option<&[SceneGrip]>,
     report: &mut Collector<'_>,
 ) -> Option<Vec<Run>> {
-    check_names(typed, report);
-    let body = body?;
-    let bodies = Arc::new(Assembly::from(&body.body));
-    let models: Vec<_> = (0..)
-        .zip(typed)
-        .map(|(at, run)| {
-            let run = run.as_ref()?;
-            let model = run.model.resolve(&body.body, body.springs.as_deref());
-            let path = |key| key_path!["run", at, "model", key];
-            model.map_err(|misfit| report.at(&path(misfit.key), misfit.message, None)).ok()
-        })
-        .collect();
+    let name = |run: &'a Option<RunFile>| Some(run.as_ref()?.name.as_str());
+    let named = typed.iter().enumerate().map(|(at, run)| (key_path!["run", at].to_vec(), name(run)));
+    check_names(["run", "runs"], named, report);
     // T depends on all models: without one of them, steps would be reported wrongly.
-    let models: Vec<Arc<dyn ElasticModel>> = models.into_iter().collect::<Option<_>>()?;
-    let cycle = models.iter().map(|model| model.shortest_period(&body.body)).reduce(f64::min)?;
-    let limits = limits(typed, time?, body, &models, grips.unwrap_or_default());
-    let mut runs = Vec::with_capacity(models.len());
-    for (at, (run, model)) in typed.iter().zip(models).enumerate() {
+    let parts = parts(choices, bodies?, grips.unwrap_or_default(), report)?;
+    let periods = parts.iter().flat_map(Parts::iter).map(|(model, body)| model.shortest_period(body));
+    let cycle = periods.reduce(f64::min)?;
+    let limits = limits(typed, time?, &parts);
+    let mut runs = Vec::with_capacity(parts.len());
+    for (at, (run, parts)) in typed.iter().zip(parts).enumerate() {
         let (run, time) = (run.as_ref()?, time?);
         let integrator = run.integrator.unwrap_or(time.integrator);
         if let Some((path, message, hint)) = misplaced(at, run, time, integrator) {
@@ -89,7 +141,8 @@ pub(super) fn resolve(
             );
             return None;
         }
-        if let Some(reason) = integrator.refusal(|| model.prepare(&body.body)) {
+        let refusal = parts.iter().find_map(|(model, body)| integrator.refusal(|| model.prepare(body)));
+        if let Some(reason) = refusal {
             let path = match run.integrator {
                 Some(_) => key_path!["run", at, "integrator"].to_vec(),
                 None => key_path!["time", "integrator"].to_vec(),
@@ -99,7 +152,7 @@ pub(super) fn resolve(
             return None;
         }
         let colour = run.colour.map(|colour| colour.0);
-        let fastest = Kernel::of(model.as_ref(), integrator);
+        let fastest = parts.fastest(integrator);
         let kernel = run.kernel.unwrap_or(fastest);
         if kernel == Kernel::Fast && fastest != Kernel::Fast {
             let path = key_path!["run", at, "kernel"];
@@ -111,11 +164,11 @@ pub(super) fn resolve(
         }
         runs.push(Run {
             name: run.name.clone(),
-            of: vec![0],
-            bodies: Arc::clone(&bodies),
-            initial: body.initial.clone(),
-            models: vec![model],
-            grips: grips.unwrap_or_default().to_vec(),
+            of: choices[at].as_ref()?.of.clone(),
+            bodies: parts.together.bodies,
+            initial: parts.together.initial,
+            models: parts.models,
+            grips: parts.grips,
             integrator,
             step,
             tolerance,
@@ -154,23 +207,17 @@ fn misplaced(
 
 /// The largest stable step (s) for each run with `step = "auto"`, and the run that limits it: the run itself, or among
 /// the runs that share the scene's step the one with the least.
-fn limits(
-    typed: &[Option<RunFile>],
-    time: &TimeFile,
-    body: &ResolvedBody,
-    models: &[Arc<dyn ElasticModel>],
-    grips: &[Grip],
-) -> Vec<(f64, usize)> {
+fn limits(typed: &[Option<RunFile>], time: &TimeFile, parts: &[Parts]) -> Vec<(f64, usize)> {
     let is_auto = |step: &Option<StepFile>| matches!(step, Some(StepFile::Named(NamedStep::Auto)));
     let takes_scenes = |run: &RunFile| run.step.is_none() && is_auto(&time.step);
-    let limit = |(run, model): (&Option<RunFile>, &Arc<dyn ElasticModel>)| {
+    let limit = |(run, parts): (&Option<RunFile>, &Parts)| {
         let Some(run) = run.as_ref().filter(|run| is_auto(&run.step) || takes_scenes(run)) else {
             return f64::INFINITY;
         };
         let integrator = run.integrator.unwrap_or(time.integrator);
-        Stability::of(&body.body, model.as_ref(), integrator, grips, time.duration).largest
+        Stability::of_parts(&parts.together.bodies, &parts.models, integrator, &parts.grips, time.duration).largest
     };
-    let limits: Vec<f64> = typed.iter().zip(models).map(limit).collect();
+    let limits: Vec<f64> = typed.iter().zip(parts).map(limit).collect();
     let mut limits: Vec<_> = limits.into_iter().zip(0..).collect();
     let takers: Vec<_> = (0..limits.len()).filter(|&at| typed[at].as_ref().is_some_and(takes_scenes)).collect();
     let least = takers.iter().map(|&at| limits[at]).min_by(|one, other| one.0.total_cmp(&other.0));
@@ -199,24 +246,5 @@ fn no_limit(run: &RunFile, integrator: Integrator, limit: f64) -> (String, Strin
             format!("`step = \"auto\"` finds no step for {name}: {method} is never stable without damping"),
             "give a step, or use another integrator".into(),
         ),
-    }
-}
-
-/// Reports duplicate names, and names that cannot be used in files.
-fn check_names(typed: &[Option<RunFile>], report: &mut Collector<'_>) {
-    for (at, run) in typed.iter().enumerate() {
-        let Some(run) = run else { continue };
-        let path = key_path!["run", at, "name"];
-        let quoted = words::quoted(&run.name);
-        let unfit = |c: char| matches!(c, '/' | '\\') || c.is_control();
-        if run.name.trim() != run.name || run.name.contains(unfit) {
-            let message = format!("the name {quoted} cannot be used in files");
-            report.at(&path, message, "no slash, no control character, and no space at either end");
-        }
-        let same = |other: &Option<RunFile>| other.as_ref().is_some_and(|other| other.name == run.name);
-        if let Some(first) = typed[..at].iter().position(same) {
-            let message = format!("two runs are called {quoted}: `run[{first}]` and `run[{at}]`");
-            report.at(&path, message, "give each run a unique name");
-        }
     }
 }

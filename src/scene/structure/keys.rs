@@ -50,7 +50,8 @@ impl Walk<'_, '_, '_> {
             return;
         }
         let property = &schema["properties"][name];
-        let missing = match (self.path.is_empty(), property["type"].as_str()) {
+        let first = property["anyOf"].get(0).unwrap_or(property);
+        let missing = match (self.path.is_empty(), first["type"].as_str()) {
             (true, Some("object")) => format!("there is no table [{name}]"),
             (true, Some("array")) => format!("there is no table [[{name}]]"),
             (true, _) => format!("there is no `{name}`"),
@@ -162,8 +163,9 @@ fn elsewhere(schema: &Json, name: &str) -> Vec<String> {
     properties().find_map(deeper).into_iter().collect()
 }
 
-/// The tables that a schema describes: itself, its entries, and the variants of either.
-fn tables(schema: &Json) -> impl Iterator<Item = &Json> {
+/// The tables that a schema describes: itself, its entries, and the variants and alternatives of either.
+fn tables<'s>(schema: &'s Json) -> impl Iterator<Item = &'s Json> {
     let both = [schema, &schema["items"]].into_iter();
-    both.flat_map(|one| std::iter::once(one).chain(one["oneOf"].as_array().into_iter().flatten()))
+    let variants = |one: &'s Json| ["oneOf", "anyOf"].into_iter().filter_map(|key| one[key].as_array()).flatten();
+    both.flat_map(move |one| std::iter::once(one).chain(variants(one)))
 }

@@ -8,7 +8,7 @@ mod keys;
 
 use super::file::LARGEST;
 use super::gone::instead;
-use super::schema::{choices, variants};
+use super::schema::{by_name, choices, variants};
 use super::step::NamedStep;
 use crate::look::typed::TypedColour;
 use crate::reading::collector::{Collector, PathPart, written};
@@ -39,7 +39,9 @@ pub(super) fn check(schema: &Json, root: &DeTable<'_>, report: &mut Collector<'_
         let name = key.get_ref().as_ref();
         let before = walk.report.total();
         walk.path.push(PathPart::Key(name));
-        let part = match (schema["properties"].get(name), value.get_ref()) {
+        // One body is a table, several are an array.
+        let inner = schema["properties"].get(name).map(|inner| alternative(inner, value.get_ref()).unwrap_or(inner));
+        let part = match (inner, value.get_ref()) {
             (None, _) => {
                 walk.unknown_key(schema, name, key.span(), &[]);
                 Json::Null
@@ -106,8 +108,8 @@ impl<'p> Walk<'_, '_, 'p> {
     }
 
     fn value(&mut self, schema: &Json, value: &'p Spanned<DeValue<'p>>) -> Json {
-        if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
-            return match branches.iter().find(|branch| fits(branch, value.get_ref())) {
+        if schema.get("anyOf").is_some() {
+            return match alternative(schema, value.get_ref()) {
                 Some(branch) => self.value(branch, value),
                 None => self.wrong_type(schema, value),
             };
@@ -290,7 +292,7 @@ impl<'p> Walk<'_, '_, 'p> {
         for (key, value) in table.iter() {
             let name = key.get_ref().as_ref();
             self.path.push(PathPart::Key(name));
-            match schema["properties"].get(name) {
+            match schema["properties"].get(name).or(by_name(schema)) {
                 None => self.unknown_key(schema, name, key.span(), kinds),
                 Some(inner) => {
                     let inner = self.guarded(inner, value);
@@ -340,6 +342,11 @@ fn unquoted(text: &str, is_whole: bool) -> Option<String> {
     typed.get_ref().get("number").filter(|one| kind(one.get_ref()))?;
     let comma = if text.contains(',') { ", with a decimal point" } else { "" };
     Some(format!("write {number}: a number without quotation marks{comma}"))
+}
+
+/// The alternative of a schema that has the type of a value.
+fn alternative<'s>(schema: &'s Json, value: &DeValue<'_>) -> Option<&'s Json> {
+    schema.get("anyOf")?.as_array()?.iter().find(|branch| fits(branch, value))
 }
 
 /// Whether a value has the type of a schema without alternatives.
