@@ -4,6 +4,7 @@
 use super::motion::{Interval, Motion, Pose};
 use super::state::State;
 use glam::DVec3;
+use std::ops::Range;
 
 /// A kinematic constraint: from one time to another its nodes follow a path, whatever forces act on them.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +29,14 @@ impl Grip {
     /// Whether the nodes follow the path at a time (s).
     pub fn holds(&self, time: f64) -> bool {
         self.from <= time && time <= self.until
+    }
+}
+
+impl Grip {
+    /// A range that contains its nodes.
+    pub(super) fn span(&self) -> Range<usize> {
+        let (first, last) = (self.nodes.iter().min(), self.nodes.iter().max());
+        first.zip(last).map_or(0..0, |(&first, &last)| first as usize..last as usize + 1)
     }
 }
 

@@ -11,6 +11,8 @@ use std::sync::Arc;
 
 /// One body in a simulation, and the ranges of its nodes and its memory in the [`State`](super::State).
 pub(crate) struct Part {
+    /// Its number, counted from 0.
+    pub number: usize,
     /// The body.
     pub body: Arc<Body>,
     /// The forces of its model.

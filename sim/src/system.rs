@@ -26,10 +26,12 @@ pub(super) struct System {
     pub(super) mass: Vec<f64>,
     /// Acceleration of gravity (m/s²).
     pub(super) gravity: DVec3,
-    /// Contact with obstacles.
-    pub(super) contact: Box<dyn ContactStage>,
-    /// Kinematic constraints, applied after contact.
+    /// Obstacles, in the order in which they act.
+    pub(super) obstacles: Vec<Obstacle>,
+    /// Kinematic constraints, applied after obstacles.
     pub(super) grips: Vec<Grip>,
+    /// Contact that needs several nodes at once, applied after grips.
+    pub(super) contact: Vec<Box<dyn ContactStage>>,
     /// Time step ΔT (s).
     pub(super) step: f64,
 }
@@ -104,7 +106,7 @@ impl System {
         }
     }
 
-    /// Applies contact and grips at the end of a step from `before` to `after`. `acceleration` (m/s²) is
+    /// Applies obstacles, grips and contact at the end of a step from `before` to `after`. `acceleration` (m/s²) is
     /// constant in the step for each node; `None` if nodes moved at constant velocity.
     pub(super) fn constrain(
         &self,
@@ -114,9 +116,34 @@ impl System {
         acceleration: Option<&[DVec3]>,
     ) {
         let State { position, velocity, memory: Memory { constraints, .. }, .. } = after;
-        self.contact.resolve(&self.parts, interval, before.nodes(), position, velocity, acceleration);
+        for obstacle in &self.obstacles {
+            obstacle.at(interval.end, interval.step).rebound_all(position, velocity, acceleration);
+        }
         for (grip, memory) in self.grips(constraints) {
             grip.drag(interval, memory, position, velocity);
+        }
+        self.meet(interval, constraints, before.nodes(), position, velocity);
+    }
+
+    /// Applies contact that needs several nodes at once, at the end of a step that began at `before`. `constraints` is the
+    /// memory of grips in the step.
+    pub(super) fn meet(
+        &self,
+        interval: Interval,
+        constraints: &[f64],
+        before: Nodes<'_>,
+        position: &mut [DVec3],
+        velocity: &mut [DVec3],
+    ) {
+        if self.contact.is_empty() {
+            return;
+        }
+        let mut inverse_mass: Vec<f64> = self.mass.iter().map(|mass| mass.recip()).collect();
+        for (grip, memory) in self.grips(constraints) {
+            grip.moved(interval, memory).for_each(|(node, ..)| inverse_mass[node] = 0.0);
+        }
+        for stage in &self.contact {
+            stage.resolve(&self.parts, interval, &inverse_mass, before, position, velocity);
         }
     }
 

@@ -1,6 +1,8 @@
 //! The simulation of one run. Its step is section 2 of the paper: forces, motion, collisions.
 
 use super::body::Body;
+#[cfg(test)]
+use super::contact::ContactStage;
 use super::crew::Crew;
 use super::diagnose::Diagnose;
 use super::diagnostics::{BodyFacts, Diagnostic, Diagnostics, Facts};
@@ -26,8 +28,8 @@ pub struct Stepping {
     pub step: f64,
     /// The error that an adaptive method allows in each of its substeps, as a share of the size of the body. Others ignore it.
     pub tolerance: f64,
-    /// The code that computes a step. The reference code is used for a model without vectorised steps
-    /// ([`ElasticModel::vectorised`]) and for several bodies together.
+    /// The code that computes a step. The reference code is used if the integrator or the model of one of the bodies has no
+    /// vectorised steps ([`Kernel::of`]).
     pub kernel: Kernel,
 }
 
@@ -44,7 +46,7 @@ impl Stepping {
 pub enum Kernel {
     /// Vectorised, with the same bits on every machine and for any number of threads. For mass-spring models, and for
     /// shape-based models with `rotation = "robust"` or `"arctangent"`, undamped or with `damping_of =
-    /// "relative-motion"`.
+    /// "relative-motion"`. Several bodies move together, so that it needs such a model for each of them.
     #[default]
     Fast,
     /// The reference code, written like the equations of the paper. All models have it.
@@ -129,14 +131,15 @@ impl World {
             state.memory.constraints.extend(memory);
         }
         let Stepping { integrator, step, tolerance, kernel } = stepping;
-        let fast = match bodies {
-            [(_, model)] if kernel == Kernel::Fast => model.vectorised().zip(Scheme::of(integrator)),
-            _ => None,
-        };
+        let scheme = Scheme::of(integrator).filter(|_| kernel == Kernel::Fast);
+        let kernels = scheme.and_then(|scheme| {
+            let kernels = ByKernel::compile(bodies, scheme, surroundings.gravity, step)?;
+            Some((kernels, scheme))
+        });
         let (mut parts, mut limit) = (Vec::new(), None::<SpeedLimit>);
         let (mut first_node, mut mass) = (0, Vec::with_capacity(nodes));
         let mut scales = Scales { length: 0.0, time: f64::INFINITY };
-        for (body, model) in bodies {
+        for (number, (body, model)) in bodies.iter().enumerate() {
             let forces = model.prepare(body);
             let nodes = first_node..first_node + body.len();
             let start = model.start(body, &state.position[nodes.clone()]);
@@ -145,7 +148,7 @@ impl World {
             let memory = first..state.memory.model.len();
             let counts_global = model.counts_global(body);
             let diagnose = Diagnose::new(body);
-            let part = Part { body: Arc::clone(body), forces, nodes, memory, counts_global, diagnose };
+            let part = Part { number, body: Arc::clone(body), forces, nodes, memory, counts_global, diagnose };
             let period = model.shortest_period(body);
             let own = SpeedLimit::new(body, part.nodes_of(state.nodes()), period, &surroundings, step);
             scales.length = scales.length.max(body.extent());
@@ -156,11 +159,11 @@ impl World {
             parts.push(part);
         }
         let Surroundings { gravity, obstacles, grips } = surroundings;
-        let system = System { parts, mass, gravity, contact: Box::new(obstacles), grips, step };
-        let dynamics: Box<dyn Dynamics> = match (fast, bodies) {
-            (Some((model, scheme)), [(body, _)]) => Box::new(ByKernel::new(body, model, scheme, gravity, step)),
-            _ => Box::new(ByForces::new(integrator.method(tolerance, scales), &state)),
+        let dynamics: Box<dyn Dynamics> = match kernels {
+            Some((kernels, scheme)) => Box::new(ByKernel::new(&parts, kernels, scheme)),
+            None => Box::new(ByForces::new(integrator.method(tolerance, scales), &state)),
         };
+        let system = System { parts, mass, gravity, obstacles, grips, contact: Vec::new(), step };
         let (limit, wanted) = (limit.unwrap_or_default(), Diagnostic::ALL.to_vec());
         Self { system, dynamics, crew: Crew::new(1), limit, field: None, wanted, state }
     }
@@ -170,6 +173,12 @@ impl World {
         self.settle();
         self.state.memory.integrator.clear();
         self.dynamics = Box::new(ByForces::new(method, &self.state));
+    }
+
+    /// Adds contact between nodes, after that of earlier stages.
+    #[cfg(test)]
+    pub(crate) fn add_contact(&mut self, stage: Box<dyn ContactStage>) {
+        self.system.contact.push(stage);
     }
 
     /// Sets the threads for vectorised steps and for diagnostics, which use as many as the body is large enough for. They

@@ -45,45 +45,23 @@ pub enum FrictionOf {
     Path,
 }
 
-/// The treatment of contact at the end of each step.
+/// Contact that needs several nodes at once: of bodies with each other, of a body with itself, of faces with obstacles.
+///
+/// A step ends in this order: each node meets the obstacles, which kernels compute while they move it; grips place their
+/// nodes; then each stage sees all nodes of all parts. It is a function of what it is given, with the same bits for any
+/// number of threads.
 pub(crate) trait ContactStage: Send + Sync {
-    /// Corrects the positions (m) and velocities (m/s) of all nodes after a step that began at `before`. `acceleration`
-    /// (m/s²) is the constant one of each node in the step; `None` if nodes moved at constant velocity.
+    /// Corrects the positions (m) and velocities (m/s) of all nodes after a step that began at `before`. `inverse_mass`
+    /// (1/kg) is zero for nodes that grips hold, which stay as they are.
     fn resolve(
         &self,
         parts: &[Part],
         interval: Interval,
+        inverse_mass: &[f64],
         before: Nodes<'_>,
         position: &mut [DVec3],
         velocity: &mut [DVec3],
-        acceleration: Option<&[DVec3]>,
     );
-
-    /// The obstacles, if contact is only that of each node with each obstacle, which kernels compute themselves.
-    fn obstacles(&self) -> Option<&[Obstacle]> {
-        None
-    }
-}
-
-/// The paper's collision processing: each node found inside an obstacle rebounds, wherever it came from.
-impl ContactStage for Vec<Obstacle> {
-    fn resolve(
-        &self,
-        _parts: &[Part],
-        interval: Interval,
-        _before: Nodes<'_>,
-        position: &mut [DVec3],
-        velocity: &mut [DVec3],
-        acceleration: Option<&[DVec3]>,
-    ) {
-        for obstacle in self {
-            obstacle.at(interval.end, interval.step).rebound_all(position, velocity, acceleration);
-        }
-    }
-
-    fn obstacles(&self) -> Option<&[Obstacle]> {
-        Some(self)
-    }
 }
 
 /// The ground under a body at a time (s): unit normal and distance from the origin (m) of the first floor
@@ -203,9 +181,9 @@ impl Placed<'_> {
         }
     }
 
-    /// The rebound of all nodes; see [`Self::rebound`]. `acceleration` is the constant one of each node in the step
+    /// The rebound of all nodes; see [`Self::rebound`]: each node found inside rebounds, wherever it came from. `acceleration` is the constant one of each node in the step
     /// (m/s²); `None` for nodes that moved at constant velocity.
-    fn rebound_all(&self, position: &mut [DVec3], velocity: &mut [DVec3], acceleration: Option<&[DVec3]>) {
+    pub(super) fn rebound_all(&self, position: &mut [DVec3], velocity: &mut [DVec3], acceleration: Option<&[DVec3]>) {
         let acceleration = |node: usize| acceleration.map_or(DVec3::ZERO, |all| all[node]);
         let nodes = position.iter_mut().zip(velocity).enumerate();
         match (&self.moving, &self.obstacle.shape) {

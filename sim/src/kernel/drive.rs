@@ -1,40 +1,57 @@
 //! Kernels as [`Dynamics`]: the choice of the kernel for a model and a body, and contact and grips between steps.
 
 use super::report::Energy;
-use super::stepper::{Rollback, Scheme};
-use super::{Around, Compiled, Conditions, PlaceNode, Vectorised};
+use super::stepper::{PartStepper, Rollback, Scheme};
+use super::{Around, Compiled, Conditions, Held, PlaceNode};
 use crate::body::Body;
 use crate::contact::{Bound, Floor, Obstacle, Placed};
 use crate::crew::Crew;
 use crate::dynamics::{Dynamics, Runaway, SpeedLimit};
+use crate::grip::Grip;
 use crate::lanes::Set;
-use crate::model::{Report, Share};
+use crate::model::{ElasticModel, Report, Share};
 use crate::part::Part;
-use crate::state::{Memory, State};
+use crate::state::{Memory, Nodes, State};
 use crate::system::System;
 use glam::DVec3;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A kernel that advances a simulation.
+/// Kernels that advance a simulation, one for each part.
 pub(crate) struct ByKernel {
     rollback: Rollback,
-    energy: Energy,
-    /// The memory of the constraints, while the kernel has the state.
+    /// Of each part.
+    energies: Vec<Energy>,
+    /// The memory of the constraints, while the kernels have the state.
     constraints: Option<Vec<f64>>,
     /// The margin (m) by which the bounds of obstacles are enlarged.
     margin: f64,
 }
 
 impl ByKernel {
-    /// The kernel for a model on a body.
-    pub(crate) fn new(body: &Arc<Body>, model: &dyn Vectorised, scheme: Scheme, gravity: DVec3, step: f64) -> Self {
-        /// Relative to the size of the body. Round-off, 1e-15 of the distance from the origin, decides whether a node
-        /// is on a surface, so this suffices for bodies that are nearer than a billion times their size.
-        const MARGIN: f64 = 1e-3;
+    /// The kernels of models for their bodies; `None` if one of the models has none.
+    pub(crate) fn compile(
+        bodies: &[(Arc<Body>, &dyn ElasticModel)],
+        scheme: Scheme,
+        gravity: DVec3,
+        step: f64,
+    ) -> Option<Vec<Compiled>> {
         let conditions = Conditions { scheme, gravity, step, set: Set::best() };
-        let Compiled { stepper, energy } = model.compile(body, &conditions);
-        Self { rollback: Rollback::new(stepper, scheme), energy, constraints: None, margin: MARGIN * body.extent() }
+        let models: Option<Vec<_>> = bodies.iter().map(|(_, model)| model.vectorised()).collect();
+        Some(models?.into_iter().zip(bodies).map(|(model, (body, _))| model.compile(body, &conditions)).collect())
+    }
+
+    /// The kernels of the parts.
+    pub(crate) fn new(parts: &[Part], kernels: Vec<Compiled>, scheme: Scheme) -> Self {
+        /// Relative to the size of the largest body. Round-off, 1e-15 of the distance from the origin, decides whether a
+        /// node is on a surface, so this suffices for bodies that are nearer than a billion times their size.
+        const MARGIN: f64 = 1e-3;
+        let stepped = parts.iter().zip(kernels).map(|(Part { nodes, memory, .. }, Compiled { stepper, energy })| {
+            (PartStepper { stepper, nodes: nodes.clone(), memory: memory.clone() }, energy)
+        });
+        let (steppers, energies) = stepped.unzip();
+        let margin = parts.iter().fold(0.0, |most: f64, part| most.max(MARGIN * part.body.extent()));
+        Self { rollback: Rollback::new(steppers, scheme), energies, constraints: None, margin }
     }
 }
 
@@ -54,7 +71,8 @@ impl Dynamics for ByKernel {
             rollback.load(state.steps, &state.position, &state.velocity, &state.memory.model);
             state.memory.constraints.clone()
         });
-        let obstacles = system.contact.obstacles().unwrap_or_default();
+        let obstacles = &system.obstacles[..];
+        let spans: Vec<_> = system.grips.iter().map(Grip::span).collect();
         let is_still = obstacles.iter().all(Obstacle::is_still);
         let target = rollback.steps() + count;
         while rollback.steps() < target {
@@ -63,7 +81,7 @@ impl Dynamics for ByKernel {
             if system.takes(begin, constraints) {
                 let (end, memory) = (system.interval(begin).end, taken.insert(constraints.clone()));
                 system.change_grips(memory, |grip, memory| {
-                    grip.reach(end, memory, |node| rollback.stepper.node(node as usize).0);
+                    grip.reach(end, memory, |node| rollback.node(node as usize).0);
                 });
             }
             let memory = taken.as_ref().unwrap_or(constraints);
@@ -81,11 +99,21 @@ impl Dynamics for ByKernel {
                 }
             };
             let met = Met::new(obstacles, system, rollback.earliest()..until, *margin);
-            let place = |step: u64, share: f64, place: &mut PlaceNode<'_>| {
-                for (grip, memory) in system.grips(memory) {
-                    grip.moved_by(system.interval(step), share, memory)
-                        .for_each(|(node, to, speed)| place(node, to, speed));
+            let end = system.interval(begin).end;
+            let overlap = |span: &Range<usize>, nodes: &Range<usize>| span.start < nodes.end && nodes.start < span.end;
+            let hold = |nodes: &Range<usize>| {
+                system.grips.iter().zip(&spans).any(|(grip, span)| grip.moves(end) && overlap(span, nodes))
+            };
+            let place = |nodes: &Range<usize>, step: u64, share: f64, place: &mut PlaceNode<'_>| {
+                let own = system.grips(memory).zip(&spans).filter(|(_, span)| overlap(span, nodes));
+                for ((grip, memory), _) in own {
+                    let moved = grip.moved_by(system.interval(step), share, memory);
+                    let own = moved.filter(|(node, ..)| nodes.contains(node));
+                    own.for_each(|(node, to, speed)| place(node - nodes.start, to, speed));
                 }
+            };
+            let meet = |step: u64, before: Nodes<'_>, position: &mut [DVec3], velocity: &mut [DVec3]| {
+                system.meet(system.interval(step), memory, before, position, velocity);
             };
             let around = Around {
                 bounds: &met.bounds,
@@ -96,7 +124,8 @@ impl Dynamics for ByKernel {
                     }
                 },
                 floor: met.floor(),
-                grips: if system.holds(begin) { Some(&place) } else { None },
+                grips: system.holds(begin).then_some(Held { hold: &hold, place: &place }),
+                meet: if system.contact.is_empty() { None } else { Some(&meet) },
                 speed_limit: &|step| limit.at(system.interval(step).end),
             };
             let outcome = rollback.advance(until, &around, crew);
@@ -111,7 +140,7 @@ impl Dynamics for ByKernel {
     fn settle(&mut self, state: &mut State) {
         if let Some(known) = &self.constraints {
             let State { position, velocity, memory: Memory { model, constraints, integrator }, steps, .. } = state;
-            self.rollback.stepper.store(position, velocity, model);
+            self.rollback.store(position, velocity, model);
             constraints.clone_from(known);
             // Only the reference code has a memory of the integrator.
             integrator.clear();
@@ -120,7 +149,8 @@ impl Dynamics for ByKernel {
     }
 
     fn report(&self, part: &Part, state: &State, share: Option<&mut Share<'_>>, crew: &Crew) -> Report {
-        self.energy.report(&state.position[part.nodes.clone()], &state.memory.model[part.memory.clone()], share, crew)
+        let energy = &self.energies[part.number];
+        energy.report(&state.position[part.nodes.clone()], &state.memory.model[part.memory.clone()], share, crew)
     }
 
     fn steps(&self, state: &State) -> u64 {

@@ -28,6 +28,7 @@ pub(crate) use stepper::Scheme;
 use crate::body::Body;
 use crate::contact::{Bound, Floor};
 use crate::lanes::Set;
+use crate::state::Nodes;
 use glam::DVec3;
 use report::Energy;
 use std::ops::Range;
@@ -79,9 +80,22 @@ pub(crate) type Resolve<'a> = dyn Fn(u64, &mut DVec3, &mut DVec3, DVec3) + Sync 
 /// Called with a node, its position (m) and its velocity (m/s).
 pub(crate) type PlaceNode<'a> = dyn FnMut(usize, DVec3, DVec3) + 'a;
 
-/// Calls its argument for each node that grips hold at the end of a step of this number, with its position after a share
-/// of the step.
-pub(crate) type Held<'a> = dyn Fn(u64, f64, &mut PlaceNode<'_>) + Sync + 'a;
+/// Places the nodes of a range that grips hold at the end of a step of this number, after a share of the step: calls its
+/// last argument for each of them, counted from the start of the range.
+pub(crate) type Place<'a> = dyn Fn(&Range<usize>, u64, f64, &mut PlaceNode<'_>) + Sync + 'a;
+
+/// The grips that hold nodes, of any parts.
+#[derive(Clone, Copy)]
+pub(crate) struct Held<'a> {
+    /// Whether they may hold some of a range of nodes.
+    pub(crate) hold: &'a (dyn Fn(&Range<usize>) -> bool + Sync),
+    /// Places those that they hold.
+    pub(crate) place: &'a Place<'a>,
+}
+
+/// Contact of nodes with each other at the end of a step of this number: changes the positions (m) and velocities (m/s) of
+/// all nodes after a step that began at the given ones.
+pub(crate) type Meet<'a> = dyn Fn(u64, Nodes<'_>, &mut [DVec3], &mut [DVec3]) + Sync + 'a;
 
 /// What acts on the nodes besides elements and gravity. Its functions take the number of a step.
 #[derive(Clone, Copy)]
@@ -96,13 +110,15 @@ pub(crate) struct Around<'a> {
     /// then computes contact in lanes, with the same bits as `resolve`.
     pub(crate) floor: Option<Floor>,
     /// The nodes that grips hold, if any grip is active.
-    pub(crate) grips: Option<&'a Held<'a>>,
+    pub(crate) grips: Option<Held<'a>>,
+    /// Contact that needs all nodes, if there is any.
+    pub(crate) meet: Option<&'a Meet<'a>>,
     /// The greatest speed (m/s) in a step.
     pub(crate) speed_limit: &'a (dyn Fn(u64) -> f64 + Sync),
 }
 
-/// A node above the speed limit, or with a velocity that is NaN.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A node above the speed limit, or with a velocity that is NaN. The lesser of two is the first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Lost {
     /// The number of the step.
     pub(crate) step: u64,

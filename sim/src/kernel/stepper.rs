@@ -1,4 +1,5 @@
-//! Steps as passes over all nodes, and [`Rollback`], which finds the step in which a run diverges.
+//! Steps as passes over the nodes of each part, and [`Rollback`], which advances all parts and finds the step in which a
+//! run diverges.
 
 use super::update::Stage;
 use super::{Around, Lost};
@@ -6,8 +7,10 @@ use crate::crew::Crew;
 use crate::dynamics::Runaway;
 use crate::integrate::Integrator;
 use crate::integrate::composition::{self, Composition};
+use crate::state::State;
 use glam::DVec3;
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 /// How positions and velocities are advanced by a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +43,7 @@ impl Scheme {
     }
 }
 
-/// One pass over all nodes, with one evaluation of the forces unless they are known.
+/// One pass over all nodes of a part, with one evaluation of the forces unless they are known.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pass {
     /// What the pass computes.
@@ -64,8 +67,8 @@ pub(crate) struct Passes {
     pub(crate) scheme: Scheme,
     /// Whether forces depend on velocities.
     pub(crate) is_damped: bool,
-    /// Whether grips place nodes after each pass.
-    pub(crate) is_held: bool,
+    /// Whether grips or contact with other nodes act after each pass.
+    pub(crate) is_interrupted: bool,
     /// The number of the first step.
     pub(crate) first: u64,
     pub(crate) steps: u64,
@@ -76,7 +79,7 @@ impl Passes {
     #[inline(always)]
     pub(crate) fn len(&self) -> u64 {
         match self.scheme {
-            Scheme::VelocityVerlet if self.is_damped || self.is_held => 2 * self.steps,
+            Scheme::VelocityVerlet if self.is_damped || self.is_interrupted => 2 * self.steps,
             Scheme::VelocityVerlet if self.steps > 0 => self.steps + 1,
             Scheme::Composition(composition) => (composition.evaluations() as u64 + 1) * self.steps,
             _ => self.steps,
@@ -91,7 +94,7 @@ impl Passes {
         let (stage, step, commit) = match self.scheme {
             Scheme::SemiImplicitEuler => (Stage::SemiImplicitEuler, pass, true),
             Scheme::ExplicitEuler => (Stage::ExplicitEuler, pass, true),
-            Scheme::VelocityVerlet if self.is_damped || self.is_held => match pass % 2 {
+            Scheme::VelocityVerlet if self.is_damped || self.is_interrupted => match pass % 2 {
                 0 if self.is_damped || pass == 0 => (Stage::Drift, pass / 2, true),
                 0 => (Stage::Coast, pass / 2, true),
                 _ => (Stage::Finish, pass / 2, !self.is_damped && !is_last),
@@ -137,9 +140,52 @@ pub(crate) trait Stepper: Send + Sync {
     fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost>;
 }
 
-/// A stepper with a copy of an earlier state, to which it goes back when a node has become too fast.
-pub(crate) struct Rollback {
+/// The stepper of a part, and which nodes and which memory are its own.
+pub(crate) struct PartStepper {
     pub(crate) stepper: Box<dyn Stepper>,
+    pub(crate) nodes: Range<usize>,
+    pub(crate) memory: Range<usize>,
+}
+
+impl PartStepper {
+    fn passes(&self, scheme: Scheme, steps: &Range<u64>, around: &Around<'_>) -> Passes {
+        let is_held = around.grips.is_some_and(|grips| (grips.hold)(&self.nodes));
+        Passes {
+            scheme,
+            is_damped: self.stepper.is_damped(),
+            is_interrupted: is_held || around.meet.is_some(),
+            first: steps.start,
+            steps: steps.end - steps.start,
+        }
+    }
+
+    /// Executes some of the passes; see [`Stepper::run`]. Grips place nodes after each of them.
+    fn run(&mut self, passes: Passes, some: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {
+        let Self { stepper, nodes, .. } = self;
+        let lost = match around.grips.filter(|grips| (grips.hold)(nodes)) {
+            None => stepper.run(passes, some, around, crew),
+            // In the second half of velocity Verlet the speed test comes before the grips, in the reference after them:
+            // here it is part of the pass, which does not know the nodes that are held. So a node that is held is tested
+            // with the velocity that its forces would give it. The limit is many times any speed of a run that does not
+            // diverge, so that this decides only in which step a run stops that does.
+            Some(grips) => some.into_iter().find_map(|pass| {
+                let lost = stepper.run(passes, pass..pass + 1, around, crew);
+                let Pass { number, share, .. } = passes.get(pass);
+                (grips.place)(nodes, number, share, &mut |node, position, velocity| {
+                    stepper.set_node(node, position, velocity);
+                });
+                lost
+            }),
+        };
+        lost.map(|Lost { step, node }| Lost { step, node: nodes.start + node })
+    }
+}
+
+/// The steppers of all parts with copies of an earlier state, to which all parts go back when a node has become too fast.
+///
+/// Until nodes of different parts meet, each part takes many steps alone, which keeps its data in the caches.
+pub(crate) struct Rollback {
+    parts: Vec<PartStepper>,
     scheme: Scheme,
     /// Steps taken.
     steps: u64,
@@ -151,14 +197,31 @@ impl Rollback {
     /// Number of steps between copies of the state. A copy costs a small part of that many steps.
     const KEPT: u64 = 32;
 
-    pub(crate) fn new(stepper: Box<dyn Stepper>, scheme: Scheme) -> Self {
-        Self { stepper, scheme, steps: 0, kept: None }
+    /// Parts in the order of their nodes.
+    pub(crate) fn new(parts: Vec<PartStepper>, scheme: Scheme) -> Self {
+        Self { parts, scheme, steps: 0, kept: None }
     }
 
     /// Reads a state after `steps` steps.
     pub(crate) fn load(&mut self, steps: u64, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
-        self.stepper.load(position, velocity, memory);
+        for PartStepper { stepper, nodes, memory: own } in &mut self.parts {
+            stepper.load(&position[nodes.clone()], &velocity[nodes.clone()], &memory[own.clone()]);
+        }
         (self.steps, self.kept) = (steps, None);
+    }
+
+    /// Writes the state.
+    pub(crate) fn store(&mut self, position: &mut [DVec3], velocity: &mut [DVec3], memory: &mut [f64]) {
+        for PartStepper { stepper, nodes, memory: own } in &mut self.parts {
+            stepper.store(&mut position[nodes.clone()], &mut velocity[nodes.clone()], &mut memory[own.clone()]);
+        }
+    }
+
+    /// The position (m) and velocity (m/s) of a node.
+    pub(crate) fn node(&mut self, node: usize) -> (DVec3, DVec3) {
+        let part = self.parts.partition_point(|part| part.nodes.end <= node);
+        let PartStepper { stepper, nodes, .. } = &mut self.parts[part];
+        stepper.node(node - nodes.start)
     }
 
     /// Steps taken.
@@ -179,12 +242,12 @@ impl Rollback {
     /// Advances until `until` steps are taken. `around` must be valid for all steps from [`Self::earliest`] on.
     ///
     /// # Errors
-    /// When a node would become faster than the limit: the state is then the one before that step.
+    /// When a node would become faster than the limit: the state of all parts is then the one before that step.
     pub(crate) fn advance(&mut self, until: u64, around: &Around<'_>, crew: &mut Crew) -> Result<(), Runaway> {
         while self.steps < until {
             let from = self.earliest();
             if self.kept != Some(from) {
-                self.stepper.keep();
+                self.parts.iter_mut().for_each(|part| part.stepper.keep());
                 self.kept = Some(from);
             }
             let mut end = until.min(from + Self::KEPT);
@@ -192,11 +255,11 @@ impl Rollback {
                 self.steps = end;
                 continue;
             }
-            // Threads are not always in the same step, so another node may have exceeded the limit in an earlier step.
-            // It is found by repeating the steps before with one thread.
+            // Threads and parts are not always in the same step, so another node may have exceeded the limit in an earlier
+            // step. It is found by repeating the steps before with one thread.
             let mut node = 0;
             loop {
-                self.stepper.restore();
+                self.parts.iter_mut().for_each(|part| part.stepper.restore());
                 match self.run(from..end, around, &mut Crew::new(1)) {
                     Some(lost) => (end, node) = (lost.step, lost.node),
                     None => break,
@@ -208,23 +271,87 @@ impl Rollback {
         Ok(())
     }
 
+    /// Takes steps, until a node is too fast. The state is then undefined.
     fn run(&mut self, steps: Range<u64>, around: &Around<'_>, crew: &mut Crew) -> Option<Lost> {
-        let Self { stepper, scheme, .. } = self;
-        let is_damped = stepper.is_damped();
-        let (first, steps) = (steps.start, steps.end - steps.start);
-        let passes = Passes { scheme: *scheme, is_damped, is_held: around.grips.is_some(), first, steps };
-        let Some(grips) = around.grips else { return stepper.run(passes, 0..passes.len(), around, crew) };
-        // In the second half of velocity Verlet the speed test comes before the grips, in the reference after them: here
-        // it is part of the pass, which does not know the nodes that are held. So a node that is held is tested with
-        // the velocity that its forces would give it. The limit is many times any speed of a run that does not diverge,
-        // so that this decides only in which step a run stops that does.
-        (0..passes.len()).find_map(|pass| {
-            let lost = stepper.run(passes, pass..pass + 1, around, crew);
-            let Pass { number, share, .. } = passes.get(pass);
-            grips(number, share, &mut |node, position, velocity| {
-                stepper.set_node(node, position, velocity);
+        let (scheme, count) = (self.scheme, self.parts.last()?.nodes.end);
+        let Some(meet) = around.meet else {
+            return self.each(crew, |part, crew| {
+                let passes = part.passes(scheme, &steps, around);
+                part.run(passes, 0..passes.len(), around, crew)
             });
-            lost
-        })
+        };
+        // Passes that are interrupted have the same numbers and contact in all parts.
+        let outline = self.parts[0].passes(scheme, &steps, around);
+        let [mut before, mut after] = [(); 2].map(|()| State::at_rest(vec![DVec3::ZERO; count]));
+        let mut begun = None;
+        for pass in 0..outline.len() {
+            let Pass { number, stage, .. } = outline.get(pass);
+            if begun.replace(number) != Some(number) {
+                self.read(&mut before);
+            }
+            let lost = self.each(crew, |part, crew| {
+                let passes = part.passes(scheme, &steps, around);
+                part.run(passes, pass..pass + 1, around, crew)
+            });
+            if lost.is_some() {
+                return lost;
+            }
+            if stage.has_contact() {
+                self.read(&mut after);
+                meet(number, before.nodes(), &mut after.position, &mut after.velocity);
+                self.write(&after);
+            }
+        }
+        None
+    }
+
+    /// Calls `advance` with each part and its threads, and returns the first of all nodes that are too fast. A part that
+    /// can be divided among threads at least as well as the parts of its size has all threads of the crew. The others have
+    /// one thread each, several of them at the same time.
+    fn each(
+        &mut self,
+        crew: &mut Crew,
+        advance: impl Fn(&mut PartStepper, &mut Crew) -> Option<Lost> + Sync,
+    ) -> Option<Lost> {
+        /// The least number of nodes for each thread.
+        const LEAST: usize = 2000;
+        let (all, threads) = (self.parts.last()?.nodes.end, crew.threads());
+        let is_divided = |part: &&mut PartStepper| {
+            let nodes = part.nodes.len().max(1);
+            (nodes / LEAST).clamp(1, threads) >= (all / nodes).min(threads)
+        };
+        let (divided, whole): (Vec<_>, Vec<_>) = self.parts.iter_mut().partition(is_divided);
+        let first = divided.into_iter().filter_map(|part| advance(part, crew)).min();
+        if whole.is_empty() {
+            return first;
+        }
+        let (queue, found) = (Mutex::new(whole.into_iter()), Mutex::new(first));
+        crew.run(&|_| {
+            let mut alone = Crew::new(1);
+            let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+            while let Some(part) = next() {
+                if let Some(lost) = advance(part, &mut alone) {
+                    let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
+                    *found = Some(found.map_or(lost, |found| found.min(lost)));
+                }
+            }
+        });
+        found.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn read(&mut self, state: &mut State) {
+        for PartStepper { stepper, nodes, .. } in &mut self.parts {
+            for (own, node) in nodes.clone().enumerate() {
+                (state.position[node], state.velocity[node]) = stepper.node(own);
+            }
+        }
+    }
+
+    fn write(&mut self, state: &State) {
+        for PartStepper { stepper, nodes, .. } in &mut self.parts {
+            for (own, node) in nodes.clone().enumerate() {
+                stepper.set_node(own, state.position[node], state.velocity[node]);
+            }
+        }
     }
 }

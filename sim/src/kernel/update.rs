@@ -51,7 +51,7 @@ impl Stage {
     }
 
     /// Whether contact is computed at its end.
-    fn has_contact(self) -> bool {
+    pub(crate) fn has_contact(self) -> bool {
         !matches!(self, Self::Finish | Self::Leave(_) | Self::Kick(_))
     }
 }

@@ -11,6 +11,7 @@ mod grips;
 mod integrators;
 mod masses;
 mod own_method;
+mod parts;
 mod readings;
 mod rest;
 mod runaway;

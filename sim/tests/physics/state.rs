@@ -1,11 +1,9 @@
 //! The state has everything that persists between steps.
 
 use super::conformance::{bodies, cases};
-use super::support::{Noise, floor, lattice, mass_spring, shape_based};
+use super::support::{Noise, floor, lattice, shape_based};
 use glam::DVec3;
-use localshape_sim::{
-    Assembly, Grip, Integrator, Kernel, Moment, Motion, Offset, Springs, State, Status, Stepping, Surroundings, World,
-};
+use localshape_sim::{Grip, Integrator, Kernel, Moment, Motion, Offset, State, Status, Stepping, Surroundings, World};
 
 const ALL: [Integrator; 7] = [
     Integrator::SemiImplicitEuler,
@@ -122,68 +120,6 @@ fn kernels_tell_the_same_runaway() {
                 world.status()
             });
             assert_eq!(fast, plain, "{:?}", case.model);
-        }
-    }
-}
-
-/// Two bodies in one world, with a floor and a grip on a node of the second, move and are measured like each alone.
-#[test]
-fn two_parts_move_like_each_alone() {
-    let (first, second) = (lattice(2, 0.1), lattice(1, 0.1));
-    let shape = shape_based(1e4, 20.0);
-    let spring = mass_spring(&second, 1e4, 0.0, Springs::EdgesFaceDiagonals);
-    // The others start anew, find their steps or solve their equations for both bodies together.
-    for &integrator in &ALL[..5] {
-        let stepping = Stepping { kernel: Kernel::Reference, ..Stepping::new(integrator, 1e-3) };
-        let start = |body: &localshape_sim::Body, shift: DVec3| {
-            let mut noise = Noise(6);
-            let position = body.rest.iter().map(|&at| at + shift + noise.vector() * 0.005).collect();
-            State::new(position, vec![DVec3::new(0.1, -2.0, 0.0); body.len()])
-        };
-        let starts = [start(&first, DVec3::ZERO), start(&second, DVec3::X)];
-        let around =
-            |grips: Vec<Grip>| Surroundings { gravity: DVec3::Y * -9.8, obstacles: vec![floor(0.5, 0.3)], grips };
-        let grip = |node: u32| Grip { nodes: vec![node], from: 0.01, until: 0.03, motion: Motion::Still };
-        let none = around(vec![]);
-        let mut alone = [
-            World::new(&first, starts[0].clone(), &shape, none, stepping),
-            World::new(&second, starts[1].clone(), &spring, around(vec![grip(7)]), stepping),
-        ];
-        let [position, velocity] = [0, 1].map(|which| {
-            let of = |state: &State| if which == 0 { state.position.clone() } else { state.velocity.clone() };
-            starts.iter().flat_map(of).collect::<Vec<_>>()
-        });
-        let parts = [(first.clone(), &shape as &dyn localshape_sim::model::ElasticModel), (second.clone(), &spring)];
-        let surroundings = around(vec![grip(first.len() as u32 + 7)]);
-        let assembly = Assembly::new(vec![first.clone(), second.clone()]);
-        let mut together = World::of_parts(&parts, State::new(position, velocity), surroundings, stepping);
-        for steps in [0, 5, 20, 60] {
-            alone.iter_mut().for_each(|world| world.advance(steps));
-            together.advance(steps);
-            let both = together.snapshot();
-            for (part, alone) in alone.iter().enumerate() {
-                // With damping in one part, Verlet evaluates forces twice in both, which changes the undamped one by
-                // round-off.
-                let (one, other) = (alone.snapshot(), &both);
-                let nodes = assembly.nodes(part);
-                let is_exact = integrator != Integrator::VelocityVerlet || part == 0;
-                let farthest = one
-                    .position
-                    .iter()
-                    .zip(&other.position[nodes.clone()])
-                    .map(|(a, b)| a.distance(*b))
-                    .fold(0.0, f64::max);
-                assert!(farthest <= if is_exact { 0.0 } else { 1e-13 }, "{integrator:?} {part} {steps}: {farthest:e}");
-                assert_eq!(one.diagnostics.turned_over, other.of_bodies[part].turned_over);
-                if is_exact {
-                    assert_eq!(one.velocity, other.velocity[nodes]);
-                    assert_eq!(one.placements, other.placements[part..=part]);
-                    let elements = assembly.elements(part);
-                    assert_eq!(one.turned_over, other.turned_over[elements.clone()]);
-                    assert_eq!(one.flat, other.flat[elements]);
-                    assert_eq!(format!("{:?}", one.diagnostics), format!("{:?}", other.of_bodies[part]));
-                }
-            }
         }
     }
 }

@@ -1,12 +1,13 @@
 //! Kernels for any elements and springs, compared with the reference and with each other.
 
 mod elements;
+mod parts;
 mod springs;
 mod surroundings;
 
 use super::general::{Constants, General};
 use super::springs::Stencil;
-use super::stepper::{Rollback, Scheme, Stepper};
+use super::stepper::{PartStepper, Rollback, Scheme, Stepper};
 use super::{Around, Rotation};
 use crate::body::Body;
 use crate::contact::{Bound, Obstacle, Shape};
@@ -141,6 +142,7 @@ pub(super) const FREE: Around<'_> = Around {
     resolve: &|_, _, _, _| {},
     floor: None,
     grips: None,
+    meet: None,
     speed_limit: &|_| f64::MAX,
 };
 
@@ -156,7 +158,8 @@ struct Moving(Rollback, Crew);
 
 impl Moving {
     fn new(kernel: impl Stepper + 'static, start: &Whole, scheme: Scheme, threads: usize) -> Self {
-        let mut rollback = Rollback::new(Box::new(kernel), scheme);
+        let (nodes, memory) = (0..start.0.position.len(), 0..start.1.len());
+        let mut rollback = Rollback::new(vec![PartStepper { stepper: Box::new(kernel), nodes, memory }], scheme);
         rollback.load(0, &start.0.position, &start.0.velocity, &start.1);
         Self(rollback, Crew::new(threads))
     }
@@ -167,7 +170,7 @@ impl Moving {
 
     fn stored(&mut self, like: &Whole) -> Whole {
         let (mut state, mut memory) = like.clone();
-        self.0.stepper.store(&mut state.position, &mut state.velocity, &mut memory);
+        self.0.store(&mut state.position, &mut state.velocity, &mut memory);
         (state, memory)
     }
 }
