@@ -59,6 +59,9 @@ pub struct View {
     /// edges.
     #[serde(skip)]
     pub has_cells: bool,
+    /// The names of the bodies by their places in runs, which the key explains; empty if no run has several bodies.
+    #[serde(skip)]
+    pub(crate) bodies: Vec<String>,
     /// A title above all panels, wrapped at the width of the picture. Default: none.
     #[schemars(length(max = 200))]
     pub title: String,
@@ -117,7 +120,13 @@ impl View {
     #[cfg(feature = "render")]
     pub(crate) fn wants_legend(&self) -> bool {
         let shown = [self.visible.displacements, self.colour.is_some(), self.ghost.is_some(), !self.paths.is_empty()];
-        self.labels.legend && shown.contains(&true)
+        self.labels.legend && (shown.contains(&true) || !self.coloured_bodies().is_empty())
+    }
+
+    /// The names of the bodies whose surfaces have a colour of their own.
+    #[cfg(feature = "render")]
+    pub(crate) fn coloured_bodies(&self) -> &[String] {
+        if self.visible.surfaces && self.colour.is_none() { &self.bodies } else { &[] }
     }
 }
 
@@ -143,6 +152,7 @@ impl Default for View {
             arrow_scale: 1.0,
             side: 1.0,
             has_cells: false,
+            bodies: Vec::new(),
             title: String::new(),
             caption: String::new(),
             labels: Labels::default(),

@@ -12,12 +12,14 @@ use super::layout::{SMALLEST_TYPE, Scale};
 use super::page::{Path, point};
 use super::text::Weight;
 use crate::colour::Colour;
-use crate::look::View;
+use crate::look::{BODIES, View};
 use glam::DVec2;
 use std::borrow::Cow;
 
 /// The least width of the bar with its name, in those of a sample.
 const BAR: f64 = 1.5;
+/// The least width of the sample of a body with its name, in those of others.
+const BODY: f64 = 0.5;
 /// The most ticks.
 const MOST_TICKS: usize = 5;
 
@@ -56,6 +58,16 @@ pub(super) struct Sample<'a> {
     pub(super) kind: SampleKind,
 }
 
+impl Sample<'_> {
+    /// The width of its mark, and its least width with its name (px in the reference picture).
+    fn least(&self) -> [f64; 2] {
+        match self.kind {
+            SampleKind::Body(_) => [SHORT, BODY * TILE],
+            _ => [BLOCK, TILE],
+        }
+    }
+}
+
 /// The look of a sample.
 pub(super) enum SampleKind {
     /// An arrow of a length (px), with its size relative to the reference picture.
@@ -66,6 +78,8 @@ pub(super) enum SampleKind {
     Ghost(Colour),
     /// Paths, each of a run in its colour.
     Path(Vec<Colour>),
+    /// A body in its colour, with its outline.
+    Body([Colour; 2]),
 }
 
 /// Sizes of the key of a picture.
@@ -81,16 +95,17 @@ impl Legend {
     /// The key of a view with panels of a scale; `None` if there is nothing to explain.
     pub(super) fn of(view: &View, scale: Scale) -> Option<Self> {
         let samples = [view.visible.displacements, view.ghost.is_some(), !view.paths.is_empty()];
-        let samples = samples.iter().filter(|&&is_shown| is_shown).count();
-        view.wants_legend().then(|| Self::new(view.size, scale, samples, view.colour.is_some()))
+        let samples = samples.iter().filter(|&&is_shown| is_shown).count() as f64;
+        let bodies = view.coloured_bodies().len().min(BODIES) as f64;
+        view.wants_legend().then(|| Self::new(view.size, scale, samples + BODY * bodies, view.colour.is_some()))
     }
 
     /// The key of a picture of a size (px) with panels of a scale, with a number of samples, and with or without a bar. A
-    /// key that could not be read has no room.
-    pub(super) fn new(size: [u32; 2], scale: Scale, samples: usize, has_bar: bool) -> Self {
+    /// key that could not be read has no room. Samples of bodies count as a share of others.
+    pub(super) fn new(size: [u32; 2], scale: Scale, samples: f64, has_bar: bool) -> Self {
         let room = f64::from(size[0].max(1)) - 2.0 * scale.margin();
-        let bar = if has_bar { BAR } else { 0.0 };
-        let needed = (samples as f64 + bar) * TILE + (samples + usize::from(has_bar)).saturating_sub(1) as f64 * MARGIN;
+        let [bar, bars] = if has_bar { [BAR, 1.0] } else { [0.0; 2] };
+        let needed = (samples + bar) * TILE + (samples + bars - 1.0).max(0.0) * MARGIN;
         // A picture with a field needs its key at any size.
         let unit = scale.type_unit().max(SMALLEST_TYPE / SMALL).min(room / needed);
         Self { unit, height: if Scale::legible(SMALL * unit) { NAME_ROW * unit } else { f64::INFINITY } }
@@ -108,12 +123,12 @@ impl Legend {
         let gap = |at: usize| if at > 0 { MARGIN * unit } else { 0.0 };
         let wide = |sample: &Sample<'_>| {
             let name = writer.fonts.width(&sample.names[0], Weight::Regular, TEXT * unit);
-            (BLOCK + BESIDE) * unit + name
+            (sample.least()[0] + BESIDE) * unit + name
         };
         let boxes = samples
             .iter()
             .enumerate()
-            .map(|(at, sample)| Node::new(at, wide(sample)).least(TILE * unit).after(gap(at)));
+            .map(|(at, sample)| Node::new(at, wide(sample)).least(sample.least()[1] * unit).after(gap(at)));
         let of_bar = bar.map(|_| Node::new(samples.len(), BAR * TILE * unit).stretched().after(gap(samples.len())));
         let row = Node::new(usize::MAX, self.height).with(boxes.chain(of_bar).collect());
         let solved = tree::column(&[row], [margin, top.round(), width - 2.0 * margin, self.height]);
@@ -128,7 +143,7 @@ impl Legend {
     /// A sample with its name.
     fn sample(self, writer: &mut Writer<'_>, [left, top, width, _]: tree::Place, sample: &Sample<'_>) {
         let (unit, palette, fonts) = (self.unit, writer.palette, writer.fonts);
-        let (middle, mut length) = (top + 0.5 * (BESIDE * unit).round(), BLOCK * unit);
+        let (middle, mut length) = (top + 0.5 * (BESIDE * unit).round(), sample.least()[0] * unit);
         let curve = |[from, to]: [f64; 2], dash: &[f64], colour: Colour| {
             Item::curve(&[[from, middle], [to, middle]], STRONG * unit, dash, colour)
         };
@@ -150,6 +165,15 @@ impl Legend {
                 let at = |part: usize| left + length * part as f64 / colours.len() as f64;
                 let part = |(part, &colour)| curve([at(part), at(part + 1)], &[], colour);
                 writer.curves.extend(colours.iter().enumerate().map(part));
+            }
+            SampleKind::Body([colour, outline]) => {
+                let (side, rim) = (length.round(), (STRONG * unit).round().max(1.0));
+                let [left, top] = [left, middle - 0.5 * side].map(f64::round);
+                let square = |inset: f64| [left + inset, top + inset, side - 2.0 * inset, side - 2.0 * inset];
+                writer.marks.push(Item::part(
+                    "body",
+                    [Item::rectangle(square(0.0), outline), Item::rectangle(square(rim), colour)],
+                ));
             }
         }
         let before = length + BESIDE * unit;

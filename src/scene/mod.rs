@@ -252,11 +252,29 @@ impl Scene {
         self.bodies[0].body.dimension
     }
 
-    /// Gives the runs their places.
+    /// Gives the runs their places, and the view the names of their bodies.
     fn place_runs(&mut self) {
         let chosen: Vec<_> = self.runs.iter().map(|run| run.colour).collect();
         let places = self.view.look.palette().places(&chosen);
         self.runs.iter_mut().zip(places).for_each(|(run, place)| run.place = place);
+        self.view.bodies = self.names_of_bodies();
+    }
+
+    /// The names of the bodies by their places in runs; empty if no run has several bodies. Bodies of other runs at the same
+    /// place are named, too.
+    fn names_of_bodies(&self) -> Vec<String> {
+        let most = self.runs.iter().map(|run| run.of.len()).max().filter(|&most| most > 1).unwrap_or(0);
+        let at = |place: usize| {
+            let mut names: Vec<&str> = Vec::new();
+            for body in self.runs.iter().filter_map(|run| run.of.get(place)) {
+                let name = self.bodies[*body].name.as_str();
+                if !names.contains(&name) {
+                    names.push(name);
+                }
+            }
+            names.join(" / ")
+        };
+        (0..most).map(at).collect()
     }
 
     /// The message and help for an unknown run.

@@ -1,7 +1,7 @@
 //! The contents of the key of a picture: colours, lines, marks and arrows.
 
 use super::Composer;
-use crate::look::ColourScale;
+use crate::look::{BODIES, ColourScale};
 use crate::picture::layout::{Rectangle, Scale};
 use crate::picture::legend::{Bar, Legend, Sample, SampleKind};
 use crate::picture::wire::spring_strain;
@@ -19,7 +19,17 @@ impl Composer<'_> {
         let path = Some(path).filter(|names| !names.is_empty());
         let colours = self.traced.iter().map(|series| self.scene.runs[series.run].line(&self.palette).colour).collect();
         let path = path.map(|names| Sample { names, kind: SampleKind::Path(colours) });
-        arrow.into_iter().chain(ghost).chain(path).collect()
+        arrow.into_iter().chain(ghost).chain(path).chain(self.bodies()).collect()
+    }
+
+    /// A sample of each colour of bodies, with the names of its bodies.
+    fn bodies(&self) -> impl Iterator<Item = Sample<'_>> {
+        let (names, palette) = (self.scene.view.coloured_bodies(), &self.palette);
+        let colours = if self.scene.is_lit() { palette.bodies } else { palette.bodies_flat };
+        colours.into_iter().enumerate().take(names.len()).map(move |(at, colour)| {
+            let names: Vec<_> = names.iter().skip(at).step_by(BODIES).map(String::as_str).collect();
+            Sample { names: vec![names.join(", ").into()], kind: SampleKind::Body([colour, palette.outline]) }
+        })
     }
 
     /// The colour scale of a frame, if there is one.

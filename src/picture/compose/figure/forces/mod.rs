@@ -57,7 +57,7 @@ pub(super) fn compose(figure: &Figure, forces: &Forces, moments: &Moments) -> Re
     });
     let cells: Vec<_> = cells.collect();
     let samples = 2 + usize::from(forces.compare.is_some());
-    let key = Legend::new(figure.size, scale, samples, false);
+    let key = Legend::new(figure.size, scale, samples as f64, false);
 
     let in_columns = |part, length: f64, inside: &[Node<Part>]| {
         let column = Node::new(part, 0.0).stretched().with(inside.to_vec());
