@@ -262,8 +262,15 @@ impl Writer<'_> {
         self.right(&number::time(time), Weight::Regular, around.title(), palette.text, right - beside, baseline);
     }
 
-    /// Tally and count, lower left, each between two places from the left margin (px).
-    pub(super) fn count(&mut self, panel: Rectangle, places: [[f64; 2]; 2], tally: &Tally, snapshot: &Snapshot) {
+    /// Tally and count, lower left, each between two places from the left margin (px). With names of bodies the elements of
+    /// each are counted, too, if there is room.
+    pub(super) fn count(
+        &mut self,
+        panel: Rectangle,
+        places: [[f64; 2]; 2],
+        (tally, names): (&Tally, &[&str]),
+        snapshot: &Snapshot,
+    ) {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
         let Snapshot { turned_over, flat, .. } = snapshot;
@@ -274,22 +281,30 @@ impl Writer<'_> {
             _ => (self.palette.alarm_text, self.palette.alarm_text),
         };
         // If no element has turned over, flat ones are counted.
-        let (count, state) = if over == 0 && flattened > 0 { (flattened, "flat") } else { (over, TURNED_OVER) };
+        let (count, state, which) =
+            if over == 0 && flattened > 0 { (flattened, "flat", flat) } else { (over, TURNED_OVER, turned_over) };
         let [(first, tally_room), (left, free)] = places.map(|[from, to]| (room.left + from, to - from));
         let corner = [first, room.top + lines.caption];
         tally.draw(states, self.palette, self.scale, tally_room, corner, &mut self.marks);
         let [count, all] = [count, turned_over.len()].map(number::count);
         let count = self.fonts.shortened(&format!("{count} of {all}"), Weight::SemiBold, title, free);
         self.left(&count, Weight::SemiBold, title, colour, left, room.top + lines.count);
-        let state = self.fonts.shortened(state, Weight::Regular, caption, free);
+        let of_bodies = of_bodies(state, names, tally.counts(which));
+        let fits = |text: &String| self.fonts.width(text, Weight::Regular, caption) <= free;
+        let state = of_bodies.filter(fits).unwrap_or_else(|| state.to_owned());
+        let state = self.fonts.shortened(&state, Weight::Regular, caption, free);
         self.left(&state, Weight::Regular, caption, second, left, room.top + lines.caption);
     }
 
-    /// The width of the widest count of a number of elements (px).
-    pub(super) fn count_width(&self, all: usize) -> f64 {
-        let all = number::count(all);
+    /// The width of the widest count of a number of elements (px), and of the widest count of the elements of bodies.
+    pub(super) fn count_widths(&self, names: &[&str], tally: &Tally) -> [f64; 2] {
+        let every = tally.sizes();
+        let all = number::count(every.iter().sum());
         let widest = self.fonts.width(&format!("{all} of {all}"), Weight::SemiBold, self.scale.title());
-        widest.max(self.fonts.width(TURNED_OVER, Weight::Regular, self.scale.caption())).ceil()
+        let caption = |text: &str| self.fonts.width(text, Weight::Regular, self.scale.caption());
+        let least = widest.max(caption(TURNED_OVER)).ceil();
+        let of_bodies = of_bodies(TURNED_OVER, names, every.into_iter());
+        [of_bodies.map_or(least, |text| caption(&text).ceil().max(least)), least]
     }
 
     /// The widths of the widest number at the lower right, diverged or not, in its longest and in its shortest wording
@@ -385,6 +400,13 @@ impl Writer<'_> {
         let left = right - self.fonts.width(text, weight, size);
         self.left(text, weight, size, colour, left, baseline);
     }
+}
+
+/// The number of elements of each named body in a state, in words; `None` without names.
+fn of_bodies(state: &str, names: &[&str], counts: impl Iterator<Item = usize>) -> Option<String> {
+    let each: Vec<_> =
+        names.iter().zip(counts).map(|(name, count)| format!("{name} {}", number::count(count))).collect();
+    (!each.is_empty()).then(|| format!("{state}: {}", each.join(", ")))
 }
 
 /// The letter of a panel: a to z, then aa, ab and so on.

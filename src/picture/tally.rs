@@ -5,9 +5,10 @@ use super::layout::Scale;
 use super::layout::steps::{CHART, FREE, MARGIN, RING, SMALL, STRONG, TEXT, TICK};
 use super::page::{Path, point};
 use super::{Colour, Item};
-use crate::look::Palette;
-use crate::sim::Body;
+use crate::look::{BODIES, Palette};
+use crate::sim::Assembly;
 use glam::DVec3;
+use std::ops::Range;
 
 /// Bodies of more elements get a bar instead of squares.
 const MOST_SQUARES: usize = 200;
@@ -16,27 +17,35 @@ pub(super) const HEIGHT: f64 = 3.0 * RING + 2.0 * FREE;
 /// The rim of a hollow square, relative to its side.
 const RIM: f64 = 0.14;
 
-/// The elements in rows, highest layer first; each row in the order of the elements.
+/// The elements of each body in rows, highest layer first; each row in the order of the elements.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tally {
-    rows: Vec<Vec<usize>>,
-    /// Whether each row is a layer.
-    are_layers: bool,
+    blocks: Vec<Block>,
+    /// The number of elements.
     count: usize,
 }
 
-impl Tally {
-    /// Groups elements into layers of equal height at rest. Bodies without such layers get rows of equal length.
-    pub(super) fn new(body: &Body, side: f64) -> Self {
-        let count = body.elements.len();
-        if count == 0 || count > MOST_SQUARES {
-            return Self { rows: Vec::new(), are_layers: false, count };
-        }
+/// The elements of one body.
+#[derive(Clone, Debug, PartialEq)]
+struct Block {
+    elements: Range<usize>,
+    /// The elements in rows; empty if the tally is a bar.
+    rows: Vec<Vec<usize>>,
+    /// Whether each row is a layer.
+    are_layers: bool,
+}
+
+impl Block {
+    /// Groups the elements of a body into layers of equal height at rest. Bodies without such layers get rows of equal
+    /// length.
+    fn new(bodies: &Assembly, body: usize, side: f64) -> Self {
+        let (whole, range) = (bodies.whole(), bodies.elements(body));
+        let count = range.len();
         let height = |element: usize| {
-            let nodes = &body.elements[element];
-            nodes.iter().map(|&node| body.rest[node as usize]).sum::<DVec3>().y / nodes.len() as f64
+            let nodes = &whole.elements[element];
+            nodes.iter().map(|&node| whole.rest[node as usize]).sum::<DVec3>().y / nodes.len() as f64
         };
-        let mut elements: Vec<usize> = (0..count).collect();
+        let mut elements: Vec<usize> = range.clone().collect();
         elements.sort_by(|&a, &b| height(b).total_cmp(&height(a)).then(a.cmp(&b)));
         let mut rows: Vec<Vec<usize>> = Vec::new();
         for &element in &elements {
@@ -51,38 +60,74 @@ impl Tally {
         if !are_layers {
             let columns = if count <= 9 { count } else { count.div_ceil((count as f64 / 3.0).sqrt().ceil() as usize) };
             elements.sort_unstable();
-            rows = elements.chunks(columns).map(<[usize]>::to_vec).collect();
+            rows = elements.chunks(columns.max(1)).map(<[usize]>::to_vec).collect();
         }
-        Self { rows, are_layers, count }
+        Self { elements: range, rows, are_layers }
     }
 
-    /// Whether each element has a square in a room (px), instead of a bar for all.
+    /// The number of squares in its longest row.
+    fn columns(&self) -> usize {
+        self.rows.iter().map(Vec::len).max().unwrap_or(0)
+    }
+}
+
+impl Tally {
+    /// The tally of some bodies, with cells of a side (m).
+    pub(super) fn new(bodies: &Assembly, side: f64) -> Self {
+        let count = bodies.whole().elements.len();
+        let blocks = (0..bodies.bodies().len()).map(|body| Block::new(bodies, body, side)).collect();
+        let tally = Self { blocks, count };
+        if count > MOST_SQUARES { tally.as_bar() } else { tally }
+    }
+
+    /// Whether each element has a square in a room (px), instead of a bar for each body.
     pub(super) fn has_squares(&self, scale: Scale, room: f64) -> bool {
         self.squares(scale, room).is_some()
     }
 
-    /// The tally as a bar.
+    /// The tally as bars.
     pub(super) fn as_bar(&self) -> Self {
-        Self { rows: Vec::new(), are_layers: false, count: self.count }
+        let bar = |block: &Block| Block { elements: block.elements.clone(), rows: Vec::new(), are_layers: false };
+        Self { blocks: self.blocks.iter().map(bar).collect(), count: self.count }
     }
 
     /// Whether it has squares in rows, if they have room.
     pub(super) fn has_rows(&self) -> bool {
-        !self.rows.is_empty()
+        self.blocks.iter().any(|block| !block.rows.is_empty())
     }
 
-    /// Whether its rows are several layers of the body.
+    /// Whether its rows are several layers of bodies.
     pub(super) fn has_layers(&self) -> bool {
-        self.are_layers && self.rows.len() > 1
+        self.blocks.iter().all(|block| block.are_layers) && self.blocks.iter().any(|block| block.rows.len() > 1)
+    }
+
+    /// The number of elements of each body in a state, such as turned over.
+    pub(super) fn counts<'a>(&'a self, state: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
+        self.blocks.iter().map(|block| state.get(block.elements.clone()).map_or(0, count))
+    }
+
+    /// The number of elements of each body.
+    pub(super) fn sizes(&self) -> Vec<usize> {
+        self.blocks.iter().map(|block| block.elements.len()).collect()
     }
 
     /// Its width in a room (px).
     pub(super) fn width(&self, scale: Scale, room: f64) -> f64 {
         match self.squares(scale, room) {
-            Some([side, gap]) => self.rows.iter().map(Vec::len).max().unwrap_or(0) as f64 * (side + gap) - gap,
+            Some([side, gap]) => self.columns() as f64 * (side + gap) - gap,
             None if self.count == 0 => 0.0,
             None => (CHART * scale.type_unit()).min(room).round(),
         }
+    }
+
+    /// The number of columns of all bodies, with an empty one between two bodies.
+    fn columns(&self) -> usize {
+        self.blocks.iter().map(Block::columns).sum::<usize>() + self.blocks.len().saturating_sub(1)
+    }
+
+    /// The number of rows of the body with the most.
+    fn rows(&self) -> usize {
+        self.blocks.iter().map(|block| block.rows.len()).max().unwrap_or(0)
     }
 
     /// Draws the tally with its lower left corner at a place (px). `states` tells the turned-over and the flat elements.
@@ -98,7 +143,7 @@ impl Tally {
         match self.squares(scale, room) {
             Some(lengths) => {
                 // Few rows are centred in the height of three.
-                let taken = self.rows.len() as f64 * (lengths[0] + lengths[1]) - lengths[1];
+                let taken = self.rows() as f64 * (lengths[0] + lengths[1]) - lengths[1];
                 let raised = ((HEIGHT * scale.type_unit() - taken) / 2.0).max(0.0);
                 self.draw_squares(states, palette, lengths, [corner[0], corner[1] - raised], marks)
             }
@@ -108,8 +153,10 @@ impl Tally {
 
     /// Side of the squares and the gap between them (px), if squares fit.
     fn squares(&self, scale: Scale, room: f64) -> Option<[f64; 2]> {
-        let columns = self.rows.iter().map(Vec::len).max()? as f64;
-        let rows = self.rows.len() as f64;
+        let [columns, rows] = [self.columns(), self.rows()].map(|count| count as f64);
+        if rows == 0.0 {
+            return None;
+        }
         let gap: f64 = if rows > 3.0 || columns > 14.0 { STRONG } else { FREE };
         let room = (room / scale.type_unit()).min(5.0 * MARGIN);
         let side = ((HEIGHT + gap) / rows - gap).min((room + gap) / columns - gap).min(TEXT);
@@ -126,20 +173,28 @@ impl Tally {
         [left, bottom]: [f64; 2],
         marks: &mut Vec<Item>,
     ) {
-        let (left, bottom) = (left.round(), bottom.round());
-        for (up, row) in self.rows.iter().rev().enumerate() {
-            for (along, &element) in row.iter().enumerate() {
-                let [over, flat] = states.map(|state| state.get(element).copied().unwrap_or(false));
-                let x = left + along as f64 * (side + gap);
-                let y = bottom - side - up as f64 * (side + gap);
-                if flat {
-                    marks.extend(hollow([x, y, side, side], palette));
-                } else {
-                    let square = [x, y, side, side];
-                    marks.push(if over { struck(square, palette) } else { Item::rectangle(square, palette.tally) });
+        let (mut left, bottom) = (left.round(), bottom.round());
+        for (block, plain) in self.blocks.iter().zip(self.colours(palette)) {
+            for (up, row) in block.rows.iter().rev().enumerate() {
+                for (along, &element) in row.iter().enumerate() {
+                    let [over, flat] = states.map(|state| state.get(element).copied().unwrap_or(false));
+                    let x = left + along as f64 * (side + gap);
+                    let square = [x, bottom - side - up as f64 * (side + gap), side, side];
+                    if flat {
+                        marks.extend(hollow(square, palette));
+                    } else {
+                        marks.push(if over { struck(square, palette) } else { Item::rectangle(square, plain) });
+                    }
                 }
             }
+            left += (block.columns() + 1) as f64 * (side + gap);
         }
+    }
+
+    /// The colours of sound elements: that of the tally for one body, and those of the bodies for several.
+    fn colours(&self, palette: &Palette) -> impl Iterator<Item = Colour> {
+        let colours = if self.blocks.len() > 1 { palette.bodies_flat } else { [palette.tally; BODIES] };
+        colours.into_iter().cycle()
     }
 
     fn draw_bar(
@@ -152,24 +207,40 @@ impl Tally {
         marks: &mut Vec<Item>,
     ) {
         let (width, height) = (self.width(scale, room), (SMALL * scale.type_unit()).round().max(1.0));
-        // A single element among thousands is visible.
-        let [over, flat] = states.map(|state| match state.iter().filter(|&&is_so| is_so).count() {
-            0 => 0.0,
-            count => (width * count as f64 / self.count as f64).max(2.0).min(width).round(),
-        });
-        let flat = flat.min(width - over);
-        let (left, top) = (left.round(), (bottom - (HEIGHT - SMALL) / 2.0 * scale.type_unit() - height).round());
-        let bar = |length, colour: Colour| Item::rectangle([left, top, length, height], colour);
-        if width > 0.0 {
-            marks.push(bar(width, palette.tally));
-        }
-        if flat > 0.0 {
-            marks.extend(hollow([left + over, top, flat, height], palette));
-        }
-        if over > 0.0 {
-            marks.push(bar(over, palette.alarm));
+        let top = (bottom - (HEIGHT - SMALL) / 2.0 * scale.type_unit() - height).round();
+        let gap = (FREE * scale.type_unit()).round();
+        // Each body has its share of the width.
+        let free = (width - gap * self.blocks.len().saturating_sub(1) as f64).max(0.0);
+        let (mut left, mut before) = (left.round(), 0);
+        for (block, plain) in self.blocks.iter().zip(self.colours(palette)) {
+            let all = block.elements.len();
+            let place = |elements: usize| (free * elements as f64 / self.count.max(1) as f64).round();
+            let width = place(before + all) - place(before);
+            before += all;
+            // A single element among thousands is visible.
+            let [over, flat] = states.map(|state| match state.get(block.elements.clone()).map_or(0, count) {
+                0 => 0.0,
+                count => (width * count as f64 / all as f64).max(2.0).min(width).round(),
+            });
+            let flat = flat.min(width - over);
+            let bar = |length, colour: Colour| Item::rectangle([left, top, length, height], colour);
+            if width > 0.0 {
+                marks.push(bar(width, plain));
+            }
+            if flat > 0.0 {
+                marks.extend(hollow([left + over, top, flat, height], palette));
+            }
+            if over > 0.0 {
+                marks.push(bar(over, palette.alarm));
+            }
+            left += width + gap;
         }
     }
+}
+
+/// The number of elements in a state.
+fn count(state: &[bool]) -> usize {
+    state.iter().filter(|&&is_so| is_so).count()
 }
 
 /// A hollow rectangle, the sign of flat elements.

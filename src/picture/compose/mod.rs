@@ -119,7 +119,7 @@ impl<'a> Composer<'a> {
             Dimension::Space => Vec::new(),
         };
         let extent = body.extent().max(f64::MIN_POSITIVE);
-        let tally = Tally::new(body, scene.view.side);
+        let tally = Tally::new(&scene.runs[0].bodies, scene.view.side);
         let descriptions = scene
             .runs
             .iter()
@@ -274,7 +274,7 @@ impl<'a> Composer<'a> {
             let count = place(NumberPart::Tally).zip(place(NumberPart::Count));
             // The shown state of a run that diverges lacks the present number of turned-over elements.
             if let Some((tally, count)) = count.filter(|_| run.shown().status == Status::Ok) {
-                writer.count(viewport, [tally, count], &self.tally, run.shown());
+                writer.count(viewport, [tally, count], (&self.tally, &self.names_of(run.run)), run.shown());
             }
             let mut taken = count.map_or(0.0, |(_, [_, end])| end);
             // All panels have one scale, so there is one bar.

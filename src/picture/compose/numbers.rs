@@ -23,6 +23,12 @@ pub(super) enum NumberPart {
 }
 
 impl Composer<'_> {
+    /// The names of the bodies of a run; empty if there is only one.
+    pub(super) fn names_of(&self, run: usize) -> Vec<&str> {
+        let of = self.scene.runs.get(run).map_or(&[][..], |run| &run.of);
+        if of.len() < 2 { Vec::new() } else { of.iter().map(|&body| self.scene.bodies[body].name.as_str()).collect() }
+    }
+
     /// The boxes of the row in each panel, from its left margin on (px). They are those of the start, so that nothing
     /// comes and goes.
     pub(super) fn numbers(&self, layout: &Layout, shot: Option<&Shot>) -> Solved<NumberPart> {
@@ -37,7 +43,7 @@ impl Composer<'_> {
         let count = (labels.count && !body.elements.is_empty()).then(|| {
             let tally = self.tally.width(scale, TALLY[0] * width);
             let tally = Node::new(NumberPart::Tally, tally).least(TALLY[1] * width);
-            [tally, node(NumberPart::Count, [writer.count_width(body.elements.len()); 2])]
+            [tally, node(NumberPart::Count, writer.count_widths(&self.names_of(0), &self.tally))]
         });
         let bars = self.bars(panel, &framing, scale).map(|(text, pixels)| writer.bar_width(&text, pixels));
         let bars = bars.filter(|_| labels.scale_bar);

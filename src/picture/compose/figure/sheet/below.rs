@@ -22,7 +22,7 @@ const FLAT: &str = "flat: volume below 1 %";
 
 /// The tallies of all scenes in one style: squares for all, or bars.
 pub(super) fn tallies(scenes: &[Scene], scale: Scale, layout: &SheetLayout) -> Vec<Tally> {
-    let tallies: Vec<_> = scenes.iter().map(|scene| Tally::new(scene.runs[0].body(), scene.view.side)).collect();
+    let tallies: Vec<_> = scenes.iter().map(|scene| Tally::new(&scene.runs[0].bodies, scene.view.side)).collect();
     let (scale, room) = size_of_tallies(scale, layout);
     let have_squares = tallies.iter().all(|tally| tally.has_squares(scale, room));
     if have_squares { tallies } else { tallies.iter().map(Tally::as_bar).collect() }
