@@ -4,7 +4,7 @@ use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::{FrameRanges, Moments, Shard};
 use super::options::{RunOptions, SceneOptions};
 use crate::output::shell;
-use crate::output::{Access, Folder, Manifest, OutputError, StoredStates, Whose};
+use crate::output::{Access, Folder, Manifest, OutputError, StoredStates, Whose, recorded};
 use crate::scene::{Limits, Scene, SceneError};
 use std::collections::HashMap;
 use std::ffi::OsString;
@@ -120,9 +120,9 @@ impl RunOptions {
         if let Some(shard) = shard {
             frames = shard.select(&frames).map_err(|message| Failure::usage(format!("--shard: {message}")))?;
         }
-        let names = runs.iter().map(|&run| scene.runs[run].name.clone()).collect();
+        let names = runs.iter().flat_map(|&run| recorded(&scene.runs[run].name, &scene, run)).map(|(name, _)| name);
         let size = pictures.then_some(scene.view.size);
-        let manifest = Manifest { runs: names, frames: frames.clone(), states: self.states, size };
+        let manifest = Manifest { runs: names.collect(), frames: frames.clone(), states: self.states, size };
         let resume = self.resume && !from_states && shard.is_none();
         let access = Access { overwrite: self.overwrite, follows: self.out.is_none(), resume, shard: shard.is_some() };
         let folder = Folder::inspect(path, Whose::of(&scene), manifest, access).map_err(|error| match error {

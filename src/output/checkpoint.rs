@@ -24,7 +24,7 @@ const ANY_MARK: &[u8] = b"localshape checkpoint ";
 /// The output of a command in the folder of a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Manifest {
-    /// Names of the runs, in the scene's order.
+    /// Names of the recorded states of the runs, in the scene's order.
     pub runs: Vec<String>,
     /// Numbers of the frames, rising.
     pub frames: Vec<u64>,

@@ -2,7 +2,7 @@
 
 use super::atomic::open_growing;
 use super::{OutputError, exact, rows_as_csv};
-use crate::scene::Scene;
+use crate::scene::{ALL_BODIES, Scene};
 use crate::sim::{Diagnostic, Diagnostics, Frame, RunFrame, Snapshot, Status, Value};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -12,9 +12,6 @@ use std::path::{Path, PathBuf};
 
 /// The name of the file in its folder.
 pub(crate) const DIAGNOSTICS_FILE: &str = "diagnostics.csv";
-
-/// The body of rows on all bodies of a run together.
-const ALL: &str = "all";
 
 /// Its name until it is finished.
 const UNFINISHED: &str = ".localshape-diagnostics.partial";
@@ -45,7 +42,7 @@ impl<'a> DiagnosticsWriter<'a> {
     pub(crate) fn create(folder: &Path, scene: &'a Scene) -> Result<Self, OutputError> {
         let mut writer = Self::open(folder, scene, Rows::default())?;
         let none = Snapshot::default();
-        let heads = cells("", ALL, 0, &none, &none.diagnostics).into_iter().map(|(head, _)| head);
+        let heads = cells("", ALL_BODIES, 0, &none, &none.diagnostics).into_iter().map(|(head, _)| head);
         writer.append(&rows_as_csv([heads]))?;
         Ok(writer)
     }
@@ -80,7 +77,7 @@ impl<'a> DiagnosticsWriter<'a> {
         let rows = frame.runs.iter().flat_map(|RunFrame { run, snapshot, .. }| {
             let run = &scene.runs[*run];
             let of_bodies = run.several(scene).map(|(body, _)| body).zip(&snapshot.of_bodies);
-            let rows = std::iter::once((ALL, &snapshot.diagnostics)).chain(of_bodies);
+            let rows = std::iter::once((ALL_BODIES, &snapshot.diagnostics)).chain(of_bodies);
             rows.map(|(body, diagnostics)| cells(&run.name, body, frame.index, snapshot, diagnostics))
         });
         self.append(&rows_as_csv(rows.map(|row| row.into_iter().map(|(_, cell)| cell))))

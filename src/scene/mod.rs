@@ -83,6 +83,9 @@ pub struct Scene {
     pub warnings: Vec<Mistake>,
 }
 
+/// The name of all bodies of a run together in files. No body has it.
+pub(crate) const ALL_BODIES: &str = "all";
+
 /// A body of a scene.
 #[derive(Clone, Debug)]
 pub struct SceneBody {

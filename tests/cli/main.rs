@@ -2,6 +2,7 @@
 
 #[cfg(feature = "render")]
 mod animate;
+mod bodies;
 mod check;
 mod compare;
 mod disk;

@@ -16,11 +16,11 @@ use super::generate::Generator;
 use super::limits;
 use super::limits::{BodySize, Excess, Limits};
 use super::structure::ValidFile;
-use super::{Run, Scene, SceneBody, Together};
+use super::{ALL_BODIES, Run, Scene, SceneBody, Together};
 use crate::look::{self, FontFiles, TypedView, View, font};
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::coordinates::{direction, vector};
-use crate::reading::words::{count, short};
+use crate::reading::words::{count, quoted, short};
 use crate::sim::{Body, Dimension, Obstacle};
 use body::{ResolvedBody, TypedBody};
 use choice::Choice;
@@ -296,6 +296,12 @@ fn check_body_names<'a>(parts: &'a SceneParts, report: &mut Collector<'_>) -> Op
     let (known, name) = (report.total(), |body: &'a BodyFile| body.name.as_deref());
     let named = parts.places.iter().cloned().zip(parts.bodies.iter().map(|body| body.as_ref().and_then(name)));
     choice::check_names(["body", "bodies"], named, report);
+    for (body, place) in parts.bodies.iter().zip(&parts.places) {
+        if body.as_ref().and_then(name) == Some(ALL_BODIES) {
+            let message = format!("a body is called {}, which means all bodies of a run in files", quoted(ALL_BODIES));
+            report.at(&key_path![place; "name"], message, "expected another name");
+        }
+    }
     if parts.bodies.len() > 1 {
         for (body, place) in parts.bodies.iter().zip(&parts.places) {
             if body.as_ref().is_some_and(|body| body.name.is_none()) {
