@@ -176,6 +176,7 @@ mod tests {
     fn series(run: usize, is_count: bool, points: &[[f64; 2]]) -> Series {
         let style = LineStyle { colour: [0; 3], dash: &[] };
         Series {
+            is_part: false,
             run,
             name: String::new(),
             style,

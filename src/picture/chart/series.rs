@@ -2,7 +2,7 @@
 
 use super::layer::{Layer, value};
 use crate::look::{LineStyle, Palette};
-use crate::picture::layout::steps::STRONG;
+use crate::picture::layout::steps::{HAIR, STRONG};
 use crate::runner::history::TimeSeries;
 use crate::scene::Scene;
 use crate::sim::{Diagnostic, Dimension};
@@ -24,6 +24,8 @@ pub(in crate::picture) struct Series {
     pub style: LineStyle,
     /// Whether it is a count.
     pub is_count: bool,
+    /// Whether it is of one body of a run: its curve is thin.
+    pub is_part: bool,
     /// Times (s) and finite values, those of counts as steps.
     pub points: Vec<[f64; 2]>,
     /// For a mean of several scenes, the time series of each: a band shows their least and greatest values. Empty
@@ -43,18 +45,34 @@ impl Series {
     /// A diagnostic of a run of a scene, with the line of the run.
     pub(super) fn new(diagnostic: Diagnostic, of_run: &TimeSeries, scene: &Scene, style: LineStyle) -> Self {
         let values = of_run.diagnostics.iter().map(|all| diagnostic.of(all));
+        let diverged = of_run.divergence.map(|divergence| divergence.time);
+        let one = Self::over(diagnostic, of_run, values, style);
+        Self { name: scene.runs[of_run.run].name.clone(), diverged, ..one }
+    }
+
+    /// A diagnostic of each body of a run of a scene, if it has several.
+    pub(super) fn of_bodies(
+        diagnostic: Diagnostic,
+        of_run: &TimeSeries,
+        scene: &Scene,
+        style: LineStyle,
+    ) -> impl Iterator<Item = Self> {
+        let of = &scene.runs[of_run.run].of;
+        of.iter().enumerate().filter(|_| !of_run.of_bodies.is_empty()).map(move |(at, &body)| {
+            let values = of_run.of_bodies.iter().filter_map(|bodies| bodies.get(at)).map(|all| diagnostic.of(all));
+            let one = Self::over(diagnostic, of_run, values, style);
+            Self { name: scene.bodies[body].name.clone(), is_part: true, ..one }
+        })
+    }
+
+    /// Values at the times of a run.
+    fn over(diagnostic: Diagnostic, of_run: &TimeSeries, values: impl Iterator<Item = f64>, style: LineStyle) -> Self {
+        let is_count = diagnostic == Diagnostic::TurnedOver;
         let points = of_run.times.iter().zip(values).map(|(&time, value)| [time, value]);
         let points: Vec<_> = points.filter(|[_, value]| value.is_finite()).collect();
-        let (run, is_count) = (&scene.runs[of_run.run], diagnostic == Diagnostic::TurnedOver);
-        Self {
-            run: of_run.run,
-            name: run.name.clone(),
-            style,
-            is_count,
-            points: if is_count { steps(&points) } else { points },
-            members: Vec::new(),
-            diverged: of_run.divergence.map(|divergence| divergence.time),
-        }
+        let points = if is_count { steps(&points) } else { points };
+        let (name, members) = Default::default();
+        Self { run: of_run.run, name, style, is_count, is_part: false, points, members, diverged: None }
     }
 
     /// The mean of a run's time series in several scenes, up to the earliest end. A single one is returned as it is.
@@ -81,14 +99,15 @@ impl Series {
 
     /// The area below a count.
     pub(super) fn area(&self, palette: &Palette) -> Option<Layer> {
-        self.is_count.then(|| Layer::Area { points: self.points.clone(), colour: palette.alarm })
+        (self.is_count && !self.is_part).then(|| Layer::Area { points: self.points.clone(), colour: palette.alarm })
     }
 
     /// Its curve, that of several scenes on a band.
     pub(super) fn curves(&self) -> impl Iterator<Item = Layer> {
         let LineStyle { colour, dash } = self.style;
         let band = (!self.members.is_empty()).then(|| Layer::Band { curves: self.members.clone(), colour });
-        let own = Layer::Line { points: self.points.clone(), colour, width: STRONG, dash: dash.to_vec() };
+        let width = if self.is_part { HAIR } else { STRONG };
+        let own = Layer::Line { points: self.points.clone(), colour, width, dash: dash.to_vec() };
         band.into_iter().chain([own])
     }
 }
@@ -164,7 +183,8 @@ mod tests {
         let points = values.iter().enumerate().map(|(at, &value)| [at as f64, value]).collect();
         let style = LineStyle { colour: [0; 3], dash: &[] };
         let diverged = diverged.then_some(values.len() as f64);
-        Series { run: 0, name: String::new(), style, is_count: false, points, members: Vec::new(), diverged }
+        let (name, members) = Default::default();
+        Series { run: 0, name, style, is_count: false, is_part: false, points, members, diverged }
     }
 
     #[test]

@@ -18,6 +18,8 @@ use crate::sim::Diagnostic;
 
 /// The most numbers beside a chart.
 const MOST_TICKS: usize = 4;
+/// With more curves than this, those of bodies are left out.
+const MOST_CURVES: usize = 12;
 /// The meaning of a band where a curve is dense.
 const BAND: [&str; 2] = ["band:", "least to most"];
 
@@ -28,8 +30,10 @@ struct Quantity {
     notes: Vec<String>,
     kind: Kind,
     unit: &'static str,
-    /// One for each run shown.
+    /// One for each run shown, then one for each body of runs with several.
     series: Vec<Series>,
+    /// The number of runs shown.
+    runs: usize,
     /// The range of values; `None` if there are none.
     range: Option<[f64; 2]>,
     /// The size of the body (m).
@@ -58,7 +62,16 @@ impl Quantity {
             let mean = Series::mean(of_scenes.iter().filter_map(|of_scene| one(of_scene, name)).collect());
             mean.map(|mean| Series { name: label(&mean.name), ..mean })
         };
-        let series: Vec<_> = of_scenes[0].1.series.iter().filter_map(|series| of_run(series.run)).collect();
+        let mut series: Vec<_> = of_scenes[0].1.series.iter().filter_map(|series| of_run(series.run)).collect();
+        let runs = series.len();
+        // A mean over scenes has no bodies.
+        for (own, of_run) in of_scenes[0].1.series.iter().zip(0..runs).filter(|_| of_scenes.len() == 1) {
+            let style = series[of_run].style;
+            series.extend(Series::of_bodies(diagnostic, own, scene, style));
+        }
+        if series.len() > MOST_CURVES {
+            series.truncate(runs);
+        }
         let is_count = diagnostic == Diagnostic::TurnedOver;
         let mut name = series::name(diagnostic, scene).to_owned();
         if let Some(first) = name.get_mut(..1) {
@@ -72,6 +85,7 @@ impl Quantity {
             // Counts are bounded by the number of elements, so diverged runs are shown in full.
             range: series::range(&series, !is_count),
             series,
+            runs,
             extent: scene.runs[0].body().extent(),
         };
         let unit = match one.values(MOST_TICKS) {
@@ -197,9 +211,9 @@ impl Stack {
         self.quantities.len()
     }
 
-    /// The time series of the first chart.
+    /// The time series of runs in the first chart.
     pub(super) fn first(&self) -> &[Series] {
-        self.quantities.first().map_or(&[], |one| &one.series)
+        self.quantities.first().map_or(&[], |one| &one.series[..one.runs])
     }
 
     /// Draws as many charts as have room, over a span of time whose scale may change between (s): what lies below the
