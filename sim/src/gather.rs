@@ -23,11 +23,13 @@ impl<'a> Group<'a> {
         while count < L::WIDTH.min(range.len()) && is_alike(first + count) {
             count += 1;
         }
-        let mut nodes = [nodes_of(first); MOST];
-        for (lane, nodes) in nodes.iter_mut().enumerate().skip(1) {
-            *nodes = nodes_of(first + lane.min(count - 1));
-        }
-        (Self { nodes }, count)
+        (Self::of(|lane| nodes_of(first + lane.min(count - 1))), count)
+    }
+
+    /// The elements with these nodes, one for each lane.
+    #[inline(always)]
+    pub(super) fn of(nodes: impl Fn(usize) -> &'a [u32]) -> Self {
+        Self { nodes: each!(8, lane => nodes(lane)) }
     }
 
     /// The number of corners of each element.
@@ -36,14 +38,10 @@ impl<'a> Group<'a> {
         self.nodes[0].len()
     }
 
-    /// A number of the same corner of each element.
+    /// The node at a corner of the element in a lane.
     #[inline(always)]
-    pub(super) fn number<L: Lanes>(&self, corner: usize, values: &[f64]) -> L {
-        let mut array = [0.0; MOST];
-        for lane in 0..L::WIDTH {
-            array[lane] = values[self.nodes[lane][corner] as usize];
-        }
-        L::from_array(array)
+    pub(super) fn node(&self, lane: usize, corner: usize) -> usize {
+        self.nodes[lane][corner] as usize
     }
 
     /// A vector of the same corner of each element.
@@ -55,25 +53,5 @@ impl<'a> Group<'a> {
             (arrays[0][lane], arrays[1][lane], arrays[2][lane]) = (value[0], value[1], value[2]);
         }
         each!(3, axis => L::from_array(arrays[axis]))
-    }
-
-    /// The vectors of all corners, relative to their mean.
-    #[inline(always)]
-    pub(super) fn centred<L: Lanes>(&self, values: &[DVec3], centred: &mut Vec<[L; 3]>) {
-        centred.clear();
-        // Relative to the first corner before they are added, to keep precision far from the origin.
-        let first = self.vector::<L>(0, values);
-        let mut sum = [L::splat(0.0); 3];
-        for corner in 0..self.corners() {
-            let vector = self.vector::<L>(corner, values);
-            let relative = each!(3, axis => vector[axis] - first[axis]);
-            sum = each!(3, axis => sum[axis] + relative[axis]);
-            centred.push(relative);
-        }
-        let count = L::splat(self.corners() as f64);
-        let mean = each!(3, axis => sum[axis].div(count));
-        for vector in centred {
-            *vector = each!(3, axis => vector[axis] - mean[axis]);
-        }
     }
 }

@@ -34,6 +34,7 @@ mod hull;
 pub mod integrate;
 mod kernel;
 mod lanes;
+mod law;
 mod lists;
 mod mode;
 pub mod model;

@@ -1,6 +1,5 @@
 //! Kernels as [`Dynamics`]: the choice of the kernel for a model and a body, and contact and grips between steps.
 
-use super::report::Energy;
 use super::stepper::{PartStepper, Rollback, Scheme};
 use super::{Around, Compiled, Conditions, Held, PlaceNode};
 use crate::body::Body;
@@ -9,6 +8,7 @@ use crate::crew::Crew;
 use crate::dynamics::{Dynamics, Runaway, SpeedLimit};
 use crate::grip::Grip;
 use crate::lanes::Set;
+use crate::law::Energy;
 use crate::model::{ElasticModel, Report, Share};
 use crate::part::Part;
 use crate::state::{Memory, Nodes, State};
@@ -21,7 +21,7 @@ use std::sync::Arc;
 pub(crate) struct ByKernel {
     rollback: Rollback,
     /// Of each part.
-    energies: Vec<Energy>,
+    energies: Vec<Box<dyn Energy>>,
     /// The memory of the constraints, while the kernels have the state.
     constraints: Option<Vec<f64>>,
     /// The margin (m) by which the bounds of obstacles are enlarged.

@@ -11,8 +11,8 @@ pub(crate) mod general;
 pub(crate) mod lattice;
 mod memory;
 pub mod peak;
-pub(crate) mod report;
-mod rotation;
+pub(crate) mod rotation;
+pub(crate) mod shapes;
 pub(crate) mod springs;
 mod stepper;
 mod tally;
@@ -22,24 +22,31 @@ pub(crate) mod update;
 mod tests;
 
 pub(crate) use drive::ByKernel;
-pub(crate) use report::strains;
-pub(crate) use stepper::Scheme;
+pub(crate) use shapes::strains;
+pub(crate) use stepper::{Scheme, Stepper};
+pub(crate) use tally::Tally;
 
 use crate::body::Body;
 use crate::contact::{Bound, Floor};
 use crate::lanes::Set;
+use crate::law::{ByLaw, Energy, Law};
 use crate::state::Nodes;
+use general::General;
 use glam::DVec3;
-use report::Energy;
 use std::ops::Range;
 use std::sync::Arc;
-use stepper::Stepper;
 
-/// A model with vectorised steps and energies.
+/// A model with vectorised steps and energies: every [`Law`], and models that choose among laws and faster code.
 pub trait Vectorised {
     /// The code for a body.
     #[doc(hidden)]
     fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled;
+}
+
+impl<W: Law> Vectorised for W {
+    fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled {
+        Compiled::by(self.clone(), body, conditions, None)
+    }
 }
 
 /// How a body is stepped.
@@ -58,7 +65,20 @@ pub struct Conditions {
 /// The vectorised code of a model for a body.
 pub struct Compiled {
     pub(crate) stepper: Box<dyn Stepper>,
-    pub(crate) energy: Energy,
+    pub(crate) energy: Box<dyn Energy>,
+}
+
+impl Compiled {
+    /// By a law, or with a faster stepper, if there is one.
+    pub(crate) fn by<W: Law>(
+        law: W,
+        body: &Arc<Body>,
+        conditions: &Conditions,
+        faster: Option<Box<dyn Stepper>>,
+    ) -> Self {
+        let stepper = faster.unwrap_or_else(|| Box::new(General::new(law.clone(), body, conditions)));
+        Self { stepper, energy: Box::new(ByLaw::with(conditions.set, law, body)) }
+    }
 }
 
 /// How the rotations of elements in space are computed.

@@ -11,23 +11,23 @@ use crate::rotation::robust::{MOST_PASSES, SERIES, SHORT, SOUND};
 use glam::{DMat3, DQuat};
 
 /// A vector in space, in every lane.
-pub(super) type Vector<L> = [L; 3];
+pub(crate) type Vector<L> = [L; 3];
 /// The columns of a matrix, in every lane.
-pub(super) type Matrix<L> = [[L; 3]; 3];
+pub(crate) type Matrix<L> = [[L; 3]; 3];
 
 /// The input of a rotation, besides the last rotation.
 #[derive(Clone, Copy)]
-pub(super) struct Moments<'a, L> {
+pub(crate) struct Moments<'a, L> {
     /// `Σ r R0ᵀ`.
-    pub(super) a: &'a Matrix<L>,
+    pub(crate) a: &'a Matrix<L>,
     /// Makes the entries of `a` at rest about 1, such as `1 / Σ |R0|²`. The result depends on it in round-off only.
-    pub(super) scale: L,
+    pub(crate) scale: L,
     /// Counts the rotations that need the global solver.
-    pub(super) tally: Option<&'a Tally>,
+    pub(crate) tally: Option<&'a Tally>,
 }
 
 /// A method that computes rotations in lanes.
-pub(super) trait Solver: Copy + Send + Sync + 'static {
+pub(crate) trait Solver: Copy + Send + Sync + 'static {
     /// The rotations of elements from their last ones. Elements whose bit is not in `live` keep theirs.
     #[inline(always)]
     fn follow<L: Lanes>(self, of: Moments<'_, L>, last: [L; 4], live: u32) -> [L; 4] {
@@ -70,15 +70,15 @@ pub(super) trait Solver: Copy + Send + Sync + 'static {
 /// Eq. (15) as printed, solved in a number of passes, each solution a rotation by `atan |w|`:
 /// [`linearised::iterate`](crate::rotation::linearised::iterate) in lanes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Arctangent {
+pub(crate) struct Arctangent {
     /// The number of passes.
-    pub(super) passes: u32,
+    pub(crate) passes: u32,
 }
 
 /// The optimum to round-off, by as many passes of ninth order as needed:
 /// [`robust::follow`](crate::rotation::robust::follow) in lanes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Optimum;
+pub(crate) struct Optimum;
 
 impl Solver for Arctangent {
     #[inline(always)]
@@ -136,7 +136,7 @@ const RANGE: (f64, f64) = (1e-200, 1e200);
 
 /// `scale` times the matrix of a unit quaternion.
 #[inline(always)]
-pub(super) fn matrix<L: Lanes>([x, y, z, w]: [L; 4], scale: L) -> Matrix<L> {
+pub(crate) fn matrix<L: Lanes>([x, y, z, w]: [L; 4], scale: L) -> Matrix<L> {
     let twice = scale + scale;
     let (x2, y2, z2) = (twice * x, twice * y, twice * z);
     let (xy, xz, yz) = (x2 * y, x2 * z, y2 * z);
@@ -149,7 +149,7 @@ pub(super) fn matrix<L: Lanes>([x, y, z, w]: [L; 4], scale: L) -> Matrix<L> {
 
 /// `RᵀA`, as rows: entry `[i][j]` is in row `i` and column `j`.
 #[inline(always)]
-pub(super) fn turned_back<L: Lanes>(a: &Matrix<L>, r: &Matrix<L>) -> [[L; 3]; 3] {
+pub(crate) fn turned_back<L: Lanes>(a: &Matrix<L>, r: &Matrix<L>) -> [[L; 3]; 3] {
     each!(3, i => each!(3, j => dot(&r[i], &a[j])))
 }
 
@@ -160,13 +160,13 @@ fn dot<L: Lanes>(a: &Vector<L>, b: &Vector<L>) -> L {
 
 /// The torque divided by `k` (m²), in the frame of the element.
 #[inline(always)]
-pub(super) fn axial<L: Lanes>(b: &[[L; 3]; 3]) -> Vector<L> {
+pub(crate) fn axial<L: Lanes>(b: &[[L; 3]; 3]) -> Vector<L> {
     [b[2][1] - b[1][2], b[0][2] - b[2][0], b[1][0] - b[0][1]]
 }
 
 /// `q ⊗ (v, s)`, normalised, and whether that was possible.
 #[inline(always)]
-pub(super) fn turn<L: Lanes>([x, y, z, w]: [L; 4], [a, b, c]: Vector<L>, s: L) -> ([L; 4], L::Mask) {
+pub(crate) fn turn<L: Lanes>([x, y, z, w]: [L; 4], [a, b, c]: Vector<L>, s: L) -> ([L; 4], L::Mask) {
     let product = [
         z.neg_mul_add(b, y.mul_add(c, w.mul_add(a, s * x))),
         x.neg_mul_add(c, z.mul_add(a, w.mul_add(b, s * y))),
@@ -221,7 +221,7 @@ fn is_well_posed<L: Lanes>(b: &[[L; 3]; 3]) -> L::Mask {
 /// Eq. (9): `(cos θ, sin θ)` from numbers proportional to it. Where both are zero all angles are equally good, and the
 /// last one is kept.
 #[inline(always)]
-pub(super) fn in_plane<L: Lanes>(turn: [L; 2], last: [L; 2]) -> [L; 2] {
+pub(crate) fn in_plane<L: Lanes>(turn: [L; 2], last: [L; 2]) -> [L; 2] {
     let inverse = L::splat(1.0).div(turn[1].mul_add(turn[1], turn[0] * turn[0]).sqrt());
     let is_sound = L::both(L::splat(0.0).lt(inverse), inverse.le(L::splat(f64::MAX)));
     each!(2, entry => (turn[entry] * inverse).select(is_sound, last[entry]))
@@ -284,7 +284,7 @@ fn optimum_turn<L: Lanes, const ANYWHERE: bool>(b: &[[L; 3]; 3]) -> ([L; 4], L::
 }
 
 #[inline(always)]
-pub(super) fn choose<L: Lanes>(mask: L::Mask, a: [L; 4], b: [L; 4]) -> [L; 4] {
+pub(crate) fn choose<L: Lanes>(mask: L::Mask, a: [L; 4], b: [L; 4]) -> [L; 4] {
     each!(4, part => a[part].select(mask, b[part]))
 }
 

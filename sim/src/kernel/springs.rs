@@ -13,13 +13,15 @@
 
 #![expect(unsafe_code, reason = "lanes without tests of bounds; threads share the arrays by slabs")]
 
-use super::general::{Constants, NONE, first_of};
+use super::general::{NONE, first_of};
 use super::memory::Aligned;
 use super::stepper::{Pass, Passes, Stepper};
 use super::update::{NodeUpdate, NodeVector, Stage};
-use super::{Around, Lost};
+use super::{Around, Conditions, Lost};
+use crate::body::Body;
 use crate::crew::Crew;
 use crate::lanes::{Lanes, Set, Work, each};
+use crate::model::mass_spring::MassSpring;
 use glam::DVec3;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -47,7 +49,14 @@ struct Family {
 pub(crate) struct Stencil {
     set: Set,
     nodes: usize,
-    constants: Constants,
+    /// `k` (N/m).
+    stiffness: f64,
+    /// `D` (N s/m).
+    damping: f64,
+    /// Acceleration of gravity (m/s²).
+    gravity: DVec3,
+    /// ΔT (s).
+    step: f64,
     /// Sorted by offset, the largest first.
     families: Vec<Family>,
     /// One bit for each spring: chunk by chunk, family by family, block by block.
@@ -81,19 +90,15 @@ const ARRAYS: usize = 10;
 
 impl Stencil {
     /// The springs of a body, or `None` if they form no families, so that most lanes would be empty.
-    pub(crate) fn new(
-        springs: &[[u32; 2]],
-        rest: &[DVec3],
-        mass: &[f64],
-        constants: Constants,
-        set: Set,
-    ) -> Option<Self> {
+    pub(crate) fn new(model: &MassSpring, body: &Body, conditions: &Conditions) -> Option<Self> {
         /// Lanes for each spring, at most: if less than half of them are used, the gathering kernel is faster.
         const SPARSE: usize = 2;
+        let &Conditions { gravity, step, set, .. } = conditions;
+        let (&MassSpring { stiffness, damping, ref springs }, Body { rest, mass, .. }) = (model, body);
         let nodes = rest.len();
         let chunks = nodes.div_ceil(CHUNK).max(1);
         let mut sorted: Vec<(usize, usize, usize)> = Vec::with_capacity(springs.len());
-        for ends in springs {
+        for ends in &**springs {
             let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end as usize);
             sorted.push((high - low, low, high));
         }
@@ -122,8 +127,7 @@ impl Stencil {
         let mut listed = Vec::new();
         let mut made = Vec::with_capacity(families.len());
         for (at, family) in families.iter().enumerate() {
-            let tension =
-                |&(_, low, high): &(usize, usize, usize)| constants.stiffness * (rest[low] - rest[high]).length();
+            let tension = |&(_, low, high): &(usize, usize, usize)| stiffness * (rest[low] - rest[high]).length();
             for &(_, low, _) in family {
                 presence[low / CHUNK * families.len() + at][low % CHUNK / BLOCK] |= 1 << (low % BLOCK);
             }
@@ -159,7 +163,10 @@ impl Stencil {
         Some(Self {
             set,
             nodes,
-            constants,
+            stiffness,
+            damping,
+            gravity,
+            step,
             families: made,
             presence,
             tensions,
@@ -226,7 +233,7 @@ impl Stepper for Stencil {
     }
 
     fn is_damped(&self) -> bool {
-        self.constants.damping > 0.0
+        self.damping > 0.0
     }
 
     fn keep(&mut self) {
@@ -308,7 +315,7 @@ impl Work for OneSlab<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        if self.springs.constants.damping > 0.0 { self.evaluate::<L, true>() } else { self.evaluate::<L, false>() }
+        if self.springs.damping > 0.0 { self.evaluate::<L, true>() } else { self.evaluate::<L, false>() }
     }
 }
 
@@ -318,9 +325,8 @@ impl OneSlab<'_> {
         let Self { springs, slab: at, pass: Pass { stage, number, .. }, around } = self;
         let slab = &springs.slabs[at];
         let (arrays, pulls, width, start) = (springs.arrays(), slab.pulls.pointer(), slab.stride, slab.first * CHUNK);
-        let update = NodeUpdate::<L>::new(stage, springs.constants.step, springs.constants.gravity, number, around);
-        let (k, d, one, zero) =
-            (L::splat(springs.constants.stiffness), L::splat(springs.constants.damping), L::splat(1.0), L::splat(0.0));
+        let update = NodeUpdate::<L>::new(stage, springs.step, springs.gravity, number, around);
+        let (k, d, one, zero) = (L::splat(springs.stiffness), L::splat(springs.damping), L::splat(1.0), L::splat(0.0));
         let all_tensions = springs.tensions.pointer().cast_const();
         let mut own = Own([[0.0; CHUNK]; 3]);
         let mut lost = NONE;
@@ -405,7 +411,7 @@ impl Work for Deferred<'_> {
     fn run<L: Lanes>(self) -> u32 {
         let Self { springs, slab: at, pass: Pass { stage, number, .. }, around } = self;
         let (before, slab) = (&springs.slabs[at - 1], &springs.slabs[at]);
-        let update = NodeUpdate::<L>::new(stage, springs.constants.step, springs.constants.gravity, number, around);
+        let update = NodeUpdate::<L>::new(stage, springs.step, springs.gravity, number, around);
         let (arrays, zero) = (springs.arrays(), L::splat(0.0));
         let mut lost = NONE;
         let start = slab.first * CHUNK;

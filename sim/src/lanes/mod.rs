@@ -7,7 +7,7 @@
 #![expect(clippy::disallowed_methods, reason = "fused operations, written alike for every set")]
 #![expect(unsafe_code, reason = "vector instructions, which a processor may lack, and unchecked loads and stores")]
 
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// An array of two, three, four or eight values, each by an expression of its index. `array::map` is not used because
@@ -34,12 +34,20 @@ pub(crate) use thrice;
 /// The largest number of lanes of any set. Arrays padded to a multiple of it suit all sets.
 pub(crate) const MOST: usize = 8;
 
-/// A vector of doubles, with operations on each lane.
+/// A vector of doubles, with operations on each lane: two, four or eight numbers, of as many elements.
 ///
-/// Every function is `#[inline(always)]`, so that it becomes part of a function compiled for its set. Only [`Set::run`]
-/// may name an implementation.
-pub(crate) trait Lanes:
-    Copy + Send + Sync + 'static + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+/// Every function is `#[inline(always)]`, so that it becomes part of a function compiled for its set of vectors. Only that chooses
+/// an implementation.
+pub trait Lanes:
+    Copy
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
 {
     /// One truth value per lane.
     type Mask: Copy;
@@ -48,15 +56,19 @@ pub(crate) trait Lanes:
 
     /// One value in all lanes.
     fn splat(value: f64) -> Self;
+    #[doc(hidden)]
     /// [`Self::WIDTH`] values from memory, of any alignment.
     ///
     /// # Safety
     /// They are readable.
     unsafe fn load(from: *const f64) -> Self;
+    #[doc(hidden)]
     /// A precomputed distance for [`Self::load_beyond`].
     type Distance: Copy;
+    #[doc(hidden)]
     /// The distance of so many values, less than [`MOST`].
     fn distance(values: usize) -> Self::Distance;
+    #[doc(hidden)]
     /// [`Self::WIDTH`] values at a distance beyond an address that is aligned for [`MOST`] values. Where a vector is a
     /// cache line, this reads two whole lines, the second one `line` values after the first: loads that cross
     /// lines, or cross data that were just stored, are much slower. With narrower vectors the values are consecutive.
@@ -64,6 +76,7 @@ pub(crate) trait Lanes:
     /// # Safety
     /// [`MOST`] values are readable from both places, or twice as many from the first.
     unsafe fn load_beyond(from: *const f64, distance: Self::Distance, line: usize) -> Self;
+    #[doc(hidden)]
     /// Writes [`Self::WIDTH`] values to memory, of any alignment.
     ///
     /// # Safety
@@ -75,8 +88,6 @@ pub(crate) trait Lanes:
     fn neg_mul_add(self, factor: Self, summand: Self) -> Self;
     /// `self · factor − minuend`, rounded once.
     fn mul_sub(self, factor: Self, minuend: Self) -> Self;
-    /// `self / divisor`.
-    fn div(self, divisor: Self) -> Self;
     /// The square root.
     fn sqrt(self) -> Self;
     /// The greater of both; `other` if one is NaN.
@@ -89,8 +100,10 @@ pub(crate) trait Lanes:
     fn le(self, other: Self) -> Self::Mask;
     /// `self` where `mask` is true, `other` elsewhere.
     fn select(self, mask: Self::Mask, other: Self) -> Self;
+    #[doc(hidden)]
     /// `[previous.last, self.first, …]`: all lanes move up by one.
     fn shift_in(self, previous: Self) -> Self;
+    #[doc(hidden)]
     /// `[self.second, …, next.first]`: all lanes move down by one.
     fn shift_out(self, next: Self) -> Self;
     /// One bit per lane, the lowest for the first.
@@ -100,9 +113,11 @@ pub(crate) trait Lanes:
     /// True where both are.
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
 
+    #[doc(hidden)]
     /// Prefetches a cache line that will be read soon. The address need not be valid.
     #[inline(always)]
     fn expect(_: *const f64) {}
+    #[doc(hidden)]
     /// The columns of rows of eight doubles: lane `n` of column `c` is entry `c` of row `n`.
     ///
     /// # Safety
@@ -117,6 +132,7 @@ pub(crate) trait Lanes:
         }
         columns.map(Self::from_array)
     }
+    #[doc(hidden)]
     /// The columns of rows of four doubles.
     ///
     /// # Safety
@@ -131,6 +147,7 @@ pub(crate) trait Lanes:
         }
         columns.map(Self::from_array)
     }
+    #[doc(hidden)]
     /// Writes columns as rows of eight doubles, the row of the first lane first.
     ///
     /// # Safety
@@ -143,6 +160,7 @@ pub(crate) trait Lanes:
             unsafe { *row(lane).cast::<[f64; 8]>() = columns.map(|column| column[lane]) };
         }
     }
+    #[doc(hidden)]
     /// Adds columns to rows of four doubles, one row after the other, as two rows may be the same.
     ///
     /// # Safety

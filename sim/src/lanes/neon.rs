@@ -10,7 +10,8 @@ pub(super) struct Vector(float64x2_t);
 operators! { Vector,
     Add add (a, b) unsafe { vaddq_f64(a, b) };
     Sub sub (a, b) unsafe { vsubq_f64(a, b) };
-    Mul mul (a, b) unsafe { vmulq_f64(a, b) };;
+    Mul mul (a, b) unsafe { vmulq_f64(a, b) };
+    Div div (a, b) unsafe { vdivq_f64(a, b) };;
     -a unsafe { vnegq_f64(a) }
 }
 
@@ -34,7 +35,6 @@ impl Lanes for Vector {
         mul_add(a, b, c) unsafe { vfmaq_f64(c, a, b) };
         neg_mul_add(a, b, c) unsafe { vfmsq_f64(c, a, b) };
         mul_sub(a, b, c) unsafe { vfmaq_f64(vnegq_f64(c), a, b) };
-        div(a, b) unsafe { vdivq_f64(a, b) };
         sqrt(a) unsafe { vsqrtq_f64(a) };
         max(a, b) unsafe { vbslq_f64(vcltq_f64(b, a), a, b) };
         abs(a) unsafe { vabsq_f64(a) };

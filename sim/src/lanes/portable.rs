@@ -11,7 +11,8 @@ pub(super) struct Vector([f64; N]);
 operators! { Vector,
     Add add (a, b) from_fn(|at| a[at] + b[at]);
     Sub sub (a, b) from_fn(|at| a[at] - b[at]);
-    Mul mul (a, b) from_fn(|at| a[at] * b[at]);;
+    Mul mul (a, b) from_fn(|at| a[at] * b[at]);
+    Div div (a, b) from_fn(|at| a[at] / b[at]);;
     -a from_fn(|at| -a[at])
 }
 
@@ -37,7 +38,6 @@ impl Lanes for Vector {
         mul_add(a, b, c) from_fn(|at| a[at].mul_add(b[at], c[at]));
         neg_mul_add(a, b, c) from_fn(|at| (-a[at]).mul_add(b[at], c[at]));
         mul_sub(a, b, c) from_fn(|at| a[at].mul_add(b[at], -c[at]));
-        div(a, b) from_fn(|at| a[at] / b[at]);
         sqrt(a) a.map(f64::sqrt);
         max(a, b) from_fn(|at| if a[at] > b[at] { a[at] } else { b[at] });
         abs(a) a.map(f64::abs);

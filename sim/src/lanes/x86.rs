@@ -31,13 +31,15 @@ pub(super) struct Avx512(__m512d);
 operators! { Avx2,
     Add add (a, b) unsafe { _mm256_add_pd(a, b) };
     Sub sub (a, b) unsafe { _mm256_sub_pd(a, b) };
-    Mul mul (a, b) unsafe { _mm256_mul_pd(a, b) };;
+    Mul mul (a, b) unsafe { _mm256_mul_pd(a, b) };
+    Div div (a, b) unsafe { _mm256_div_pd(a, b) };;
     -a unsafe { _mm256_xor_pd(a, _mm256_set1_pd(-0.0)) }
 }
 operators! { Avx512,
     Add add (a, b) unsafe { _mm512_add_pd(a, b) };
     Sub sub (a, b) unsafe { _mm512_sub_pd(a, b) };
-    Mul mul (a, b) unsafe { _mm512_mul_pd(a, b) };;
+    Mul mul (a, b) unsafe { _mm512_mul_pd(a, b) };
+    Div div (a, b) unsafe { _mm512_div_pd(a, b) };;
     -a unsafe { _mm512_castsi512_pd(_mm512_xor_epi64(_mm512_castpd_si512(a), _mm512_set1_epi64(i64::MIN))) }
 }
 
@@ -119,7 +121,6 @@ impl Lanes for Avx2 {
         mul_add(a, b, c) unsafe { _mm256_fmadd_pd(a, b, c) };
         neg_mul_add(a, b, c) unsafe { _mm256_fnmadd_pd(a, b, c) };
         mul_sub(a, b, c) unsafe { _mm256_fmsub_pd(a, b, c) };
-        div(a, b) unsafe { _mm256_div_pd(a, b) };
         sqrt(a) unsafe { _mm256_sqrt_pd(a) };
         max(a, b) unsafe { _mm256_max_pd(a, b) };
         abs(a) unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), a) };
@@ -216,7 +217,6 @@ impl Lanes for Avx512 {
         mul_add(a, b, c) unsafe { _mm512_fmadd_pd(a, b, c) };
         neg_mul_add(a, b, c) unsafe { _mm512_fnmadd_pd(a, b, c) };
         mul_sub(a, b, c) unsafe { _mm512_fmsub_pd(a, b, c) };
-        div(a, b) unsafe { _mm512_div_pd(a, b) };
         sqrt(a) unsafe { _mm512_sqrt_pd(a) };
         max(a, b) unsafe { _mm512_max_pd(a, b) };
         abs(a) unsafe { _mm512_abs_pd(a) };

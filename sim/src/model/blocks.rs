@@ -21,34 +21,35 @@ pub(super) fn for_each<T: Send>(
     corners: &mut [T],
     work: &(impl Fn(usize, &mut [f64], &mut [T]) + Sync),
 ) {
-    split(elements, 0..elements.len(), width, memory, corners, work);
+    for_each_block(elements, 0..elements.len(), width, memory, corners, &|range, memory, mut corners| {
+        for (element, memory) in range.zip(memory.chunks_exact_mut(width)) {
+            let (own, others) = corners.split_at_mut(elements.range(element).len());
+            work(element, memory, own);
+            corners = others;
+        }
+    });
 }
 
-fn split<T: Send>(
+/// Calls `work(elements, memory of the elements, corners of the elements)` for the blocks of a range.
+pub(crate) fn for_each_block<T: Send>(
     elements: &IndexLists,
     range: Range<usize>,
     width: usize,
     memory: &mut [f64],
     corners: &mut [T],
-    work: &(impl Fn(usize, &mut [f64], &mut [T]) + Sync),
+    work: &(impl Fn(Range<usize>, &mut [f64], &mut [T]) + Sync),
 ) {
-    if range.len() > BLOCK {
-        let middle = range.start + range.len() / 2;
-        let first_corner = |element: usize| elements.range(element).start;
-        let (memory_low, memory_high) = memory.split_at_mut((middle - range.start) * width);
-        let (corners_low, corners_high) = corners.split_at_mut(first_corner(middle) - first_corner(range.start));
-        rayon::join(
-            || split(elements, range.start..middle, width, memory_low, corners_low, work),
-            || split(elements, middle..range.end, width, memory_high, corners_high, work),
-        );
-        return;
+    if range.len() <= BLOCK {
+        return work(range, memory, corners);
     }
-    let mut rest = corners;
-    for (element, memory) in range.zip(memory.chunks_exact_mut(width)) {
-        let (own, others) = rest.split_at_mut(elements.range(element).len());
-        work(element, memory, own);
-        rest = others;
-    }
+    let middle = range.start + range.len() / 2;
+    let first_corner = |element: usize| elements.range(element).start;
+    let (memory_low, memory_high) = memory.split_at_mut((middle - range.start) * width);
+    let (corners_low, corners_high) = corners.split_at_mut(first_corner(middle) - first_corner(range.start));
+    rayon::join(
+        || for_each_block(elements, range.start..middle, width, memory_low, corners_low, work),
+        || for_each_block(elements, middle..range.end, width, memory_high, corners_high, work),
+    );
 }
 
 /// Calls `work(index, value)` for every value, in blocks.
@@ -64,18 +65,18 @@ pub(super) fn for_each_one<T: Send>(values: &mut [T], work: &(impl Fn(usize, &mu
 }
 
 /// For each node, the entries of a list of forces that act on it.
-pub(super) struct Gather {
+pub(crate) struct Gather {
     entries: EntriesOfNode,
 }
 
 impl Gather {
     /// `node_of_entry` names the node on which each entry acts.
-    pub(super) fn new(nodes: usize, node_of_entry: impl Iterator<Item = u32> + Clone) -> Self {
+    pub(crate) fn new(nodes: usize, node_of_entry: impl Iterator<Item = u32> + Clone) -> Self {
         Self { entries: EntriesOfNode::new(nodes, (0..).zip(node_of_entry)) }
     }
 
     /// Adds the entries of each node to its force, in rising order.
-    pub(super) fn add(&self, entries: &[DVec3], forces: &mut [DVec3]) {
+    pub(crate) fn add(&self, entries: &[DVec3], forces: &mut [DVec3]) {
         for_each_one(forces, &|node, force| {
             for &entry in self.entries.of(node) {
                 *force += entries[entry];

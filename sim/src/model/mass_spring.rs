@@ -5,12 +5,16 @@
 //!
 //! Energy: `E = k/2 Σ (|p| − L)²`. A mirror image has the same energy, so an element that has turned over stays so.
 
-use super::{ElasticModel, ForceModel, Late, Misfit, Report, Scratch, Share, TypedModel, Vectorised, blocks};
+use super::{
+    Corners, ElasticModel, Element, ForceModel, Lanes, Late, Law, Misfit, Report, Scratch, Share, TypedModel,
+    Vectorised, blocks,
+};
 use crate::body::Body;
-use crate::kernel::general::{Constants, General};
-use crate::kernel::report::{Elastic, Energy};
+use crate::kernel::shapes::square;
 use crate::kernel::springs::Stencil;
-use crate::kernel::{Compiled, Conditions};
+use crate::kernel::{Compiled, Conditions, Stepper};
+use crate::lanes::each;
+use crate::lists::IndexLists;
 use crate::mode::Mode;
 use crate::state::Nodes;
 use crate::topology::Springs;
@@ -139,15 +143,84 @@ impl ElasticModel for MassSpring {
 
 impl Vectorised for MassSpring {
     fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled {
-        let &Conditions { gravity, step, set, .. } = conditions;
-        let Self { stiffness, damping, springs } = self;
-        let constants = Constants { stiffness: *stiffness, damping: *damping, gravity, step };
-        let of = Elastic::Springs(Arc::clone(springs));
-        let energy = Energy { set, body: Arc::clone(body), stiffness: *stiffness, of };
-        match Stencil::new(springs, &body.rest, &body.mass, constants, set) {
-            Some(stencil) => Compiled { stepper: Box::new(stencil), energy },
-            None => Compiled { stepper: Box::new(General::springs(body, springs, constants, set)), energy },
+        let stencil = Stencil::new(self, body, conditions);
+        self.by_law(body, conditions, stencil.map(|stencil| -> Box<dyn Stepper> { Box::new(stencil) }))
+    }
+}
+
+impl MassSpring {
+    /// The code by the law of the springs, or with a faster stepper, if there is one.
+    pub(crate) fn by_law(
+        &self,
+        body: &Arc<Body>,
+        conditions: &Conditions,
+        faster: Option<Box<dyn Stepper>>,
+    ) -> Compiled {
+        match self.damping > 0.0 {
+            true => Compiled::by(Spring::<true>(self.clone()), body, conditions, faster),
+            false => Compiled::by(Spring::<false>(self.clone()), body, conditions, faster),
         }
+    }
+}
+
+/// Eq. (1) in lanes, with or without damping.
+#[derive(Clone)]
+struct Spring<const DAMPED: bool>(MassSpring);
+
+impl<const DAMPED: bool> Law for Spring<DAMPED> {
+    /// `k L` (N).
+    const OF_ELEMENT: usize = 1;
+    /// The force on the first node.
+    type Whole<L: Lanes> = [L; 3];
+
+    fn elements(&self, _: &Body) -> Option<IndexLists> {
+        Some(self.0.springs.iter().map(|ends| &ends[..]).collect())
+    }
+
+    fn is_damped(&self) -> bool {
+        DAMPED
+    }
+
+    #[inline(always)]
+    fn prepare<L: Lanes>(&self, rest: &Corners<'_, L>, of_element: &mut [L], _: &mut [L]) {
+        let (near, far) = (rest.position(0), rest.position(1));
+        let [x, y, z] = each!(3, axis => near[axis] - far[axis]);
+        of_element[0] = L::splat(self.0.stiffness) * (x * x + y * y + z * z).sqrt();
+    }
+
+    #[inline(always)]
+    fn whole<L: Lanes>(&self, spring: &Element<'_, L>) -> [L; 3] {
+        let MassSpring { stiffness, damping, .. } = self.0;
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let ((near, slow), (far, fast)) = (spring.corner(0), spring.corner(1));
+        let p = each!(3, axis => far[axis] - near[axis]);
+        let [vx, vy, vz] = each!(3, axis => fast[axis] - slow[axis]);
+        let squared = p[2].mul_add(p[2], p[1].mul_add(p[1], p[0] * p[0]));
+        let inverse = one / squared.sqrt();
+        let tension = spring.of_element(0);
+        let along = if DAMPED {
+            (vz.mul_add(p[2], vy.mul_add(p[1], vx * p[0])) * L::splat(damping)).mul_sub(inverse, tension)
+        } else {
+            -tension
+        };
+        // A spring between coincident nodes has no direction.
+        let pull = along.mul_add(inverse, L::splat(stiffness)).select(zero.lt(squared), zero);
+        each!(3, axis => pull * p[axis])
+    }
+
+    #[inline(always)]
+    fn force<L: Lanes>(&self, _: &Element<'_, L>, corner: usize, &force: &[L; 3]) -> [L; 3] {
+        if corner == 0 { force } else { each!(3, axis => -force[axis]) }
+    }
+
+    #[inline(always)]
+    fn energy<L: Lanes>(&self, spring: &Element<'_, L>, rest: &Corners<'_, L>, shares: &mut [L]) -> L {
+        let length = |[from, to]: [[L; 3]; 2]| square(each!(3, axis => to[axis] - from[axis])).sqrt();
+        let now = length([spring.corner(0).0, spring.corner(1).0]);
+        let stretch = now - length([rest.position(0), rest.position(1)]);
+        let whole = L::splat(0.5 * self.0.stiffness) * stretch * stretch;
+        shares.fill(L::splat(0.5) * whole);
+        L::splat(0.0)
     }
 }
 
@@ -227,7 +300,6 @@ fn spring_force(p: DVec3, v: DVec3, l: f64, k: f64, d: f64) -> DVec3 {
 mod tests {
     use super::*;
     use crate::element::{Dimension, Solids};
-    use crate::lists::IndexLists;
 
     #[test]
     fn no_element_has_more_springs_than_are_said_before() {

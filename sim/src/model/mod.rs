@@ -1,15 +1,18 @@
 //! The elastic models, one file each. The rest of the crate refers to them only through the list below.
 //!
 //! To add a model, write a file with three types: `Parameters`, the parameters in a scene file, which implements
-//! `TypedModel`; the model with its parameters resolved, which implements [`ElasticModel`]; and its forces, which
-//! implement [`ForceModel`]. Then add it to the list.
+//! `TypedModel`; the model with its parameters resolved, which implements [`ElasticModel`]; and the law of its elements, which
+//! implements [`Law`] and may be the same type. Its forces are then [`ByLaw`], its steps and energies vectorised. Or write its forces
+//! alone, which implement [`ForceModel`]. Then add it to the list.
 
-mod blocks;
+pub(crate) mod blocks;
 pub mod mass_spring;
 pub mod shape_based;
 
 use super::body::Body;
 pub use super::kernel::Vectorised;
+pub use super::lanes::Lanes;
+pub use super::law::{ByLaw, Corners, Element, Law};
 #[doc(hidden)]
 pub use super::mode::Mode;
 use super::rotation::RotationReading;
@@ -174,23 +177,7 @@ pub trait ElasticModel: Debug + Send + Sync {
 /// The internal forces of a body, as a pure function: the same nodes and the same memory give the same forces and the
 /// same next memory. So trial evaluations and rejected steps have no side effects.
 ///
-/// # Example
-/// A complete model: a rod with the energy `k/(8 L²) (|p|² − L²)²` between any two nodes of an element.
-/// ```
-#[doc = include_str!("../../tests/physics/example_model.rs")]
-/// use localshape_sim::{Dimension, Solids};
-/// use localshape_sim::{IndexLists, Integrator, State, Stepping, Surroundings, World};
-///
-/// let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-/// let elements: IndexLists = [&[0, 1, 2, 3][..]].into_iter().collect();
-/// let start = State::at_rest(rest.iter().map(|&node| node * 1.1).collect());
-/// let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 4], elements, Solids::Ordered, None));
-/// let stepping = Stepping::new(Integrator::SemiImplicitEuler, 1e-3);
-/// let mut world = World::new(&body, start, &Rods { stiffness: 100.0 }, Surroundings::default(), stepping);
-/// let energy = world.diagnostics().elastic;
-/// world.advance(1000);
-/// assert!(world.diagnostics().energy < energy * 1.01);
-/// ```
+/// [`ByLaw`] makes them from the [`Law`] of the elements, which is less work and faster.
 pub trait ForceModel: Send + Sync {
     /// Adds elastic and damping forces (N) to `forces`, one per node, and writes every entry of the `next` memory.
     fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]);

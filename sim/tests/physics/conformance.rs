@@ -6,7 +6,9 @@ use super::support::{Noise, Remembering, body, forces, lattice, mass_spring, sha
 use glam::DVec3;
 use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape_sim::model::{ElasticModel, ModelParameters};
-use localshape_sim::{Body, Dimension, ElementKind, IndexLists, Integrator, Solids, Springs, State};
+use localshape_sim::{
+    Body, Dimension, ElementKind, IndexLists, Integrator, Kernel, Solids, Springs, State, Stepping, Surroundings, World,
+};
 use std::sync::Arc;
 
 const STIFFNESS: f64 = 1e4;
@@ -378,6 +380,28 @@ fn force_is_the_negative_gradient_of_energy() {
             }
         }
     });
+}
+
+/// Vectorised steps and energies are those of the forces, up to round-off.
+#[test]
+fn vectorised_steps_follow_the_forces() {
+    for body in bodies() {
+        for Case { model, .. } in [0.0, 7.0].into_iter().flat_map(|damping| cases(&body, damping)) {
+            if model.vectorised().is_none() {
+                continue;
+            }
+            let start = deformed(&body, 0.05, 2);
+            let [fast, plain] = [Kernel::Fast, Kernel::Reference].map(|kernel| {
+                let stepping = Stepping { kernel, ..Stepping::new(Integrator::VelocityVerlet, 1e-4) };
+                let mut world = World::new(&body, start.clone(), model.as_ref(), Surroundings::default(), stepping);
+                world.advance(20);
+                (world.state().position.clone(), world.diagnostics().elastic)
+            });
+            let far = fast.0.iter().zip(&plain.0).fold(0.0, |far: f64, (a, b)| far.max(a.distance(*b)));
+            assert!(far <= 1e-13 * body.extent(), "{model:?} on {:?}: {far:e}", body.kinds);
+            assert!((fast.1 - plain.1).abs() <= 1e-9 * plain.1, "{model:?} on {:?}: {fast:?} {plain:?}", body.kinds);
+        }
+    }
 }
 
 #[test]

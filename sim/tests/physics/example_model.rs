@@ -1,6 +1,5 @@
-use glam::DVec3;
-use localshape_sim::model::{ElasticModel, ForceModel, Report, Scratch, Share};
-use localshape_sim::{Body, Nodes, Springs};
+use localshape_sim::model::{ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Law, Vectorised};
+use localshape_sim::{Body, IndexLists, Springs};
 use std::sync::Arc;
 
 /// The model with its parameters.
@@ -15,43 +14,58 @@ impl ElasticModel for Rods {
         self.stiffness
     }
 
+    fn vectorised(&self) -> Option<&dyn Vectorised> {
+        Some(self)
+    }
+
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
-        let rods = body.topology().springs(Springs::All).into_iter();
-        let squared = |[i, j]: [u32; 2]| body.rest[i as usize].distance_squared(body.rest[j as usize]);
-        Box::new(RodForces { stiffness: self.stiffness, rods: rods.map(|rod| (rod, squared(rod))).collect() })
+        Box::new(ByLaw::new(self.clone(), body))
     }
 }
 
-struct RodForces {
-    stiffness: f64,
-    /// The ends of each rod, and its squared length at rest (m²).
-    rods: Vec<([u32; 2], f64)>,
+impl Law for Rods {
+    /// The squared length at rest (m²).
+    const OF_ELEMENT: usize = 1;
+    /// The force on the first end (N).
+    type Whole<L: Lanes> = [L; 3];
+
+    fn elements(&self, body: &Body) -> Option<IndexLists> {
+        Some(body.topology().springs(Springs::All).iter().map(|ends| &ends[..]).collect())
+    }
+
+    #[inline(always)]
+    fn prepare<L: Lanes>(&self, rest: &Corners<'_, L>, of_element: &mut [L], _: &mut [L]) {
+        of_element[0] = square(between(rest.position(0), rest.position(1)));
+    }
+
+    #[inline(always)]
+    fn whole<L: Lanes>(&self, rod: &Element<'_, L>) -> [L; 3] {
+        let (p, squared) = (between(rod.corner(0).0, rod.corner(1).0), rod.of_element(0));
+        let pull = L::splat(0.5 * self.stiffness) * (square(p) - squared) / squared;
+        [pull * p[0], pull * p[1], pull * p[2]]
+    }
+
+    #[inline(always)]
+    fn force<L: Lanes>(&self, _: &Element<'_, L>, corner: usize, &[x, y, z]: &[L; 3]) -> [L; 3] {
+        if corner == 0 { [x, y, z] } else { [-x, -y, -z] }
+    }
+
+    #[inline(always)]
+    fn energy<L: Lanes>(&self, rod: &Element<'_, L>, _: &Corners<'_, L>, shares: &mut [L]) -> L {
+        let squared = rod.of_element(0);
+        let excess = square(between(rod.corner(0).0, rod.corner(1).0)) - squared;
+        // Half of the energy for each end.
+        shares.fill(L::splat(self.stiffness / 16.0) / squared * excess * excess);
+        L::splat(0.0)
+    }
 }
 
-impl ForceModel for RodForces {
-    fn add_forces(&self, at: Nodes<'_>, _: &[f64], _: &mut [f64], _: &mut Scratch, forces: &mut [DVec3]) {
-        for &([i, j], squared) in &self.rods {
-            let (i, j) = (i as usize, j as usize);
-            let p = at.position[i] - at.position[j];
-            let force = p * (-0.5 * self.stiffness * (p.length_squared() - squared) / squared);
-            forces[i] += force;
-            forces[j] -= force;
-        }
-    }
+#[inline(always)]
+fn between<L: Lanes>([ax, ay, az]: [L; 3], [bx, by, bz]: [L; 3]) -> [L; 3] {
+    [bx - ax, by - ay, bz - az]
+}
 
-    fn is_damped(&self) -> bool {
-        false
-    }
-
-    fn report(&self, at: Nodes<'_>, _: &[f64], share: &mut Share<'_>) -> Report {
-        let mut whole = 0.0;
-        for (rod, (ends, squared)) in self.rods.iter().enumerate() {
-            let [i, j] = ends.map(|node| at.position[node as usize]);
-            let excess = i.distance_squared(j) - squared;
-            let energy = self.stiffness / (8.0 * squared) * excess * excess;
-            share(rod, ends, &[0.5 * energy; 2]);
-            whole += energy;
-        }
-        Report { energy: Some(whole), residuals: Vec::new() }
-    }
+#[inline(always)]
+fn square<L: Lanes>([x, y, z]: [L; 3]) -> L {
+    x * x + y * y + z * z
 }

@@ -1,8 +1,7 @@
-//! Eq. (4) in lanes, for any elements in space and in the plane, and Eq. (1) for springs that form no families.
+//! The forces of elements in lanes, by any law.
 //!
-//! Lanes are elements with the same number of corners, in blocks of eight for every vector width. With `w = k P + D V`
-//! the force of an element on a corner is `−w + w̄ + k M R0`. Elements add up the last two terms; the first one is
-//! computed once for each node, times the number of its elements. As `Σ R0 = 0` the moments need no centroid.
+//! Lanes are elements with the same number of corners, in blocks of eight for every vector width. What the law says
+//! of each node is computed once for it, times the number of its elements.
 //!
 //! Elements are sorted along a space-filling curve and divided into parts, which depend on the body only. A part has
 //! its own records and sums of all its nodes. Nodes of one part are moved as soon as its elements are done; nodes
@@ -17,55 +16,33 @@ mod pass;
 use super::memory::Aligned;
 use super::stepper::{Pass, Passes, Stepper};
 use super::tally::Tally;
-use super::{Around, Lost, Rotation};
+use super::{Around, Conditions, Lost};
 use crate::body::Body;
 use crate::crew::Crew;
-use crate::element::Dimension;
+use crate::gather::Group;
 use crate::hull::bounds;
-use crate::lanes::{MOST, Set};
+use crate::lanes::{Lanes, MOST, Set, Work};
+use crate::law::{Law, RECORD, Reader};
 use crate::lists::IndexLists;
 use glam::DVec3;
-use pass::{OnePart, SharedNodes};
+use pass::{OfNodes, OnePart, SharedNodes};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Doubles in the record of a node, a cache line: px, py, vx, vy, pz, vz, 1/m, and the number of its elements. What the
-/// plane needs comes first.
-const RECORD: usize = 8;
+/// The last numbers of the record of a node, a cache line: 1/m, and the number of its elements.
 const INVERSE_MASS: usize = 6;
 const VALENCE: usize = 7;
 /// Doubles in the sum of a node: the force in x, y, z, and padding.
 const SUM: usize = 4;
 
-/// What the elements compute.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Law {
-    /// Eq. (4) in the plane, with the rotation of Eq. (9).
-    Plane,
-    /// Eq. (4) in space.
-    Space(Rotation),
-    /// Eq. (1): the elements are pairs of nodes.
-    Spring,
-}
-
-/// The constants of Eq. (4) or Eq. (1).
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Constants {
-    /// `k` (N/m).
-    pub(crate) stiffness: f64,
-    /// `D` (N s/m), on the motion relative to the mean of an element.
-    pub(crate) damping: f64,
-    /// Acceleration of gravity (m/s²).
-    pub(crate) gravity: DVec3,
-    /// ΔT (s).
-    pub(crate) step: f64,
-}
-
-/// The elements or springs of a body, in parts.
-pub(crate) struct General {
+/// The elements of a body, in parts.
+pub(crate) struct General<W> {
     set: Set,
-    law: Law,
-    constants: Constants,
+    law: W,
+    /// Acceleration of gravity (m/s²).
+    gravity: DVec3,
+    /// ΔT (s).
+    step: f64,
     parts: Vec<Part>,
     shared: Shared,
     /// For each thread the sums of its present part, which stay in the caches; zeros between parts.
@@ -107,12 +84,10 @@ struct Class {
     elements: Vec<u32>,
     /// Where the records of their corners begin: block by block, corner by corner.
     nodes: Vec<u32>,
-    /// `R0` (m): block by block, corner by corner, coordinate by coordinate; or `k L` (N) of springs.
-    rest: Aligned,
-    /// `1 / Σ |R0|²` of each (1/m²).
-    scale: Aligned,
-    /// Rotations: block by block, a quaternion or (cos, sin).
-    turns: Aligned,
+    /// Block by block: of the corners, then of the elements.
+    constants: Aligned,
+    /// Block by block.
+    memory: Aligned,
     kept: Aligned,
 }
 
@@ -126,23 +101,12 @@ struct Shared {
     accelerations: Aligned,
 }
 
-impl General {
-    /// The elements of a body, with Eq. (4). In the plane `rotation` is not used.
-    pub(crate) fn new(body: &Body, rotation: Rotation, constants: Constants, set: Set) -> Self {
-        let law = match body.dimension {
-            Dimension::Plane => Law::Plane,
-            Dimension::Space => Law::Space(rotation),
-        };
-        Self::with(&body.elements, &body.rest, &body.mass, law, constants, set)
-    }
-
-    /// Springs, with Eq. (1).
-    pub(crate) fn springs(body: &Body, springs: &[[u32; 2]], constants: Constants, set: Set) -> Self {
-        let pairs: IndexLists = springs.iter().map(|ends| &ends[..]).collect();
-        Self::with(&pairs, &body.rest, &body.mass, Law::Spring, constants, set)
-    }
-
-    fn with(elements: &IndexLists, rest: &[DVec3], mass: &[f64], law: Law, constants: Constants, set: Set) -> Self {
+impl<W: Law> General<W> {
+    /// The elements of a body on which a law acts.
+    pub(crate) fn new(law: W, body: &Body, conditions: &Conditions) -> Self {
+        let own = law.elements(body);
+        let elements = own.as_ref().unwrap_or(&body.elements);
+        let Body { rest, mass, .. } = body;
         let parts = cut(elements, along_curve(elements, rest));
         // The first part of each node, and whether it has several.
         let (mut first, mut is_shared) = (vec![NONE; rest.len()], vec![false; rest.len()]);
@@ -152,7 +116,7 @@ impl General {
                 let node = node as usize;
                 is_shared[node] |= first[node] != NONE && first[node] != part;
                 first[node] = first[node].min(part);
-                valence[node] += u32::from(law != Law::Spring);
+                valence[node] += 1;
             }
         }
         let mut places = vec![RecordAddress { part: 0, record: 0 }; rest.len()];
@@ -202,7 +166,7 @@ impl General {
             let class = |corners: usize| {
                 let of_class: Vec<u32> =
                     own.iter().copied().filter(|&element| elements[element as usize].len() == corners).collect();
-                Class::new(corners, of_class, elements, &record, nothing, rest, law, constants)
+                Class::new(&law, body, conditions.set, elements, of_class, &record, nothing)
             };
             made.push(Part {
                 own: whole / MOST,
@@ -236,27 +200,8 @@ impl General {
         shared.starts.resize(whole + 1, shared.places.len() as u32);
         shared.accelerations = Aligned::zeros(whole * 3);
         let (elements, tally) = (elements.len(), Tally::default());
-        Self { set, law, constants, parts: made, shared, sums: Vec::new(), places, elements, tally }
-    }
-}
-
-impl Law {
-    /// Doubles in the memory of each element.
-    fn memory(self) -> usize {
-        match self {
-            Self::Plane => 2,
-            Self::Space(_) => 4,
-            Self::Spring => 0,
-        }
-    }
-
-    /// Coordinates of each corner at rest.
-    fn axes(self) -> usize {
-        match self {
-            Self::Plane => 2,
-            Self::Space(_) => 3,
-            Self::Spring => 0,
-        }
+        let &Conditions { gravity, step, set, .. } = conditions;
+        Self { set, law, gravity, step, parts: made, shared, sums: Vec::new(), places, elements, tally }
     }
 }
 
@@ -282,12 +227,20 @@ fn along_curve(elements: &IndexLists, rest: &[DVec3]) -> Vec<u32> {
     keyed.into_iter().map(|(_, element)| element).collect()
 }
 
-/// Divides elements into parts of about equal work.
-fn cut(elements: &IndexLists, order: Vec<u32>) -> Vec<Vec<u32>> {
+/// The number of parts of elements.
+pub(super) fn parts(elements: &IndexLists) -> usize {
     /// Corners in a part: the data of their nodes stay in the second-level cache.
     const CORNERS: usize = 32768;
-    let all = elements.indices().len();
-    let parts = all.div_ceil(CORNERS).max(1);
+    elements.indices().len().div_ceil(CORNERS).max(1)
+}
+
+/// A body of more parts exceeds the share of the last cache that it can count on: prefetching what is read in no order is then
+/// worth its instructions. So many parts have 11 MB if elements have eight corners.
+pub(super) const SMALL: usize = 8;
+
+/// Divides elements into parts of about equal work.
+fn cut(elements: &IndexLists, order: Vec<u32>) -> Vec<Vec<u32>> {
+    let (all, parts) = (elements.indices().len(), parts(elements));
     let mut cut = vec![Vec::new(); parts];
     let mut before = 0;
     for element in order {
@@ -298,70 +251,79 @@ fn cut(elements: &IndexLists, order: Vec<u32>) -> Vec<Vec<u32>> {
 }
 
 impl Class {
-    #[expect(clippy::too_many_arguments, reason = "called once")]
-    fn new(
-        corners: usize,
-        elements: Vec<u32>,
+    /// Elements of lists, with the same number of corners. Lanes without an element use the record `nothing`.
+    fn new<W: Law>(
+        law: &W,
+        body: &Body,
+        set: Set,
         lists: &IndexLists,
+        elements: Vec<u32>,
         record: &[u32],
         nothing: u32,
-        rest: &[DVec3],
-        law: Law,
-        constants: Constants,
     ) -> Self {
+        let corners = lists[elements[0] as usize].len();
         let blocks = elements.len().div_ceil(MOST);
-        let (axes, memory) = (law.axes(), law.memory());
         let mut nodes = vec![nothing * RECORD as u32; blocks * corners * MOST];
-        let per_block = if law == Law::Spring { 1 } else { corners * axes };
-        let mut shapes = Aligned::zeros(blocks * per_block * MOST);
-        let mut scale = Aligned::zeros(blocks * MOST);
-        let mut turns = Aligned::zeros(blocks * memory * MOST);
         for (at, &element) in elements.iter().enumerate() {
-            let (block, lane) = (at / MOST, at % MOST);
-            let own = &lists[element as usize];
-            let at_rest = |node: u32| rest[node as usize];
-            let middle = own.iter().map(|&node| at_rest(node)).sum::<DVec3>() / corners as f64;
-            for (corner, &node) in own.iter().enumerate() {
-                nodes[(block * corners + corner) * MOST + lane] = record[node as usize] * RECORD as u32;
-                for axis in 0..axes {
-                    shapes.as_mut_slice()[((block * corners + corner) * axes + axis) * MOST + lane] =
-                        (at_rest(node) - middle)[axis];
-                }
-            }
-            if law == Law::Spring {
-                shapes.as_mut_slice()[at] = constants.stiffness * (at_rest(own[0]) - at_rest(own[1])).length();
-            }
-            let squares: f64 = own.iter().map(|&node| (at_rest(node) - middle).length_squared()).sum();
-            scale.as_mut_slice()[at] = if squares > 0.0 { 1.0 / squares } else { 1.0 };
-        }
-        for lane in 0..blocks * MOST {
-            // The identity: the real part of a quaternion is last, the cosine first.
-            let entry = if memory == 4 { 3 } else { 0 };
-            if memory > 0 {
-                turns.as_mut_slice()[(lane / MOST * memory + entry) * MOST + lane % MOST] = 1.0;
+            for (corner, &node) in lists[element as usize].iter().enumerate() {
+                nodes[(at / MOST * corners + corner) * MOST + at % MOST] = record[node as usize] * RECORD as u32;
             }
         }
-        let kept = Aligned::zeros(blocks * memory * MOST);
-        Self { corners, elements, nodes, rest: shapes, scale, turns, kept }
+        let constants = set.run(Prepare { law, body, lists, elements: &elements });
+        let [memory, kept] = [0; 2].map(|_| Aligned::zeros(blocks * W::MEMORY * MOST));
+        Self { corners, elements, nodes, constants, memory, kept }
     }
 }
 
-impl General {
-    /// Whether the body exceeds the share of the last cache that it can count on: prefetching what is read in no
-    /// order is then worth its instructions. So many parts have 11 MB if elements have eight corners.
-    pub(super) fn is_large(&self) -> bool {
-        self.parts.len() > 8
+/// Computes the constants of elements with the same number of corners.
+struct Prepare<'a, W> {
+    law: &'a W,
+    body: &'a Body,
+    lists: &'a IndexLists,
+    elements: &'a [u32],
+}
+
+impl<W: Law> Work for Prepare<'_, W> {
+    type Output = Aligned;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Aligned {
+        let Self { law, body, lists, elements } = self;
+        let mut reader = Reader::<L>::new();
+        let mut all = Aligned::zeros(0);
+        for first in (0..elements.len().next_multiple_of(MOST)).step_by(L::WIDTH) {
+            // The last element fills the lanes that are left.
+            let group = Group::of(|lane| &lists[elements[(first + lane).min(elements.len() - 1)] as usize]);
+            reader.read(&group, body, &body.rest, None);
+            let constants = reader.prepare(law);
+            if first == 0 {
+                all = Aligned::zeros(elements.len().div_ceil(MOST) * constants.len());
+            }
+            let block = &mut all.as_mut_slice()[first / MOST * constants.len()..][..constants.len()];
+            for (row, constants) in block.chunks_exact_mut(MOST).zip(constants.chunks_exact(MOST)) {
+                row[first % MOST..][..L::WIDTH].copy_from_slice(&constants[..L::WIDTH]);
+            }
+        }
+        all
+    }
+}
+
+impl<W: Law> General<W> {
+    /// Whether it has more parts than are [`SMALL`].
+    fn is_large(&self) -> bool {
+        self.parts.len() > SMALL
     }
 
     /// Evaluates the forces once, unless they are known, and moves all nodes. Returns the first node that becomes too
     /// fast.
     fn pass(&self, pass: Pass, around: Around<'_>, crew: &mut Crew) -> Option<Lost> {
         let (body, threads, lost) = (self, crew.threads(), AtomicU32::new(NONE));
+        let of_nodes = OfNodes { of_node: self.law.of_node(), gravity: self.gravity, step: self.step };
         let share = |count: usize, me: usize| me * count / threads..(me + 1) * count / threads;
         crew.run(&|me| {
             for part in share(self.parts.len(), me) {
                 lost.fetch_min(
-                    self.set.run(OnePart { body, part, sums: &body.sums[me], pass, around }),
+                    self.set.run(OnePart { body, part, sums: &body.sums[me], pass, around, of_nodes }),
                     Ordering::Relaxed,
                 );
             }
@@ -370,7 +332,9 @@ impl General {
         if shared > 0 {
             crew.run(&|me| {
                 let blocks = share(shared, me);
-                lost.fetch_min(self.set.run(SharedNodes { body, blocks, pass, around }), Ordering::Relaxed);
+                let (shared, parts, is_large) = (&body.shared, &body.parts[..], body.is_large());
+                let work = SharedNodes { shared, parts, is_large, blocks, pass, around, of_nodes };
+                lost.fetch_min(self.set.run(work), Ordering::Relaxed);
             });
         }
         let lost = lost.into_inner();
@@ -387,17 +351,17 @@ pub(super) fn first_of(one: u32, lanes: u32, index: impl Fn(usize) -> u32) -> u3
     if lanes == 0 { one } else { (0..MOST).filter(|lane| lanes >> lane & 1 == 1).map(index).fold(one, u32::min) }
 }
 
-impl Stepper for General {
+impl<W: Law> Stepper for General<W> {
     fn load(&mut self, position: &[DVec3], velocity: &[DVec3], memory: &[f64]) {
         for node in 0..self.places.len() {
             self.set_node(node, position[node], velocity[node]);
         }
-        let width = self.law.memory();
+        let width = W::MEMORY;
         for class in self.parts.iter_mut().flat_map(|part| &mut part.classes) {
-            let turns = class.turns.as_mut_slice();
+            let numbers = class.memory.as_mut_slice();
             for (at, &element) in class.elements.iter().enumerate() {
                 for entry in 0..width {
-                    turns[(at / MOST * width + entry) * MOST + at % MOST] = memory[element as usize * width + entry];
+                    numbers[(at / MOST * width + entry) * MOST + at % MOST] = memory[element as usize * width + entry];
                 }
             }
         }
@@ -408,12 +372,12 @@ impl Stepper for General {
         for node in 0..self.places.len() {
             (position[node], velocity[node]) = self.node(node);
         }
-        let width = self.law.memory();
+        let width = W::MEMORY;
         for class in self.parts.iter_mut().flat_map(|part| &mut part.classes) {
-            let turns = class.turns.as_mut_slice();
+            let numbers = class.memory.as_mut_slice();
             for (at, &element) in class.elements.iter().enumerate() {
                 for entry in 0..width {
-                    memory[element as usize * width + entry] = turns[(at / MOST * width + entry) * MOST + at % MOST];
+                    memory[element as usize * width + entry] = numbers[(at / MOST * width + entry) * MOST + at % MOST];
                 }
             }
         }
@@ -445,13 +409,13 @@ impl Stepper for General {
     }
 
     fn is_damped(&self) -> bool {
-        self.constants.damping > 0.0
+        self.law.is_damped()
     }
 
     fn keep(&mut self) {
         for part in &mut self.parts {
             part.kept.copy_from(&mut part.records);
-            part.classes.iter_mut().for_each(|class| class.kept.copy_from(&mut class.turns));
+            part.classes.iter_mut().for_each(|class| class.kept.copy_from(&mut class.memory));
         }
         self.tally.keep();
     }
@@ -459,7 +423,7 @@ impl Stepper for General {
     fn restore(&mut self) {
         for part in &mut self.parts {
             part.records.copy_from(&mut part.kept);
-            part.classes.iter_mut().for_each(|class| class.turns.copy_from(&mut class.kept));
+            part.classes.iter_mut().for_each(|class| class.memory.copy_from(&mut class.kept));
         }
         self.tally.restore();
     }

@@ -1,26 +1,39 @@
 //! One pass: the elements of a part and the update of its nodes, then the update of the nodes of several parts.
 
 use super::elements::Elements;
-use super::{Constants, General, Law, NONE, RECORD, RecordAddress, SUM, first_of};
+use super::{General, NONE, Part, RecordAddress, SUM, Shared, first_of};
+use crate::kernel::Around;
 use crate::kernel::memory::Aligned;
-use crate::kernel::rotation::{Arctangent, Optimum};
 use crate::kernel::stepper::Pass;
 use crate::kernel::update::{NodeUpdate, NodeVector, Stage};
-use crate::kernel::{Around, Rotation};
 use crate::lanes::{Lanes, MOST, Work, each};
+use crate::law::{Law, RECORD};
+use glam::DVec3;
 use std::ops::Range;
 
 /// The elements of a part, and the update of the nodes of this part only.
-pub(super) struct OnePart<'a> {
-    pub(super) body: &'a General,
+pub(super) struct OnePart<'a, W> {
+    pub(super) body: &'a General<W>,
     pub(super) part: usize,
     /// Zeros, at least one row more than the part has records.
     pub(super) sums: &'a Aligned,
     pub(super) pass: Pass,
     pub(super) around: Around<'a>,
+    pub(super) of_nodes: OfNodes,
 }
 
-impl Work for OnePart<'_> {
+/// What acts on each node besides the sum of its elements.
+#[derive(Clone, Copy)]
+pub(super) struct OfNodes {
+    /// [`Law::of_node`].
+    pub(super) of_node: [f64; 2],
+    /// Acceleration of gravity (m/s²).
+    pub(super) gravity: DVec3,
+    /// ΔT (s).
+    pub(super) step: f64,
+}
+
+impl<W: Law> Work for OnePart<'_, W> {
     type Output = u32;
 
     #[inline(always)]
@@ -31,27 +44,11 @@ impl Work for OnePart<'_> {
             for class in &part.classes {
                 let tally = &self.body.tally;
                 let is_large = self.body.is_large();
-                let (constants, sums) = (&self.body.constants, self.sums);
-                let elements = Elements { part, sums, class, constants, commit, tally, is_large };
-                match (self.body.law, self.body.constants.damping > 0.0) {
-                    (Law::Plane, true) => elements.plane::<L, true>(),
-                    (Law::Plane, false) => elements.plane::<L, false>(),
-                    (Law::Space(Rotation::Arctangent { passes }), true) => {
-                        elements.space::<L, true>(Arctangent { passes });
-                    }
-                    (Law::Space(Rotation::Arctangent { passes }), false) => {
-                        elements.space::<L, false>(Arctangent { passes });
-                    }
-                    (Law::Space(Rotation::Optimum), true) => elements.space::<L, true>(Optimum),
-                    (Law::Space(Rotation::Optimum), false) => elements.space::<L, false>(Optimum),
-                    (Law::Spring, true) => elements.springs::<L, true>(),
-                    (Law::Spring, false) => elements.springs::<L, false>(),
-                }
+                let (law, sums) = (&self.body.law, self.sums);
+                Elements { part, sums, class, law, commit, tally, is_large }.add::<L>();
             }
         }
-        let Constants { step, gravity, .. } = self.body.constants;
-        let update = NodeUpdate::<L>::new(stage, step, gravity, number, self.around);
-        let own = Own { update, stage, constants: &self.body.constants };
+        let own = Own::<L>::new(self.of_nodes, stage, number, self.around);
         let (records, sums) = (part.records.pointer(), self.sums.pointer());
         let mut lost = NONE;
         for first in (0..part.own * MOST).step_by(L::WIDTH) {
@@ -95,11 +92,16 @@ unsafe fn sums_of<L: Lanes>(row: impl Fn(usize) -> *mut f64) -> [L; 4] {
 struct Own<'a, L> {
     update: NodeUpdate<'a, L>,
     stage: Stage,
-    constants: &'a Constants,
+    of_node: [f64; 2],
 }
 
-impl<L: Lanes> Own<'_, L> {
-    /// Moves a vector of nodes by the forces of their elements, to which `−w` of the nodes is added.
+impl<'a, L: Lanes> Own<'a, L> {
+    #[inline(always)]
+    fn new(OfNodes { of_node, gravity, step }: OfNodes, stage: Stage, number: u64, around: Around<'a>) -> Self {
+        Self { update: NodeUpdate::new(stage, step, gravity, number, around), stage, of_node }
+    }
+
+    /// Moves a vector of nodes by the forces of their elements, to which [`Law::of_node`] is added.
     ///
     /// # Safety
     /// Records and accelerations belong to this thread alone.
@@ -108,7 +110,7 @@ impl<L: Lanes> Own<'_, L> {
         // SAFETY: the caller's.
         unsafe {
             let [px, py, vx, vy, pz, vz, inverse_mass, valence] = L::columns(|lane| record(lane).cast_const());
-            let (k, d) = (L::splat(self.constants.stiffness), L::splat(self.constants.damping));
+            let [k, d] = each!(2, at => L::splat(self.of_node[at]));
             let (k, d) = (k * valence, d * valence);
             let (position, velocity) = ([px, py, pz], [vx, vy, vz]);
             let force: [L; 3] =
@@ -131,10 +133,13 @@ impl<L: Lanes> Own<'_, L> {
 
 /// The update of the nodes that belong to several parts.
 pub(super) struct SharedNodes<'a> {
-    pub(super) body: &'a General,
+    pub(super) shared: &'a Shared,
+    pub(super) parts: &'a [Part],
+    pub(super) is_large: bool,
     pub(super) blocks: Range<usize>,
     pub(super) pass: Pass,
     pub(super) around: Around<'a>,
+    pub(super) of_nodes: OfNodes,
 }
 
 impl Work for SharedNodes<'_> {
@@ -142,12 +147,8 @@ impl Work for SharedNodes<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        let Self { body, blocks, pass, around } = self;
-        let General { shared, parts, constants, .. } = body;
-        let Pass { stage, number, .. } = pass;
-        let update = NodeUpdate::<L>::new(stage, constants.step, constants.gravity, number, around);
-        let own = Own { update, stage, constants };
-        let is_large = body.is_large();
+        let Self { shared, parts, is_large, blocks, pass: Pass { stage, number, .. }, around, of_nodes } = self;
+        let own = Own::<L>::new(of_nodes, stage, number, around);
         let record = |place: &RecordAddress| {
             parts[place.part as usize].records.pointer().wrapping_add(place.record as usize * RECORD)
         };

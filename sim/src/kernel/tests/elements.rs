@@ -1,6 +1,7 @@
 //! The kernel for any elements.
 
 use super::*;
+use crate::kernel::general::{SMALL, parts};
 
 /// Steps a body with the lanes of every set, which must agree bit for bit, and with the reference.
 fn compare(name: &str, body: &Arc<Body>, start: State, rotation: Rotation, damping: f64, scheme: Scheme) {
@@ -61,14 +62,14 @@ fn any_scheme_steps_like_the_reference() {
 fn a_body_of_several_parts_steps_like_the_reference() {
     for (cells, steps, is_large) in [([23, 17, 19], 50, false), ([45, 33, 33], 3, true)] {
         let body = pieces(cells, &[4, 6, 8], 11);
+        assert_eq!(parts(&body.elements) > SMALL, is_large);
         let start = start(&body, 3);
         let start = (start.clone(), rotations(&body, &start));
         let mut world = reference(&body, &start.0, &shape_based(TWICE, 10.0), Scheme::SemiImplicitEuler, Vec::new());
         world.advance(steps);
         let mut found: Option<Whole> = None;
         for (set, threads) in Set::all().skip(1).flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
-            let kernel = General::new(&body, TWICE, constants(10.0), set);
-            assert_eq!(kernel.is_large(), is_large);
+            let kernel = shape_based(TWICE, 10.0).by_law(&body, &conditions(SEMI, set), None).stepper;
             let mut kernel = Moving::new(kernel, &start, SEMI, threads);
             assert_eq!(kernel.advance(steps, FREE), Ok(()));
             let here = kernel.stored(&start);

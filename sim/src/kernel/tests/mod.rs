@@ -1,14 +1,14 @@
 //! Kernels for any elements and springs, compared with the reference and with each other.
 
 mod elements;
+mod energies;
 mod parts;
 mod springs;
 mod surroundings;
 
-use super::general::{Constants, General};
 use super::springs::Stencil;
 use super::stepper::{PartStepper, Rollback, Scheme, Stepper};
-use super::{Around, Rotation};
+use super::{Around, Conditions, Rotation};
 use crate::body::Body;
 use crate::contact::{Bound, Obstacle, Shape};
 use crate::crew::Crew;
@@ -146,8 +146,8 @@ pub(super) const FREE: Around<'_> = Around {
     speed_limit: &|_| f64::MAX,
 };
 
-fn constants(damping: f64) -> Constants {
-    Constants { stiffness: STIFFNESS, damping, gravity: GRAVITY, step: STEP }
+fn conditions(scheme: Scheme, set: Set) -> Conditions {
+    Conditions { scheme, gravity: GRAVITY, step: STEP, set }
 }
 
 /// A state with the rotations.
@@ -157,9 +157,9 @@ type Whole = (State, Vec<f64>);
 struct Moving(Rollback, Crew);
 
 impl Moving {
-    fn new(kernel: impl Stepper + 'static, start: &Whole, scheme: Scheme, threads: usize) -> Self {
+    fn new(stepper: Box<dyn Stepper>, start: &Whole, scheme: Scheme, threads: usize) -> Self {
         let (nodes, memory) = (0..start.0.position.len(), 0..start.1.len());
-        let mut rollback = Rollback::new(vec![PartStepper { stepper: Box::new(kernel), nodes, memory }], scheme);
+        let mut rollback = Rollback::new(vec![PartStepper { stepper, nodes, memory }], scheme);
         rollback.load(0, &start.0.position, &start.0.velocity, &start.1);
         Self(rollback, Crew::new(threads))
     }
@@ -175,8 +175,9 @@ impl Moving {
     }
 }
 
-fn general(body: &Body, start: &Whole, rotation: Rotation, damping: f64, scheme: Scheme, set: Set) -> Moving {
-    Moving::new(General::new(body, rotation, constants(damping), set), start, scheme, 1)
+fn general(body: &Arc<Body>, start: &Whole, rotation: Rotation, damping: f64, scheme: Scheme, set: Set) -> Moving {
+    let compiled = shape_based(rotation, damping).by_law(body, &conditions(scheme, set), None);
+    Moving::new(compiled.stepper, start, scheme, 1)
 }
 
 pub(super) fn shape_based(rotation: Rotation, damping: f64) -> ShapeBased {

@@ -20,7 +20,8 @@ fn assert_springs_step_like_the_reference(body: &Arc<Body>, springs: &[[u32; 2]]
                 assert!(far <= 1e-12, "{} springs, {scheme:?}, {set:?}: {far:e}", springs.len());
                 *found = Some(here);
             };
-            let stencil = Stencil::new(springs, &body.rest, &body.mass, constants(damping), set);
+            let conditions = conditions(scheme, set);
+            let stencil = Stencil::new(&model, body, &conditions);
             assert_eq!(stencil.is_some(), families, "{} springs", springs.len());
             let whole = (start.clone(), Vec::new());
             let run = |kernel: Moving| {
@@ -29,9 +30,9 @@ fn assert_springs_step_like_the_reference(body: &Arc<Body>, springs: &[[u32; 2]]
                 kernel.stored(&whole).0
             };
             if let Some(stencil) = stencil {
-                same(&mut by_families, run(Moving::new(stencil, &whole, scheme, 1)));
+                same(&mut by_families, run(Moving::new(Box::new(stencil), &whole, scheme, 1)));
             }
-            let kernel = General::springs(body, springs, constants(damping), set);
+            let kernel = model.by_law(body, &conditions, None).stepper;
             same(&mut gathered, run(Moving::new(kernel, &whole, scheme, 1)));
         }
     }
@@ -62,12 +63,13 @@ fn springs_step_like_the_reference() {
 fn a_spring_between_coincident_nodes_does_nothing() {
     let body = whole([4, 1, 1], 0.0, 19);
     let springs = body.topology().springs(Springs::Edges);
+    let model = MassSpring { stiffness: STIFFNESS, damping: 10.0, springs: springs.into() };
     let start = State::at_rest(vec![DVec3::ONE; body.len()]);
     for set in Set::all() {
-        let free = Constants { gravity: DVec3::ZERO, ..constants(10.0) };
+        let free = Conditions { gravity: DVec3::ZERO, ..conditions(SEMI, set) };
         let start = (start.clone(), Vec::new());
-        let stencil = Stencil::new(&springs, &body.rest, &body.mass, free, set).expect("a lattice");
-        let kernel = General::springs(&body, &springs, free, set);
+        let stencil = Box::new(Stencil::new(&model, &body, &free).expect("a lattice"));
+        let kernel = model.by_law(&body, &free, None).stepper;
         for mut kernel in [Moving::new(stencil, &start, SEMI, 1), Moving::new(kernel, &start, SEMI, 1)] {
             assert_eq!(kernel.advance(9, FREE), Ok(()));
             assert_eq!(kernel.stored(&start), start);
@@ -86,7 +88,7 @@ fn springs_in_several_slabs_step_like_the_reference() {
     world.advance(50);
     let mut found: Option<State> = None;
     for (set, threads) in Set::all().skip(1).flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
-        let stencil = Stencil::new(&springs, &body.rest, &body.mass, constants(10.0), set).expect("a lattice");
+        let stencil = Box::new(Stencil::new(&model, &body, &conditions(SEMI, set)).expect("a lattice"));
         let whole = (start.clone(), Vec::new());
         let mut kernel = Moving::new(stencil, &whole, SEMI, threads);
         assert_eq!(kernel.advance(50, FREE), Ok(()));

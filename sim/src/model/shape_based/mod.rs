@@ -9,13 +9,13 @@
 //! The centre of an element is the unweighted mean of its nodes: with a centre of mass, unequal masses would give a net
 //! internal force.
 
+mod in_lanes;
+
 use super::{ElasticModel, ForceModel, Late, Misfit, Report, Scratch, Share, TypedModel, Vectorised, blocks};
 use crate::body::Body;
 use crate::element::Dimension;
-use crate::kernel::general::{Constants, General};
 use crate::kernel::lattice::{self, LatticeStepper};
-use crate::kernel::report::{Elastic, Energy};
-use crate::kernel::{Compiled, Conditions, Rotation};
+use crate::kernel::{Compiled, Conditions, Rotation, Stepper};
 use crate::mode::Mode;
 pub use crate::rotation::RotationReading;
 use crate::rotation::{self, davenport1968, linear_update, planar};
@@ -219,18 +219,28 @@ impl ElasticModel for ShapeBased {
 impl Vectorised for ShapeBased {
     fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled {
         let (&Self { stiffness, damping, .. }, &Conditions { scheme, gravity, step, set }) = (self, conditions);
-        let rotation = match self.rotation {
-            // Eq. (9) is the optimum.
-            _ if body.dimension == Dimension::Plane => Rotation::Optimum,
-            RotationReading::Robust => Rotation::Optimum,
-            _ => Rotation::Arctangent { passes: self.passes },
-        };
-        let energy = Energy { set, body: Arc::clone(body), stiffness, of: Elastic::Elements(rotation) };
+        let rotation = self.rotation_in_lanes();
         let parameters = lattice::Parameters { stiffness, damping, rotation, gravity, step };
-        let constants = Constants { stiffness, damping, gravity, step };
-        match LatticeStepper::new(body, parameters, scheme, set) {
-            Some(lattice) => Compiled { stepper: Box::new(lattice), energy },
-            None => Compiled { stepper: Box::new(General::new(body, rotation, constants, set)), energy },
+        let lattice = LatticeStepper::new(body, parameters, scheme, set);
+        self.by_law(body, conditions, lattice.map(|lattice| -> Box<dyn Stepper> { Box::new(lattice) }))
+    }
+}
+
+impl ShapeBased {
+    /// The code by the law of the elements, or with a faster stepper, if there is one.
+    pub(crate) fn by_law(
+        &self,
+        body: &Arc<Body>,
+        conditions: &Conditions,
+        faster: Option<Box<dyn Stepper>>,
+    ) -> Compiled {
+        in_lanes::compile(self, self.rotation_in_lanes(), body, conditions, faster)
+    }
+
+    fn rotation_in_lanes(&self) -> Rotation {
+        match self.rotation {
+            RotationReading::Arctangent => Rotation::Arctangent { passes: self.passes },
+            _ => Rotation::Optimum,
         }
     }
 }
