@@ -262,6 +262,36 @@ mod tests {
     }
 
     #[test]
+    fn several_bodies_have_a_series_each() {
+        let bodies =
+            ["lattice = { cells = [2, 1, 1], side = 0.1 }", "lattice = { cells = [1, 1, 1], side = 0.2 }\nmass = 2"];
+        let history = |bodies: &[&str]| {
+            let body = |(at, body): (usize, &&str)| format!("[[body]]\nname = '{at}'\nvelocity = [0, -2, 0]\n{body}\n");
+            let bodies: String = bodies.iter().enumerate().map(body).collect();
+            let text = format!(
+                "gravity = [0, -9.8, 0]
+                time = {{ duration = 0.1, step = 1e-3, frames_per_second = 20 }}
+                {bodies}
+                [[obstacle]]
+                kind = 'floor'
+                [[run]]
+                name = 'shape'
+                model = {{ kind = 'shape-based', stiffness = 1e4 }}"
+            );
+            let scene = Scene::parse(&text, "small.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+            History::new(&scene, &[0]).series.remove(0)
+        };
+        let all = history(&bodies);
+        assert_eq!((all.of_bodies.len(), all.diagnostics.len()), (2, all.times.len()));
+        for (of_body, body) in all.of_bodies.iter().zip(bodies) {
+            let alone = history(&[body]);
+            assert_eq!((&alone.times, alone.of_bodies.len()), (&all.times, 0));
+            // NaN is not equal to itself, so texts are compared.
+            assert_eq!(format!("{of_body:?}"), format!("{:?}", alone.diagnostics));
+        }
+    }
+
+    #[test]
     fn a_run_that_blows_up_ends_there() {
         let scene = scene("2", "60", "T/2");
         let history = History::new(&scene, &[0, 1]);

@@ -199,6 +199,39 @@ mod tests {
         assert!(!shown.is_empty() && shown.iter().all(|&itself| itself), "{shown:?}");
     }
 
+    /// Bodies far apart are together wider than any of them grows.
+    #[test]
+    fn each_body_is_judged_by_its_own_size() {
+        let found = |bodies: &[&str]| {
+            let body = |x: &&str| {
+                format!(
+                    "[[body]]
+                    name = 'at {x}'
+                    lattice = {{ cells = [1, 1, 1], side = 0.1 }}
+                    spin = {{ axis = [0, 0, 1], rate = 3 }}
+                    offset = [{x}, 0, 0]
+                    "
+                )
+            };
+            let text = format!(
+                "time = {{ duration = 60, frames_per_second = 1 }}
+                {}
+                [[run]]
+                name = 'run'
+                model = {{ kind = 'shape-based', stiffness = 1e4 }}
+                integrator = 'explicit-euler'
+                step = 'T/10'",
+                bodies.iter().map(body).collect::<String>()
+            );
+            let scene = Scene::parse(&text, "far.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+            Search::new(&scene, 0, 1).advance(&scene, u64::MAX).flatten().expect("it diverges")
+        };
+        let (alone, both) = (found(&["0"]), found(&["0", "100"]));
+        assert_eq!(alone.state.steps, both.state.steps);
+        assert_eq!(alone.state.position, both.state.position[..8]);
+        assert!((both.shown.times_wider / alone.shown.times_wider - 1.0).abs() < 0.1, "{}", both.shown.times_wider);
+    }
+
     #[test]
     fn a_radius_does_not_change_as_a_body_turns() {
         let corners = |turn: glam::DQuat| {

@@ -144,7 +144,17 @@ fn wrong_words() {
         SMALL.replace("[[run]]\n", "[[run]]\nintegrator = \"dormand-prince\"\n").replace("step = \"T/50\"\n", "");
     place.write("adaptive.toml", &adaptive);
     place.bad("stability adaptive.toml", 2, &["choose their own steps, so there is nothing to map"]);
-    assert_eq!(place.names("."), ["adaptive.toml", "small.toml", "still.toml", "wrong.toml"]);
+    let bodies = SMALL.replace("[body]", "[[body]]\nname = \"one\"").replace(
+        "[[run]]\nname = \"Local",
+        "[[body]]\nname = \"other\"\nlattice = { cells = [1, 1, 1], side = 0.1 }\n[[run]]\nname = \"Local",
+    );
+    place.write("bodies.toml", &bodies);
+    for study in ["stability", "work-precision"] {
+        let words = ["bodies.toml: “Local shape” has 2 bodies with models", "give each run one body"];
+        place.bad(&format!("{study} bodies.toml"), 2, &words);
+    }
+    let names = ["adaptive.toml", "bodies.toml", "small.toml", "still.toml", "wrong.toml"];
+    assert_eq!(place.names("."), names);
 }
 
 #[test]

@@ -238,3 +238,30 @@ fn a_body_is_not_called_all() {
     place.write("all.toml", &scene(&[0, 1], RUNS).replace("\"cube\"", "\"all\""));
     place.run("check all.toml").bad(2, &["all.toml:14:8: a body is called \"all\"", "expected another name"]);
 }
+
+#[cfg(feature = "render")]
+#[test]
+fn numbers_of_figures() {
+    let place = Place::new();
+    place.write("all.toml", &scene(&[0, 1, 2], RUNS));
+    place.run("simulate all.toml -o out").good();
+    place.write("sheet.toml", "title = \"Bodies\"\n[sheet]\nscene = \"all.toml\"\nmoments = [0.0, 0.1]\n");
+    place.write("forces.toml", "title = \"Forces\"\n[forces]\nscenes = [\"all.toml\"]\n");
+    let numbers = |name: &str| {
+        let document = place.run(&format!("figure {name}.toml -o figures --json")).good().json();
+        document["figures"][0]["numbers"].clone()
+    };
+    let sheet = numbers("sheet");
+    for (row, run) in runs(&place, "out").iter().enumerate() {
+        for (at, (name, _)) in BODIES.iter().enumerate() {
+            let [shown, last] = [&sheet[row][1]["bodies"][at], &run["last"]["bodies"][at]];
+            assert_eq!((&shown["name"], &shown["shape_error"]), (&json!(name), &last["shape_error"]));
+        }
+    }
+    let key = "forces_over_stiffness_and_side";
+    for run in numbers("forces")[0]["runs"].as_array().expect("runs") {
+        let bodies = run["bodies"].as_array().expect("bodies");
+        let of_bodies: Vec<_> = bodies.iter().flat_map(|body| body[key].as_array().expect("forces").clone()).collect();
+        assert_eq!((bodies.len(), &json!(of_bodies)), (3, &run[key]));
+    }
+}
