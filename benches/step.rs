@@ -25,7 +25,7 @@ const SIZES: [u64; 6] = [3, 10, 20, 40, 80, 160];
 struct Case {
     name: &'static str,
     world: World,
-    /// Elements of the body.
+    /// Elements of all bodies.
     count: u64,
     steps: u64,
     threads: usize,
@@ -35,7 +35,7 @@ struct Case {
 
 impl Case {
     fn new(name: &'static str, scene: &Scene, run: usize, threads: usize) -> Self {
-        let count = scene.bodies[0].body.elements.len() as u64;
+        let count = scene.bodies.iter().map(|named| named.body.elements.len() as u64).sum();
         let mut world = scene.world(run);
         world.set_crew(Crew::new(threads));
         Self { name, world, count, steps: (WORK / count).max(LEAST), threads, times: Vec::new() }
@@ -63,12 +63,16 @@ impl Case {
     }
 }
 
-/// A body on a floor, with the compared models.
-fn scene(body: &str, dimension: &str, runs: &[(&str, &str)]) -> Scene {
+/// Equal bodies on a floor, with the compared models.
+fn scene(copies: usize, body: &str, dimension: &str, runs: &[(&str, &str)]) -> Scene {
+    let copy =
+        |at: usize| format!("{{ name = '{at}', {body}, mass = 1, lowest = 0, offset = [{}, 0{dimension}] }}", 10 * at);
+    let bodies: Vec<_> = (0..copies).map(copy).collect();
+    let bodies = bodies.join(", ");
     let mut text = format!(
         "gravity = [0, -9.8{dimension}]
         time = {{ duration = 1, step = 'T/50', frames_per_second = 60 }}
-        body = {{ {body}, mass = 1, lowest = 0 }}
+        body = [{bodies}]
         obstacle = [{{ kind = 'floor', restitution = 0.5, friction = 0.3 }}]
         "
     );
@@ -159,7 +163,7 @@ fn main() {
                 ("kind = 'mass-spring', springs = 'all'", "kernel = 'reference'"),
             ]);
         }
-        let scene_of_lattice = scene(&lattice, ", 0", &runs);
+        let scene_of_lattice = scene(1, &lattice, ", 0", &runs);
         let names = [
             "shape",
             "shape, Eq. (15) twice",
@@ -178,8 +182,14 @@ fn main() {
             cases.push(in_lanes(4, || Case::new("shape, AVX2", &scene_of_lattice, 0, 1)));
         }
         let one = [("kind = 'shape-based'", "")];
-        let other =
-            |body: String, dimension: &str, name: &'static str| Case::new(name, &scene(&body, dimension, &one), 0, 1);
+        let other = |body: String, dimension: &str, name: &'static str| {
+            Case::new(name, &scene(1, &body, dimension, &one), 0, 1)
+        };
+        if cells <= 20 {
+            let ten = scene(10, &lattice, ", 0", &one);
+            cases.push(Case::new("shape, ten blocks", &ten, 0, 1));
+            cases.push(Case::new("shape, ten blocks, 2 threads", &ten, 0, 2));
+        }
         if cells <= 40 {
             let cube = format!("cells = [{cells}, {cells}, {cells}], side = 0.1");
             cases.push(other(format!("lattice = {{ {cube}, irregular = 0.2 }}"), ", 0", "irregular hexahedra"));
