@@ -6,7 +6,7 @@ use super::layout::steps::{CHART, FREE, MARGIN, RING, SMALL, STRONG, TEXT, TICK}
 use super::page::{Path, point};
 use super::{Colour, Item};
 use crate::look::{BODIES, Palette};
-use crate::sim::Assembly;
+use crate::sim::{Assembly, Dimension};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -23,6 +23,7 @@ pub(super) struct Tally {
     blocks: Vec<Block>,
     /// The number of elements.
     count: usize,
+    dimension: Dimension,
 }
 
 /// The elements of one body.
@@ -76,7 +77,7 @@ impl Tally {
     pub(super) fn new(bodies: &Assembly, side: f64) -> Self {
         let count = bodies.whole().elements.len();
         let blocks = (0..bodies.bodies().len()).map(|body| Block::new(bodies, body, side)).collect();
-        let tally = Self { blocks, count };
+        let tally = Self { blocks, count, dimension: bodies.whole().dimension };
         if count > MOST_SQUARES { tally.as_bar() } else { tally }
     }
 
@@ -88,7 +89,7 @@ impl Tally {
     /// The tally as bars.
     pub(super) fn as_bar(&self) -> Self {
         let bar = |block: &Block| Block { elements: block.elements.clone(), rows: Vec::new(), are_layers: false };
-        Self { blocks: self.blocks.iter().map(bar).collect(), count: self.count }
+        Self { blocks: self.blocks.iter().map(bar).collect(), ..*self }
     }
 
     /// Whether it has squares in rows, if they have room.
@@ -193,7 +194,11 @@ impl Tally {
 
     /// The colours of sound elements: that of the tally for one body, and those of the bodies for several.
     fn colours(&self, palette: &Palette) -> impl Iterator<Item = Colour> {
-        let colours = if self.blocks.len() > 1 { palette.bodies_flat } else { [palette.tally; BODIES] };
+        let colours = match self.dimension {
+            _ if self.blocks.len() == 1 => [palette.tally; BODIES],
+            Dimension::Plane => palette.bodies_flat,
+            Dimension::Space => palette.bodies,
+        };
         colours.into_iter().cycle()
     }
 
