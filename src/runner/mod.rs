@@ -119,7 +119,7 @@ impl<'a> Runner<'a> {
             running.traced = self.scene.view.paths.clone();
             running.series.paths = vec![Vec::new(); running.traced.len()];
             let bodies = self.scene.runs[running.run].of.len();
-            running.series.of_bodies = vec![Vec::new(); if bodies > 1 { bodies } else { 0 }];
+            running.series.of_bodies = vec![Vec::new(); if bodies > 1 && !wanted.is_empty() { bodies } else { 0 }];
             running.notes = history::moments(self.scene, &running.world, closer, shown);
         }
         self

@@ -77,7 +77,8 @@ fn each_of_several_bodies_is_as_alone() {
         for (of_all, of_alone) in summary.iter().zip(runs(&place, name)) {
             let mut expected = of_alone["last"].clone();
             let keys = expected.as_object_mut().expect("a table");
-            (keys.remove("frame"), keys.remove("time"), keys.insert("name".to_owned(), json!(name)));
+            keys.retain(|key, _| key != "frame" && key != "time");
+            keys.insert("name".to_owned(), json!(name));
             assert_eq!(of_all["last"]["bodies"][at], expected);
             assert_eq!((&of_alone["bodies"], &of_alone["last"]["bodies"]), (&json!([name]), &Value::Null));
         }

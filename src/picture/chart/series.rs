@@ -57,11 +57,10 @@ impl Series {
         scene: &Scene,
         style: LineStyle,
     ) -> impl Iterator<Item = Self> {
-        let of = &scene.runs[of_run.run].of;
-        of.iter().enumerate().filter(|_| !of_run.of_bodies.is_empty()).map(move |(at, &body)| {
-            let values = of_run.of_bodies.iter().filter_map(|bodies| bodies.get(at)).map(|all| diagnostic.of(all));
+        scene.runs[of_run.run].several(scene).zip(&of_run.of_bodies).map(move |((body, _), all)| {
+            let values = all.iter().map(|all| diagnostic.of(all));
             let one = Self::over(diagnostic, of_run, values, style);
-            Self { name: scene.bodies[body].name.clone(), is_part: true, ..one }
+            Self { name: body.to_owned(), is_part: true, ..one }
         })
     }
 
@@ -177,6 +176,8 @@ fn steps(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Limits;
+    use crate::sim::Diagnostics;
 
     /// Values at 0, 1, 2 … s.
     fn series(values: &[f64], diverged: bool) -> Series {
@@ -201,6 +202,30 @@ mod tests {
         assert!(low < 1.0 && 1.0 < high && high - low < 0.03, "{low} {high}");
         assert_eq!((range(&[]), range(&[&[]])), (None, None));
         assert_eq!(range(&[&[0.0, 0.0]]), Some([0.0, 0.0]));
+    }
+
+    /// More moments than bodies, so that neither is taken for the other.
+    #[test]
+    fn each_of_several_bodies_has_a_curve_over_all_times() {
+        let bodies = ["one", "other"]
+            .map(|name| format!("[[body]]\nname = '{name}'\nlattice = {{ cells = [1, 1, 1], side = 0.1 }}\n"));
+        let text = format!(
+            "time = {{ duration = 0.1, frames_per_second = 20 }}\n{}[[run]]\nname = 'run'\n\
+             model = {{ kind = 'shape-based', stiffness = 1e4 }}",
+            bodies.concat()
+        );
+        let scene = Scene::parse(&text, "two.toml", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let moved = |kinetic: f64| Diagnostics { kinetic, ..Diagnostics::default() };
+        let of_run = TimeSeries {
+            times: vec![0.0, 0.1, 0.2],
+            of_bodies: vec![[1.0, 2.0, 3.0].map(moved).to_vec(), [4.0, 5.0, 6.0].map(moved).to_vec()],
+            ..TimeSeries::new(0)
+        };
+        let style = LineStyle { colour: [0; 3], dash: &[] };
+        let curves: Vec<_> = Series::of_bodies(Diagnostic::Kinetic, &of_run, &scene, style).collect();
+        assert_eq!(curves.iter().map(|curve| &*curve.name).collect::<Vec<_>>(), ["one", "other"]);
+        assert_eq!(curves[1].points, [[0.0, 4.0], [0.1, 5.0], [0.2, 6.0]]);
+        assert_eq!(curves[0].points, [[0.0, 1.0], [0.1, 2.0], [0.2, 3.0]]);
     }
 
     #[test]
