@@ -91,7 +91,7 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
         "figure" => with_whole_paths(files("figures", "toml")),
         "body" => files("tests/cli", "npz"),
         "font" => files("assets/fonts", "otf"),
-        "states" => vec![simulated("states.npz")],
+        "states" | "recording" => vec![simulated("states.npz")],
         "summary" => vec![simulated("run.json")],
         "checkpoint" => vec![checkpoint_of_scene()],
         "state" => vec![localshape::sim::State::at_rest(vec![glam::DVec3::ONE; 3]).to_bytes()],

@@ -1,4 +1,5 @@
-//! The interface of the two codes that advance a state: the reference code with its integrators, and the vectorised kernels.
+//! The interface of the codes that advance a state: the reference code with its integrators, the vectorised kernels, and
+//! recordings.
 
 use super::body::Body;
 
@@ -6,7 +7,7 @@ use super::crew::Crew;
 use super::hull::bounds;
 use super::model::{Report, Share};
 use super::part::Part;
-use super::state::{Nodes, State};
+use super::state::{Divergence, Nodes, State};
 use super::system::{Surroundings, System};
 
 /// Advances a state. It may keep the nodes in its own arrays between calls.
@@ -34,6 +35,11 @@ pub(super) trait Dynamics: Send + Sync {
     fn report(&self, part: &Part, state: &State, share: Option<&mut Share<'_>>, _: &Crew) -> Report {
         let memory = &state.memory.model[part.memory.clone()];
         part.forces.report(part.nodes_of(state.nodes()), memory, share.unwrap_or(&mut |_, _, _| {}))
+    }
+
+    /// Where and when a run diverged whose next step was not taken.
+    fn divergence(&self, system: &System, state: &State, runaway: Runaway) -> Divergence {
+        system.divergence(state, runaway)
     }
 
     /// The number of steps taken. The state may be behind until [`Self::settle`] is called.

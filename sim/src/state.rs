@@ -32,6 +32,8 @@ pub struct Divergence {
     pub part: usize,
     /// The first element of that part that contains the node; `None` if it belongs to no element.
     pub element: Option<usize>,
+    /// Whether no node was too fast, but a recording of the run ends here.
+    pub is_end: bool,
 }
 
 /// Whether a run has diverged.
@@ -88,9 +90,10 @@ impl State {
         let Memory { model, constraints, integrator } = &self.memory;
         let (diverged, [time, step, part, element]) = match self.status {
             Status::Ok => (0, [0; 4]),
-            Status::Diverged(Divergence { time, step, part, element }) => {
-                (1, [time.to_bits(), step, part as u64, element.map_or(0, |element| element as u64 + 1)])
-            }
+            Status::Diverged(Divergence { time, step, part, element, is_end }) => (
+                if is_end { 2 } else { 1 },
+                [time.to_bits(), step, part as u64, element.map_or(0, |element| element as u64 + 1)],
+            ),
         };
         let lengths = [self.position.len(), model.len(), constraints.len(), integrator.len()];
         let header = [self.steps, diverged, time, step, part, element].into_iter().chain(lengths.map(|len| len as u64));
@@ -120,9 +123,10 @@ impl State {
         let memory = Memory { model: take(memory[0])?, constraints: take(memory[1])?, integrator: take(memory[2])? };
         let status = match diverged {
             0 => Status::Ok,
-            1 => {
+            1 | 2 => {
                 let element = element.checked_sub(1).map(|element| element as usize);
-                Status::Diverged(Divergence { time: f64::from_bits(time), step, part: part as usize, element })
+                let (time, part) = (f64::from_bits(time), part as usize);
+                Status::Diverged(Divergence { time, step, part, element, is_end: diverged == 2 })
             }
             _ => return None,
         };
@@ -141,7 +145,7 @@ mod tests {
 
     fn state() -> State {
         let memory = Memory { model: vec![1.0, f64::NAN], constraints: vec![], integrator: vec![-0.0] };
-        let status = Status::Diverged(Divergence { time: 0.3, step: 7, part: 1, element: Some(0) });
+        let status = Status::Diverged(Divergence { time: 0.3, step: 7, part: 1, element: Some(0), is_end: false });
         let (position, velocity) = (vec![DVec3::X, DVec3::splat(-0.0)], vec![DVec3::Y, DVec3::splat(1e-310)]);
         State { position, velocity, steps: 9, status, memory }
     }
@@ -173,6 +177,6 @@ mod tests {
         assert!(State::from_bytes(&changed(MARK.len() - 2, b'4')).is_none());
         // Counts too large for any memory, and a status that does not exist.
         assert!(State::from_bytes(&changed(MARK.len() + 6 * 8 + 7, 0xff)).is_none());
-        assert!(State::from_bytes(&changed(MARK.len() + 8, 2)).is_none());
+        assert!(State::from_bytes(&changed(MARK.len() + 8, 3)).is_none());
     }
 }

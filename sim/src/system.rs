@@ -1,11 +1,12 @@
 //! A system that is advanced together: bodies with their models, obstacles and kinematic constraints.
 
 use super::contact::{ContactStage, Obstacle};
+use super::dynamics::Runaway;
 use super::grip::Grip;
 use super::model::Scratch;
 use super::motion::Interval;
 use super::part::Part;
-use super::state::{Memory, Nodes, State};
+use super::state::{Divergence, Memory, Nodes, State};
 use glam::DVec3;
 
 /// Gravity, obstacles and kinematic constraints around bodies.
@@ -43,11 +44,18 @@ impl System {
     }
 
     /// The part that a node belongs to, and the first element of that part that contains it.
-    pub(super) fn place_of(&self, node: usize) -> (usize, Option<usize>) {
+    fn place_of(&self, node: usize) -> (usize, Option<usize>) {
         let part = self.parts.partition_point(|part| part.nodes.end <= node);
         let Part { body, nodes, .. } = &self.parts[part];
         let own = (node - nodes.start) as u32;
         (part, body.elements.iter().position(|nodes| nodes.contains(&own)))
+    }
+
+    /// Where and when a run diverges whose next step is not taken.
+    pub(super) fn divergence(&self, state: &State, runaway: Runaway) -> Divergence {
+        let (time, step) = (self.interval(state.steps).end, state.steps + 1);
+        let (part, element) = self.place_of(runaway.node);
+        Divergence { time, step, part, element, is_end: false }
     }
 
     /// Whether forces depend on velocities.

@@ -12,6 +12,7 @@ use super::integrate::{ByForces, Integrator, Method, Scales};
 use super::kernel::{ByKernel, Scheme};
 use super::model::{ElasticModel, Report, Scratch};
 use super::part::Part;
+use super::recording::{ByRecording, Recording, Unknown};
 use super::snapshot::Snapshot;
 use super::state::{Divergence, Memory, State, Status};
 use super::system::{Surroundings, System};
@@ -168,6 +169,32 @@ impl World {
         Self { system, dynamics, crew: Crew::new(1), limit, field: None, wanted, state }
     }
 
+    /// A world of bodies that moves as it was computed elsewhere, with moments at multiples of a `step` (s). Diagnostics that
+    /// need a model are NaN.
+    ///
+    /// # Panics
+    /// If `initial` has not one position and one velocity per node.
+    pub fn recorded(
+        bodies: &[Arc<Body>],
+        initial: State,
+        gravity: glam::DVec3,
+        step: f64,
+        recording: Box<dyn Recording>,
+    ) -> Self {
+        let parts: Vec<_> = bodies.iter().map(|body| (Arc::clone(body), &Unknown as &dyn ElasticModel)).collect();
+        let surroundings = Surroundings { gravity, ..Surroundings::default() };
+        let stepping = Stepping { kernel: Kernel::Reference, ..Stepping::new(Integrator::default(), step) };
+        let mut world = Self::of_parts(&parts, initial, surroundings, stepping);
+        world.play(recording);
+        world
+    }
+
+    /// Shows the states of a recording from now on, in place of steps.
+    pub fn play(&mut self, recording: Box<dyn Recording>) {
+        self.settle();
+        self.dynamics = Box::new(ByRecording::new(recording));
+    }
+
     /// Takes steps by a method of another crate from now on, with forces of the reference code.
     pub fn set_method(&mut self, method: Box<dyn Method>) {
         self.settle();
@@ -244,9 +271,7 @@ impl World {
             let Err(runaway) = dynamics.advance(system, limit, state, steps, crew) else { return };
             dynamics.settle(state);
             dynamics.restart();
-            let (time, step) = (system.interval(state.steps).end, state.steps + 1);
-            let (part, element) = system.place_of(runaway.node);
-            state.status = Status::Diverged(Divergence { time, step, part, element });
+            state.status = Status::Diverged(dynamics.divergence(system, state, runaway));
             state.steps = last;
         } else {
             state.steps = state.steps.saturating_add(steps);
@@ -389,7 +414,11 @@ impl World {
                 let mut share = |_: usize, nodes: &[u32], shares: &[f64]| {
                     nodes.iter().zip(shares).for_each(|(&node, share)| of_nodes[node as usize] += share);
                 };
-                dynamics.report(part, state, Some(&mut share), crew)
+                let report = dynamics.report(part, state, Some(&mut share), crew);
+                if report.energy.is_none() {
+                    of_nodes.fill(f64::NAN);
+                }
+                report
             });
             bodies.push(self.facts(part, move || known.unwrap_or_else(|| dynamics.report(part, state, None, crew))));
             energies.push(of_nodes);

@@ -167,6 +167,7 @@ impl FigureCommand {
     fn make(&self, figure: &Figure, path: &Path, gpu: Option<&Gpu>) -> Result<Option<(Made, Value)>, Failure> {
         let file = AtomicFile::create(path)?;
         let Some(moments) = self.take(figure) else { return Ok(None) };
+        figure.scenes().iter().try_for_each(Scene::check_recordings).map_err(OutputError::reading(path))?;
         let [width, height] = figure.size;
         let (picture, left_out) = compose_figure(figure, &moments)
             .map_err(|error| Failure::usage(format!("{}: at {width}×{height} {error}", figure.name)))?;

@@ -50,6 +50,7 @@ fn made(summary: &Summary, folder: &Path) -> String {
 fn rows(run: &RunSummary) -> Vec<[String; 4]> {
     let status = match &run.status {
         RunStatus::Ok => "ok".to_owned(),
+        RunStatus::Ended { time } => format!("recording ends at {} s", short(*time)),
         RunStatus::Diverged { time, step, body, element } => {
             let element = element.map(|element| format!("element {element}"));
             let place: Vec<_> = element.into_iter().chain(body.clone()).collect();

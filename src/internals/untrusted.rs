@@ -22,13 +22,14 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 11] = [
+pub const READERS: [Reader; 12] = [
     Reader { name: "scene", read: scene },
     Reader { name: "setting", read: setting },
     Reader { name: "figure", read: figure },
     Reader { name: "body", read: body },
     Reader { name: "font", read: font },
     Reader { name: "states", read: states },
+    Reader { name: "recording", read: recording },
     Reader { name: "checkpoint", read: checkpoint },
     Reader { name: "state", read: |bytes| State::from_bytes(bytes).is_some() },
     Reader { name: "summary", read: summary },
@@ -105,6 +106,12 @@ fn body(bytes: &[u8]) -> bool {
 /// Reads the font of a scene, and writes with it.
 fn font(bytes: &[u8]) -> bool {
     beside("font.ttf", bytes, &format!("view.font.regular = 'font.ttf'\n{SCENE}"))
+}
+
+/// Reads a NumPy archive as the recording of a run.
+fn recording(bytes: &[u8]) -> bool {
+    let model = "model = { kind = 'shape-based', stiffness = 1e4 }";
+    beside("states.npz", bytes, &SCENE.replace(model, "states = 'states.npz'"))
 }
 
 /// Reads the states of [`SCENE`] up to its first frame.

@@ -129,6 +129,7 @@ fn digest_of(file: &mut File) -> io::Result<Sha256> {
 fn cells(run: &str, body: &str, frame: u64, snapshot: &Snapshot, diagnostics: &Diagnostics) -> Vec<(String, String)> {
     let status = match snapshot.status {
         Status::Ok => "ok",
+        Status::Diverged(divergence) if divergence.is_end => "ended",
         Status::Diverged(_) => "diverged",
     };
     let plain = |head: &str, cell: String| (head.to_owned(), cell);

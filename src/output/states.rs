@@ -28,7 +28,7 @@ pub(super) const COURSE: &str = "localshape";
 ///
 /// The archive has `time` (F), the time of each frame (s), and for each run `NAME.position` (m) and `NAME.velocity`
 /// (m/s), both F × N × 3, all little-endian double precision. Each run has the step nearest to a frame: `time` is that
-/// of the first run, and a run with another time step has its own `NAME.time` (F). Scenes allow only names of runs that
+/// of the first run, and a run with another time step has its own `NAME.time` (F). `NAME.step` is its time step (s). Scenes allow only names of runs that
 /// are valid in an archive.
 ///
 /// The bodies of the first run are stored once: `rest` (N × 3, m) and `mass` (N, kg). The nodes of each element
@@ -53,6 +53,8 @@ pub(crate) struct StatesWriter {
     record: u64,
     /// Whether each run has its own times.
     own_time: Vec<bool>,
+    /// The time step of each run (s).
+    steps: Vec<f64>,
     origin: Origin,
     course: Course,
 }
@@ -159,7 +161,8 @@ impl StatesWriter {
         let mut arrays = vec![Array { name: "time".to_owned(), shape: String::new(), offset: 0, length: 8 }];
         let mut record = 8;
         let step = |run: usize| scene.runs[run].step;
-        let own_time: Vec<bool> = runs.iter().map(|&run| step(run) != step(runs[0])).collect();
+        let steps: Vec<f64> = runs.iter().map(|&run| step(run)).collect();
+        let own_time: Vec<bool> = steps.iter().map(|&step| step != steps[0]).collect();
         let mut stored = Vec::new();
         for ((&run, &own_time), state) in runs.iter().zip(&own_time).zip(states) {
             if own_time {
@@ -199,7 +202,7 @@ impl StatesWriter {
         };
         let length = course.frames.len() as u64 * record;
         let spool = open_growing(&folder.join(SPOOL), length).map_err(OutputError::writing(&path))?;
-        Ok(Self { path, spool, names, meshes, arrays, record, own_time, origin, course })
+        Ok(Self { path, spool, names, meshes, arrays, record, own_time, steps, origin, course })
     }
 
     /// Appends one frame, with the state of each run in it.
@@ -289,6 +292,10 @@ impl StatesWriter {
                 self.spool.read_exact(&mut part)?;
                 archive.write_all(&part)?;
             }
+        }
+        for (run, step) in self.course.runs.iter().zip(&self.steps) {
+            begin(archive, &format!("{}.step", run.name), "<f8", "()", 8)?;
+            archive.write_all(&step.to_le_bytes())?;
         }
         for mesh in &self.meshes {
             fill_mesh(archive, mesh, self.names.len() > 1)?;

@@ -102,7 +102,7 @@ pub(crate) struct RunSummary {
     pub time_step: f64,
     /// The number of steps that this command has simulated; after a divergence steps are only counted.
     pub steps: u64,
-    /// `ok` or `diverged`.
+    /// `ok`, `ended` or `diverged`.
     #[serde(flatten)]
     pub status: RunStatus,
     /// The cause of its divergence; absent if it did not diverge, or if its states are read from a file.
@@ -121,6 +121,11 @@ pub(crate) struct RunSummary {
 pub(crate) enum RunStatus {
     /// It has not diverged.
     Ok,
+    /// Its recording has ended.
+    Ended {
+        /// Time of its last moment (s).
+        time: f64,
+    },
     /// It has diverged.
     Diverged {
         /// Time of the first step that was rejected (s).
@@ -224,7 +229,8 @@ impl Summary {
             let (snapshot, run) = (&run.snapshot, &scene.runs[run.run]);
             summary.status = match snapshot.status {
                 Status::Ok => RunStatus::Ok,
-                Status::Diverged(Divergence { time, step, part, element }) => {
+                Status::Diverged(Divergence { time, is_end: true, .. }) => RunStatus::Ended { time },
+                Status::Diverged(Divergence { time, step, part, element, .. }) => {
                     RunStatus::Diverged { time, step, body: summary.bodies.get(part).cloned(), element }
                 }
             };

@@ -10,13 +10,16 @@ use super::{Item, Panel, number};
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette};
 use crate::reading::captions::parts_and_constants;
-use crate::sim::model::ElasticModel;
-use crate::sim::{Body, Divergence, RunFrame, Snapshot, Status};
+use crate::scene::Run;
+use crate::sim::{Divergence, RunFrame, Snapshot, Status};
 
 /// The name of counts.
 const TURNED_OVER: &str = "turned over";
 /// The text in place of a number for a run that diverged.
 const DIVERGED: &str = "diverged";
+/// The same of a recording, in full and in short.
+pub(in crate::picture) const RECORDING_ENDS: &str = "recording ends";
+const ENDED: &str = "ended";
 /// The widest time of a clock; room for it is reserved, so that nothing moves when the digits change.
 const WIDEST_TIME: &str = "8888.8 s";
 /// The largest part of a panel's inner width that the clock's label may take.
@@ -26,9 +29,14 @@ const LABEL_SHARE: f64 = 0.55;
 const LETTER_GAP: f64 = 0.42;
 const X_HEIGHT: f64 = 0.55;
 
-/// A model in short, for the second line of a picture: `27 cubes, k = 10 kN/m, ζ = 0.1`.
-pub(super) fn short_description(model: &dyn ElasticModel, body: &Body) -> String {
-    parts_and_constants(model, body) + &model.unusual_choices(body)
+/// The model of a run in short, for the second line of a picture: `27 cubes, k = 10 kN/m, ζ = 0.1`; or where its states
+/// come from.
+pub(super) fn short_description(run: &Run) -> String {
+    match (&run.recording, run.models.first()) {
+        (Some(recording), _) => recording.description(),
+        (None, Some(model)) => parts_and_constants(model.as_ref(), run.body()) + &model.unusual_choices(run.body()),
+        (None, None) => String::new(),
+    }
 }
 
 /// Collects the text and the flat marks of a picture.
@@ -417,17 +425,22 @@ pub(super) fn letter(at: usize) -> String {
 
 /// Replaces the number of a run that diverges within the shown time: when it diverges, and how much wider it becomes.
 pub(super) fn divergence(run: &RunFrame) -> Option<Number> {
-    let Status::Diverged(Divergence { time, .. }) = run.shown().status else { return None };
+    let Status::Diverged(Divergence { time, is_end, .. }) = run.shown().status else { return None };
     let (loud, at) = (diverged(run), format!("at {}", number::time(time)));
     let wider = wider(run).map(|wider| [format!("then {wider}"), wider].map(|wider| [format!("{loud} {at}"), wider]));
-    let wordings =
-        wider.into_iter().flatten().chain([[loud.to_owned(), at], [loud.to_owned(), String::new()]]).collect();
+    let alone = [[loud.to_owned(), at.clone()], [loud.to_owned(), String::new()]];
+    let short = [[ENDED.to_owned(), at], [ENDED.to_owned(), String::new()]].into_iter().filter(|_| is_end);
+    let wordings = wider.into_iter().flatten().chain(alone).chain(short).collect();
     Some(Number { widest: String::new(), wordings, is_loud: true })
 }
 
-/// The present or past tense for a run that diverges, at the time of a frame.
+/// The present or past tense for a run that diverges, at the time of a frame; or that its recording ends.
 pub(super) fn diverged(run: &RunFrame) -> &'static str {
-    if run.snapshot.status == Status::Ok { "diverges" } else { DIVERGED }
+    match (run.snapshot.status, run.shown().status) {
+        (_, Status::Diverged(Divergence { is_end: true, .. })) => RECORDING_ENDS,
+        (Status::Ok, _) => "diverges",
+        _ => DIVERGED,
+    }
 }
 
 /// The final width of a run relative to the shown width, in words; `None` if they are similar.
@@ -460,7 +473,7 @@ mod tests {
         let body = BodyBuilder::lattice(Lattice::new([1; 3], 0.1)).mass(1.0);
         let shape = shape_based::Parameters { damping: Some(60.0), ..shape_based::Parameters::new(1e4) };
         let scene = Scene::builder("cube", body).run("shape", shape).build(&Limits::default()).expect("a scene");
-        let caption = short_description(scene.runs[0].models[0].as_ref(), scene.runs[0].body());
+        let caption = short_description(&scene.runs[0]);
         assert_eq!(caption, "1 cube, k = 10 kN/m, ζ = 0.3, exact rotations");
     }
 

@@ -34,7 +34,7 @@ impl Cause {
         divergence: Divergence,
         threads: usize,
     ) -> Option<Self> {
-        if divergence.step - sound.steps > most_steps(&scene.runs[run]) {
+        if divergence.is_end || divergence.step - sound.steps > most_steps(&scene.runs[run]) {
             return None;
         }
         let mut world = scene.world(run);

@@ -228,6 +228,7 @@ impl<'a> Frames<'a> {
                 waiting.reached += 1;
                 return Ok(Next::Working);
             }
+            runner.scene.check_recordings()?;
             waiting.is_known = true;
             return Ok(Next::TimeSeries(runner.take_history()));
         }
@@ -252,7 +253,9 @@ impl<'a> Frames<'a> {
             return Ok(Next::Working);
         }
         *taken += 1;
-        Ok(Next::Frame(runner.taken(frame)))
+        let taken = runner.taken(frame);
+        runner.scene.check_recordings()?;
+        Ok(Next::Frame(taken))
     }
 
     /// The steps taken so far and the steps at the end, of all runs together.
@@ -279,7 +282,9 @@ impl<'a> Frames<'a> {
 
     /// The steps of each run in this process.
     pub(crate) fn simulated(&self) -> Vec<u64> {
-        self.reached().into_iter().zip(&self.before).map(|(steps, before)| steps - before).collect()
+        let runs = self.reached().into_iter().zip(&self.before).zip(&self.runner.runs);
+        let is_recorded = |running: &Running| self.runner.scene.runs[running.run].recording.is_some();
+        runs.map(|((steps, before), running)| if is_recorded(running) { 0 } else { steps - before }).collect()
     }
 
     /// The steps of each run so far.
@@ -371,7 +376,7 @@ mod tests {
         let resumed = |step, part, element| {
             let mut progress = begun().progress().unwrap().unwrap();
             let mut state = State::from_bytes(&progress.states[1]).unwrap();
-            state.status = Status::Diverged(Divergence { time: 0.0, step, part, element });
+            state.status = Status::Diverged(Divergence { time: 0.0, step, part, element, is_end: false });
             progress.states[1] = state.to_bytes();
             begun().resume(progress).is_ok()
         };

@@ -273,9 +273,18 @@ impl Scene {
             Surroundings { gravity: self.gravity, obstacles: self.obstacles.clone(), grips: run.grips.clone() };
         let tolerance = run.tolerance.unwrap_or(Integrator::TOLERANCE);
         let stepping = Stepping { integrator: run.integrator, step: run.step, tolerance, kernel: run.kernel };
-        let bodies = run.bodies.bodies().iter().map(Arc::clone);
-        let parts: Vec<_> = bodies.zip(run.models.iter().map(|model| &**model)).collect();
-        let mut world = World::of_parts(&parts, run.initial.clone(), surroundings, stepping);
+        let bodies = run.bodies.bodies();
+        let mut world = match &run.recording {
+            Some(recording) => {
+                let player = Box::new(recording.player(run.step));
+                World::recorded(bodies, run.initial.clone(), self.gravity, run.step, player)
+            }
+            None => {
+                let models = run.models.iter().map(|model| &**model);
+                let parts: Vec<_> = bodies.iter().map(Arc::clone).zip(models).collect();
+                World::of_parts(&parts, run.initial.clone(), surroundings, stepping)
+            }
+        };
         world.show(self.view.colour.map(|scale| scale.field));
         world
     }

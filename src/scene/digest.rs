@@ -14,6 +14,8 @@ use std::io::{self, BufWriter, Write};
 pub(super) struct FileDigests {
     /// The file of each body.
     pub(super) bodies: Vec<Option<String>>,
+    /// The recording of each run.
+    pub(super) runs: Vec<Option<String>>,
     /// The font file.
     pub(super) regular: Option<String>,
     /// The font file for names and counts.
@@ -35,6 +37,9 @@ pub(super) fn digest(typed: &impl Serialize, lists: &[BodyFile], files: FileDige
     let mut value = serde_json::to_value(typed).unwrap_or_default();
     for (at, file) in files.bodies.into_iter().enumerate() {
         file.into_iter().for_each(|file| value["body"][at]["file"] = file.into());
+    }
+    for (at, recording) in files.runs.into_iter().enumerate() {
+        recording.into_iter().for_each(|recording| value["run"][at]["states"] = recording.into());
     }
     if let Some(regular) = files.regular {
         value["view"]["font"] = json!({ "regular": regular, "semi_bold": files.semi_bold });

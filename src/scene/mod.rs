@@ -20,6 +20,7 @@ mod gone;
 mod limits;
 mod load;
 pub(crate) mod npz;
+mod recording;
 pub(crate) mod reference;
 mod resolve;
 mod schema;
@@ -36,6 +37,7 @@ pub use file::{Cells, Coordinates, Lattice, MotionPath, Rotation, Start, StartSh
 pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;
+pub use recording::Recorded;
 pub use schema::schema;
 pub use summary::{RunSummary, SceneSummary};
 
@@ -49,6 +51,7 @@ use crate::sim::model::{ElasticModel, Report};
 use crate::sim::{Assembly, Body, Dimension, Grip, Integrator, Obstacle, Shape};
 use crate::sim::{Diagnostic, Kernel, Moment, State};
 use glam::DVec3;
+use std::io;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -108,8 +111,10 @@ pub struct Run {
     pub bodies: Arc<Assembly>,
     /// The initial state of all its bodies.
     pub initial: State,
-    /// The elastic model of each body.
+    /// The elastic model of each body; empty for a recording.
     pub models: Vec<Arc<dyn ElasticModel>>,
+    /// The recording that it shows.
+    pub recording: Option<Arc<Recorded>>,
     /// Kinematic constraints: nodes that are held or dragged, counted over all its bodies.
     pub grips: Vec<Grip>,
     /// The integrator.
@@ -206,6 +211,11 @@ impl Scene {
 }
 
 impl Run {
+    /// The two nodes of each spring of its first body; empty for models without springs.
+    pub(crate) fn springs(&self) -> &[[u32; 2]] {
+        self.models.first().map_or(&[], |model| model.springs())
+    }
+
     /// All its bodies as one.
     pub fn body(&self) -> &Arc<Body> {
         self.bodies.whole()
@@ -248,6 +258,11 @@ impl Scene {
     /// All its bodies together.
     pub(crate) fn together(&self) -> Together {
         Together::new(self.bodies.iter().map(|one| (&one.body, &one.initial)))
+    }
+
+    /// Fails if a row of a recording could not be read since the scene was loaded. The states shown are then wrong.
+    pub(crate) fn check_recordings(&self) -> io::Result<()> {
+        self.runs.iter().filter_map(|run| run.recording.as_ref()).try_for_each(|recording| recording.fault())
     }
 
     /// Whether its bodies are in the plane or in space.

@@ -11,6 +11,7 @@ use std::borrow::Cow;
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
+use zip::read::ZipFile;
 use zip::{CompressionMethod, ZipArchive};
 
 /// The longest accepted header of an array (bytes); usual ones have some hundred.
@@ -35,10 +36,24 @@ pub(crate) struct Array {
     dtype: Dtype,
     /// Whether columns, not rows, are contiguous (Fortran order).
     by_columns: bool,
+    is_packed: bool,
     /// Length along each axis.
     pub(crate) shape: Vec<u64>,
     /// Length of the header (bytes).
     head: u64,
+}
+
+/// The header of an array, as it is read.
+struct Head<'z> {
+    /// NumPy's name of the type.
+    dtype: String,
+    by_columns: bool,
+    shape: Vec<u64>,
+    /// Its length (bytes).
+    length: u64,
+    /// The numbers after it.
+    entry: ZipFile<'z, BufReader<File>>,
+    is_packed: bool,
 }
 
 /// The type of a number, little-endian.
@@ -194,13 +209,49 @@ impl Npz {
         Some(self.head(index))
     }
 
+    /// The text of an array of one text.
+    pub(crate) fn text(&mut self, name: &str) -> Result<String, String> {
+        const LONGEST: u64 = 4096;
+        let index = self.zip.index_for_name(&format!("{name}.npy")).ok_or("is missing")?;
+        let Head { dtype, shape, length, mut entry, .. } = self.open_head(index)?;
+        let kind = dtype.get(1..2).filter(|_| shape.iter().product::<u64>() == 1 && !dtype.starts_with('>'));
+        let bytes = entry.size().saturating_sub(length);
+        if !matches!(kind, Some("U" | "S")) || bytes > LONGEST {
+            return Err(format!("has numbers of the type {}; expected one short text", quoted(&dtype)));
+        }
+        let mut text = Vec::new();
+        let read = (&mut entry).take(LONGEST).read_to_end(&mut text);
+        read.map_err(|error| format!("cannot be read, the file is damaged or cut short ({error})"))?;
+        let letters: Option<String> = match kind {
+            Some("U") => {
+                text.as_chunks::<4>().0.iter().map(|&letter| char::from_u32(u32::from_le_bytes(letter))).collect()
+            }
+            _ => String::from_utf8(text).ok(),
+        };
+        Ok(letters.ok_or("is not a text")?.trim_end_matches('\0').to_owned())
+    }
+
     fn head(&mut self, index: usize) -> Result<Array, String> {
+        let Head { dtype, by_columns, shape, length, entry, is_packed } = self.open_head(index)?;
+        let dtype = Dtype::of(&dtype)?;
+        let array = Array { index, dtype, by_columns, is_packed, shape, head: length };
+        let stored = entry.size();
+        if array.bytes().and_then(|bytes| bytes.checked_add(array.head)) != Some(stored) {
+            let (shape, stored) = (array.shape_in_words(), count(stored.saturating_sub(array.head).into()));
+            return Err(format!("has the shape {shape}, which does not fit the {stored} bytes that are stored"));
+        }
+        Ok(array)
+    }
+
+    /// The header of an array, and its numbers.
+    fn open_head(&mut self, index: usize) -> Result<Head<'_>, String> {
         let packed = self.zip.by_index_raw(index).map_err(|error| format!("cannot be read: {error}"))?.compression();
         if !matches!(packed, CompressionMethod::Stored | CompressionMethod::Deflated) {
             let packed = packed.to_string().to_lowercase();
             let expected = "write it with numpy.savez or numpy.savez_compressed";
             return Err(format!("is compressed by {packed}, which is not read; {expected}"));
         }
+        let is_packed = packed != CompressionMethod::Stored;
         let mut entry = self.zip.by_index(index).map_err(|error| format!("cannot be read: {error}"))?;
         let short = || "has no complete header: the file is damaged, or is not a NumPy array".to_owned();
         let mut fixed = [0; 12];
@@ -226,23 +277,17 @@ impl Npz {
         if dtype.starts_with('[') {
             return Err("has rows of several fields; expected plain numbers".to_owned());
         }
-        let dtype = Dtype::of(quoted_text(dtype).ok_or_else(short)?)?;
+        let dtype = quoted_text(dtype).ok_or_else(short)?.to_owned();
         let by_columns = match value(&text, "fortran_order").ok_or_else(short)? {
             order if order.starts_with("True") => true,
             order if order.starts_with("False") => false,
             _ => return Err(short()),
         };
         let shape = value(&text, "shape").and_then(tuple).ok_or_else(short)?;
-        let array = Array { index, dtype, by_columns, shape, head: (start + length) as u64 };
-        let stored = entry.size();
-        if array.bytes().and_then(|bytes| bytes.checked_add(array.head)) != Some(stored) {
-            let (shape, stored) = (array.shape_in_words(), count(stored.saturating_sub(array.head).into()));
-            return Err(format!("has the shape {shape}, which does not fit the {stored} bytes that are stored"));
-        }
-        Ok(array)
+        Ok(Head { dtype, by_columns, shape, length: (start + length) as u64, entry, is_packed })
     }
 
-    /// The numbers of an array: with one axis as one column, with three axes with the last two in one row.
+    /// The numbers of an array: without an axis as one number, with one axis as one column, with three axes with the last two in one row.
     pub(crate) fn values(&mut self, array: &Array) -> Result<Values, String> {
         let broken = |error| format!("cannot be read, the file is damaged or cut short ({error})");
         let expected = array.bytes().unwrap_or(u64::MAX);
@@ -259,6 +304,7 @@ impl Npz {
             ));
         }
         let [rows, columns] = match array.shape[..] {
+            [] => [1, 1],
             [rows] => [rows, 1],
             [rows, columns] => [rows, columns],
             [rows, columns, depth] if !array.by_columns => [rows, columns * depth],
@@ -284,6 +330,35 @@ impl Array {
     /// Whether the array has double precision numbers, row by row.
     pub(crate) fn is_plain(&self) -> bool {
         self.dtype == Dtype::Float64 && !self.by_columns
+    }
+
+    /// Whether the array has numbers with a point.
+    pub(crate) fn is_float(&self) -> bool {
+        matches!(self.dtype, Dtype::Float64 | Dtype::Float32)
+    }
+
+    /// Whether rows, not columns, are contiguous.
+    pub(crate) fn is_by_rows(&self) -> bool {
+        !self.by_columns
+    }
+
+    /// Whether it is compressed, so that no part of it can be read alone.
+    pub(crate) fn is_packed(&self) -> bool {
+        self.is_packed
+    }
+
+    /// The width of a number (bytes).
+    pub(crate) fn width(&self) -> usize {
+        self.dtype.bytes()
+    }
+
+    /// The numbers with these bytes, for an array of numbers with a point.
+    pub(crate) fn numbers<'b>(&self, bytes: &'b [u8]) -> impl Iterator<Item = f64> + use<'b> {
+        let is_double = self.dtype == Dtype::Float64;
+        let doubles = if is_double { bytes.as_chunks::<8>().0 } else { &[] };
+        let singles = if is_double { &[] } else { bytes.as_chunks::<4>().0 };
+        let doubles = doubles.iter().map(|&number| f64::from_le_bytes(number));
+        doubles.chain(singles.iter().map(|&number| f64::from(f32::from_le_bytes(number))))
     }
 
     /// Whether the array has whole numbers.

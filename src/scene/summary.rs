@@ -98,7 +98,10 @@ impl Scene {
             let Stability { largest, stretched } = self.stability(at);
             RunSummary {
                 name: run.name.clone(),
-                model: description(run.models[0].as_ref(), run.body()),
+                model: match &run.recording {
+                    Some(recording) => recording.description(),
+                    None => description(run.models[0].as_ref(), run.body()),
+                },
                 integrator: typed(&run.integrator),
                 kernel: run.kernel,
                 step: run.step,

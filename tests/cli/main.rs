@@ -16,6 +16,8 @@ mod interrupt;
 #[cfg(feature = "render")]
 mod parts;
 #[cfg(feature = "render")]
+mod recorded;
+#[cfg(feature = "render")]
 mod render;
 mod resume;
 mod set;

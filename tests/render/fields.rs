@@ -105,7 +105,8 @@ fn odd_values_are_drawn_like_any_others() {
                 *value = odd;
             }
             snapshot.position[3].x = 1e300;
-            snapshot.status = Status::Diverged(Divergence { time: 0.03, step: 7, part: 0, element: None });
+            snapshot.status =
+                Status::Diverged(Divergence { time: 0.03, step: 7, part: 0, element: None, is_end: false });
             let picture = compose(&scene, &frame);
             for panel in &picture.panels {
                 for mesh in [&panel.sound, &panel.turned_over] {

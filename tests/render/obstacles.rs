@@ -241,7 +241,8 @@ fn what_blew_up_stays_among_finite_numbers() {
         let snapshot = &mut frame.runs[0].snapshot;
         snapshot.position[2] *= far;
         if far != 1.0 {
-            snapshot.status = Status::Diverged(Divergence { time: 0.01, step: 3, part: 0, element: None });
+            snapshot.status =
+                Status::Diverged(Divergence { time: 0.01, step: 3, part: 0, element: None, is_end: false });
         }
         let picture = compose(&scene, &frame);
         assert!(numbers(&picture.panels[0]).iter().all(|number| number.is_finite()), "{far}");

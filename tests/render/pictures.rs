@@ -73,7 +73,7 @@ fn a_run_that_blew_up_is_drawn_like_any_other() {
     let (mut scene, mut frame) = fig4b(4);
     scene.view.size = [320, 180];
     let snapshot = &mut frame.runs[1].snapshot;
-    snapshot.status = Status::Diverged(Divergence { time: 0.035, step: 7, part: 0, element: None });
+    snapshot.status = Status::Diverged(Divergence { time: 0.035, step: 7, part: 0, element: None, is_end: false });
     for (at, position) in snapshot.position.iter_mut().enumerate() {
         *position *= 10_f64.powi(at as i32 % 40 * 7);
     }

@@ -88,7 +88,7 @@ const FIELD: &str = "colour = { by = 'speed', range = [0, 3] }";
 
 fn diverged(frame: &mut Frame) {
     let snapshot = &mut frame.runs[0].snapshot;
-    snapshot.status = Status::Diverged(Divergence { time: 0.0, step: 0, part: 0, element: None });
+    snapshot.status = Status::Diverged(Divergence { time: 0.0, step: 0, part: 0, element: None, is_end: false });
     let snapshot = snapshot.clone();
     frame.runs[0].last_fit = Some(Box::new(LastFit { snapshot, times_wider: 1.0 }));
 }

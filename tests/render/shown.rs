@@ -147,7 +147,7 @@ fn words_do_not_move_from_frame_to_frame() {
 fn a_run_that_blew_up_says_when() {
     let (scene, mut frame) = fig4b(0);
     let snapshot = &mut frame.runs[1].snapshot;
-    snapshot.status = Status::Diverged(Divergence { time: 0.0351, step: 7, part: 0, element: Some(3) });
+    snapshot.status = Status::Diverged(Divergence { time: 0.0351, step: 7, part: 0, element: Some(3), is_end: false });
     snapshot.position[0] *= 1e300;
     snapshot.position[9].x = f64::MAX;
     snapshot.diagnostics.shape_error = f64::INFINITY;

@@ -11,20 +11,20 @@ use zip::{CompressionMethod, ZipWriter};
 
 /// One array in an archive.
 #[derive(Clone)]
-struct Array {
+pub(super) struct Array {
     name: &'static str,
     descr: String,
     shape: String,
-    bytes: Vec<u8>,
-    by_columns: bool,
+    pub(super) bytes: Vec<u8>,
+    pub(super) by_columns: bool,
 }
 
-fn doubles(name: &'static str, shape: &str, numbers: &[f64]) -> Array {
+pub(super) fn doubles(name: &'static str, shape: &str, numbers: &[f64]) -> Array {
     let bytes = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
     Array { name, descr: "'<f8'".into(), shape: shape.into(), bytes, by_columns: false }
 }
 
-fn indices(name: &'static str, shape: &str, numbers: &[i64]) -> Array {
+pub(super) fn indices(name: &'static str, shape: &str, numbers: &[i64]) -> Array {
     let bytes = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
     Array { name, descr: "'<i8'".into(), shape: shape.into(), bytes, by_columns: false }
 }
@@ -41,7 +41,7 @@ impl Array {
     }
 }
 
-fn archive(arrays: &[Array], method: CompressionMethod) -> Vec<u8> {
+pub(super) fn archive(arrays: &[Array], method: CompressionMethod) -> Vec<u8> {
     let mut zip = ZipWriter::new(std::io::Cursor::new(Vec::new()));
     for array in arrays {
         zip.start_file(format!("{}.npy", array.name), SimpleFileOptions::default().compression_method(method)).unwrap();

@@ -13,6 +13,7 @@ mod masses;
 mod own_method;
 mod parts;
 mod readings;
+mod recording;
 mod rest;
 mod runaway;
 mod stability;

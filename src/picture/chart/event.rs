@@ -3,7 +3,7 @@
 use super::ring;
 use super::series::Series;
 use crate::colour::Colour;
-use crate::picture::caption::{Room, Writer};
+use crate::picture::caption::{RECORDING_ENDS, Room, Writer};
 use crate::picture::layout::steps::{GAP, NEAR};
 use crate::picture::layout::{Baselines, Rectangle, Scale};
 use crate::picture::number;
@@ -73,7 +73,8 @@ pub(in crate::picture) fn events(diagnostic: Diagnostic, series: &[Series], exte
                 event(one, time, format!("{which} {}", value(most)), "at")
             }));
         }
-        own.extend(one.diverged.map(|time| event(one, time, "diverged".to_owned(), "at")));
+        let word = if one.is_end { RECORDING_ENDS } else { "diverged" };
+        own.extend(one.diverged.map(|time| event(one, time, word.to_owned(), "at")));
         all.extend(own.into_iter().enumerate());
     }
     all.sort_by_key(|&(rank, _)| rank);
@@ -184,6 +185,7 @@ mod tests {
             points: points.to_vec(),
             members: Vec::new(),
             diverged: None,
+            is_end: false,
         }
     }
 

@@ -33,6 +33,8 @@ pub(in crate::picture) struct Series {
     pub members: Vec<Vec<[f64; 2]>>,
     /// When the run diverged (s).
     pub diverged: Option<f64>,
+    /// Whether it did not diverge, but its recording ends there.
+    pub is_end: bool,
 }
 
 /// The line of a run in all charts of a picture and beside its name. One chart of counts makes all lines solid: dashed steps
@@ -47,7 +49,8 @@ impl Series {
         let values = of_run.diagnostics.iter().map(|all| diagnostic.of(all));
         let diverged = of_run.divergence.map(|divergence| divergence.time);
         let one = Self::over(diagnostic, of_run, values, style);
-        Self { name: scene.runs[of_run.run].name.clone(), diverged, ..one }
+        let is_end = of_run.divergence.is_some_and(|divergence| divergence.is_end);
+        Self { name: scene.runs[of_run.run].name.clone(), diverged, is_end, ..one }
     }
 
     /// A diagnostic of each body of a run of a scene, if it has several.
@@ -71,7 +74,7 @@ impl Series {
         let points: Vec<_> = points.filter(|[_, value]| value.is_finite()).collect();
         let points = if is_count { steps(&points) } else { points };
         let (name, members) = Default::default();
-        Self { run: of_run.run, name, style, is_count, is_part: false, points, members, diverged: None }
+        Self { run: of_run.run, name, style, is_count, is_part: false, points, members, diverged: None, is_end: false }
     }
 
     /// The mean of a run's time series in several scenes, up to the earliest end. A single one is returned as it is.
@@ -128,7 +131,7 @@ fn peak(one: &Series) -> f64 {
 /// larger.
 pub(super) fn range(series: &[Series], may_diverge: bool) -> Option<[f64; 2]> {
     let with_values = || series.iter().filter(|one| !one.points.is_empty());
-    let is_wild = |one: &Series| may_diverge && one.diverged.is_some();
+    let is_wild = |one: &Series| may_diverge && one.diverged.is_some() && !one.is_end;
     let calm = with_values().filter(|one| !is_wild(one)).map(peak).reduce(f64::max);
     let limit = match calm {
         Some(calm) if calm > 0.0 => BEYOND * calm,
@@ -185,7 +188,7 @@ mod tests {
         let style = LineStyle { colour: [0; 3], dash: &[] };
         let diverged = diverged.then_some(values.len() as f64);
         let (name, members) = Default::default();
-        Series { run: 0, name, style, is_count: false, is_part: false, points, members, diverged }
+        Series { run: 0, name, style, is_count: false, is_part: false, points, members, diverged, is_end: false }
     }
 
     #[test]

@@ -16,7 +16,7 @@ impl Composer<'_> {
     /// The colour scale for the strain of a run's springs, if they show it.
     pub(super) fn strain_of_springs(&self, run: usize) -> Option<ColourScale> {
         let view = &self.scene.view;
-        let has_springs = self.scene.runs.get(run).is_some_and(|run| !run.models[0].springs().is_empty());
+        let has_springs = self.scene.runs.get(run).is_some_and(|run| !run.springs().is_empty());
         let are_shown = has_springs && view.visible.springs && !view.visible.surfaces;
         view.colour.filter(|scale| are_shown && scale.field == Field::Strain)
     }
@@ -100,7 +100,7 @@ impl Draft<'_> {
             strokes.extend(wire.bare(&self.composer.bare, over));
         }
         let springs = match self.scene.runs.get(self.run.run) {
-            Some(run) if visible.springs => run.models[0].springs(),
+            Some(run) if visible.springs => run.springs(),
             _ => &[],
         };
         if !visible.surfaces && springs.is_empty() {

@@ -62,7 +62,7 @@ impl Composer<'_> {
         if position.len() != body.len() {
             return Vec::new();
         }
-        let springs = self.scene.runs[run.run].models[0].springs();
+        let springs = self.scene.runs[run.run].springs();
         springs.iter().map(|&ends| scale.of_spring(spring_strain(body, position, ends))).collect()
     }
 

@@ -120,11 +120,7 @@ impl<'a> Composer<'a> {
         };
         let extent = body.extent().max(f64::MIN_POSITIVE);
         let tally = Tally::new(&scene.runs[0].bodies, scene.view.side);
-        let descriptions = scene
-            .runs
-            .iter()
-            .map(|run| number::counted(caption::short_description(run.models[0].as_ref(), body)))
-            .collect();
+        let descriptions = scene.runs.iter().map(|run| number::counted(caption::short_description(run))).collect();
         let ears = Ears::new(body);
         let skin = Skin::new(body, &ears);
         let throws_shadow = scene.view.shadow && body.dimension == Dimension::Space;

@@ -329,8 +329,8 @@ impl RunBuilder {
 
     /// A run without a model.
     fn empty() -> RunFile {
-        let (name, bodies, model, models, step, tolerance, integrator, kernel, colour) = Default::default();
-        RunFile { name, bodies, model, models, step, tolerance, integrator, kernel, colour }
+        let (name, bodies, model, models, states, step, tolerance, integrator, kernel, colour) = Default::default();
+        RunFile { name, bodies, model, models, states, step, tolerance, integrator, kernel, colour }
     }
 
     setters! {

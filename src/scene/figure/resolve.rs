@@ -5,7 +5,7 @@ use super::{Column, Content, Figure, Forces, Row, Sheet};
 use crate::look::print::{unit, unit_of_sheet};
 use crate::look::{self, Subject};
 use crate::reading::collector::{Collector, PathPart, key_path};
-use crate::reading::words::list;
+use crate::reading::words::{list, quoted};
 use crate::scene::structure::ValidFile;
 use crate::scene::{Run, Scene, SceneError, Together};
 use crate::sim::Diagnostic;
@@ -300,6 +300,16 @@ impl Scenes<'_, '_, '_> {
         if runs.len() == 1 && compare.is_some() {
             let message = "there is a single run, and nothing to compare it with";
             self.report.at_key(&key_path!["forces", "compare"], message, None);
+        }
+        let recorded = |scene: &Scene| scene.runs.iter().position(|run| run.recording.is_some());
+        if let Some((index, run)) = self.scenes.iter().enumerate().find_map(|(at, scene)| Some((at, recorded(scene)?)))
+        {
+            let message = format!(
+                "the run {} is a recording, whose forces are not known",
+                quoted(&self.scenes[index].runs[run].name)
+            );
+            self.report.at(&path(index), message, "give it a `model`, or leave it out");
+            return Ok(None);
         }
         let stiffness = self.scenes[0].runs[0].models[0].stiffness();
         for (index, scene) in self.scenes.iter().enumerate() {

@@ -116,7 +116,13 @@ impl StepFile {
 /// One run: bodies of the scene with their models.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(extend("oneOf" = [{ "required": ["model"] }, { "required": ["models"] }]))]
+#[schemars(extend("oneOf" = [{ "required": ["model"] }, { "required": ["models"] }, { "required": ["states"] }]))]
+#[schemars(extend("allOf" = [
+    { "not": { "required": ["states", "step"] } },
+    { "not": { "required": ["states", "tolerance"] } },
+    { "not": { "required": ["states", "integrator"] } },
+    { "not": { "required": ["states", "kernel"] } },
+]))]
 pub(in crate::scene) struct RunFile {
     /// Unique name, shown above the panel and used by `--only` and in result files.
     #[schemars(length(min = 1, max = 80))]
@@ -134,6 +140,10 @@ pub(in crate::scene) struct RunFile {
     #[serde(serialize_with = "write_models")]
     #[schemars(with = "Option<BTreeMap<String, ModelParameters>>")]
     pub(in crate::scene) models: Option<BTreeMap<String, ModelFile>>,
+    /// States that another program computed, in place of `model`: a NumPy archive beside the scene, such as
+    /// `"mujoco.npz"`, or `{ file = "states.npz", run = "Local shape" }` for one of several runs in it. Between recorded
+    /// moments nodes move linearly in time. The run ends with the recording. `docs/recordings.md` tells what is in the archive.
+    pub(in crate::scene) states: Option<StatesFile>,
     /// Time step of this run, with the T of `[time]`. `"auto"` uses the prediction of this run alone. Default: that of
     /// `[time]`.
     pub(in crate::scene) step: Option<StepFile>,
@@ -152,6 +162,28 @@ pub(in crate::scene) struct RunFile {
     pub(in crate::scene) colour: Option<TypedColour>,
 }
 
+/// The recorded states of a run.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(in crate::scene) enum StatesFile {
+    /// An archive beside the scene.
+    File(#[schemars(length(min = 1))] String),
+    /// One of several runs in an archive.
+    OfRun(ChosenStates),
+}
+
+/// One of several runs in an archive.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct ChosenStates {
+    /// The archive beside the scene.
+    #[schemars(length(min = 1))]
+    pub(in crate::scene) file: String,
+    /// The run: NAME of the arrays `NAME.position` and so on. Default: the arrays without a name, the only run, or the one
+    /// called like the run that shows it.
+    pub(in crate::scene) run: Option<String>,
+}
+
 /// What moves the bodies of a run.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::scene) enum RunSource<'a> {
@@ -159,13 +191,16 @@ pub(in crate::scene) enum RunSource<'a> {
     Model(&'a ModelFile),
     /// A model for each, by name.
     Models(&'a BTreeMap<String, ModelFile>),
+    /// A recording.
+    States,
 }
 
 impl RunFile {
     /// What moves its bodies; `None` after a mistake.
     pub(in crate::scene) fn source(&self) -> Option<RunSource<'_>> {
         let model = self.model.as_ref().map(RunSource::Model);
-        model.or_else(|| self.models.as_ref().map(RunSource::Models))
+        let models = || self.models.as_ref().map(RunSource::Models);
+        model.or_else(models).or_else(|| self.states.as_ref().map(|_| RunSource::States))
     }
 
     /// Whether it has a model of the caller's own.

@@ -244,6 +244,12 @@ fn listed(file: &BodyFile, lists: Lists, flawed: bool, report: &mut Collector<'_
     Some(ResolvedBody { name, body, initial, springs, side, has_cells: false })
 }
 
+/// The body of a recording, called like its run, with its state at the start.
+pub(super) fn recorded(lists: Lists, name: String, start: State, report: &mut Collector<'_>) -> Option<ResolvedBody> {
+    let made = listed(&BodyFile::default(), lists, false, report)?;
+    Some(ResolvedBody { name, initial: start, ..made })
+}
+
 /// The interpretation of elements with four, five, six and eight nodes.
 fn solids(file: &BodyFile) -> Solids {
     if file.convex { Solids::Convex } else { Solids::Ordered }

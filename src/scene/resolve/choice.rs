@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 pub(super) struct Choice<'a> {
     /// The places of the bodies in the scene, in rising order.
     pub(super) of: Vec<usize>,
-    /// The model of each body.
+    /// The model of each body; empty for a recording.
     pub(super) models: Vec<TypedModel<'a>>,
 }
 
@@ -39,6 +39,7 @@ pub(super) fn resolve<'a>(
                 let path = key_path!["run", at, "model"].to_vec();
                 Some(vec![TypedModel { model, path }; of.as_ref()?.len()])
             }
+            RunSource::States => Some(Vec::new()),
             RunSource::Models(models) => by_name(at, models, of.as_deref()?, names?, report),
         };
         Some(Choice { of: of?, models: models? })

@@ -8,6 +8,7 @@ use crate::scene::file::LARGEST;
 use crate::scene::file::{BodyFile, Coordinates, Positive};
 use crate::scene::limits::Limits;
 use crate::scene::npz::{Array, Npz, Values};
+use crate::scene::recording::full;
 use crate::sim::{Dimension, IndexLists};
 use glam::DVec3;
 use sha2::{Digest, Sha256};
@@ -18,8 +19,8 @@ use std::path::Path;
 pub(super) struct ListSource {
     /// The place of the body in the scene.
     pub(super) body: Place,
-    /// The name of the file that has the lists; `None` if the scene has them.
-    pub(super) file: Option<String>,
+    /// The file that has the lists, and the place of its name in the scene; `None` if the scene has them.
+    pub(super) file: Option<(String, Place)>,
 }
 
 impl ListSource {
@@ -28,7 +29,7 @@ impl ListSource {
         let indices: String = at.iter().map(|index| format!("[{index}]")).collect();
         match &self.file {
             None => format!("{}.{key}{indices}", written(&self.body)),
-            Some(file) => format!("{file}: {key}{indices}"),
+            Some((file, _)) => format!("{file}: {key}{indices}"),
         }
     }
 
@@ -63,7 +64,9 @@ impl ListSource {
     ) {
         let named = message.contains(&format!("`{}", self.name(key, &at[..at.len().min(1)])));
         let message = if named { message } else { format!("`{}`: {message}", self.name(key, at)) };
-        report.at(&key_path![self.body; "file"], message, help);
+        if let Some((_, place)) = &self.file {
+            report.at(place, message, help);
+        }
     }
 }
 
@@ -135,7 +138,7 @@ impl Lists {
             whole(report, message, Some(EXPECTED.to_owned()));
             return None;
         }
-        let npz = match Npz::open(&path) {
+        let mut npz = match Npz::open(&path) {
             Ok(npz) => npz,
             Err(message) => {
                 whole(report, message, Some(EXPECTED.to_owned()));
@@ -143,10 +146,40 @@ impl Lists {
             }
         };
         let before = report.total();
-        let source = ListSource { body: place.clone(), file: Some(name.to_owned()) };
-        let mut reader = Reader { npz, source, limits, report };
+        let source = ListSource { body: place.clone(), file: Some((name.to_owned(), key_path![place; "file"])) };
+        let mut reader = Reader { npz: &mut npz, source, limits, report };
         let lists = reader.lists();
         (report.total() == before).then_some(lists).flatten()
+    }
+
+    /// The lists of the body of a run in an archive of states, if it has one; `None` after reporting mistakes, too.
+    pub(super) fn recorded(
+        npz: &mut Npz,
+        run: &str,
+        source: ListSource,
+        limits: &Limits,
+        report: &mut Collector<'_>,
+    ) -> Option<Self> {
+        let names = npz.names();
+        // A run has its own body, or that of all runs.
+        let name = |key: &str| [full(run, key), key.to_owned()].into_iter().find(|name| names.contains(name));
+        let rest = name("rest")?;
+        let [elements, faces, mass] =
+            ["elements", "faces", "mass"].map(|key| name(key).unwrap_or_else(|| full(run, key)));
+        let mut reader = Reader { npz, source, limits, report };
+        let array = reader.array(&rest)?;
+        let rest = reader.vectors(&rest, &array, None);
+        let elements = reader.array(&elements).and_then(|array| reader.rows_of_indices(&elements, &array, 2));
+        let faces = reader.optional(&faces).and_then(|array| reader.rows_of_indices(&faces, &array, 3));
+        let masses = reader.optional(&mass).and_then(|array| reader.masses(&mass, &array));
+        let dimension = if array.shape.get(1) == Some(&2) { Dimension::Plane } else { Dimension::Space };
+        let (nodes, elements, source) = (rest?, elements?, reader.source);
+        if let Some(masses) = masses.as_ref().filter(|masses| masses.len() != nodes.len()) {
+            check_count(&source, &mass, masses.len(), nodes.len(), report);
+            return None;
+        }
+        let (springs, positions, velocities) = (None, None, None);
+        Some(Self { source, dimension, nodes, elements, springs, faces, positions, velocities, masses })
     }
 
     /// A digest of all lists. It does not depend on compression, the width of numbers or the location of the file.
@@ -235,9 +268,14 @@ const EXPECTED: &str = "write it with numpy.savez, at least `nodes` (a row of co
 /// The names of arrays in an archive, in the order in which they are read.
 const ARRAYS: [&str; 7] = ["nodes", "elements", "springs", "faces", "positions", "velocities", "masses"];
 
+/// The name of an array without that of its run.
+fn of_any(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or(key)
+}
+
 /// Reads the arrays of one archive.
 struct Reader<'a, 't> {
-    npz: Npz,
+    npz: &'a mut Npz,
     source: ListSource,
     limits: &'a Limits,
     report: &'a mut Collector<'t>,
@@ -280,7 +318,7 @@ impl Reader<'_, '_> {
         let faces = self.optional("faces").and_then(|array| self.rows_of_indices("faces", &array, 3));
         let positions = self.optional("positions").and_then(|array| self.vectors("positions", &array, columns));
         let velocities = self.optional("velocities").and_then(|array| self.vectors("velocities", &array, columns));
-        let masses = self.optional("masses").and_then(|array| self.masses(&array));
+        let masses = self.optional("masses").and_then(|array| self.masses("masses", &array));
         let (nodes, elements, source) = (nodes?, elements?, self.source.clone());
         Some(Lists { source, dimension, nodes, elements, springs, faces, positions, velocities, masses })
     }
@@ -289,9 +327,8 @@ impl Reader<'_, '_> {
     fn array(&mut self, key: &str) -> Option<Array> {
         let found = self.optional_head(key);
         if found.is_none() {
-            let file = self.source.file.as_ref()?;
-            let message = format!("`{file}` has no array `{key}`");
-            self.report.at(&key_path![self.source.body; "file"], message, None);
+            let (file, place) = self.source.file.as_ref()?;
+            self.report.at(place, format!("`{file}` has no array `{key}`"), None);
         }
         found.flatten()
     }
@@ -304,7 +341,7 @@ impl Reader<'_, '_> {
     /// The header of an array: `None` without such an array, `Some(None)` after reporting a mistake.
     fn optional_head(&mut self, key: &str) -> Option<Option<Array>> {
         match self.npz.array(key)? {
-            Ok(array) if array.shape.first() == Some(&0) && !["faces"].contains(&key) => {
+            Ok(array) if array.shape.first() == Some(&0) && of_any(key) != "faces" => {
                 self.say(key, &[], "is empty; expected at least one row");
                 Some(None)
             }
@@ -323,10 +360,10 @@ impl Reader<'_, '_> {
     /// The values of an array, unless it is too large.
     fn values(&mut self, key: &str, array: &Array) -> Option<Values> {
         let all: u64 = array.shape.iter().product();
-        let (length, limit, what) = match key {
+        let (length, limit, what) = match of_any(key) {
             "elements" | "faces" => (all, self.limits.corners, "entries"),
             "springs" => (array.shape[0], self.limits.springs, "springs"),
-            "nodes" => (array.shape[0], self.limits.nodes, "nodes"),
+            "nodes" | "rest" => (array.shape[0], self.limits.nodes, "nodes"),
             _ => (array.shape[0], self.limits.nodes, "rows"),
         };
         if length > limit {
@@ -381,18 +418,18 @@ impl Reader<'_, '_> {
         Some(self.points(key, &values))
     }
 
-    fn masses(&mut self, array: &Array) -> Option<Vec<f64>> {
+    fn masses(&mut self, key: &str, array: &Array) -> Option<Vec<f64>> {
         if array.shape.len() != 1 {
-            self.wrong_shape("masses", array, "one number for each node");
+            self.wrong_shape(key, array, "one number for each node");
             return None;
         }
-        let values = self.values("masses", array)?;
+        let values = self.values(key, array)?;
         let mut masses = Vec::with_capacity(values.rows());
         for row in 0..values.rows() {
             let before = self.report.total();
-            let mass = self.number("masses", &values, &[row]);
+            let mass = self.number(key, &values, &[row]);
             if mass <= 0.0 && self.report.total() == before {
-                self.say("masses", &[row], &format!("is {mass}; expected a number greater than 0"));
+                self.say(key, &[row], &format!("is {mass}; expected a number greater than 0"));
             }
             masses.push(mass);
         }

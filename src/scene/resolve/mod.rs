@@ -8,6 +8,7 @@ mod grips;
 pub(super) mod lists;
 mod motion;
 mod obstacles;
+mod recordings;
 mod runs;
 
 use super::digest::{FileDigests, digest};
@@ -28,6 +29,7 @@ use elements::mean_edge;
 use glam::DVec3;
 use grips::SceneGrip;
 use lists::Lists;
+use recordings::ReadRecording;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
@@ -58,6 +60,9 @@ pub(super) struct SceneParts {
     flawed: BTreeSet<String>,
     #[serde(rename = "run")]
     runs: Vec<Option<RunFile>>,
+    /// The recording of each run, if it has one without mistakes.
+    #[serde(skip)]
+    recordings: Vec<Option<ReadRecording>>,
     #[serde(rename = "obstacle")]
     obstacles: Vec<Option<ObstacleFile>>,
     #[serde(rename = "hold")]
@@ -99,6 +104,10 @@ impl SceneParts {
             }
             None => Some(FontFiles::default()),
         };
+        let runs: Vec<Option<RunFile>> = several(file, "run", report);
+        let recording =
+            |(at, run): (usize, &Option<RunFile>)| ReadRecording::read(folder, at, run.as_ref()?, limits, report);
+        let recordings = runs.iter().enumerate().map(recording).collect();
         Self {
             title: part(file, "title", report),
             gravity: part(file, "gravity", report),
@@ -107,7 +116,8 @@ impl SceneParts {
             places,
             beside,
             flawed: checked.flawed.clone(),
-            runs: several(file, "run", report),
+            runs,
+            recordings,
             obstacles: several(file, "obstacle", report),
             holds: several(file, "hold", report),
             grabs: several(file, "grab", report),
@@ -137,6 +147,8 @@ impl SceneParts {
             bodies,
             places,
             flawed: &checked.flawed | &lists,
+            // Runs made in code have models.
+            recordings: file.run.iter().map(|_| None).collect(),
             runs: entries(file.run, "run", checked),
             obstacles: entries(file.obstacle, "obstacle", checked),
             holds: entries(file.hold, "hold", checked),
@@ -162,7 +174,8 @@ impl SceneParts {
             None => [None, None],
         };
         let bodies = self.beside.iter().map(|lists| lists.as_ref().map(Lists::digest)).collect();
-        let files = FileDigests { bodies, regular, semi_bold };
+        let runs = self.recordings.iter().map(|read| read.as_ref().map(ReadRecording::digest)).collect();
+        let files = FileDigests { bodies, runs, regular, semi_bold };
         let mut lists = vec![BodyFile::default(); self.bodies.len()];
         let swap = |bodies: &mut [Option<BodyFile>], lists: &mut [BodyFile]| {
             bodies.iter_mut().flatten().zip(lists).for_each(|(body, lists)| body.swap_lists(lists));
@@ -214,6 +227,8 @@ struct Physics {
     obstacles: Option<Vec<Obstacle>>,
     grips: Option<Vec<SceneGrip>>,
     runs: Option<Vec<Run>>,
+    /// The own bodies of recordings, after all others.
+    own: Vec<ResolvedBody>,
 }
 
 /// The scene, or `None` after any mistake: first the physics, then the view.
@@ -228,7 +243,7 @@ fn resolve(
     let physics = physics(&parts, beside, limits, report);
     let view = view(&parts, &physics, report);
     if let (0, Some(runs)) = (report.total(), &physics.runs) {
-        let fixed = runs.iter().filter(|run| run.tolerance.is_none());
+        let fixed = runs.iter().filter(|run| run.tolerance.is_none() && run.recording.is_none());
         let longest = fixed.fold(0.0, |longest: f64, run| longest.max(run.step));
         obstacles::check_steps(&parts.obstacles, longest, report);
         grips::check_steps(&parts.holds, &parts.grabs, longest, report);
@@ -236,7 +251,8 @@ fn resolve(
     if report.total() > 0 {
         return None;
     }
-    let (time, bodies) = (parts.time.as_ref()?, physics.bodies?);
+    let (time, mut bodies) = (parts.time.as_ref()?, physics.bodies?);
+    bodies.extend(physics.own);
     let mut scene = Scene {
         title: parts.title.clone().unwrap_or_else(|| name.into()),
         name: name.into(),
@@ -284,11 +300,15 @@ fn physics(parts: &SceneParts, beside: Vec<Option<Lists>>, limits: &Limits, repo
     if let Some(time) = parts.time.as_ref().filter(|_| !parts.flawed.contains("time")) {
         check_frames(time, report);
     }
-    let runs = runs::resolve(&parts.runs, &choices, parts.time.as_ref(), bodies.as_deref(), grips.as_deref(), report);
+    let all = bodies.as_deref().zip(dimension);
+    let around =
+        runs::Around { choices: &choices, recordings: &parts.recordings, bodies: all, grips: grips.as_deref() };
+    let runs = runs::resolve(&parts.runs, parts.time.as_ref(), around, report);
+    let (runs, own) = runs.map_or_else(Default::default, |(runs, own)| (Some(runs), own));
     if let (true, Some(names), Some(_)) = (is_plural, names, &runs) {
         choice::warn_of_unused(&choices, &names, &parts.places, report);
     }
-    Physics { gravity, bodies, obstacles, grips, runs }
+    Physics { gravity, bodies, obstacles, grips, runs, own }
 }
 
 /// The names of the bodies, empty for one without; `None` if a name has a mistake, or may be left out because of one.
@@ -369,7 +389,7 @@ fn side(bodies: &[ResolvedBody], together: &Body) -> (f64, bool) {
 
 /// The view, which `look` resolves.
 fn view(parts: &SceneParts, physics: &Physics, report: &mut Collector<'_>) -> Option<View> {
-    let Physics { gravity, bodies, obstacles, grips, runs } = physics;
+    let Physics { gravity, bodies, obstacles, grips, runs, .. } = physics;
     let (bodies, obstacles) = (bodies.as_ref()?, obstacles.as_ref()?);
     // A run of all bodies has them together.
     let of_all = runs.iter().flatten().find(|run| run.of.len() == bodies.len());
@@ -410,7 +430,8 @@ fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
             format!("use at least {} to show the end", short(1.0 / scene.duration)),
         );
     }
-    let steps = (0..scene.runs.len()).fold(0, |all: u64, run| all.saturating_add(scene.frame_step(run, last)));
+    let simulated = (0..scene.runs.len()).filter(|&run| scene.runs[run].recording.is_none());
+    let steps = simulated.fold(0, |all: u64, run| all.saturating_add(scene.frame_step(run, last)));
     let corners = scene.runs[0].body().elements.indices().len().max(8);
     let seconds = steps as f64 * corners as f64 * CORNER;
     if seconds > LONG {

@@ -3,14 +3,15 @@
 use super::body::ResolvedBody;
 use super::choice::{Choice, check_names};
 use super::grips::SceneGrip;
+use super::recordings::{ReadRecording, Shown};
 use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::words;
 use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::scene::step::NamedStep;
-use crate::scene::{Run, Together};
+use crate::scene::{Recorded, Run, Together};
 use crate::sim::model::ElasticModel;
 use crate::sim::stability::Stability;
-use crate::sim::{Body, Grip, Integrator, Kernel};
+use crate::sim::{Body, Dimension, Grip, Integrator, Kernel};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -19,9 +20,12 @@ const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
 
 /// The bodies of a run with their models and constraints.
 struct Parts {
+    /// Their places in the scene.
+    of: Vec<usize>,
     together: Together,
     models: Vec<Arc<dyn ElasticModel>>,
     grips: Vec<Grip>,
+    recording: Option<Arc<Recorded>>,
 }
 
 impl Parts {
@@ -42,22 +46,54 @@ fn together(bodies: &[ResolvedBody], of: &[usize]) -> Together {
     Together::new(of.iter().map(|&body| (&bodies[body].body, &bodies[body].initial)))
 }
 
-/// The bodies of each run with their models; `None` after a mistake in a model.
+/// What runs are made of.
+#[derive(Clone, Copy)]
+pub(super) struct Around<'a> {
+    /// The bodies and models of each run.
+    pub(super) choices: &'a [Option<Choice<'a>>],
+    /// The recording of each run.
+    pub(super) recordings: &'a [Option<ReadRecording>],
+    /// The bodies of the scene, in the plane or in space.
+    pub(super) bodies: Option<(&'a [ResolvedBody], Dimension)>,
+    pub(super) grips: Option<&'a [SceneGrip]>,
+}
+
+/// The bodies of each run with their models, and the own bodies of recordings; `None` after a mistake in a model or a
+/// recording.
 fn parts(
-    choices: &[Option<Choice<'_>>],
-    bodies: &[ResolvedBody],
-    grips: &[SceneGrip],
+    typed: &[Option<RunFile>],
+    around: Around<'_>,
     report: &mut Collector<'_>,
-) -> Option<Vec<Parts>> {
+) -> Option<(Vec<Parts>, Vec<ResolvedBody>)> {
+    let Around { choices, recordings, bodies, grips } = around;
+    let ((bodies, dimension), grips) = (bodies?, grips.unwrap_or_default());
+    let mut own = Vec::new();
     // Runs of the same bodies share them.
     let mut known: BTreeMap<&[usize], Together> = BTreeMap::new();
     let mut all = Vec::with_capacity(choices.len());
-    for choice in choices {
-        let Some(Choice { of, models }) = choice else {
+    for (at, (choice, run)) in choices.iter().zip(typed).enumerate() {
+        let Some((Choice { of, models }, run)) = choice.as_ref().zip(run.as_ref()) else {
             all.push(None);
             continue;
         };
-        let together = known.entry(of).or_insert_with(|| together(bodies, of)).clone();
+        let mut together = known.entry(of).or_insert_with(|| together(bodies, of)).clone();
+        if run.states.is_some() {
+            let shown = recordings[at].as_ref().and_then(|read| {
+                let mut of = of.clone();
+                match read.shown(at, run, &together, dimension, report)? {
+                    Shown::Bodies(start) => together.initial = start,
+                    Shown::Own(body) => {
+                        together = Together::new(std::iter::once((&body.body, &body.initial)));
+                        of = vec![bodies.len() + own.len()];
+                        own.push(*body);
+                    }
+                }
+                let (models, grips, recording) = (Vec::new(), Vec::new(), Some(Arc::clone(&read.recorded)));
+                Some(Parts { of, together, models, grips, recording })
+            });
+            all.push(shown);
+            continue;
+        }
         let resolved = of.iter().zip(models).map(|(&body, typed)| {
             let ResolvedBody { body, springs, .. } = &bodies[body];
             let model = typed.model.resolve(body, springs.as_deref());
@@ -68,43 +104,49 @@ fn parts(
         let models: Vec<_> = resolved.collect();
         let models = models.into_iter().collect::<Option<Vec<_>>>();
         let grips = grips.iter().filter_map(|grip| grip.in_run(of, &together.bodies)).collect();
-        all.push(models.map(|models| Parts { together, models, grips }));
+        all.push(models.map(|models| Parts { of: of.clone(), together, models, grips, recording: None }));
     }
-    all.into_iter().collect()
+    Some((all.into_iter().collect::<Option<_>>()?, own))
 }
 
-/// The runs, or `None` if a part that they need has a mistake.
+/// The steps of a recording between two frames, if the step of the program that made it is not known.
+const STEPS_OF_FRAME: f64 = 1024.0;
+
+/// The runs, and the own bodies of recordings, or `None` if a part that they need has a mistake.
 pub(super) fn resolve<'a>(
     typed: &'a [Option<RunFile>],
-    choices: &[Option<Choice<'_>>],
     time: Option<&TimeFile>,
-    bodies: Option<&[ResolvedBody]>,
-    grips: Option<&[SceneGrip]>,
+    around: Around<'_>,
     report: &mut Collector<'_>,
-) -> Option<Vec<Run>> {
+) -> Option<(Vec<Run>, Vec<ResolvedBody>)> {
     let name = |run: &'a Option<RunFile>| Some(run.as_ref()?.name.as_str());
     let named = typed.iter().enumerate().map(|(at, run)| (key_path!["run", at].to_vec(), name(run)));
     check_names(["run", "runs"], named, report);
     // T depends on all models: without one of them, steps would be reported wrongly.
-    let parts = parts(choices, bodies?, grips.unwrap_or_default(), report)?;
+    let (parts, own) = parts(typed, around, report)?;
     let periods = parts.iter().flat_map(Parts::iter).map(|(model, body)| model.shortest_period(body));
-    let cycle = periods.reduce(f64::min)?;
+    let cycle = periods.fold(f64::INFINITY, f64::min);
     let limits = limits(typed, time?, &parts);
     let mut runs = Vec::with_capacity(parts.len());
     for (at, (run, parts)) in typed.iter().zip(parts).enumerate() {
         let (run, time) = (run.as_ref()?, time?);
         let integrator = run.integrator.unwrap_or(time.integrator);
-        if let Some((path, message, hint)) = misplaced(at, run, time, integrator) {
+        let misplaced = if parts.recording.is_none() { misplaced(at, run, time, integrator) } else { None };
+        if let Some((path, message, hint)) = misplaced {
             report.at(&path, message, hint);
             return None;
         }
-        let (own, shared) = (key_path!["run", at, "step"], key_path!["time", "step"]);
-        let (step, path) = match &run.step {
-            Some(step) => (step, &own[..]),
+        let recorded = parts.recording.as_ref().map(|recording| {
+            StepFile::Seconds(recording.step().unwrap_or(1.0 / time.frames_per_second / STEPS_OF_FRAME))
+        });
+        let of_run = if recorded.is_some() { "states" } else { "step" };
+        let (of_run, shared) = (key_path!["run", at, of_run], key_path!["time", "step"]);
+        let (step, path) = match recorded.as_ref().or(run.step.as_ref()) {
+            Some(step) => (step, &of_run[..]),
             None => (time.step.as_ref().unwrap_or(&StepFile::DEFAULT), &shared[..]),
         };
         let tolerance = run.tolerance.or(time.tolerance).unwrap_or(Integrator::TOLERANCE);
-        let tolerance = integrator.is_adaptive().then_some(tolerance);
+        let tolerance = (integrator.is_adaptive() && recorded.is_none()).then_some(tolerance);
         let step = match step {
             _ if tolerance.is_some() => 1.0 / time.frames_per_second,
             StepFile::Seconds(seconds) => *seconds,
@@ -127,7 +169,7 @@ pub(super) fn resolve<'a>(
             report.at(path, message, "make it larger, or masses and stiffness less extreme");
             return None;
         }
-        if step > time.duration && time.duration > 0.0 && tolerance.is_none() {
+        if step > time.duration && time.duration > 0.0 && tolerance.is_none() && recorded.is_none() {
             let message = format!(
                 "the time step of {} is {} s, longer than the whole scene of {} s: nothing would move",
                 words::quoted(&run.name),
@@ -164,10 +206,11 @@ pub(super) fn resolve<'a>(
         }
         runs.push(Run {
             name: run.name.clone(),
-            of: choices[at].as_ref()?.of.clone(),
+            of: parts.of,
             bodies: parts.together.bodies,
             initial: parts.together.initial,
             models: parts.models,
+            recording: parts.recording,
             grips: parts.grips,
             integrator,
             step,
@@ -177,7 +220,7 @@ pub(super) fn resolve<'a>(
             colour,
         });
     }
-    Some(runs)
+    Some((runs, own))
 }
 
 /// The place, message and remedy for a `step` with an integrator that chooses its own steps, or a tolerance with

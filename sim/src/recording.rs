@@ -1,0 +1,100 @@
+//! States that were computed elsewhere, shown in place of steps.
+
+use super::body::Body;
+use super::crew::Crew;
+use super::dynamics::{Dynamics, Runaway, SpeedLimit};
+use super::model::{ElasticModel, ForceModel, Report, Scratch, Share};
+use super::state::{Divergence, Nodes, State, Status};
+use super::system::System;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// The states of a run that was computed elsewhere. A [`World`](super::World) that plays it shows its states after each
+/// number of steps, and computes none.
+pub trait Recording: Send + Sync {
+    /// Where it ends, as a divergence: the first step without a state, and its time. `None` if it has a state after
+    /// every number of steps.
+    fn end(&self) -> Option<Divergence>;
+
+    /// Writes the positions (m) and velocities (m/s) after a number of steps, which is before the end, and the memory if
+    /// it is recorded.
+    fn show(&mut self, steps: u64, state: &mut State);
+}
+
+/// Takes states from a recording.
+pub(super) struct ByRecording {
+    recording: Box<dyn Recording>,
+    /// The number of steps after which the state is the present one.
+    shown: Option<u64>,
+}
+
+impl ByRecording {
+    pub(super) fn new(recording: Box<dyn Recording>) -> Self {
+        Self { recording, shown: None }
+    }
+}
+
+impl Dynamics for ByRecording {
+    fn advance(
+        &mut self,
+        _: &System,
+        _: &SpeedLimit,
+        state: &mut State,
+        count: u64,
+        _: &mut Crew,
+    ) -> Result<(), Runaway> {
+        let steps = state.steps.saturating_add(count);
+        match self.recording.end().filter(|end| end.step <= steps) {
+            Some(end) => {
+                state.steps = end.step - 1;
+                Err(Runaway { node: 0 })
+            }
+            None => {
+                state.steps = steps;
+                Ok(())
+            }
+        }
+    }
+
+    // States between moments are never looked at, and not read.
+    fn settle(&mut self, state: &mut State) {
+        if state.status == Status::Ok && self.shown != Some(state.steps) {
+            self.recording.show(state.steps, state);
+            self.shown = Some(state.steps);
+        }
+    }
+
+    fn divergence(&self, system: &System, state: &State, runaway: Runaway) -> Divergence {
+        self.recording.end().unwrap_or_else(|| system.divergence(state, runaway))
+    }
+
+    fn restart(&mut self) {
+        self.shown = None;
+    }
+}
+
+/// The forces of a run that was computed elsewhere, which nobody knows.
+#[derive(Debug)]
+pub(super) struct Unknown;
+
+impl ElasticModel for Unknown {
+    fn stiffness(&self) -> f64 {
+        0.0
+    }
+
+    fn prepare(&self, _: &Arc<Body>) -> Box<dyn ForceModel> {
+        Box::new(Self)
+    }
+}
+
+impl ForceModel for Unknown {
+    fn add_forces(&self, _: Nodes<'_>, _: &[f64], _: &mut [f64], _: &mut Scratch, _: &mut [DVec3]) {}
+
+    fn is_damped(&self) -> bool {
+        false
+    }
+
+    fn report(&self, _: Nodes<'_>, _: &[f64], _: &mut Share<'_>) -> Report {
+        Report::default()
+    }
+}

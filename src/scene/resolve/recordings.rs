@@ -1,0 +1,164 @@
+//! The recordings of runs: archives beside the scene, and the bodies in them.
+
+use super::body::ResolvedBody;
+use super::lists::{ListSource, Lists};
+use super::{Place, body};
+use crate::reading::beside::{missing, similar};
+use crate::reading::collector::{Collector, key_path};
+use crate::reading::words::count;
+use crate::scene::Together;
+use crate::scene::file::{RunFile, StatesFile};
+use crate::scene::limits::Limits;
+use crate::scene::recording::{Flaw, Recorded};
+use crate::sim::{Assembly, Dimension, State};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A recording of a run.
+#[derive(Debug)]
+pub(super) struct ReadRecording {
+    pub(super) recorded: Arc<Recorded>,
+    /// The body in its archive, if it has one.
+    own: Option<Lists>,
+    /// The name of its file as typed.
+    file: String,
+}
+
+/// What a recording shows.
+pub(super) enum Shown {
+    /// The bodies of its run.
+    Bodies(State),
+    /// A body of its own.
+    Own(Box<ResolvedBody>),
+}
+
+impl ReadRecording {
+    /// The recording of a run, if it has one; `None` after reporting its mistakes, too.
+    pub(super) fn read(
+        folder: &Path,
+        at: usize,
+        run: &RunFile,
+        limits: &Limits,
+        report: &mut Collector<'_>,
+    ) -> Option<Self> {
+        let (file, chosen) = run.states.as_ref()?.parts();
+        let path = folder.join(file);
+        if !path.exists() {
+            let near = similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?"));
+            report.at(&place(at, run), format!("`{file}` {}", missing(&path)), near);
+            return None;
+        }
+        match Recorded::open(&path, chosen, &run.name) {
+            Ok(recorded) => {
+                let (source, known) = (source(at, run), report.total());
+                let own = Lists::recorded(&mut recorded.archive(), recorded.name(), source, limits, report);
+                let (recorded, file) = (Arc::new(recorded), file.to_owned());
+                (report.total() == known).then_some(Self { recorded, own, file })
+            }
+            Err(Flaw { place: found, message, help }) => {
+                let found = if found.is_empty() { file.to_owned() } else { format!("{file}: {found}") };
+                report.at(&place(at, run), format!("`{found}` {message}"), help);
+                None
+            }
+        }
+    }
+
+    /// A digest of the recording and its body.
+    pub(super) fn digest(&self) -> String {
+        let own = self.own.as_ref().map(Lists::digest).unwrap_or_default();
+        self.recorded.digest() + &own
+    }
+
+    /// Whether the body in the archive is the scene's, and how the recording moves it; `None` after reporting a mistake.
+    /// `all` are the bodies of the run, and `dimension` is that of the scene.
+    pub(super) fn shown(
+        &self,
+        at: usize,
+        run: &RunFile,
+        all: &Together,
+        dimension: Dimension,
+        report: &mut Collector<'_>,
+    ) -> Option<Shown> {
+        let (file, place) = (&self.file, place(at, run));
+        let (columns, is_flat) = self.recorded.coordinates();
+        let wrong = match (dimension, columns) {
+            (Dimension::Space, 2) => Some("has 2 coordinates for each node, and the scene is in space; expected 3"),
+            (Dimension::Plane, 3) if !is_flat => {
+                Some("leaves the plane of the scene; expected z = 0, or 2 coordinates")
+            }
+            _ => None,
+        };
+        if let Some(wrong) = wrong {
+            report.at(&place, format!("`{file}: position` {wrong}"), None);
+            return None;
+        }
+        let (nodes, known) = (self.recorded.nodes(), report.total());
+        let start = self.recorded.start();
+        let start = State::new(start.position, start.velocity);
+        let Some(own) = &self.own else {
+            let expected = all.bodies.whole().len();
+            if nodes == expected as u64 {
+                return Some(Shown::Bodies(start));
+            }
+            let [nodes, expected] = [nodes.into(), expected as u128].map(count);
+            let message = format!("`{file}: position` has {nodes} nodes, and the bodies of the run have {expected}");
+            let help = "expected the same nodes, or a body of its own: the arrays `rest` and `elements`";
+            report.at(&place, message, help.to_owned());
+            return None;
+        };
+        if own.nodes.len() as u64 != nodes {
+            let [nodes, rest] = [nodes.into(), own.nodes.len() as u128].map(count);
+            let message = format!("`{file}: position` has {nodes} nodes, and `rest` has {rest}; expected as many");
+            report.at(&place, message, None);
+            return None;
+        }
+        if is_same(own, &all.bodies) {
+            return Some(Shown::Bodies(start));
+        }
+        if run.bodies.is_some() {
+            let message = format!("`{file}` has another body than those in `bodies`");
+            report.at(&place, message, "remove `bodies`, so that its own body is shown".to_owned());
+            return None;
+        }
+        let mut own = own.clone();
+        own.dimension = dimension;
+        let made = body::recorded(own, run.name.clone(), start, report)?;
+        (report.total() == known).then(|| Shown::Own(Box::new(made)))
+    }
+}
+
+impl StatesFile {
+    /// The file, and the chosen run in it.
+    fn parts(&self) -> (&str, Option<&str>) {
+        match self {
+            Self::File(file) => (file, None),
+            Self::OfRun(chosen) => (&chosen.file, chosen.run.as_deref()),
+        }
+    }
+}
+
+/// The place of the file's name in the scene.
+fn place(at: usize, run: &RunFile) -> Place {
+    match run.states {
+        Some(StatesFile::OfRun(_)) => key_path!["run", at, "states", "file"].to_vec(),
+        _ => key_path!["run", at, "states"].to_vec(),
+    }
+}
+
+fn source(at: usize, run: &RunFile) -> ListSource {
+    let file = run.states.as_ref().map(|states| (states.parts().0.to_owned(), place(at, run)));
+    ListSource { body: place(at, run), file }
+}
+
+/// Whether a body in an archive is made of the same nodes and elements as the bodies of a run.
+fn is_same(own: &Lists, bodies: &Assembly) -> bool {
+    /// The greatest distance of two equal nodes, as a share of the body's size: single precision is enough.
+    const APART: f64 = 1e-6;
+    let whole = bodies.whole();
+    let near = APART * whole.extent();
+    let is_near = |(one, other): (&glam::DVec3, &glam::DVec3)| one.distance(*other) <= near;
+    own.nodes.len() == whole.len()
+        && own.elements.len() == whole.elements.len()
+        && own.elements.iter().eq(whole.elements.iter())
+        && own.nodes.iter().zip(&whole.rest).all(is_near)
+}

@@ -1,0 +1,139 @@
+//! Runs that show recorded states.
+
+use crate::parts::files;
+use crate::render::place_to_draw;
+use crate::support::{Place, lasting};
+
+/// A disc in the plane that falls on a floor, with a camera at rest.
+const PLANE: &str = r#"
+title = "A disc"
+gravity = [0, -9.8]
+time = { duration = 0.1, frames_per_second = 60 }
+[body]
+fan = { sides = 6, radius = 0.1 }
+lowest = 0.05
+velocity = [0, -2]
+[[run]]
+name = "Local shape"
+model = { kind = "shape-based", stiffness = 1e4 }
+[[obstacle]]
+kind = "floor"
+[view]
+size = [160, 120]
+camera.distance = 1
+labels = ["name", "clock", "number"]
+"#;
+
+/// A scene whose runs show the states of `file` in place of their models.
+fn recorded(scene: &str, file: &str) -> String {
+    let line = |line: &str| if line.starts_with("model = ") { format!("states = {file}") } else { line.to_owned() };
+    scene.lines().map(|one| line(one) + "\n").collect()
+}
+
+/// The parts of a picture without its texts, which have the digest of the scene.
+fn drawn(png: &[u8]) -> Vec<u8> {
+    let (mut rest, mut kept) = (&png[8..], Vec::new());
+    while let Some((length, after)) = rest.split_first_chunk::<4>() {
+        let (chunk, others) = after.split_at(u32::from_be_bytes(*length) as usize + 8);
+        if !chunk.starts_with(b"tEXt") && !chunk.starts_with(b"iTXt") {
+            kept.extend(chunk);
+        }
+        rest = others;
+    }
+    kept
+}
+
+/// Pictures of all frames.
+fn pictures(place: &Place, folder: &str) -> Vec<Vec<u8>> {
+    let names = place.names(folder).into_iter().filter(|name| name.ends_with(".png"));
+    names.map(|name| drawn(&std::fs::read(place.path(folder).join(name)).unwrap())).collect()
+}
+
+#[test]
+fn our_own_states_played_back_give_the_pictures_of_the_run() {
+    let Some(place) = place_to_draw() else { return };
+    let lit = lasting("0.1").replace("[view]", "[view]\nlabels = [\"name\", \"clock\", \"number\"]");
+    for (name, scene) in [("plane", PLANE), ("lit", &lit)] {
+        place.write(&format!("{name}.toml"), scene);
+        place.run(&format!("render {name}.toml --states -o {name}")).good();
+        place.write("played.toml", &recorded(scene, &format!("\"{name}/states.npz\"")));
+        place.run(&format!("render played.toml --states -o {name}-played")).good();
+        let (own, played) = (pictures(&place, name), pictures(&place, &format!("{name}-played")));
+        assert_eq!((own.len(), played.len()), (7, 7));
+        assert!(own == played, "{name}");
+        // States of a recording are stored like any others.
+        place.run(&format!("render played.toml --from-states {name}-played/states.npz -o {name}-stored")).good();
+        assert!(files(&place, &format!("{name}-stored")).iter().all(|(file, bytes)| {
+            file == "states.npz" || std::fs::read(place.path(format!("{name}-played/{file}"))).unwrap() == *bytes
+        }));
+    }
+}
+
+#[test]
+fn frames_of_a_recording_are_drawn_alone_in_shards_and_resumed() {
+    let Some(place) = place_to_draw() else { return };
+    place.write("plane.toml", PLANE);
+    place.run("simulate plane.toml --states --frames 0-6x2 -o states").good();
+    // The camera follows, so that pictures need the time series.
+    let scene = PLANE.replace("camera.distance = 1\n", "charts = [\"kinetic\"]\n");
+    place.write("played.toml", &recorded(&scene, "{ file = \"states/states.npz\", run = \"Local shape\" }"));
+    place.run("render played.toml -o whole").good();
+    place.run("render played.toml -o parts --frames 3").good();
+    let frame = "frame_00003.png";
+    let bytes = |folder: &str| std::fs::read(place.path(folder).join(frame)).unwrap();
+    assert!(bytes("parts") == bytes("whole"));
+    place.run("render played.toml -o parts --resume").good();
+    assert!(files(&place, "parts") == files(&place, "whole"));
+    place.run("render played.toml --shard 1/2 -o shards").good();
+    place.run("render played.toml --shard 2/2 -o shards").good();
+    assert_eq!(pictures(&place, "shards"), pictures(&place, "whole"));
+}
+
+/// After its last moment a recording shows its last state, and says so.
+#[test]
+fn a_recording_ends() {
+    let Some(place) = place_to_draw() else { return };
+    place.write("plane.toml", PLANE);
+    place.run("simulate plane.toml --states --frames 0-3 -o states").good();
+    place.write("played.toml", &recorded(PLANE, "\"states/states.npz\""));
+    let ran = place.run("render played.toml -o out").good();
+    assert!(ran.out.contains("recording ends at 0.05"), "{}", ran.out);
+    let run = &place.json("out/run.json")["runs"][0];
+    assert_eq!((&run["status"], &run["steps"]), (&"ended".into(), &0.into()));
+    let rows = place.read("out/diagnostics.csv");
+    let states: Vec<_> = rows.lines().skip(1).filter_map(|row| row.rsplit(',').next()).collect();
+    assert_eq!(states, ["ok", "ok", "ok", "ok", "ended", "ended", "ended"]);
+    let pictures = pictures(&place, "out");
+    assert!(pictures[3] != pictures[4] && pictures[4] == pictures[5]);
+}
+
+/// The documented scene and script.
+#[test]
+fn a_recording_written_with_numpy() {
+    let Some(python) = crate::support::numpy() else { return };
+    let text = include_str!("../../docs/recordings.md");
+    let block = |opening: &str| {
+        let start = text.find(opening).expect("a block") + opening.len();
+        &text[start..start + text[start..].find("```").expect("its end")]
+    };
+    let place = Place::new();
+    python(&place.path("."), block("```python\n"));
+    place.write("thrown.toml", block("```toml\ngravity"));
+    let scene = format!("gravity{}", place.read("thrown.toml"));
+    place.write("thrown.toml", &scene);
+    place.run("simulate thrown.toml -o out").good();
+    let table = place.read("out/diagnostics.csv");
+    let heads: Vec<_> = table.lines().next().unwrap().split(',').collect();
+    let column = |name: &str| heads.iter().position(|head| *head == name).unwrap();
+    let of = |run: &str, name: &str| -> Vec<f64> {
+        let rows = table.lines().filter(|row| row.starts_with(run));
+        rows.map(|row| row.split(',').nth(column(name)).unwrap().parse().unwrap()).collect()
+    };
+    let [own, recorded] = ["Simulated", "Thrown"].map(|run| of(run, "kinetic"));
+    assert_eq!((own.len(), recorded.len()), (61, 61));
+    // Differences on one side, at both ends, are of the first order.
+    let inner = own.iter().zip(&recorded).take(60).skip(1);
+    assert!(inner.clone().all(|(own, recorded)| (own - recorded).abs() < 0.05 * own.max(1.0)), "{own:?} {recorded:?}");
+    assert!(of("Thrown", "energy").iter().all(|energy| energy.is_nan()));
+    assert!(of("Thrown", "shape_error").iter().all(|error| *error < 1e-12));
+}
