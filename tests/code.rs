@@ -184,6 +184,41 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
     assert_same(made, text);
 }
 
+#[test]
+fn code_and_files_make_the_same_scenes_of_several_bodies() {
+    let cube = BodyBuilder::lattice(Lattice::new([2, 2, 2], 0.1)).name("cube").lowest(0.5);
+    let nodes = [[0.0, 0.0, 0.0], [1e3, 0.0, 0.0], [0.0, 1e3, 0.0], [0.0, 0.0, 1e3]];
+    let solid = BodyBuilder::arrays(nodes, [[0, 1, 2, 3]]).name("solid").offset([9.0, 0.0, 0.0]);
+    let models = [("cube", shape(1.0).into()), ("solid", springs(2.0).into())];
+    let made = Scene::builder("scene", cube)
+        .body(solid)
+        .run("Both", RunBuilder::by_body(models))
+        .run("Solid", RunBuilder::new(shape(3.0)).bodies(["solid"]));
+    let text = "title = 'scene'
+        time.duration = 1
+        [[body]]
+        name = 'cube'
+        lattice = { cells = [2, 2, 2], side = 0.1 }
+        lowest = 0.5
+        [[body]]
+        name = 'solid'
+        nodes = [[0, 0, 0], [1e3, 0, 0], [0, 1e3, 0], [0, 0, 1e3]]
+        elements = [[0, 1, 2, 3]]
+        offset = [9, 0, 0]
+        [[run]]
+        name = 'Both'
+        models.cube = { kind = 'shape-based', stiffness = 1 }
+        models.solid = { kind = 'mass-spring', stiffness = 2 }
+        [[run]]
+        name = 'Solid'
+        model = { kind = 'shape-based', stiffness = 3 }
+        bodies = ['solid']";
+    assert_same(made.clone(), text);
+    let wrong = made.body(BodyBuilder::arrays([[0.0, 0.0, f64::NAN]], [[0, 1]]).name("bar")).build(&Limits::default());
+    let error = wrong.expect_err("a wrong number").to_string();
+    assert!(error.contains("`body[2].nodes[0][2]` is NaN; expected a finite number"), "{error}");
+}
+
 /// Messages have position, finding, expectation and remedy like those about a file, but no lines of its text.
 #[test]
 fn mistakes_in_code_are_told_as_those_in_files() {
