@@ -28,6 +28,9 @@ pub(crate) struct Moments<'a, L> {
 
 /// A method that computes rotations in lanes.
 pub(crate) trait Solver: Copy + Send + Sync + 'static {
+    /// Whether most rotations need several passes.
+    const ITERATES: bool;
+
     /// The rotations of elements from their last ones. Elements whose bit is not in `live` keep theirs.
     #[inline(always)]
     fn follow<L: Lanes>(self, of: Moments<'_, L>, last: [L; 4], live: u32) -> [L; 4] {
@@ -81,6 +84,8 @@ pub(crate) struct Arctangent {
 pub(crate) struct Optimum;
 
 impl Solver for Arctangent {
+    const ITERATES: bool = true;
+
     #[inline(always)]
     fn passes(self) -> u32 {
         self.passes
@@ -98,6 +103,8 @@ impl Solver for Arctangent {
 }
 
 impl Solver for Optimum {
+    const ITERATES: bool = false;
+
     #[inline(always)]
     fn passes(self) -> u32 {
         1

@@ -72,7 +72,7 @@ pub(super) struct Fit<L> {
     mean: [L; 3],
     /// `Σ r R0ᵀ` (m²), and after all passes `k M` (N/m).
     matrix: Matrix<L>,
-    /// The rotation after a pass.
+    /// The rotation before a pass, if there are several.
     turn: [L; 4],
     /// The lanes that take part in the next pass.
     open: u32,
@@ -135,7 +135,8 @@ impl<S: Solver, const DAMPED: bool> Law for InSpace<S, DAMPED> {
         if DAMPED {
             mean = each!(3, axis => velocity[axis].mul_add(d_mean, mean[axis]));
         }
-        Fit { mean, matrix: a, turn: [zero; 4], open: 0 }
+        let (turn, open) = if S::ITERATES { (element.memory(), element.live()) } else { ([zero; 4], 0) };
+        Fit { mean, matrix: a, turn, open }
     }
 
     fn passes(&self) -> u32 {
@@ -147,11 +148,8 @@ impl<S: Solver, const DAMPED: bool> Law for InSpace<S, DAMPED> {
         // A copy: values behind references are read again after each store.
         let a = fit.matrix;
         let of = Moments { a: &a, scale: element.of_element(0), tally: element.tally() };
-        let (last, open) = match pass {
-            0 => (element.memory(), element.live()),
-            _ => (fit.turn, fit.open),
-        };
         let is_last = pass + 1 == self.solver.passes();
+        let (last, open) = if S::ITERATES { (fit.turn, fit.open) } else { (element.memory(), element.live()) };
         let (turn, open) = self.solver.step(of, last, open, is_last);
         if is_last {
             element.remember(turn);
