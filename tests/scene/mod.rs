@@ -9,6 +9,7 @@ mod good;
 mod look;
 mod manipulators;
 mod mistakes;
+mod peers;
 mod recordings;
 mod robust;
 mod schema;
