@@ -1,11 +1,12 @@
 //! The camera of a view.
 
-use super::subject::Subject;
+use super::subject::{Subject, SubjectBody};
 use crate::reading::captions::rounded;
 use crate::reading::collector::{Collector, key_path};
 use crate::reading::coordinates::{Coordinates, vector};
+use crate::reading::words::quoted;
 use crate::sim::Dimension;
-use crate::sim::geometry::{bounds, is_inside};
+use crate::sim::geometry::is_inside;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -26,8 +27,8 @@ pub struct Camera {
     pub target: DVec3,
     /// Distance from it (m).
     pub distance: f64,
-    /// Whether the camera follows the centre of mass of each run's body, in place of the target, from a distance at which
-    /// the body fills its panel at its widest moment.
+    /// Whether the camera follows the centre of mass of each run's bodies, in place of the target, from a distance at
+    /// which they fill their panel at their widest moment.
     pub follow: bool,
 }
 
@@ -55,7 +56,7 @@ pub(super) struct CameraFile {
 impl CameraFile {
     /// The camera of a scene, or `None` after a mistake in its target.
     pub(super) fn resolve(&self, scene: &Subject<'_>, report: &mut Collector<'_>) -> Option<Camera> {
-        let (dimension, start) = (scene.body.dimension, &scene.initial.position);
+        let dimension = scene.dimension();
         let is_flat = dimension == Dimension::Plane;
         for (key, _) in [("azimuth", self.azimuth), ("elevation", self.elevation)]
             .into_iter()
@@ -66,13 +67,13 @@ impl CameraFile {
         }
         let angle =
             |typed: Option<f64>, degrees: f64| if is_flat { 0.0 } else { typed.unwrap_or(degrees.to_radians()) };
-        let (low, high) = bounds(start);
+        let (low, high) = scene.start();
         let target = match &self.target {
             Some(target) => vector(target, dimension, &key_path!["view", "camera", "target"], report)?,
             None => low.midpoint(high),
         };
-        // A body that starts as a point has the size of its rest shape.
-        let size = Some((high - low).max_element()).filter(|&size| size > 0.0).unwrap_or_else(|| scene.body.extent());
+        // Bodies that start as one point have the size of their rest shapes.
+        let size = Some((high - low).max_element()).filter(|&size| size > 0.0).unwrap_or_else(|| scene.extent());
         let camera = Camera {
             azimuth: angle(self.azimuth, 31.0),
             elevation: angle(self.elevation, 17.0),
@@ -83,9 +84,14 @@ impl CameraFile {
         };
         let [_, _, towards] = axes(camera.azimuth, camera.elevation);
         let eye = camera.target + camera.distance * towards;
-        if !is_flat && !camera.follow && is_inside(eye, scene.body, start) {
+        let holds = |one: &&SubjectBody<'_>| is_inside(eye, one.body, &one.initial.position);
+        if !is_flat
+            && !camera.follow
+            && let Some(SubjectBody { name, .. }) = scene.bodies.iter().find(holds)
+        {
             let [x, y, z] = eye.to_array().map(|length| rounded(length, 3));
-            let message = format!("the camera is at [{x}, {y}, {z}], inside the body at its start");
+            let body = if name.is_empty() { "the body".to_owned() } else { format!("the body {}", quoted(name)) };
+            let message = format!("the camera is at [{x}, {y}, {z}], inside {body} at its start");
             let help = "move it out with a larger `view.camera.distance` or another `target`".to_owned();
             report.at(&key_path!["view", "camera"], message, help);
         }

@@ -1,8 +1,8 @@
-//! The box around a body along the axes of a camera.
+//! The boxes around bodies along the axes of a camera.
 
 use super::camera::axes;
 use super::view::{Traced, View};
-use crate::sim::Body;
+use crate::sim::{Assembly, Body};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -15,9 +15,18 @@ pub(crate) struct CameraBox {
     pub(crate) corners: [DVec3; 2],
 }
 
+/// The boxes around the bodies of a run at one moment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct CameraBoxes {
+    /// The centre of mass of all bodies (m), which cameras follow.
+    pub(crate) centre: DVec3,
+    /// The box around each body.
+    pub(crate) bodies: Vec<CameraBox>,
+}
+
 impl CameraBox {
     /// The box around a body whose nodes are at positions (m); `None` if it has none, or not all are finite.
-    pub(crate) fn new(view: &View, body: &Body, position: &[DVec3]) -> Option<Self> {
+    fn new(view: &View, body: &Body, position: &[DVec3]) -> Option<Self> {
         let axes = axes(view.camera.azimuth, view.camera.elevation);
         let centre = Traced::Centre.of(body, position);
         let (mut low, mut high) = (DVec3::ZERO, DVec3::ZERO);
@@ -33,5 +42,17 @@ impl CameraBox {
     pub(crate) fn size(&self) -> f64 {
         let [low, high] = self.corners;
         (high - low).truncate().max_element()
+    }
+}
+
+impl CameraBoxes {
+    /// The boxes around bodies whose nodes are at positions (m); `None` if there are none, or not all are finite.
+    pub(crate) fn new(view: &View, bodies: &Assembly, position: &[DVec3]) -> Option<Self> {
+        if position.len() != bodies.whole().len() {
+            return None;
+        }
+        let of_body = |(at, body)| CameraBox::new(view, body, &position[bodies.nodes(at)]);
+        let of_bodies: Option<_> = bodies.bodies().iter().map(|body| &**body).enumerate().map(of_body).collect();
+        Some(Self { centre: Traced::Centre.of(bodies.whole(), position), bodies: of_bodies? })
     }
 }

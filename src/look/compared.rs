@@ -1,6 +1,6 @@
 //! Resolves ghosts and paths.
 
-use super::subject::Subject;
+use super::subject::{Subject, SubjectRun};
 use super::view::{Ghost, Traced};
 use crate::reading::collector::{Collector, PathPart};
 use crate::reading::words::{list, nearest, quoted, short};
@@ -11,7 +11,7 @@ const REST: &str = "rest";
 /// The outline over each body; `None` also after a mistake.
 pub(super) fn ghost(name: &str, scene: &Subject<'_>, report: &mut Collector<'_>) -> Option<Ghost> {
     let path = [PathPart::Key("view"), PathPart::Key("ghost")];
-    let run = scene.runs.iter().position(|(known, _)| *known == name);
+    let run = scene.runs.iter().position(|known| known.name == name);
     match run {
         Some(at) if name == REST => {
             let message = format!("\"{REST}\" means the rest shape, but `run[{at}]` has this name, too");
@@ -31,27 +31,36 @@ pub(super) fn run(
     scene: &Subject<'_>,
     report: &mut Collector<'_>,
 ) -> Option<usize> {
-    let run = scene.runs.iter().position(|(known, _)| *known == name);
+    let run = scene.runs.iter().position(|known| known.name == name);
     let run = run.or_else(|| unknown(name, more, path, scene, report))?;
-    if let Some(other) = scene.runs.iter().position(|(_, step)| *step != scene.runs[run].1) {
-        other_steps([run, other], path, scene, report);
+    let one = &scene.runs[run];
+    if let Some(other) = scene.runs.iter().find(|other| other.of != one.of) {
+        other_bodies([one, other], path, report);
+    } else if let Some(other) = scene.runs.iter().find(|other| other.step != one.step) {
+        other_steps([one, other], path, report);
     }
     Some(run)
 }
 
-/// Reports paths that are listed twice, and nodes that the body does not have.
+/// Reports paths that are listed twice, and nodes that not all runs have.
 pub(super) fn check_paths(paths: &[Traced], scene: &Subject<'_>, report: &mut Collector<'_>) {
-    let nodes = scene.body.len();
+    let nodes = scene.nodes();
+    let (least, most) = (nodes.iter().min().copied().unwrap_or(0), nodes.iter().max().copied().unwrap_or(0));
     for (at, path) in paths.iter().enumerate() {
         let place = [PathPart::Key("view"), PathPart::Key("paths"), PathPart::Index(at)];
         if paths[..at].contains(path) {
             report.at(&place, "this path is listed a second time".to_owned(), "remove it".to_owned());
         }
         if let Traced::Node(node) = *path
-            && node as usize >= nodes
+            && node as usize >= least
         {
-            let last = nodes.saturating_sub(1);
-            report.at(&place, format!("there is no node {node}; the body has nodes 0 to {last}"), None);
+            let last = least.saturating_sub(1);
+            let who = match scene.runs.iter().find(|run| run.nodes == least) {
+                Some(run) if least < most => format!("the run {}", quoted(run.name)),
+                _ if scene.bodies.len() == 1 => "the body".to_owned(),
+                _ => "each run".to_owned(),
+            };
+            report.at(&place, format!("there is no node {node}; {who} has nodes 0 to {last}"), None);
         }
     }
 }
@@ -67,7 +76,7 @@ fn unknown<T>(
     if scene.runs.is_empty() {
         return None;
     }
-    let known: Vec<&str> = scene.runs.iter().map(|(name, _)| *name).chain(more.iter().copied()).collect();
+    let known: Vec<&str> = scene.runs.iter().map(|run| run.name).chain(more.iter().copied()).collect();
     let help = match nearest(name, &known) {
         Some(name) => format!("did you mean {}?", quoted(name)),
         None => format!("expected {}", list(&known, "or", quoted)),
@@ -76,15 +85,21 @@ fn unknown<T>(
     None
 }
 
+/// Reports runs with different bodies.
+fn other_bodies(runs: [&SubjectRun<'_>; 2], path: &[PathPart<'_>], report: &mut Collector<'_>) {
+    let [one, other] = runs.map(|run| quoted(run.name));
+    let message = format!("{one} and {other} have different bodies, so their nodes cannot be compared");
+    report.at(path, message, "compare runs of the same bodies, in a scene without other runs".to_owned());
+}
+
 /// Reports runs with different steps: their frames show different moments.
-fn other_steps(runs: [usize; 2], path: &[PathPart<'_>], scene: &Subject<'_>, report: &mut Collector<'_>) {
-    let [(one, step), (other, other_step)] = runs.map(|run| scene.runs[run]);
+fn other_steps([one, other]: [&SubjectRun<'_>; 2], path: &[PathPart<'_>], report: &mut Collector<'_>) {
     let message = format!(
         "{} has a time step of {} s, {} one of {} s: their frames are not at the same moments",
-        quoted(one),
-        short(step),
-        quoted(other),
-        short(other_step)
+        quoted(one.name),
+        short(one.step),
+        quoted(other.name),
+        short(other.step)
     );
     report.at(path, message, "give both runs the same `step`".to_owned());
 }

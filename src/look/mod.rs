@@ -22,14 +22,14 @@ mod view;
 
 pub use crate::colour::Colour;
 pub use camera::Camera;
-pub(crate) use camera_box::CameraBox;
+pub(crate) use camera_box::CameraBoxes;
 pub(crate) use contrast::check_runs;
 pub use file::ColourMap;
 pub use font::FontFiles;
 pub use palette::Theme;
 pub use print::Print;
 pub(crate) use resolve::{TypedView, colour};
-pub(crate) use subject::Subject;
+pub(crate) use subject::{Subject, SubjectBody, SubjectRun};
 pub use view::{ColourScale, EdgeStyle, FloorStyle, Ghost, Labels, Style, Traced, View, Visible};
 #[cfg(feature = "render")]
 pub(crate) use {

@@ -42,8 +42,8 @@ impl View {
         font: FontFiles,
         report: &mut Collector<'_>,
     ) -> Option<Self> {
-        let (body, panels, known) = (scene.body, scene.runs.len(), report.total());
-        let mut view = Self { side: scene.side, has_cells: scene.has_cells, ..Self::default() };
+        let (panels, known) = (scene.runs.len(), report.total());
+        let mut view = Self { side: scene.side(), has_cells: scene.has_cells(), ..Self::default() };
         view.camera = get::<CameraFile>(typed, "camera", report).unwrap_or_default().resolve(scene, report)?;
         let size = get(typed, "size", report).unwrap_or(SizeFile::Pixels(view.size));
         (view.size, view.print) = size.resolve(LEAST_SIDE, &key_path!["view", "size"], report)?;
@@ -55,7 +55,7 @@ impl View {
         if let Some(typed) = get::<ColourFile>(typed, "colour", report) {
             view.colour = colour(&typed, std::slice::from_ref(scene), "view", report)?.pop();
         }
-        view.visible = Visible::usual(body.dimension, body.len());
+        view.visible = Visible::usual(scene.dimension(), scene.nodes().into_iter().max().unwrap_or(0));
         set(&mut view.visible, typed, "show", report);
         let text_scale = get(typed, "text_scale", report).unwrap_or(TextScaleFile::Times(view.look.text_scale));
         let usual = view.columns.unwrap_or(panels.clamp(1, 3));
@@ -72,7 +72,8 @@ impl View {
         view.look.theme = Palette::theme_on(view.look.background, view.look.theme);
         view.look.font = font;
         view.clock = get(typed, "clock", report).unwrap_or_else(|| {
-            if scene.is_gripped { "after the start".to_owned() } else { "after release".to_owned() }
+            let is_gripped = scene.runs.iter().any(|run| run.is_gripped);
+            if is_gripped { "after the start".to_owned() } else { "after release".to_owned() }
         });
         let ghost: Option<String> = get(typed, "ghost", report);
         view.ghost = ghost.and_then(|name| compared::ghost(&name, scene, report));

@@ -1,58 +1,118 @@
-//! The subject of a view: bodies, its runs and its surroundings.
-
-use crate::sim::Body;
+//! The subject of a view: bodies, runs and their surroundings.
 
 use crate::sim::geometry::{self, bounds};
 use crate::sim::model::ElasticModel;
-use crate::sim::{Field, Obstacle, State};
+use crate::sim::{Body, Dimension, Field, Obstacle, State};
 use glam::DVec3;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// The data on which default values of a view depend.
 pub(crate) struct Subject<'a> {
-    /// All bodies of the scene as one.
+    /// The bodies, all in the plane or all in space.
+    pub(crate) bodies: Vec<SubjectBody<'a>>,
+    pub(crate) gravity: DVec3,
+    pub(crate) obstacles: &'a [Obstacle],
+    pub(crate) runs: Vec<SubjectRun<'a>>,
+}
+
+/// A body.
+pub(crate) struct SubjectBody<'a> {
+    /// Its name; empty if it is the only one and has none.
+    pub(crate) name: &'a str,
     pub(crate) body: &'a Body,
     /// The initial state of all bodies.
     pub(crate) initial: &'a State,
-    /// Mean length of the elements' edges (m).
+    /// Mean length of its elements' edges (m).
     pub(crate) side: f64,
     /// Whether `side` is the side of a lattice's cells.
     pub(crate) has_cells: bool,
-    pub(crate) gravity: DVec3,
-    pub(crate) obstacles: &'a [Obstacle],
-    /// Whether nodes are held or dragged.
-    pub(crate) is_gripped: bool,
-    /// The name and the time step (s) of each run.
-    pub(crate) runs: Vec<(&'a str, f64)>,
-    /// Each model of all runs with its body.
-    pub(crate) parts: Vec<(&'a dyn ElasticModel, &'a Body)>,
 }
 
-impl Subject<'_> {
+/// A run.
+pub(crate) struct SubjectRun<'a> {
+    pub(crate) name: &'a str,
+    /// Its time step (s).
+    pub(crate) step: f64,
+    /// The places of its bodies.
+    pub(crate) of: &'a [usize],
+    /// The number of nodes of all its bodies.
+    pub(crate) nodes: usize,
+    /// The model of each body.
+    pub(crate) models: &'a [Arc<dyn ElasticModel>],
+    /// Whether nodes are held or dragged.
+    pub(crate) is_gripped: bool,
+}
+
+impl<'a> Subject<'a> {
+    pub(super) fn dimension(&self) -> Dimension {
+        self.bodies[0].body.dimension
+    }
+
+    /// The mean of the bodies' sides (m).
+    pub(super) fn side(&self) -> f64 {
+        self.bodies.iter().map(|one| one.side).sum::<f64>() / self.bodies.len() as f64
+    }
+
+    /// Whether all bodies have cells of one side.
+    pub(super) fn has_cells(&self) -> bool {
+        self.bodies.iter().all(|one| one.has_cells && one.side == self.bodies[0].side)
+    }
+
+    /// The corners of the box around all bodies at the start (m).
+    pub(super) fn start(&self) -> (DVec3, DVec3) {
+        let boxes = self.bodies.iter().map(|one| bounds(&one.initial.position));
+        let around = boxes.reduce(|(low, high), (from, to)| (low.min(from), high.max(to)));
+        around.expect("at least one body")
+    }
+
+    /// The size of the largest body at rest (m).
+    pub(super) fn extent(&self) -> f64 {
+        self.bodies.iter().map(|one| one.body.extent()).fold(0.0, f64::max)
+    }
+
+    /// The number of nodes of each run; if no run is known, that of all bodies.
+    pub(super) fn nodes(&self) -> Vec<usize> {
+        match self.runs.is_empty() {
+            true => vec![self.bodies.iter().map(|one| one.body.len()).sum()],
+            false => self.runs.iter().map(|run| run.nodes).collect(),
+        }
+    }
+
+    /// Each model of each run with its body.
+    fn parts(&self) -> impl Iterator<Item = (&'a dyn ElasticModel, &SubjectBody<'a>)> {
+        let of_run = |run: &SubjectRun<'a>| run.models.iter().zip(run.of);
+        self.runs.iter().flat_map(of_run).map(|(model, &body)| (&**model, &self.bodies[body]))
+    }
+
     /// The largest expected value of a field in the scene.
     pub(super) fn largest(&self, field: Field) -> f64 {
         /// The strain, and the displacement in edges of an element, that count as large.
         const LARGE: f64 = 0.5;
-        let side = self.side;
+        let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         match field {
             Field::Strain => LARGE,
-            Field::Displacement => LARGE * side,
-            Field::Distance => LARGE * self.body.extent(),
+            Field::Displacement => most(&mut self.bodies.iter().map(|one| LARGE * one.side)),
+            Field::Distance => LARGE * self.extent(),
             Field::ElasticEnergy => {
-                let stiffness = self.parts.iter().fold(0.0, |most: f64, (model, _)| most.max(model.stiffness()));
-                0.5 * stiffness * (LARGE * side) * (LARGE * side)
+                let energy = |(model, of): (&dyn ElasticModel, &SubjectBody<'_>)| {
+                    0.5 * model.stiffness() * (LARGE * of.side) * (LARGE * of.side)
+                };
+                most(&mut self.parts().map(energy))
             }
             Field::Speed => {
-                let start = self.initial.velocity.iter().fold(0.0, |most: f64, v| most.max(v.length()));
-                let (_, high) = bounds(&self.initial.position);
+                let velocities = self.bodies.iter().flat_map(|one| &one.initial.velocity);
+                let start = most(&mut velocities.map(|velocity| velocity.length()));
+                let (_, high) = self.start();
                 let drop = geometry::ground(self.obstacles, 0.0).map_or(0.0, |(_, ground)| (high.y - ground).max(0.0));
                 let fall = (2.0 * self.gravity.length() * drop).sqrt();
-                let pushed = self.obstacles.iter().map(|obstacle| obstacle.motion.greatest_speed(side));
+                let pushed = self.obstacles.iter().map(|obstacle| obstacle.motion.greatest_speed(self.side()));
                 let fastest = pushed.fold((start * start + fall * fall).sqrt(), f64::max);
-                // A body that nothing else moves oscillates at its own frequency.
-                let periods = self.parts.iter().map(|(model, body)| model.shortest_period(body));
-                let swing = LARGE * side * TAU / periods.fold(f64::INFINITY, f64::min);
-                if fastest > 0.0 { fastest } else { swing }
+                // Bodies that nothing else moves oscillate at their own frequencies.
+                let swing = |(model, of): (&dyn ElasticModel, &SubjectBody<'_>)| {
+                    LARGE * of.side * TAU / model.shortest_period(of.body)
+                };
+                if fastest > 0.0 { fastest } else { most(&mut self.parts().map(swing)) }
             }
         }
     }

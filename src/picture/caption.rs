@@ -29,14 +29,17 @@ const LABEL_SHARE: f64 = 0.55;
 const LETTER_GAP: f64 = 0.42;
 const X_HEIGHT: f64 = 0.55;
 
-/// The model of a run in short, for the second line of a picture: `27 cubes, k = 10 kN/m, ζ = 0.1`; or where its states
-/// come from.
+/// The models of a run in short, for the second line of a picture: `27 cubes, k = 10 kN/m, ζ = 0.1`, each with its body; or
+/// where its states come from.
 pub(super) fn short_description(run: &Run) -> String {
-    match (&run.recording, run.models.first()) {
-        (Some(recording), _) => recording.description(),
-        (None, Some(model)) => parts_and_constants(model.as_ref(), run.body()) + &model.unusual_choices(run.body()),
-        (None, None) => String::new(),
+    if let Some(recording) = &run.recording {
+        return recording.description();
     }
+    let parts = run.models_and_bodies();
+    let mut parts: Vec<_> =
+        parts.map(|(model, body)| parts_and_constants(model, body) + &model.unusual_choices(body)).collect();
+    parts.dedup();
+    parts.join("; ")
 }
 
 /// Collects the text and the flat marks of a picture.

@@ -5,10 +5,11 @@
 
 use super::camera::{Framing, Lens};
 use super::layout::{Rectangle, Scale};
-use crate::look::{CameraBox, axes};
-use crate::scene::Scene;
+use crate::look::{CameraBoxes, axes};
+use crate::scene::{Run, Scene};
 use crate::sim::{Obstacle, Shape};
 use glam::{DVec2, DVec3};
+use std::borrow::Cow;
 
 /// The least size of bodies that leave room to obstacles, relative to bodies without obstacles.
 const SMALLER: f64 = 0.8;
@@ -20,8 +21,25 @@ const MOST_GROWTH: f64 = 1.7;
 /// Obstacles are looked for at this many moments.
 const MOMENTS: usize = 100;
 
-/// A body at a moment: the time (s), the box around it, and whether its run never diverges.
-pub(super) type Moment = (f64, CameraBox, bool);
+/// The bodies of a run at a moment.
+#[derive(Clone, Debug)]
+pub(super) struct Moment<'a> {
+    /// The time (s).
+    pub(super) time: f64,
+    pub(super) run: usize,
+    /// The boxes around them.
+    pub(super) seen: Cow<'a, CameraBoxes>,
+    /// Whether the run never diverges.
+    pub(super) is_sound: bool,
+}
+
+impl Moment<'_> {
+    /// The greatest distance of the centre of a body from that of all (m).
+    fn spread(&self) -> f64 {
+        let CameraBoxes { centre, bodies } = &*self.seen;
+        bodies.iter().map(|body| body.centre.distance(*centre)).fold(0.0, f64::max)
+    }
+}
 
 /// The boxes around bodies at several moments and around the obstacles near them, along the axes of the camera, from the
 /// origin, or from the centre of mass for a camera that follows it (m).
@@ -31,7 +49,9 @@ pub(super) struct Seen {
     axes: [DVec3; 3],
     bodies: [DVec3; 2],
     all: [DVec3; 2],
-    /// The width of the widest body (m).
+    /// The box around the centres of bodies, from that of all bodies of their run.
+    apart: [DVec3; 2],
+    /// The width of the widest body or, where a run has several, of the box around them (m).
     widest: f64,
 }
 
@@ -46,25 +66,44 @@ pub(super) struct Shot {
 
 impl Seen {
     /// The boxes of moments of a scene; `None` without moments.
-    pub(super) fn new(scene: &Scene, moments: &[Moment], follows: bool) -> Option<Self> {
-        let (view, body) = (&scene.view, &**scene.runs[0].body());
-        let start = CameraBox::new(view, body, &scene.runs[0].initial.position)?;
-        let usual = start.size().max(body.extent()).max(f64::MIN_POSITIVE);
-        let sound = moments.iter().filter(|(_, _, is_sound)| *is_sound).map(|(_, seen, _)| seen.size());
-        let most = sound.reduce(f64::max).unwrap_or(f64::INFINITY).clamp(usual, MOST_GROWTH * usual);
+    pub(super) fn new(scene: &Scene, moments: &[Moment<'_>], follows: bool) -> Option<Self> {
+        let view = &scene.view;
+        let usual = usual(scene)?;
+        let largest = |sizes: &[f64]| sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let sound = || moments.iter().filter(|moment| moment.is_sound);
+        // The greatest size of each body of the scene.
+        let mut most = vec![None; usual.len()];
+        for Moment { run, seen, .. } in sound() {
+            for (&of, body) in scene.runs[*run].of.iter().zip(&seen.bodies) {
+                most[of] = Some(most[of].map_or(body.size(), |most: f64| most.max(body.size())));
+            }
+        }
+        let limited =
+            |(most, &usual): (&Option<f64>, &f64)| most.unwrap_or(f64::INFINITY).clamp(usual, MOST_GROWTH * usual);
+        let most: Vec<f64> = most.iter().zip(&usual).map(limited).collect();
+        let farthest = sound().map(Moment::spread).reduce(f64::max).unwrap_or(f64::INFINITY);
         let axes = axes(view.camera.azimuth, view.camera.elevation);
         let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        let mut all = Self { axes, bodies: none, all: none, widest: 0.2 * usual };
-        for (at, (time, seen, _)) in moments.iter().enumerate() {
-            let corners = seen.corners.map(|corner| (most / seen.size()).min(1.0) * corner);
-            let centre = all.along(seen.centre);
+        let mut all = Self { axes, bodies: none, all: none, apart: none, widest: 0.2 * largest(&usual) };
+        for (at, moment) in moments.iter().enumerate() {
+            let run = &scene.runs[moment.run];
+            let CameraBoxes { centre: of_all, bodies } = &*moment.seen;
+            let nearer = (farthest / moment.spread()).min(1.0);
+            let of_bodies = run.of.iter().zip(bodies).map(|(&of, body)| {
+                let away = nearer * all.along(body.centre - of_all);
+                all.apart = union(all.apart, [away; 2]);
+                body.corners.map(|corner| away + (most[of] / body.size()).min(1.0) * corner)
+            });
+            let Some(corners) = of_bodies.reduce(union) else { continue };
+            let centre = all.along(*of_all);
             let place = |[low, high]: [DVec3; 2]| if follows { [low, high] } else { [low + centre, high + centre] };
             all.widest = all.widest.max(corners[1].x - corners[0].x);
             all.bodies = union(all.bodies, place(corners));
             if at % moments.len().div_ceil(MOMENTS) == 0 {
-                let beside = [corners[0] - REACH * body.extent(), corners[1] + REACH * body.extent()];
+                let reach = REACH * run.largest();
+                let beside = [corners[0] - reach, corners[1] + reach];
                 let near = scene.obstacles.iter().filter_map(|obstacle| {
-                    let [low, high] = all.around(obstacle, *time, beside.map(|corner| centre + corner))?;
+                    let [low, high] = all.around(obstacle, moment.time, beside.map(|corner| centre + corner))?;
                     let near = [(low - centre).max(beside[0]), (high - centre).min(beside[1])];
                     near[0].cmple(near[1]).all().then_some(place(near))
                 });
@@ -79,7 +118,9 @@ impl Seen {
     pub(super) fn level(all: &mut [Self]) {
         let both = all.iter().map(|seen| [seen.bodies, seen.all]);
         let Some([bodies, of_all]) = both.reduce(|[a, b], [c, d]| [union(a, c), union(b, d)]) else { return };
+        let apart = all.iter().map(|seen| seen.apart).reduce(union).unwrap_or_default();
         for seen in all {
+            seen.apart = apart;
             let across = |own: [DVec3; 2], common: [DVec3; 2]| [0, 1].map(|end| common[end].with_x(own[end].x));
             (seen.bodies, seen.all) = (across(seen.bodies, bodies), across(seen.all, of_all));
         }
@@ -116,12 +157,19 @@ impl Seen {
         }
     }
 
+    /// How much larger the outline of a box with these half sides (m) is seen than its middle, for each pixel of its size
+    /// there. The outline of a body lies half-way to its nearest corner, and a body may stand apart from the middle.
+    fn nearness(&self, lens: &Lens, half: DVec3) -> f64 {
+        let apart = 0.5 * (self.apart[1].z - self.apart[0].z);
+        if lens.orthographic { 0.0 } else { 0.5 * (half.z + apart) / lens.focal }
+    }
+
     /// The point that a camera looks at, as in [`Shot::offset`].
     fn target(&self, lens: &Lens, [left, top, width, height]: [f64; 4], pixels: f64) -> DVec3 {
         let [middle, of_all] = [self.bodies, self.all].map(|[low, high]| low.midpoint(high));
         let half = 0.5 * (self.bodies[1] - self.bodies[0]);
         // Obstacles take the room that bodies leave.
-        let spare = 0.5 * (1.0 / pixels - nearness(lens, half)) * DVec2::new(width, height) - half.truncate();
+        let spare = 0.5 * (1.0 / pixels - self.nearness(lens, half)) * DVec2::new(width, height) - half.truncate();
         let spare = spare.max(DVec2::ZERO).extend(0.0);
         let middle = middle + (of_all - middle).clamp(-spare, spare);
         let off = (DVec2::new(left + 0.5 * width, top + 0.5 * height) - DVec2::from(lens.centre)) / pixels;
@@ -133,21 +181,28 @@ impl Seen {
 /// One scale for cameras in equal rooms: left, top, width and height (px). The widest body takes at most the `filled` share
 /// of the width. The lens is a metre from its target.
 pub(super) fn shots(all: &[Seen], lens: &Lens, room: [f64; 4], filled: f64) -> Vec<Shot> {
-    let fit = |[low, high]: [DVec3; 2]| {
+    let fit = |seen: &Seen, [low, high]: [DVec3; 2]| {
         let half = 0.5 * (high - low);
-        let least = |side: f64, room: f64| room / (2.0 * side + room * nearness(lens, half));
+        let least = |side: f64, room: f64| room / (2.0 * side + room * seen.nearness(lens, half));
         least(half.x, room[2]).min(least(half.y, room[3]))
     };
     let least = |scale: &dyn Fn(&Seen) -> f64| all.iter().map(scale).fold(f64::INFINITY, f64::min);
-    let most = least(&|seen| fit(seen.bodies).min(filled * room[2] / seen.widest));
-    let pixels = least(&|seen| fit(seen.all)).clamp(SMALLER * most, most);
+    let most = least(&|seen| fit(seen, seen.bodies).min(filled * room[2] / seen.widest));
+    let pixels = least(&|seen| fit(seen, seen.all)).clamp(SMALLER * most, most);
     all.iter().map(|seen| Shot { offset: seen.target(lens, room, pixels), pixels }).collect()
 }
 
-/// How much larger the outline of a box with these half sides (m) is seen than its middle, for each pixel of its size
-/// there: it lies half-way to the nearest corner.
-fn nearness(lens: &Lens, half: DVec3) -> f64 {
-    if lens.orthographic { 0.0 } else { 0.5 * half.z / lens.focal }
+/// The greatest side of each body of a scene at rest and at the start (m); `None` without a place of one of them.
+fn usual(scene: &Scene) -> Option<Vec<f64>> {
+    let mut usual = vec![f64::MIN_POSITIVE; scene.bodies.len()];
+    for run in scene.distinct_bodies().0 {
+        let Run { of, bodies, initial, .. } = &scene.runs[run];
+        let start = CameraBoxes::new(&scene.view, bodies, &initial.position)?;
+        for ((&of, body), seen) in of.iter().zip(bodies.bodies()).zip(&start.bodies) {
+            usual[of] = usual[of].max(seen.size()).max(body.extent());
+        }
+    }
+    Some(usual)
 }
 
 /// The camera of a panel at a distance of a metre.

@@ -41,7 +41,7 @@ const DARK: f64 = 13.0;
 
 /// The data for turning faces into the parts of a panel.
 pub(super) struct Surroundings<'a> {
-    pub(super) body: &'a Body,
+    pub(super) bodies: &'a Assembly,
     pub(super) ears: &'a Ears,
     pub(super) position: &'a [DVec3],
     pub(super) lens: &'a Lens,
@@ -49,16 +49,16 @@ pub(super) struct Surroundings<'a> {
     pub(super) origin: DVec3,
     /// The panel's unit of length (m).
     pub(super) side: f64,
-    /// The unit of the hatch (m).
-    pub(super) soft: f64,
+    /// The unit of the hatch of each body (m).
+    pub(super) soft: Vec<f64>,
     /// Length of an element's edge (px).
     pub(super) element: f64,
     /// Whether each element is flat.
     pub(super) flat: &'a [bool],
     /// The field that colours the surfaces.
     pub(super) shades: Option<&'a Shades>,
-    /// The bodies, if each has a colour of its own.
-    pub(super) bodies: Option<&'a Assembly>,
+    /// Whether each body has a colour of its own.
+    pub(super) coloured: bool,
     /// Whether edges of sound elements are drawn in front of surfaces, and behind them.
     pub(super) edges: [bool; 2],
 }
@@ -211,6 +211,11 @@ impl FaceSides {
 }
 
 impl Surroundings<'_> {
+    /// All bodies as one.
+    fn body(&self) -> &Body {
+        self.bodies.whole()
+    }
+
     fn at(&self, node: u32) -> DVec3 {
         self.position[node as usize]
     }
@@ -218,7 +223,7 @@ impl Surroundings<'_> {
     /// The corners of a face as seen from outside of the set that it bounds.
     fn corners(&self, side: &Side, nodes: &mut Vec<u32>) {
         nodes.clear();
-        nodes.extend_from_slice(&self.body.faces.nodes[side.face as usize]);
+        nodes.extend_from_slice(&self.body().faces.nodes[side.face as usize]);
         if side.reversed {
             nodes.reverse();
         }
@@ -235,7 +240,7 @@ impl Surroundings<'_> {
         // The memory for uncut faces.
         mesh.vertices.reserve(4 * faces.len());
         mesh.triangles.reserve(2 * faces.len());
-        mesh.shades.reserve(if self.shades.is_some() || self.bodies.is_some() { 4 * faces.len() } else { 0 });
+        mesh.shades.reserve(if self.shades.is_some() || self.coloured { 4 * faces.len() } else { 0 });
         // Edges of turned-over elements are always drawn.
         let is_edged = self.is_fine() && (self.edges[0] || kinds.edge != LineKind::Edge);
         // Faces on the far side of the body are drawn last: the others hide them, so that they need no light.
@@ -262,7 +267,7 @@ impl Surroundings<'_> {
             note_borders(&patch, ears, grid, &cuts, &mut borders);
         }
         mesh.triangles.append(&mut last);
-        let sides = borders.sorted(self.body.len());
+        let sides = borders.sorted(self.body().len());
         for edge in sides.chunk_by(|one, other| ordered(one.ends) == ordered(other.ends)) {
             self.edge(edge, &mut borders, kinds, lines);
         }
@@ -304,7 +309,7 @@ impl Surroundings<'_> {
 
     /// Whether faces draw the edges of their elements.
     fn is_fine(&self) -> bool {
-        self.ears.is_empty() && self.element < FINE && self.body.elements.len() >= MANY_ELEMENTS
+        self.ears.is_empty() && self.element < FINE && self.body().elements.len() >= MANY_ELEMENTS
     }
 
     /// The component of an outward normal at a point towards the viewer, in units of its length times the distance.
@@ -324,7 +329,7 @@ impl Surroundings<'_> {
         }
         let of_few = (CELLS_OF_FEW / total.max(1)).isqrt().clamp(FINEST_CUT, FINEST_OF_FEW);
         let affordable = if total > MANY_FACES { 2 } else { of_few };
-        let mut cuts = Cuts::new(self.body.len());
+        let mut cuts = Cuts::new(self.body().len());
         let mut nodes = Vec::new();
         for side in faces {
             self.corners(side, &mut nodes);
@@ -365,7 +370,9 @@ impl Surroundings<'_> {
         corners.clear();
         corners.extend(nodes.iter().map(|&node| self.at(node)));
         phases.clear();
-        let phase = |node: u32| self.body.rest[node as usize].dot(DVec3::ONE) / (HATCH_PERIOD * self.soft);
+        let body = self.bodies.body_of_node(nodes[0] as usize);
+        let soft = self.soft[body];
+        let phase = |node: u32| self.body().rest[node as usize].dot(DVec3::ONE) / (HATCH_PERIOD * soft);
         phases.extend(nodes.iter().map(|&node| dots.unwrap_or_else(|| phase(node))));
         points.clear();
         triangles.clear();
@@ -417,8 +424,8 @@ impl Surroundings<'_> {
             }));
         }
         mesh.triangles.extend(triangles.iter().map(|triangle| triangle.map(|at| base + at)));
-        if let Some(bodies) = self.bodies {
-            let body = bodies.body_of_node(nodes[0] as usize) % BODIES;
+        if self.coloured {
+            let body = body % BODIES;
             mesh.shades.resize(mesh.vertices.len(), -1.0 - narrow_count(body));
         }
     }

@@ -2,7 +2,7 @@
 //! that follow them and for the drawn size of plates and walls. They depend on the scene only and not on the requested
 //! frames.
 
-use crate::look::CameraBox;
+use crate::look::CameraBoxes;
 use crate::scene::{Run, Scene};
 use crate::sim::geometry;
 use crate::sim::{Diagnostics, Divergence, Moment, Shape, World};
@@ -43,7 +43,7 @@ pub struct TimeSeries {
     /// times.
     pub paths: Vec<Vec<DVec3>>,
     /// The boxes around the bodies at these times, if the scene's camera follows them.
-    pub(crate) boxes: Vec<CameraBox>,
+    pub(crate) boxes: Vec<CameraBoxes>,
     /// The boxes around their nodes near plates and walls.
     pub(crate) reach: NearObstacles,
     /// The divergence of the run, if it diverged.
@@ -81,7 +81,7 @@ impl TimeSeries {
         self.diagnostics.push(all);
         self.of_bodies.iter_mut().zip(of_bodies).for_each(|(series, of_body)| series.push(of_body));
         if scene.view.camera.follow {
-            self.boxes.extend(CameraBox::new(&scene.view, run.body(), position));
+            self.boxes.extend(CameraBoxes::new(&scene.view, &run.bodies, position));
         }
         self.reach.add(scene, run, time, position);
     }
@@ -102,7 +102,9 @@ impl NearObstacles {
     pub(crate) fn add(&mut self, scene: &Scene, run: &Run, time: f64, position: &[DVec3]) {
         self.0.resize(scene.obstacles.len(), None);
         for (at, body) in run.bodies.bodies().iter().enumerate() {
-            self.add_body(scene, time, body.extent(), &position[run.bodies.nodes(at)]);
+            // Without positions there is nothing near.
+            let nodes = position.get(run.bodies.nodes(at));
+            nodes.into_iter().for_each(|nodes| self.add_body(scene, time, body.extent(), nodes));
         }
     }
 

@@ -42,7 +42,7 @@ pub use schema::schema;
 pub use summary::{RunSummary, SceneSummary};
 
 use crate::colour::Colour;
-use crate::look::View;
+use crate::look::{Subject, SubjectBody, SubjectRun, View};
 use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, key_path};
 use crate::reading::words::{list, nearest, quoted};
@@ -98,6 +98,23 @@ pub struct SceneBody {
     pub body: Arc<Body>,
     /// Its initial positions and velocities.
     pub initial: State,
+    /// Mean length of its elements' edges (m).
+    pub side: f64,
+    /// Whether this length is the side of a lattice's cells.
+    pub has_cells: bool,
+}
+
+/// Bodies and runs in their surroundings, as the view sees them.
+fn subject<'a>(bodies: &'a [SceneBody], runs: &'a [Run], gravity: DVec3, obstacles: &'a [Obstacle]) -> Subject<'a> {
+    let body = |one: &'a SceneBody| {
+        let SceneBody { name, body, initial, side, has_cells } = one;
+        SubjectBody { name, body, initial, side: *side, has_cells: *has_cells }
+    };
+    let run = |one: &'a Run| {
+        let Run { name, of, bodies, models, step, .. } = one;
+        SubjectRun { name, step: *step, of, nodes: bodies.whole().len(), models, is_gripped: !one.grips.is_empty() }
+    };
+    Subject { bodies: bodies.iter().map(body).collect(), gravity, obstacles, runs: runs.iter().map(run).collect() }
 }
 
 /// Bodies of the scene with their models, and one panel of the picture.
@@ -211,11 +228,6 @@ impl Scene {
 }
 
 impl Run {
-    /// The two nodes of each spring of its first body; empty for models without springs.
-    pub(crate) fn springs(&self) -> &[[u32; 2]] {
-        self.models.first().map_or(&[], |model| model.springs())
-    }
-
     /// All its bodies as one.
     pub fn body(&self) -> &Arc<Body> {
         self.bodies.whole()
@@ -253,11 +265,6 @@ impl Scene {
     #[cfg(feature = "render")]
     pub(crate) fn is_lit(&self) -> bool {
         self.dimension() == Dimension::Space
-    }
-
-    /// All its bodies together.
-    pub(crate) fn together(&self) -> Together {
-        Together::new(self.bodies.iter().map(|one| (&one.body, &one.initial)))
     }
 
     /// Fails if a row of a recording could not be read since the scene was loaded. The states shown are then wrong.

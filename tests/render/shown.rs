@@ -215,7 +215,7 @@ fn scaled(factor: f64) -> (Scene, Frame) {
         run.bodies = bodies.clone();
         run.initial.position.iter_mut().chain(&mut run.initial.velocity).for_each(|at| *at *= factor);
     }
-    scene.view.side *= factor;
+    (scene.view.side, scene.bodies[0].side) = (factor * scene.view.side, factor * scene.bodies[0].side);
     scene.view.camera.target *= factor;
     scene.view.camera.distance *= factor;
     for run in &mut frame.runs {

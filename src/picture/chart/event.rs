@@ -95,7 +95,7 @@ pub(in crate::picture) fn narrowest(diagnostic: Diagnostic, scene: &Scene) -> Ve
     if diagnostic == Diagnostic::TurnedOver {
         return vec![event("first turned over".to_owned(), "at"), event("settles at 1".to_owned(), "after")];
     }
-    let extent = scene.runs[0].body().extent();
+    let extent = scene.extent();
     vec![event(format!("lowest {}", number::value(diagnostic, 0.1 * extent, extent)), "at")]
 }
 

@@ -86,19 +86,10 @@ impl Quantity {
             range: series::range(&series, !is_count),
             series,
             runs,
-            extent: scene.runs[0].body().extent(),
+            extent: scene.extent(),
         };
         let unit = match one.values(MOST_TICKS) {
-            _ if is_count => match elements(scene.runs[0].body())[..] {
-                _ if of_scenes
-                    .iter()
-                    .any(|(other, _)| elements(other.runs[0].body()) != elements(scene.runs[0].body())) =>
-                {
-                    "elements".to_owned()
-                }
-                [(count, name)] => format!("of {} {name}", number::count(count)),
-                _ => format!("of {} elements", number::count(scene.runs[0].body().elements.len())),
-            },
+            _ if is_count => of_elements(of_scenes),
             Some(values) => values.unit,
             None => "none".to_owned(),
         };
@@ -151,6 +142,21 @@ impl Quantity {
             let baseline = baseline + f64::from(line) * SHORT * unit;
             writer.left(text, Weight::Regular, SMALL * unit, palette.second_text, left, baseline);
         }
+    }
+}
+
+/// The unit of a count of elements: how many there are, if all runs have equally many.
+fn of_elements(of_scenes: &[(&Scene, &History)]) -> String {
+    let shown = |(scene, history): &(&Scene, &History)| -> Vec<_> {
+        history.series.iter().map(|series| elements(scene.runs[series.run].body())).collect()
+    };
+    let all: Vec<_> = of_scenes.iter().flat_map(shown).collect();
+    match all.first() {
+        Some(first) if all.iter().all(|other| other == first) => match first[..] {
+            [(count, name)] => format!("of {} {name}", number::count(count)),
+            _ => format!("of {} elements", number::count(first.iter().map(|(count, _)| count).sum())),
+        },
+        _ => "elements".to_owned(),
     }
 }
 

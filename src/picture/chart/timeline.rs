@@ -47,7 +47,7 @@ impl Timeline {
         let width = f64::from(scene.view.size[0]) - 2.0 * side;
         let stack = Stack::new(&diagnostics, &[(scene, history)], &ground, NAMES * width, str::to_owned);
         let colours = stack.first().iter().map(|one| (one.run, one.style.colour)).collect();
-        let mut events = event::events(diagnostics[0], stack.first(), scene.runs[0].body().extent(), history.end);
+        let mut events = event::events(diagnostics[0], stack.first(), scene.extent(), history.end);
         // A number without an explanation in its panel would mean nothing.
         for one in stack.first() {
             let own: Vec<_> = events.iter().filter(|event| event.run == one.run).collect();

@@ -16,7 +16,8 @@ impl Composer<'_> {
     /// The colour scale for the strain of a run's springs, if they show it.
     pub(super) fn strain_of_springs(&self, run: usize) -> Option<ColourScale> {
         let view = &self.scene.view;
-        let has_springs = self.scene.runs.get(run).is_some_and(|run| !run.springs().is_empty());
+        let has_springs =
+            self.scene.runs.get(run).is_some_and(|run| run.models.iter().any(|model| !model.springs().is_empty()));
         let are_shown = has_springs && view.visible.springs && !view.visible.surfaces;
         view.colour.filter(|scale| are_shown && scale.field == Field::Strain)
     }
@@ -30,18 +31,18 @@ impl Draft<'_> {
             return [sound, turned_over];
         }
         let surroundings = Surroundings {
-            body: self.body,
-            ears: &self.composer.ears,
+            bodies: self.bodies.assembly(),
+            ears: &self.bodies.ears,
             position: &self.position,
             lens: &self.lens,
             origin: self.origin,
             side: self.side,
-            soft: self.composer.soft * self.side,
+            soft: self.bodies.soft_of.iter().map(|soft| soft * self.side).collect(),
             edges: self.scene.view.edges.are_drawn(),
             element: self.element,
             flat: &self.run.snapshot.flat,
             shades: self.shades.as_ref(),
-            bodies: self.coloured_bodies(),
+            coloured: self.bodies.assembly().bodies().len() > 1 && self.shades.is_none(),
         };
         let sets = boundaries(self.body, &self.run.snapshot.turned_over);
         let total = sets.iter().map(Vec::len).sum();
@@ -72,7 +73,7 @@ impl Draft<'_> {
     /// from their middle (m).
     pub(super) fn bare_lines(&self) -> Vec<([DVec3; 2], bool)> {
         let mut lines = Vec::new();
-        for &element in &self.composer.bare {
+        for &element in &self.bodies.bare {
             let nodes = &self.body.elements[element];
             let over = self.run.snapshot.turned_over.get(element).copied().unwrap_or(false);
             let at = |node: u32| self.position[node as usize];
@@ -91,25 +92,22 @@ impl Draft<'_> {
     pub(super) fn strokes(&self) -> Vec<Stroke> {
         let visible = self.scene.view.visible;
         let over = &self.run.snapshot.turned_over;
-        let (wire, edges) = (self.wire(), &self.composer.edges);
+        let (wire, edges) = (self.wire(), &self.bodies.edges);
         let mut strokes = Vec::new();
         if self.position.is_empty() {
             return strokes;
         }
         if visible.surfaces && wire.shades.is_some() {
-            strokes.extend(wire.bare(&self.composer.bare, over));
+            strokes.extend(wire.bare(&self.bodies.bare, over));
         }
-        let springs = match self.scene.runs.get(self.run.run) {
-            Some(run) if visible.springs => run.springs(),
-            _ => &[],
-        };
+        let springs = &self.composer.springs[self.run.run][..];
         if !visible.surfaces && springs.is_empty() {
             strokes.extend(wire.edges(edges, over, false));
         }
         let strain = self.composer.strain_of_springs(self.run.run).map(|scale| (&self.composer.ramp[..], scale));
         let on_skin: Vec<_>;
         let springs = if wire.hides_inside() && !self.flat {
-            let holds = |ends: &&[u32; 2]| ends.iter().all(|&node| self.composer.skin.holds(node));
+            let holds = |ends: &&[u32; 2]| ends.iter().all(|&node| self.bodies.skin.holds(node));
             on_skin = springs.iter().filter(holds).copied().collect();
             &on_skin[..]
         } else {

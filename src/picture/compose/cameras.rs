@@ -1,14 +1,15 @@
 //! The arrangement and the cameras of the panels of a frame.
 
 use super::Composer;
-use crate::look::{CameraBox, Traced};
+use crate::look::{CameraBoxes, Traced};
 use crate::picture::Framing;
-use crate::picture::framing::{self, Seen, Shot};
+use crate::picture::framing::{self, Moment, Seen, Shot};
 use crate::picture::layout::steps::{CLOSE, RING};
 use crate::picture::layout::{Rectangle, Scale, clear_of_words};
 use crate::runner::history::History;
-use crate::scene::Scene;
+use crate::scene::{Run, Scene};
 use crate::sim::RunFrame;
+use std::borrow::Cow;
 
 /// The most columns of panels that a scene does not arrange itself, and how many times larger bodies must become for
 /// fewer columns than possible.
@@ -70,14 +71,23 @@ impl Composer<'_> {
     }
 }
 
-/// What a camera that follows sees in the whole course of a scene; `None` if the camera is fixed, or without a place of the
-/// body.
+/// What a camera that follows sees in the whole course of a scene; `None` if the camera is fixed, or without a place of
+/// bodies.
 pub(super) fn seen(scene: &Scene, history: &History) -> Option<Seen> {
-    let start = CameraBox::new(&scene.view, scene.runs[0].body(), &scene.runs[0].initial.position);
-    let moments = history.series.iter().flat_map(|course| {
+    if !scene.view.camera.follow {
+        return None;
+    }
+    let (distinct, _) = scene.distinct_bodies();
+    let start = |run: usize| {
+        let Run { bodies, initial, .. } = &scene.runs[run];
+        let seen = Cow::Owned(CameraBoxes::new(&scene.view, bodies, &initial.position)?);
+        Some(Moment { time: 0.0, run, seen, is_sound: true })
+    };
+    let courses = history.series.iter().flat_map(|course| {
+        let (run, is_sound) = (course.run, course.divergence.is_none());
         let boxes = course.times.iter().zip(&course.boxes);
-        boxes.map(|(&time, &seen)| (time, seen, course.divergence.is_none()))
+        boxes.map(move |(&time, seen)| Moment { time, run, seen: Cow::Borrowed(seen), is_sound })
     });
-    let moments: Vec<_> = start.map(|start| (0.0, start, true)).into_iter().chain(moments).collect();
-    scene.view.camera.follow.then(|| Seen::new(scene, &moments, true))?
+    let moments: Vec<_> = distinct.into_iter().filter_map(start).chain(courses).collect();
+    Seen::new(scene, &moments, true)
 }

@@ -1,6 +1,7 @@
 //! The data for all parts of a panel.
 
 use super::Composer;
+use super::bodies::Bodies;
 use crate::look::Palette;
 use crate::picture::Framing;
 use crate::picture::camera::Lens;
@@ -11,7 +12,7 @@ use crate::picture::narrow::narrow_point;
 use crate::picture::plane::sides;
 use crate::picture::shadow::key_light;
 use crate::scene::Scene;
-use crate::sim::{Assembly, Body, Dimension, RunFrame, Snapshot, Status};
+use crate::sim::{Body, Dimension, RunFrame, Snapshot, Status};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
@@ -22,6 +23,8 @@ const FARTHEST: f64 = 1e12;
 pub(super) struct Draft<'a> {
     pub(super) composer: &'a Composer<'a>,
     pub(super) scene: &'a Scene,
+    pub(super) bodies: &'a Bodies<'a>,
+    /// All bodies as one.
     pub(super) body: &'a Body,
     pub(super) run: Shown<'a>,
     pub(super) framing: &'a Framing,
@@ -71,7 +74,8 @@ impl<'a> Draft<'a> {
         scale: Scale,
     ) -> Self {
         let scene = composer.scene;
-        let (view, body) = (&scene.view, &**scene.runs[0].body());
+        let (view, bodies) = (&scene.view, composer.bodies(run.run));
+        let body = bodies.body();
         let greyed = run.shown().status != Status::Ok;
         let diverged = greyed && run.last_fit.is_none();
         let run = Shown { run: run.run, snapshot: run.shown() };
@@ -85,13 +89,14 @@ impl<'a> Draft<'a> {
         let shown = view.colour.as_ref().filter(|_| composer.strain_of_springs(run.run).is_none());
         let shades = shown.map(|scale| Shades::new(body, scale, field));
         let of_nodes = match &shades {
-            Some(shades) if !view.visible.surfaces || !composer.bare.is_empty() => shades.of_nodes(body),
+            Some(shades) if !view.visible.surfaces || !bodies.bare.is_empty() => shades.of_nodes(body),
             _ => Vec::new(),
         };
         let flat = body.dimension == Dimension::Plane;
         Self {
             composer,
             scene,
+            bodies,
             body,
             run,
             framing,
@@ -104,19 +109,13 @@ impl<'a> Draft<'a> {
             position,
             shades,
             of_nodes,
-            element: lens.focal * view.side / if flat { 1.0 } else { framing.distance },
+            element: lens.focal * bodies.side / if flat { 1.0 } else { framing.distance },
             flat,
             diverged,
             greyed,
             palette: if greyed { composer.palette.greyed() } else { composer.palette },
             lens,
         }
-    }
-
-    /// The bodies of the run, if each has a colour of its own.
-    pub(super) fn coloured_bodies(&self) -> Option<&'a Assembly> {
-        let bodies = &*self.scene.runs[self.run.run].bodies;
-        (bodies.bodies().len() > 1 && self.shades.is_none()).then_some(bodies)
     }
 
     /// The part of the panel without words, over its whole width.

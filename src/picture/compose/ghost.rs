@@ -49,10 +49,10 @@ impl Draft<'_> {
     pub(super) fn outline(&self, position: &[DVec3], colour: Colour, room: Rectangle, curves: &mut Vec<Item>) {
         let pixels = position.iter().map(|&at| self.pixel(at)).collect::<Option<Vec<_>>>();
         let Some(pixels) = pixels.filter(|pixels| !self.diverged && pixels.len() == self.body.len()) else { return };
-        let skin = &self.composer.skin;
+        let skin = &self.bodies.skin;
         let triangles: Vec<_> =
             skin.triangles.iter().map(|corners| corners.map(|at| skin.nodes[at as usize])).collect();
-        let bars = self.composer.bare.iter().flat_map(|&element| self.body.topology().edges_of(element));
+        let bars = self.bodies.bare.iter().flat_map(|&element| self.body.topology().edges_of(element));
         let path = ghost::outline(&pixels, &triangles, &bars.collect::<Vec<_>>(), self.around(room));
         let [width, halo] = [STRONG, TICK].map(|width| narrow(width * self.scale.line()));
         let dash = ghost::DASH.map(|length| narrow(length * self.scale.line())).to_vec();

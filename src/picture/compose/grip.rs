@@ -23,11 +23,11 @@ impl Draft<'_> {
     /// Marks all nodes that are held at the panel's time.
     pub(super) fn grips(&self, marks: &mut Vec<Item>) {
         let time = self.run.snapshot.time;
-        let held: Vec<_> = self.scene.runs[0].grips.iter().filter(|grip| grip.holds(time)).collect();
+        let held: Vec<_> = self.scene.runs[self.run.run].grips.iter().filter(|grip| grip.holds(time)).collect();
         if self.diverged || held.is_empty() || self.position.is_empty() {
             return;
         }
-        let visible = self.composer.skin.visible(&self.position, &self.lens);
+        let visible = self.bodies.skin.visible(&self.position, &self.lens);
         for grip in held {
             let nodes = grip.nodes.iter().map(|&node| node as usize).filter(|&node| node < self.position.len());
             let nodes: Vec<_> = nodes.collect();

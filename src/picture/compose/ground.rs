@@ -1,6 +1,6 @@
 //! The floor of a panel, its grid and its shadows.
 
-use super::Composer;
+use super::bodies::Bodies;
 use super::draft::Draft;
 use crate::look::FloorStyle;
 use crate::picture::Floor;
@@ -69,9 +69,12 @@ impl Draft<'_> {
         if self.diverged || self.position.is_empty() {
             return 0.0;
         }
-        let middle = self.position.iter().sum::<DVec3>() / self.position.len() as f64;
         let size = self.composer.extent / self.side;
-        let gone = plane.shadow((middle - self.origin) / self.side, self.key).length();
+        let gone = self.bodies.nodes().map(|nodes| {
+            let middle = self.position[nodes.clone()].iter().sum::<DVec3>() / nodes.len() as f64;
+            plane.shadow((middle - self.origin) / self.side, self.key).length()
+        });
+        let gone = gone.fold(0.0, f64::max);
         // A smooth start.
         let beyond = (gone - STILL_NEAR * size).clamp(0.0, FARTHEST_SHADOW * size);
         beyond * beyond / (beyond + GENTLY * size)
@@ -96,7 +99,7 @@ impl Draft<'_> {
     /// The shadows of key light and sky, within `reach` of a point on the ground (sides).
     fn shadows(&self, staged: &Staged, plane: &Plane, middle: DVec2, reach: f64) -> [Shade; 2] {
         let mut shades = if self.scene.view.shadow && self.key.dot(plane.normal) > 0.05 {
-            self.casters(staged).shades(plane, self.key, middle, reach, self.composer.soft)
+            self.casters(staged).shades(plane, self.key, middle, reach, self.bodies.soft)
         } else {
             std::array::from_fn(|_| Shade { corner: [0.0; 2], length: 1.0, cells: Vec::new() })
         };
@@ -110,7 +113,7 @@ impl Draft<'_> {
 
     /// The shadow casters: body and solid obstacles.
     fn casters(&self, staged: &Staged) -> Casters<'_> {
-        let Composer { skin, seams, .. } = self.composer;
+        let Bodies { skin, seams, .. } = self.bodies;
         let relative = |at: &DVec3| (at - self.origin) / self.side;
         let on_skin = skin.nodes.iter().filter_map(|&node| self.position.get(node as usize));
         let mut casters = if self.position.is_empty() {

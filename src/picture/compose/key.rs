@@ -19,11 +19,11 @@ impl Composer<'_> {
         let path = Some(path).filter(|names| !names.is_empty());
         let colours = self.traced.iter().map(|series| self.scene.runs[series.run].line(&self.palette).colour).collect();
         let path = path.map(|names| Sample { names, kind: SampleKind::Path(colours) });
-        arrow.into_iter().chain(ghost).chain(path).chain(self.bodies()).collect()
+        arrow.into_iter().chain(ghost).chain(path).chain(self.samples_of_bodies()).collect()
     }
 
     /// A sample of each colour of bodies, with the names of its bodies.
-    fn bodies(&self) -> impl Iterator<Item = Sample<'_>> {
+    fn samples_of_bodies(&self) -> impl Iterator<Item = Sample<'_>> {
         let (names, palette) = (self.scene.view.coloured_bodies(), &self.palette);
         let colours = if self.scene.is_lit() { palette.bodies } else { palette.bodies_flat };
         colours.into_iter().enumerate().take(names.len()).map(move |(at, colour)| {
@@ -58,12 +58,11 @@ impl Composer<'_> {
 
     /// The strains of a run's springs on a scale.
     fn strains(&self, run: &RunFrame, scale: &ColourScale) -> Vec<f64> {
-        let (body, position) = (&**self.scene.runs[0].body(), &run.shown().position);
+        let (body, position) = (self.bodies(run.run).body(), &run.shown().position);
         if position.len() != body.len() {
             return Vec::new();
         }
-        let springs = self.scene.runs[run.run].springs();
-        springs.iter().map(|&ends| scale.of_spring(spring_strain(body, position, ends))).collect()
+        self.springs[run.run].iter().map(|&ends| scale.of_spring(spring_strain(body, position, ends))).collect()
     }
 
     /// The key's arrow with its length in words.

@@ -1,5 +1,6 @@
 //! Composes pictures. Each panel starts as a [`Draft`], whose parts are in separate files.
 
+mod bodies;
 mod body;
 mod cameras;
 mod cut;
@@ -17,29 +18,24 @@ mod plane_marks;
 mod region;
 mod words;
 
-use super::arrows;
 use super::camera::Lens;
 use super::caption::{self, Writer};
 use super::chart::event::Event;
 use super::chart::timeline::Timeline;
-use super::ears::{Ears, bare_elements};
 use super::framing::{Seen, Shot};
 use super::layout::tree::Solved;
 use super::layout::{Part, Rectangle, Scale, Written, baselines};
 use super::number;
-use super::shadow;
-use super::skin::Skin;
-use super::tally::Tally;
 use super::text::Fonts;
-use super::wire::Edges;
 use super::{Framing, Picture};
 use crate::colour::Colour;
 use crate::look::Palette;
 use crate::look::ramp::ramp;
 use crate::runner::history::{History, NearObstacles, TimeSeries};
-use crate::scene::Scene;
+use crate::scene::{Run, Scene};
 use crate::sim::geometry::bounds;
-use crate::sim::{Body, Dimension, Frame, Snapshot, Status};
+use crate::sim::{Frame, Status};
+use bodies::Bodies;
 use draft::Draft;
 pub(crate) use figure::compose_figure;
 use glam::DVec3;
@@ -48,40 +44,26 @@ use std::sync::OnceLock;
 use words::{Around, Words};
 pub(crate) use words::{left_out, type_left_out};
 
-/// Bodies with more elements than this along a side get softer light, as if they had larger elements.
-const SOFT_SHARE: f64 = 4.5;
-
 /// Composes frames of one scene.
 #[derive(Debug)]
 pub struct Composer<'a> {
     scene: &'a Scene,
     palette: Palette,
     fonts: Fonts,
-    /// The elements in rows.
-    tally: Tally,
+    /// The bodies of runs. Runs that share them have one entry.
+    bodies: Vec<Bodies<'a>>,
+    /// The place of each run's bodies among them.
+    bodies_of: Vec<usize>,
+    /// The springs of each run, if they are shown.
+    springs: Vec<Vec<[u32; 2]>>,
     /// The second line of each run.
     descriptions: Vec<String>,
-    /// The signed area of each polygon of a body in the plane.
-    rest_areas: Vec<f64>,
-    /// The surface of the body, and the edges of its triangles if it casts a shadow.
-    skin: Skin,
-    seams: Vec<shadow::Edge>,
-    /// The triangles of faces that are not convex.
-    ears: Ears,
-    /// Elements without faces.
-    bare: Vec<usize>,
     /// The colours of a field, if one is shown.
     ramp: Vec<Colour>,
-    /// The edges of the elements, if surfaces are not shown.
-    edges: Edges,
-    /// The nodes with arrows.
-    bearers: Vec<u32>,
-    /// The size of the body (m).
+    /// The size of the bodies (m).
     extent: f64,
-    /// The box around the nodes at the start (m).
+    /// The box around the nodes of all runs at the start (m).
     start_box: [DVec3; 2],
-    /// The unit of soft distances (sides).
-    soft: f64,
     /// The charts below the panels, if the time series are known.
     timeline: Option<Timeline>,
     /// The paths of all runs, if the time series are known.
@@ -113,39 +95,25 @@ impl<'a> Composer<'a> {
     /// Charts and paths show the time series. A camera that follows takes its scale from them, and plates and walls
     /// their size. With an empty history there are no charts and paths, and all scales are those of the start.
     pub fn new(scene: &'a Scene, history: &History) -> Self {
-        let body = &**scene.runs[0].body();
-        let areas = match body.dimension {
-            Dimension::Plane => body.elements.iter().map(|nodes| area(nodes, &body.rest)).collect(),
-            Dimension::Space => Vec::new(),
-        };
-        let extent = body.extent().max(f64::MIN_POSITIVE);
-        let tally = Tally::new(&scene.runs[0].bodies, scene.view.side);
-        let descriptions = scene.runs.iter().map(|run| number::counted(caption::short_description(run))).collect();
-        let ears = Ears::new(body);
-        let skin = Skin::new(body, &ears);
-        let throws_shadow = scene.view.shadow && body.dimension == Dimension::Space;
-        let bare = bare_elements(body);
-        let visible = scene.view.visible;
+        let (distinct, bodies_of) = scene.distinct_bodies();
+        let bodies = distinct.iter().map(|&run| Bodies::new(scene, &scene.runs[run])).collect();
+        let boxes = distinct.iter().map(|&run| <[DVec3; 2]>::from(bounds(&scene.runs[run].initial.position)));
+        let start_box = boxes.reduce(|[low, high], [from, to]| [low.min(from), high.max(to)]);
+        let springs = |run: &Run| if scene.view.visible.springs { run.springs() } else { Vec::new() };
         let map = scene.view.colour.map(|scale| scale.map);
         let mut reach = NearObstacles::default();
         history.series.iter().for_each(|series| reach.merge(&series.reach));
         let mut composer = Self {
             scene,
             ramp: map.map_or_else(Vec::new, |map| ramp(map, scene.view.look.theme)),
-            edges: if visible.surfaces { Edges::default() } else { Edges::new(body) },
-            bearers: if visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
             palette: scene.view.look.palette(),
             fonts: Fonts::new(&scene.view.look.font),
-            tally,
-            descriptions,
-            rest_areas: areas,
-            seams: if throws_shadow { shadow::edges(&skin.triangles) } else { Vec::new() },
-            skin,
-            ears,
-            bare,
-            extent,
-            start_box: bounds(&scene.runs[0].initial.position).into(),
-            soft: (extent / scene.view.side / SOFT_SHARE).max(1.0),
+            bodies,
+            bodies_of,
+            springs: scene.runs.iter().map(springs).collect(),
+            descriptions: scene.runs.iter().map(|run| number::counted(caption::short_description(run))).collect(),
+            extent: scene.extent().max(f64::MIN_POSITIVE),
+            start_box: start_box.unwrap_or_default(),
             timeline: None,
             traced: if scene.view.paths.is_empty() { Vec::new() } else { history.series.clone() },
             seen: cameras::seen(scene, history),
@@ -167,6 +135,11 @@ impl<'a> Composer<'a> {
         let (panel, in_panel) = (layout.panels.first().filter(|_| layout.written.events), self.writer(layout.scale));
         let explained = |events: &[&Event]| panel.map_or(0, |&panel| in_panel.explained(panel, events));
         Some(Timeline::new(history, scene, || self.writer(layout.around), &layout, explained))
+    }
+
+    /// The bodies of a run.
+    fn bodies(&self, run: usize) -> &Bodies<'a> {
+        &self.bodies[self.bodies_of[run]]
     }
 
     /// The words of its pictures.
@@ -240,7 +213,7 @@ impl<'a> Composer<'a> {
         let around = self.words().around(runs, columns);
         let (layout, scale) = (&around.layout, around.layout.scale);
         let shot = layout.panels.first().and_then(|&panel| self.shot(panel, scale));
-        let numbers = self.numbers(layout, shot.as_ref());
+        let numbers = self.numbers(runs, layout, shot.as_ref());
         Arranged { runs: runs.to_vec(), columns, around, shot, numbers }
     }
 
@@ -269,8 +242,9 @@ impl<'a> Composer<'a> {
             let place = |numeral| numbers.get(numeral).map(|[left, _, width, _]| [left, left + width]);
             let count = place(NumberPart::Tally).zip(place(NumberPart::Count));
             // The shown state of a run that diverges lacks the present number of turned-over elements.
-            if let Some((tally, count)) = count.filter(|_| run.shown().status == Status::Ok) {
-                writer.count(viewport, [tally, count], (&self.tally, &self.names_of(run.run)), run.shown());
+            if let Some((place_of_tally, count)) = count.filter(|_| run.shown().status == Status::Ok) {
+                let tally = &self.bodies(run.run).tally;
+                writer.count(viewport, [place_of_tally, count], (tally, &self.names_of(run.run)), run.shown());
             }
             let mut taken = count.map_or(0.0, |(_, [_, end])| end);
             // All panels have one scale, so there is one bar.
@@ -281,7 +255,8 @@ impl<'a> Composer<'a> {
             match caption::divergence(run) {
                 Some(divergence) => writer.number(viewport, taken, &divergence),
                 None if labels.number && place(NumberPart::Number).is_some() => {
-                    let usual = caption::number(self.extent, &run.snapshot, self.smallest_area_ratio(&run.snapshot));
+                    let ratio = self.bodies(run.run).smallest_area_ratio(&run.snapshot);
+                    let usual = caption::number(self.extent, &run.snapshot, ratio);
                     writer.number(viewport, taken, &usual);
                 }
                 None => {}
@@ -295,29 +270,4 @@ impl<'a> Composer<'a> {
         let lens = Lens::new(&scene.view, framing, scene.dimension(), viewport.map(f64::from), scale.unit);
         lens.focal / if lens.orthographic { 1.0 } else { framing.distance }
     }
-
-    /// The smallest signed area of a polygon over its area at rest, for bodies in the plane.
-    fn smallest_area_ratio(&self, snapshot: &Snapshot) -> Option<f64> {
-        let body = &**self.scene.runs[0].body();
-        if self.rest_areas.is_empty() || snapshot.position.len() != body.len() {
-            return None;
-        }
-        let areas = body.elements.iter().zip(&self.rest_areas).filter(|(_, rest)| **rest != 0.0);
-        areas.map(|(nodes, rest)| area(nodes, &snapshot.position) / rest).reduce(f64::min)
-    }
-}
-
-/// The nodes with arrows: those on the surface, and those of elements without faces.
-fn bearers(body: &Body, skin: &Skin, bare: &[usize]) -> Vec<u32> {
-    let of_bare = bare.iter().flat_map(|&element| &body.elements[element]);
-    let mut nodes: Vec<u32> = skin.nodes.iter().chain(of_bare).copied().collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    arrows::bearers(&nodes)
-}
-
-/// The signed area of a polygon in the xy-plane (m²).
-fn area(nodes: &[u32], position: &[DVec3]) -> f64 {
-    let at = |node: u32| position[node as usize].truncate() - position[nodes[0] as usize].truncate();
-    nodes.windows(2).map(|two| 0.5 * at(two[0]).perp_dot(at(two[1]))).sum()
 }

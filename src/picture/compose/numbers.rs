@@ -29,21 +29,26 @@ impl Composer<'_> {
         if of.len() < 2 { Vec::new() } else { of.iter().map(|&body| self.scene.bodies[body].name.as_str()).collect() }
     }
 
-    /// The boxes of the row in each panel, from its left margin on (px). They are those of the start, so that nothing
-    /// comes and goes.
-    pub(super) fn numbers(&self, layout: &Layout, shot: Option<&Shot>) -> Solved<NumberPart> {
-        let (body, labels, scale) = (&**self.scene.runs[0].body(), layout.written.labels, layout.scale);
-        let Some(&panel) = layout.panels.first() else { return tree::column(&[], [0.0; 4]) };
-        let snapshot = Snapshot { position: self.scene.runs[0].initial.position.clone(), ..Snapshot::default() };
-        let number = caption::number(self.extent, &snapshot, self.smallest_area_ratio(&snapshot));
-        let framing = self.framing(shot, &RunFrame::new(0, snapshot), (panel, scale));
+    /// The boxes of the row in each panel of some runs, from its left margin on (px). They are those of the start, so that
+    /// nothing comes and goes.
+    pub(super) fn numbers(&self, runs: &[usize], layout: &Layout, shot: Option<&Shot>) -> Solved<NumberPart> {
+        let (labels, scale) = (layout.written.labels, layout.scale);
+        let Some((&panel, &first)) = layout.panels.first().zip(runs.first()) else {
+            return tree::column(&[], [0.0; 4]);
+        };
+        let snapshot = Snapshot { position: self.scene.runs[first].initial.position.clone(), ..Snapshot::default() };
+        let number = caption::number(self.extent, &snapshot, self.bodies(first).smallest_area_ratio(&snapshot));
+        let framing = self.framing(shot, &RunFrame::new(first, snapshot), (panel, scale));
         let writer = self.writer(scale);
         let width = (f64::from(panel[2]) - 2.0 * scale.margin()).max(0.0);
         let node = |numeral, [wanted, least]: [f64; 2]| Node::new(numeral, wanted).least(least).after(scale.gap());
-        let count = (labels.count && !body.elements.is_empty()).then(|| {
-            let tally = self.tally.width(scale, TALLY[0] * width);
-            let tally = Node::new(NumberPart::Tally, tally).least(TALLY[1] * width);
-            [tally, node(NumberPart::Count, writer.count_widths(&self.names_of(0), &self.tally))]
+        let elements = runs.iter().map(|&run| self.bodies(run).body().elements.len()).max().unwrap_or(0);
+        let count = (labels.count && elements > 0).then(|| {
+            let tallies = runs.iter().map(|&run| self.bodies(run).tally.width(scale, TALLY[0] * width));
+            let tally = Node::new(NumberPart::Tally, tallies.fold(0.0, f64::max)).least(TALLY[1] * width);
+            let counts = runs.iter().map(|&run| writer.count_widths(&self.names_of(run), &self.bodies(run).tally));
+            let widest = counts.fold([0.0_f64; 2], |[a, b], [c, d]| [a.max(c), b.max(d)]);
+            [tally, node(NumberPart::Count, widest)]
         });
         let bars = self.bars(panel, &framing, scale).map(|(text, pixels)| writer.bar_width(&text, pixels));
         let bars = bars.filter(|_| labels.scale_bar);
@@ -58,7 +63,7 @@ impl Composer<'_> {
     pub(super) fn lacks_bar(&self, runs: &[usize], columns: usize) -> bool {
         let layout = self.words().around(runs, columns).layout;
         let shot = layout.panels.first().and_then(|&panel| self.shot(panel, layout.scale));
-        let has_bar = || self.numbers(&layout, shot.as_ref()).get(NumberPart::Bar).is_some();
+        let has_bar = || self.numbers(runs, &layout, shot.as_ref()).get(NumberPart::Bar).is_some();
         self.scene.view.labels.scale_bar && !layout.panels.is_empty() && !has_bar()
     }
 

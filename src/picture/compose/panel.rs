@@ -1,6 +1,6 @@
 //! Composes one panel from its parts.
 
-use super::Composer;
+use super::bodies::Bodies;
 use super::draft::Draft;
 use super::plane_body::PlaneBody;
 use super::plane_marks::node_radius;
@@ -15,6 +15,7 @@ use crate::picture::surface::SurfaceLines;
 use crate::picture::{Item, Line, Obstacles, Panel, Sight, Solid};
 use crate::sim::geometry;
 use glam::DVec3;
+use std::ops::Range;
 
 /// Small bodies have narrower contours, down to this part of the width; otherwise they would be mostly outline.
 const LEAST_CONTOUR: f64 = 0.4;
@@ -85,10 +86,10 @@ impl Draft<'_> {
             key: narrow_point(self.key),
             flat: self.flat,
             line_scale: narrow(self.scale.line()),
-            soft: narrow(self.composer.soft),
+            soft: narrow(self.bodies.soft),
             element: narrow(self.element),
             contour_share: narrow(self.contour_share()),
-            middle: self.middle(),
+            middle: self.middle(0..self.position.len()),
         }
     }
 
@@ -97,16 +98,21 @@ impl Draft<'_> {
         if self.diverged {
             return 1.0;
         }
-        let nodes = self.composer.skin.nodes.iter().filter_map(|&node| self.position.get(node as usize));
-        let [low, high] = self.bounds(nodes);
-        let widest = (high - low).max_element() / self.scale.line();
+        // The skin of one body follows that of another.
+        let body = |&node: &u32| self.bodies.assembly().body_of_node(node as usize);
+        let size = |nodes: &[u32]| {
+            let [low, high] = self.bounds(nodes.iter().filter_map(|&node| self.position.get(node as usize)));
+            (high - low).max_element()
+        };
+        let of_bodies = self.bodies.skin.nodes.chunk_by(|one, other| body(one) == body(other)).map(size);
+        let widest = of_bodies.fold(f64::NEG_INFINITY, f64::max) / self.scale.line();
         let share = ((widest - APART) / (CHART - APART)).clamp(0.0, 1.0);
         1.0 - (1.0 - LEAST_CONTOUR) * (1.0 - share * share * (3.0 - 2.0 * share))
     }
 
-    /// The pixel of the body's middle.
-    pub(super) fn middle(&self) -> [f32; 2] {
-        let middle = self.position.iter().sum::<DVec3>() / self.position.len().max(1) as f64;
+    /// The pixel of the middle of some nodes.
+    pub(super) fn middle(&self, nodes: Range<usize>) -> [f32; 2] {
+        let middle = self.position[nodes.clone()].iter().sum::<DVec3>() / nodes.len().max(1) as f64;
         self.lens.project(middle).map_or([0.0; 2], |(pixel, _)| pixel.map(narrow))
     }
 
@@ -131,8 +137,8 @@ impl Draft<'_> {
             cell: self.cell(),
             ground: geometry::ground(&self.scene.obstacles, self.run.snapshot.time),
             position: &self.position,
-            skin: (self.scene.view.visible.surfaces && !self.diverged).then_some(&self.composer.skin),
-            soft: self.composer.soft * self.side,
+            skin: (self.scene.view.visible.surfaces && !self.diverged).then_some(&self.bodies.skin),
+            soft: self.bodies.soft * self.side,
             start: self.composer.start_box,
             reach: &self.composer.reach,
         };
@@ -151,7 +157,8 @@ impl Draft<'_> {
         let node = if view.visible.nodes { node_radius(self.scale, self.element) } else { 0.0 };
         let shortest = (RING * size).max(FREE).max(2.0 * node);
         let arrows = self.facing_bearers().into_iter().filter_map(|(node, opacity)| {
-            let start = self.run.snapshot.placements[0].place(self.body.rest[node as usize]);
+            let placement = self.run.snapshot.placements[self.bodies.assembly().body_of_node(node as usize)];
+            let start = placement.place(self.body.rest[node as usize]);
             let end = start + view.arrow_scale * (self.position[node as usize] - start);
             let (to, depth) = self.lens.project(end)?;
             let (ends, part) = arrows::inside([self.pixel(start)?, to.into()], self.clear, shortest)?;
@@ -162,7 +169,7 @@ impl Draft<'_> {
 
     /// The nodes with arrows and their opacity: 0 if all faces of a node in space are turned away.
     fn facing_bearers(&self) -> Vec<(u32, f64)> {
-        let Composer { skin, bearers, .. } = self.composer;
+        let Bodies { skin, bearers, .. } = self.bodies;
         if !self.scene.view.visible.surfaces {
             return bearers.iter().map(|&node| (node, 1.0)).collect();
         }

@@ -53,7 +53,7 @@ impl Draft<'_> {
         for (traced, path) in self.scene.view.paths.iter().zip(&own.paths) {
             let width = if *traced == Traced::Centre { STRONG } else { THIN };
             let past = own.times.iter().take_while(|&&time| time < snapshot.time).count();
-            let now = traced.of(self.scene.runs[0].body(), &snapshot.position);
+            let now = traced.of(self.body, &snapshot.position);
             let way = path.iter().take(past).copied().chain([now]);
             let seen: Vec<_> = way.map(|at| self.pixel(at).map(|pixel| pixel.to_array())).collect();
             // Points behind the camera divide the line.

@@ -24,7 +24,7 @@ type Corner = (Vec2, f32);
 /// The sound elements, or the turned-over ones.
 #[derive(Default)]
 struct Set {
-    /// Triangles that fill the elements, all clockwise.
+    /// Triangles that fill the elements, all clockwise, body after body.
     triangles: Vec<[Corner; 3]>,
     /// The number of triangles up to the end of each body.
     ends: Vec<usize>,
@@ -62,7 +62,7 @@ impl<'a> PlaneBody<'a> {
             |name, of_part: Vec<Item>| items.extend((!of_part.is_empty()).then(|| Item::part(name, of_part)));
         part("elements", self.surface(&sound, self.draft.palette.bodies_flat));
         part("turned over", self.surface(&turned_over, [self.draft.palette.alarm; BODIES]));
-        part("hatch", self.hatch(&turned_over.triangles));
+        part("hatch", self.hatches(&turned_over));
         part("edges", self.lines(&sound, &turned_over));
         part("strokes", self.strokes([&sound, &turned_over]));
         Item::inside(self.room, items)
@@ -70,14 +70,14 @@ impl<'a> PlaneBody<'a> {
 
     /// The sound elements and the turned-over ones.
     fn sets(&self) -> [Set; 2] {
-        let Draft { body, run, shades, .. } = self.draft;
+        let Draft { bodies, body, run, shades, .. } = self.draft;
         let mut sets = [Set::default(), Set::default()];
         if self.pixels.is_empty() || !self.draft.scene.view.visible.surfaces {
             return sets;
         }
         let pixel = |node: u32| self.pixels[node as usize];
-        let (bodies, faces) = (&self.draft.scene.runs[run.run].bodies, &body.faces);
-        for of_body in (0..bodies.bodies().len()).map(|body| bodies.faces(body)) {
+        let faces = &body.faces;
+        for of_body in bodies.faces() {
             for face in of_body {
                 let (nodes, element) = (&faces.nodes[face], faces.inner[face].or(faces.outer[face]));
                 let is = |flags: &[bool]| element.is_some_and(|at| flags.get(at as usize).copied().unwrap_or(false));
@@ -125,8 +125,16 @@ impl<'a> PlaneBody<'a> {
         items
     }
 
-    /// The stripes on turned-over elements, fixed to the body.
-    fn hatch(&self, triangles: &[[Corner; 3]]) -> Vec<Item> {
+    /// The stripes on turned-over elements, fixed to each body.
+    fn hatches(&self, set: &Set) -> Vec<Item> {
+        let starts = std::iter::once(0).chain(set.ends.iter().copied());
+        let of_bodies = starts.zip(&set.ends).zip(self.draft.bodies.nodes());
+        let hatch = |((from, &to), nodes)| self.hatch(&set.triangles[from..to], self.draft.middle(nodes));
+        of_bodies.flat_map(hatch).collect()
+    }
+
+    /// The stripes on some triangles, fixed to the middle of their body.
+    fn hatch(&self, triangles: &[[Corner; 3]], middle: [f32; 2]) -> Vec<Item> {
         if triangles.is_empty() {
             return Vec::new();
         }
@@ -134,7 +142,7 @@ impl<'a> PlaneBody<'a> {
         // On the colours of a field, vermilion stands out more.
         let colour =
             if self.ramp.is_empty() { (palette.alarm_line, STRIPE_ALPHA.into()) } else { (palette.alarm, 1.0) };
-        let (path, middle) = (whole(triangles), Vec2::from(self.draft.middle()));
+        let (path, middle) = (whole(triangles), Vec2::from(middle));
         let period = narrow(RING) * self.line_scale();
         let across = FRAC_1_SQRT_2 * period * Vec2::ONE;
         let [left, top, right, bottom] = sides(self.room.map(f64::from)).map(narrow);

@@ -7,7 +7,7 @@ use crate::look::{self, Subject};
 use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::words::{list, quoted};
 use crate::scene::structure::ValidFile;
-use crate::scene::{Run, Scene, SceneError, Together};
+use crate::scene::{Scene, SceneError};
 use crate::sim::Diagnostic;
 use serde::Deserialize;
 use serde_json::Value;
@@ -184,8 +184,7 @@ impl Scenes<'_, '_, '_> {
         let Self { report, mut scenes, .. } = self;
         share_lines(&mut scenes);
         if let Some(typed) = &file.colour {
-            let all: Vec<_> = scenes.iter().map(Scene::together).collect();
-            let subjects: Vec<_> = scenes.iter().zip(&all).map(|(scene, bodies)| subject(scene, bodies)).collect();
+            let subjects: Vec<_> = scenes.iter().map(subject).collect();
             let scales = look::colour(typed, &subjects, "sheet", report).unwrap_or_default();
             scenes.iter_mut().zip(scales).for_each(|(scene, scale)| scene.view.colour = Some(scale));
         }
@@ -353,18 +352,8 @@ impl Scenes<'_, '_, '_> {
 }
 
 /// The scene's part of the input of views.
-fn subject<'a>(scene: &'a Scene, together: &'a Together) -> Subject<'a> {
-    Subject {
-        body: together.bodies.whole(),
-        initial: &together.initial,
-        side: scene.view.side,
-        has_cells: scene.view.has_cells,
-        gravity: scene.gravity,
-        obstacles: &scene.obstacles,
-        is_gripped: scene.runs.iter().any(|run| !run.grips.is_empty()),
-        runs: scene.runs.iter().map(|run| (run.name.as_str(), run.step)).collect(),
-        parts: scene.runs.iter().flat_map(Run::models_and_bodies).collect(),
-    }
+fn subject(scene: &Scene) -> Subject<'_> {
+    crate::scene::subject(&scene.bodies, &scene.runs, scene.gravity, &scene.obstacles)
 }
 
 /// Runs of one name have the line of the first scene with such a run; runs of different names have different lines.

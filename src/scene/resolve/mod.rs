@@ -17,17 +17,15 @@ use super::generate::Generator;
 use super::limits;
 use super::limits::{BodySize, Excess, Limits};
 use super::structure::ValidFile;
-use super::{ALL_BODIES, Run, Scene, SceneBody, Together};
+use super::{ALL_BODIES, Run, Scene, SceneBody, subject};
 use crate::look::{self, FontFiles, TypedView, View, font};
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::words::{count, quoted, short};
-use crate::sim::{Body, Dimension, Obstacle};
+use crate::sim::{Dimension, Obstacle};
 use body::{ResolvedBody, TypedBody};
 use choice::Choice;
-use elements::mean_edge;
 use glam::DVec3;
-use grips::SceneGrip;
 use lists::Lists;
 use recordings::ReadRecording;
 use serde::Serialize;
@@ -37,6 +35,7 @@ use std::collections::BTreeSet;
 use std::mem::take;
 use std::path::Path;
 use std::slice;
+use std::sync::Arc;
 
 /// The place of a body in a file: `body`, or `body[1]` among several.
 pub(super) type Place = Vec<PathPart<'static>>;
@@ -225,7 +224,6 @@ struct Physics {
     gravity: Option<DVec3>,
     bodies: Option<Vec<ResolvedBody>>,
     obstacles: Option<Vec<Obstacle>>,
-    grips: Option<Vec<SceneGrip>>,
     runs: Option<Vec<Run>>,
     /// The own bodies of recordings, after all others.
     own: Vec<ResolvedBody>,
@@ -261,10 +259,7 @@ fn resolve(
         gravity: physics.gravity?,
         duration: time.duration,
         frames_per_second: time.frames_per_second,
-        bodies: bodies
-            .into_iter()
-            .map(|ResolvedBody { name, body, initial, .. }| SceneBody { name, body, initial })
-            .collect(),
+        bodies: bodies.iter().map(scene_body).collect(),
         runs: physics.runs?,
         obstacles: physics.obstacles?,
         view: view?,
@@ -308,7 +303,7 @@ fn physics(parts: &SceneParts, beside: Vec<Option<Lists>>, limits: &Limits, repo
     if let (true, Some(names), Some(_)) = (is_plural, names, &runs) {
         choice::warn_of_unused(&choices, &names, &parts.places, report);
     }
-    Physics { gravity, bodies, obstacles, grips, runs, own }
+    Physics { gravity, bodies, obstacles, runs, own }
 }
 
 /// The names of the bodies, empty for one without; `None` if a name has a mistake, or may be left out because of one.
@@ -380,39 +375,27 @@ fn bodies<'a>(
     typed.iter().map(|_| None).collect()
 }
 
-/// The common length of the edges of all bodies, the side of cells if all of them have equal cells; else the mean.
-fn side(bodies: &[ResolvedBody], together: &Body) -> (f64, bool) {
-    let first = &bodies[0];
-    let is_common = bodies.iter().all(|body| (body.side, body.has_cells) == (first.side, first.has_cells));
-    if is_common { (first.side, first.has_cells) } else { (mean_edge(together), false) }
-}
-
 /// The view, which `look` resolves.
 fn view(parts: &SceneParts, physics: &Physics, report: &mut Collector<'_>) -> Option<View> {
-    let Physics { gravity, bodies, obstacles, grips, runs, .. } = physics;
-    let (bodies, obstacles) = (bodies.as_ref()?, obstacles.as_ref()?);
-    // A run of all bodies has them together.
-    let of_all = runs.iter().flatten().find(|run| run.of.len() == bodies.len());
-    let made =
-        if of_all.is_none() { Some(Together::new(bodies.iter().map(|one| (&one.body, &one.initial)))) } else { None };
-    let of_all = of_all.map(|run| (run.body(), &run.initial));
-    let (body, initial) = of_all.or_else(|| made.as_ref().map(|made| (made.bodies.whole(), &made.initial)))?;
-    let (side, has_cells) = side(bodies, body);
-    let around = look::Subject {
-        body,
-        initial,
-        side,
-        has_cells,
-        gravity: gravity.unwrap_or_default(),
-        obstacles,
-        is_gripped: grips.as_ref().is_some_and(|grips| !grips.is_empty()),
-        runs: runs.iter().flatten().map(|run| (run.name.as_str(), run.step)).collect(),
-        parts: runs.iter().flatten().flat_map(Run::models_and_bodies).collect(),
-    };
+    let Physics { gravity, bodies, obstacles, runs, own } = physics;
+    let bodies: Vec<_> = bodies.as_ref()?.iter().chain(own).map(scene_body).collect();
+    let obstacles = obstacles.as_ref()?;
+    let around = subject(&bodies, runs.as_deref().unwrap_or_default(), gravity.unwrap_or_default(), obstacles);
     let view = View::read(parts.view.as_ref()?, &around, parts.font.clone().unwrap_or_default(), report)?;
     let chosen: Vec<_> = parts.runs.iter().map(|run| Some(run.as_ref()?.colour?.0)).collect();
     look::check_runs(&chosen, &view.look.palette(), report);
     Some(view)
+}
+
+fn scene_body(of: &ResolvedBody) -> SceneBody {
+    let ResolvedBody { name, body, initial, side, has_cells, .. } = of;
+    SceneBody {
+        name: name.clone(),
+        body: Arc::clone(body),
+        initial: initial.clone(),
+        side: *side,
+        has_cells: *has_cells,
+    }
 }
 
 /// Warns of a scene with one frame, and of a very long computation.

@@ -6,6 +6,7 @@ use crate::picture::compose::draft::Draft;
 use crate::picture::layout::tree::Place;
 use crate::picture::layout::{Scale, whole};
 use crate::runner::moments;
+use crate::scene::Run;
 use crate::sim::RunFrame;
 use glam::{DVec2, DVec3};
 
@@ -33,22 +34,25 @@ impl<'a> Cell<'a> {
         let scene = composer.scene;
         let snapshot = runs[run].snapshot.clone();
         let ways = |run: usize| {
-            let stiffness = scene.runs[run].models[0].stiffness();
-            runs[run].on_nodes.iter().map(|&force| force / stiffness).collect::<Vec<_>>()
+            let Run { bodies, models, .. } = &scene.runs[run];
+            let stiffness = |node: usize| models[bodies.body_of_node(node)].stiffness();
+            let forces = runs[run].on_nodes.iter().enumerate();
+            forces.map(|(node, &force)| force / stiffness(node)).collect::<Vec<_>>()
         };
+        let middle = snapshot.position.iter().sum::<DVec3>() / snapshot.position.len().max(1) as f64;
         Self {
             composer,
             ways: ways(run),
             compared: compare.map(|run| (run, ways(run))),
             ghost: scene.runs[run].bodies.placed(&snapshot.placements),
-            framing: Framing { target: snapshot.placements[0].centre, ..Framing::still(&scene.view.camera) },
+            framing: Framing { target: middle, ..Framing::still(&scene.view.camera) },
             frame: RunFrame::new(run, snapshot),
         }
     }
 
     /// The middle of the nodes (m).
     pub(super) fn middle(&self) -> DVec3 {
-        self.frame.snapshot.placements[0].centre
+        self.framing.target
     }
 
     /// The box around the contents, seen from far away: to the right and up from the middle of the body (m).

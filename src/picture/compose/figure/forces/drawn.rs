@@ -5,6 +5,7 @@ use crate::colour::{Colour, mixed};
 use crate::look::Palette;
 use crate::picture::arrows::{arrow, bare, outlined};
 use crate::picture::caption::Writer;
+use crate::picture::compose::bodies::Bodies;
 use crate::picture::compose::draft::Draft;
 use crate::picture::compose::figure::labels::Labels;
 use crate::picture::compose::plane_body::path_of;
@@ -56,7 +57,7 @@ impl Drawn<'_> {
     /// The body with its rest shape behind it.
     pub(super) fn panel(&self, under: &mut Vec<Item>) -> Panel {
         if self.draft.flat {
-            let (skin, ghost) = (&self.cell.composer.skin, self.pixels(&self.cell.ghost));
+            let (skin, ghost) = (&self.draft.bodies.skin, self.pixels(&self.cell.ghost));
             let at = |at: u32| point(ghost[skin.nodes[at as usize] as usize]);
             let path = path_of(skin.triangles.iter().map(|triangle| triangle.map(at).to_vec()));
             under.push(Item::fill(path, mixed(self.palette.background, self.palette.edge_on_ground(), GHOST)));
@@ -71,10 +72,10 @@ impl Drawn<'_> {
     /// How well each node of the body or of its rest shape can be seen, from 0 to 1. In the plane all are visible; in
     /// space also nodes of elements without faces, but not nodes inside.
     fn seen(&self, position: &[DVec3]) -> Vec<f64> {
-        let (composer, body) = (self.cell.composer, self.draft.body);
-        let mut seen = composer.skin.visible(position, &self.draft.lens);
-        for node in (0..position.len()).filter(|&node| !composer.skin.holds(node as u32)) {
-            let is_bare = || composer.bare.iter().any(|&element| body.elements[element].contains(&(node as u32)));
+        let Draft { bodies: Bodies { skin, bare, .. }, body, .. } = self.draft;
+        let mut seen = skin.visible(position, &self.draft.lens);
+        for node in (0..position.len()).filter(|&node| !skin.holds(node as u32)) {
+            let is_bare = || bare.iter().any(|&element| body.elements[element].contains(&(node as u32)));
             seen[node] = if self.draft.flat || is_bare() { 1.0 } else { 0.0 };
         }
         seen
@@ -88,10 +89,10 @@ impl Drawn<'_> {
         let [left, top, right, bottom] = sides(self.room);
         let inset = FREE * unit;
         let mut labels = Labels::new([left + inset, top + inset, right - inset, bottom - inset], unit);
-        let faces = scene.runs[0].body().faces.nodes.iter();
+        let faces = self.draft.body.faces.nodes.iter();
         labels.surfaces = faces.map(|face| face.iter().map(|&node| nodes[node as usize]).collect()).collect();
         let seen_ghost = self.seen(&cell.ghost);
-        for edge in Edges::new(scene.runs[0].body()).all {
+        for edge in Edges::new(self.draft.body).all {
             let [a, b] = edge.map(|node| node as usize);
             labels.lines.extend([[nodes[a], nodes[b]], [ghost[a], ghost[b]]]);
             let opacity = HIDDEN + (1.0 - HIDDEN) * seen_ghost[a].min(seen_ghost[b]);
@@ -178,12 +179,13 @@ impl Drawn<'_> {
     fn vectors(&self, writer: &mut Writer<'_>, labels: &mut Labels, [nodes, ghost]: [&[DVec2]; 2], seen: &[f64]) {
         let Self { scale, palette, .. } = self;
         let line = scale.line();
-        let centre = self.pixel(self.cell.middle());
         // The visible node with the largest displacement.
         let displaced = |node: usize| nodes[node].distance(ghost[node]);
         let visible = (0..nodes.len()).filter(|&node| seen[node] > 0.5);
         let Some(node) = visible.max_by(|&one, &other| displaced(one).total_cmp(&displaced(other))) else { return };
         let (now, equilibrium) = (nodes[node], ghost[node]);
+        let body = self.draft.bodies.assembly().body_of_node(node);
+        let centre = self.pixel(self.cell.frame.snapshot.placements[body].centre);
         for (to, dash) in [(now, &[][..]), (equilibrium, &DASH.map(|length| length * line))] {
             let points = [centre, to].map(|at| at.to_array());
             writer.curves.push(Item::curve(&points, THIN * line, dash, palette.text));

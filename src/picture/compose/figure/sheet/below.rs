@@ -20,12 +20,18 @@ const X_MIDDLE: f64 = 0.36;
 /// The meaning of a hollow square.
 const FLAT: &str = "flat: volume below 1 %";
 
-/// The tallies of all scenes in one style: squares for all, or bars.
-pub(super) fn tallies(scenes: &[Scene], scale: Scale, layout: &SheetLayout) -> Vec<Tally> {
-    let tallies: Vec<_> = scenes.iter().map(|scene| Tally::new(&scene.runs[0].bodies, scene.view.side)).collect();
+/// Gives the tallies of all shown bodies one style: squares for all, or bars.
+pub(super) fn unify(composers: &mut [Composer<'_>], shown: &[[usize; 2]], scale: Scale, layout: &SheetLayout) {
     let (scale, room) = size_of_tallies(scale, layout);
-    let have_squares = tallies.iter().all(|tally| tally.has_squares(scale, room));
-    if have_squares { tallies } else { tallies.iter().map(Tally::as_bar).collect() }
+    if !tallies(composers, shown).all(|tally| tally.has_squares(scale, room)) {
+        let all = composers.iter_mut().flat_map(|composer| &mut composer.bodies);
+        all.for_each(|bodies| bodies.tally = bodies.tally.as_bar());
+    }
+}
+
+/// The tallies of the runs shown, each given by the places of its scene and of the run in it.
+fn tallies<'c>(composers: &'c [Composer<'_>], shown: &'c [[usize; 2]]) -> impl Iterator<Item = &'c Tally> {
+    shown.iter().map(|&[scene, run]| &composers[scene].bodies(run).tally)
 }
 
 /// The scale and the width of tallies (px).
@@ -41,15 +47,17 @@ pub(super) struct Key {
 }
 
 impl Key {
-    pub(super) fn new(scenes: &[Scene], tallies: &[Tally], has_flat: bool) -> Self {
-        let kinds: Vec<_> =
-            scenes.iter().flat_map(|scene| elements(scene.runs[0].body())).map(|(_, kind)| kind).collect();
+    /// The key for the runs shown, each given by the places of its scene and of the run in it.
+    pub(super) fn new(composers: &[Composer<'_>], shown: &[[usize; 2]], has_flat: bool) -> Self {
+        let bodies = || shown.iter().map(|&[scene, run]| composers[scene].bodies(run).body());
+        let tallies = || tallies(composers, shown);
+        let kinds: Vec<_> = bodies().flat_map(elements).map(|(_, kind)| kind).collect();
         let same = kinds.first().filter(|first| kinds.iter().all(|kind| kind == *first));
         let kind = same.and_then(|kind| kind.strip_suffix('s')).unwrap_or("element");
         let mut wordings = vec!["turned over".to_owned()];
-        let several = scenes.iter().any(|scene| scene.runs[0].body().elements.len() > 1);
-        if several && tallies.iter().all(Tally::has_rows) {
-            if tallies.iter().all(Tally::has_layers) {
+        let several = bodies().any(|body| body.elements.len() > 1);
+        if several && tallies().all(Tally::has_rows) {
+            if tallies().all(Tally::has_layers) {
                 wordings.push(format!("turned over (a square per {kind}, in layers)"));
                 wordings.push(format!("turned over (one square per {kind}, lowest layer at the bottom)"));
             } else {
@@ -119,7 +127,8 @@ impl<'a> Below<'a> {
         }
         let states = [&over[..], &flat[..]];
         let (smaller, room) = size_of_tallies(scale, layout);
-        let width = composer.tally.width(smaller, room);
+        let tally = &composer.bodies(run.run).tally;
+        let width = tally.width(smaller, room);
         let flattened = flat.iter().filter(|&&flat| flat).count();
         let (count, colour) = match diagnostics.turned_over {
             0 if flattened > 0 => (format!("{flattened} flat"), palette.second_text),
@@ -129,7 +138,7 @@ impl<'a> Below<'a> {
         let number = number.and_then(|diagnostic| text(diagnostic, composer.scene, run));
         let number = number.map(|text| (text, Weight::Regular, scale.small(), palette.second_text));
         let texts = std::iter::once((count, Weight::SemiBold, scale.caption(), colour)).chain(number).collect();
-        Self { tally: Some((&composer.tally, states, width)), texts }
+        Self { tally: Some((tally, states, width)), texts }
     }
 
     /// The width of the tally and of a number of texts (px).
@@ -173,6 +182,6 @@ fn text(diagnostic: Diagnostic, scene: &Scene, run: &RunFrame) -> Option<String>
     if !value.is_finite() || diagnostic == Diagnostic::TurnedOver {
         return None;
     }
-    let value = number::value(diagnostic, value, scene.runs[0].body().extent());
+    let value = number::value(diagnostic, value, scene.extent());
     Some(format!("{name} {value}"))
 }

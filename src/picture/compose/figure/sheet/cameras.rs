@@ -1,10 +1,10 @@
 //! The cameras of a sheet: one scale for all bodies that can be compared, and one view for the tiles of a column.
 
 use super::sheet_layout::SheetLayout;
-use crate::look::CameraBox;
+use crate::look::CameraBoxes;
 use crate::picture::camera::Framing;
 use crate::picture::compose::draft::Draft;
-use crate::picture::framing::{self, Seen};
+use crate::picture::framing::{self, Moment, Seen};
 use crate::runner::history::NearObstacles;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
@@ -12,6 +12,7 @@ use crate::scene::figure::Sheet;
 use crate::sim::geometry;
 use crate::sim::{RunFrame, Status};
 use glam::DVec2;
+use std::borrow::Cow;
 
 /// Bodies whose sizes differ by more than this factor are not shown at one scale.
 const UNLIKE: f64 = 3.0;
@@ -28,9 +29,9 @@ pub(super) fn framings(scenes: &[Scene], sheet: &Sheet, moments: &Moments, layou
     let mut kinds: Vec<Vec<(usize, Seen)>> = Vec::new();
     for column in columns {
         let moment = |run: &RunFrame| {
-            let shown = run.shown();
-            let seen = CameraBox::new(&scene(column).view, scene(column).runs[0].body(), &shown.position)?;
-            Some((shown.time, seen, run.snapshot.status == Status::Ok))
+            let (shown, scene, is_sound) = (run.shown(), scene(column), run.snapshot.status == Status::Ok);
+            let seen = CameraBoxes::new(&scene.view, &scene.runs[run.run].bodies, &shown.position)?;
+            Some(Moment { time: shown.time, run: run.run, seen: Cow::Owned(seen), is_sound })
         };
         let of_runs: Vec<_> = moments.cells.iter().filter_map(|row| moment(&row[column])).collect();
         let Some(seen) = Seen::new(scene(column), &of_runs, false) else { continue };
@@ -60,7 +61,7 @@ fn are_alike([one, other]: [&Scene; 2]) -> bool {
         let camera = &scene.view.camera;
         (scene.dimension(), camera.azimuth, camera.elevation, camera.field_of_view)
     });
-    let [small, large] = [one, other].map(|scene| scene.runs[0].body().extent());
+    let [small, large] = [one, other].map(Scene::extent);
     seen[0] == seen[1] && small.max(large) <= UNLIKE * small.min(large)
 }
 

@@ -33,7 +33,7 @@ use crate::runner::history::History;
 use crate::runner::moments::Moments;
 use crate::scene::Scene;
 use crate::scene::figure::{Figure, Sheet};
-use crate::sim::Frame;
+use crate::sim::{Frame, RunFrame};
 use below::{Below, Key};
 use glam::DVec2;
 use headings::Headings;
@@ -48,6 +48,16 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> (Pic
     let palette = &figure.look.palette();
     let mut writer = Writer::new(palette, &fonts, scale);
     let scenes = plain(figure, sheet);
+    let reaches = cameras::reaches(&scenes, sheet, moments);
+    // The tiles of a scene share data that is computed once.
+    let traced = |scene: usize| moments.histories.get(scene).map_or_else(Vec::new, |history| history.series.clone());
+    let composer =
+        |(at, (scene, reach))| Composer { reach, traced: traced(at), ..Composer::new(scene, &History::default()) };
+    let mut composers: Vec<_> = scenes.iter().zip(reaches).enumerate().map(composer).collect();
+    let of_row = |row: &Vec<RunFrame>| -> Vec<_> {
+        row.iter().zip(&sheet.columns).map(|(run, of)| [of.scene, run.run]).collect()
+    };
+    let shown: Vec<_> = moments.cells.iter().flat_map(of_row).collect();
     let (width, margin) = (f64::from(size[0]), scale.margin());
     let room = width - 2.0 * margin;
 
@@ -74,12 +84,12 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> (Pic
     // The width of tiles does not depend on what is above them.
     let layout = plan(wanted, f64::INFINITY);
     let pitch = f64::from(layout.tile_size()[0]);
-    let tallies = below::tallies(&scenes, scale, &layout);
+    below::unify(&mut composers, &shown, scale, &layout);
     let headings = Headings::new(sheet, &writer, pitch);
     let wanted = Wanted { headings: headings.lines(), ..wanted };
     let layout = plan(wanted, pitch);
     let has_flat = moments.cells.iter().flatten().any(|run| run.snapshot.flat.contains(&true));
-    let key = Key::new(&scenes, &tallies, has_flat);
+    let key = Key::new(&composers, &shown, has_flat);
     let is_beside = |text: &&String| {
         let length = key.width(&writer, text);
         writer.beside(&layout.page, scale, &titles, [length, room]).map(|baseline| [width - margin, baseline])
@@ -103,17 +113,6 @@ pub(super) fn compose(figure: &Figure, sheet: &Sheet, moments: &Moments) -> (Pic
     }
 
     let framings = cameras::framings(&scenes, sheet, moments, &layout);
-    let reaches = cameras::reaches(&scenes, sheet, moments);
-    // The tiles of a scene share data that is computed once.
-    let traced = |scene: usize| moments.histories.get(scene).map_or_else(Vec::new, |history| history.series.clone());
-    let composers = scenes.iter().zip(reaches).zip(tallies).enumerate();
-    let composer = |(at, ((scene, reach), tally))| Composer {
-        reach,
-        tally,
-        traced: traced(at),
-        ..Composer::new(scene, &History::default())
-    };
-    let composers: Vec<_> = composers.map(composer).collect();
     let mut below = Vec::new();
     for (row, cells) in moments.cells.iter().enumerate() {
         for (column, run) in cells.iter().enumerate() {

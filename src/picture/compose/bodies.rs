@@ -1,0 +1,121 @@
+//! The bodies of a run: the data that all their pictures share. Runs of the same bodies share it, too.
+
+use crate::picture::arrows;
+use crate::picture::ears::{Ears, bare_elements};
+use crate::picture::shadow;
+use crate::picture::skin::Skin;
+use crate::picture::tally::Tally;
+use crate::picture::wire::Edges;
+use crate::scene::{Run, Scene};
+use crate::sim::{Assembly, Body, Dimension, Snapshot};
+use glam::DVec3;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Bodies with more elements than this along a side get softer light, as if they had larger elements.
+const SOFT_SHARE: f64 = 4.5;
+
+/// The bodies of a run.
+#[derive(Debug)]
+pub(super) struct Bodies<'a> {
+    assembly: &'a Assembly,
+    /// Length of an edge of the smallest elements (m).
+    pub(super) side: f64,
+    /// The unit of soft distances in light (sides of the panel).
+    pub(super) soft: f64,
+    /// The same on each body, for its hatch.
+    pub(super) soft_of: Vec<f64>,
+    /// The elements in rows.
+    pub(super) tally: Tally,
+    /// The signed area of each polygon of a body in the plane.
+    rest_areas: Vec<f64>,
+    /// The surface, and the edges of its triangles if it casts a shadow.
+    pub(super) skin: Skin,
+    pub(super) seams: Vec<shadow::Edge>,
+    /// The triangles of faces that are not convex.
+    pub(super) ears: Ears,
+    /// Elements without faces.
+    pub(super) bare: Vec<usize>,
+    /// The edges of the elements, if surfaces are not shown.
+    pub(super) edges: Edges,
+    /// The nodes with arrows.
+    pub(super) bearers: Vec<u32>,
+}
+
+impl<'a> Bodies<'a> {
+    /// The bodies of a run of a scene.
+    pub(super) fn new(scene: &'a Scene, run: &'a Run) -> Self {
+        let (view, assembly, body) = (&scene.view, &*run.bodies, &**run.body());
+        let side = run.of.iter().map(|&at| scene.bodies[at].side).fold(f64::INFINITY, f64::min);
+        let soft = |(&at, body): (&usize, &Arc<Body>)| {
+            let share = body.extent().max(f64::MIN_POSITIVE) / view.side / SOFT_SHARE;
+            share.max(scene.bodies[at].side / view.side)
+        };
+        let soft_of: Vec<_> = run.of.iter().zip(assembly.bodies()).map(soft).collect();
+        let rest_areas = match body.dimension {
+            Dimension::Plane => body.elements.iter().map(|nodes| area(nodes, &body.rest)).collect(),
+            Dimension::Space => Vec::new(),
+        };
+        let ears = Ears::new(body);
+        let (skin, bare) = (Skin::new(body, &ears), bare_elements(body));
+        let throws_shadow = view.shadow && body.dimension == Dimension::Space;
+        Self {
+            assembly,
+            side,
+            soft: soft_of.iter().sum::<f64>() / soft_of.len() as f64,
+            soft_of,
+            tally: Tally::new(assembly, side),
+            rest_areas,
+            seams: if throws_shadow { shadow::edges(&skin.triangles) } else { Vec::new() },
+            edges: if view.visible.surfaces { Edges::default() } else { Edges::new(body) },
+            bearers: if view.visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
+            skin,
+            ears,
+            bare,
+        }
+    }
+
+    pub(super) fn assembly(&self) -> &'a Assembly {
+        self.assembly
+    }
+
+    /// All bodies as one.
+    pub(super) fn body(&self) -> &'a Body {
+        self.assembly.whole()
+    }
+
+    /// The nodes of each body.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = Range<usize>> {
+        (0..self.assembly.bodies().len()).map(|at| self.assembly.nodes(at))
+    }
+
+    /// The faces of each body.
+    pub(super) fn faces(&self) -> impl Iterator<Item = Range<usize>> {
+        (0..self.assembly.bodies().len()).map(|at| self.assembly.faces(at))
+    }
+
+    /// The smallest signed area of a polygon over its area at rest, for bodies in the plane.
+    pub(super) fn smallest_area_ratio(&self, snapshot: &Snapshot) -> Option<f64> {
+        let body = self.body();
+        if self.rest_areas.is_empty() || snapshot.position.len() != body.len() {
+            return None;
+        }
+        let areas = body.elements.iter().zip(&self.rest_areas).filter(|(_, rest)| **rest != 0.0);
+        areas.map(|(nodes, rest)| area(nodes, &snapshot.position) / rest).reduce(f64::min)
+    }
+}
+
+/// The nodes with arrows: those on the surface, and those of elements without faces.
+fn bearers(body: &Body, skin: &Skin, bare: &[usize]) -> Vec<u32> {
+    let of_bare = bare.iter().flat_map(|&element| &body.elements[element]);
+    let mut nodes: Vec<u32> = skin.nodes.iter().chain(of_bare).copied().collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    arrows::bearers(&nodes)
+}
+
+/// The signed area of a polygon in the xy-plane (m²).
+fn area(nodes: &[u32], position: &[DVec3]) -> f64 {
+    let at = |node: u32| position[node as usize].truncate() - position[nodes[0] as usize].truncate();
+    nodes.windows(2).map(|two| 0.5 * at(two[0]).perp_dot(at(two[1]))).sum()
+}
