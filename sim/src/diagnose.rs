@@ -48,11 +48,8 @@ struct Affine {
 impl Diagnose {
     /// Precomputes the quantities of the body at rest.
     pub(crate) fn new(body: &Arc<Body>) -> Self {
-        let affine: Vec<_> = (0..body.elements.len()).filter_map(|element| Affine::new(body, element)).collect();
-        let mut volumes_at_rest = volumes_by_faces(body, &body.rest, &Crew::new(1));
-        for Affine { element, .. } in &affine {
-            volumes_at_rest[*element] = hull_volume(body, *element);
-        }
+        let affine = Affine::all(body);
+        let volumes_at_rest = at_rest(body, &affine);
         let volume_at_rest = volumes_at_rest.iter().sum();
         let rest_centre = mean(&body.rest);
         let centred = body.rest.iter().map(|&rest| rest - rest_centre).collect();
@@ -106,6 +103,11 @@ impl Diagnose {
 const FLAT: f64 = 1e-12;
 
 impl Affine {
+    /// All of a body.
+    fn all(body: &Body) -> Vec<Self> {
+        (0..body.elements.len()).filter_map(|element| Self::new(body, element)).collect()
+    }
+
     /// `None` for a flat element, and for an element with a volume from its faces.
     fn new(body: &Body, element: usize) -> Option<Self> {
         if body.kinds[element] != ElementKind::Other {
@@ -127,6 +129,21 @@ impl Affine {
         let relative: Vec<_> = corners.iter().map(|&corner| corner - centre).collect();
         (moment(&relative, self.rest.iter().copied()) * self.inverse).determinant()
     }
+}
+
+/// Signed volume of each element at rest (m³, in the plane m²); zero for segments, triangles in space and all elements
+/// that are flat at rest.
+pub fn volumes_at_rest(body: &Body) -> Vec<f64> {
+    at_rest(body, &Affine::all(body))
+}
+
+/// The same, with the elements without a table of faces.
+fn at_rest(body: &Body, affine: &[Affine]) -> Vec<f64> {
+    let mut volumes = volumes_by_faces(body, &body.rest, &Crew::new(1));
+    for Affine { element, .. } in affine {
+        volumes[*element] = hull_volume(body, *element);
+    }
+    volumes
 }
 
 /// Signed volume of each element from its faces (m³, in the plane m²); zero for elements without faces of their own.

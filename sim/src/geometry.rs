@@ -2,16 +2,23 @@
 
 pub use super::alike::Alike;
 pub use super::contact::ground;
-pub use super::diagnose::volume_by_faces;
+pub use super::diagnose::{volume_by_faces, volumes_at_rest};
 pub use super::element::{around, kind, ordered};
 pub use super::hull::bounds;
+pub use super::overlap::overlaps;
 
 use super::body::Body;
+use super::element::Dimension;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Whether a point (m) lies inside the surface of a body whose nodes are at `position` (m).
+/// Whether a point (m) lies inside the surface of a body whose nodes are at `position` (m), in the plane inside one of its
+/// elements.
 pub fn is_inside(point: DVec3, body: &Body, position: &[DVec3]) -> bool {
+    if body.dimension == Dimension::Plane {
+        let winds = |nodes: &[u32]| winds_around(nodes.iter().map(|&node| position[node as usize] - point));
+        return body.elements.iter().any(winds);
+    }
     let outside = body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none());
     // The solid angle of a closed surface is 4π seen from inside and 0 from outside.
     let sky: f64 = outside
@@ -23,11 +30,18 @@ pub fn is_inside(point: DVec3, body: &Body, position: &[DVec3]) -> bool {
 
 /// The solid angle of a triangle seen from the origin, positive if its corners run counter-clockwise from outside (A. van
 /// Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983).
-fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
+pub(crate) fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     let [x, y, z] = [a.length(), b.length(), c.length()];
     let above = a.dot(b.cross(c));
     let below = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;
     2.0 * libm::atan2(above, below)
+}
+
+/// Whether a polygon in the plane winds around the origin.
+pub(crate) fn winds_around(corners: impl Iterator<Item = DVec3> + Clone) -> bool {
+    let next = corners.clone().cycle().skip(1);
+    let crosses = |(a, b): &(DVec3, DVec3)| (a.y > 0.0) != (b.y > 0.0) && a.x + (b.x - a.x) * a.y / (a.y - b.y) > 0.0;
+    corners.zip(next).filter(crosses).count() % 2 == 1
 }
 
 #[cfg(test)]

@@ -39,6 +39,7 @@ mod lists;
 mod mode;
 pub mod model;
 mod motion;
+mod overlap;
 mod part;
 mod placement;
 mod recording;

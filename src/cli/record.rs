@@ -1,6 +1,6 @@
 //! Simulates one scene, draws it, and writes the results.
 
-use super::failure::{Failure, Status, with_causes};
+use super::failure::{Failure, Status, note, with_causes};
 use super::options::{PrintOptions, RunOptions};
 use super::results::{Pace, Pictures, Results};
 use super::scenes::{Job, with_option};
@@ -11,7 +11,7 @@ use crate::output::{
 };
 use crate::reading::setting::Setting;
 use crate::runner::cause::Cause;
-use crate::runner::{Frames, Next, Progress, Runner};
+use crate::runner::{Frames, Meetings, Next, Progress, Runner};
 use crate::scene::{Run, Scene};
 use crate::sim::{self, Frame, State};
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -323,6 +323,11 @@ impl<'a> Recording<'a> {
         let can_resume = simulation.read_from.is_none()
             && !self.folder.is_shard()
             && (results.pictures.is_none() || self.summary.frames.size.is_some());
+        // A continued command has told of bodies that overlap at the checkpoint.
+        let begun = simulation.frames.taken() > 0;
+        let present = self.runs.iter().zip(simulation.frames.states());
+        let present = present.map(|(&run, state)| if begun { state } else { &self.scene.runs[run].initial });
+        let mut meetings = Meetings::new(self.scene, &self.runs, present.map(|state| &state.position[..]));
         let mut pace = Pace::new();
         while !interrupt::requested() {
             if can_resume && pace.is_due() {
@@ -345,6 +350,9 @@ impl<'a> Recording<'a> {
                 Next::Working | Next::TimeSeries(_) => {}
                 Next::Frame(frame) => {
                     self.summary.frames.recorded += 1;
+                    for message in meetings.look(&frame).iter().filter(|_| !printing.quiet) {
+                        bar.suspend(|| note(message));
+                    }
                     if read_from.is_none() {
                         let states: Vec<_> = frames.states().collect();
                         pool.install(|| self.find_causes(&states));

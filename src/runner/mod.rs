@@ -5,6 +5,7 @@ pub(crate) mod cause;
 mod frames;
 pub(crate) mod history;
 mod last_fit;
+mod meetings;
 pub(crate) mod moments;
 
 use crate::look::Traced;
@@ -13,6 +14,7 @@ use crate::sim::{Body, Crew, Diagnostic, Frame, Integrator, Moment, RunFrame, St
 pub(crate) use frames::{Frames, Next, Progress, Stored};
 pub use history::{History, TimeSeries};
 use last_fit::{Fitting, Search, fits};
+pub(crate) use meetings::Meetings;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 

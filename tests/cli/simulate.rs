@@ -458,3 +458,56 @@ fn states_of_runs_with_steps_of_their_own() {
     let archive = zip::ZipArchive::new(std::fs::File::open(place.path(file)).unwrap()).unwrap();
     assert_eq!(archive.len(), 4 + 5, "it has no second time");
 }
+
+/// A cube falls on another, which is held.
+const PAIR: &str = r#"
+gravity = [0, -10, 0]
+[time]
+duration = 0.4
+frames_per_second = 100
+[[body]]
+name = "cube"
+lattice = { cells = [2, 2, 2], side = 0.1 }
+lowest = 0.65
+[[body]]
+name = "block"
+lattice = { cells = [2, 2, 2], side = 0.1 }
+[[hold]]
+body = "block"
+nodes = "bottom"
+[[run]]
+name = "Together"
+model = { kind = "shape-based", stiffness = 1e5, damping_ratio = 0.1 }
+[[run]]
+name = "Alone"
+bodies = ["cube"]
+model = { kind = "shape-based", stiffness = 1e5, damping_ratio = 0.1 }
+"#;
+
+/// The cube reaches the block after a fall of 0.45 m, in 0.3 s.
+#[test]
+fn bodies_that_go_through_each_other_are_told_once() {
+    let place = Place::new();
+    place.write("pair.toml", PAIR);
+    let told = || {
+        let ran = place.run("simulate pair.toml");
+        assert_eq!(ran.status, Some(0), "{ran:?}");
+        ran.err
+    };
+    let (ran, all) = (told(), "through each other");
+    let lines: Vec<_> = ran.lines().filter(|line| line.contains(all)).collect();
+    let [line] = lines[..] else { panic!("{ran}") };
+    let words = |time| {
+        format!(
+            "warning: “cube” and “block” go through each other from {time} s on in “Together”: bodies do not collide"
+        )
+    };
+    assert!([0.3, 0.31, 0.32].iter().any(|time| line == words(time)), "{line}");
+    place.run("simulate pair.toml --quiet").good();
+    place.run("simulate pair.toml --frames 0-25").good();
+    // Bodies that overlap from the start are told of before.
+    place.write("pair.toml", &PAIR.replace("lowest = 0.65", "lowest = 0.15"));
+    let ran = told();
+    assert_eq!(ran.lines().filter(|line| line.contains(all)).count(), 1, "{ran}");
+    assert!(ran.contains("\"cube\" and \"block\" overlap at the start"), "{ran}");
+}

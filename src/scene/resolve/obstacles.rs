@@ -143,7 +143,8 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[PathPart<'_>], 
     // For large bodies fewer points are tested, but always the centre of the obstacle.
     let faces = body.body.faces.nodes.len().max(1);
     let stride = (points.len() * faces).div_ceil(MOST_COMPARED).max(1);
-    let within = points.into_iter().step_by(stride).find(|&point| is_within(body, point));
+    let is_within = |&point: &DVec3| is_inside(point, &body.body, &body.initial.position);
+    let within = points.into_iter().step_by(stride).find(is_within);
     if let Some(point) = within {
         let [x, y, z] = point.to_array().map(|at| rounded(at, 4) + 0.0);
         let point =
@@ -201,20 +202,3 @@ pub(super) fn check_steps(typed: &[Option<ObstacleFile>], step: f64, report: &mu
 
 /// The least number of steps in a period.
 const LEAST_STEPS: f64 = 4.0;
-
-/// Whether a point is inside the surface of a body at its start, by the winding number.
-fn is_within(body: &ResolvedBody, point: DVec3) -> bool {
-    let (shape, position) = (&body.body, &body.initial.position);
-    let at = |node: u32| position[node as usize] - point;
-    if shape.dimension == Dimension::Plane {
-        return shape.elements.iter().filter(|nodes| nodes.len() > 2).any(|nodes| winds_around(nodes, at));
-    }
-    is_inside(point, shape, position)
-}
-
-/// Whether a polygon winds around the origin.
-fn winds_around(nodes: &[u32], at: impl Fn(u32) -> DVec3) -> bool {
-    let sides = nodes.iter().zip(nodes.iter().cycle().skip(1)).map(|(&a, &b)| (at(a), at(b)));
-    let crossed = sides.filter(|(a, b)| (a.y > 0.0) != (b.y > 0.0) && a.x + (b.x - a.x) * a.y / (a.y - b.y) > 0.0);
-    crossed.count() % 2 == 1
-}
