@@ -4,7 +4,7 @@ use localshape::glam::DVec3;
 use localshape::look::Theme;
 use localshape::scene::{
     BodyBuilder, Cells, Lattice, Limits, MotionPath, NodeSet, ObstacleBuilder, Rotation, RunBuilder, Scene,
-    SceneBuilder, Start, StartShape, Swing,
+    SceneBuilder, Side, Start, StartShape, Swing,
 };
 use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch, Share, mass_spring, shape_based};
 use localshape::sim::{Body, Diagnostic, Ease, Field, Integrator, Kernel, Nodes, Springs};
@@ -61,8 +61,11 @@ fn code_and_files_make_the_same_scenes() {
         (BodyBuilder::lattice(lattice(&[2, 2]).sides([0.1, 0.3])), "lattice = { cells = [2, 2], side = [0.1, 0.3] }"),
         (BodyBuilder::polygon(6, 0.5), "polygon = { sides = 6, radius = 0.5 }"),
         (BodyBuilder::fan(6, 0.5).mass(0.1), "fan = { sides = 6, radius = 0.5 }\nmass = 0.1"),
-        (BodyBuilder::disc(1.0, 3, 12), "disc = { radius = 1, rings = 3, sectors = 12 }"),
-        (BodyBuilder::bars(4, 0.5, [1.0, 1.0, 0.0]), "bars = { count = 4, length = 0.5, direction = [1, 1, 0] }"),
+        (BodyBuilder::disc(1.0, 3, 12).density(2.0), "disc = { radius = 1, rings = 3, sectors = 12 }\ndensity = 2"),
+        (
+            BodyBuilder::bars(4, 0.5, [1.0, 1.0, 0.0]).mass_total(2.0),
+            "bars = { count = 4, length = 0.5, direction = [1, 1, 0] }\nmass_total = 2",
+        ),
         (
             BodyBuilder::polygon(4, 0.5)
                 .rotation(Rotation::in_plane(0.3))
@@ -114,6 +117,7 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
                 .path(path(0.0).turned_key(1.5, [0.0, 0.0, 0.0], Rotation::about([0.0, 1.0, 0.0], 0.0)).repeating()),
         )
         .hold(NodeSet::list([0, 1]), ..)
+        .hold(NodeSet::side(Side::Top), 0.0..0.25)
         .hold(NodeSet::ball([0.1, 1.2, 0.1], 0.01), 0.25..0.5)
         .grab(NodeSet::cuboid([-0.1, 1.15, -0.1], [0.0, 1.3, -0.05]), path(0.5))
         .size([640, 360])
@@ -134,7 +138,8 @@ fn a_builder_says_all_that_a_file_can_say_of_physics() {
             { name = 'Four', model = { kind = 'mass-spring', stiffness = 1e3 }, step = 'T/200',
                 integrator = 'pefrl' },
         ]
-        hold = [{ nodes = [0, 1] }, { nodes = { of = [0.1, 1.2, 0.1], within = 0.01 }, from = 0.25, until = 0.5 }]
+        hold = [{ nodes = [0, 1] }, { nodes = 'top', until = 0.25 },
+            { nodes = { of = [0.1, 1.2, 0.1], within = 0.01 }, from = 0.25, until = 0.5 }]
         view = { size = [640, 360], theme = 'dark', colour.by = 'strain', charts = ['energy'],
             camera = { azimuth = 0.2, elevation = 0.3 } }
         [[obstacle]]

@@ -293,7 +293,7 @@ mod tests {
 
     #[test]
     fn bodies_in_the_plane() {
-        let square = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+        let square = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
         let square = |size: f64| {
             let rest = square.iter().map(|&at| size * at).collect();
             made(Dimension::Plane, rest, [&[0, 1, 2, 3][..]].into_iter())

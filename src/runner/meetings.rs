@@ -19,8 +19,9 @@ impl<'a> Meetings<'a> {
     /// before.
     pub(crate) fn new<'p>(scene: &'a Scene, runs: &[usize], positions: impl Iterator<Item = &'p [DVec3]>) -> Self {
         let before = |(&run, position): (&usize, &'p [DVec3])| {
-            let pairs = overlaps(&scene.runs[run].bodies, position, |_| true);
-            (run, Some(pairs.collect()))
+            // What recorded bodies do is not known here.
+            let simulated = scene.runs[run].recording.is_none();
+            (run, simulated.then(|| overlaps(&scene.runs[run].bodies, position, |_| true).collect()))
         };
         Self { scene, runs: runs.iter().zip(positions).map(before).collect() }
     }

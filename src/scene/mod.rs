@@ -33,13 +33,13 @@ pub use crate::reading::captions::description;
 pub use crate::reading::{Mistake, Mistakes};
 pub use builder::{BodyBuilder, NodeSet, ObstacleBuilder, RunBuilder, SceneBuilder};
 pub use error::SceneError;
-pub use file::{Cells, Coordinates, Lattice, MotionPath, Rotation, Start, StartShape, Swing};
+pub use file::{Cells, Coordinates, Lattice, MotionPath, Rotation, Side, Start, StartShape, Swing};
 pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;
 pub use recording::Recorded;
 pub use schema::schema;
-pub use summary::{RunSummary, SceneSummary};
+pub use summary::{BodySummary, PartSummary, RunSummary, SceneSummary};
 
 use crate::colour::Colour;
 use crate::look::{Subject, SubjectBody, SubjectRun, View};

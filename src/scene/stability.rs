@@ -6,10 +6,15 @@ use crate::sim::Integrator;
 use crate::sim::stability::Stability;
 
 impl Scene {
-    /// The largest stable step of a run.
-    pub(crate) fn stability(&self, run: usize) -> Stability {
+    /// The largest stable step of a run, and the name of the body that limits it; `None` if the run has only one, or no
+    /// limit.
+    pub(crate) fn stability(&self, run: usize) -> (Stability, Option<&str>) {
         let run = &self.runs[run];
-        Stability::of_parts(&run.bodies, &run.models, run.integrator, &run.grips, self.duration)
+        let each = Stability::of_each(&run.bodies, &run.models, run.integrator, &run.grips, self.duration);
+        let all = Stability::of_all(&each);
+        let limiting = each.iter().position(|one| one.largest == all.largest);
+        let limiting = limiting.filter(|_| each.len() > 1 && all.largest.is_finite());
+        (all, limiting.map(|body| self.bodies[run.of[body]].name.as_str()))
     }
 
     /// The message and remedy for a run whose step is more than 0.9 of the largest stable one, with that share. Runs
@@ -23,7 +28,7 @@ impl Scene {
         if run.step <= NEAR * certain || run.tolerance.is_some() {
             return None;
         }
-        let Stability { largest, .. } = self.stability(number);
+        let (Stability { largest, .. }, body) = self.stability(number);
         let share = run.step / largest;
         if largest == 0.0 || share <= NEAR {
             return None;
@@ -31,8 +36,9 @@ impl Scene {
         let (name, step, limit) = (quoted(&run.name), short(run.step), short(largest));
         let percent = (100.0 * share).round();
         let outcome = if share > 1.0 { "; the run may diverge" } else { "" };
+        let body = body.map_or_else(String::new, |body| format!(" of {}", quoted(body)));
         let message = format!(
-            "the time step of {name} is {step} s, {percent} % of the largest that is stable at rest, {limit} s{outcome}"
+            "the time step of {name} is {step} s, {percent} % of the largest that is stable at rest, {limit} s{body}{outcome}"
         );
         let half = short(Stability::SHARE * largest);
         Some((share, [message, format!("use {half} s or less, or `step = \"auto\"`")]))
@@ -101,7 +107,8 @@ pub(super) fn in_words(run: &RunSummary) -> String {
         Some(0.0) => format!("no step is stable: {} needs damping", run.integrator),
         Some(largest) => {
             let stretched = run.largest_stretched_step.map(|limit| format!(", {} with stretched springs", part(limit)));
-            format!("largest stable step {}{}", part(largest), stretched.unwrap_or_default())
+            let of = run.limited_by.as_ref().map_or_else(String::new, |body| format!(" of {body}"));
+            format!("largest stable step {}{of}{}", part(largest), stretched.unwrap_or_default())
         }
     }
 }

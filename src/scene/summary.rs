@@ -1,6 +1,6 @@
 //! The contents of a scene in words and numbers, as `check` prints them.
 
-use super::{Run, Scene, stability};
+use super::{Run, Scene, SceneBody, stability};
 use crate::reading::captions::{self, description, typed};
 use crate::reading::words::{count, ends, list, short};
 use crate::sim::geometry::bounds;
@@ -19,18 +19,8 @@ pub struct SceneSummary {
     pub name: String,
     /// The digest of the scene's meaning.
     pub digest: String,
-    /// Number of nodes.
-    pub nodes: usize,
-    /// Number of elements.
-    pub element_count: usize,
-    /// Number of elements of each kind, such as `27 cubes`.
-    pub elements: Vec<String>,
-    /// Sides of the box around the body at rest (m): three in space, two in the plane.
-    pub extent: Vec<f64>,
-    /// Lowest and highest corner of the box around the body as it starts (m).
-    pub start: [Vec<f64>; 2],
-    /// Mass of the body (kg).
-    pub mass: f64,
+    /// The bodies in order.
+    pub bodies: Vec<BodySummary>,
     /// Acceleration of gravity (m/s²): three coordinates in space, two in the plane.
     pub gravity: Vec<f64>,
     /// Simulated time (s).
@@ -45,12 +35,31 @@ pub struct SceneSummary {
     pub runs: Vec<RunSummary>,
     /// Each obstacle in a few words.
     pub obstacles: Vec<String>,
-    /// Each `[[hold]]` in a few words.
+    /// The nodes of each body that each `[[hold]]` holds, in a few words.
     pub holds: Vec<String>,
-    /// Each `[[grab]]` in a few words.
+    /// The nodes of each body that each `[[grab]]` drags, in a few words.
     pub grabs: Vec<String>,
     /// The picture in a few words.
     pub picture: String,
+}
+
+/// One body of a [`SceneSummary`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BodySummary {
+    /// The name; empty if it has none.
+    pub name: String,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Number of elements.
+    pub element_count: usize,
+    /// Number of elements of each kind, such as `27 cubes`.
+    pub elements: Vec<String>,
+    /// Sides of the box around the body at rest (m): three in space, two in the plane.
+    pub extent: Vec<f64>,
+    /// Lowest and highest corner of the box around the body as it starts (m).
+    pub start: [Vec<f64>; 2],
+    /// Its mass (kg).
+    pub mass: f64,
 }
 
 /// One run of a [`SceneSummary`].
@@ -58,8 +67,8 @@ pub struct SceneSummary {
 pub struct RunSummary {
     /// The name.
     pub name: String,
-    /// The model with all parameters that change its result.
-    pub model: String,
+    /// Its bodies with their models.
+    pub parts: Vec<PartSummary>,
     /// The integrator, as typed in a scene.
     pub integrator: String,
     /// The code that computes a step.
@@ -74,6 +83,9 @@ pub struct RunSummary {
     /// The largest stable step (s), at rest; 0 if none is stable. Absent if steps have no limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_step: Option<f64>,
+    /// The body that limits this step. Absent for a run of one body, or without a limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limited_by: Option<String>,
     /// The largest step (s) that is stable however far springs are stretched. Absent for models without springs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_stretched_step: Option<f64>,
@@ -83,31 +95,56 @@ pub struct RunSummary {
     pub rebound_gain: Option<f64>,
 }
 
+/// One body of a [`RunSummary`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PartSummary {
+    /// Its name; empty if it has none.
+    pub body: String,
+    /// The model with all parameters that change its result.
+    pub model: String,
+}
+
+impl BodySummary {
+    fn new(SceneBody { name, body, initial }: &SceneBody) -> Self {
+        let (low, high) = bounds(&body.rest);
+        let of_kind = |(number, name): (usize, &str)| format!("{} {name}", count(number as u128));
+        Self {
+            name: name.clone(),
+            nodes: body.len(),
+            element_count: body.elements.len(),
+            elements: captions::elements(body).into_iter().map(of_kind).collect(),
+            extent: coordinates(high - low, body.dimension),
+            start: corners(&initial.position, body.dimension),
+            mass: body.mass.iter().sum(),
+        }
+    }
+}
+
 impl Scene {
     /// The contents of the scene.
     pub fn summary(&self) -> SceneSummary {
-        let body = self.runs[0].body();
-        let coordinates = |vector: DVec3| match body.dimension {
-            Dimension::Plane => vec![vector.x, vector.y],
-            Dimension::Space => vector.to_array().to_vec(),
-        };
-        let (low, high) = bounds(&body.rest);
-        let of_kind = |(number, name): (usize, &str)| format!("{} {name}", count(number as u128));
+        let coordinates = |vector| coordinates(vector, self.dimension());
         let last = self.last_frame();
         let run = |(at, run): (usize, &Run)| {
-            let Stability { largest, stretched } = self.stability(at);
+            let (Stability { largest, stretched }, limiting) = self.stability(at);
+            let part = |(place, &body): (usize, &usize)| {
+                let SceneBody { name, body, .. } = &self.bodies[body];
+                let model = match &run.recording {
+                    Some(recording) => recording.description(),
+                    None => description(&*run.models[place], body),
+                };
+                PartSummary { body: name.clone(), model }
+            };
             RunSummary {
                 name: run.name.clone(),
-                model: match &run.recording {
-                    Some(recording) => recording.description(),
-                    None => description(run.models[0].as_ref(), run.body()),
-                },
+                parts: run.of.iter().enumerate().map(part).collect(),
                 integrator: typed(&run.integrator),
                 kernel: run.kernel,
                 step: run.step,
                 tolerance: run.tolerance,
                 steps: self.frame_step(at, last),
                 largest_step: largest.is_finite().then_some(largest),
+                limited_by: limiting.map(str::to_owned),
                 largest_stretched_step: stretched.filter(|limit| limit.is_finite()),
                 rebound_gain: self.rebound_gain(at, largest),
             }
@@ -116,12 +153,7 @@ impl Scene {
             title: self.title.clone(),
             name: self.name.clone(),
             digest: self.digest.clone(),
-            nodes: body.len(),
-            element_count: body.elements.len(),
-            elements: captions::elements(body).into_iter().map(of_kind).collect(),
-            extent: coordinates(high - low),
-            start: corners(&self.runs[0].initial.position, body.dimension),
-            mass: body.mass.iter().sum(),
+            bodies: self.bodies.iter().map(BodySummary::new).collect(),
             gravity: coordinates(self.gravity),
             duration: self.duration,
             frames: last.saturating_add(1),
@@ -135,10 +167,22 @@ impl Scene {
         }
     }
 
-    /// The nodes that are held or dragged, and when.
+    /// The nodes of each body that are held or dragged, and when. A constraint is the same in all runs of a body.
     fn constraints(&self, held: bool) -> Vec<String> {
-        let wanted = self.runs[0].grips.iter().filter(|grip| (grip.motion == Motion::Still) == held);
-        wanted.map(|grip| constraint(grip, self.duration)).collect()
+        let of_body = |(at, body): (usize, &SceneBody)| {
+            let place = |run: &'_ Run| run.of.iter().position(|&other| other == at);
+            let mut simulated = self.runs.iter().filter(|run| run.recording.is_none());
+            let (run, place) = simulated.find_map(|run| Some((run, place(run)?)))?;
+            let own = run.bodies.nodes(place);
+            let wanted = run.grips.iter().filter(|grip| (grip.motion == Motion::Still) == held);
+            let words = wanted.filter_map(|grip| {
+                let nodes = grip.nodes.iter().map(|&node| node as usize).filter(|node| own.contains(node));
+                let nodes: Vec<_> = nodes.map(|node| node - own.start).collect();
+                (!nodes.is_empty()).then(|| constraint(&nodes, &body.name, grip, self.duration))
+            });
+            Some(words.collect::<Vec<_>>())
+        };
+        self.bodies.iter().enumerate().filter_map(of_body).flatten().collect()
     }
 
     /// The cycle T = 2π√(m/k) of the lightest node and the stiffest run (s). Steps may be fractions of it.
@@ -171,6 +215,12 @@ impl Scene {
         };
         format!("{width} × {height} px, {theme}, {panels}, seen {from}{distance}")
     }
+}
+
+/// The coordinates of a vector: three in space, two in the plane.
+fn coordinates(vector: DVec3, dimension: Dimension) -> Vec<f64> {
+    let axes = if dimension == Dimension::Plane { 2 } else { 3 };
+    vector.to_array()[..axes].to_vec()
 }
 
 /// Lowest and highest corner of the box around points (m), without round-off beside zero.
@@ -217,15 +267,21 @@ fn path(motion: &Motion) -> String {
     }
 }
 
-/// A kinematic constraint in words.
-fn constraint(grip: &Grip, duration: f64) -> String {
-    let nodes = match grip.nodes.len() {
-        1 => format!("node {}", grip.nodes[0]),
-        several => format!("{} nodes", count(several as u128)),
+/// A kinematic constraint on nodes of a body in words.
+fn constraint(nodes: &[usize], body: &str, grip: &Grip, duration: f64) -> String {
+    let nodes = match nodes {
+        [only] => format!("node {only}"),
+        several => format!("{} nodes", count(several.len() as u128)),
     };
+    let of = if body.is_empty() { String::new() } else { format!(" of {body}") };
     let until = if grip.until.is_finite() { format!("until {} s", short(grip.until)) } else { "on".into() };
     let note = if grip.from >= duration && duration > 0.0 { " (after the end of the scene)" } else { "" };
-    format!("{nodes} from {} s {until}{note}", short(grip.from))
+    format!("{nodes}{of} from {} s {until}{note}", short(grip.from))
+}
+
+/// A name before what it has; nothing without a name.
+fn titled(name: &str) -> String {
+    if name.is_empty() { String::new() } else { format!("{name}: ") }
 }
 
 fn vector(coordinates: &[f64]) -> String {
@@ -237,26 +293,36 @@ impl fmt::Display for SceneSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut line = |name: &str, text: &str| writeln!(f, "  {name:<9} {text}");
         line("scene", &format!("{} ({})", self.title, self.name))?;
-        let extent: Vec<_> = self.extent.iter().map(|&side| short(side)).collect();
-        let (extent, nodes) = (extent.join(" × "), count(self.nodes as u128));
-        let kinds = list(&self.elements, "and", |words| words.into());
-        let elements = match self.elements.len() {
-            1 => kinds,
-            _ => format!("{} elements ({kinds})", count(self.element_count as u128)),
-        };
-        line("body", &format!("{nodes} nodes, {elements}, {extent} m, {} kg", short(self.mass)))?;
-        let [low, high] = &self.start;
-        // Users copy regions of nodes from it, so it holds all nodes.
-        let ranges: Vec<_> = low.iter().zip(high).map(|(&low, &high)| ends([low, high])).collect();
-        let corner = |at: usize| ranges.iter().map(|range| &*range[at]).collect::<Vec<_>>().join(", ");
-        line("start", &format!("between ({}) and ({}) m", corner(0), corner(1)))?;
+        for body in &self.bodies {
+            let extent: Vec<_> = body.extent.iter().map(|&side| short(side)).collect();
+            let (extent, nodes) = (extent.join(" × "), count(body.nodes as u128));
+            let kinds = list(&body.elements, "and", |words| words.into());
+            let elements = match body.elements.len() {
+                1 => kinds,
+                _ => format!("{} elements ({kinds})", count(body.element_count as u128)),
+            };
+            let name = titled(&body.name);
+            line("body", &format!("{name}{nodes} nodes, {elements}, {extent} m, {} kg", short(body.mass)))?;
+            let [low, high] = &body.start;
+            // Users copy regions of nodes from it, so it holds all nodes.
+            let ranges: Vec<_> = low.iter().zip(high).map(|(&low, &high)| ends([low, high])).collect();
+            let corner = |at: usize| ranges.iter().map(|range| &*range[at]).collect::<Vec<_>>().join(", ");
+            line("start", &format!("between ({}) and ({}) m", corner(0), corner(1)))?;
+        }
         line("gravity", &format!("{} m/s²", vector(&self.gravity)))?;
         let (duration, rate) = (short(self.duration), short(self.frames_per_second));
         let plural = if self.frames == 1 { "" } else { "s" };
         line("time", &format!("{duration} s, {} frame{plural} at {rate} per second", count(self.frames.into())))?;
         line("cycle", &format!("T = {} s", short(self.cycle)))?;
         for run in &self.runs {
-            line("run", &format!("{}: {}", run.name, run.model))?;
+            match (&self.bodies[..], &run.parts[..]) {
+                ([_], [PartSummary { model, .. }]) => line("run", &format!("{}: {model}", run.name))?,
+                _ => {
+                    line("run", &run.name)?;
+                    let part = |part: &PartSummary| line("", &format!("{}{}", titled(&part.body), part.model));
+                    run.parts.iter().try_for_each(part)?;
+                }
+            }
             let (step, part) = (short(run.step), short(self.cycle / run.step));
             let steps = count(run.steps.into());
             let kernel = if run.kernel == Kernel::Reference { ", kernel reference" } else { "" };

@@ -49,7 +49,7 @@ fn says_where_the_body_starts() {
     let ran = place.run("check small.toml").good();
     assert!(ran.out.contains("\n  start     between (-0.1, 0, -0.05) and (0.1, 0.1, 0.05) m\n"), "{}", ran.out);
     let document = place.run("check small.toml --json").good().json();
-    let start = &document["scenes"][0]["scene"]["start"];
+    let start = &document["scenes"][0]["scene"]["bodies"][0]["start"];
     assert_eq!(start, &serde_json::json!([[-0.1, 0.0, -0.05], [0.1, 0.1, 0.05]]));
 }
 
@@ -141,8 +141,9 @@ fn a_mesh_written_with_numpy() {
         std::fs::write(place.path("tube.npz"), bytes).unwrap();
         let document = place.run("check tube.toml --json").good().json();
         let scene = document["scenes"][0]["scene"].clone();
-        assert_eq!((&scene["nodes"], &scene["elements"][0]), (&264.into(), &"120 hexahedra".into()));
-        assert_eq!(scene["start"][0], serde_json::json!([-0.5, -0.25, -0.25]));
+        let body = &scene["bodies"][0];
+        assert_eq!((&body["nodes"], &body["elements"][0]), (&264.into(), &"120 hexahedra".into()));
+        assert_eq!(body["start"][0], serde_json::json!([-0.5, -0.25, -0.25]));
         assert_eq!(scene["holds"][0], "24 nodes from 0 s on");
     };
     check(include_bytes!("tube.npz"));

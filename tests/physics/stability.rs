@@ -11,7 +11,7 @@ fn scene(text: &str) -> Scene {
 }
 
 fn predicted(scene: &Scene) -> Stability {
-    scene.stability(0)
+    scene.stability(0).0
 }
 
 /// `ω_max/ω` of the free lattice of 3×3×3 cubes from dense matrices of an independent program, and the bounds for

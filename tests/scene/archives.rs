@@ -605,6 +605,15 @@ fn a_scene_does_not_say_what_its_file_says() {
     let both = SCENE
         .replace("file = 'body.npz'", "file = 'body.npz'\nmass = 1\nvelocity = [0, 1]\nstart = { shape = 'point' }");
     let error = Place::new(&arrays).load(&both, &Limits::default()).unwrap_err();
+    for key in ["density", "mass_total"] {
+        let both = SCENE.replace("file = 'body.npz'", &format!("file = 'body.npz'\n{key} = 1"));
+        let error = Place::new(&arrays).load(&both, &Limits::default()).unwrap_err();
+        let [mistake] = error.mistakes() else { panic!("{error}") };
+        assert_eq!(mistake.message, format!("`body.{key}` and `body.npz: masses` exclude each other"));
+        let without = with(|arrays| arrays.retain(|array| array.name != "masses"));
+        let scene = Place::new(&without).load(&both, &Limits::default()).unwrap();
+        assert!((scene.bodies[0].body.mass.iter().sum::<f64>() - 1.0).abs() < 1e-15, "a square of 1 m²");
+    }
     let lines: Vec<_> = error.mistakes().iter().map(|mistake| (mistake.line, mistake.message.as_str())).collect();
     assert_eq!(
         lines,

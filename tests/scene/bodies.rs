@@ -4,6 +4,7 @@ use super::{WORLD, bad, good};
 use glam::DVec3;
 use localshape::runner::Runner;
 use localshape::scene::{Scene, description};
+use localshape::sim::geometry::volumes_at_rest;
 use localshape::sim::{Dimension, ElementKind};
 use std::collections::BTreeMap;
 
@@ -232,7 +233,7 @@ fn a_body_made_by_a_rule_moves_like_the_same_body_listed_in_any_order() {
             let made = with(format!("{body}\n{start}"));
             let (text, renamed) = listed(&made);
             let listed = with(format!("{text}\n{start}"));
-            assert_eq!(listed.summary().elements, made.summary().elements);
+            assert_eq!(listed.summary().bodies[0].elements, made.summary().bodies[0].elements);
             for (run, (one, other)) in end(&made).iter().zip(&end(&listed)).enumerate() {
                 let moved = one[0].distance(made.runs[0].initial.position[0]);
                 assert!(moved > 0.01, "{body}: {moved}");
@@ -433,5 +434,103 @@ fn a_start_says_what_is_wrong_with_it() {
         assert_eq!(mistake.line, 1, "{error}");
         let error = error.to_string();
         assert!(error.contains(words), "{words:?} is not in\n{error}");
+    }
+}
+
+/// The mass of each node.
+fn masses(body: &str, dimension: Dimension) -> Vec<f64> {
+    good(&world(body, dimension)).bodies[0].body.mass.clone()
+}
+
+/// The density times the volume, or the typed mass, whatever the elements are.
+#[test]
+fn masses_add_up() {
+    for (body, dimension, _) in BODIES {
+        let is_bars = body.starts_with("bars");
+        for mass in masses(&format!("{body}\nmass_total = 2"), dimension) {
+            assert!(mass > 0.0, "{body}");
+        }
+        let total: f64 = masses(&format!("{body}\nmass_total = 2"), dimension).iter().sum();
+        assert!((total - 2.0).abs() < 1e-14, "{body}: {total}");
+        if is_bars {
+            continue;
+        }
+        let scene = good(&world(&format!("{body}\ndensity = 1e3"), dimension));
+        let (rest, mass) = (&scene.bodies[0].body, &scene.bodies[0].body.mass);
+        let volume: f64 = volumes_at_rest(rest).iter().sum();
+        assert!(mass.iter().all(|&mass| mass > 0.0), "{body}");
+        let total: f64 = mass.iter().sum();
+        assert!((total - 1e3 * volume).abs() < 1e-13 * total, "{body}: {total}, {volume}");
+        // Both are shared in the same way.
+        let shared = masses(&format!("{body}\nmass_total = {total:e}"), dimension);
+        assert!(mass.iter().zip(shared).all(|(one, other)| (one - other).abs() < 1e-13 * one), "{body}");
+    }
+    let total = |body: &str, dimension| masses(body, dimension).iter().sum::<f64>();
+    let block = "lattice = { cells = [3, 2, 2], side = [0.1, 0.2, 0.3]";
+    for more in ["}", ", irregular = 0.3 }", ", elements = 'mixed' }", ", elements = 'tetrahedra' }"] {
+        let total = total(&format!("{block}{more}\ndensity = 1e3"), Dimension::Space);
+        assert!((total - 72.0).abs() < 1e-12, "{more}: {total}");
+    }
+    let hexagon = total("fan = { sides = 6, radius = 1 }\ndensity = 2", Dimension::Plane);
+    assert!((hexagon - 27.0_f64.sqrt()).abs() < 1e-14, "{hexagon}");
+}
+
+/// A node has the share of all elements that it belongs to.
+#[test]
+fn elements_share_their_mass_equally_among_their_nodes() {
+    let two = "nodes = [[0, 0], [1, 0], [1, 1], [0, 1], [3, 0]]\nelements = [[0, 1, 2, 3], [1, 4, 2]]\n";
+    let third = 1.0 / 3.0;
+    let shares = [0.25, 0.25 + third, 0.25 + third, 0.25, third];
+    for (typed, expected) in [("density = 1", shares), ("mass_total = 4", shares.map(|share| 2.0 * share))] {
+        let mass = masses(&format!("{two}{typed}"), Dimension::Plane);
+        assert!(mass.iter().zip(expected).all(|(one, other)| (one - other).abs() < 1e-15), "{typed}: {mass:?}");
+    }
+    // An octahedron of 4/3 m³ with a seventh node inside it.
+    let octahedron = "nodes = [[1,0,0],[0,0,-1],[0,1,0],[-1,0,0],[0,-1,0],[0,0,1],[0.1,0,0]]\nelements = [[0,1,2,3,4,5,6]]\nlowest = 0\n";
+    let mass = masses(&format!("{octahedron}density = 21"), Dimension::Space);
+    assert!(mass.iter().all(|mass| (mass - 4.0).abs() < 1e-14), "{mass:?}");
+    // A tail without a volume: all nodes are equal.
+    let tail = "nodes = [[0, 0], [1, 0], [0, 1], [2, 0]]\nelements = [[0, 1, 2], [1, 3]]\n";
+    assert_eq!(masses(&format!("{tail}mass_total = 2"), Dimension::Plane), [0.5; 4]);
+    assert_eq!(
+        masses("bars = { count = 4, length = 1, direction = [1, 0] }\nmass_total = 2", Dimension::Plane),
+        [0.4; 5]
+    );
+}
+
+#[test]
+fn masses_that_cannot_be() {
+    let wrong = |body: &str, expected: &str| {
+        super::expect(&bad(&format!("{WORLD}[body]\n{body}")), WORLD.lines().count() + 1, expected);
+    };
+    wrong(
+        "bars = { count = 4, length = 1, direction = [1, 0, 0] }\ndensity = 1",
+        "2:1 `body.density` is a mass per volume, but no element of the body has a volume give `mass_total`",
+    );
+    wrong("bars = { count = 4, length = 1, direction = [1, 0] }\ndensity = 1", "2:1 per area, but no element");
+    wrong(
+        "nodes = [[0, 0], [1, 0], [0, 1], [2, 0]]\nelements = [[0, 1, 2], [1, 3]]\ndensity = 1",
+        "3:1 `body.density` is a mass per area, but node 3 belongs to no element with an area",
+    );
+    wrong("nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nelements = [[0, 1, 2]]\ndensity = 1", "3:1 no element");
+    wrong("fan = { sides = 6, radius = 1 }\ndensity = 0", "2:11 `body.density` is 0; expected a number greater than 0");
+    wrong(
+        "fan = { sides = 6, radius = 1 }\nmass_total = -1",
+        "2:14 `body.mass_total` is -1; expected a number greater",
+    );
+    wrong("fan = { sides = 6, radius = 1e20 }\ndensity = 1e20", "2:11 `body.density` gives node 0 a mass of 8.66");
+    wrong("fan = { sides = 6, radius = 1e-290 }\ndensity = 1", "2:1 no element of the body has an area");
+    for (one, two) in [
+        ("mass = 1", "density = 1"),
+        ("mass = 1", "mass_total = 1"),
+        ("masses = [1, 1, 1]", "density = 1"),
+        ("masses = [1, 1, 1]", "mass_total = 1"),
+        ("density = 1", "mass_total = 1"),
+    ] {
+        let [first, second] = [one, two].map(|typed| typed.split(' ').next().unwrap());
+        wrong(
+            &format!("nodes = [[0, 0], [1, 0], [0, 1]]\nelements = [[0, 1, 2]]\n{one}\n{two}"),
+            &format!("4:1 `body` has both `{first}` and `{second}`, which exclude each other keep one"),
+        );
     }
 }

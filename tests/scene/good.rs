@@ -313,11 +313,11 @@ fn a_summary_says_what_a_scene_holds() {
         )
     );
     let cube = format!("{WORLD}[body]\nlattice = {{ cells = [1, 1, 1], side = 1 }}\n");
-    let model = |more: &str| good(&cube.replace("1e4", more)).summary().runs[0].model.clone();
+    let model = |more: &str| good(&cube.replace("1e4", more)).summary().runs[0].parts[0].model.clone();
     assert_eq!(model("1e4"), "1 cube, k = 10 kN/m, rotation robust (exact)");
     assert_eq!(model("1e4, passes = 1"), "1 cube, k = 10 kN/m, rotation arctangent with 1 pass");
     let json = serde_json::to_value(good(include_str!("explicit.toml")).summary()).unwrap();
-    assert_eq!(json["elements"], serde_json::json!(["6 triangles"]));
+    assert_eq!(json["bodies"][0]["elements"], serde_json::json!(["6 triangles"]));
     assert_eq!(json["runs"][1]["name"], "Mass-spring");
     assert_eq!(json["gravity"], serde_json::json!([0.0, -9.8]));
 }

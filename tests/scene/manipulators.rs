@@ -225,7 +225,13 @@ fn nodes_that_are_none() {
     case(WORLD, "[[hold]]\nnodes = [1, 12]", "2:13 there is no node 12; the body has nodes 0 to 11");
     case(WORLD, "[[hold]]\nnodes = [1, 1]", "2:13 node 1 occurs twice in `hold[0].nodes`");
     case(WORLD, "[[hold]]\nnodes = []", "2:9 is empty");
-    case(WORLD, "[[hold]]\nnodes = 'all'", "2:9 is the string \"all\"; expected an array or a table");
+    case(WORLD, "[[hold]]\nnodes = 1", "2:9 is the whole number 1; expected an array, \"left\", \"right\", ");
+    case(WORLD, "[[hold]]\nnodes = 'bak'", "2:9 \"front\" or \"back\" did you mean \"back\"?");
+    case(
+        PLANE,
+        "[[hold]]\nnodes = 'front'",
+        "2:9 `hold[0].nodes` is \"front\", but the body is in the plane expected \"left\", \"right\", \"bottom\" or \"top\"",
+    );
     case(
         WORLD,
         "[[hold]]\nnodes = { of = [9, 9, 9], within = 1 }",
@@ -257,6 +263,35 @@ fn regions_hold_the_nodes_that_start_in_them() {
     ));
     assert_eq!(scene.runs[0].grips[0].nodes, [5, 8, 10, 11]);
     assert_eq!(scene.runs[0].grips[1].nodes, [0, 6]);
+}
+
+/// Sides are those of the rest shape, wherever the body starts.
+#[test]
+fn sides_are_those_of_the_rest_shape() {
+    let held = |world: &str, side: &str| {
+        let turned = world.replace("offset", "rotation = { TURN }, start.shape = 'cloud', offset");
+        let turn = if world.contains("cells = [2, 1, 1]") { "axis = [1, 2, 3], angle = 1" } else { "angle = 1" };
+        let scene = good(&format!("{}[[hold]]\nnodes = '{side}'", turned.replace("TURN", turn)));
+        assert_eq!(scene.warnings, []);
+        scene.runs[0].grips[0].nodes.clone()
+    };
+    assert_eq!(held(WORLD, "left"), [0, 3, 6, 9]);
+    assert_eq!(held(WORLD, "right"), [2, 5, 8, 11]);
+    assert_eq!(held(WORLD, "bottom"), [0, 1, 2, 6, 7, 8]);
+    assert_eq!(held(WORLD, "top"), [3, 4, 5, 9, 10, 11]);
+    assert_eq!(held(WORLD, "back"), [0, 1, 2, 3, 4, 5]);
+    assert_eq!(held(WORLD, "front"), [6, 7, 8, 9, 10, 11]);
+    let sides = ["left", "right", "bottom", "top"].map(|side| held(PLANE, side));
+    assert_eq!(sides, [vec![0, 3], vec![2, 5], vec![0, 1, 2], vec![3, 4, 5]]);
+    // Nodes of a side are at one height to round-off; a corner is a side of one node.
+    let polygon = |sides| {
+        PLANE.replace(
+            "lattice = { cells = [2, 1], side = 0.1 }",
+            &format!("polygon = {{ sides = {sides}, radius = 1 }}"),
+        )
+    };
+    assert_eq!(held(&polygon(10), "top"), [5, 6]);
+    assert_eq!(held(&polygon(5), "top"), [3]);
 }
 
 /// Coordinates of a lattice are sums, such as ±0.30000000000000004 m, and thirds, which are not typed in full.

@@ -13,6 +13,7 @@ mod peers;
 mod recordings;
 mod robust;
 mod schema;
+mod several;
 
 use localshape::scene::{Limits, Scene, SceneError};
 

@@ -61,15 +61,15 @@ impl Stability {
         Self { largest: Linear::new(body, model, is_free).largest_step(integrator), stretched }
     }
 
-    /// Predicts the largest step that is stable for all bodies of a run, each with its model, as [`Self::of`] for each. Grips
-    /// number the nodes of all bodies.
-    pub fn of_parts(
+    /// Predicts the largest stable step for each body of a run with its model, as [`Self::of`]. Grips number the nodes of all
+    /// bodies.
+    pub fn of_each(
         bodies: &Assembly,
         models: &[Arc<dyn ElasticModel>],
         integrator: Integrator,
         grips: &[Grip],
         duration: f64,
-    ) -> Self {
+    ) -> Vec<Self> {
         let own_grips = |body: usize| {
             let own = bodies.nodes(body);
             let nodes = |grip: &Grip| -> Vec<u32> {
@@ -79,12 +79,15 @@ impl Stability {
             grips.iter().map(|grip| Grip { nodes: nodes(grip), ..grip.clone() }).collect::<Vec<_>>()
         };
         let parts = bodies.bodies().iter().zip(models).enumerate();
-        let each = parts.map(|(at, (body, model))| Self::of(body, &**model, integrator, &own_grips(at), duration));
-        let none = Self { largest: f64::INFINITY, stretched: None };
-        each.fold(none, |least, one| Self {
-            largest: least.largest.min(one.largest),
-            stretched: least.stretched.into_iter().chain(one.stretched).reduce(f64::min),
-        })
+        parts.map(|(at, (body, model))| Self::of(body, &**model, integrator, &own_grips(at), duration)).collect()
+    }
+
+    /// The largest step that is stable for all of several bodies.
+    pub fn of_all(each: &[Self]) -> Self {
+        Self {
+            largest: each.iter().map(|one| one.largest).fold(f64::INFINITY, f64::min),
+            stretched: each.iter().filter_map(|one| one.stretched).reduce(f64::min),
+        }
     }
 
     /// A step (s) that is stable for certain, without computing eigenvalues: 0 if none is known, `None` for models that do not

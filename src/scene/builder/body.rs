@@ -65,6 +65,12 @@ impl BodyBuilder {
         faces(faces: impl IntoIterator<Item = impl Into<Vec<u32>>>) 0.faces = all(faces);
         /// Mass of every node (kg), instead of 1.
         mass(mass: f64) 0.mass = Some(mass);
+        /// Density (kg/m³; in the plane kg/m²), instead of a mass of every node: the volume of each element at rest is
+        /// shared equally by its nodes.
+        density(density: f64) 0.density = Some(density);
+        /// Mass of the whole body (kg), instead of a mass of every node. It is shared as by [`Self::density`], or equally
+        /// by all nodes if some have no element with a volume.
+        mass_total(mass: f64) 0.mass_total = Some(mass);
         /// Mass of each node (kg). Only with [`Self::arrays`].
         masses(masses: impl IntoIterator<Item = f64>) 0.masses = Some(masses.into_iter().map(Positive).collect());
         /// Initial position of each node (m), instead of the rest position. Only with [`Self::arrays`].

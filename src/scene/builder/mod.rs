@@ -20,7 +20,7 @@ pub use obstacle::ObstacleBuilder;
 
 use super::error::SceneError;
 use super::file::{
-    BodyFile, Coordinates, GrabFile, HoldFile, ModelFile, MotionPath, NodesFile, RegionFile, RunFile, SceneFile,
+    BodyFile, Coordinates, GrabFile, HoldFile, ModelFile, MotionPath, NodesFile, RegionFile, RunFile, SceneFile, Side,
     StepFile, TimeFile,
 };
 use super::resolve::lists::check_unwritten;
@@ -144,13 +144,15 @@ impl SceneBuilder {
             std::ops::Bound::Included(&time) | std::ops::Bound::Excluded(&time) => Some(time),
             std::ops::Bound::Unbounded => None,
         });
-        self.0.hold.push(HoldFile { nodes: nodes.0, from: from.unwrap_or(0.0), until });
+        let NodeSet { body, nodes } = nodes;
+        self.0.hold.push(HoldFile { body, nodes, from: from.unwrap_or(0.0), until });
         self
     }
 
     /// Grabs nodes at the first key of a path, drags them along it, and releases them at the last.
     pub fn grab(mut self, nodes: NodeSet, path: MotionPath) -> Self {
-        self.0.grab.push(GrabFile { nodes: nodes.0, path });
+        let NodeSet { body, nodes } = nodes;
+        self.0.grab.push(GrabFile { body, nodes, path });
         self
     }
 
@@ -359,25 +361,42 @@ impl<M: Into<ModelParameters>> From<M> for RunBuilder {
     }
 }
 
-/// Some nodes of a body, at their initial positions.
+/// Some nodes of all bodies, or of one.
 #[derive(Clone, Debug)]
-pub struct NodeSet(NodesFile);
+pub struct NodeSet {
+    body: Option<String>,
+    nodes: NodesFile,
+}
 
 impl NodeSet {
-    /// A list of nodes, counted from 0.
+    /// A list of nodes, counted from 0. In a scene of several bodies it needs [`Self::of`].
     pub fn list(nodes: impl Into<Vec<u32>>) -> Self {
-        Self(NodesFile::List(nodes.into()))
+        Self::new(NodesFile::List(nodes.into()))
     }
 
-    /// The nodes in a ball with a centre and a radius (m).
+    /// The nodes of a side of the rest shape of each body.
+    pub fn side(side: Side) -> Self {
+        Self::new(NodesFile::Side(side))
+    }
+
+    /// The nodes that start in a ball with a centre and a radius (m).
     pub fn ball(middle: impl Into<Coordinates>, radius: f64) -> Self {
         let (of, within) = (Some(middle.into()), Some(radius));
-        Self(NodesFile::Region(RegionFile { of, within, low: None, high: None }))
+        Self::new(NodesFile::Region(RegionFile { of, within, low: None, high: None }))
     }
 
-    /// The nodes in an axis-aligned box, with its lowest and highest corner (m).
+    /// The nodes that start in an axis-aligned box, with its lowest and highest corner (m).
     pub fn cuboid(low: impl Into<Coordinates>, high: impl Into<Coordinates>) -> Self {
         let (low, high) = (Some(low.into()), Some(high.into()));
-        Self(NodesFile::Region(RegionFile { of: None, within: None, low, high }))
+        Self::new(NodesFile::Region(RegionFile { of: None, within: None, low, high }))
+    }
+
+    /// Those of them that belong to the body of a name.
+    pub fn of(self, body: impl Into<String>) -> Self {
+        Self { body: Some(body.into()), ..self }
+    }
+
+    fn new(nodes: NodesFile) -> Self {
+        Self { body: None, nodes }
     }
 }

@@ -34,8 +34,10 @@ pub(super) fn written<S: Serializer>(bodies: &[BodyFile], serializer: S) -> Resu
         { "required": ["bars"] }, { "required": ["nodes", "elements"] }, { "required": ["file"] }
     ],
     "allOf" = [
-        { "not": { "required": ["mass", "masses"] } }, { "not": { "required": ["velocity", "velocities"] } },
-        { "not": { "required": ["positions", "start"] } }
+        { "not": { "required": ["mass", "masses"] } }, { "not": { "required": ["mass", "density"] } },
+        { "not": { "required": ["mass", "mass_total"] } }, { "not": { "required": ["masses", "density"] } },
+        { "not": { "required": ["masses", "mass_total"] } }, { "not": { "required": ["density", "mass_total"] } },
+        { "not": { "required": ["velocity", "velocities"] } }, { "not": { "required": ["positions", "start"] } }
     ],
     "dependentRequired" = {
         "elements": ["nodes"], "springs": ["nodes"], "faces": ["nodes"],
@@ -99,6 +101,14 @@ pub(in crate::scene) struct BodyFile {
     /// Mass of every node (kg). Default: 1.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) mass: Option<f64>,
+    /// Density (kg/m³; in the plane kg/m²), instead of `mass`: the volume of each element at rest is shared equally by
+    /// its nodes. Each node needs an element with a volume, in the plane with an area.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(in crate::scene) density: Option<f64>,
+    /// Mass of the whole body (kg), instead of `mass`. It is shared as by `density`, or equally by all nodes if some have
+    /// no element with a volume.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(in crate::scene) mass_total: Option<f64>,
     /// A rotation about the mean of the nodes. Default: none.
     pub(in crate::scene) rotation: Option<Rotation>,
     /// A translation after the rotation (m). Default: none.

@@ -11,7 +11,7 @@ mod obstacle;
 pub(in crate::scene) use body::{BarsFile, BodyFile, DiscFile, PolygonFile, SideFile, SpinFile};
 pub use body::{Cells, Lattice, Rotation, Start, StartShape};
 pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, RegionFile};
-pub use motion::{MotionPath, Swing};
+pub use motion::{MotionPath, Side, Swing};
 pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};
 
 use super::step::NamedStep;

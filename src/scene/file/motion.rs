@@ -55,8 +55,11 @@ pub struct Swing {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct HoldFile {
-    /// The nodes: a list, or all nodes that start in a ball or an axis-aligned box. Nodes on the border belong to the region,
-    /// to 1e-9 of the body's longest side. `localshape check` prints where the body starts.
+    /// The name of their body. Default: all bodies.
+    pub(in crate::scene) body: Option<String>,
+    /// The nodes: a list, which needs a `body` if there are several, a side of the rest shape of each body, or all nodes
+    /// that start in a ball or an axis-aligned box. Nodes on the border belong to side and region, to 1e-9 of the body's
+    /// longest side. `localshape check` prints where bodies start.
     pub(in crate::scene) nodes: NodesFile,
     /// Start (s).
     #[serde(default)]
@@ -71,22 +74,45 @@ pub(in crate::scene) struct HoldFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct GrabFile {
-    /// The nodes: a list, or all nodes that start in a ball or an axis-aligned box. Nodes on the border belong to the region,
-    /// to 1e-9 of the body's longest side. `localshape check` prints where the body starts.
+    /// The name of their body. Default: all bodies.
+    pub(in crate::scene) body: Option<String>,
+    /// The nodes: a list, which needs a `body` if there are several, a side of the rest shape of each body, or all nodes
+    /// that start in a ball or an axis-aligned box. Nodes on the border belong to side and region, to 1e-9 of the body's
+    /// longest side. `localshape check` prints where bodies start.
     pub(in crate::scene) nodes: NodesFile,
     /// The path along which the nodes are dragged. They are grabbed at the time of the first key, wherever they are.
     /// They follow the path's motion since that key, rotate about their centre, and are released at the last key.
     pub(in crate::scene) path: MotionPath,
 }
 
-/// Some nodes of a body.
+/// Some nodes of bodies.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(in crate::scene) enum NodesFile {
     /// A list of nodes, counted from 0.
     List(#[schemars(length(min = 1))] Vec<u32>),
+    /// The nodes of a side of the rest shape.
+    Side(Side),
     /// All nodes that start in a region.
     Region(RegionFile),
+}
+
+/// A side of the rest shape of a body: the nodes with the least or greatest coordinate along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Side {
+    /// The least x.
+    Left,
+    /// The greatest x.
+    Right,
+    /// The least y.
+    Bottom,
+    /// The greatest y.
+    Top,
+    /// The greatest z, towards the usual camera. Only in space.
+    Front,
+    /// The least z. Only in space.
+    Back,
 }
 
 /// A region of space: a ball, or an axis-aligned box.

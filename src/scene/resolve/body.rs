@@ -2,7 +2,7 @@
 
 use super::lists::{Lists, check_count, check_exclusive};
 use super::motion::axis;
-use super::{Place, direction, elements, vector};
+use super::{Place, direction, elements, mass, vector};
 use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::quoted;
@@ -159,12 +159,15 @@ fn generated(
     let dimension = generator.dimension();
     let along = check_generator(generator, place, report);
     let Made { nodes: rest, elements } = generator.make(along?);
-    let mass = vec![file.mass.unwrap_or(1.0); rest.len()];
-    let initial = start(file, place, rest.clone(), None, dimension, report);
+    let count = rest.len();
+    let mut body = Body::new(dimension, rest, vec![1.0; count], elements, solids(file), None);
+    let mass = mass::resolve(file, &body, place, report);
+    let initial = start(file, place, body.rest.clone(), None, dimension, report);
     if report.total() > before {
         return None;
     }
-    let body = Arc::new(Body::new(dimension, rest, mass, elements, solids(file), None));
+    body.mass = mass?;
+    let body = Arc::new(body);
     let of_cells = generator.side();
     let side = of_cells.unwrap_or_else(|| elements::mean_edge(&body));
     let name = file.name.clone().unwrap_or_default();
@@ -227,18 +230,25 @@ fn listed(file: &BodyFile, lists: Lists, flawed: bool, report: &mut Collector<'_
         length.into_iter().for_each(|length| check_count(&lists.source, key, length, count, report));
     }
     if file.file.is_some() {
-        check_exclusive(&lists, lists.masses.is_some() && file.mass.is_some(), "mass", "masses", report);
+        for (key, typed) in [("mass", file.mass), ("density", file.density), ("mass_total", file.mass_total)] {
+            check_exclusive(&lists, lists.masses.is_some() && typed.is_some(), key, "masses", report);
+        }
         let both = lists.velocities.is_some() && file.velocity.is_some();
         check_exclusive(&lists, both, "velocity", "velocities", report);
         check_exclusive(&lists, lists.positions.is_some() && file.start.is_some(), "start", "positions", report);
     }
     let Lists { nodes: rest, elements, springs, faces, positions, velocities, masses, .. } = lists;
-    let mass = masses.unwrap_or_else(|| vec![file.mass.unwrap_or(1.0); count]);
     let initial = start(file, &place, positions.unwrap_or_else(|| rest.clone()), velocities, dimension, report);
     if flawed || report.total() > before || elements.is_empty() {
         return None;
     }
-    let body = Arc::new(Body::new(dimension, rest, mass, elements, solids, faces.as_ref()));
+    let is_listed = masses.is_some();
+    let mass = masses.unwrap_or_else(|| vec![1.0; count]);
+    let mut body = Body::new(dimension, rest, mass, elements, solids, faces.as_ref());
+    if !is_listed {
+        body.mass = mass::resolve(file, &body, &place, report)?;
+    }
+    let body = Arc::new(body);
     let side = elements::mean_edge(&body);
     let name = file.name.clone().unwrap_or_default();
     Some(ResolvedBody { name, body, initial, springs, side, has_cells: false })

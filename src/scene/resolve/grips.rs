@@ -1,10 +1,11 @@
 //! Kinematic constraints: nodes held and dragged.
 
 use super::body::ResolvedBody;
-use super::{motion, vector};
+use super::{choice, motion, vector};
+use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
-use crate::reading::words::{count, fine};
-use crate::scene::file::{GrabFile, HoldFile, NodesFile, RegionFile};
+use crate::reading::words::{count, fine, quoted};
+use crate::scene::file::{GrabFile, HoldFile, NodesFile, RegionFile, Side};
 use crate::scene::summary::corners;
 use crate::sim::{Assembly, Body, Dimension, Grip, Motion};
 use glam::DVec3;
@@ -50,7 +51,7 @@ pub(super) fn resolve(
         let Some(typed) = typed else { continue };
         let path = key_path!["hold", at].to_vec();
         let until = typed.until.unwrap_or(f64::INFINITY);
-        let nodes = nodes(&typed.nodes, bodies, &layers, &path, report);
+        let nodes = nodes(typed.body.as_deref(), &typed.nodes, bodies, &layers, &path, report);
         if until <= typed.from {
             let message = format!("`hold[{at}]` ends at {until} s, not later than it begins at {} s", typed.from);
             report.at(&key_path![path; "until"], message, None);
@@ -62,7 +63,7 @@ pub(super) fn resolve(
     for (at, typed) in grabs.iter().enumerate() {
         let Some(typed) = typed else { continue };
         let grab = key_path!["grab", at].to_vec();
-        let nodes = nodes(&typed.nodes, bodies, &layers, &grab, report);
+        let nodes = nodes(typed.body.as_deref(), &typed.nodes, bodies, &layers, &grab, report);
         let path = key_path![grab; "path"];
         if typed.path.repeat {
             let message = format!("`grab[{at}].path` repeats, so the nodes would never be released");
@@ -147,33 +148,63 @@ fn of(body: usize, bodies: &[ResolvedBody]) -> String {
     if bodies.len() == 1 { String::new() } else { format!(" of {}", bodies[body].in_words()) }
 }
 
-/// The selected nodes of each body, in rising order.
+/// The selected nodes of each body, in rising order: those of the body of a `name`, or of all.
 fn nodes(
+    name: Option<&str>,
     typed: &NodesFile,
     bodies: &[ResolvedBody],
     layers: &[OnceCell<Vec<Layers>>],
     path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) -> Option<Vec<Vec<u32>>> {
-    let path = key_path![path; "nodes"];
-    match (typed, bodies) {
-        (NodesFile::List(list), [only]) => Some(vec![listed(list, only.body.len(), &path, report)?]),
-        (NodesFile::List(_), _) => {
-            let message = format!("`{}` is a list of nodes, but the scene has {} bodies", written(&path), bodies.len());
-            report.at(&path, message, "give a region of nodes instead");
-            None
+    let chosen = match name {
+        Some(name) => {
+            let names: Vec<_> = bodies.iter().map(|body| body.name.as_str()).collect();
+            let body = choice::find(name, &names, &key_path![path; "body"], report)?;
+            body..body + 1
         }
-        (NodesFile::Region(region), _) => within(region, bodies, layers, &path, report),
+        None => 0..bodies.len(),
+    };
+    let mut nodes = vec![Vec::new(); bodies.len()];
+    let path = key_path![path; "nodes"];
+    let found = nodes_of_each(typed, &bodies[chosen.clone()], &layers[chosen.clone()], &path, report)?;
+    nodes.splice(chosen, found);
+    Some(nodes)
+}
+
+/// The selected nodes of each of some bodies, in rising order.
+fn nodes_of_each(
+    typed: &NodesFile,
+    bodies: &[ResolvedBody],
+    layers: &[OnceCell<Vec<Layers>>],
+    path: &[PathPart<'_>],
+    report: &mut Collector<'_>,
+) -> Option<Vec<Vec<u32>>> {
+    match typed {
+        NodesFile::List(list) => match bodies {
+            [only] => Some(vec![listed(list, only, path, report)?]),
+            [first, ..] => {
+                let message =
+                    format!("`{}` is a list of nodes, but the scene has {} bodies", written(path), bodies.len());
+                let help = format!("name their body, such as body = {}", quoted(&first.name));
+                report.at(path, message, help);
+                None
+            }
+            [] => None,
+        },
+        NodesFile::Side(side) => of_side(*side, bodies, path, report),
+        NodesFile::Region(region) => within(region, bodies, layers, path, report),
     }
 }
 
-fn listed(list: &[u32], count: usize, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Vec<u32>> {
-    let before = report.total();
+fn listed(list: &[u32], body: &ResolvedBody, path: &[PathPart<'_>], report: &mut Collector<'_>) -> Option<Vec<u32>> {
+    let (before, count) = (report.total(), body.body.len());
     let mut first = HashMap::new();
     for (place, &node) in list.iter().enumerate() {
         let at = key_path![path; place];
         if node as usize >= count {
-            report.at(&at, format!("there is no node {node}; the body has nodes 0 to {}", count - 1), None);
+            let message = format!("there is no node {node}; {} has nodes 0 to {}", body.in_words(), count - 1);
+            report.at(&at, message, None);
         } else if first.insert(node, place).is_some() {
             report.at(&at, format!("node {node} occurs twice in `{}`", written(path)), None);
         }
@@ -181,6 +212,36 @@ fn listed(list: &[u32], count: usize, path: &[PathPart<'_>], report: &mut Collec
     let mut nodes = list.to_vec();
     nodes.sort_unstable();
     (report.total() == before).then_some(nodes)
+}
+
+/// The nodes of a side of each body at rest.
+fn of_side(
+    side: Side,
+    bodies: &[ResolvedBody],
+    path: &[PathPart<'_>],
+    report: &mut Collector<'_>,
+) -> Option<Vec<Vec<u32>>> {
+    let outwards = match side {
+        Side::Left => DVec3::NEG_X,
+        Side::Right => DVec3::X,
+        Side::Bottom => DVec3::NEG_Y,
+        Side::Top => DVec3::Y,
+        Side::Front => DVec3::Z,
+        Side::Back => DVec3::NEG_Z,
+    };
+    if bodies[0].body.dimension == Dimension::Plane && outwards.z != 0.0 {
+        let (side, body) = (quoted(&typed(&side)), bodies[0].in_words());
+        let message = format!("`{}` is {side}, but {body} is in the plane", written(path));
+        report.at(path, message, "expected \"left\", \"right\", \"bottom\" or \"top\"");
+        return None;
+    }
+    let along = |node: &DVec3| node.dot(outwards);
+    let of_body = |ResolvedBody { body, .. }: &ResolvedBody| {
+        let most = body.rest.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
+        let close = ROUND_OFF * body.extent();
+        (0..).zip(&body.rest).filter(|(_, node)| along(node) >= most - close).map(|(node, _)| node).collect()
+    };
+    Some(bodies.iter().map(of_body).collect())
 }
 
 fn within(
@@ -225,7 +286,10 @@ fn within(
     if nodes.iter().all(Vec::is_empty) {
         let message = format!("`{}` is a region without nodes at the start", written(path));
         let all: Vec<DVec3> = bodies.iter().flat_map(|body| &body.initial.position).copied().collect();
-        let start = if bodies.len() == 1 { "the body starts" } else { "the bodies start" };
+        let start = match bodies {
+            [only] => format!("{} starts", only.in_words()),
+            _ => "the bodies start".to_owned(),
+        };
         report.at(path, message, format!("{start} {}", between(&all, dimension)));
         return None;
     }

@@ -6,6 +6,7 @@ mod choice;
 mod elements;
 mod grips;
 pub(super) mod lists;
+mod mass;
 mod motion;
 mod obstacles;
 mod recordings;
@@ -22,7 +23,8 @@ use crate::look::{self, FontFiles, TypedView, View, font};
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::words::{count, quoted, short};
-use crate::sim::{Dimension, Obstacle};
+use crate::sim::geometry::overlaps;
+use crate::sim::{Body, Dimension, Obstacle};
 use body::{ResolvedBody, TypedBody};
 use choice::Choice;
 use glam::DVec3;
@@ -269,6 +271,7 @@ fn resolve(
     Scene::check_charts(&scene.view.charts, slice::from_ref(&scene), "view", report);
     warn_of_time(&scene, report);
     warn_of_steps(&scene, report);
+    warn_of_overlaps(&scene, &parts.places, report);
     Some(scene)
 }
 
@@ -413,10 +416,11 @@ fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
             format!("use at least {} to show the end", short(1.0 / scene.duration)),
         );
     }
-    let simulated = (0..scene.runs.len()).filter(|&run| scene.runs[run].recording.is_none());
-    let steps = simulated.fold(0, |all: u64, run| all.saturating_add(scene.frame_step(run, last)));
-    let corners = scene.runs[0].body().elements.indices().len().max(8);
-    let seconds = steps as f64 * corners as f64 * CORNER;
+    let simulated = || (0..).zip(&scene.runs).filter(|(_, run)| run.recording.is_none());
+    let steps = |run| scene.frame_step(run, last);
+    let elements = |run: &Run| run.body().elements.len();
+    let corners = |run: &Run| run.body().elements.indices().len().max(8) as f64;
+    let seconds: f64 = simulated().map(|(at, run)| steps(at) as f64 * corners(run) * CORNER).sum();
     if seconds > LONG {
         let hours = seconds / 3600.0;
         let long = match hours {
@@ -424,12 +428,16 @@ fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
             ..10_000.0 => format!("{:.0} days", hours / 24.0),
             _ => format!("{:.0} years", hours / 8766.0),
         };
-        let (steps, elements) = (count(steps.into()), scene.runs[0].body().elements.len());
-        let message = format!(
-            "{steps} steps of all runs × {} element{} take about {long} on one processor",
-            count(elements as u128),
-            if elements == 1 { "" } else { "s" }
-        );
+        let steps = count(simulated().map(|(at, _)| steps(at)).fold(0, u64::saturating_add).into());
+        let (least, most) =
+            simulated().map(|(_, run)| elements(run)).fold((usize::MAX, 0), |(a, b), one| (a.min(one), b.max(one)));
+        let [fewest, elements] = [least, most].map(|elements| count(elements as u128));
+        let elements = match most {
+            1 => "1 element".to_owned(),
+            _ if least < most => format!("{fewest} to {elements} elements"),
+            _ => format!("{elements} elements"),
+        };
+        let message = format!("{steps} steps of all runs × {elements} take about {long} on one processor");
         let help = "make `duration` shorter, `step` larger or the body smaller, unless you can wait".to_owned();
         report.warn(&key_path!["time", "duration"], message, help);
     }
@@ -449,6 +457,26 @@ fn warn_of_steps(scene: &Scene, report: &mut Collector<'_>) {
             report.warn(path, message, help);
         }
     }
+}
+
+/// Warns of bodies that overlap at the start of a run.
+fn warn_of_overlaps(scene: &Scene, places: &[Place], report: &mut Collector<'_>) {
+    let mut found = BTreeSet::new();
+    let mut known: BTreeSet<&[usize]> = BTreeSet::new();
+    let simulated = scene.runs.iter().filter(|run| run.recording.is_none());
+    for run in simulated.filter(|run| known.insert(run.of.as_slice())) {
+        let pairs = overlaps(&run.bodies, &run.initial.position, |_| true);
+        found.extend(pairs.map(|pair| pair.map(|body| run.of[body])));
+    }
+    let Some(&[first, second]) = found.first() else { return };
+    let [one, other] = [first, second].map(|body| quoted(&scene.bodies[body].name));
+    let more = match found.len() - 1 {
+        0 => String::new(),
+        1 => ", and so does another pair".to_owned(),
+        pairs => format!(", and so do {} other pairs", count(pairs as u128)),
+    };
+    let message = format!("{one} and {other} overlap at the start{more}: bodies go through each other");
+    report.warn(&places[second], message, "move one of them, with `offset` or `lowest`, unless they may overlap");
 }
 
 fn check_frames(time: &TimeFile, report: &mut Collector<'_>) {

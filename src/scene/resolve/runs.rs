@@ -258,7 +258,8 @@ fn limits(typed: &[Option<RunFile>], time: &TimeFile, parts: &[Parts]) -> Vec<(f
             return f64::INFINITY;
         };
         let integrator = run.integrator.unwrap_or(time.integrator);
-        Stability::of_parts(&parts.together.bodies, &parts.models, integrator, &parts.grips, time.duration).largest
+        let Parts { together, models, grips, .. } = parts;
+        Stability::of_all(&Stability::of_each(&together.bodies, models, integrator, grips, time.duration)).largest
     };
     let limits: Vec<f64> = typed.iter().zip(parts).map(limit).collect();
     let mut limits: Vec<_> = limits.into_iter().zip(0..).collect();

@@ -1,0 +1,59 @@
+//! The masses of a body's nodes.
+
+use super::Place;
+use crate::reading::collector::{Collector, key_path, written};
+use crate::scene::file::{BodyFile, LARGEST};
+use crate::sim::geometry::volumes_at_rest;
+use crate::sim::{Body, Dimension};
+
+/// The mass of each node of a body without masses of its nodes (kg), or `None` after reporting a mistake.
+pub(super) fn resolve(file: &BodyFile, body: &Body, place: &Place, report: &mut Collector<'_>) -> Option<Vec<f64>> {
+    let nodes = body.len();
+    let (key, masses) = match (file.density, file.mass_total) {
+        (Some(density), _) => {
+            let volumes = shares(body);
+            if let Some(node) = volumes.iter().position(|&volume| volume <= 0.0) {
+                let (measure, per) = match body.dimension {
+                    Dimension::Plane => ("an area", "area"),
+                    Dimension::Space => ("a volume", "volume"),
+                };
+                let found = match volumes.iter().all(|&volume| volume <= 0.0) {
+                    true => format!("no element of the body has {measure}"),
+                    false => format!("node {node} belongs to no element with {measure}"),
+                };
+                let path = key_path![place; "density"];
+                let message = format!("`{}` is a mass per {per}, but {found}", written(&path));
+                report.at_key(&path, message, "give `mass_total`, or the `mass` of every node");
+                return None;
+            }
+            ("density", volumes.into_iter().map(|volume| density * volume).collect())
+        }
+        (None, Some(total)) => {
+            let volumes = shares(body);
+            let all: f64 = volumes.iter().sum();
+            let has_volumes = volumes.iter().all(|&volume| volume > 0.0);
+            let equal = total / nodes as f64;
+            let share = |volume| if has_volumes { total * (volume / all) } else { equal };
+            ("mass_total", volumes.into_iter().map(share).collect::<Vec<_>>())
+        }
+        (None, None) => return Some(vec![file.mass.unwrap_or(1.0); nodes]),
+    };
+    // Masses of nodes that are typed have the same limits.
+    if let Some(node) = masses.iter().position(|&mass| !(mass > 0.0 && mass <= LARGEST)) {
+        let path = key_path![place; key];
+        let message = format!("`{}` gives node {node} a mass of {:e} kg", written(&path), masses[node]);
+        report.at(&path, message, format!("expected more than 0, up to {LARGEST:e} kg"));
+        return None;
+    }
+    Some(masses)
+}
+
+/// The part of the body's volume at rest (m³, in the plane m²) of each node: each element is shared equally by its nodes.
+fn shares(body: &Body) -> Vec<f64> {
+    let mut shares = vec![0.0; body.len()];
+    for (nodes, volume) in body.elements.iter().zip(volumes_at_rest(body)) {
+        let share = volume / nodes.len() as f64;
+        nodes.iter().for_each(|&node| shares[node as usize] += share);
+    }
+    shares
+}
