@@ -10,6 +10,7 @@ mod look;
 mod manipulators;
 mod mistakes;
 mod peers;
+mod plural;
 mod recordings;
 mod robust;
 mod schema;

@@ -36,7 +36,10 @@ fn scenes() -> Vec<String> {
         let run = "name = 'a'\nmodel = { kind = 'mass-spring', stiffness = 1e3 }";
         format!("time = {{ duration = 1 }}\n[body]\n{rule}\nlowest = 0\n[[run]]\n{run}\n")
     });
-    [shipped("fig4b.toml"), EXPLICIT.to_owned()].into_iter().chain(made).collect()
+    [shipped("fig4b.toml"), shipped("three-bodies.toml"), shipped("meshes.toml"), EXPLICIT.to_owned()]
+        .into_iter()
+        .chain(made)
+        .collect()
 }
 
 /// Reads a text, and checks that reported positions are in it. Returns true if it is a scene.

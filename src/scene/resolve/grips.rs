@@ -25,15 +25,15 @@ pub(super) struct SceneGrip {
 }
 
 impl SceneGrip {
-    /// The constraint in a run of some of the bodies; `None` if it concerns none of them.
-    pub(super) fn in_run(&self, of: &[usize], bodies: &Assembly) -> Option<Grip> {
-        let placed = |(at, &body): (usize, &usize)| {
+    /// The constraints in a run of some of the bodies: one for each body that has nodes in it. So bodies do not depend on each
+    /// other: gripped nodes turn about their own centre, and a body moves as it does alone, to the last bit.
+    pub(super) fn in_run<'a>(&'a self, of: &'a [usize], bodies: &'a Assembly) -> impl Iterator<Item = Grip> {
+        of.iter().enumerate().filter_map(|(at, &body)| {
             let first = bodies.nodes(at).start as u32;
-            self.nodes[body].iter().map(move |node| first + node)
-        };
-        let nodes: Vec<u32> = of.iter().enumerate().flat_map(placed).collect();
-        let Self { from, until, ref motion, .. } = *self;
-        (!nodes.is_empty()).then(|| Grip { nodes, from, until, motion: motion.clone() })
+            let nodes: Vec<u32> = self.nodes[body].iter().map(|node| first + node).collect();
+            let Self { from, until, ref motion, .. } = *self;
+            (!nodes.is_empty()).then(|| Grip { nodes, from, until, motion: motion.clone() })
+        })
     }
 }
 

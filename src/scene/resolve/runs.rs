@@ -103,7 +103,7 @@ fn parts(
         // All misfits are reported.
         let models: Vec<_> = resolved.collect();
         let models = models.into_iter().collect::<Option<Vec<_>>>();
-        let grips = grips.iter().filter_map(|grip| grip.in_run(of, &together.bodies)).collect();
+        let grips = grips.iter().flat_map(|grip| grip.in_run(of, &together.bodies)).collect();
         all.push(models.map(|models| Parts { of: of.clone(), together, models, grips, recording: None }));
     }
     Some((all.into_iter().collect::<Option<_>>()?, own))
