@@ -58,8 +58,8 @@ impl Draft<'_> {
             at += 1;
             at > of_sound || border.edge.is_none_or(|edge| !shared.contains(&edge))
         });
-        // With a field, coloured strokes replace them.
-        if self.shades.is_none() {
+        // Coloured strokes replace them.
+        if self.of_nodes.is_empty() {
             lines.drawn.extend(self.bare_lines().into_iter().map(|(ends, over)| {
                 let [from, to] = ends.map(|end| self.relative(end));
                 let kind = if over { LineKind::AlarmEdge } else { LineKind::Bar };
@@ -88,7 +88,7 @@ impl Draft<'_> {
     }
 
     /// Coloured lines: springs, the edges of elements if nothing else would be visible, and elements without faces that
-    /// a field colours.
+    /// a field or their body colours.
     pub(super) fn strokes(&self) -> Vec<Stroke> {
         let visible = self.scene.view.visible;
         let over = &self.run.snapshot.turned_over;
@@ -147,7 +147,7 @@ impl Draft<'_> {
             line: self.scale.line(),
             element: self.element,
             surfaces: self.scene.view.visible.surfaces,
-            shades: (!self.of_nodes.is_empty()).then_some((&self.composer.ramp[..], &self.of_nodes[..])),
+            shades: (!self.of_nodes.is_empty()).then_some((self.ramp(), &self.of_nodes[..])),
         }
     }
 }

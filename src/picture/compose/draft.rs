@@ -2,17 +2,17 @@
 
 use super::Composer;
 use super::bodies::Bodies;
-use crate::look::Palette;
-use crate::picture::Framing;
+use crate::look::{BODIES, Palette};
 use crate::picture::camera::Lens;
 use crate::picture::field::Shades;
 use crate::picture::layout::steps::SHORT;
 use crate::picture::layout::{self, Rectangle, Scale};
-use crate::picture::narrow::narrow_point;
+use crate::picture::narrow::{narrow_count, narrow_point};
 use crate::picture::plane::sides;
 use crate::picture::shadow::key_light;
+use crate::picture::{Colour, Framing};
 use crate::scene::Scene;
-use crate::sim::{Body, Dimension, RunFrame, Snapshot, Status};
+use crate::sim::{Assembly, Body, Dimension, RunFrame, Snapshot, Status};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
@@ -89,8 +89,9 @@ impl<'a> Draft<'a> {
         let shown = view.colour.as_ref().filter(|_| composer.strain_of_springs(run.run).is_none());
         let shades = shown.map(|scale| Shades::new(body, scale, field));
         let of_nodes = match &shades {
-            Some(shades) if !view.visible.surfaces || !bodies.bare.is_empty() => shades.of_nodes(body),
-            _ => Vec::new(),
+            _ if view.visible.surfaces && bodies.bare.is_empty() => Vec::new(),
+            Some(shades) => shades.of_nodes(body),
+            None => places_of_bodies(bodies.assembly()),
         };
         let flat = body.dimension == Dimension::Plane;
         Self {
@@ -115,6 +116,15 @@ impl<'a> Draft<'a> {
             greyed,
             palette: if greyed { composer.palette.greyed() } else { composer.palette },
             lens,
+        }
+    }
+
+    /// The colours of lines and nodes with a place in `of_nodes`.
+    pub(super) fn ramp(&self) -> &[Colour] {
+        match self.shades {
+            Some(_) => &self.composer.ramp,
+            None if self.flat => &self.palette.bodies_flat,
+            None => &self.palette.bodies,
         }
     }
 
@@ -145,6 +155,13 @@ impl<'a> Draft<'a> {
     pub(super) fn relative(&self, point: DVec3) -> [f32; 3] {
         narrow_point((point - self.origin) / self.side).to_array()
     }
+}
+
+/// The place of each node among the colours of bodies; empty for one body.
+fn places_of_bodies(bodies: &Assembly) -> Vec<f32> {
+    let all = (0..bodies.bodies().len()).filter(|_| bodies.bodies().len() > 1);
+    let place = |body: usize| narrow_count(body % BODIES) / narrow_count(BODIES - 1);
+    all.flat_map(|body| std::iter::repeat_n(place(body), bodies.nodes(body).len())).collect()
 }
 
 /// Clamps too large coordinates, so that arithmetic with them stays finite.

@@ -90,8 +90,8 @@ impl<'a> PlaneBody<'a> {
             }
             sets.iter_mut().for_each(|set| set.ends.push(set.triangles.len()));
         }
-        // With a field, coloured strokes replace them.
-        if shades.is_none() {
+        // Coloured strokes replace them.
+        if self.draft.of_nodes.is_empty() {
             for (ends, over) in self.draft.bare_lines() {
                 let ends = ends.map(|at| self.draft.pixel(at).map_or(Vec2::ZERO, point));
                 sets[usize::from(over)].bars.add_line(&ends);

@@ -138,7 +138,7 @@ impl Draft<'_> {
         let radius = node_radius(self.scale, self.element);
         for (node, &point) in self.position.iter().enumerate() {
             let place = self.of_nodes.get(node).copied().filter(|&place| place != NOWHERE && !visible.surfaces);
-            let colour = place.map_or(self.palette.node, |place| field::colour(&self.composer.ramp, place));
+            let colour = place.map_or(self.palette.node, |place| field::colour(self.ramp(), place));
             if let Some(pixel) = self.pixel(point).filter(|&pixel| self.holds(pixel, radius)) {
                 marks.push(Item::rimmed(pixel, radius, colour, self.palette.edge));
             }
