@@ -105,7 +105,7 @@ pub struct PartSummary {
 }
 
 impl BodySummary {
-    fn new(SceneBody { name, body, initial }: &SceneBody) -> Self {
+    fn new(SceneBody { name, body, initial, .. }: &SceneBody) -> Self {
         let (low, high) = bounds(&body.rest);
         let of_kind = |(number, name): (usize, &str)| format!("{} {name}", count(number as u128));
         Self {

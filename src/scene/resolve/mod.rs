@@ -24,7 +24,7 @@ use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::coordinates::{direction, vector};
 use crate::reading::words::{count, quoted, short};
 use crate::sim::geometry::overlaps;
-use crate::sim::{Body, Dimension, Obstacle};
+use crate::sim::{Dimension, Obstacle};
 use body::{ResolvedBody, TypedBody};
 use choice::Choice;
 use glam::DVec3;
