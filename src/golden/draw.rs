@@ -148,10 +148,12 @@ fn draw_scene(
             let name = &scene.runs[run.run].name;
             add(&mut states, name, (&scene, run.run), index, &run.snapshot, with_positions.contains(&index));
             if let Status::Diverged(Divergence { time, step, part, is_end, .. }) = run.snapshot.status {
-                let (name, _) = recorded(name, &scene, run.run).swap_remove(part);
                 let words = || match is_end {
                     true => format!("the recording of {name} ends at {time:.3e} s"),
-                    false => format!("{name} diverged at {time:.3e} s (step {step}) and is not advanced from there on"),
+                    false => {
+                        let (name, _) = recorded(name, &scene, run.run).swap_remove(part);
+                        format!("{name} diverged at {time:.3e} s (step {step}) and is not advanced from there on")
+                    }
                 };
                 stopped.entry(run.run).or_insert_with(words);
             }

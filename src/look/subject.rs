@@ -51,7 +51,10 @@ impl<'a> Subject<'a> {
 
     /// The mean of the bodies' sides (m).
     pub(super) fn side(&self) -> f64 {
-        self.bodies.iter().map(|one| one.side).sum::<f64>() / self.bodies.len() as f64
+        // In rising order, so that the order of bodies changes no bit.
+        let mut sides: Vec<_> = self.bodies.iter().map(|one| one.side).collect();
+        sides.sort_by(f64::total_cmp);
+        sides.iter().sum::<f64>() / sides.len() as f64
     }
 
     /// Whether all bodies have cells of one side.

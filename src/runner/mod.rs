@@ -211,9 +211,10 @@ impl Running {
         RunFrame { last_fit: shown.cloned().map(Box::new), ..frame }
     }
 
-    /// Whether pictures show the present state.
+    /// Whether pictures show the present state, as always for a recording, which ends in its last state.
     fn shows_itself(&self, scene: &Scene) -> bool {
-        self.world.status() == Status::Ok && fits(&scene.runs[self.run], &self.world.state().position)
+        let run = &scene.runs[self.run];
+        run.recording.is_some() || self.world.status() == Status::Ok && fits(run, &self.world.state().position)
     }
 
     /// Searches for the drawn state through about this many steps. Returns whether it is known or not needed.

@@ -213,6 +213,9 @@ impl Scene {
             report.residual(Report::ROTATION).is_some()
         };
         let (exists, why) = match diagnostic {
+            Diagnostic::Elastic | Diagnostic::Energy => {
+                (has(&|_, _| true), "recordings have none; plot another diagnostic, such as \"kinetic\"")
+            }
             Diagnostic::GlobalRotations => (
                 has(&|model, of| model.counts_global(&of.body)),
                 "only shape-based models in space count them; plot another diagnostic, such as \"turned_over\"",

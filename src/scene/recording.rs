@@ -332,7 +332,13 @@ impl Arrays<'_> {
                 _ => {}
             }
         }
-        Ok(times)
+        match times.last() {
+            Some(end) if *end < 0.0 => {
+                let message = format!("ends at {end} s, before the start of the scene, 0 s");
+                Err(Flaw::new(name, message))
+            }
+            _ => Ok(times),
+        }
     }
 
     /// The time step (s), if there is one.

@@ -69,6 +69,9 @@ pub struct RunSummary {
     pub name: String,
     /// Its bodies with their models.
     pub parts: Vec<PartSummary>,
+    /// Whether its states are recorded: what follows is then about nothing but the moments that it shows.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub recorded: bool,
     /// The integrator, as typed in a scene.
     pub integrator: String,
     /// The code that computes a step.
@@ -138,6 +141,7 @@ impl Scene {
             RunSummary {
                 name: run.name.clone(),
                 parts: run.of.iter().enumerate().map(part).collect(),
+                recorded: run.recording.is_some(),
                 integrator: typed(&run.integrator),
                 kernel: run.kernel,
                 step: run.step,
@@ -185,7 +189,8 @@ impl Scene {
         self.bodies.iter().enumerate().filter_map(of_body).flatten().collect()
     }
 
-    /// The cycle T = 2π√(m/k) of the lightest node and the stiffest run (s). Steps may be fractions of it.
+    /// The cycle T = 2π√(m/k) of the lightest node and the stiffest run (s), infinite if all runs are recorded. Steps may be
+    /// fractions of it.
     pub fn cycle(&self) -> f64 {
         self.runs.iter().map(Run::shortest_period).fold(f64::INFINITY, f64::min)
     }
@@ -313,7 +318,9 @@ impl fmt::Display for SceneSummary {
         let (duration, rate) = (short(self.duration), short(self.frames_per_second));
         let plural = if self.frames == 1 { "" } else { "s" };
         line("time", &format!("{duration} s, {} frame{plural} at {rate} per second", count(self.frames.into())))?;
-        line("cycle", &format!("T = {} s", short(self.cycle)))?;
+        if self.cycle.is_finite() {
+            line("cycle", &format!("T = {} s", short(self.cycle)))?;
+        }
         for run in &self.runs {
             match (&self.bodies[..], &run.parts[..]) {
                 ([_], [PartSummary { model, .. }]) => line("run", &format!("{}: {model}", run.name))?,
@@ -322,6 +329,9 @@ impl fmt::Display for SceneSummary {
                     let part = |part: &PartSummary| line("", &format!("{}{}", titled(&part.body), part.model));
                     run.parts.iter().try_for_each(part)?;
                 }
+            }
+            if run.recorded {
+                continue;
             }
             let (step, part) = (short(run.step), short(self.cycle / run.step));
             let steps = count(run.steps.into());

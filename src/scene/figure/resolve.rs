@@ -300,6 +300,14 @@ impl Scenes<'_, '_, '_> {
             let message = "there is a single run, and nothing to compare it with";
             self.report.at_key(&key_path!["forces", "compare"], message, None);
         }
+        for (index, scene) in self.scenes.iter().enumerate() {
+            let Some(compared) = compare.flatten().and_then(|place| scene.runs.get(place)) else { continue };
+            if let Some(other) = scene.runs.iter().find(|run| run.of != compared.of) {
+                let [one, other] = [compared, other].map(|run| quoted(&run.name));
+                let message = format!("{one} and {other} have different bodies, so their forces cannot be compared");
+                self.report.at(&path(index), message, "give both runs the same bodies, or remove `compare`");
+            }
+        }
         let recorded = |scene: &Scene| scene.runs.iter().position(|run| run.recording.is_some());
         if let Some((index, run)) = self.scenes.iter().enumerate().find_map(|(at, scene)| Some((at, recorded(scene)?)))
         {

@@ -130,7 +130,7 @@ fn check_start(obstacle: &Obstacle, body: &ResolvedBody, path: &[PathPart<'_>], 
         let message =
             format!("{of} starts inside this {name}: node {node} lies {} below its surface", quantity(depth, "m"));
         let help = match obstacle.shape {
-            Shape::Floor { .. } => "move the floor, or set the body on it with `lowest` or `offset` in [body]",
+            Shape::Floor { .. } => "move the floor, or set the body on it with its `lowest` or `offset`",
             _ => "move one of them; a path can move the obstacle there later",
         };
         return report.at(path, message, help.to_owned());

@@ -112,6 +112,11 @@ impl ReadRecording {
             report.at(&place, message, None);
             return None;
         }
+        if dimension == Dimension::Plane && own.nodes.iter().any(|node| node.z != 0.0) {
+            let message = format!("`{file}: rest` leaves the plane of the scene; expected z = 0, or 2 coordinates");
+            report.at(&place, message, None);
+            return None;
+        }
         if is_same(own, &all.bodies) {
             return Some(Shown::Bodies(start));
         }

@@ -8,7 +8,7 @@ use crate::reading::collector::{Collector, PathPart, key_path};
 use crate::reading::words;
 use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::scene::step::NamedStep;
-use crate::scene::{Recorded, Run, Together};
+use crate::scene::{ALL_BODIES, Recorded, Run, Together};
 use crate::sim::model::ElasticModel;
 use crate::sim::stability::Stability;
 use crate::sim::{Body, Dimension, Grip, Integrator, Kernel};
@@ -83,6 +83,13 @@ fn parts(
                 match read.shown(at, run, &together, dimension, report)? {
                     Shown::Bodies(start) => together.initial = start,
                     Shown::Own(body) => {
+                        if bodies.iter().any(|other| other.name == body.name) || body.name == ALL_BODIES {
+                            let quoted = words::quoted(&run.name);
+                            let message =
+                                format!("{quoted} shows a body of its own, which has this name, too, as has another");
+                            report.at(&key_path!["run", at, "name"], message, "give the run another name");
+                            return None;
+                        }
                         together = Together::new(std::iter::once((&body.body, &body.initial)));
                         of = vec![bodies.len() + own.len()];
                         own.push(*body);
@@ -169,18 +176,18 @@ pub(super) fn resolve<'a>(
             report.at(path, message, "make it larger, or masses and stiffness less extreme");
             return None;
         }
-        if step > time.duration && time.duration > 0.0 && tolerance.is_none() && recorded.is_none() {
+        if step > time.duration && time.duration > 0.0 && tolerance.is_none() {
             let message = format!(
                 "the time step of {} is {} s, longer than the whole scene of {} s: nothing would move",
                 words::quoted(&run.name),
                 words::short(step),
                 words::short(time.duration)
             );
-            report.at(
-                path,
-                message,
-                format!("T = {} s; make the step smaller or the duration longer", words::short(cycle)),
-            );
+            let help = match recorded {
+                Some(_) => "make `step` in its archive smaller, or the duration longer".to_owned(),
+                None => format!("T = {} s; make the step smaller or the duration longer", words::short(cycle)),
+            };
+            report.at(path, message, help);
             return None;
         }
         let refusal = parts.iter().find_map(|(model, body)| integrator.refusal(|| model.prepare(body)));
