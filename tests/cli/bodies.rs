@@ -117,7 +117,7 @@ fn states_of_bodies() {
         names.map(|name: String| name.trim_end_matches(".npy").to_owned()).collect()
     };
     let is_own = |name: &&String| {
-        name.contains('.') && !["position", "velocity", "memory"].iter().any(|end| name.ends_with(end))
+        name.contains('.') && !["position", "velocity", "memory", "step"].iter().any(|end| name.ends_with(end))
     };
     assert!(!names("alone").contains(&"bodies".to_owned()) && names("all").contains(&"bodies".to_owned()));
     assert_eq!(names("all").iter().filter(is_own).count(), 0);
