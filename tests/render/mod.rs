@@ -14,6 +14,7 @@ mod forces;
 mod inside;
 mod listed;
 mod look;
+mod meshes;
 mod obstacles;
 mod pages;
 mod pictures;
