@@ -36,7 +36,7 @@ pub(super) fn run(
     let one = &scene.runs[run];
     if let Some(other) = scene.runs.iter().find(|other| other.of != one.of) {
         other_bodies([one, other], path, report);
-    } else if let Some(other) = scene.runs.iter().find(|other| other.step != one.step) {
+    } else if let Some(other) = scene.runs.iter().find(|other| have_other_steps(one, other)) {
         other_steps([one, other], path, report);
     }
     Some(run)
@@ -89,7 +89,12 @@ fn unknown<T>(
 fn other_bodies(runs: [&SubjectRun<'_>; 2], path: &[PathPart<'_>], report: &mut Collector<'_>) {
     let [one, other] = runs.map(|run| quoted(run.name));
     let message = format!("{one} and {other} have different bodies, so their nodes cannot be compared");
-    report.at(path, message, "compare runs of the same bodies, in a scene without other runs".to_owned());
+    report.at(path, message, "give all runs of the scene the same bodies, or compare none".to_owned());
+}
+
+/// Whether two runs are simulated with different steps. A recording is compared with the moments nearest to its own.
+fn have_other_steps(one: &SubjectRun<'_>, other: &SubjectRun<'_>) -> bool {
+    [one, other].iter().all(|run| !run.models.is_empty()) && one.step != other.step
 }
 
 /// Reports runs with different steps: their frames show different moments.

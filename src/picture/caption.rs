@@ -9,9 +9,10 @@ use super::wrap::{balanced, cut, wrapped};
 use super::{Item, Panel, number};
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette};
-use crate::reading::captions::parts_and_constants;
-use crate::scene::Run;
-use crate::sim::{Divergence, RunFrame, Snapshot, Status};
+use crate::reading::captions::{constants, parts_and_constants};
+use crate::scene::{Run, Scene};
+use crate::sim::model::ElasticModel;
+use crate::sim::{Body, Divergence, RunFrame, Snapshot, Status};
 
 /// The name of counts.
 const TURNED_OVER: &str = "turned over";
@@ -29,17 +30,24 @@ const LABEL_SHARE: f64 = 0.55;
 const LETTER_GAP: f64 = 0.42;
 const X_HEIGHT: f64 = 0.55;
 
-/// The models of a run in short, for the second line of a picture: `27 cubes, k = 10 kN/m, ζ = 0.1`, each with its body; or
-/// where its states come from.
-pub(super) fn short_description(run: &Run) -> String {
+/// The models of a run in short, for the second line of a picture: `27 cubes, k = 10 kN/m, ζ = 0.1`, of several bodies
+/// without their parts; or where its states come from.
+pub(super) fn short_description(scene: &Scene, run: &Run) -> String {
     if let Some(recording) = &run.recording {
         return recording.description();
     }
-    let parts = run.models_and_bodies();
-    let mut parts: Vec<_> =
-        parts.map(|(model, body)| parts_and_constants(model, body) + &model.unusual_choices(body)).collect();
-    parts.dedup();
-    parts.join("; ")
+    let short = |words: fn(&dyn ElasticModel, &Body) -> String| -> Vec<_> {
+        run.models_and_bodies().map(|(model, body)| words(model, body) + &model.unusual_choices(body)).collect()
+    };
+    let models = short(constants);
+    match &models[..] {
+        [_] => short(parts_and_constants).concat(),
+        [first, ..] if models.iter().all(|model| model == first) => format!("{} bodies, {first}", models.len()),
+        _ => {
+            let named = run.body_names(scene).zip(&models).map(|(name, model)| format!("{name} {model}"));
+            named.collect::<Vec<_>>().join("; ")
+        }
+    }
 }
 
 /// Collects the text and the flat marks of a picture.
@@ -476,7 +484,7 @@ mod tests {
         let body = BodyBuilder::lattice(Lattice::new([1; 3], 0.1)).mass(1.0);
         let shape = shape_based::Parameters { damping: Some(60.0), ..shape_based::Parameters::new(1e4) };
         let scene = Scene::builder("cube", body).run("shape", shape).build(&Limits::default()).expect("a scene");
-        let caption = short_description(&scene.runs[0]);
+        let caption = short_description(&scene, &scene.runs[0]);
         assert_eq!(caption, "1 cube, k = 10 kN/m, ζ = 0.3, exact rotations");
     }
 

@@ -12,14 +12,23 @@ pub fn description(model: &dyn ElasticModel, body: &Body) -> String {
 
 /// The parts of a body in a model, and the constants of the model: `27 cubes, k = 10 kN/m, ζ = 0.1`.
 pub(crate) fn parts_and_constants(model: &dyn ElasticModel, body: &Body) -> String {
-    let parts = match (model.springs().len(), elements(body).as_slice()) {
+    format!("{}, {}", parts(model, body), constants(model, body))
+}
+
+/// The parts of a body in a model: `27 cubes`.
+fn parts(model: &dyn ElasticModel, body: &Body) -> String {
+    match (model.springs().len(), elements(body).as_slice()) {
         (1, _) => "1 spring".to_owned(),
         (0, [(count, name)]) => format!("{count} {name}"),
         (0, _) => format!("{} elements", body.elements.len()),
         (count, _) => format!("{count} springs"),
-    };
+    }
+}
+
+/// The constants of a model of a body: `k = 10 kN/m, ζ = 0.1`.
+pub(crate) fn constants(model: &dyn ElasticModel, body: &Body) -> String {
     let (k, damping) = (model.stiffness(), model.damping());
-    let mut text = format!("{parts}, k = {}", quantity(k, "N/m"));
+    let mut text = format!("k = {}", quantity(k, "N/m"));
     if damping > 0.0 {
         text += &format!(", ζ = {}", rounded(damping / (2.0 * (k * body.lightest()).sqrt()), 3));
     }

@@ -198,9 +198,8 @@ impl Track {
             let bytes = &mut bytes[..at_once.min(moments - first) * row];
             npz.part(&self.array, (first * row) as u64, bytes).map_err(|what| Flaw::new(name, what))?;
             for (moment, bytes) in (first..).zip(bytes.chunks_exact(row)) {
-                // NaN is not within the limit.
-                let is_beyond = |number: &f64| !(number.abs() <= LARGEST);
-                if let Some(at) = self.array.numbers(bytes).position(|number| is_beyond(&number)) {
+                let is_beyond = |number: f64| number.is_nan() || number.abs() > LARGEST;
+                if let Some(at) = self.array.numbers(bytes).position(is_beyond) {
                     let number = self.array.numbers(bytes).nth(at).unwrap_or_default();
                     let place = format!("{name}[{moment}][{}][{}]", at / columns, at % columns);
                     let expected = match number.is_finite() {
@@ -313,10 +312,10 @@ impl Arrays<'_> {
             let message = format!("has no array `{}`, the time of each moment (s)", full(self.run, "time"));
             return Err(Flaw::new("", message));
         };
-        let times = self.numbers(&name, &[moments], "one time for each moment of `position`")?;
+        let times = self.numbers(&name, &[moments], &format!("{moments}, one time for each moment of `position`"))?;
         for (at, &time) in times.iter().enumerate() {
             let place = || format!("{name}[{at}]");
-            if !(time.abs() <= LARGEST) {
+            if time.is_nan() || time.abs() > LARGEST {
                 return Err(Flaw::new(place(), format!("is {time}; expected a finite time (s)")));
             }
             match at.checked_sub(1).map(|before| times[before]) {
@@ -358,7 +357,7 @@ impl Arrays<'_> {
         let Some(name) = self.name("engine") else { return Ok(None) };
         let text = self.npz.text(&name).map_err(|message| Flaw::new(&name, message))?;
         let is_short = text.chars().count() <= 80 && !text.chars().any(char::is_control);
-        let message = "is too long for a caption; expected the name of a program, with up to 80 letters";
+        let message = "has no place in a caption; expected the name of a program, up to 80 letters on one line";
         if is_short { Ok(Some(text).filter(|text| !text.trim().is_empty())) } else { Err(Flaw::new(name, message)) }
     }
 
@@ -445,7 +444,7 @@ impl Player {
         };
         let (from, to) = (self.velocity(before)?, self.velocity(before + 1)?);
         let velocity = between(&from, &to);
-        Ok([between(&*self.row(false, before)?, &*self.row(false, before + 1)?), velocity])
+        Ok([between(&self.row(false, before)?, &self.row(false, before + 1)?), velocity])
     }
 }
 

@@ -133,7 +133,7 @@ fn damaged_recordings_are_refused_with_place_and_remedy() {
         "`played.npz: position[1][2][1]` is NaN; expected a finite number; write only the moments before the motion failed",
     );
     wrong(&with_number(0, 1e40), "`played.npz: position[0][0][0]` is 1");
-    wrong(&[position.clone()], "`played.npz` has no array `time`, the time of each moment (s)");
+    wrong(std::slice::from_ref(position), "`played.npz` has no array `time`, the time of each moment (s)");
     wrong(&sound[..1], "`played.npz` has no array `position`; it has `time`");
     wrong(
         &[times(&[0.0, 0.5, 0.5]), position.clone()],
@@ -149,7 +149,7 @@ fn damaged_recordings_are_refused_with_place_and_remedy() {
     );
     wrong(
         &[doubles("time", "(2,)", &[0.0, 1.0]), position.clone()],
-        "`played.npz: time` has the shape (2,); expected one time for each moment of `position`",
+        "`played.npz: time` has the shape (2,); expected 3, one time for each moment of `position`",
     );
     let flat = doubles("position", "(3, 8)", &[0.0; 24]);
     wrong(

@@ -16,10 +16,8 @@ impl Recording for Played {
 
     fn show(&mut self, steps: u64, state: &mut State) {
         let Self(states) = self;
-        (
-            state.position.clone_from(&states[steps as usize].position),
-            state.velocity.clone_from(&states[steps as usize].velocity),
-        );
+        state.position.clone_from(&states[steps as usize].position);
+        state.velocity.clone_from(&states[steps as usize].velocity);
     }
 }
 

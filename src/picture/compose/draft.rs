@@ -2,6 +2,7 @@
 
 use super::Composer;
 use super::bodies::Bodies;
+use crate::colour::{LINE_CONTRAST, readable};
 use crate::look::{BODIES, Palette};
 use crate::picture::camera::Lens;
 use crate::picture::field::Shades;
@@ -45,6 +46,8 @@ pub(super) struct Draft<'a> {
     pub(super) shades: Option<Shades>,
     /// Its places on the colour scale at the nodes, if lines or discs show them.
     pub(super) of_nodes: Vec<f32>,
+    /// The colours of bodies, visible as lines.
+    lines_of_bodies: [Colour; BODIES],
     /// Length of an element's edge at the body's distance (px).
     pub(super) element: f64,
     /// Whether the body lies in the plane.
@@ -94,6 +97,7 @@ impl<'a> Draft<'a> {
             None => places_of_bodies(bodies.assembly()),
         };
         let flat = body.dimension == Dimension::Plane;
+        let palette = if greyed { composer.palette.greyed() } else { composer.palette };
         Self {
             composer,
             scene,
@@ -114,7 +118,9 @@ impl<'a> Draft<'a> {
             flat,
             diverged,
             greyed,
-            palette: if greyed { composer.palette.greyed() } else { composer.palette },
+            palette,
+            lines_of_bodies: if flat { palette.bodies_flat } else { palette.bodies }
+                .map(|colour| readable(colour, palette.background, LINE_CONTRAST)),
             lens,
         }
     }
@@ -123,8 +129,7 @@ impl<'a> Draft<'a> {
     pub(super) fn ramp(&self) -> &[Colour] {
         match self.shades {
             Some(_) => &self.composer.ramp,
-            None if self.flat => &self.palette.bodies_flat,
-            None => &self.palette.bodies,
+            None => &self.lines_of_bodies,
         }
     }
 

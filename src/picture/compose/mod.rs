@@ -111,7 +111,11 @@ impl<'a> Composer<'a> {
             bodies,
             bodies_of,
             springs: scene.runs.iter().map(springs).collect(),
-            descriptions: scene.runs.iter().map(|run| number::counted(caption::short_description(run))).collect(),
+            descriptions: scene
+                .runs
+                .iter()
+                .map(|run| number::counted(caption::short_description(scene, run)))
+                .collect(),
             extent: scene.extent().max(f64::MIN_POSITIVE),
             start_box: start_box.unwrap_or_default(),
             timeline: None,

@@ -56,7 +56,7 @@ pub(super) struct TypedBody<'a> {
 #[derive(Debug)]
 enum Content<'a> {
     Generated(Generator<'a>),
-    Listed(Lists),
+    Listed(Box<Lists>),
 }
 
 impl<'a> TypedBody<'a> {
@@ -73,8 +73,8 @@ impl<'a> TypedBody<'a> {
         let before = report.total();
         let content = match Generator::of(file) {
             Some(generator) => Content::Generated(generator),
-            None if file.file.is_some() => Content::Listed(beside?),
-            None => Content::Listed(Lists::typed(file, &place, report)?),
+            None if file.file.is_some() => Content::Listed(Box::new(beside?)),
+            None => Content::Listed(Box::new(Lists::typed(file, &place, report)?)),
         };
         Some(Self { file, place, content, flawed: flawed || report.total() > before })
     }
@@ -143,7 +143,7 @@ impl<'a> TypedBody<'a> {
         let Self { file, place, content, flawed } = self;
         match content {
             Content::Generated(generator) => generated(file, generator, &place, report),
-            Content::Listed(lists) => listed(file, lists, flawed, report),
+            Content::Listed(lists) => listed(file, *lists, flawed, report),
         }
     }
 }
