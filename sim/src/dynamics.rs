@@ -7,7 +7,7 @@ use super::crew::Crew;
 use super::hull::bounds;
 use super::model::{Report, Share};
 use super::part::Part;
-use super::state::{Divergence, Nodes, State};
+use super::state::{Divergence, Nodes, Runaway, State};
 use super::system::{Surroundings, System};
 
 /// Advances a state. It may keep the nodes in its own arrays between calls.
@@ -49,13 +49,6 @@ pub(super) trait Dynamics: Send + Sync {
 
     /// Called after the state was replaced by another one: forgets everything derived from the old one.
     fn restart(&mut self) {}
-}
-
-/// A node whose new velocity is NaN or above the limit. The step is not taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Runaway {
-    /// The first such node.
-    pub node: usize,
 }
 
 /// The greatest speed of a node that counts as a result. Above it the run has diverged; it stops while its last state

@@ -48,6 +48,7 @@ mod snapshot;
 pub mod stability;
 mod state;
 mod system;
+mod tally;
 mod topology;
 mod world;
 

@@ -2,9 +2,9 @@
 
 use super::body::Body;
 use super::crew::Crew;
-use super::dynamics::{Dynamics, Runaway, SpeedLimit};
+use super::dynamics::{Dynamics, SpeedLimit};
 use super::model::{ElasticModel, ForceModel, Report, Scratch, Share};
-use super::state::{Divergence, Nodes, State, Status};
+use super::state::{Divergence, Nodes, Runaway, State, Status};
 use super::system::System;
 use glam::DVec3;
 use std::sync::Arc;

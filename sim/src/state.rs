@@ -36,6 +36,13 @@ pub struct Divergence {
     pub is_end: bool,
 }
 
+/// A node whose new velocity is NaN or above the limit. The step is not taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Runaway {
+    /// The first such node.
+    pub node: usize,
+}
+
 /// Whether a run has diverged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Status {

@@ -1,12 +1,11 @@
 //! A system that is advanced together: bodies with their models, obstacles and kinematic constraints.
 
 use super::contact::{ContactStage, Obstacle};
-use super::dynamics::Runaway;
 use super::grip::Grip;
 use super::model::Scratch;
 use super::motion::Interval;
 use super::part::Part;
-use super::state::{Divergence, Memory, Nodes, State};
+use super::state::{Divergence, Memory, Nodes, Runaway, State};
 use glam::DVec3;
 
 /// Gravity, obstacles and kinematic constraints around bodies.

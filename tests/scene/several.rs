@@ -29,9 +29,10 @@ fn case(world: &str, added: &str, expected: &str) {
 
 #[test]
 fn holds_and_grabs_have_nodes_of_all_bodies_or_of_one() {
+    // Each body is gripped by itself.
     let nodes = |added: &str| {
         let scene = good(&format!("{WORLD}{added}"));
-        scene.runs[0].grips[0].nodes.clone()
+        scene.runs[0].grips.iter().flat_map(|grip| grip.nodes.clone()).collect::<Vec<_>>()
     };
     assert_eq!(nodes("[[hold]]\nnodes = 'left'"), [0, 3, 6, 9, 12, 14, 16, 18]);
     assert_eq!(nodes("[[hold]]\nbody = 'cube'\nnodes = 'left'"), [12, 14, 16, 18]);

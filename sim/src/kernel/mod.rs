@@ -15,7 +15,6 @@ pub(crate) mod rotation;
 pub(crate) mod shapes;
 pub(crate) mod springs;
 mod stepper;
-mod tally;
 pub(crate) mod update;
 
 #[cfg(test)]
@@ -24,7 +23,6 @@ mod tests;
 pub(crate) use drive::ByKernel;
 pub(crate) use shapes::strains;
 pub(crate) use stepper::{Scheme, Stepper};
-pub(crate) use tally::Tally;
 
 use crate::body::Body;
 use crate::contact::{Bound, Floor};

@@ -4,10 +4,10 @@
 //! of the matrix of Eq. (15) in the frame of the element: `g = (B32 − B23, B13 − B31, B21 − B12)` is the torque divided
 //! by `k`, and `H = tr(B) I − (B + Bᵀ)/2` the Hessian of the energy. Quaternions are (x, y, z, w) and normalised.
 
-use super::tally::Tally;
 use crate::lanes::{Lanes, MOST, each};
 use crate::rotation::davenport1968;
 use crate::rotation::robust::{MOST_PASSES, SERIES, SHORT, SOUND};
+use crate::tally::Tally;
 use glam::{DMat3, DQuat};
 
 /// A vector in space, in every lane.

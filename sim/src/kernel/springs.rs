@@ -21,7 +21,6 @@ use super::{Around, Conditions, Lost};
 use crate::body::Body;
 use crate::crew::Crew;
 use crate::lanes::{Lanes, Set, Work, each};
-use crate::model::mass_spring::MassSpring;
 use glam::DVec3;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -89,16 +88,21 @@ const ACCELERATION: usize = 7;
 const ARRAYS: usize = 10;
 
 impl Stencil {
-    /// The springs of a body, or `None` if they form no families, so that most lanes would be empty.
-    pub(crate) fn new(model: &MassSpring, body: &Body, conditions: &Conditions) -> Option<Self> {
+    /// The springs of a body with a stiffness (N/m) and a damping (N s/m), or `None` if they form no families, so that most lanes would be empty.
+    pub(crate) fn new(
+        springs: &[[u32; 2]],
+        [stiffness, damping]: [f64; 2],
+        body: &Body,
+        conditions: &Conditions,
+    ) -> Option<Self> {
         /// Lanes for each spring, at most: if less than half of them are used, the gathering kernel is faster.
         const SPARSE: usize = 2;
         let &Conditions { gravity, step, set, .. } = conditions;
-        let (&MassSpring { stiffness, damping, ref springs }, Body { rest, mass, .. }) = (model, body);
+        let Body { rest, mass, .. } = body;
         let nodes = rest.len();
         let chunks = nodes.div_ceil(CHUNK).max(1);
         let mut sorted: Vec<(usize, usize, usize)> = Vec::with_capacity(springs.len());
-        for ends in &**springs {
+        for ends in springs {
             let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end as usize);
             sorted.push((high - low, low, high));
         }

@@ -4,9 +4,9 @@
 use super::update::Stage;
 use super::{Around, Lost};
 use crate::crew::Crew;
-use crate::dynamics::Runaway;
 use crate::integrate::Integrator;
 use crate::integrate::composition::{self, Composition};
+use crate::state::Runaway;
 use crate::state::State;
 use glam::DVec3;
 use std::ops::Range;

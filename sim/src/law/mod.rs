@@ -13,9 +13,9 @@ pub(crate) use by_law::Energy;
 pub(crate) use reader::{Reader, alike};
 
 use super::body::Body;
-use super::kernel::Tally;
 use super::lanes::{Lanes, MOST};
 use super::lists::IndexLists;
+use super::tally::Tally;
 use std::marker::PhantomData;
 
 /// The law of an element of an elastic model, for as many elements with the same number of corners as there are lanes.

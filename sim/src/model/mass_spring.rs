@@ -143,7 +143,7 @@ impl ElasticModel for MassSpring {
 
 impl Vectorised for MassSpring {
     fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled {
-        let stencil = Stencil::new(self, body, conditions);
+        let stencil = Stencil::new(&self.springs, [self.stiffness, self.damping], body, conditions);
         self.by_law(body, conditions, stencil.map(|stencil| -> Box<dyn Stepper> { Box::new(stencil) }))
     }
 }

@@ -2,9 +2,9 @@
 
 use super::{Class, Part, SUM};
 use crate::kernel::memory::Aligned;
-use crate::kernel::tally::Tally;
 use crate::lanes::{Lanes, MOST};
 use crate::law::{self, Corners, Element, Law, RECORD};
+use crate::tally::Tally;
 use std::mem::MaybeUninit;
 
 /// The elements of one class of a part.

@@ -15,7 +15,6 @@ mod pass;
 
 use super::memory::Aligned;
 use super::stepper::{Pass, Passes, Stepper};
-use super::tally::Tally;
 use super::{Around, Conditions, Lost};
 use crate::body::Body;
 use crate::crew::Crew;
@@ -24,6 +23,7 @@ use crate::hull::bounds;
 use crate::lanes::{Lanes, MOST, Set, Work};
 use crate::law::{Law, RECORD, Reader};
 use crate::lists::IndexLists;
+use crate::tally::Tally;
 use glam::DVec3;
 use pass::{OfNodes, OnePart, SharedNodes};
 use std::ops::Range;

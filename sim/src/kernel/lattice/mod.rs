@@ -22,12 +22,12 @@ mod tests;
 
 use super::memory::Aligned;
 use super::stepper::{Passes, Scheme, Stepper};
-use super::tally::Tally;
 use super::{Around, Lost, Rotation};
 use crate::body::Body;
 use crate::crew::Crew;
 use crate::element::Dimension;
 use crate::lanes::{MOST, Set};
+use crate::tally::Tally;
 use glam::DVec3;
 use std::ops::Range;
 use std::sync::atomic::AtomicU64;

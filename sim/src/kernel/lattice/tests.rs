@@ -2,12 +2,12 @@
 
 use super::*;
 use crate::contact::{Bound, Obstacle, Shape};
-use crate::dynamics::Runaway;
 use crate::element::Solids;
 use crate::kernel::stepper::{PartStepper, Rollback};
 use crate::kernel::tests::{FREE, PEFRL, Random, rotations, shape_based, stepped_by_reference};
 use crate::lists::IndexLists;
 use crate::model::shape_based::ShapeBased;
+use crate::state::Runaway;
 use crate::state::State;
 use crate::system::Surroundings;
 use glam::DQuat;

@@ -21,7 +21,7 @@ fn assert_springs_step_like_the_reference(body: &Arc<Body>, springs: &[[u32; 2]]
                 *found = Some(here);
             };
             let conditions = conditions(scheme, set);
-            let stencil = Stencil::new(&model, body, &conditions);
+            let stencil = Stencil::new(&model.springs, [model.stiffness, model.damping], body, &conditions);
             assert_eq!(stencil.is_some(), families, "{} springs", springs.len());
             let whole = (start.clone(), Vec::new());
             let run = |kernel: Moving| {
@@ -68,7 +68,8 @@ fn a_spring_between_coincident_nodes_does_nothing() {
     for set in Set::all() {
         let free = Conditions { gravity: DVec3::ZERO, ..conditions(SEMI, set) };
         let start = (start.clone(), Vec::new());
-        let stencil = Box::new(Stencil::new(&model, &body, &free).expect("a lattice"));
+        let stencil =
+            Box::new(Stencil::new(&model.springs, [model.stiffness, model.damping], &body, &free).expect("a lattice"));
         let kernel = model.by_law(&body, &free, None).stepper;
         for mut kernel in [Moving::new(stencil, &start, SEMI, 1), Moving::new(kernel, &start, SEMI, 1)] {
             assert_eq!(kernel.advance(9, FREE), Ok(()));
@@ -88,7 +89,10 @@ fn springs_in_several_slabs_step_like_the_reference() {
     world.advance(50);
     let mut found: Option<State> = None;
     for (set, threads) in Set::all().skip(1).flat_map(|set| [1, 2, 3].map(|threads| (set, threads))) {
-        let stencil = Box::new(Stencil::new(&model, &body, &conditions(SEMI, set)).expect("a lattice"));
+        let stencil = Box::new(
+            Stencil::new(&model.springs, [model.stiffness, model.damping], &body, &conditions(SEMI, set))
+                .expect("a lattice"),
+        );
         let whole = (start.clone(), Vec::new());
         let mut kernel = Moving::new(stencil, &whole, SEMI, threads);
         assert_eq!(kernel.advance(50, FREE), Ok(()));
