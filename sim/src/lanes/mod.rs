@@ -51,7 +51,7 @@ pub trait Lanes:
 {
     /// One truth value per lane.
     type Mask: Copy;
-    /// The number of lanes, a power of two and at most [`MOST`].
+    /// The number of lanes, a power of two and at most 8.
     const WIDTH: usize;
 
     /// One value in all lanes.
