@@ -185,14 +185,8 @@ impl World {
         let surroundings = Surroundings { gravity, ..Surroundings::default() };
         let stepping = Stepping { kernel: Kernel::Reference, ..Stepping::new(Integrator::default(), step) };
         let mut world = Self::of_parts(&parts, initial, surroundings, stepping);
-        world.play(recording);
+        world.dynamics = Box::new(ByRecording::new(recording));
         world
-    }
-
-    /// Shows the states of a recording from now on, in place of steps.
-    pub fn play(&mut self, recording: Box<dyn Recording>) {
-        self.settle();
-        self.dynamics = Box::new(ByRecording::new(recording));
     }
 
     /// Takes steps by a method of another crate from now on, with forces of the reference code.

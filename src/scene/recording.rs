@@ -449,16 +449,16 @@ impl Player {
 }
 
 impl Recording for Player {
-    fn end(&self) -> Option<Divergence> {
+    fn end(&self) -> Divergence {
         let time = self.recorded.times.last().copied().unwrap_or_default();
         // A moment shows the nearest step.
-        Some(Divergence {
+        Divergence {
             time,
             step: ((time / self.step).round() as u64).saturating_add(1),
             part: 0,
             element: None,
             is_end: true,
-        })
+        }
     }
 
     fn show(&mut self, steps: u64, state: &mut State) {

@@ -9,9 +9,9 @@ use std::sync::Arc;
 struct Played(Vec<State>);
 
 impl Recording for Played {
-    fn end(&self) -> Option<Divergence> {
+    fn end(&self) -> Divergence {
         let step = self.0.len() as u64;
-        Some(Divergence { time: (step - 1) as f64 * 1e-3, step, part: 0, element: None, is_end: true })
+        Divergence { time: (step - 1) as f64 * 1e-3, step, part: 0, element: None, is_end: true }
     }
 
     fn show(&mut self, steps: u64, state: &mut State) {
