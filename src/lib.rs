@@ -64,6 +64,8 @@
 
 /// The vectors in which positions are given, of the version that this crate uses.
 pub use glam;
+/// Mesh files, and bodies that fill surfaces.
+pub use localshape_mesh as mesh;
 /// The simulation.
 pub use localshape_sim as sim;
 

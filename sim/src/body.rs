@@ -1,5 +1,6 @@
 //! The [`Body`]: nodes, masses and elements at rest.
 
+use super::carried::Carried;
 use super::element::{Dimension, ElementKind, Solids, around, kind};
 use super::hull::{Hulls, bounds};
 use super::lists::IndexLists;
@@ -24,6 +25,11 @@ pub struct Body {
     pub hulls: Hulls,
     /// The faces of the elements, or the listed ones.
     pub faces: Faces,
+    /// The part of each element's volume that is filled, above 0 and at most 1: its stiffness, its damping and its share in the
+    /// masses of its nodes are in proportion. `None` if all are full.
+    pub fill: Option<Vec<f64>>,
+    /// The fine surface that stands for the body in pictures.
+    pub carried: Option<Arc<Carried>>,
 }
 
 impl Body {
@@ -53,10 +59,11 @@ impl Body {
             }
             None => Elements { nodes: &elements, kinds: &kinds, hulls: &hulls, rest: &rest }.shared_faces(),
         };
-        Self { dimension, rest, mass, elements, kinds, hulls, faces }
+        Self { dimension, rest, mass, elements, kinds, hulls, faces, fill: None, carried: None }
     }
 
-    /// All bodies as one, with the nodes, elements and faces of the first before those of the second, and so on.
+    /// All bodies as one, with the nodes, elements and faces of the first before those of the second, and so on. The whole
+    /// carries no surface, unless it is the only body.
     ///
     /// # Panics
     /// If there is no body, or if one is in the plane and another in space.
@@ -66,6 +73,11 @@ impl Body {
         for body in others {
             // The first other body makes a copy of the first one.
             let whole = Arc::make_mut(&mut whole);
+            if whole.fill.is_some() || body.fill.is_some() {
+                let part = |of: &Self| of.fill.clone().unwrap_or_else(|| vec![1.0; of.elements.len()]);
+                whole.fill = Some([part(whole), part(body)].concat());
+            }
+            whole.carried = None;
             assert_eq!(whole.dimension, body.dimension, "bodies of one dimension");
             let (node, element) = (whole.len() as u32, whole.elements.len() as u32);
             whole.rest.extend(&body.rest);

@@ -20,6 +20,7 @@
 mod alike;
 mod assembly;
 mod body;
+mod carried;
 mod contact;
 mod crew;
 mod diagnose;
@@ -54,6 +55,7 @@ mod world;
 
 pub use assembly::Assembly;
 pub use body::Body;
+pub use carried::{Carried, Weights};
 pub use contact::{Contact, FrictionOf, Obstacle, Placed, Shape};
 pub use crew::Crew;
 pub use diagnostics::{Chosen, Diagnostic, Diagnostics, Scope, Value};

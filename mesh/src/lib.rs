@@ -1,0 +1,15 @@
+//! Mesh files read, checked and mended, and surfaces filled with elements that carry them.
+//!
+//! [`read`] makes a [`Mesh`] of a file: a [`Volume`], whose cells become elements as they are, or a [`Surface`]. [`fill`] makes a
+//! [`Cage`] of elements that contains a surface, and the weights by which the surface follows the nodes of the cage. No function
+//! uses more memory or time than its [`Limits`] allow. Results have the same bits on every machine and for any number of threads.
+
+mod fill;
+mod read;
+mod surface;
+mod volume;
+
+pub use fill::{Cage, Fill, FillError, Filled, fill};
+pub use read::{Format, Limits, Mesh, ReadError, read};
+pub use surface::{Flaws, Surface};
+pub use volume::{Group, Volume};

@@ -1,0 +1,28 @@
+//! Meshes of cells.
+
+use glam::DVec3;
+use localshape_sim::{Dimension, IndexLists};
+
+/// A mesh of cells, which become the elements of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Volume {
+    /// Whether it is in the plane (z = 0) or in space.
+    pub dimension: Dimension,
+    /// Position of each point, in the unit of the file. Each belongs to a cell.
+    pub points: Vec<DVec3>,
+    /// The points of each cell, in the order of [`localshape_sim::Solids::Ordered`], none turned inside out.
+    pub cells: IndexLists,
+    /// Sets of points with a name.
+    pub groups: Vec<Group>,
+    /// The number of cells that were turned over in the file.
+    pub turned: usize,
+}
+
+/// A set of points with a name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// The name in the file.
+    pub name: String,
+    /// Its points, in ascending order.
+    pub points: Vec<u32>,
+}
