@@ -4,6 +4,9 @@
 //! [`Cage`] of elements that contains a surface, and the weights by which the surface follows the nodes of the cage. No function
 //! uses more memory or time than its [`Limits`] allow. Results have the same bits on every machine and for any number of threads.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 mod fill;
 mod read;
 mod surface;

@@ -135,18 +135,23 @@ fn the_front_page_shows_the_example() {
     assert_eq!(shown, code);
 }
 
-/// The dependency table of `CONTRIBUTING.md` has the dependencies of the manifest, and no others.
+/// The dependency table of `CONTRIBUTING.md` has the dependencies of the manifests of the library and of its meshes, and no
+/// others.
 #[test]
 fn every_dependency_has_its_reason() {
     let read = |name: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("a file");
-    let (manifest, page) = (read("Cargo.toml"), read("CONTRIBUTING.md"));
-    let manifest: toml::Table = manifest.parse().expect("the manifest");
-    let targets = manifest["target"].as_table().expect("a table").values().map(|target| &target["dependencies"]);
-    let tables = [&manifest["dependencies"], &manifest["dev-dependencies"]].into_iter().chain(targets);
-    let names: BTreeSet<&str> =
-        tables.flat_map(|table| table.as_table().expect("a table").keys()).map(String::as_str).collect();
+    let page = read("CONTRIBUTING.md");
+    let mut names = BTreeSet::new();
+    for manifest in ["Cargo.toml", "mesh/Cargo.toml"] {
+        let manifest: toml::Table = read(manifest).parse().expect("a manifest");
+        let targets = manifest.get("target").and_then(toml::Value::as_table);
+        let of_targets = targets.into_iter().flat_map(toml::Table::values).map(|target| &target["dependencies"]);
+        let tables = manifest.get("dependencies").into_iter().chain(manifest.get("dev-dependencies")).chain(of_targets);
+        names.extend(tables.flat_map(|table| table.as_table().expect("a table").keys().cloned()));
+    }
     let table = page.split("## Dependencies").nth(1).expect("the section");
     let rows = table.lines().filter_map(|line| line.strip_prefix("| `")?.split(" | ").next());
-    let listed: BTreeSet<&str> = rows.flat_map(|cell| cell.split(", ")).map(|name| name.trim_matches('`')).collect();
+    let listed: BTreeSet<_> =
+        rows.flat_map(|cell| cell.split(", ")).map(|name| name.trim_matches('`').to_owned()).collect();
     assert_eq!(listed, names);
 }
