@@ -1,5 +1,9 @@
 //! Surfaces filled with elements.
 
+mod clip;
+mod cubes;
+mod lattice;
+
 use super::{Flaws, Surface};
 use glam::DVec3;
 use localshape_sim::{IndexLists, Weights};
@@ -65,11 +69,14 @@ pub struct FillError {
     pub help: Option<String>,
 }
 
-/// Fills a surface with at most so many elements.
+/// Fills a surface, which is mended first, with at most so many elements.
 ///
 /// # Errors
 /// If the surface has no inside, or more elements would be needed.
 pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillError> {
-    let _ = (surface, fill, most);
-    Err(FillError { message: "is not filled yet".to_owned(), help: None })
+    let (surface, flaws) = surface.mended();
+    match fill {
+        Fill::Cubes { side } => cubes::fill(surface, flaws, side, most),
+        _ => Err(FillError { message: "is not filled in this way yet".to_owned(), help: None }),
+    }
 }

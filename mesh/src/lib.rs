@@ -8,11 +8,12 @@
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod fill;
+mod inside;
 mod read;
 mod surface;
 mod volume;
 
 pub use fill::{Cage, Fill, FillError, Filled, fill};
 pub use read::{Format, Limits, Mesh, ReadError, read};
-pub use surface::{Flaws, Surface};
+pub use surface::{Flaws, Measures, Surface};
 pub use volume::{Group, Volume};

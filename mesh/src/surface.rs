@@ -1,6 +1,8 @@
-//! Surfaces of triangles.
+//! Surfaces of triangles: what is wrong with them, and mending it.
 
+use super::inside::Columns;
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// A surface of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,7 +18,8 @@ pub struct Surface {
 pub struct Flaws {
     /// Points at the same place as another, which were welded.
     pub welded: usize,
-    /// Triangles without area, which were left out.
+    /// Triangles without area, or with a corner that has no place, which were left out. Those without area that keep a
+    /// surface closed stay.
     pub degenerate: usize,
     /// Triangles with the points of another, which were left out.
     pub doubled: usize,
@@ -30,4 +33,361 @@ pub struct Flaws {
     pub inconsistent: usize,
     /// Separate pieces.
     pub pieces: usize,
+}
+
+/// The size and form of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measures {
+    /// The volume inside, by the divergence theorem. It means little for a surface that is not closed.
+    pub volume: f64,
+    /// The sum of the areas of triangles.
+    pub area: f64,
+    /// Whether the surface has an inside and an outside: each edge is passed as often in one direction as in the other.
+    pub closed: bool,
+    /// Euler's characteristic, points − edges + triangles: 2 for each ball, and 2 less for each hole through it.
+    pub euler: i64,
+    /// The lowest coordinates.
+    pub low: DVec3,
+    /// The highest coordinates.
+    pub high: DVec3,
+}
+
+impl Surface {
+    /// The positions of the corners of a triangle.
+    pub(crate) fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
+        triangle.map(|point| self.points[point as usize])
+    }
+
+    /// The size and form of the surface. Points that belong to no triangle do not count.
+    pub fn measures(&self) -> Measures {
+        let mut used = vec![false; self.points.len()];
+        for &point in self.triangles.as_flattened() {
+            used[point as usize] = true;
+        }
+        let all = || self.points.iter().zip(&used).filter(|(_, used)| **used).map(|(&point, _)| point);
+        let (low, high) = match all().next() {
+            Some(first) => all().fold((first, first), |(low, high), point| (low.min(point), high.max(point))),
+            None => (DVec3::ZERO, DVec3::ZERO),
+        };
+        let (mut volume, mut area) = (0.0, 0.0);
+        for &triangle in &self.triangles {
+            let [a, b, c] = self.corners(triangle).map(|corner| corner - low);
+            volume += a.dot(b.cross(c)) / 6.0;
+            area += 0.5 * (b - a).cross(c - a).length();
+        }
+        let uses = EdgeUse::all(&self.triangles);
+        let (mut edges, mut closed) = (0, !self.triangles.is_empty());
+        for edge in uses.chunk_by(EdgeUse::same) {
+            edges += 1;
+            closed &= net(edge) == 0;
+        }
+        Measures { volume, area, closed, euler: all().count() as i64 - edges + self.triangles.len() as i64, low, high }
+    }
+
+    /// The surface without its flaws, as far as that is safe, and what they were.
+    ///
+    /// Points with the same coordinates become one. Triangles without area and doubled ones are left out; of two with
+    /// opposite sides both stay, a wall between two pieces, unless most of the surface is of that kind. Each piece is
+    /// turned so that neighbours agree, which the fewest triangles determine, and that its volume is positive. A piece
+    /// inside another is turned with that one: if it looked the other way in the file, it is a cavity.
+    pub fn mended(&self) -> (Self, Flaws) {
+        let mut flaws = Flaws::default();
+        let mut surface = self.welded(&mut flaws);
+        surface.drop_doubled(&mut flaws);
+        surface.drop_flat(&mut flaws);
+        surface.orient(&mut flaws);
+        // Points of triangles that were left out belong to none.
+        (surface.compact(), flaws)
+    }
+
+    /// The surface with its points welded, without triangles of fewer than three points.
+    fn welded(&self, flaws: &mut Flaws) -> Self {
+        let is_place = |&point: &u32| self.points.get(point as usize).is_some_and(|point| point.is_finite());
+        // Adding zero makes −0 to 0.
+        let bits = |point: u32| self.points[point as usize].to_array().map(|x| (x + 0.0).to_bits());
+        let mut used: Vec<u32> = self.triangles.as_flattened().iter().copied().filter(is_place).collect();
+        used.sort_unstable();
+        used.dedup();
+        let count = used.len();
+        used.sort_by_cached_key(|&point| (bits(point), point));
+        let mut first = vec![0; self.points.len()];
+        for same in used.chunk_by(|&a, &b| bits(a) == bits(b)) {
+            same.iter().for_each(|&point| first[point as usize] = same[0]);
+            flaws.welded += same.len() - 1;
+        }
+        debug_assert!(flaws.welded <= count);
+        let mut triangles = Vec::with_capacity(self.triangles.len());
+        for triangle in &self.triangles {
+            if triangle.iter().all(is_place) {
+                let [a, b, c] = triangle.map(|point| first[point as usize]);
+                if a != b && b != c && c != a {
+                    triangles.push([a, b, c]);
+                }
+            }
+        }
+        flaws.degenerate = self.triangles.len() - triangles.len();
+        Self { points: self.points.clone(), triangles }.compact()
+    }
+
+    /// The surface with those points only that belong to a triangle, in the same order.
+    fn compact(mut self) -> Self {
+        let mut number = vec![u32::MAX; self.points.len()];
+        for &point in self.triangles.as_flattened() {
+            number[point as usize] = 0;
+        }
+        let mut points = Vec::new();
+        for (number, &point) in number.iter_mut().zip(&self.points) {
+            if *number == 0 {
+                *number = points.len() as u32;
+                points.push(point);
+            }
+        }
+        for triangle in &mut self.triangles {
+            *triangle = triangle.map(|point| number[point as usize]);
+        }
+        Self { points, triangles: self.triangles }
+    }
+
+    fn drop_doubled(&mut self, flaws: &mut Flaws) {
+        // The points in rising order, and whether that is the triangle's direction.
+        let key = |triangle: usize| {
+            let of = self.triangles[triangle];
+            let lowest = (0..3).min_by_key(|&at| of[at]).unwrap_or(0);
+            let [a, b, c] = [0, 1, 2].map(|at| of[(lowest + at) % 3]);
+            ([a, b.min(c), b.max(c)], b < c)
+        };
+        let mut order: Vec<usize> = (0..self.triangles.len()).collect();
+        order.sort_by_cached_key(|&triangle| (key(triangle), triangle));
+        let same = |&a: &usize, &b: &usize| key(a).0 == key(b).0;
+        let two_sided = order.chunk_by(same).filter(|same| key(same[0]).1 != key(same[same.len() - 1]).1).count();
+        let all = order.chunk_by(same).count();
+        let mut keep = vec![false; self.triangles.len()];
+        for same in order.chunk_by(same) {
+            if 2 * two_sided > all {
+                keep[same.iter().copied().min().unwrap_or(0)] = true;
+            } else {
+                same.chunk_by(|&a, &b| key(a) == key(b)).for_each(|one_sided| keep[one_sided[0]] = true);
+            }
+        }
+        flaws.doubled = self.keep(&keep);
+    }
+
+    /// Drops triangles whose corners are on a line and that have an edge of their own: they close nothing.
+    fn drop_flat(&mut self, flaws: &mut Flaws) {
+        let mut keep = vec![true; self.triangles.len()];
+        let is_flat = |triangle: u32| {
+            let [a, b, c] = self.corners(self.triangles[triangle as usize]);
+            (b - a).cross(c - a) == DVec3::ZERO
+        };
+        for edge in EdgeUse::all(&self.triangles).chunk_by(EdgeUse::same) {
+            if edge.len() == 1 && is_flat(edge[0].triangle) {
+                keep[edge[0].triangle as usize] = false;
+            }
+        }
+        flaws.degenerate += self.keep(&keep);
+    }
+
+    /// Keeps some triangles, and returns the number of others.
+    fn keep(&mut self, keep: &[bool]) -> usize {
+        let before = self.triangles.len();
+        let mut keep = keep.iter();
+        self.triangles.retain(|_| keep.next().is_some_and(|keep| *keep));
+        before - self.triangles.len()
+    }
+
+    /// Turns triangles over, and counts edges and pieces.
+    fn orient(&mut self, flaws: &mut Flaws) {
+        let uses = EdgeUse::all(&self.triangles);
+        let count = self.triangles.len();
+        // The neighbour at each edge of two triangles, and whether the two pass it in the same direction.
+        let mut beside = vec![[None::<(u32, bool)>; 3]; count];
+        let mut meet = |one: u32, other: u32, differs| {
+            let free = beside[one as usize].iter_mut().find(|beside| beside.is_none());
+            free.into_iter().for_each(|free| *free = Some((other, differs)));
+        };
+        let mut pieces = Sets::new(count);
+        for edge in uses.chunk_by(EdgeUse::same) {
+            match edge {
+                [_] => flaws.boundary += 1,
+                [a, b] => {
+                    meet(a.triangle, b.triangle, a.forward == b.forward);
+                    meet(b.triangle, a.triangle, a.forward == b.forward);
+                }
+                _ => flaws.non_manifold += 1,
+            }
+            edge.iter().for_each(|other| pieces.join(edge[0].triangle, other.triangle));
+        }
+        let mut turned: Vec<Option<bool>> = vec![None; count];
+        for first in 0..count {
+            if turned[first].is_some() {
+                continue;
+            }
+            turned[first] = Some(false);
+            let mut patch = vec![first as u32];
+            let mut next = 0;
+            while let Some(&triangle) = patch.get(next) {
+                next += 1;
+                for &(other, differs) in beside[triangle as usize].iter().flatten() {
+                    if turned[other as usize].is_none() {
+                        turned[other as usize] = Some(turned[triangle as usize] == Some(!differs));
+                        patch.push(other);
+                    }
+                }
+            }
+            let minority = patch.iter().filter(|&&triangle| turned[triangle as usize] == Some(true)).count();
+            if 2 * minority > patch.len() {
+                patch.iter().for_each(|&triangle| {
+                    turned[triangle as usize] = turned[triangle as usize].map(|turned| !turned);
+                });
+            }
+        }
+        let mut turned: Vec<bool> = turned.into_iter().map(|turned| turned == Some(true)).collect();
+        flaws.inconsistent = uses
+            .chunk_by(EdgeUse::same)
+            .filter(|edge| match edge {
+                [a, b] => (a.forward == b.forward) == (turned[a.triangle as usize] == turned[b.triangle as usize]),
+                _ => false,
+            })
+            .count();
+        let (piece_of, number) = pieces.numbered();
+        flaws.pieces = number;
+        let before = self.triangles.clone();
+        self.turn(&turned);
+        let outwards = self.outwards(&piece_of, number);
+        turned.iter_mut().zip(&piece_of).for_each(|(turned, &piece)| *turned ^= !outwards[piece as usize]);
+        self.triangles = before;
+        self.turn(&turned);
+        flaws.turned = turned.iter().filter(|turned| **turned).count();
+    }
+
+    fn turn(&mut self, turned: &[bool]) {
+        self.triangles.iter_mut().zip(turned).filter(|(_, turned)| **turned).for_each(|(of, _)| of.swap(1, 2));
+    }
+
+    /// Whether each piece can stay as it is.
+    fn outwards(&self, piece_of: &[u32], count: usize) -> Vec<bool> {
+        let uses = EdgeUse::all(&self.triangles);
+        // The volume of an open piece is that under a fan of triangles over the middle of its open edges.
+        let mut middles = vec![(DVec3::ZERO, 0u32); count];
+        for edge in uses.chunk_by(EdgeUse::same) {
+            if net(edge) != 0 {
+                let (sum, number) = &mut middles[piece_of[edge[0].triangle as usize] as usize];
+                *sum += self.points[edge[0].low as usize] + self.points[edge[0].high as usize];
+                *number += 2;
+            }
+        }
+        let mut firsts = vec![DVec3::ZERO; count];
+        for (&triangle, &piece) in self.triangles.iter().zip(piece_of).rev() {
+            firsts[piece as usize] = self.corners(triangle)[0];
+        }
+        let (mut volumes, mut areas) = (vec![0.0; count], vec![0.0f64; count]);
+        for (&triangle, &piece) in self.triangles.iter().zip(piece_of) {
+            let piece = piece as usize;
+            let (sum, number) = middles[piece];
+            let origin = if number > 0 { sum / f64::from(number) } else { firsts[piece] };
+            let [a, b, c] = self.corners(triangle).map(|corner| corner - origin);
+            volumes[piece] += a.dot(b.cross(c)) / 6.0;
+            areas[piece] += 0.5 * (b - a).cross(c - a).length();
+        }
+        // A sheet that is flat but for round-off stays as it is.
+        let is_out = |piece: usize| volumes[piece] >= -1e-9 * areas[piece] * areas[piece].sqrt();
+        if count < 2 {
+            return (0..count).map(is_out).collect();
+        }
+        let columns = Columns::new(&self.points, &self.triangles);
+        let mut around: Vec<i32> = vec![0; count];
+        let turned_with = |piece: usize| {
+            let mut touched = Vec::new();
+            columns.crossings(firsts[piece].y, firsts[piece].z, |crossing| {
+                let other = piece_of[crossing.triangle as usize] as usize;
+                if other != piece && middles[other].1 == 0 && crossing.is_after(firsts[piece].x) {
+                    around[other] += crossing.sign;
+                    touched.push(other);
+                }
+            });
+            let outermost = touched
+                .iter()
+                .copied()
+                .filter(|&other| around[other] != 0)
+                .reduce(|best, other| if volumes[other].abs() > volumes[best].abs() { other } else { best });
+            touched.iter().for_each(|&other| around[other] = 0);
+            outermost.unwrap_or(piece)
+        };
+        (0..count).map(turned_with).map(is_out).collect()
+    }
+}
+
+/// A triangle's use of an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct EdgeUse {
+    pub(crate) low: u32,
+    pub(crate) high: u32,
+    pub(crate) triangle: u32,
+    /// Whether the triangle passes the edge from its lower to its higher point.
+    pub(crate) forward: bool,
+}
+
+impl EdgeUse {
+    /// All uses, by edge and then by triangle.
+    pub(crate) fn all(triangles: &[[u32; 3]]) -> Vec<Self> {
+        let of = |(triangle, &[a, b, c]): (u32, &[u32; 3])| {
+            [(a, b), (b, c), (c, a)].map(|(from, to)| Self {
+                low: from.min(to),
+                high: from.max(to),
+                triangle,
+                forward: from < to,
+            })
+        };
+        let mut uses: Vec<_> = (0..).zip(triangles).flat_map(of).collect();
+        uses.par_sort_unstable();
+        uses
+    }
+
+    pub(crate) fn same(&self, other: &Self) -> bool {
+        (self.low, self.high) == (other.low, other.high)
+    }
+}
+
+/// How much more often an edge is passed from its lower to its higher point than back.
+pub(crate) fn net(edge: &[EdgeUse]) -> i32 {
+    edge.iter().map(|edge| if edge.forward { 1 } else { -1 }).sum()
+}
+
+/// Disjoint sets of numbers. The representative of a set is its lowest.
+#[derive(Clone, Debug)]
+pub(crate) struct Sets(Vec<u32>);
+
+impl Sets {
+    pub(crate) fn new(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    pub(crate) fn of(&mut self, mut one: u32) -> u32 {
+        while self.0[one as usize] != one {
+            self.0[one as usize] = self.0[self.0[one as usize] as usize];
+            one = self.0[one as usize];
+        }
+        one
+    }
+
+    pub(crate) fn join(&mut self, one: u32, other: u32) {
+        let (one, other) = (self.of(one), self.of(other));
+        self.0[one.max(other) as usize] = one.min(other);
+    }
+
+    /// The set of each number, counted in the order of the lowest numbers of sets, and how many there are.
+    pub(crate) fn numbered(mut self) -> (Vec<u32>, usize) {
+        let mut count = 0;
+        let mut number: Vec<u32> = Vec::with_capacity(self.0.len());
+        for one in 0..self.0.len() as u32 {
+            let of = self.of(one);
+            if of == one {
+                number.push(count);
+                count += 1;
+            } else {
+                number.push(number[of as usize]);
+            }
+        }
+        (number, count as usize)
+    }
 }

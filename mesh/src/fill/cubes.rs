@@ -1,0 +1,213 @@
+//! Cubes of a lattice.
+
+use super::clip::{self, Piece};
+use super::lattice::{Cell, Lattice, too_many};
+use super::{Cage, FillError, Filled};
+use crate::inside::{Grid, Inside};
+use crate::{Flaws, Surface};
+use glam::DVec3;
+use localshape_sim::{IndexLists, Weights};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// An element is filled at least by this part, lest its numbers come near to the smallest.
+const LEAST: f64 = 1e-9;
+/// Points along each side of a cell at which it is tried whether they are inside, where a surface is open.
+const SAMPLES: usize = 4;
+
+/// A cell with a part of the inside.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Full {
+    /// The number of the cell.
+    pub(super) cell: u64,
+    /// The part of it that is inside.
+    pub(super) filled: f64,
+}
+
+pub(super) fn fill(mut surface: Surface, flaws: Flaws, side: f64, most: usize) -> Result<Filled, FillError> {
+    let (lattice, scaled) = Lattice::about(&mut surface, side, most)?;
+    let pieces = clip::pieces(&scaled, &lattice);
+    let cells = cells(&scaled, &flaws, &lattice, &pieces)?;
+    if cells.len() > most {
+        return Err(too_many(&surface.measures(), side, cells.len() as f64, most, ""));
+    }
+    let mut nodes = Nodes::new(lattice);
+    let mut elements = IndexLists::default();
+    for full in &cells {
+        let cell = lattice.cell(full.cell);
+        elements.push(&CORNERS.map(|corner| nodes.of([0, 1, 2].map(|axis| cell[axis] + corner[axis]))));
+    }
+    let weights = weights(&surface, &scaled, &lattice, |cell| {
+        let found = cells.binary_search_by_key(&lattice.key(cell), |full| full.cell).ok()?;
+        Some(&elements[found])
+    });
+    let filled = cells.iter().any(|full| full.filled < 1.0).then(|| cells.iter().map(|full| full.filled).collect());
+    Ok(Filled { cage: Cage { nodes: nodes.places, elements, filled, convex: false }, surface, weights, flaws })
+}
+
+/// The corners of a cube, with x fastest, then y, then z.
+pub(super) const CORNERS: [Cell; 8] =
+    [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]];
+
+/// Nodes at corners of a lattice, numbered as they are met.
+struct Nodes {
+    lattice: Lattice,
+    numbers: HashMap<Cell, u32>,
+    places: Vec<DVec3>,
+}
+
+impl Nodes {
+    fn new(lattice: Lattice) -> Self {
+        Self { lattice, numbers: HashMap::new(), places: Vec::new() }
+    }
+
+    fn of(&mut self, corner: Cell) -> u32 {
+        *self.numbers.entry(corner).or_insert_with(|| {
+            self.places.push(self.lattice.place(DVec3::from_array(corner.map(f64::from))));
+            self.places.len() as u32 - 1
+        })
+    }
+}
+
+/// The cells whose middle is inside a surface or that its triangles touch, in rising order, and how much of each is
+/// inside.
+///
+/// The volume inside a cell follows from the divergence theorem for the field x: the sum over the parts of triangles in
+/// the cell, and the inside of its face towards +x, which is what the shadows of all parts farther along the row add up
+/// to. Where the surface is open, points of the cell are tried instead.
+pub(super) fn cells(
+    scaled: &Surface,
+    flaws: &Flaws,
+    lattice: &Lattice,
+    pieces: &[Piece],
+) -> Result<Vec<Full>, FillError> {
+    let inside = Inside::new(scaled);
+    let caps = Surface {
+        points: inside.caps().as_flattened().to_vec(),
+        triangles: (0..inside.caps().len() as u32).map(|cap| [3 * cap, 3 * cap + 1, 3 * cap + 2]).collect(),
+    };
+    let capped = clip::pieces(&caps, lattice);
+    let grid = Grid { first: DVec3::splat(0.5), side: 1.0, counts: lattice.counts };
+    let rows = (0..lattice.counts[1] * lattice.counts[2]).into_par_iter();
+    let cells: Vec<_> = rows.flat_map_iter(|row| row_cells(&inside, &grid, row, pieces, &capped)).collect();
+    if cells.iter().all(|full| full.filled <= LEAST) {
+        return Err(no_inside(flaws));
+    }
+    Ok(cells)
+}
+
+/// The cells of one row.
+fn row_cells(inside: &Inside, grid: &Grid, row: usize, pieces: &[Piece], capped: &[Piece]) -> Vec<Full> {
+    let along = grid.counts[0];
+    let mut middles = Vec::new();
+    inside.row(grid, row, &mut middles);
+    let (mut pieces, mut capped) = [pieces, capped].map(|pieces| of(pieces, row * along, along)).into();
+    let (mut cells, mut shadow) = (Vec::new(), 0.0);
+    for (at, &(around, is_inside)) in middles.iter().enumerate().rev() {
+        let key = row * along + at;
+        let [own, own_caps] = [&mut pieces, &mut capped].map(|rest| {
+            let start = rest.partition_point(|piece| piece.cell < key as u64);
+            let own;
+            (*rest, own) = rest.split_at(start);
+            own
+        });
+        if !own.is_empty() {
+            let is_clear = own_caps.is_empty() && is_inside == (around > 0);
+            let filled = if is_clear {
+                shadow + own.iter().map(|piece| piece.volume).sum::<f64>()
+            } else {
+                sampled(inside, grid, key)
+            };
+            // A part that differs from all by round-off is all.
+            let filled = if filled > 1.0 - 1e-12 { 1.0 } else { filled.max(LEAST) };
+            cells.push(Full { cell: key as u64, filled });
+        } else if is_inside {
+            cells.push(Full { cell: key as u64, filled: 1.0 });
+        }
+        shadow += own.iter().chain(own_caps).map(|piece| piece.shadow).sum::<f64>();
+    }
+    cells.reverse();
+    cells
+}
+
+/// The pieces in some neighbouring cells.
+fn of(pieces: &[Piece], first: usize, count: usize) -> &[Piece] {
+    let start = pieces.partition_point(|piece| piece.cell < first as u64);
+    let end = pieces.partition_point(|piece| piece.cell < (first + count) as u64);
+    &pieces[start..end]
+}
+
+/// The part of a cell's points that are inside.
+fn sampled(inside: &Inside, grid: &Grid, key: usize) -> f64 {
+    let side = 1.0 / SAMPLES as f64;
+    let [along, wide, _] = grid.counts;
+    let cell = [key % along, key / along % wide, key / along / wide];
+    let first = DVec3::from_array(cell.map(|at| at as f64)) + 0.5 * side;
+    let points = inside.grid(&Grid { first, side, counts: [SAMPLES; 3] });
+    let number = points.iter().filter(|inside| **inside).count();
+    number as f64 / points.len() as f64
+}
+
+fn no_inside(flaws: &Flaws) -> FillError {
+    let (message, help) = match flaws.boundary + flaws.inconsistent {
+        0 => ("has no inside: its volume is zero".to_owned(), "Use a surface with a thickness."),
+        _ => {
+            let number = flaws.boundary;
+            let edges = if number == 1 { "edge belongs" } else { "edges belong" };
+            let message = format!("has no inside: it is open, {number} of its {edges} to one triangle only");
+            (message, "Give it a thickness, or close its holes, in the program that made it.")
+        }
+    };
+    FillError { message, help: Some(help.to_owned()) }
+}
+
+/// The weights of a surface's points in the nodes of the cells that contain them.
+pub(super) fn weights<'e>(
+    surface: &Surface,
+    scaled: &Surface,
+    lattice: &Lattice,
+    nodes: impl Fn(Cell) -> Option<&'e [u32]>,
+) -> Weights {
+    let homes = homes(scaled, lattice);
+    let mut weights = Weights::default();
+    for (&point, &(cell, _)) in scaled.points.iter().zip(&homes) {
+        let nodes = nodes(cell).unwrap_or_default();
+        let [x, y, z] = (point - DVec3::from_array(cell.map(f64::from))).clamp(DVec3::ZERO, DVec3::ONE).to_array();
+        let own = CORNERS.map(|corner| {
+            let along = |axis: usize, at: f64| if corner[axis] == 1 { at } else { 1.0 - at };
+            along(0, x) * along(1, y) * along(2, z)
+        });
+        weights.push(nodes, &own[..nodes.len()]);
+    }
+    debug_assert_eq!(weights.len(), surface.points.len());
+    weights
+}
+
+/// The cell of each point, and a triangle that has a part in that cell with the point as a corner.
+pub(super) fn homes(scaled: &Surface, lattice: &Lattice) -> Vec<(Cell, u32)> {
+    let mut homes: Vec<Option<(Cell, u32)>> = vec![None; scaled.points.len()];
+    let largest = lattice.counts.map(|count| count as f64 - 1.0);
+    for is_flat in [false, true] {
+        for (triangle, &of) in (0u32..).zip(&scaled.triangles) {
+            let [a, b, c] = scaled.corners(of);
+            let normal = (b - a).cross(c - a);
+            if (normal == DVec3::ZERO) != is_flat {
+                continue;
+            }
+            let middle = (a + b + c) / 3.0;
+            let flat = [0, 1, 2].map(|axis| a[axis] == b[axis] && b[axis] == c[axis]);
+            for (point, at) in of.into_iter().zip([a, b, c]) {
+                homes[point as usize].get_or_insert_with(|| {
+                    let cell = [0, 1, 2].map(|axis| {
+                        // What lies in a plane belongs to the cell behind it; other points to that of their triangle.
+                        let is_low = if flat[axis] { normal[axis] > 0.0 } else { middle[axis] < at[axis] };
+                        let low = if is_low { at[axis].ceil() - 1.0 } else { at[axis].floor() };
+                        low.clamp(0.0, largest[axis]) as u32
+                    });
+                    (cell, triangle)
+                });
+            }
+        }
+    }
+    homes.into_iter().map(|home| home.unwrap_or_default()).collect()
+}

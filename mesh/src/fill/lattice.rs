@@ -1,0 +1,139 @@
+//! The lattice of cubes about a surface, and how large it may be.
+
+use super::FillError;
+use crate::{Measures, Surface};
+use glam::DVec3;
+
+/// Points nearer than this to a plane of the lattice, in units of its side, are moved onto it. Single precision and typed
+/// decimals would otherwise leave layers of cells with hardly any filling.
+const SNAP: f64 = 4e-6;
+
+/// A lattice of cubes about the middle of a surface's box.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lattice {
+    /// The lowest corner.
+    pub(super) origin: DVec3,
+    /// The side of a cube.
+    pub(super) side: f64,
+    /// The number of cubes along each axis.
+    pub(super) counts: [usize; 3],
+}
+
+impl Lattice {
+    /// The lattice for a surface that may be filled with at most so many elements, and the surface in units of the
+    /// lattice. Points that are almost on a plane of the lattice are on it in both.
+    pub(super) fn about(surface: &mut Surface, side: f64, most: usize) -> Result<(Self, Surface), FillError> {
+        let measures = surface.measures();
+        if surface.triangles.is_empty() {
+            let help = Some("Use a file with faces.".to_owned());
+            return Err(FillError { message: "has no face with an area".to_owned(), help });
+        }
+        if !(side > 0.0 && side.is_finite()) {
+            let help = Some("Use a positive side.".to_owned());
+            return Err(FillError { message: format!("cannot be filled with elements of side {side}"), help });
+        }
+        let extent = measures.high - measures.low;
+        let counts = extent.to_array().map(|extent| (extent / side - SNAP).ceil().max(1.0));
+        let (needed, slack) = (estimate(&measures, side), 4.0);
+        // Each place is visited, whether or not something is in it.
+        let rows = counts[1] * counts[2];
+        let places = rows * counts[0];
+        let is_sane = rows <= 16.0 * most as f64 + 65536.0 && places <= 1024.0 * most as f64 + 1e8 && counts[0] < 1e6;
+        if !(needed <= slack * most as f64 && is_sane) {
+            return Err(too_many(&measures, side, needed.max(rows / 16.0), most, "about "));
+        }
+        // Triangles that lie over each other by thousands are no surface.
+        let overlaps: f64 = surface.triangles.iter().map(|&triangle| pieces(surface.corners(triangle), side)).sum();
+        if overlaps > 64.0 * most as f64 + 16.0 * surface.triangles.len() as f64 + 1e6 {
+            return Err(FillError {
+                message: format!(
+                    "has {} triangles that lie over each other: they reach into elements of side {side} some {overlaps:.0} times",
+                    surface.triangles.len()
+                ),
+                help: Some(format!("Use a larger side, or more than {most} elements.")),
+            });
+        }
+        let counts = counts.map(|count| count as usize);
+        let size = DVec3::from_array(counts.map(|count| count as f64));
+        let lattice = Self { origin: 0.5 * (measures.low + measures.high) - 0.5 * side * size, side, counts };
+        let mut points = Vec::with_capacity(surface.points.len());
+        for point in &mut surface.points {
+            let at = (*point - lattice.origin) / side;
+            let near = at.round();
+            let is_near = (at - near).abs().cmple(DVec3::splat(SNAP));
+            *point = DVec3::select(is_near, lattice.place(near), *point);
+            points.push(DVec3::select(is_near, near, at).clamp(DVec3::ZERO, size));
+        }
+        Ok((lattice, Surface { points, triangles: surface.triangles.clone() }))
+    }
+
+    /// The place of a point in units of the lattice.
+    pub(super) fn place(&self, at: DVec3) -> DVec3 {
+        self.origin + self.side * at
+    }
+}
+
+/// About how many cubes hold a part of the inside.
+fn estimate(measures: &Measures, side: f64) -> f64 {
+    let (volume, area) = (measures.volume.abs() / side / side / side, measures.area / side / side);
+    // A plane in any direction meets up to 1.7 cubes for each square, and half of each is counted with the volume.
+    volume + 0.75 * area + 1.0
+}
+
+/// About how many cubes a triangle reaches into, or more.
+fn pieces([a, b, c]: [DVec3; 3], side: f64) -> f64 {
+    let [x, y, z] = ((a.max(b).max(c) - a.min(b).min(c)) / side).to_array();
+    1.0 + x + y + z + 0.5 * (x * y + y * z + z * x)
+}
+
+/// The error for a fill that would need so many elements.
+pub(super) fn too_many(measures: &Measures, side: f64, needed: f64, most: usize, about: &str) -> FillError {
+    // The estimate, scaled to what is known, tells how the number falls with the side. What fills its box needs as many
+    // more as the box is rounded up to whole cubes.
+    let extent = (measures.high - measures.low).max(DVec3::splat(f64::MIN_POSITIVE));
+    let boxed = |side: f64| {
+        let counts = extent / side;
+        estimate(measures, side) * ((counts - SNAP).ceil().max(DVec3::ONE) / counts).element_product().min(1e9)
+    };
+    let factor = needed / boxed(side);
+    let start = if side > 1e-6 * extent.max_element() { side } else { 1e-6 * extent.max_element() };
+    let tries =
+        (1..2000).map(|step| rounded_up(start * (1.0 + 0.01 * f64::from(step) + 1e-4 * f64::from(step * step))));
+    let fits = tries.map(|side| (side, factor * boxed(side))).find(|&(_, number)| number <= 0.95 * most as f64);
+    let remedy = match fits {
+        Some((side, _)) => format!("Use a side of {side} or more, or allow more elements."),
+        None => "Allow more elements.".to_owned(),
+    };
+    FillError {
+        message: format!("needs {about}{needed:.0} elements of side {side}, and at most {most} are allowed"),
+        help: Some(remedy),
+    }
+}
+
+/// A number with two digits that is not smaller.
+fn rounded_up(number: f64) -> f64 {
+    let text = format!("{number:.1e}");
+    let rounded = text.parse().unwrap_or(number);
+    if rounded >= number {
+        return rounded;
+    }
+    let digit = text.split_once('e').and_then(|(_, exponent)| format!("0.1e{exponent}").parse::<f64>().ok());
+    // Written and read again, lest 0.1 + 0.2 show its error.
+    digit.and_then(|digit| format!("{:.1e}", rounded + digit).parse().ok()).unwrap_or(number)
+}
+
+/// The cube of each place, in units of the lattice.
+pub(super) type Cell = [u32; 3];
+
+impl Lattice {
+    /// A number for each cube, with x fastest, then y, then z.
+    pub(super) fn key(&self, [x, y, z]: Cell) -> u64 {
+        (u64::from(z) * self.counts[1] as u64 + u64::from(y)) * self.counts[0] as u64 + u64::from(x)
+    }
+
+    /// The cube with a number.
+    pub(super) fn cell(&self, key: u64) -> Cell {
+        let [x, y] = [self.counts[0] as u64, self.counts[1] as u64];
+        [(key % x) as u32, (key / x % y) as u32, (key / x / y) as u32]
+    }
+}

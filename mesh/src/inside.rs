@@ -1,0 +1,376 @@
+//! Whether points are inside a surface.
+//!
+//! The winding number of a point counts how often the surface goes around it; inside it is above ½. For a surface whose edges
+//! are passed as often in one direction as in the other it is a whole number: the sum of signs of the triangles that a ray
+//! crosses. Exact predicates (J. Shewchuk, 1997) decide what is crossed; a point on a line or in a plane of the surface counts as
+//! moved by infinitely little, and by least along x (H. Edelsbrunner and E. Mücke, 1990).
+//!
+//! Other surfaces have a fractional winding number (A. Jacobson et al., 2013). They are closed by fans of triangles over their open
+//! edges, and the parts of the sphere that the fans hide from the point are taken off again: cheap, for most surfaces have few open
+//! edges. Fans far away are lumped together (G. Barill et al., 2018).
+
+use super::Surface;
+use super::surface::{EdgeUse, Sets, net};
+use glam::DVec3;
+use rayon::prelude::*;
+use robust::{Coord, Coord3D, orient2d, orient3d};
+
+/// A surface that is asked for its inside.
+pub(crate) struct Inside {
+    columns: Columns,
+    /// The triangles that close the surface; none for most.
+    caps: Caps,
+}
+
+/// Points in rows along x.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Grid {
+    /// The first point.
+    pub(crate) first: DVec3,
+    /// The distance between neighbours.
+    pub(crate) side: f64,
+    /// The number of points along each axis.
+    pub(crate) counts: [usize; 3],
+}
+
+impl Grid {
+    /// Coordinates of points along an axis.
+    fn at(&self, axis: usize, index: usize) -> f64 {
+        self.first[axis] + self.side * index as f64
+    }
+}
+
+impl Inside {
+    pub(crate) fn new(surface: &Surface) -> Self {
+        let (points, caps) = caps(surface);
+        let mut all = surface.triangles.clone();
+        all.extend(&caps);
+        let corners = |&cap: &[u32; 3]| cap.map(|point| points[point as usize]);
+        Self { caps: Caps::new(caps.iter().map(corners).collect()), columns: Columns::new(&points, &all) }
+    }
+
+    /// The triangles that were added to close the surface.
+    pub(crate) fn caps(&self) -> &[[DVec3; 3]] {
+        &self.caps.triangles
+    }
+
+    /// Whether a point is inside, from its winding number about the closed surface.
+    fn is_inside(&self, around: i32, point: DVec3) -> bool {
+        match self.caps.nodes.is_empty() {
+            true => around > 0,
+            false => f64::from(around) - self.caps.winding(point) > 0.5,
+        }
+    }
+
+    /// Whether each point is inside, with x fastest, then y, then z.
+    pub(crate) fn grid(&self, grid: &Grid) -> Vec<bool> {
+        let rows = (0..grid.counts[1] * grid.counts[2]).into_par_iter();
+        rows.flat_map_iter(|row| {
+            let mut out = Vec::new();
+            self.row(grid, row, &mut out);
+            out.into_iter().map(|(_, inside)| inside)
+        })
+        .collect()
+    }
+
+    /// The points of a row that are inside: for each point its winding number about the surface with its caps, and
+    /// whether it is inside the surface. The numbers replace those in `out`.
+    pub(crate) fn row(&self, grid: &Grid, row: usize, out: &mut Vec<(i32, bool)>) {
+        let [along, wide, _] = grid.counts;
+        out.clear();
+        out.resize(along, (0, false));
+        let (y, z) = (grid.at(1, row % wide), grid.at(2, row / wide));
+        self.columns.crossings(y, z, |crossing| {
+            // The number of points before the crossing: about as many as this.
+            let guess = ((crossing.x() - grid.first.x) / grid.side).ceil().clamp(0.0, along as f64);
+            let mut before = guess as usize;
+            while before < along && crossing.is_after(grid.at(0, before)) {
+                before += 1;
+            }
+            while before > 0 && !crossing.is_after(grid.at(0, before - 1)) {
+                before -= 1;
+            }
+            if before > 0 {
+                out[before - 1].0 += crossing.sign;
+            }
+        });
+        let mut around = 0;
+        for (at, (winding, inside)) in out.iter_mut().enumerate().rev() {
+            around += *winding;
+            *winding = around;
+            *inside = self.is_inside(around, DVec3::new(grid.at(0, at), y, z));
+        }
+    }
+}
+
+/// Triangles by the place of their projection along x.
+pub(crate) struct Columns {
+    corners: Vec<[DVec3; 3]>,
+    /// The lowest y and z, and the number of bins per unit of length along each.
+    low: [f64; 2],
+    scale: [f64; 2],
+    /// Bins along y and z.
+    counts: [usize; 2],
+    /// Where the triangles of each bin begin.
+    starts: Vec<u32>,
+    members: Vec<u32>,
+}
+
+/// A triangle that a line along x crosses.
+pub(crate) struct Crossing<'t> {
+    /// The triangle's place in the list.
+    pub(crate) triangle: u32,
+    /// 1 where the line leaves the inside of the surface, −1 where it enters it.
+    pub(crate) sign: i32,
+    corners: &'t [DVec3; 3],
+    y: f64,
+    z: f64,
+}
+
+impl Columns {
+    pub(crate) fn new(points: &[DVec3], triangles: &[[u32; 3]]) -> Self {
+        let corners: Vec<_> = triangles.iter().map(|of| of.map(|point| points[point as usize])).collect();
+        let all = || corners.as_flattened().iter();
+        let low = all().copied().reduce(DVec3::min).unwrap_or(DVec3::ZERO);
+        let high = all().copied().reduce(DVec3::max).unwrap_or(DVec3::ZERO);
+        let mut columns =
+            Self { low: [low.y, low.z], scale: [0.0; 2], counts: [1; 2], starts: vec![], members: vec![], corners };
+        let mut along = libm::sqrt(columns.corners.len() as f64).ceil().clamp(1.0, 4096.0) as usize;
+        // Few bins if triangles are large: each lists all that overlap it.
+        loop {
+            columns.counts = [along; 2];
+            columns.scale = [high.y - low.y, high.z - low.z].map(|width| along as f64 / width.max(f64::MIN_POSITIVE));
+            let members: usize = columns
+                .corners
+                .iter()
+                .map(|of| {
+                    let [y, z] = columns.bins(of);
+                    (y[1] - y[0] + 1) * (z[1] - z[0] + 1)
+                })
+                .sum();
+            if along == 1 || members <= 8 * columns.corners.len() + 64 {
+                break;
+            }
+            along = (along / 2).max(1);
+        }
+        let mut counts = vec![0u32; along * along + 1];
+        columns.each_bin(|bin, _| counts[bin + 1] += 1);
+        for bin in 1..counts.len() {
+            counts[bin] += counts[bin - 1];
+        }
+        let mut next = counts.clone();
+        let mut members = vec![0; counts[along * along] as usize];
+        columns.each_bin(|bin, triangle| {
+            members[next[bin] as usize] = triangle;
+            next[bin] += 1;
+        });
+        Self { starts: counts, members, ..columns }
+    }
+
+    fn bin(&self, axis: usize, at: f64) -> usize {
+        (((at - self.low[axis]) * self.scale[axis]) as usize).min(self.counts[axis] - 1)
+    }
+
+    /// The first and the last bin of a triangle, along y and along z.
+    fn bins(&self, corners: &[DVec3; 3]) -> [[usize; 2]; 2] {
+        let [a, b, c] = *corners;
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        [[self.bin(0, low.y), self.bin(0, high.y)], [self.bin(1, low.z), self.bin(1, high.z)]]
+    }
+
+    fn each_bin(&self, mut visit: impl FnMut(usize, u32)) {
+        for (triangle, corners) in (0..).zip(&self.corners) {
+            let [y, z] = self.bins(corners);
+            for z in z[0]..=z[1] {
+                for y in y[0]..=y[1] {
+                    visit(z * self.counts[0] + y, triangle);
+                }
+            }
+        }
+    }
+
+    /// Calls `visit` with the triangles that a line along x crosses, in their order.
+    pub(crate) fn crossings<'t>(&'t self, y: f64, z: f64, mut visit: impl FnMut(Crossing<'t>)) {
+        let bin = self.bin(1, z) * self.counts[0] + self.bin(0, y);
+        for &triangle in &self.members[self.starts[bin] as usize..self.starts[bin + 1] as usize] {
+            let corners = &self.corners[triangle as usize];
+            let [a, b, c] = corners;
+            if y < a.y.min(b.y).min(c.y)
+                || y > a.y.max(b.y).max(c.y)
+                || z < a.z.min(b.z).min(c.z)
+                || z > a.z.max(b.z).max(c.z)
+            {
+                continue;
+            }
+            let sign = side(a, b, y, z);
+            if sign != 0 && side(b, c, y, z) == sign && side(c, a, y, z) == sign {
+                visit(Crossing { triangle, sign, corners, y, z });
+            }
+        }
+    }
+}
+
+/// On which side of a line, seen along x, a point is that was moved by infinitely little along y and by less along z; 0
+/// if there is no line.
+fn side(from: &DVec3, to: &DVec3, y: f64, z: f64) -> i32 {
+    let seen = |point: &DVec3| Coord { x: point.y, y: point.z };
+    let side = orient2d(seen(from), seen(to), Coord { x: y, y: z });
+    sign([side, from.z - to.z, to.y - from.y])
+}
+
+/// The sign of the first number that is not zero.
+fn sign<const N: usize>(numbers: [f64; N]) -> i32 {
+    let first = numbers.into_iter().find(|&number| number != 0.0);
+    first.map_or(0, |number| if number > 0.0 { 1 } else { -1 })
+}
+
+impl Crossing<'_> {
+    /// About where the line crosses the triangle.
+    fn x(&self) -> f64 {
+        let [a, b, c] = *self.corners;
+        let normal = (b - a).cross(c - a);
+        a.x - ((self.y - a.y) * normal.y + (self.z - a.z) * normal.z) / normal.x
+    }
+
+    /// Whether a point of the line is before the crossing.
+    pub(crate) fn is_after(&self, x: f64) -> bool {
+        let [a, b, c] = *self.corners;
+        let coordinates = |point: DVec3| Coord3D { x: point.x, y: point.y, z: point.z };
+        // Positive behind the triangle.
+        let behind =
+            orient3d(coordinates(a), coordinates(b), coordinates(c), coordinates(DVec3::new(x, self.y, self.z)));
+        if behind != 0.0 {
+            return (behind > 0.0) == (self.sign > 0);
+        }
+        // The point moves along y first: away from where the normal points is behind.
+        let seen = |first: usize, second: usize| {
+            let of = |point: DVec3| Coord { x: point[first], y: point[second] };
+            orient2d(of(a), of(b), of(c))
+        };
+        sign([-seen(2, 0), -seen(0, 1), -f64::from(self.sign)]) == self.sign
+    }
+}
+
+/// Triangles that close a surface: for each group of edges that meet and are not passed as often in one direction as in
+/// the other, a fan over the middle of their points. Returns the surface's points with the middles, and the triangles.
+fn caps(surface: &Surface) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let uses = EdgeUse::all(&surface.triangles);
+    let open =
+        || uses.chunk_by(EdgeUse::same).map(|edge| (edge[0].low, edge[0].high, net(edge))).filter(|edge| edge.2 != 0);
+    let mut points = surface.points.clone();
+    if open().next().is_none() {
+        return (points, Vec::new());
+    }
+    let mut groups = Sets::new(points.len());
+    open().for_each(|(low, high, _)| groups.join(low, high));
+    let (group_of, count) = groups.numbered();
+    let mut middles = vec![(DVec3::ZERO, 0u32); count];
+    for (low, high, _) in open() {
+        let (sum, number) = &mut middles[group_of[low as usize] as usize];
+        *sum += points[low as usize] + points[high as usize];
+        *number += 2;
+    }
+    let mut middle_of = vec![0; count];
+    for (middle, &(sum, number)) in middle_of.iter_mut().zip(&middles) {
+        if number > 0 {
+            *middle = points.len() as u32;
+            points.push(sum / f64::from(number));
+        }
+    }
+    let mut caps = Vec::new();
+    for (low, high, net) in open() {
+        let middle = middle_of[group_of[low as usize] as usize];
+        let cap = if net > 0 { [middle, high, low] } else { [middle, low, high] };
+        caps.extend(std::iter::repeat_n(cap, net.unsigned_abs() as usize));
+    }
+    (points, caps)
+}
+
+/// Triangles, and the parts of a sphere that they hide.
+struct Caps {
+    triangles: Vec<[DVec3; 3]>,
+    /// A binary tree in depth-first order; empty without triangles.
+    nodes: Vec<Lump>,
+}
+
+/// Neighbouring triangles.
+struct Lump {
+    range: std::ops::Range<usize>,
+    /// The mean of their middles, by area, and the greatest distance of a corner from it.
+    middle: DVec3,
+    radius: f64,
+    /// The sum of their normals with the length of their area.
+    area: DVec3,
+    /// The node after this one and those below it.
+    next: usize,
+}
+
+impl Caps {
+    fn new(triangles: Vec<[DVec3; 3]>) -> Self {
+        let mut caps = Self { nodes: Vec::new(), triangles };
+        if !caps.triangles.is_empty() {
+            caps.build(0..caps.triangles.len());
+        }
+        caps
+    }
+
+    fn build(&mut self, range: std::ops::Range<usize>) {
+        let triangles = &mut self.triangles[range.clone()];
+        let middle = |[a, b, c]: &[DVec3; 3]| (*a + *b + *c) / 3.0;
+        let (mut sum, mut weight, mut area) = (DVec3::ZERO, 0.0, DVec3::ZERO);
+        for triangle in &*triangles {
+            let [a, b, c] = *triangle;
+            let own = 0.5 * (b - a).cross(c - a);
+            // Triangles without area count a little, lest the sum be empty.
+            let size = own.length() + f64::MIN_POSITIVE;
+            sum += middle(triangle) * size;
+            weight += size;
+            area += own;
+        }
+        let mean = sum / weight;
+        let radius = triangles.as_flattened().iter().map(|corner| corner.distance(mean)).fold(0.0, f64::max);
+        let at = self.nodes.len();
+        let many = triangles.len() > 4;
+        if many {
+            let low = triangles.iter().map(middle).reduce(DVec3::min).unwrap_or(DVec3::ZERO);
+            let high = triangles.iter().map(middle).reduce(DVec3::max).unwrap_or(DVec3::ZERO);
+            let axis = (high - low).max_position();
+            triangles.sort_by(|a, b| middle(a)[axis].total_cmp(&middle(b)[axis]));
+        }
+        self.nodes.push(Lump { range: range.clone(), middle: mean, radius, area, next: 0 });
+        if many {
+            let half = range.start.midpoint(range.end);
+            self.build(range.start..half);
+            self.build(half..range.end);
+        }
+        self.nodes[at].next = self.nodes.len();
+    }
+
+    /// The part of the sphere about a point that the triangles hide.
+    fn winding(&self, point: DVec3) -> f64 {
+        let (mut sum, mut at) = (0.0, 0);
+        while let Some(lump) = self.nodes.get(at) {
+            let to = lump.middle - point;
+            let distance = to.length();
+            // At this distance the lump's error is some thousandths.
+            if distance > 3.0 * lump.radius {
+                sum += to.dot(lump.area) / (distance * distance * distance);
+                at = lump.next;
+            } else if lump.next == at + 1 {
+                sum +=
+                    self.triangles[lump.range.clone()].iter().map(|triangle| solid_angle(triangle, point)).sum::<f64>();
+                at = lump.next;
+            } else {
+                at += 1;
+            }
+        }
+        sum / (4.0 * std::f64::consts::PI)
+    }
+}
+
+/// The solid angle of a triangle seen from a point, positive from behind (A. van Oosterom and J. Strackee, 1983).
+fn solid_angle(triangle: &[DVec3; 3], point: DVec3) -> f64 {
+    let [a, b, c] = triangle.map(|corner| corner - point);
+    let [la, lb, lc] = [a, b, c].map(DVec3::length);
+    2.0 * libm::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)
+}

@@ -1,0 +1,89 @@
+//! Surfaces to test with.
+#![allow(dead_code, unreachable_pub, reason = "each test uses some")]
+
+use glam::DVec3;
+use localshape_mesh::Surface;
+
+/// A box of 12 triangles.
+pub fn block(low: DVec3, high: DVec3) -> Surface {
+    let points = (0..8).map(|n| DVec3::select(glam::BVec3::new(n & 1 > 0, n & 2 > 0, n & 4 > 0), high, low)).collect();
+    let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    Surface { points, triangles: faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect() }
+}
+
+/// Several surfaces as one.
+pub fn together(all: &[Surface]) -> Surface {
+    let mut sum = Surface::default();
+    for surface in all {
+        let first = sum.points.len() as u32;
+        sum.points.extend(&surface.points);
+        sum.triangles.extend(surface.triangles.iter().map(|of| of.map(|point| point + first)));
+    }
+    sum
+}
+
+/// A closed surface with a grid of points over two angles, by a function of two numbers from 0 to 1.
+fn grid(around: u32, along: u32, closes: bool, at: impl Fn(f64, f64) -> DVec3) -> Surface {
+    let rows = if closes { along } else { along + 1 };
+    let mut surface = Surface::default();
+    for row in 0..rows {
+        let v = f64::from(row) / f64::from(along);
+        surface.points.extend((0..around).map(|n| at(f64::from(n) / f64::from(around), v)));
+    }
+    for row in 0..along {
+        for n in 0..around {
+            let at = |row: u32, n: u32| row % rows * around + n % around;
+            let [a, b, c, d] = [at(row, n), at(row, n + 1), at(row + 1, n + 1), at(row + 1, n)];
+            surface.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    surface
+}
+
+/// A ball.
+pub fn ball(middle: DVec3, radius: f64, around: u32) -> Surface {
+    use std::f64::consts::{PI, TAU};
+    grid(around, around / 2, false, |u, v| {
+        let (u, v) = (TAU * u, PI * v);
+        let out = if v == PI || v == 0.0 { 0.0 } else { libm::sin(v) };
+        middle + radius * DVec3::new(out * libm::cos(u), out * libm::sin(u), -libm::cos(v))
+    })
+}
+
+/// A ring about the z-axis.
+pub fn ring(radius: f64, thickness: f64, around: u32) -> Surface {
+    use std::f64::consts::TAU;
+    grid(around, around / 2, true, |u, v| {
+        let (u, v) = (TAU * u, TAU * v);
+        let out = radius + thickness * libm::cos(v);
+        DVec3::new(out * libm::cos(u), out * libm::sin(u), thickness * libm::sin(v))
+    })
+}
+
+/// The triangles of a surface as they are in a file without shared points.
+pub fn apart(surface: &Surface) -> Surface {
+    let points = surface.triangles.as_flattened().iter().map(|&point| surface.points[point as usize]).collect();
+    Surface { points, triangles: (0..surface.triangles.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect() }
+}
+
+/// A surface of Debian's package `libcgal-demo`, if it is installed.
+pub fn scan(name: &str) -> Option<Surface> {
+    let archive = "/usr/share/doc/libcgal-dev/data.tar.gz";
+    let member = format!("data/meshes/{name}");
+    let output = std::process::Command::new("tar").args(["xzOf", archive, &member]).output().ok()?;
+    if !output.status.success() {
+        let _ = std::io::Write::write_all(&mut std::io::stderr(), b"skipped: libcgal-demo is not installed\n");
+        return None;
+    }
+    let text = String::from_utf8(output.stdout).ok()?;
+    let mut numbers = text.lines().filter(|line| !line.starts_with('#')).flat_map(str::split_whitespace).skip(1);
+    let mut next = move || numbers.next().unwrap().parse::<f64>().unwrap();
+    let [points, faces, _] = [next(), next(), next()].map(|count| count as usize);
+    let points = (0..points).map(|_| DVec3::new(next(), next(), next())).collect();
+    let mut triangles = Vec::new();
+    for _ in 0..faces {
+        let corners: Vec<u32> = (0..next() as usize).map(|_| next() as u32).collect();
+        triangles.extend((2..corners.len()).map(|n| [corners[0], corners[n - 1], corners[n]]));
+    }
+    Some(Surface { points, triangles })
+}

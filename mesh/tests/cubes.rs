@@ -1,0 +1,211 @@
+//! Surfaces filled with cubes.
+
+mod common;
+
+use common::{apart, ball, block, ring, scan, together};
+use glam::{DMat3, DVec3};
+use localshape_mesh::{Fill, Filled, Surface, fill};
+
+const MOST: usize = 1_000_000;
+
+/// The volume of all filled parts.
+fn filled_volume(filled: &Filled, side: f64) -> f64 {
+    let count = filled.cage.elements.len();
+    let parts = filled.cage.filled.clone().unwrap_or(vec![1.0; count]);
+    assert_eq!(parts.len(), count);
+    assert!(parts.iter().all(|&part| part > 0.0 && part <= 1.0));
+    parts.iter().sum::<f64>() * side * side * side
+}
+
+/// Checks that every point follows the nodes of an element around it.
+fn assert_carried(filled: &Filled) {
+    let (low, high) = localshape_sim::geometry::bounds(&filled.cage.nodes);
+    let size = (high - low).length() + low.abs().max(high.abs()).length();
+    let affine = |point: DVec3| {
+        let stretch = DMat3::from_cols_array(&[1.2, 0.3, -0.2, 0.1, 0.8, 0.4, -0.3, 0.2, 1.1]);
+        stretch * point + DVec3::new(0.5, -0.3, 0.1) * size
+    };
+    let moved: Vec<_> = filled.cage.nodes.iter().map(|&node| affine(node)).collect();
+    assert_eq!(filled.weights.len(), filled.surface.points.len());
+    for (at, &point) in filled.surface.points.iter().enumerate() {
+        let (nodes, weights) = filled.weights.of(at);
+        assert!(!nodes.is_empty(), "point {at} at {point} is in no element");
+        assert!(weights.iter().all(|weight| (0.0..=1.0).contains(weight)));
+        assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+        let error = filled.weights.place(at, &moved).distance(affine(point));
+        assert!(error < 1e-14 * size, "{error:e} of {size}");
+    }
+}
+
+fn cubes(surface: &Surface, side: f64) -> Filled {
+    let filled = fill(surface, Fill::Cubes { side }, MOST).unwrap();
+    assert_carried(&filled);
+    filled
+}
+
+/// Checks the sum of all filled parts against the divergence theorem.
+fn assert_volume(filled: &Filled, side: f64) {
+    let volume = filled.surface.measures().volume;
+    let sum = filled_volume(filled, side);
+    assert!((sum / volume - 1.0).abs() < 1e-9, "{sum} {volume}");
+}
+
+#[test]
+fn a_block_is_filled_exactly() {
+    for (low, size) in [(DVec3::ZERO, DVec3::new(0.6, 0.4, 0.3)), (DVec3::new(-0.7, 0.1, 3.3), DVec3::splat(0.7))] {
+        let surface = block(low, low + size);
+        let filled = cubes(&surface, 0.1);
+        let counts = (size * 10.0).round();
+        assert_eq!(filled.cage.elements.len() as f64, counts.element_product());
+        assert_eq!(filled.cage.nodes.len() as f64, (counts + 1.0).element_product());
+        assert_eq!(filled.cage.filled, None);
+        assert!((filled.surface.measures().volume / size.element_product() - 1.0).abs() < 1e-14);
+        // Nodes of an element: x fastest, then y, then z.
+        let element = &filled.cage.elements[0];
+        let at = |n: usize| filled.cage.nodes[element[n] as usize] - filled.cage.nodes[element[0] as usize];
+        for (n, expected) in [(1, DVec3::X), (2, DVec3::Y), (4, DVec3::Z), (7, DVec3::ONE)] {
+            assert!(at(n).distance(0.1 * expected) < 1e-14);
+        }
+    }
+    // A block between planes of the lattice fills its outer cells in part.
+    let filled = cubes(&block(DVec3::ZERO, DVec3::new(0.65, 0.65, 0.65)), 0.1);
+    assert_eq!(filled.cage.elements.len(), 343);
+    let least = filled.cage.filled.as_ref().unwrap().iter().copied().fold(1.0, f64::min);
+    assert!((least - 0.75f64 * 0.75 * 0.75).abs() < 1e-12);
+    assert_volume(&filled, 0.1);
+}
+
+#[test]
+fn parts_add_up_to_the_volume() {
+    let hollow = {
+        let inner = ball(DVec3::splat(0.1), 0.5, 30);
+        let turned = Surface { triangles: inner.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(), ..inner };
+        together(&[ball(DVec3::splat(0.1), 1.0, 60), turned])
+    };
+    for surface in [ball(DVec3::new(0.3, -0.2, 0.1), 1.0, 50), ring(1.0, 0.35, 80), hollow] {
+        for side in [0.083, 0.25, 0.9, 5.0] {
+            assert_volume(&cubes(&surface, side), side);
+        }
+    }
+    // Steps at planes of the lattice leave no layer of empty cells, though their coordinates are rounded.
+    let step = together(&[
+        block(DVec3::ZERO, DVec3::new(0.9, 0.9, 0.3)),
+        block(DVec3::new(0.0, 0.0, 0.3), DVec3::new(0.3, 0.9, 0.9)),
+    ]);
+    let single = Surface {
+        points: step
+            .points
+            .iter()
+            .map(|point| DVec3::from_array(point.to_array().map(|x| f64::from(x as f32))))
+            .collect(),
+        ..step
+    };
+    let filled = cubes(&single, 0.1);
+    assert_eq!((filled.cage.elements.len(), filled.cage.filled), (9 * 9 * 3 + 3 * 9 * 6, None));
+}
+
+#[test]
+fn a_cavity_stays_empty_and_pieces_in_each_other_are_one() {
+    let cube = block(DVec3::ZERO, DVec3::ONE);
+    let hole = block(DVec3::splat(0.3), DVec3::splat(0.7));
+    let turned = Surface { triangles: hole.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(), ..hole.clone() };
+    assert_eq!(cubes(&together(&[cube.clone(), turned]), 0.1).cage.elements.len(), 1000 - 64);
+    let filled = cubes(&together(&[cube, hole]), 0.1);
+    assert_eq!((filled.cage.elements.len(), filled.cage.filled), (1000, None));
+}
+
+#[test]
+fn open_surfaces_are_filled_to_the_hole() {
+    let mut surface = ball(DVec3::ZERO, 1.0, 60);
+    let whole = cubes(&surface, 0.1);
+    // A hole of a tenth of the radius at a pole.
+    surface.triangles.retain(|of| of.iter().any(|&point| surface.points[point as usize].z < 0.99));
+    let open = cubes(&surface, 0.1);
+    assert!(open.flaws.boundary > 20);
+    let [whole, open] = [&whole, &open].map(|filled| filled_volume(filled, 0.1));
+    assert!((open / whole - 1.0).abs() < 0.002, "{open} of {whole}");
+    // Half a ball has an inside too: its opening hides half of the sphere from the points of the opening.
+    surface.triangles.retain(|of| of.iter().all(|&point| surface.points[point as usize].z < 1e-9));
+    let half = cubes(&surface, 0.1);
+    let part = filled_volume(&half, 0.1) / whole;
+    assert!((part - 0.5).abs() < 0.005, "{part}");
+}
+
+#[test]
+fn what_cannot_be_filled_is_refused_with_a_remedy() {
+    let cube = block(DVec3::ZERO, DVec3::ONE);
+    let error = |surface: &Surface, side, most| {
+        let error = fill(surface, Fill::Cubes { side }, most).unwrap_err();
+        format!("{error}. {}", error.help.as_ref().unwrap())
+    };
+    assert_eq!(
+        error(&cube, 0.1, 900),
+        "needs 1000 elements of side 0.1, and at most 900 are allowed. Use a side of 0.12 or more, or allow more elements."
+    );
+    assert!(fill(&cube, Fill::Cubes { side: 0.12 }, 900).is_ok());
+    assert!(error(&cube, 1e-9, 900).starts_with("needs about 1000000"), "{}", error(&cube, 1e-9, 900));
+    assert!(error(&cube, 1e-300, 900).starts_with("needs about "));
+    assert_eq!(error(&cube, 0.0, 9), "cannot be filled with elements of side 0. Use a positive side.");
+    assert_eq!(error(&Surface::default(), 0.1, 9), "has no face with an area. Use a file with faces.");
+    let sheet = Surface { triangles: cube.triangles[..2].to_vec(), ..cube.clone() };
+    assert_eq!(
+        error(&sheet, 0.1, 9000),
+        "has no inside: it is open, 4 of its edges belong to one triangle only. Give it a thickness, or close its holes, in \
+         the program that made it."
+    );
+    // A thin rod across a large box.
+    let rod =
+        Surface { points: cube.points.iter().map(|point| point * 1e-3 + DVec3::splat(point.x)).collect(), ..cube };
+    assert!(error(&rod, 1e-4, 1000).contains("at most 1000"));
+}
+
+#[test]
+fn scans_are_filled() {
+    for (name, side) in [("armadillo.off", 7.0), ("elephant.off", 0.04), ("cheese.off", 0.04), ("bunny00.off", 0.006)] {
+        let Some(surface) = scan(name) else { return };
+        let start = std::time::Instant::now();
+        let filled = fill(&surface, Fill::Cubes { side }, MOST).unwrap();
+        println!("{name}: {} cubes in {:?}, {:?}", filled.cage.elements.len(), start.elapsed(), filled.flaws);
+        assert_carried(&filled);
+        if filled.flaws.boundary == 0 {
+            assert_volume(&filled, side);
+        }
+    }
+    for name in ["ChineseDragon-10kv.off", "lion.off"] {
+        let Some(surface) = scan(name) else { return };
+        let measures = surface.measures();
+        let side = (measures.high - measures.low).max_element() / 30.0;
+        let start = std::time::Instant::now();
+        let filled = fill(&surface, Fill::Cubes { side }, MOST).unwrap();
+        println!("{name}: {} cubes in {:?}, {:?}", filled.cage.elements.len(), start.elapsed(), filled.flaws);
+        println!("{} {}", filled_volume(&filled, side), measures.volume);
+        assert_carried(&filled);
+    }
+}
+
+#[test]
+fn soups_of_triangles_are_filled_too() {
+    let whole = ball(DVec3::ZERO, 1.0, 40);
+    // Each triangle for itself, a little smaller.
+    let mut soup = apart(&whole);
+    for triangle in soup.points.chunks_mut(3) {
+        let middle = triangle.iter().sum::<DVec3>() / 3.0;
+        triangle.iter_mut().for_each(|point| *point = middle + (*point - middle) * 0.999);
+    }
+    let filled = cubes(&soup, 0.2);
+    let (expected, found) = (whole.mended().0.measures().volume, filled_volume(&filled, 0.2));
+    assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+}
+
+#[test]
+fn results_do_not_depend_on_the_number_of_threads() {
+    let mut surface = ball(DVec3::ZERO, 1.0, 60);
+    surface.triangles.truncate(3000);
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| fill(&surface, Fill::Cubes { side: 0.1 }, MOST).unwrap())
+    };
+    let one = run(1);
+    assert_eq!(one, run(3));
+    assert_eq!(one, run(8));
+}
