@@ -12,8 +12,8 @@ use std::io::{self, BufWriter, Write};
 /// Digests of the files that a scene names.
 #[derive(Debug, Default)]
 pub(super) struct FileDigests {
-    /// The file of each body.
-    pub(super) bodies: Vec<Option<String>>,
+    /// The file of each body, with the key that names it.
+    pub(super) bodies: Vec<Option<(&'static str, String)>>,
     /// The recording of each run.
     pub(super) runs: Vec<Option<String>>,
     /// The font file.
@@ -36,7 +36,7 @@ pub(super) fn digest(typed: &impl Serialize, lists: &[BodyFile], files: FileDige
     // The types have only finite numbers and text keys, which JSON can represent.
     let mut value = serde_json::to_value(typed).unwrap_or_default();
     for (at, file) in files.bodies.into_iter().enumerate() {
-        file.into_iter().for_each(|file| value["body"][at]["file"] = file.into());
+        file.into_iter().for_each(|(key, file)| value["body"][at][key] = file.into());
     }
     for (at, recording) in files.runs.into_iter().enumerate() {
         recording.into_iter().for_each(|recording| value["run"][at]["states"] = recording.into());
@@ -51,9 +51,12 @@ pub(super) fn digest(typed: &impl Serialize, lists: &[BodyFile], files: FileDige
     without_defaults(&mut value, &SCHEMA);
     let schema_of_body = &SCHEMA["properties"]["body"]["anyOf"][0];
     let bodies = value["body"].as_array_mut().into_iter().flatten();
-    bodies.for_each(|body| without_defaults(body, schema_of_body));
     // Tables in which only defaults were typed.
     let is_empty = |value: &Value| *value == json!({});
+    bodies.for_each(|body| {
+        without_defaults(body, schema_of_body);
+        body.as_object_mut().into_iter().for_each(|body| body.retain(|_, value| !is_empty(value)));
+    });
     if let Some(Value::Object(view)) = value.get_mut("view") {
         view.retain(|_, value| !is_empty(value));
     }

@@ -13,7 +13,7 @@ pub struct Limits {
     pub corners: u64,
     /// Springs of all runs, if neighbours shared no springs.
     pub springs: u64,
-    /// Length of the scene file (bytes).
+    /// Length of the scene file, and of each mesh file (bytes).
     pub file: u64,
 }
 

@@ -6,7 +6,7 @@
 //!
 //! `load` reads a scene file, `structure` checks it against the `schema` made from the types in `file`, and `resolve`
 //! resolves it. All of them report mistakes to one `report`. Bodies come from `generate`, from the scene's own lists,
-//! or from a NumPy archive, read by `npz`. Fonts are read by `font`.
+//! from a NumPy archive, read by `npz`, or from a `mesh`. Fonts are read by `font`.
 
 mod builder;
 mod digest;
@@ -19,6 +19,7 @@ mod generate;
 mod gone;
 mod limits;
 mod load;
+pub(crate) mod mesh;
 pub(crate) mod npz;
 mod recording;
 pub(crate) mod reference;

@@ -225,7 +225,7 @@ fn nodes_that_are_none() {
     case(WORLD, "[[hold]]\nnodes = [1, 12]", "2:13 there is no node 12; the body has nodes 0 to 11");
     case(WORLD, "[[hold]]\nnodes = [1, 1]", "2:13 node 1 occurs twice in `hold[0].nodes`");
     case(WORLD, "[[hold]]\nnodes = []", "2:9 is empty");
-    case(WORLD, "[[hold]]\nnodes = 1", "2:9 is the whole number 1; expected an array, \"left\", \"right\", ");
+    case(WORLD, "[[hold]]\nnodes = 1", "2:9 is the whole number 1; expected an array, a string or a table");
     case(WORLD, "[[hold]]\nnodes = 'bak'", "2:9 \"front\" or \"back\" did you mean \"back\"?");
     case(
         PLANE,

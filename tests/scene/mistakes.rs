@@ -118,7 +118,7 @@ fn missing_keys() {
         SPACE,
         "lattice = { cells = [1, 1, 1], side = 0.1 }",
         "mass = 1",
-        "4:1 `body` has neither `lattice`, `polygon`, `fan`, `disc`, `bars`, `nodes` and `elements` nor `file`; one",
+        "4:1 `body` has neither `lattice`, `polygon`, `fan`, `disc`, `bars`, `nodes` and `elements`, `mesh` nor `file`; one",
     );
     case(PLANE, "elements = [[0, 1, 2], [0, 2, 3]]\n", "", "5:1 `body` has `nodes` but no `elements`");
     let nothing = bad("title = 'nothing'");

@@ -8,6 +8,7 @@ mod good;
 #[cfg(feature = "render")]
 mod look;
 mod manipulators;
+mod meshes;
 mod mistakes;
 mod peers;
 mod plural;

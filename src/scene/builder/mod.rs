@@ -30,6 +30,7 @@ use super::step::NamedStep;
 use super::{Limits, Scene, structure};
 use crate::look::typed::TypedColour;
 use crate::look::{Colour, Theme, TypedView};
+use crate::reading::captions::typed;
 use crate::reading::collector::Collector;
 use crate::reading::source::Source;
 use crate::reading::{Mistake, Mistakes};
@@ -376,7 +377,7 @@ impl NodeSet {
 
     /// The nodes of a side of the rest shape of each body.
     pub fn side(side: Side) -> Self {
-        Self::new(NodesFile::Side(side))
+        Self::new(NodesFile::Named(typed(&side)))
     }
 
     /// The nodes that start in a ball with a centre and a radius (m).

@@ -22,7 +22,7 @@ pub(super) fn written<S: Serializer>(bodies: &[BodyFile], serializer: S) -> Resu
     }
 }
 
-/// A body: exactly one of `lattice`, `polygon`, `fan`, `disc`, `bars` and `file`, or explicit `nodes` and `elements`.
+/// A body: exactly one of `lattice`, `polygon`, `fan`, `disc`, `bars`, `mesh` and `file`, or explicit `nodes` and `elements`.
 ///
 /// At the start `rotation`, `offset`, `lowest`, `velocity` and `spin` are applied in this order. The rest shape stays
 /// as it is.
@@ -31,7 +31,7 @@ pub(super) fn written<S: Serializer>(bodies: &[BodyFile], serializer: S) -> Resu
 #[schemars(extend(
     "oneOf" = [
         { "required": ["lattice"] }, { "required": ["polygon"] }, { "required": ["fan"] }, { "required": ["disc"] },
-        { "required": ["bars"] }, { "required": ["nodes", "elements"] }, { "required": ["file"] }
+        { "required": ["bars"] }, { "required": ["nodes", "elements"] }, { "required": ["mesh"] }, { "required": ["file"] }
     ],
     "allOf" = [
         { "not": { "required": ["mass", "masses"] } }, { "not": { "required": ["mass", "density"] } },
@@ -41,7 +41,8 @@ pub(super) fn written<S: Serializer>(bodies: &[BodyFile], serializer: S) -> Resu
     ],
     "dependentRequired" = {
         "elements": ["nodes"], "springs": ["nodes"], "faces": ["nodes"],
-        "positions": ["nodes"], "velocities": ["nodes"], "masses": ["nodes"]
+        "positions": ["nodes"], "velocities": ["nodes"], "masses": ["nodes"],
+        "fill": ["mesh"], "scale": ["mesh"], "up": ["mesh"]
     }
 ))]
 pub(in crate::scene) struct BodyFile {
@@ -87,6 +88,19 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) velocities: Option<Vec<Coordinates>>,
     /// Mass of each node (kg), instead of one `mass`.
     pub(in crate::scene) masses: Option<Vec<Positive>>,
+    /// A mesh file beside the scene. Cells become elements: Gmsh (.msh, 2.2 or 4.1), VTK (.vtk, .vtu). A surface is filled with
+    /// elements, which carry it: .obj, .stl, .ply, .off, .gltf, .glb. It then needs `density` or `mass_total`. `localshape
+    /// check FILE` tells what a file contains.
+    #[schemars(length(min = 1))]
+    pub(in crate::scene) mesh: Option<String>,
+    /// The elements that fill the surface in `mesh`: `{ with = "cubes", cells = 20 }`.
+    pub(in crate::scene) fill: Option<FillFile>,
+    /// Length of the unit of the mesh file (m), such as 0.001 for millimetres.
+    #[schemars(extend("default" = 1.0))]
+    pub(in crate::scene) scale: Option<Positive>,
+    /// The axis of the mesh file that points up. Scenes have y up.
+    #[schemars(extend("default" = "y"))]
+    pub(in crate::scene) up: Option<Up>,
     /// A NumPy archive (.npz) beside the scene, written by `numpy.savez` or `numpy.savez_compressed`. Its arrays
     /// `nodes` and `elements`, and optionally `springs`, `faces`, `positions`, `velocities` and `masses`, mean the same
     /// as these keys. Coordinates and masses are float64 or float32. Indices are integers, with -1 at the end of
@@ -152,6 +166,49 @@ impl BodyFile {
         self.swap_lists(&mut lists);
         lists
     }
+}
+
+/// The elements that fill a surface.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("not" = { "required": ["side", "cells"] }))]
+pub(in crate::scene) struct FillFile {
+    /// Their kind.
+    #[serde(default)]
+    pub(in crate::scene) with: FillKind,
+    /// Length of the edges of their lattice (m). Default: that of `cells`.
+    pub(in crate::scene) side: Option<Positive>,
+    /// Number of lattice cells along the longest side of the surface, instead of `side`.
+    #[schemars(range(min = 1, max = 4_000_000_000_u32), extend("default" = 20))]
+    pub(in crate::scene) cells: Option<u32>,
+}
+
+/// The kind of elements that fill a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(in crate::scene) enum FillKind {
+    /// Cubes that contain a part of the inside. Their stiffness and mass are in proportion to that part.
+    #[default]
+    Cubes,
+    /// Cubes at the surface, with sides two, four, … times as long inside.
+    Graded,
+    /// Tetrahedra whose faces follow the surface.
+    Tetrahedra,
+    /// Cubes cut at the surface into polyhedra.
+    Polyhedra,
+}
+
+/// An axis of a mesh file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(in crate::scene) enum Up {
+    /// The first coordinate.
+    X,
+    /// The second coordinate, as in glTF.
+    #[default]
+    Y,
+    /// The third coordinate, as in most programs for construction and printing.
+    Z,
 }
 
 /// A degenerate, inverted or random start, around the mean of the nodes at rest.

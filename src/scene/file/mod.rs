@@ -8,7 +8,9 @@ mod body;
 mod motion;
 mod obstacle;
 
-pub(in crate::scene) use body::{BarsFile, BodyFile, DiscFile, PolygonFile, SideFile, SpinFile};
+pub(in crate::scene) use body::{
+    BarsFile, BodyFile, DiscFile, FillFile, FillKind, PolygonFile, SideFile, SpinFile, Up,
+};
 pub use body::{Cells, Lattice, Rotation, Start, StartShape};
 pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, RegionFile};
 pub use motion::{MotionPath, Side, Swing};

@@ -57,9 +57,10 @@ pub struct Swing {
 pub(in crate::scene) struct HoldFile {
     /// The name of their body. Default: all bodies.
     pub(in crate::scene) body: Option<String>,
-    /// The nodes: a list, which needs a `body` if there are several, a side of the rest shape of each body, or all nodes
-    /// that start in a ball or an axis-aligned box. Nodes on the border belong to side and region, to 1e-9 of the body's
-    /// longest side. `localshape check` prints where bodies start.
+    /// The nodes: a list, which needs a `body` if there are several; a side of the rest shape of each body, `"left"` (least
+    /// x), `"right"`, `"bottom"` (least y), `"top"`, `"back"` (least z) or `"front"`; a group of a mesh file by its name; or all
+    /// nodes that start in a ball or an axis-aligned box. Nodes on the border belong to side and region, to 1e-9 of the body's
+    /// longest side. `localshape check` prints where bodies start, and the groups of a mesh file.
     pub(in crate::scene) nodes: NodesFile,
     /// Start (s).
     #[serde(default)]
@@ -76,9 +77,10 @@ pub(in crate::scene) struct HoldFile {
 pub(in crate::scene) struct GrabFile {
     /// The name of their body. Default: all bodies.
     pub(in crate::scene) body: Option<String>,
-    /// The nodes: a list, which needs a `body` if there are several, a side of the rest shape of each body, or all nodes
-    /// that start in a ball or an axis-aligned box. Nodes on the border belong to side and region, to 1e-9 of the body's
-    /// longest side. `localshape check` prints where bodies start.
+    /// The nodes: a list, which needs a `body` if there are several; a side of the rest shape of each body, `"left"` (least
+    /// x), `"right"`, `"bottom"` (least y), `"top"`, `"back"` (least z) or `"front"`; a group of a mesh file by its name; or all
+    /// nodes that start in a ball or an axis-aligned box. Nodes on the border belong to side and region, to 1e-9 of the body's
+    /// longest side. `localshape check` prints where bodies start, and the groups of a mesh file.
     pub(in crate::scene) nodes: NodesFile,
     /// The path along which the nodes are dragged. They are grabbed at the time of the first key, wherever they are.
     /// They follow the path's motion since that key, rotate about their centre, and are released at the last key.
@@ -91,8 +93,8 @@ pub(in crate::scene) struct GrabFile {
 pub(in crate::scene) enum NodesFile {
     /// A list of nodes, counted from 0.
     List(#[schemars(length(min = 1))] Vec<u32>),
-    /// The nodes of a side of the rest shape.
-    Side(Side),
+    /// The nodes of a side of the rest shape, or of a group of a mesh file.
+    Named(#[schemars(length(min = 1))] String),
     /// All nodes that start in a region.
     Region(RegionFile),
 }
@@ -113,6 +115,12 @@ pub enum Side {
     Front,
     /// The least z. Only in space.
     Back,
+}
+
+impl Side {
+    /// All sides.
+    pub(in crate::scene) const ALL: [Self; 6] =
+        [Self::Left, Self::Right, Self::Bottom, Self::Top, Self::Front, Self::Back];
 }
 
 /// A region of space: a ball, or an axis-aligned box.

@@ -1,16 +1,18 @@
 //! The body and its initial state.
 
 use super::lists::{Lists, check_count, check_exclusive};
+use super::mesh::Made as MadeMesh;
 use super::motion::axis;
-use super::{Place, direction, elements, mass, vector};
+use super::{Beside, Place, direction, elements, mass, mesh, vector};
 use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::quoted;
 use crate::scene::file::{BodyFile, Cells, Coordinates, Lattice, SideFile, StartShape};
 use crate::scene::generate::{Generator, Made, brought_to_start};
 use crate::scene::limits::BodySize;
-use crate::sim::{Body, Dimension, Solids, State};
+use crate::sim::{Body, Carried, Dimension, IndexLists, Solids, State};
 use glam::DVec3;
+use localshape_mesh::{Cage, Filled, Group};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -28,6 +30,8 @@ pub(super) struct ResolvedBody {
     pub(super) side: f64,
     /// Whether this length is the side of a lattice's cells.
     pub(super) has_cells: bool,
+    /// Sets of nodes with a name.
+    pub(super) groups: Vec<Group>,
 }
 
 impl ResolvedBody {
@@ -56,25 +60,34 @@ pub(super) struct TypedBody<'a> {
 #[derive(Debug)]
 enum Content<'a> {
     Generated(Generator<'a>),
-    Listed(Box<Lists>),
+    Listed(Box<Lists>, Vec<Group>),
+    /// A surface with the elements that fill it, and the length of their edges (m).
+    Filled(Box<Filled>, f64),
 }
 
 impl<'a> TypedBody<'a> {
     /// The body of a table; `None` if it has no nodes and elements. Points with another number of coordinates are
-    /// reported. `flawed` tells whether keys were left out because of mistakes. `beside` has the lists of the body's
-    /// file.
+    /// reported. `flawed` tells whether keys were left out because of mistakes. `beside` is the content of the body's
+    /// file. A surface is filled with at most so many elements.
     pub(super) fn new(
         file: &'a BodyFile,
-        beside: Option<Lists>,
+        beside: Option<Beside>,
         place: Place,
         flawed: bool,
+        most: u64,
         report: &mut Collector<'_>,
     ) -> Option<Self> {
         let before = report.total();
         let content = match Generator::of(file) {
             Some(generator) => Content::Generated(generator),
-            None if file.file.is_some() => Content::Listed(Box::new(beside?)),
-            None => Content::Listed(Box::new(Lists::typed(file, &place, report)?)),
+            None if file.file.is_some() || file.mesh.is_some() => match beside? {
+                Beside::Lists(lists) => Content::Listed(lists, Vec::new()),
+                Beside::Mesh(read) => match mesh::make(read, file, &place, most, report)? {
+                    MadeMesh::Cells(lists, groups) => Content::Listed(lists, groups),
+                    MadeMesh::Filled(filled, side) => Content::Filled(filled, side),
+                },
+            },
+            None => Content::Listed(Box::new(Lists::typed(file, &place, report)?), Vec::new()),
         };
         Some(Self { file, place, content, flawed: flawed || report.total() > before })
     }
@@ -83,20 +96,25 @@ impl<'a> TypedBody<'a> {
     pub(super) fn dimension(&self) -> Dimension {
         match &self.content {
             Content::Generated(generator) => generator.dimension(),
-            Content::Listed(lists) => lists.dimension,
+            Content::Listed(lists, _) => lists.dimension,
+            Content::Filled(..) => Dimension::Space,
         }
+    }
+
+    /// The number of elements that fill a surface.
+    pub(super) fn filled(&self) -> u64 {
+        if let Content::Filled(filled, _) = &self.content { filled.cage.elements.len() as u64 } else { 0 }
     }
 
     /// Its size before it is made.
     pub(super) fn size(&self) -> BodySize {
         match &self.content {
             Content::Generated(generator) => generator.size(),
-            Content::Listed(lists) => {
-                let mut elements = BTreeMap::new();
-                lists.elements.iter().for_each(|list| *elements.entry(list.len()).or_default() += 1);
+            Content::Listed(lists, _) => {
                 let springs = lists.springs.as_ref().map(|springs| springs.len() as u128);
-                BodySize { springs, ..BodySize::new(lists.nodes.len() as u128, elements) }
+                BodySize { springs, ..size_of(&lists.nodes, &lists.elements) }
             }
+            Content::Filled(filled, _) => size_of(&filled.cage.nodes, &filled.cage.elements),
         }
     }
 
@@ -107,7 +125,8 @@ impl<'a> TypedBody<'a> {
             Content::Generated(Generator::Polygon(_) | Generator::Fan(_)) => "use fewer sides",
             Content::Generated(Generator::Disc(_)) => "use fewer rings or sectors",
             Content::Generated(Generator::Bars(_)) => "use fewer bars",
-            Content::Listed(_) => "use fewer nodes",
+            Content::Listed(..) => "use fewer nodes",
+            Content::Filled(..) => "fill it with fewer `cells`, or a larger `side`",
         }
     }
 
@@ -116,16 +135,17 @@ impl<'a> TypedBody<'a> {
         let at = |keys: &[&'static str]| {
             self.place.iter().copied().chain(keys.iter().map(|&key| PathPart::Key(key))).collect::<Vec<_>>()
         };
-        let path = match (&self.content, &self.file.file) {
-            (Content::Generated(Generator::Lattice(_)), _) => at(&["lattice", "cells"]),
-            (Content::Generated(Generator::Polygon(_)), _) => at(&["polygon", "sides"]),
-            (Content::Generated(Generator::Fan(_)), _) => at(&["fan", "sides"]),
-            (Content::Generated(Generator::Disc(_)), _) => at(&["disc"]),
-            (Content::Generated(Generator::Bars(_)), _) => at(&["bars", "count"]),
-            (Content::Listed(_), Some(name)) => {
-                return report.at(&at(&["file"]), format!("`{name}`: {message}"), help);
-            }
-            (Content::Listed(_), None) => return report.at_key(&at(&["nodes"]), message, help),
+        let path = match &self.content {
+            Content::Generated(Generator::Lattice(_)) => at(&["lattice", "cells"]),
+            Content::Generated(Generator::Polygon(_)) => at(&["polygon", "sides"]),
+            Content::Generated(Generator::Fan(_)) => at(&["fan", "sides"]),
+            Content::Generated(Generator::Disc(_)) => at(&["disc"]),
+            Content::Generated(Generator::Bars(_)) => at(&["bars", "count"]),
+            Content::Filled(..) => at(&["fill"]),
+            Content::Listed(lists, _) => match &lists.source.file {
+                Some((name, place)) => return report.at(place, format!("`{name}`: {message}"), help),
+                None => return report.at_key(&at(&["nodes"]), message, help),
+            },
         };
         report.at(&path, message, help);
     }
@@ -143,7 +163,8 @@ impl<'a> TypedBody<'a> {
         let Self { file, place, content, flawed } = self;
         match content {
             Content::Generated(generator) => generated(file, generator, &place, report),
-            Content::Listed(lists) => listed(file, *lists, flawed, report),
+            Content::Listed(lists, groups) => Some(ResolvedBody { groups, ..listed(file, *lists, flawed, report)? }),
+            Content::Filled(of, side) => filled(file, *of, side, &place, report),
         }
     }
 }
@@ -171,7 +192,35 @@ fn generated(
     let of_cells = generator.side();
     let side = of_cells.unwrap_or_else(|| elements::mean_edge(&body));
     let name = file.name.clone().unwrap_or_default();
-    Some(ResolvedBody { name, body, initial, springs: None, side, has_cells: of_cells.is_some() })
+    let has_cells = of_cells.is_some();
+    Some(ResolvedBody { name, body, initial, springs: None, side, has_cells, groups: Vec::new() })
+}
+
+/// A surface with the elements that fill it, whose edges have a length (m).
+fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Collector<'_>) -> Option<ResolvedBody> {
+    let before = report.total();
+    let Filled { cage: Cage { nodes, elements, filled, convex }, surface, weights, .. } = of;
+    let solids = if convex { Solids::Convex } else { Solids::Ordered };
+    let count = nodes.len();
+    let mut body = Body::new(Dimension::Space, nodes, vec![1.0; count], elements, solids, None);
+    body.fill = filled;
+    body.carried = Some(Arc::new(Carried { rest: surface.points, triangles: surface.triangles, weights }));
+    let mass = mass::resolve(file, &body, place, report);
+    let initial = start(file, place, body.rest.clone(), None, Dimension::Space, report);
+    if report.total() > before {
+        return None;
+    }
+    body.mass = mass?;
+    let name = file.name.clone().unwrap_or_default();
+    let body = Arc::new(body);
+    Some(ResolvedBody { name, body, initial, springs: None, side, has_cells: false, groups: Vec::new() })
+}
+
+/// The size of a body with these nodes and elements.
+fn size_of(nodes: &[DVec3], elements: &IndexLists) -> BodySize {
+    let mut counts = BTreeMap::new();
+    elements.iter().for_each(|list| *counts.entry(list.len()).or_default() += 1);
+    BodySize::new(nodes.len() as u128, counts)
 }
 
 /// Checks of a generator that the schema cannot express. Returns the direction of bars; that of other generators has no
@@ -251,7 +300,7 @@ fn listed(file: &BodyFile, lists: Lists, flawed: bool, report: &mut Collector<'_
     let body = Arc::new(body);
     let side = elements::mean_edge(&body);
     let name = file.name.clone().unwrap_or_default();
-    Some(ResolvedBody { name, body, initial, springs, side, has_cells: false })
+    Some(ResolvedBody { name, body, initial, springs, side, has_cells: false, groups: Vec::new() })
 }
 
 /// The body of a recording, called like its run, with its state at the start.

@@ -4,7 +4,7 @@ use super::body::ResolvedBody;
 use super::{choice, motion, vector};
 use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
-use crate::reading::words::{count, fine, quoted};
+use crate::reading::words::{count, fine, list, nearest, quoted};
 use crate::scene::file::{GrabFile, HoldFile, NodesFile, RegionFile, Side};
 use crate::scene::summary::corners;
 use crate::sim::{Assembly, Body, Dimension, Grip, Motion};
@@ -192,7 +192,7 @@ fn nodes_of_each(
             }
             [] => None,
         },
-        NodesFile::Side(side) => of_side(*side, bodies, path, report),
+        NodesFile::Named(name) => named(name, bodies, path, report),
         NodesFile::Region(region) => within(region, bodies, layers, path, report),
     }
 }
@@ -214,13 +214,51 @@ fn listed(list: &[u32], body: &ResolvedBody, path: &[PathPart<'_>], report: &mut
     (report.total() == before).then_some(nodes)
 }
 
-/// The nodes of a side of each body at rest.
-fn of_side(
-    side: Side,
+/// The nodes of a group of each body that has one of this name, or of a side of each body at rest.
+fn named(
+    name: &str,
     bodies: &[ResolvedBody],
     path: &[PathPart<'_>],
     report: &mut Collector<'_>,
 ) -> Option<Vec<Vec<u32>>> {
+    /// The most groups that are named in a message.
+    const NAMED: usize = 20;
+    let of_body =
+        |body: &ResolvedBody| body.groups.iter().find(|group| group.name == name).map(|one| one.points.clone());
+    let found: Vec<Option<Vec<u32>>> = bodies.iter().map(of_body).collect();
+    if found.iter().any(Option::is_some) {
+        return Some(found.into_iter().map(Option::unwrap_or_default).collect());
+    }
+    let is_flat = bodies[0].body.dimension == Dimension::Plane;
+    let is_there = |side: &Side| !(is_flat && [Side::Front, Side::Back].contains(side));
+    if let Some(side) = Side::ALL.into_iter().find(|side| typed(side) == name) {
+        if is_there(&side) {
+            return Some(bodies.iter().map(|body| of_side(side, &body.body)).collect());
+        }
+        let (side, body) = (quoted(name), bodies[0].in_words());
+        let message = format!("`{}` is {side}, but {body} is in the plane", written(path));
+        report.at(path, message, "expected \"left\", \"right\", \"bottom\" or \"top\"");
+        return None;
+    }
+    let sides: Vec<String> = Side::ALL.iter().filter(|side| is_there(side)).map(typed).collect();
+    let mut groups: Vec<&str> = bodies.iter().flat_map(|body| &body.groups).map(|group| group.name.as_str()).collect();
+    groups.sort_unstable();
+    groups.dedup();
+    let known: Vec<&str> = groups.iter().copied().chain(sides.iter().map(String::as_str)).collect();
+    let expected = match groups.len() {
+        0 => format!("expected {}", list(&sides, "or", quoted)),
+        more if more > NAMED => format!("expected a side, or one of the {} groups of the mesh", count(more as u128)),
+        _ => {
+            format!("expected {}, or a group of the mesh: {}", list(&sides, "or", quoted), list(&groups, "or", quoted))
+        }
+    };
+    let help = nearest(name, &known).map(|near| format!("did you mean {}?", quoted(near)));
+    report.at(path, format!("`{}` is {}; {expected}", written(path), quoted(name)), help);
+    None
+}
+
+/// The nodes of a side of a body at rest.
+fn of_side(side: Side, body: &Body) -> Vec<u32> {
     let outwards = match side {
         Side::Left => DVec3::NEG_X,
         Side::Right => DVec3::X,
@@ -229,19 +267,10 @@ fn of_side(
         Side::Front => DVec3::Z,
         Side::Back => DVec3::NEG_Z,
     };
-    if bodies[0].body.dimension == Dimension::Plane && outwards.z != 0.0 {
-        let (side, body) = (quoted(&typed(&side)), bodies[0].in_words());
-        let message = format!("`{}` is {side}, but {body} is in the plane", written(path));
-        report.at(path, message, "expected \"left\", \"right\", \"bottom\" or \"top\"");
-        return None;
-    }
     let along = |node: &DVec3| node.dot(outwards);
-    let of_body = |ResolvedBody { body, .. }: &ResolvedBody| {
-        let most = body.rest.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
-        let close = ROUND_OFF * body.extent();
-        (0..).zip(&body.rest).filter(|(_, node)| along(node) >= most - close).map(|(node, _)| node).collect()
-    };
-    Some(bodies.iter().map(of_body).collect())
+    let most = body.rest.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
+    let close = ROUND_OFF * body.extent();
+    (0..).zip(&body.rest).filter(|(_, node)| along(node) >= most - close).map(|(node, _)| node).collect()
 }
 
 fn within(

@@ -7,6 +7,7 @@ use crate::reading::words::{count, list, nearest};
 use crate::scene::file::LARGEST;
 use crate::scene::file::{BodyFile, Coordinates, Positive};
 use crate::scene::limits::Limits;
+use crate::scene::mesh;
 use crate::scene::npz::{Array, Npz, Values};
 use crate::scene::recording::full;
 use crate::sim::{Dimension, IndexLists};
@@ -132,10 +133,8 @@ impl Lists {
             whole(report, missing(&path), similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?")));
             return None;
         }
-        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
-        if MESHES.contains(&ending.as_str()) {
-            let message = format!("is a mesh (.{ending}), which is not read; expected a NumPy archive (.npz)");
-            whole(report, message, Some(EXPECTED.to_owned()));
+        if let Some((message, help)) = mesh::instead_of_archive(&path, name) {
+            whole(report, message, help);
             return None;
         }
         let mut npz = match Npz::open(&path) {
@@ -256,10 +255,6 @@ pub(in crate::scene) fn check_unwritten(file: &BodyFile, place: Place, report: &
         }
     }
 }
-
-/// Extensions of mesh files.
-const MESHES: [&str; 15] =
-    ["obj", "stl", "ply", "off", "msh", "mesh", "vtk", "vtu", "gltf", "glb", "node", "ele", "inp", "fbx", "3mf"];
 
 /// The help for a file that is not an archive.
 const EXPECTED: &str = "write it with numpy.savez, at least `nodes` (a row of coordinates for each) and `elements` (a row of nodes for each, \

@@ -7,6 +7,7 @@ mod elements;
 mod grips;
 pub(super) mod lists;
 mod mass;
+mod mesh;
 mod motion;
 mod obstacles;
 mod recordings;
@@ -17,6 +18,7 @@ use super::file::{BodyFile, Coordinates, GrabFile, HoldFile, ObstacleFile, RunFi
 use super::generate::Generator;
 use super::limits;
 use super::limits::{BodySize, Excess, Limits};
+use super::mesh::MeshFile;
 use super::structure::ValidFile;
 use super::{ALL_BODIES, Run, Scene, SceneBody, subject};
 use crate::look::{self, FontFiles, TypedView, View, font};
@@ -53,9 +55,9 @@ pub(super) struct SceneParts {
     /// The place of each body in the file.
     #[serde(skip)]
     places: Vec<Place>,
-    /// The lists in the own file of each body, if it has no mistakes.
+    /// The content of the own file of each body, if it has no mistakes.
     #[serde(skip)]
-    beside: Vec<Option<Lists>>,
+    beside: Vec<Option<Beside>>,
     /// Top-level keys with mistakes in or below them.
     #[serde(skip)]
     flawed: BTreeSet<String>,
@@ -76,6 +78,13 @@ pub(super) struct SceneParts {
     font: Option<FontFiles>,
 }
 
+/// The content of the own file of a body.
+#[derive(Debug)]
+enum Beside {
+    Lists(Box<Lists>),
+    Mesh(MeshFile),
+}
+
 impl SceneParts {
     /// The valid parts of a checked file. A body's own file is searched in `folder`.
     pub(super) fn new(checked: &ValidFile, folder: &Path, limits: &Limits, report: &mut Collector<'_>) -> Self {
@@ -85,18 +94,22 @@ impl SceneParts {
             _ => vec![part(file, "body", report)],
         };
         // Lists beside a generator or a file are a mistake, which was reported.
-        let has_lists = |body: &&mut BodyFile| body.file.is_none() && Generator::of(body).is_none();
+        let has_lists =
+            |body: &&mut BodyFile| body.file.is_none() && body.mesh.is_none() && Generator::of(body).is_none();
         bodies
             .iter_mut()
             .flatten()
             .filter(|body| !has_lists(body))
             .for_each(|body| body.swap_lists(&mut BodyFile::default()));
         let places = places(bodies.len(), file.get("body").is_some_and(Json::is_array));
-        let read_lists = |(body, place): (&Option<BodyFile>, &Place)| {
+        let read_beside = |(body, place): (&Option<BodyFile>, &Place)| {
             let body = body.as_ref().filter(|body| Generator::of(body).is_none())?;
-            Lists::read(folder, body.file.as_ref()?, place, limits, report)
+            if let Some(file) = &body.file {
+                return Lists::read(folder, file, place, limits, report).map(Box::new).map(Beside::Lists);
+            }
+            mesh::read(folder, body, place, limits, report).map(Beside::Mesh)
         };
-        let beside = bodies.iter().zip(&places).map(read_lists).collect();
+        let beside = bodies.iter().zip(&places).map(read_beside).collect();
         let view: Option<TypedView> =
             if file.contains_key("view") { part(file, "view", report) } else { Some(TypedView::default()) };
         let font = match view.as_ref().and_then(|view| view.get("font")) {
@@ -174,7 +187,11 @@ impl SceneParts {
             Some(font) => [&font.regular, &font.semi_bold].map(|font| font.as_ref().map(|bytes| font::digest(bytes))),
             None => [None, None],
         };
-        let bodies = self.beside.iter().map(|lists| lists.as_ref().map(Lists::digest)).collect();
+        let beside = |beside: &Beside| match beside {
+            Beside::Lists(lists) => ("file", lists.digest()),
+            Beside::Mesh(mesh) => ("mesh", mesh.digest.clone()),
+        };
+        let bodies = self.beside.iter().map(|one| one.as_ref().map(beside)).collect();
         let runs = self.recordings.iter().map(|read| read.as_ref().map(ReadRecording::digest)).collect();
         let files = FileDigests { bodies, runs, regular, semi_bold };
         let mut lists = vec![BodyFile::default(); self.bodies.len()];
@@ -275,13 +292,19 @@ fn resolve(
     Some(scene)
 }
 
-fn physics(parts: &SceneParts, beside: Vec<Option<Lists>>, limits: &Limits, report: &mut Collector<'_>) -> Physics {
+fn physics(parts: &SceneParts, beside: Vec<Option<Beside>>, limits: &Limits, report: &mut Collector<'_>) -> Physics {
     let flawed = parts.flawed.contains("body");
     let names = check_body_names(parts, report);
     let choices = choice::resolve(&parts.runs, parts.bodies.len(), names.as_deref(), report);
     let typed = parts.bodies.iter().zip(&parts.places).zip(beside);
+    // All filled surfaces together have at most so many elements.
+    let mut most = limits.nodes;
     let typed: Vec<_> = typed
-        .map(|((file, place), beside)| TypedBody::new(file.as_ref()?, beside, place.clone(), flawed, report))
+        .map(|((file, place), beside)| {
+            let body = TypedBody::new(file.as_ref()?, beside, place.clone(), flawed, most, report)?;
+            most = most.saturating_sub(body.filled());
+            Some(body)
+        })
         .collect();
     let dimension = dimension(parts, &typed, report);
     let bodies = bodies(typed, &choices, limits, report);

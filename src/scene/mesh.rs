@@ -1,0 +1,176 @@
+//! Mesh files: read, put upright in metres, filled, and what is wrong with them in words.
+
+use super::limits::Limits;
+use crate::reading::beside::{self, Wrong};
+use crate::reading::words::{count, list, nearest};
+use crate::sim::IndexLists;
+use crate::sim::geometry::bounds;
+use glam::DVec3;
+use localshape_mesh::{self as mesh, Flaws, Format, Mesh};
+use sha2::{Digest, Sha256};
+use std::path::Path;
+
+/// The endings of mesh files.
+pub(crate) const ENDINGS: [&str; 9] = ["obj", "stl", "ply", "off", "gltf", "glb", "msh", "vtk", "vtu"];
+
+/// Endings of mesh files that are not read.
+const OTHERS: [&str; 12] = ["mesh", "node", "ele", "inp", "fbx", "3mf", "dae", "blend", "step", "stp", "usd", "vtp"];
+
+/// The number of cells along the longest side of a filled surface, unless a scene tells another.
+pub(crate) const CELLS: u32 = 20;
+
+/// A mesh as it is in its file.
+#[derive(Debug)]
+pub(crate) struct MeshFile {
+    pub(crate) mesh: Mesh,
+    /// The digest of its bytes.
+    pub(crate) digest: String,
+}
+
+impl MeshFile {
+    /// Reads a file. A message is the predicate of a sentence about the file.
+    pub(crate) fn read(path: &Path, limits: &Limits) -> Result<Self, Wrong> {
+        let expected = format!("expected a mesh: {}", list(&ENDINGS, "or", |ending| format!(".{ending}")));
+        let bytes = beside::bytes(path, &ENDINGS, limits.file, "a mesh", &expected)?;
+        let ending = ending(path);
+        let Some(format) = Format::of(&ending) else {
+            let (found, help) = match &*ending {
+                "" => ("has no ending".to_owned(), None),
+                "npz" => ("is a NumPy archive".to_owned(), Some("write `file` in place of `mesh`".to_owned())),
+                _ => (format!("is a .{ending} file"), other(&ending)),
+            };
+            return Err((format!("{found}; {expected}"), help));
+        };
+        let most = |limit: u64| usize::try_from(limit).unwrap_or(usize::MAX).min(u32::MAX as usize);
+        let limits = mesh::Limits { points: most(limits.nodes), corners: most(limits.corners) };
+        let mesh = mesh::read(&bytes, format, &limits).map_err(|error| (error.message, error.help))?;
+        let digest = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok(Self { mesh, digest })
+    }
+}
+
+/// The ending of a file in small letters.
+pub(crate) fn ending(path: &Path) -> String {
+    path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+/// The remedy for a file with an ending that is not read.
+fn other(ending: &str) -> Option<String> {
+    if OTHERS.contains(&ending) {
+        return Some(
+            "export it again: surfaces from Blender as .ply or .glb, cells from Gmsh or meshio as .vtu".to_owned(),
+        );
+    }
+    nearest(ending, &ENDINGS).map(|near| format!("did you mean .{near}?"))
+}
+
+/// Why an archive of arrays cannot be read from a mesh file, and what to write instead; `None` for other files.
+pub(crate) fn instead_of_archive(path: &Path, name: &str) -> Option<Wrong> {
+    let ending = ending(path);
+    if ENDINGS.contains(&&*ending) {
+        return Some((format!("is a mesh (.{ending})"), Some(format!("write mesh = {name:?} in place of `file`"))));
+    }
+    let message =
+        format!("is a mesh (.{ending}), which is not read; expected a NumPy archive (.npz), or a mesh as `mesh`");
+    OTHERS.contains(&&*ending).then(|| (message, other(&ending)))
+}
+
+/// Puts points of a file into the axes of scenes, with y up, and scales them. The axis of the file that points up is 0, 1 or 2.
+pub(crate) fn place(points: &mut [DVec3], up: usize, scale: f64) {
+    let turned = |point: DVec3| match up {
+        0 => DVec3::new(-point.y, point.x, point.z),
+        1 => point,
+        _ => DVec3::new(point.x, point.z, -point.y),
+    };
+    // Adding zero turns −0 into 0.
+    points.iter_mut().for_each(|point| *point = turned(*point) * scale + DVec3::ZERO);
+}
+
+/// The longest side of the box around points (m).
+pub(crate) fn longest(points: &[DVec3]) -> f64 {
+    let (low, high) = bounds(points);
+    (high - low).max_element()
+}
+
+/// The number of parts of a body that share no node.
+pub(crate) fn parts(nodes: usize, elements: &IndexLists) -> usize {
+    // Each node leads to one of its part with a smaller number, the first to itself.
+    let mut leads: Vec<u32> = (0..nodes as u32).collect();
+    fn first(leads: &mut [u32], mut node: u32) -> u32 {
+        while leads[node as usize] != node {
+            let next = leads[leads[node as usize] as usize];
+            leads[node as usize] = next;
+            node = next;
+        }
+        node
+    }
+    for element in elements.iter() {
+        let mut least = first(&mut leads, element[0]);
+        for &node in &element[1..] {
+            let other = first(&mut leads, node);
+            leads[least.max(other) as usize] = least.min(other);
+            least = least.min(other);
+        }
+    }
+    (0..).zip(&leads).filter(|&(node, &leads)| node == leads).count()
+}
+
+/// What was wrong with a surface and is mended, in words; empty for nothing. Welded points are no flaw: some formats have no
+/// others.
+pub(crate) fn mended(flaws: &Flaws) -> Vec<String> {
+    [
+        (flaws.degenerate, "triangle", " without area left out"),
+        (flaws.doubled, "doubled triangle", " left out"),
+        (flaws.turned, "triangle", " turned over"),
+    ]
+    .into_iter()
+    .filter_map(|(number, one, what)| Some(format!("{}{what}", several(number, one)?)))
+    .collect()
+}
+
+/// What is wrong with a surface and is left, in words; empty for nothing.
+pub(crate) fn left(flaws: &Flaws) -> Vec<String> {
+    [
+        (flaws.boundary, "open edge", ""),
+        (flaws.non_manifold, "edge", " of three triangles or more"),
+        (flaws.inconsistent, "edge", " whose triangles look to different sides"),
+    ]
+    .into_iter()
+    .filter_map(|(number, one, what)| Some(format!("{}{what}", several(number, one)?)))
+    .collect()
+}
+
+/// A number of things; `None` for none.
+fn several(number: usize, one: &str) -> Option<String> {
+    let plural = if number == 1 { "" } else { "s" };
+    (number > 0).then(|| format!("{} {one}{plural}", count(number as u128)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_ending_has_a_format() {
+        assert!(ENDINGS.iter().all(|ending| Format::of(ending).is_some()));
+        assert!(OTHERS.iter().all(|ending| Format::of(ending).is_none()));
+    }
+
+    #[test]
+    fn axes_of_files_are_turned_not_mirrored() {
+        for (up, of) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
+            let mut axes = [DVec3::X, DVec3::Y, DVec3::Z, of];
+            place(&mut axes, up, 2.0);
+            let [x, y, z, points_up] = axes;
+            assert_eq!((x.cross(y).dot(z), points_up), (8.0, DVec3::Y * 2.0), "{up}");
+        }
+    }
+
+    #[test]
+    fn parts_share_no_node() {
+        let lists = |lists: &[&[u32]]| parts(8, &lists.iter().copied().collect());
+        assert_eq!(lists(&[&[0, 1, 2], &[3, 4], &[5, 6, 7]]), 3);
+        assert_eq!(lists(&[&[5, 6, 7], &[4, 3], &[2, 1, 0], &[7, 0], &[2, 4]]), 1);
+        assert_eq!(lists(&[&[7, 6], &[5, 4], &[6, 5], &[0, 1, 2, 3]]), 2);
+    }
+}

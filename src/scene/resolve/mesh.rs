@@ -1,0 +1,207 @@
+//! Bodies of mesh files.
+
+use super::Place;
+use super::lists::{ListSource, Lists};
+use crate::reading::collector::{Collector, key_path, written};
+use crate::reading::words::{count, list, short};
+use crate::scene::file::{BodyFile, FillFile, FillKind, LARGEST, Positive, Up};
+use crate::scene::limits::Limits;
+use crate::scene::mesh::{self, CELLS, MeshFile};
+use crate::sim::{Dimension, IndexLists};
+use localshape_mesh::{Cage, Fill, Filled, Group, Mesh, Surface, Volume, fill};
+use std::path::Path;
+
+/// The content of a mesh file, upright in metres.
+#[derive(Debug)]
+pub(super) enum Made {
+    /// Cells, which are the elements, and their groups of nodes.
+    Cells(Box<Lists>, Vec<Group>),
+    /// A surface with the elements that fill it, and the length of their edges (m).
+    Filled(Box<Filled>, f64),
+}
+
+/// The mesh of a body, or `None` after reporting its mistakes.
+pub(super) fn read(
+    folder: &Path,
+    file: &BodyFile,
+    place: &Place,
+    limits: &Limits,
+    report: &mut Collector<'_>,
+) -> Option<MeshFile> {
+    let name = file.mesh.as_ref()?;
+    let read = MeshFile::read(&folder.join(name), limits);
+    read.map_err(|(message, help)| report.at(&key_path![place; "mesh"], format!("`{name}` {message}"), help)).ok()
+}
+
+/// The elements of a mesh with at most so many of them, or `None` after reporting a mistake.
+pub(super) fn make(
+    read: MeshFile,
+    file: &BodyFile,
+    place: &Place,
+    most: u64,
+    report: &mut Collector<'_>,
+) -> Option<Made> {
+    let name = file.mesh.as_deref().unwrap_or_default();
+    let path = key_path![place; "mesh"];
+    let mut mesh = read.mesh;
+    let (points, dimension) = match &mut mesh {
+        Mesh::Volume(volume) => (&mut volume.points, volume.dimension),
+        Mesh::Surface(surface) => (&mut surface.points, Dimension::Space),
+    };
+    let up = file.up.unwrap_or_default();
+    if dimension == Dimension::Plane && up == Up::Z {
+        let message = format!("`{}` is \"z\", but `{name}` is in the plane", written(&key_path![place; "up"]));
+        report.at(&key_path![place; "up"], message, "expected \"x\" or \"y\"");
+        return None;
+    }
+    let scale = file.scale.map_or(1.0, |Positive(scale)| scale);
+    mesh::place(points, up as usize, scale);
+    let (most_distant, longest) =
+        (points.iter().fold(0.0, |far: f64, at| far.max(at.abs().max_element())), mesh::longest(points));
+    if most_distant.is_nan() || most_distant > LARGEST {
+        let message = format!("`{name}` reaches as far as {most_distant:e} m; expected at most {LARGEST:e} m");
+        report.at(&path, message, "use a smaller `scale`");
+        return None;
+    }
+    if longest == 0.0 {
+        report.at(&path, format!("`{name}` has no extent: all its points are at one place"), None);
+        return None;
+    }
+    /// Longer bodies are rarely meant to be that long (m).
+    const LONG: f64 = 50.0;
+    if file.scale.is_none() && longest >= LONG {
+        let message = format!("`{name}` is {} m long, as no `scale` is given", short(longest));
+        report.warn(&path, message, "write scale = 0.001 if its unit is the millimetre, scale = 1 if it is the metre");
+    }
+    match mesh {
+        Mesh::Volume(volume) => cells(volume, file, place, name, report),
+        Mesh::Surface(surface) => filled(&surface, longest, file, place, most, report),
+    }
+}
+
+/// The cells of a volume.
+fn cells(volume: Volume, file: &BodyFile, place: &Place, name: &str, report: &mut Collector<'_>) -> Option<Made> {
+    let path = key_path![place; "mesh"].to_vec();
+    if file.fill.is_some() {
+        let message = format!("`{}` is about surfaces, but `{name}` has cells", written(&key_path![place; "fill"]));
+        report.at_key(&key_path![place; "fill"], message, "remove it: the cells are the elements");
+        return None;
+    }
+    let Volume { dimension, points: nodes, cells: elements, groups, turned } = volume;
+    if turned > 0 {
+        let all = count(elements.len() as u128);
+        let message = match turned {
+            1 => format!("1 of {all} cells of `{name}` was turned inside out, and is turned over"),
+            _ => format!(
+                "{} of {all} cells of `{name}` were turned inside out, and are turned over",
+                count(turned as u128)
+            ),
+        };
+        report.warn(&path, message, None);
+    }
+    warn_of_parts(
+        nodes.len(),
+        &elements,
+        "merge nodes at the same place, as Coherence does in Gmsh",
+        place,
+        name,
+        report,
+    );
+    let source = ListSource { body: place.clone(), file: Some((name.to_owned(), path)) };
+    let (springs, faces, positions, velocities, masses) = Default::default();
+    let lists = Lists { source, dimension, nodes, elements, springs, faces, positions, velocities, masses };
+    Some(Made::Cells(Box::new(lists), groups))
+}
+
+/// A surface with the elements that fill it.
+fn filled(
+    surface: &Surface,
+    longest: f64,
+    file: &BodyFile,
+    place: &Place,
+    most: u64,
+    report: &mut Collector<'_>,
+) -> Option<Made> {
+    let name = file.mesh.as_deref().unwrap_or_default();
+    let path = key_path![place; "mesh"];
+    check_mass(file, place, name, report)?;
+    let typed = file.fill.clone().unwrap_or_default();
+    let (chosen, side) = chosen(&typed, longest);
+    let most = usize::try_from(most).unwrap_or(usize::MAX).min(u32::MAX as usize);
+    let filled = match fill(surface, chosen, most) {
+        Ok(filled) => filled,
+        Err(error) => {
+            report.at(&path, format!("`{name}` {}", error.message), error.help);
+            return None;
+        }
+    };
+    let mended = mesh::mended(&filled.flaws);
+    if !mended.is_empty() {
+        let message = format!("`{name}` is mended: {}", list(&mended, "and", str::to_owned));
+        report.warn(&path, message, None);
+    }
+    let left = mesh::left(&filled.flaws);
+    if !left.is_empty() {
+        let message = format!(
+            "`{name}` has {}, and is filled where its triangles enclose most",
+            list(&left, "and", str::to_owned)
+        );
+        report.warn(&path, message, "close it in the program that made it, unless the elements are right");
+    }
+    let Cage { nodes, elements, .. } = &filled.cage;
+    warn_of_parts(nodes.len(), elements, "join them in the program that made it", place, name, report);
+    Some(Made::Filled(Box::new(filled), side))
+}
+
+/// The fill that a scene asks for, and the length of its edges (m).
+fn chosen(typed: &FillFile, longest: f64) -> (Fill, f64) {
+    let side = match typed.side {
+        Some(Positive(side)) => side,
+        None => longest / f64::from(typed.cells.unwrap_or(CELLS)),
+    };
+    let chosen = match typed.with {
+        FillKind::Cubes => Fill::Cubes { side },
+        FillKind::Graded => Fill::Graded { side },
+        FillKind::Tetrahedra => Fill::Tetrahedra { side },
+        FillKind::Polyhedra => Fill::Polyhedra { side },
+    };
+    (chosen, side)
+}
+
+/// Reports a filled body without a mass of its volume.
+fn check_mass(file: &BodyFile, place: &Place, name: &str, report: &mut Collector<'_>) -> Option<()> {
+    if file.density.is_some() || file.mass_total.is_some() {
+        return Some(());
+    }
+    let help = "write `density` (kg/m³), such as density = 1000, or `mass_total` (kg)";
+    if file.mass.is_some() {
+        let path = key_path![place; "mass"];
+        let message = format!(
+            "`{}` is that of every node, but nodes of `{name}` have different parts of its inside",
+            written(&path)
+        );
+        report.at_key(&path, message, help);
+    } else {
+        let message =
+            format!("`{}` has neither `density` nor `mass_total`, which a filled surface needs", written(place));
+        report.at(&key_path![place; "mesh"], message, help);
+    }
+    None
+}
+
+/// Warns of parts of a body that nothing holds together.
+fn warn_of_parts(
+    nodes: usize,
+    elements: &IndexLists,
+    help: &str,
+    place: &Place,
+    name: &str,
+    report: &mut Collector<'_>,
+) {
+    let parts = mesh::parts(nodes, elements);
+    if parts > 1 {
+        let message =
+            format!("`{name}` makes {} parts that share no node, so nothing holds them together", count(parts as u128));
+        report.warn(&key_path![place; "mesh"], message, format!("{help}, unless they may fall apart"));
+    }
+}
