@@ -2,7 +2,10 @@
 
 mod clip;
 mod cubes;
+mod cuts;
+mod embed;
 mod lattice;
+mod tetrahedra;
 
 use super::{Flaws, Surface};
 use glam::DVec3;
@@ -77,6 +80,7 @@ pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillEr
     let (surface, flaws) = surface.mended();
     match fill {
         Fill::Cubes { side } => cubes::fill(surface, flaws, side, most),
+        Fill::Tetrahedra { side } => tetrahedra::fill(surface, flaws, side, most),
         _ => Err(FillError { message: "is not filled in this way yet".to_owned(), help: None }),
     }
 }

@@ -54,6 +54,17 @@ impl Inside {
         &self.caps.triangles
     }
 
+    /// Whether a point is inside.
+    pub(crate) fn contains(&self, point: DVec3) -> bool {
+        let mut around = 0;
+        self.columns.crossings(point.y, point.z, |crossing| {
+            if crossing.is_after(point.x) {
+                around += crossing.sign;
+            }
+        });
+        self.is_inside(around, point)
+    }
+
     /// Whether a point is inside, from its winding number about the closed surface.
     fn is_inside(&self, around: i32, point: DVec3) -> bool {
         match self.caps.nodes.is_empty() {

@@ -148,7 +148,8 @@ fn sampled(inside: &Inside, grid: &Grid, key: usize) -> f64 {
     number as f64 / points.len() as f64
 }
 
-fn no_inside(flaws: &Flaws) -> FillError {
+/// The error for a surface without an inside.
+pub(super) fn no_inside(flaws: &Flaws) -> FillError {
     let (message, help) = match flaws.boundary + flaws.inconsistent {
         0 => ("has no inside: its volume is zero".to_owned(), "Use a surface with a thickness."),
         _ => {

@@ -1,0 +1,305 @@
+//! Where a surface cuts the edges of a lattice.
+
+use super::{FillError, lattice};
+use crate::Surface;
+use crate::inside::{Grid, Inside};
+use glam::{DVec2, DVec3, IVec3};
+use rayon::prelude::*;
+
+/// The edges of a body-centred lattice: three along the axes between neighbours of one kind, four between a corner and a middle.
+/// Each is counted from the end with the lower x, or the lower coordinate along its axis; in halves of the side.
+pub(super) const EDGES: [IVec3; 7] = [
+    IVec3::new(2, 0, 0),
+    IVec3::new(0, 2, 0),
+    IVec3::new(0, 0, 2),
+    IVec3::new(1, -1, -1),
+    IVec3::new(1, -1, 1),
+    IVec3::new(1, 1, -1),
+    IVec3::new(1, 1, 1),
+];
+
+/// The number of edges along the axes, which come first.
+pub(super) const AXES: usize = 3;
+
+/// Distances below this, in halves of the side, are round-off: a crossing so near to the end of an edge counts for both edges that
+/// end there, and a line so near to the side of a triangle meets it.
+const CLOSE: f64 = 1e-9;
+
+/// Where edges are cut, as a part of the way from an end that counts as inside because the body is thin there: for edges along the axes
+/// and for others. Just so far that the end is not moved to the cut.
+pub(super) const WIDE: [f64; 2] = [0.25, 0.42];
+
+/// A lattice of cubes around a surface. Points are counted in halves of the side: corners of cubes have even coordinates, their
+/// middles odd ones.
+pub(super) struct Lattice {
+    origin: DVec3,
+    /// The side of the cubes (m).
+    pub(super) side: f64,
+    /// The number of cubes along each axis. The outermost are outside of the surface.
+    pub(super) cubes: IVec3,
+    /// Whether there are middles.
+    has_middles: bool,
+    /// The surface in halves of the side, from the origin.
+    surface: Surface,
+    inside: Inside,
+}
+
+impl Lattice {
+    /// The lattice around a surface, whose points nearly on planes of the lattice are moved to them.
+    ///
+    /// # Errors
+    /// If more than `most` elements, or very many cubes outside, would be needed.
+    pub(super) fn around(surface: &mut Surface, side: f64, has_middles: bool, most: usize) -> Result<Self, FillError> {
+        let (lattice, mut scaled) = lattice::Lattice::about(surface, side, most)?;
+        let counts = DVec3::from_array(lattice.counts.map(|count| count as f64)) + 2.0;
+        let boxed = counts.element_product();
+        // All points of the lattice are listed.
+        if boxed > 16.0 * most as f64 + 1e6 {
+            return Err(lattice::too_many(&surface.measures(), side, boxed / 16.0, most, "about "));
+        }
+        scaled.points.iter_mut().for_each(|point| *point = 2.0 * (*point + 1.0));
+        let inside = Inside::new(&scaled);
+        Ok(Self { origin: lattice.origin - side, side, cubes: counts.as_ivec3(), has_middles, surface: scaled, inside })
+    }
+
+    /// The position of a point (m).
+    pub(super) fn at(&self, point: IVec3) -> DVec3 {
+        self.origin + 0.5 * self.side * point.as_dvec3()
+    }
+
+    /// A place (m) in halves of the side from the origin.
+    fn halves(&self, at: DVec3) -> DVec3 {
+        (at - self.origin) / (0.5 * self.side)
+    }
+
+    /// The position of the point at a part of the way along an edge (m). Coordinates across the axes stay exactly as they are.
+    pub(super) fn along(&self, from: IVec3, edge: usize, part: f64) -> DVec3 {
+        self.origin + 0.5 * self.side * (from.as_dvec3() + part * EDGES[edge].as_dvec3())
+    }
+
+    /// Whether there is such a point; its coordinates are all odd or all even.
+    pub(super) fn holds(&self, point: IVec3) -> bool {
+        point.cmpge(IVec3::ZERO).all() && point.cmple(2 * self.cubes).all()
+    }
+
+    /// The number of points, with some that are not used.
+    pub(super) fn len(&self) -> usize {
+        let kinds = if self.has_middles { 2 } else { 1 };
+        kinds * self.corners()
+    }
+
+    fn corners(&self) -> usize {
+        let along = (self.cubes + 1).as_usizevec3();
+        along.x * along.y * along.z
+    }
+
+    /// The place of a point in lists.
+    pub(super) fn index(&self, point: IVec3) -> usize {
+        let (along, half) = ((self.cubes + 1).as_usizevec3(), (point / 2).as_usizevec3());
+        let is_middle = point.x % 2 != 0;
+        usize::from(is_middle) * self.corners() + (half.z * along.y + half.y) * along.x + half.x
+    }
+
+    /// The point at a place in lists.
+    pub(super) fn point(&self, index: usize) -> IVec3 {
+        let along = (self.cubes + 1).as_usizevec3();
+        let (kind, at) = (index / self.corners(), index % self.corners());
+        let half = [at % along.x, at / along.x % along.y, at / along.x / along.y];
+        2 * IVec3::from_array(half.map(|half| half as i32)) + kind as i32
+    }
+
+    /// Whether each point is inside.
+    pub(super) fn inside(&self) -> Vec<bool> {
+        let counts = (self.cubes + 1).as_usizevec3().to_array();
+        let mut inside = self.inside.grid(&Grid { first: DVec3::ZERO, side: 2.0, counts });
+        if self.has_middles {
+            // With some outside at the high ends, lest middles have indices of their own.
+            inside.extend(self.inside.grid(&Grid { first: DVec3::ONE, side: 2.0, counts }));
+        }
+        inside
+    }
+
+    /// Whether a place (m) is inside.
+    pub(super) fn contains(&self, at: DVec3) -> bool {
+        self.inside.contains(self.halves(at))
+    }
+
+    /// The cuts of all edges with one end inside, where the surface crosses them first seen from that end. An edge across a hole of
+    /// the surface, which crosses no triangle, is cut in its middle. Edges with an end inside that is `wide` are cut at
+    /// [`WIDE`].
+    pub(super) fn cuts(&self, is_inside: &[bool], wide: &[bool]) -> Cuts {
+        let edges = if self.has_middles { EDGES.len() } else { AXES };
+        let crossings = |triangle: &[u32; 3]| {
+            let corners = self.surface.corners(*triangle);
+            let mut found = Vec::new();
+            for edge in 0..edges {
+                self.crossings(corners, edge, is_inside, &mut found);
+            }
+            found
+        };
+        let mut found: Vec<(u64, f64)> = self.surface.triangles.par_iter().flat_map_iter(crossings).collect();
+        found.par_sort_unstable_by(|one, other| one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)));
+        let mut cuts = Cuts::default();
+        let mut found = found.into_iter().peekable();
+        for index in 0..self.len() {
+            let from = self.point(index);
+            if !self.holds(from) {
+                continue;
+            }
+            for edge in 0..edges {
+                let to = from + EDGES[edge];
+                if !self.holds(to) || is_inside[index] == is_inside[self.index(to)] {
+                    continue;
+                }
+                let slot = slot(index, edge);
+                while found.next_if(|next| next.0 < slot).is_some() {}
+                let (mut part, mut is_first) = (0.5, true);
+                while let Some((_, next)) = found.next_if(|next| next.0 == slot) {
+                    if is_first || !is_inside[index] {
+                        part = next;
+                    }
+                    is_first = false;
+                }
+                let part_wide = WIDE[usize::from(edge >= AXES)];
+                if is_inside[index] && wide[index] {
+                    part = part_wide;
+                } else if !is_inside[index] && wide[self.index(to)] {
+                    part = 1.0 - part_wide;
+                }
+                cuts.slots.push(slot);
+                cuts.parts.push(part);
+            }
+        }
+        cuts
+    }
+
+    /// Places (m) all over a triangle of the surface, so close that they miss only the tips of cells.
+    pub(super) fn samples(&self, triangle: [u32; 3]) -> impl Iterator<Item = DVec3> {
+        let [a, b, c] = self.surface.corners(triangle);
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        let steps = (2.0 * longest).ceil().max(1.0) as i32;
+        let part = move |at: i32| f64::from(at) / f64::from(steps);
+        let all =
+            (0..=steps).flat_map(move |i| (0..=steps - i).map(move |j| a + (b - a) * part(i) + (c - a) * part(j)));
+        let (origin, half) = (self.origin, 0.5 * self.side);
+        all.map(move |at| origin + half * at)
+    }
+
+    /// Marks the corners of the cell of a place (m): of a tetrahedron of the lattice, or of a cube if there are no middles.
+    pub(super) fn touch(&self, at: DVec3, touched: &mut [bool]) {
+        let at = self.halves(at);
+        let low = 2 * (0.5 * at).floor().as_ivec3();
+        let mut mark = |corner: IVec3| {
+            if self.holds(corner) {
+                touched[self.index(corner)] = true;
+            }
+        };
+        if !self.has_middles {
+            return (0..8).for_each(|bit| mark(low + 2 * IVec3::new(bit & 1, bit >> 1 & 1, bit >> 2)));
+        }
+        // The tetrahedron is about the edge to the next middle along the farthest axis, at the side of the second one.
+        let middle = low + 1;
+        let from = at - middle.as_dvec3();
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|&one, &other| from[other].abs().total_cmp(&from[one].abs()));
+        let [far, second, third] = axes.map(|axis| if from[axis] < 0.0 { -EDGES[axis] } else { EDGES[axis] });
+        mark(middle);
+        mark(middle + far);
+        mark(middle + (far + second + third) / 2);
+        mark(middle + (far + second - third) / 2);
+    }
+
+    /// The neighbours of a point along edges.
+    pub(super) fn neighbours(&self, index: usize) -> impl Iterator<Item = usize> + '_ {
+        let point = self.point(index);
+        let edges = if self.has_middles { EDGES.len() } else { AXES };
+        let around = EDGES[..edges].iter().flat_map(move |&edge| [point - edge, point + edge]);
+        around.filter(|&other| self.holds(other)).map(|other| self.index(other))
+    }
+
+    /// Appends the edges of one direction with one end inside that cross a triangle, with the part of the way to the crossing.
+    /// Corners are in halves of the side from the origin.
+    fn crossings(&self, corners: [DVec3; 3], edge: usize, is_inside: &[bool], found: &mut Vec<(u64, f64)>) {
+        // Seen along the edges of this direction, lines are points of a plane with whole coordinates, and `depth` is along them.
+        let direction = EDGES[edge];
+        let (is_axis, slope) = (edge < AXES, direction.as_dvec3());
+        let seen = |at: DVec3| match edge {
+            0 => (at.x, DVec2::new(at.y, at.z)),
+            1 => (at.y, DVec2::new(at.z, at.x)),
+            2 => (at.z, DVec2::new(at.x, at.y)),
+            _ => (at.x, DVec2::new(at.y - slope.y * at.x, at.z - slope.z * at.x)),
+        };
+        let [(depth_a, a), (depth_b, b), (depth_c, c)] = corners.map(seen);
+        let area = (b - a).perp_dot(c - a);
+        if area == 0.0 {
+            return;
+        }
+        let low = (a.min(b).min(c) - CLOSE).ceil().as_ivec2();
+        let high = (a.max(b).max(c) + CLOSE).floor().as_ivec2();
+        let [near, far] = [depth_a.min(depth_b).min(depth_c), depth_a.max(depth_b).max(depth_c)];
+        let step = if is_axis { 2 } else { 1 };
+        for u in low.x..=high.x {
+            // Middles are on lines along the axes with odd coordinates, and all other lines have even ones.
+            let is_odd = u % 2 != 0;
+            if is_odd && !(is_axis && self.has_middles) {
+                continue;
+            }
+            let first = low.y + i32::from((low.y % 2 != 0) != is_odd);
+            for v in (first..=high.y).step_by(2) {
+                let line = DVec2::new(f64::from(u), f64::from(v));
+                let across = |from: DVec2, to: DVec2| {
+                    let twice = (to - from).perp_dot(line - from) * area.signum();
+                    (twice >= -CLOSE * (to - from).length()).then_some(twice / area.abs())
+                };
+                let (Some(of_a), Some(of_b), Some(of_c)) = (across(b, c), across(c, a), across(a, b)) else { continue };
+                let depth = (of_a * depth_a + of_b * depth_b + of_c * depth_c).clamp(near, far);
+                // The first point of the lattice on the line has the depth 0 or 1.
+                let start = if is_axis { i32::from(is_odd) } else { 0 };
+                let steps = (depth - f64::from(start)) / f64::from(step);
+                let [lowest, highest] = [steps - CLOSE, steps + CLOSE].map(|steps| steps.floor() as i32);
+                for at in lowest..=highest {
+                    let depth = start + step * at;
+                    let from = match edge {
+                        0 => IVec3::new(depth, u, v),
+                        1 => IVec3::new(v, depth, u),
+                        2 => IVec3::new(u, v, depth),
+                        _ => IVec3::new(depth, u + direction.y * depth, v + direction.z * depth),
+                    };
+                    if !(self.holds(from) && self.holds(from + direction)) {
+                        continue;
+                    }
+                    let index = self.index(from);
+                    if is_inside[index] != is_inside[self.index(from + direction)] {
+                        found.push((slot(index, edge), (steps - f64::from(at)).clamp(0.0, 1.0)));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The number of an edge that starts at a point of the lattice.
+fn slot(index: usize, edge: usize) -> u64 {
+    (index * EDGES.len() + edge) as u64
+}
+
+/// Cuts of edges by a surface, in the order of the points of the lattice at which the edges start, then of [`EDGES`].
+#[derive(Clone, Debug, Default)]
+pub(super) struct Cuts {
+    slots: Vec<u64>,
+    /// The part of the way along the edge, from 0 to 1.
+    pub(super) parts: Vec<f64>,
+}
+
+impl Cuts {
+    /// The cut of an edge, by its start.
+    pub(super) fn find(&self, index: usize, edge: usize) -> Option<usize> {
+        self.slots.binary_search(&slot(index, edge)).ok()
+    }
+
+    /// The start of the edge of a cut, by its place in lists, and the direction of the edge.
+    pub(super) fn edge(&self, cut: usize) -> (usize, usize) {
+        let slot = self.slots[cut] as usize;
+        (slot / EDGES.len(), slot % EDGES.len())
+    }
+}

@@ -1,0 +1,211 @@
+//! Surfaces filled with elements that end at the surface.
+
+mod common;
+
+use common::{ball, block, ring, scan};
+use glam::{DMat3, DQuat, DVec3};
+use localshape_mesh::{Fill, Filled, Surface, fill};
+use localshape_sim::geometry::{around, bounds, volumes_at_rest};
+use localshape_sim::{Body, Dimension, Solids};
+use std::collections::HashMap;
+
+/// More elements than any test needs.
+const MOST: usize = 2_000_000;
+
+/// A ball and a tilted ring that fit no lattice.
+fn round() -> [Surface; 2] {
+    let tilt = DQuat::from_xyzw(0.3, -0.2, 0.1, 0.9).normalize();
+    let mut ring = ring(0.5, 0.2, 120);
+    ring.points.iter_mut().for_each(|point| *point = tilt * *point);
+    [ball(DVec3::new(0.013, 0.021, 0.007), 0.5, 96), ring]
+}
+
+/// A scan, with the largest side 1.
+fn real(name: &str) -> Option<Surface> {
+    let mut surface = scan(name)?;
+    let (low, high) = bounds(&surface.points);
+    let size = (high - low).max_element();
+    surface.points.iter_mut().for_each(|point| *point = (*point - low) / size);
+    Some(surface)
+}
+
+fn volume(points: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
+    let at = |node: u32| points[node as usize] - points[0];
+    triangles.iter().map(|&[a, b, c]| at(a).dot(at(b).cross(at(c))) / 6.0).sum()
+}
+
+/// The elements as a body, after checks of what must hold for every fill.
+fn checked(filled: &Filled) -> Body {
+    let cage = &filled.cage;
+    let solids = if cage.convex { Solids::Convex } else { Solids::Ordered };
+    let mass = vec![1.0; cage.nodes.len()];
+    let body = Body::new(Dimension::Space, cage.nodes.clone(), mass, cage.elements.clone(), solids, None);
+    // Elements fill the space between their outer faces once: none is turned inside out, and inner faces match.
+    let volumes = volumes_at_rest(&body);
+    assert!(volumes.iter().all(|&volume| volume > 0.0));
+    let outer =
+        || body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none()).map(|(face, _)| face);
+    let triangles: Vec<_> =
+        outer().flat_map(|face| (2..face.len()).map(|at| [face[0], face[at - 1], face[at]])).collect();
+    let [inside, sum] = [volume(&body.rest, &triangles), volumes.iter().sum()];
+    assert!((inside / sum - 1.0).abs() < 1e-10, "{inside} {sum}");
+    let mut edges: HashMap<[u32; 2], i32> = HashMap::new();
+    for [a, b] in outer().flat_map(around) {
+        *edges.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
+    }
+    assert!(edges.values().all(|&passed| passed == 0), "outer faces are closed");
+    // Every node belongs to an element.
+    let mut is_used = vec![false; cage.nodes.len()];
+    cage.elements.indices().iter().for_each(|&node| is_used[node as usize] = true);
+    assert!(is_used.iter().all(|&used| used));
+    // Weights reproduce affine maps.
+    let points = &filled.surface.points;
+    assert_eq!(filled.weights.len(), points.len());
+    let map = DMat3::from_cols_array(&[0.3, -0.9, 0.2, 0.8, 0.1, 0.5, -0.4, 0.6, 0.7]);
+    let moved: Vec<_> = cage.nodes.iter().map(|&node| map * node + DVec3::new(0.1, 0.2, -0.3)).collect();
+    for (at, &point) in points.iter().enumerate() {
+        assert!((filled.weights.of(at).1.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+        let error = filled.weights.place(at, &moved).distance(map * point + DVec3::new(0.1, 0.2, -0.3));
+        assert!(error < 1e-14, "{error:e}");
+    }
+    body
+}
+
+/// The least and the greatest dihedral angle of tetrahedra (degrees).
+fn angles(body: &Body) -> [f64; 2] {
+    let mut extremes = [180.0f64, 0.0];
+    for element in body.elements.iter() {
+        let corners: Vec<_> = element.iter().map(|&node| body.rest[node as usize]).collect();
+        for [a, b, c, d] in [[0, 1, 2, 3], [0, 2, 1, 3], [0, 3, 1, 2], [1, 2, 0, 3], [1, 3, 0, 2], [2, 3, 0, 1]] {
+            let along = (corners[b] - corners[a]).normalize();
+            let [one, other] = [c, d].map(|at| (corners[at] - corners[a]).reject_from_normalized(along));
+            let angle = one.angle_between(other).to_degrees();
+            extremes = [extremes[0].min(angle), extremes[1].max(angle)];
+        }
+    }
+    extremes
+}
+
+/// How much more stiffness for its mass (1/s²) an element has than a whole one: the ratio of the squares of their radii.
+fn stiffest(body: &Body, whole: f64) -> f64 {
+    let spread = |element: &[u32]| {
+        let mean = element.iter().map(|&node| body.rest[node as usize]).sum::<DVec3>() / element.len() as f64;
+        element.iter().map(|&node| body.rest[node as usize].distance_squared(mean)).sum::<f64>() / element.len() as f64
+    };
+    whole / body.elements.iter().map(spread).fold(f64::MAX, f64::min)
+}
+
+/// The square of the distance of the nodes of a tetrahedron of the lattice from their mean, for sides of 1.
+const OF_TETRAHEDRON: f64 = 0.3125;
+
+fn tetrahedra(surface: &Surface, side: f64) -> (Filled, Body) {
+    let filled = fill(surface, Fill::Tetrahedra { side }, MOST).unwrap();
+    let body = checked(&filled);
+    (filled, body)
+}
+
+#[test]
+fn the_volume_of_tetrahedra_tends_to_that_of_the_surface() {
+    for surface in round() {
+        let expected = volume(&surface.points, &surface.triangles);
+        let error = |side: f64| {
+            let (_, body) = tetrahedra(&surface, side);
+            volumes_at_rest(&body).iter().sum::<f64>() / expected - 1.0
+        };
+        let errors = [0.1, 0.05, 0.025].map(error);
+        assert!(
+            errors[0].abs() < 0.05
+                && errors[1].abs() < 0.4 * errors[0].abs()
+                && errors[2].abs() < 0.4 * errors[1].abs()
+        );
+    }
+}
+
+#[test]
+fn tetrahedra_of_a_block_of_whole_cells_are_the_block() {
+    let surface = block(DVec3::ZERO, DVec3::new(1.0, 0.5, 0.75));
+    let (filled, body) = tetrahedra(&surface, 0.25);
+    assert!((volumes_at_rest(&body).iter().sum::<f64>() - 0.375).abs() < 1e-15);
+    assert!(
+        (0..8).all(|point| filled.weights.place(point, &filled.cage.nodes).distance(surface.points[point]) < 1e-15)
+    );
+}
+
+/// Scans, with the largest side 1.
+fn scans() -> impl Iterator<Item = (&'static str, Surface)> {
+    let names = ["armadillo.off", "bunny00.off", "elephant.off", "homer.off", "camel.off"];
+    names.into_iter().filter_map(|name| Some((name, real(name)?)))
+}
+
+/// Checks that filled parts add up to the volume of the surface, about.
+fn assert_filled(filled: &Filled, body: &Body, slack: f64) {
+    let parts = filled.cage.filled.clone().unwrap_or(vec![1.0; body.elements.len()]);
+    assert!(parts.iter().all(|&part| part > 0.0 && part <= 1.0));
+    let sum: f64 = volumes_at_rest(body).iter().zip(&parts).map(|(volume, part)| volume * part).sum();
+    let ratio = sum / filled.surface.measures().volume;
+    assert!((ratio - 1.0).abs() < slack, "{ratio}");
+}
+
+/// Checks that no weight is far from those of points inside.
+fn assert_gentle(filled: &Filled) {
+    let all = (0..filled.weights.len()).flat_map(|point| filled.weights.of(point).1);
+    assert!(all.fold(0.0f64, |most, weight| most.max(weight.abs())) < 4.0);
+}
+
+/// Thin parts are as wide as cells, so that all of a scan hangs together at any side.
+#[test]
+fn dihedral_angles_of_tetrahedra_are_bounded() {
+    let shapes = round().into_iter().chain([block(DVec3::ZERO, DVec3::new(1.0, 0.63, 0.77))]);
+    for (name, surface) in scans().chain(shapes.map(|shape| ("shape", shape))) {
+        for (cells, slack) in [(12.0, 0.07), (20.0, 0.04), (30.0, 0.03)] {
+            let (filled, body) = tetrahedra(&surface, 1.0 / cells);
+            let [least, greatest] = angles(&body);
+            assert!(least > 10.7 && greatest < 164.8, "{name}, {cells} cells: {least}° to {greatest}°");
+            // No element needs a step shorter by more than √8 than those of the lattice.
+            let stiff = stiffest(&body, OF_TETRAHEDRON / cells / cells);
+            assert!(stiff < 8.0, "{name}, {cells} cells: {stiff}");
+            assert_filled(&filled, &body, slack);
+            assert_gentle(&filled);
+        }
+    }
+}
+
+#[test]
+fn a_sheet_thinner_than_the_elements_is_filled_in_part() {
+    let surface = block(DVec3::ZERO, DVec3::new(1.0, 0.03, 0.7));
+    let (filled, body) = tetrahedra(&surface, 0.1);
+    assert!(filled.cage.filled.is_some());
+    assert_filled(&filled, &body, 0.5);
+}
+
+#[test]
+fn the_number_of_threads_decides_nothing() {
+    let surface = ring(0.5, 0.03, 60);
+    let fills = [1, 2, 5].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| fill(&surface, Fill::Tetrahedra { side: 0.1 }, MOST).unwrap())
+    });
+    assert!(fills[0].cage.filled.is_some(), "thin parts are widened, too");
+    assert!(fills[0] == fills[1] && fills[0] == fills[2]);
+}
+
+#[test]
+fn more_elements_than_allowed_are_refused() {
+    let surface = ball(DVec3::ZERO, 0.5, 48);
+    for (side, message) in [(0.1, "needs 6768 elements"), (1e-3, "needs about "), (1e-9, "needs about ")] {
+        let refused = fill(&surface, Fill::Tetrahedra { side }, 5000).unwrap_err();
+        assert!(refused.message.starts_with(message), "{refused}");
+        assert!(refused.message.ends_with("and at most 5000 are allowed"), "{refused}");
+        assert!(refused.help.is_some());
+    }
+}
+
+#[test]
+fn what_has_no_inside_is_refused() {
+    let sheet = Surface {
+        points: vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    };
+    let refused = fill(&sheet, Fill::Tetrahedra { side: 0.1 }, MOST).unwrap_err();
+    assert!(refused.message.starts_with("has no inside"), "{refused}");
+}
