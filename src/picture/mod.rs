@@ -12,6 +12,7 @@
 mod arrows;
 mod camera;
 mod caption;
+mod carried;
 mod chart;
 mod compose;
 mod cut;

@@ -99,13 +99,20 @@ impl Foot {
 /// An edge where two triangles of a surface meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Edge {
-    ends: [u32; 2],
+    pub(super) ends: [u32; 2],
     /// The triangle whose side runs from the first end to the second one, and the triangle whose side runs back.
     triangles: [u32; 2],
 }
 
 /// Marks a missing triangle.
 const NO_TRIANGLE: u32 = u32::MAX;
+
+impl Edge {
+    /// Its triangles that are there.
+    pub(super) fn triangles(&self) -> [Option<u32>; 2] {
+        self.triangles.map(|triangle| (triangle != NO_TRIANGLE).then_some(triangle))
+    }
+}
 
 /// The edges of surfaces. If more than two triangles meet at one, they are paired.
 pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {

@@ -1,21 +1,26 @@
-//! The surface of a whole body.
+//! The surface of bodies: faces of elements, and the fine surfaces that bodies carry in their place.
 
 use super::camera::Lens;
+use super::carried::Fine;
 use super::ears::Ears;
-use crate::sim::Body;
+use crate::sim::Assembly;
 use glam::DVec3;
+use std::ops::Range;
 
 /// Marks on faces fade between this cosine towards the viewer and zero.
 const GRAZING: f64 = 0.08;
 
-/// The surface of a body, independent of its turned-over elements.
+/// The surface of bodies, independent of their turned-over elements. Its points are nodes and, after them, the points of
+/// carried surfaces.
 #[derive(Debug)]
 pub(super) struct Skin {
     /// The nodes on it.
     pub(super) nodes: Vec<u32>,
-    /// Its triangles, as places in `nodes`.
+    /// The carried surfaces.
+    pub(super) fine: Vec<Fine>,
+    /// Its triangles, as places among its points.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The place of each node of the body in `nodes`, or [`INSIDE`].
+    /// The place of each node of the bodies in `nodes`, or [`INSIDE`].
     places: Vec<u32>,
 }
 
@@ -23,8 +28,10 @@ pub(super) struct Skin {
 const INSIDE: u32 = u32::MAX;
 
 impl Skin {
-    /// The skin of a body.
-    pub(super) fn new(body: &Body, ears: &Ears) -> Self {
+    /// The skin of bodies. If `fine`, it has carried surfaces in place of the faces of the elements that carry them.
+    pub(super) fn new(bodies: &Assembly, ears: &Ears, fine: bool) -> Self {
+        let body = bodies.whole();
+        let fine = if fine { Fine::of(bodies) } else { Vec::new() };
         let mut places = vec![INSIDE; body.len()];
         let mut nodes = Vec::new();
         let mut place = |node: u32| {
@@ -35,15 +42,44 @@ impl Skin {
             }
             *place
         };
-        let outside = body.faces.nodes.iter().zip(&body.faces.outer).filter(|(_, outer)| outer.is_none());
+        let outside =
+            body.faces.nodes.iter().zip(&body.faces.outer).enumerate().filter(|(_, (_, outer))| outer.is_none());
         let mut triangles = Vec::new();
-        for (face, _) in outside {
+        for (_, (face, _)) in outside.filter(|&(at, _)| !fine.iter().any(|fine| fine.faces.contains(&at))) {
             match ears.of(face) {
                 Some(ears) => triangles.extend(ears.iter().map(|ear| ear.map(|at| place(face[at as usize])))),
                 None => triangles.extend((2..face.len()).map(|at| [face[0], face[at - 1], face[at]].map(&mut place))),
             }
         }
-        Self { nodes, triangles, places }
+        let mut first = nodes.len() as u32;
+        for fine in &fine {
+            triangles.extend(fine.surface.triangles.iter().map(|triangle| triangle.map(|point| first + point)));
+            first += fine.surface.rest.len() as u32;
+        }
+        Self { nodes, fine, triangles, places }
+    }
+
+    /// The positions of its points (m), from those of all nodes; none without nodes.
+    pub(super) fn points(&self, position: &[DVec3]) -> Vec<DVec3> {
+        if position.is_empty() {
+            return Vec::new();
+        }
+        let mut points: Vec<_> = self.nodes.iter().map(|&node| position[node as usize]).collect();
+        self.fine.iter().for_each(|fine| fine.place(position, &mut points));
+        points
+    }
+
+    /// Its points that belong together: the nodes of each body, and those of each carried surface.
+    pub(super) fn parts(&self, bodies: &Assembly) -> Vec<Range<usize>> {
+        // The nodes of one body follow those of another.
+        let body = |&node: &u32| bodies.body_of_node(node as usize);
+        let of_nodes = self.nodes.chunk_by(|one, other| body(one) == body(other)).map(<[_]>::len);
+        let mut first = 0;
+        let range = |count: usize| {
+            first += count;
+            first - count..first
+        };
+        of_nodes.chain(self.fine.iter().map(|fine| fine.surface.rest.len())).map(range).collect()
     }
 
     /// Whether a node is on the surface.

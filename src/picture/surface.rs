@@ -287,7 +287,7 @@ impl Surroundings<'_> {
         // Smaller ones would be invisible.
         let is_large = self.element > if is_hidden { SEEN_THROUGH } else { SMALLEST_ELEMENT.into() };
         if is_large && !self.is_fine() && if is_hidden { behind } else { in_front } {
-            lines.drawn.push(self.line(start, end, kinds.edge, if behind { 1.0 } else { 0.0 }));
+            lines.drawn.push(self.line([start, end], kinds.edge, if behind { 1.0 } else { 0.0 }));
         }
         let mut is_contour = false;
         borders.contours(sides, &mut |part| {
@@ -296,13 +296,13 @@ impl Surroundings<'_> {
         });
         let is_dark = self.is_fine() && in_front && self.element > DARK;
         if !is_hidden && !is_contour && !is_dark && (borders.are_bent(sides) || self.shades.is_some_and(Shades::jump)) {
-            lines.borders.push(Border { line: self.line(start, end, kinds.edge, 1.0), edge: Some([a, b]) });
+            lines.borders.push(Border { line: self.line([start, end], kinds.edge, 1.0), edge: Some([a, b]) });
         }
     }
 
     /// A place where the surface turns away from the viewer.
-    fn contour(&self, [from, to]: [DVec3; 2], edge: Option<[u32; 2]>, kinds: Lines, lines: &mut SurfaceLines) {
-        let line = self.line(from, to, kinds.contour, 1.0);
+    fn contour(&self, ends: [DVec3; 2], edge: Option<[u32; 2]>, kinds: Lines, lines: &mut SurfaceLines) {
+        let line = self.line(ends, kinds.contour, 1.0);
         lines.drawn.push(line);
         lines.borders.push(Border { line, edge });
     }
@@ -317,9 +317,14 @@ impl Surroundings<'_> {
         -normal.dot(point - self.lens.eye)
     }
 
-    fn line(&self, from: DVec3, to: DVec3, kind: LineKind, strength: f64) -> Line {
-        let relative = |point: DVec3| narrow_point((point - self.origin) / self.side).to_array();
-        Line { from: relative(from), to: relative(to), kind, strength: narrow(strength) }
+    /// A line between two points (m).
+    pub(super) fn line(&self, [from, to]: [DVec3; 2], kind: LineKind, strength: f64) -> Line {
+        Line { from: self.relative(from), to: self.relative(to), kind, strength: narrow(strength) }
+    }
+
+    /// A point (m) in the panel's coordinates.
+    pub(super) fn relative(&self, point: DVec3) -> [f32; 3] {
+        narrow_point((point - self.origin) / self.side).to_array()
     }
 
     /// The number of pieces of each face, among a total number of faces.
@@ -378,7 +383,7 @@ impl Surroundings<'_> {
         triangles.clear();
         facing.clear();
         let vertex = |point: DVec3, normal: DVec3, phase: f64| Vertex {
-            position: narrow_point((point - self.origin) / self.side).to_array(),
+            position: self.relative(point),
             normal: narrow_point(normal / (self.side * self.side)).to_array(),
             hatch: narrow(phase),
         };

@@ -6,6 +6,7 @@
 #[path = "../report/browser.rs"]
 mod browser;
 mod camera;
+mod carried;
 mod charts;
 mod compared;
 mod fields;

@@ -29,9 +29,13 @@ pub(super) struct Bodies<'a> {
     pub(super) tally: Tally,
     /// The signed area of each polygon of a body in the plane.
     rest_areas: Vec<f64>,
-    /// The surface, and the edges of its triangles if it casts a shadow.
+    /// The surface that is seen, and the edges of its triangles if it casts a shadow.
     pub(super) skin: Skin,
     pub(super) seams: Vec<shadow::Edge>,
+    /// The points of the skin that belong together: of the elements of each body, and of carried surfaces.
+    pub(super) parts: Vec<Range<usize>>,
+    /// The surface of the elements, if others are seen in its place.
+    cage: Option<Skin>,
     /// The triangles of faces that are not convex.
     pub(super) ears: Ears,
     /// Elements without faces.
@@ -57,7 +61,9 @@ impl<'a> Bodies<'a> {
             Dimension::Space => Vec::new(),
         };
         let ears = Ears::new(body);
-        let (skin, bare) = (Skin::new(body, &ears), bare_elements(body));
+        let (skin, bare) = (Skin::new(assembly, &ears, view.visible.surfaces), bare_elements(body));
+        let cage = (!skin.fine.is_empty()).then(|| Skin::new(assembly, &ears, false));
+        let of_elements = cage.as_ref().unwrap_or(&skin);
         let throws_shadow = view.shadow && body.dimension == Dimension::Space;
         Self {
             assembly,
@@ -68,8 +74,10 @@ impl<'a> Bodies<'a> {
             rest_areas,
             seams: if throws_shadow { shadow::edges(&skin.triangles) } else { Vec::new() },
             edges: if view.visible.surfaces { Edges::default() } else { Edges::new(body) },
-            bearers: if view.visible.displacements { bearers(body, &skin, &bare) } else { Vec::new() },
+            bearers: if view.visible.displacements { bearers(body, of_elements, &bare) } else { Vec::new() },
+            parts: skin.parts(assembly),
             skin,
+            cage,
             ears,
             bare,
         }
@@ -82,6 +90,11 @@ impl<'a> Bodies<'a> {
     /// All bodies as one.
     pub(super) fn body(&self) -> &'a Body {
         self.assembly.whole()
+    }
+
+    /// The surface of the elements.
+    pub(super) fn cage(&self) -> &Skin {
+        self.cage.as_ref().unwrap_or(&self.skin)
     }
 
     /// The nodes of each body.

@@ -4,7 +4,7 @@ use super::Composer;
 use super::draft::Draft;
 use super::plane_marks::node_radius;
 use crate::look::ColourScale;
-use crate::picture::shell::boundaries;
+use crate::picture::shell::{Side, boundaries};
 use crate::picture::surface::{Lines, SurfaceLines, Surroundings};
 use crate::picture::wire::Wire;
 use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
@@ -44,7 +44,13 @@ impl Draft<'_> {
             shades: self.shades.as_ref(),
             coloured: self.bodies.assembly().bodies().len() > 1 && self.shades.is_none(),
         };
-        let sets = boundaries(self.body, &self.run.snapshot.turned_over);
+        let over = &self.run.snapshot.turned_over;
+        let fine = &self.bodies.skin.fine;
+        let mut sets = boundaries(self.body, over);
+        if !fine.is_empty() {
+            let is_shown = |side: &Side| !fine.iter().any(|fine| fine.faces.contains(&(side.face as usize)));
+            sets.iter_mut().for_each(|sides| sides.retain(is_shown));
+        }
         let total = sets.iter().map(Vec::len).sum();
         let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
         surroundings.add(&sets[0], total, kinds, &mut sound, lines);
@@ -58,6 +64,16 @@ impl Draft<'_> {
             at += 1;
             at > of_sound || border.edge.is_none_or(|edge| !shared.contains(&edge))
         });
+        let of_nodes = match &self.shades {
+            Some(shades) if !fine.is_empty() => shades.of_nodes(self.body),
+            _ => Vec::new(),
+        };
+        let mut points = &self.skin[self.bodies.skin.nodes.len()..];
+        for fine in fine {
+            let (own, others) = points.split_at(fine.surface.rest.len());
+            surroundings.add_carried(fine, own, over, &of_nodes, &mut sound, lines);
+            points = others;
+        }
         // Coloured strokes replace them.
         if self.of_nodes.is_empty() {
             lines.drawn.extend(self.bare_lines().into_iter().map(|(ends, over)| {
@@ -107,7 +123,7 @@ impl Draft<'_> {
         let strain = self.composer.strain_of_springs(self.run.run).map(|scale| (&self.composer.ramp[..], scale));
         let on_skin: Vec<_>;
         let springs = if wire.hides_inside() && !self.flat {
-            let holds = |ends: &&[u32; 2]| ends.iter().all(|&node| self.bodies.skin.holds(node));
+            let holds = |ends: &&[u32; 2]| ends.iter().all(|&node| self.bodies.cage().holds(node));
             on_skin = springs.iter().filter(holds).copied().collect();
             &on_skin[..]
         } else {

@@ -42,6 +42,8 @@ pub(super) struct Draft<'a> {
     pub(super) side: f64,
     /// The nodes (m); empty if not all are known.
     pub(super) position: Cow<'a, [DVec3]>,
+    /// The points of the skin (m); empty if not all nodes are known.
+    pub(super) skin: Vec<DVec3>,
     /// The shown field.
     pub(super) shades: Option<Shades>,
     /// Its places on the colour scale at the nodes, if lines or discs show them.
@@ -111,6 +113,7 @@ impl<'a> Draft<'a> {
             key: key_light(&lens),
             origin: framing.target,
             side: view.side,
+            skin: bodies.skin.points(&position),
             position,
             shades,
             of_nodes,

@@ -47,11 +47,18 @@ impl Draft<'_> {
 
     /// The outline of the body with its nodes at other positions (m).
     pub(super) fn outline(&self, position: &[DVec3], colour: Colour, room: Rectangle, curves: &mut Vec<Item>) {
-        let pixels = position.iter().map(|&at| self.pixel(at)).collect::<Option<Vec<_>>>();
-        let Some(pixels) = pixels.filter(|pixels| !self.diverged && pixels.len() == self.body.len()) else { return };
+        if self.diverged || position.len() != self.body.len() {
+            return;
+        }
         let skin = &self.bodies.skin;
-        let triangles: Vec<_> =
-            skin.triangles.iter().map(|corners| corners.map(|at| skin.nodes[at as usize])).collect();
+        // All nodes, and after them the points of carried surfaces.
+        let mut points = position.to_vec();
+        skin.fine.iter().for_each(|fine| fine.place(position, &mut points));
+        let pixels = points.iter().map(|&at| self.pixel(at)).collect::<Option<Vec<_>>>();
+        let Some(pixels) = pixels else { return };
+        let point =
+            |at: u32| skin.nodes.get(at as usize).copied().unwrap_or(at + (self.body.len() - skin.nodes.len()) as u32);
+        let triangles: Vec<_> = skin.triangles.iter().map(|corners| corners.map(point)).collect();
         let bars = self.bodies.bare.iter().flat_map(|&element| self.body.topology().edges_of(element));
         let path = ghost::outline(&pixels, &triangles, &bars.collect::<Vec<_>>(), self.around(room));
         let [width, halo] = [STRONG, TICK].map(|width| narrow(width * self.scale.line()));

@@ -27,7 +27,7 @@ impl Draft<'_> {
         if self.diverged || held.is_empty() || self.position.is_empty() {
             return;
         }
-        let visible = self.bodies.skin.visible(&self.position, &self.lens);
+        let visible = self.bodies.cage().visible(&self.position, &self.lens);
         for grip in held {
             let nodes = grip.nodes.iter().map(|&node| node as usize).filter(|&node| node < self.position.len());
             let nodes: Vec<_> = nodes.collect();

@@ -115,11 +115,10 @@ impl Draft<'_> {
     fn casters(&self, staged: &Staged) -> Casters<'_> {
         let Bodies { skin, seams, .. } = self.bodies;
         let relative = |at: &DVec3| (at - self.origin) / self.side;
-        let on_skin = skin.nodes.iter().filter_map(|&node| self.position.get(node as usize));
-        let mut casters = if self.position.is_empty() {
+        let mut casters = if self.skin.is_empty() {
             Casters::new(Vec::new(), &[], &[])
         } else {
-            Casters::new(on_skin.map(relative).collect(), &skin.triangles, seams)
+            Casters::new(self.skin.iter().map(relative).collect(), &skin.triangles, seams)
         };
         casters.add(staged.shadow_points.iter().map(relative), &staged.shadow_triangles);
         casters

@@ -1,6 +1,5 @@
 //! Composes one panel from its parts.
 
-use super::bodies::Bodies;
 use super::draft::Draft;
 use super::plane_body::PlaneBody;
 use super::plane_marks::node_radius;
@@ -98,13 +97,11 @@ impl Draft<'_> {
         if self.diverged {
             return 1.0;
         }
-        // The skin of one body follows that of another.
-        let body = |&node: &u32| self.bodies.assembly().body_of_node(node as usize);
-        let size = |nodes: &[u32]| {
-            let [low, high] = self.bounds(nodes.iter().filter_map(|&node| self.position.get(node as usize)));
+        let size = |points: Range<usize>| {
+            let [low, high] = self.bounds(self.skin.get(points).into_iter().flatten());
             (high - low).max_element()
         };
-        let of_bodies = self.bodies.skin.nodes.chunk_by(|one, other| body(one) == body(other)).map(size);
+        let of_bodies = self.bodies.parts.iter().cloned().map(size);
         let widest = of_bodies.fold(f64::NEG_INFINITY, f64::max) / self.scale.line();
         let share = ((widest - APART) / (CHART - APART)).clamp(0.0, 1.0);
         1.0 - (1.0 - LEAST_CONTOUR) * (1.0 - share * share * (3.0 - 2.0 * share))
@@ -137,7 +134,7 @@ impl Draft<'_> {
             cell: self.cell(),
             ground: geometry::ground(&self.scene.obstacles, self.run.snapshot.time),
             position: &self.position,
-            skin: (self.scene.view.visible.surfaces && !self.diverged).then_some(&self.bodies.skin),
+            skin: (self.scene.view.visible.surfaces && !self.diverged).then(|| self.bodies.cage()),
             soft: self.bodies.soft * self.side,
             start: self.composer.start_box,
             reach: &self.composer.reach,
@@ -169,7 +166,7 @@ impl Draft<'_> {
 
     /// The nodes with arrows and their opacity: 0 if all faces of a node in space are turned away.
     fn facing_bearers(&self) -> Vec<(u32, f64)> {
-        let Bodies { skin, bearers, .. } = self.bodies;
+        let (skin, bearers) = (self.bodies.cage(), &self.bodies.bearers);
         if !self.scene.view.visible.surfaces {
             return bearers.iter().map(|&node| (node, 1.0)).collect();
         }

@@ -5,7 +5,6 @@ use crate::colour::{Colour, mixed};
 use crate::look::Palette;
 use crate::picture::arrows::{arrow, bare, outlined};
 use crate::picture::caption::Writer;
-use crate::picture::compose::bodies::Bodies;
 use crate::picture::compose::draft::Draft;
 use crate::picture::compose::figure::labels::Labels;
 use crate::picture::compose::plane_body::path_of;
@@ -72,7 +71,7 @@ impl Drawn<'_> {
     /// How well each node of the body or of its rest shape can be seen, from 0 to 1. In the plane all are visible; in
     /// space also nodes of elements without faces, but not nodes inside.
     fn seen(&self, position: &[DVec3]) -> Vec<f64> {
-        let Draft { bodies: Bodies { skin, bare, .. }, body, .. } = self.draft;
+        let (skin, bare, body) = (self.draft.bodies.cage(), &self.draft.bodies.bare, self.draft.body);
         let mut seen = skin.visible(position, &self.draft.lens);
         for node in (0..position.len()).filter(|&node| !skin.holds(node as u32)) {
             let is_bare = || bare.iter().any(|&element| body.elements[element].contains(&(node as u32)));
