@@ -2,6 +2,7 @@
 
 use super::carried::Carried;
 use super::element::{Dimension, ElementKind, Solids, around, kind};
+use super::fill;
 use super::hull::{Hulls, bounds};
 use super::lists::IndexLists;
 use super::topology::{Elements, Faces, assign_faces};
@@ -25,8 +26,8 @@ pub struct Body {
     pub hulls: Hulls,
     /// The faces of the elements, or the listed ones.
     pub faces: Faces,
-    /// The part of each element's volume that is filled, above 0 and at most 1: its stiffness, its damping and its share in the
-    /// masses of its nodes are in proportion. `None` if all are full.
+    /// The part of each element's volume that is filled, above 0 and at most 1. Its stiffness and its damping are in proportion; its
+    /// share in the masses of its nodes has to be, and then it does not shorten the stable step. `None` if all are full.
     pub fill: Option<Vec<f64>>,
     /// The fine surface that stands for the body in pictures.
     pub carried: Option<Arc<Carried>>,
@@ -105,9 +106,17 @@ impl Body {
         self.rest.is_empty()
     }
 
-    /// The mass of the lightest node (kg).
+    /// The mass of the lightest node (kg). Where elements are filled in part, of the node that would be the lightest if they were
+    /// full: its mass goes with the stiffness of full elements.
     pub fn lightest(&self) -> f64 {
-        self.mass.iter().fold(f64::INFINITY, |least, &mass| least.min(mass))
+        let parts = self.fill_of_nodes();
+        let full = |(node, mass): (usize, &f64)| mass / parts.as_ref().map_or(1.0, |parts| parts[node]);
+        self.mass.iter().enumerate().map(full).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The mean of the filled parts of each node's elements, 1 for a node of no element; `None` if all elements are full.
+    pub fn fill_of_nodes(&self) -> Option<Vec<f64>> {
+        fill::of_nodes(self)
     }
 
     /// The largest side of the box around the body at rest (m).

@@ -6,6 +6,7 @@ use super::crew::Crew;
 use super::diagnostics::{BodyFacts, Lazy};
 use super::element;
 use super::element::ElementKind;
+use super::fill;
 use super::gather::Group;
 use super::lanes::{Lanes, Set, Work, each};
 use super::model::Report;
@@ -25,7 +26,7 @@ pub(crate) struct Diagnose {
     /// Signed volume of each element at rest (m³, in the plane m²). It is zero for segments, triangles in space and all
     /// elements that are flat at rest, which therefore never count as turned over.
     volumes_at_rest: Vec<f64>,
-    /// Their sum.
+    /// The sum of what is filled of them.
     volume_at_rest: f64,
     /// The elements without a volume from faces.
     affine: Vec<Affine>,
@@ -50,7 +51,7 @@ impl Diagnose {
     pub(crate) fn new(body: &Arc<Body>) -> Self {
         let affine = Affine::all(body);
         let volumes_at_rest = at_rest(body, &affine);
-        let volume_at_rest = volumes_at_rest.iter().sum();
+        let volume_at_rest = fill::volume(body.fill.as_deref(), &volumes_at_rest);
         let rest_centre = mean(&body.rest);
         let centred = body.rest.iter().map(|&rest| rest - rest_centre).collect();
         Self { body: Arc::clone(body), volumes_at_rest, volume_at_rest, affine, rest_centre, centred }
@@ -71,6 +72,7 @@ impl Diagnose {
             report: Lazy::new(Box::new(report)),
             volumes: Lazy::new(Box::new(move || self.volumes(state.position, crew))),
             volumes_at_rest: &self.volumes_at_rest,
+            fill: self.body.fill.as_deref(),
             volume_at_rest: self.volume_at_rest,
             placement: Lazy::new(Box::new(move || self.placement(state.position))),
             centred: &self.centred,

@@ -1,6 +1,7 @@
 //! The diagnostics: numbers that describe a state. One table defines the name, key, unit, meaning and formula of each;
 //! files, strips, figures, goldens and the schema are derived from it.
 
+use super::fill;
 use super::model::Report;
 use super::placement::Placement;
 use super::state::Nodes;
@@ -27,7 +28,9 @@ pub(super) struct BodyFacts<'a> {
     pub(super) volumes: Lazy<'a, Vec<f64>>,
     /// Signed volume of each element at rest (m³, in the plane m²).
     pub(super) volumes_at_rest: &'a [f64],
-    /// The sum of the volumes at rest.
+    /// The filled part of each element, unless all are full.
+    pub(super) fill: Option<&'a [f64]>,
+    /// The sum of what is filled of the volumes at rest (m³, in the plane m²).
     pub(super) volume_at_rest: f64,
     pub(super) placement: Lazy<'a, Placement>,
     /// Rest positions relative to their mean (m).
@@ -287,7 +290,7 @@ diagnostics! { facts:
 
     /// Total signed volume divided by the volume at rest; in the plane, area.
     VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries =
-        facts.total(|body| body.volumes.iter().sum()) / facts.total(|body| body.volume_at_rest);
+        facts.total(|body| fill::volume(body.fill, &body.volumes)) / facts.total(|body| body.volume_at_rest);
 
     /// RMS distance of the nodes from the best rigid placement of the rest shape of their body (m).
     ShapeError, shape_error: f64, "shape error", "m", Summaries = facts.shape_error();

@@ -28,6 +28,7 @@ mod diagnostics;
 mod dynamics;
 mod element;
 mod field;
+mod fill;
 mod gather;
 pub mod geometry;
 mod grip;

@@ -27,7 +27,7 @@ pub(crate) use stepper::{Scheme, Stepper};
 use crate::body::Body;
 use crate::contact::{Bound, Floor};
 use crate::lanes::Set;
-use crate::law::{ByLaw, Energy, Law};
+use crate::law::{ByLaw, Energy, Filled, Law};
 use crate::state::Nodes;
 use general::General;
 use glam::DVec3;
@@ -74,7 +74,10 @@ impl Compiled {
         conditions: &Conditions,
         faster: Option<Box<dyn Stepper>>,
     ) -> Self {
-        let stepper = faster.unwrap_or_else(|| Box::new(General::new(law.clone(), body, conditions)));
+        let stepper = faster.unwrap_or_else(|| match body.fill {
+            Some(_) => Box::new(General::new(Filled(law.clone()), body, conditions)),
+            None => Box::new(General::new(law.clone(), body, conditions)),
+        });
         Self { stepper, energy: Box::new(ByLaw::with(conditions.set, law, body)) }
     }
 }

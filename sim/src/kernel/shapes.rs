@@ -4,7 +4,7 @@ use super::rotation::{self, Matrix, Moments, Optimum, Solver};
 use crate::body::Body;
 use crate::crew::Crew;
 use crate::element::Dimension;
-use crate::lanes::{Lanes, Set, Work, each};
+use crate::lanes::{Lanes, MOST, Set, Work, each};
 use crate::law::{Corners, Reader, alike};
 use glam::{DMat3, DQuat, DVec3};
 use std::ops::Range;
@@ -46,7 +46,7 @@ impl Work for Strains<'_> {
         let mut at = range.start;
         while at < range.end {
             let (group, count) = alike::<L>(&body.elements, at..range.end);
-            reader.read(&group, body, position, None);
+            reader.read(&group, body, position, None, &[1.0; MOST]);
             let shapes = Shapes::new(reader.now(), reader.rest());
             let m = match body.dimension {
                 Dimension::Plane => shapes.in_plane([near[0], near[1]]),

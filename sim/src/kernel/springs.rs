@@ -88,7 +88,8 @@ const ACCELERATION: usize = 7;
 const ARRAYS: usize = 10;
 
 impl Stencil {
-    /// The springs of a body with a stiffness (N/m) and a damping (N s/m), or `None` if they form no families, so that most lanes would be empty.
+    /// The springs of a body with a stiffness (N/m) and a damping (N s/m), or `None` if they form no families, so that most
+    /// lanes would be empty, or if the body is filled in part.
     pub(crate) fn new(
         springs: &[[u32; 2]],
         [stiffness, damping]: [f64; 2],
@@ -98,7 +99,7 @@ impl Stencil {
         /// Lanes for each spring, at most: if less than half of them are used, the gathering kernel is faster.
         const SPARSE: usize = 2;
         let &Conditions { gravity, step, set, .. } = conditions;
-        let Body { rest, mass, .. } = body;
+        let Body { rest, mass, fill: None, .. } = body else { return None };
         let nodes = rest.len();
         let chunks = nodes.div_ceil(CHUNK).max(1);
         let mut sorted: Vec<(usize, usize, usize)> = Vec::with_capacity(springs.len());

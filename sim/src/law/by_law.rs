@@ -3,7 +3,8 @@
 use super::{Law, Reader, alike};
 use crate::body::Body;
 use crate::crew::Crew;
-use crate::lanes::{Lanes, Set, Work, each};
+use crate::fill;
+use crate::lanes::{Lanes, MOST, Set, Work, each};
 use crate::lists::IndexLists;
 use crate::model::blocks::{self, Gather};
 use crate::model::{ForceModel, Report, Scratch, Share};
@@ -33,6 +34,8 @@ pub struct ByLaw<W> {
     body: Arc<Body>,
     /// Those of the law, if they are not the body's.
     elements: Option<IndexLists>,
+    /// The filled part of each element, unless all are full.
+    fill: Option<Vec<f64>>,
     gather: OnceLock<Gather>,
 }
 
@@ -43,13 +46,20 @@ impl<W: Law> ByLaw<W> {
     }
 
     pub(crate) fn with(set: Set, law: W, body: &Arc<Body>) -> Self {
-        let elements = law.elements(body);
-        Self { set, law, body: Arc::clone(body), elements, gather: OnceLock::new() }
+        let (elements, fill) = (law.elements(body), fill::of_law(&law, body));
+        Self { set, law, body: Arc::clone(body), elements, fill, gather: OnceLock::new() }
     }
 
     #[inline(always)]
     fn elements(&self) -> &IndexLists {
         self.elements.as_ref().unwrap_or(&self.body.elements)
+    }
+
+    /// The filled parts of `count` elements from one on, unless all are full.
+    #[inline(always)]
+    fn parts<L: Lanes>(&self, first: usize, count: usize) -> Option<L> {
+        let of_lane = |fill: &[f64], lane: usize| fill[first + lane.min(count - 1)];
+        self.fill.as_deref().map(|fill| L::from_array(each!(8, lane => of_lane(fill, lane))))
     }
 }
 
@@ -110,13 +120,18 @@ impl<W: Law> Work for Energies<'_, W> {
         let mut at = range.start;
         while at < range.end {
             let (group, count) = alike::<L>(by.elements(), at..range.end);
-            reader.read(&group, &by.body, position, None);
+            reader.read(&group, &by.body, position, None, &[1.0; MOST]);
             reader.prepare(&by.law);
             reader.recall(memory, at, count, W::MEMORY);
             let (element, rest) = reader.elements::<W>(count);
             shares.clear();
             shares.resize(element.corners(), L::splat(0.0));
-            let residual = by.law.energy(&element, &rest, &mut shares).to_array();
+            let mut residual = by.law.energy(&element, &rest, &mut shares);
+            if let Some(parts) = by.parts::<L>(at, count) {
+                residual = residual * parts;
+                shares.iter_mut().for_each(|share| *share = *share * parts);
+            }
+            let residual = residual.to_array();
             let mut energy = L::splat(0.0);
             for &share in &shares {
                 energy = energy + share;
@@ -187,7 +202,8 @@ impl<W: Law> Work for Forces<'_, W> {
         let mut at = range.start;
         while at < range.end {
             let (group, count) = alike::<L>(self.by.elements(), at..range.end);
-            reader.read(&group, body, nodes.position, Some(nodes.velocity));
+            reader.read(&group, body, nodes.position, Some(nodes.velocity), &[1.0; MOST]);
+            let parts = self.by.parts::<L>(at, count);
             reader.prepare(law);
             reader.recall(memory, at, count, W::MEMORY);
             let (element, _) = reader.elements::<W>(count);
@@ -198,7 +214,11 @@ impl<W: Law> Work for Forces<'_, W> {
             for corner in 0..element.corners() {
                 let force = law.force(&element, corner, &whole);
                 let (p, v) = element.corner(corner);
-                let force = each!(3, axis => d.neg_mul_add(v[axis], k.neg_mul_add(p[axis], force[axis])).to_array());
+                let mut force = each!(3, axis => d.neg_mul_add(v[axis], k.neg_mul_add(p[axis], force[axis])));
+                if let Some(parts) = parts {
+                    force = each!(3, axis => force[axis] * parts);
+                }
+                let force = each!(3, axis => force[axis].to_array());
                 for lane in 0..count {
                     corners[first + lane * element.corners() + corner] =
                         DVec3::new(force[0][lane], force[1][lane], force[2][lane]);

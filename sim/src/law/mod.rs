@@ -6,10 +6,12 @@
 #![expect(unsafe_code, reason = "the corners of elements are read without tests of bounds")]
 
 mod by_law;
+mod filled;
 mod reader;
 
 pub use by_law::ByLaw;
 pub(crate) use by_law::Energy;
+pub(crate) use filled::Filled;
 pub(crate) use reader::{Reader, alike};
 
 use super::body::Body;
@@ -28,6 +30,10 @@ use std::marker::PhantomData;
 /// compiled for each vector set. A model that is a law returns itself from
 /// [`ElasticModel::vectorised`](super::model::ElasticModel::vectorised), and [`ByLaw`] from
 /// [`ElasticModel::prepare`](super::model::ElasticModel::prepare).
+///
+/// A law is about full elements. Where elements are [filled in part](super::body::Body::fill), forces, energies and the residual are
+/// multiplied by the filled part outside of it. Elements of its own, such as springs, have the mean part of the body's
+/// elements that hold all their nodes.
 ///
 /// # Example
 /// A complete model: a rod with the energy `k/(8 L²) (|p|² − L²)²` between any two nodes of an element.
@@ -160,6 +166,12 @@ impl<L: Lanes> Corners<'_, L> {
     #[inline(always)]
     pub(crate) fn mass(&self, corner: usize) -> L {
         self.columns(corner)[RECORD - 1]
+    }
+
+    /// The part of elements at rest that is filled.
+    #[inline(always)]
+    pub(crate) fn part(&self) -> L {
+        self.columns(0)[RECORD - 2]
     }
 }
 

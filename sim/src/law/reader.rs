@@ -45,8 +45,16 @@ impl<L: Lanes> Reader<L> {
     }
 
     /// Reads elements at rest, and with positions (m) and velocities (m/s) of the nodes; without velocities they are at rest.
+    /// `parts` are the filled parts of the elements.
     #[inline(always)]
-    pub(crate) fn read(&mut self, group: &Group<'_>, body: &Body, position: &[DVec3], velocity: Option<&[DVec3]>) {
+    pub(crate) fn read(
+        &mut self,
+        group: &Group<'_>,
+        body: &Body,
+        position: &[DVec3],
+        velocity: Option<&[DVec3]>,
+        parts: &[f64; MOST],
+    ) {
         self.corners = group.corners();
         let rows = self.corners * MOST;
         if self.offsets.len() < rows {
@@ -55,12 +63,12 @@ impl<L: Lanes> Reader<L> {
             self.rest.resize(rows * RECORD, 0.0);
         }
         for corner in 0..self.corners {
-            for lane in 0..L::WIDTH {
+            for (lane, &part) in parts.iter().enumerate().take(L::WIDTH) {
                 let node = group.node(lane, corner);
                 let (at, p, r) = ((corner * MOST + lane) * RECORD, position[node], body.rest[node]);
                 let v = velocity.map_or(DVec3::ZERO, |velocity| velocity[node]);
                 self.now[at..][..6].copy_from_slice(&[p.x, p.y, v.x, v.y, p.z, v.z]);
-                self.rest[at..][..RECORD].copy_from_slice(&[r.x, r.y, 0.0, 0.0, r.z, 0.0, 0.0, body.mass[node]]);
+                self.rest[at..][..RECORD].copy_from_slice(&[r.x, r.y, 0.0, 0.0, r.z, 0.0, part, body.mass[node]]);
             }
         }
     }

@@ -110,7 +110,7 @@ impl SignedGather {
 }
 
 /// The entries of all nodes, sorted by node, and rising for each node.
-struct EntriesOfNode {
+pub(crate) struct EntriesOfNode {
     /// Where the entries of each node begin; the last number is where all end.
     starts: Vec<usize>,
     entries: Vec<usize>,
@@ -118,7 +118,7 @@ struct EntriesOfNode {
 
 impl EntriesOfNode {
     /// Sorts entries, given in rising order, by their nodes. Node numbers are below `nodes`.
-    fn new(nodes: usize, entries: impl Iterator<Item = (usize, u32)> + Clone) -> Self {
+    pub(crate) fn new(nodes: usize, entries: impl Iterator<Item = (usize, u32)> + Clone) -> Self {
         let mut starts = vec![0; nodes + 1];
         for (_, node) in entries.clone() {
             starts[node as usize + 1] += 1;
@@ -135,7 +135,8 @@ impl EntriesOfNode {
         Self { starts, entries: sorted }
     }
 
-    fn of(&self, node: usize) -> &[usize] {
+    /// The entries of a node.
+    pub(crate) fn of(&self, node: usize) -> &[usize] {
         &self.entries[self.starts[node]..self.starts[node + 1]]
     }
 }

@@ -10,6 +10,7 @@ use super::{
     Vectorised, blocks,
 };
 use crate::body::Body;
+use crate::fill;
 use crate::kernel::shapes::square;
 use crate::kernel::springs::Stencil;
 use crate::kernel::{Compiled, Conditions, Stepper};
@@ -122,9 +123,11 @@ impl ElasticModel for MassSpring {
     /// mⱼ |uⱼ|²)`.
     fn bound(&self, body: &Body) -> Option<Mode> {
         let mut sums = vec![0.0; body.len()];
-        for ends in &*self.springs {
+        let parts = self.parts(body);
+        for (spring, ends) in self.springs.iter().enumerate() {
             let [i, j] = ends.map(|node| node as usize);
-            let sum = 1.0 / body.mass[i] + 1.0 / body.mass[j];
+            let part = parts.as_ref().map_or(1.0, |parts| parts[spring]);
+            let sum = part * (1.0 / body.mass[i] + 1.0 / body.mass[j]);
             (sums[i], sums[j]) = (sums[i] + sum, sums[j] + sum);
         }
         let most = sums.into_iter().fold(0.0, f64::max);
@@ -149,6 +152,11 @@ impl Vectorised for MassSpring {
 }
 
 impl MassSpring {
+    /// The filled part of each spring; `None` if the body is full.
+    fn parts(&self, body: &Body) -> Option<Vec<f64>> {
+        fill::parts(body, self.springs.iter().map(|ends| &ends[..]))
+    }
+
     /// The code by the law of the springs, or with a faster stepper, if there is one.
     pub(crate) fn by_law(
         &self,
@@ -229,6 +237,8 @@ struct SpringForces {
     model: MassSpring,
     /// `L_ij` of each spring (m).
     natural_length: Vec<f64>,
+    /// The filled part of each spring, unless the body is full.
+    parts: Option<Vec<f64>>,
     /// Adds up the spring forces of each node; a spring acts on its second node with the opposite force.
     gather: blocks::SignedGather,
 }
@@ -238,7 +248,13 @@ impl SpringForces {
         let length = |&[i, j]: &[u32; 2]| (body.rest[i as usize] - body.rest[j as usize]).length();
         let natural_length = model.springs.iter().map(length).collect();
         let gather = blocks::SignedGather::new(body.len(), &model.springs);
-        Self { model, natural_length, gather }
+        Self { parts: model.parts(body), model, natural_length, gather }
+    }
+
+    /// `k` (N/m) and `D` (N s/m) of a spring.
+    fn constants(&self, spring: usize) -> [f64; 2] {
+        let part = self.parts.as_ref().map_or(1.0, |parts| parts[spring]);
+        [self.model.stiffness, self.model.damping].map(|full| full * part)
     }
 }
 
@@ -251,16 +267,17 @@ impl ForceModel for SpringForces {
         scratch: &mut Scratch,
         forces: &mut [DVec3],
     ) {
-        let Self { model, natural_length, gather } = self;
+        let Self { model, natural_length, gather, .. } = self;
         let spring_forces = scratch.vectors(natural_length.len());
         blocks::for_each_one(spring_forces, &|spring, out| {
             let [i, j] = model.springs[spring].map(|node| node as usize);
+            let [k, d] = self.constants(spring);
             *out = spring_force(
                 at.position[i] - at.position[j],
                 at.velocity[i] - at.velocity[j],
                 natural_length[spring],
-                model.stiffness,
-                model.damping,
+                k,
+                d,
             );
         });
         gather.add(spring_forces, forces);
@@ -275,7 +292,8 @@ impl ForceModel for SpringForces {
         for (spring, (ends, &natural)) in self.model.springs.iter().zip(&self.natural_length).enumerate() {
             let [i, j] = ends.map(|node| at.position[node as usize]);
             let stretch = (i - j).length() - natural;
-            let energy = 0.5 * self.model.stiffness * stretch * stretch;
+            let [k, _] = self.constants(spring);
+            let energy = 0.5 * k * stretch * stretch;
             share(spring, ends, &[0.5 * energy; 2]);
             whole += energy;
         }

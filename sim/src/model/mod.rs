@@ -103,7 +103,7 @@ pub trait ElasticModel: Debug + Send + Sync {
     /// Elastic constant `k` (N/m). Figures divide forces by it to draw them as lengths.
     fn stiffness(&self) -> f64;
 
-    /// The shortest period (s) of a node of the body: `T = 2π√(m/k)` with its lightest node. A scene can give time steps as
+    /// The shortest period (s) of a node of the body: `T = 2π√(m/k)` with its [lightest](Body::lightest) node. A scene can give time steps as
     /// fractions of this period.
     fn shortest_period(&self, body: &Body) -> f64 {
         std::f64::consts::TAU * (body.lightest() / self.stiffness()).sqrt()
@@ -175,7 +175,8 @@ pub trait ElasticModel: Debug + Send + Sync {
 }
 
 /// The internal forces of a body, as a pure function: the same nodes and the same memory give the same forces and the
-/// same next memory. So trial evaluations and rejected steps have no side effects.
+/// same next memory. So trial evaluations and rejected steps have no side effects. Forces and energies of an element are in
+/// proportion to its [filled part](Body::fill).
 ///
 /// [`ByLaw`] makes them from the [`Law`] of the elements, which is less work and faster.
 pub trait ForceModel: Send + Sync {
@@ -273,8 +274,8 @@ impl Report {
 }
 
 /// The damping constant (N s/m), from either parameter: the constant, or the ratio `ζ = D / 2√(km)`; 0 if neither is
-/// given. `m` is the mass of the lightest node, as in [`ElasticModel::shortest_period`]: the masses of other nodes do not decide
-/// whether a damping ratio and a step in periods are stable together.
+/// given. `m` is the mass of the [lightest](Body::lightest) node, as in [`ElasticModel::shortest_period`]: the masses of other nodes do
+/// not decide whether a damping ratio and a step in periods are stable together.
 fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Body) -> Result<f64, Misfit> {
     match (constant, ratio) {
         (Some(_), Some(_)) => {

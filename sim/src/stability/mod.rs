@@ -11,6 +11,7 @@ mod limits;
 use super::assembly::Assembly;
 use super::body::Body;
 use super::element::Dimension;
+use super::fill;
 use super::grip::Grip;
 use super::integrate::Integrator;
 use super::mode::Mode;
@@ -128,11 +129,13 @@ fn start(body: &Body, is_free: &[bool]) -> Vec<DVec3> {
 /// state exceeds them.
 fn stretched(body: &Body, model: &dyn ElasticModel, is_free: &[bool]) -> Mode {
     let scale: Vec<f64> = body.mass.iter().map(|mass| 1.0 / mass.sqrt()).collect();
+    let parts = fill::parts(body, model.springs().iter().map(|ends| &ends[..]));
     let product = |from: &[DVec3], to: &mut [DVec3]| {
         to.fill(DVec3::ZERO);
-        for &[i, j] in model.springs() {
+        for (spring, &[i, j]) in model.springs().iter().enumerate() {
             let [i, j] = [i as usize, j as usize];
-            let stretch = from[i] * scale[i] - from[j] * scale[j];
+            let part = parts.as_ref().map_or(1.0, |parts| parts[spring]);
+            let stretch = (from[i] * scale[i] - from[j] * scale[j]) * part;
             to[i] += stretch * scale[i];
             to[j] -= stretch * scale[j];
         }

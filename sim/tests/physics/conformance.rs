@@ -111,7 +111,14 @@ pub(crate) fn bodies() -> Vec<Arc<Body>> {
         Arc::new(Body { mass, ..Body::clone(body) })
     });
     let unequal: Vec<_> = unequal.collect();
+    // And filled in part.
+    let filled = bodies.iter().map(|body| {
+        let fill = (0..body.elements.len()).map(|element| [0.4, 1.0, 0.7][element % 3]).collect();
+        Arc::new(Body { fill: Some(fill), ..Body::clone(body) })
+    });
+    let filled: Vec<_> = filled.collect();
     bodies.extend(unequal);
+    bodies.extend(filled);
     bodies
 }
 
@@ -330,7 +337,8 @@ fn an_element_at_a_point_keeps_its_rotation() {
         for _ in 0..3 {
             let forces = worker.follow(&State::at_rest(vec![DVec3::ONE; body.len()]));
             for (force, corner) in forces.iter().zip(&turned) {
-                let off = *force - (*corner - centre) * STIFFNESS;
+                let part = body.fill.as_ref().map_or(1.0, |fill| fill[0]);
+                let off = *force - (*corner - centre) * (part * STIFFNESS);
                 assert!(off.length() < 1e-11 * STIFFNESS, "{:?}: {off}", body.kinds);
             }
         }
@@ -422,7 +430,9 @@ fn the_order_of_nodes_and_elements_does_not_matter() {
             elements.push(&nodes.iter().map(|&node| renamed(node)).collect::<Vec<_>>());
         }
         let solids = if body.kinds == [ElementKind::Other] { Solids::Convex } else { Solids::Ordered };
-        let other = Arc::new(Body::new(body.dimension, rest, mass, elements, solids, None));
+        let fill = body.fill.iter().map(|fill| fill.iter().rev().copied().collect()).next();
+        let other = Body { fill, ..Body::new(body.dimension, rest, mass, elements, solids, None) };
+        let other = Arc::new(other);
         let state = deformed(&body, 0.2, 1);
         let mut moved = State::at_rest(vec![DVec3::ZERO; body.len()]);
         for (node, &at) in (0u32..).zip(&state.position) {

@@ -7,6 +7,7 @@ mod degenerate_starts;
 #[allow(unreachable_pub, reason = "documentation shows it, too")]
 mod example_model;
 mod figures;
+mod fill;
 mod grips;
 mod integrators;
 mod masses;

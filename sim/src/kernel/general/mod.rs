@@ -18,9 +18,10 @@ use super::stepper::{Pass, Passes, Stepper};
 use super::{Around, Conditions, Lost};
 use crate::body::Body;
 use crate::crew::Crew;
+use crate::fill;
 use crate::gather::Group;
 use crate::hull::bounds;
-use crate::lanes::{Lanes, MOST, Set, Work};
+use crate::lanes::{Lanes, MOST, Set, Work, each};
 use crate::law::{Law, RECORD, Reader};
 use crate::lists::IndexLists;
 use crate::tally::Tally;
@@ -29,7 +30,8 @@ use pass::{OfNodes, OnePart, SharedNodes};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// The last numbers of the record of a node, a cache line: 1/m, and the number of its elements.
+/// The last numbers of the record of a node, a cache line: 1/m, and the sum of the filled parts of its elements: their number, if all
+/// are full.
 const INVERSE_MASS: usize = 6;
 const VALENCE: usize = 7;
 /// Doubles in the sum of a node: the force in x, y, z, and padding.
@@ -102,21 +104,24 @@ struct Shared {
 }
 
 impl<W: Law> General<W> {
-    /// The elements of a body on which a law acts.
+    /// The elements of a body on which a law acts. If some are filled in part, the law is [`Filled`](crate::law::Filled).
     pub(crate) fn new(law: W, body: &Body, conditions: &Conditions) -> Self {
-        let own = law.elements(body);
+        let (own, fill) = (law.elements(body), fill::of_law(&law, body));
         let elements = own.as_ref().unwrap_or(&body.elements);
         let Body { rest, mass, .. } = body;
         let parts = cut(elements, along_curve(elements, rest));
         // The first part of each node, and whether it has several.
         let (mut first, mut is_shared) = (vec![NONE; rest.len()], vec![false; rest.len()]);
-        let mut valence = vec![0u32; rest.len()];
+        let mut valence = vec![0.0; rest.len()];
         for (part, own) in (0..).zip(&parts) {
-            for &node in own.iter().flat_map(|&element| &elements[element as usize]) {
-                let node = node as usize;
-                is_shared[node] |= first[node] != NONE && first[node] != part;
-                first[node] = first[node].min(part);
-                valence[node] += 1;
+            for &element in own {
+                let filled = fill.as_ref().map_or(1.0, |fill| fill[element as usize]);
+                for &node in &elements[element as usize] {
+                    let node = node as usize;
+                    is_shared[node] |= first[node] != NONE && first[node] != part;
+                    first[node] = first[node].min(part);
+                    valence[node] += filled;
+                }
             }
         }
         let mut places = vec![RecordAddress { part: 0, record: 0 }; rest.len()];
@@ -156,7 +161,7 @@ impl<W: Law> General<W> {
             for (at, &node) in index.iter().enumerate().filter(|(at, _)| is_node(*at)) {
                 let record = &mut records.as_mut_slice()[at * RECORD..][..RECORD];
                 record[INVERSE_MASS] = 1.0 / mass[node as usize];
-                record[VALENCE] = f64::from(valence[node as usize]);
+                record[VALENCE] = valence[node as usize];
             }
             // Lanes without an element use this record.
             let nothing = index.len() as u32;
@@ -166,7 +171,9 @@ impl<W: Law> General<W> {
             let class = |corners: usize| {
                 let of_class: Vec<u32> =
                     own.iter().copied().filter(|&element| elements[element as usize].len() == corners).collect();
-                Class::new(&law, body, conditions.set, elements, of_class, &record, nothing)
+                let prepare = Prepare { law: &law, body, lists: elements, fill: fill.as_deref(), elements: &of_class };
+                let constants = conditions.set.run(prepare);
+                Class::new::<W>(elements, of_class, constants, &record, nothing)
             };
             made.push(Part {
                 own: whole / MOST,
@@ -252,15 +259,7 @@ fn cut(elements: &IndexLists, order: Vec<u32>) -> Vec<Vec<u32>> {
 
 impl Class {
     /// Elements of lists, with the same number of corners. Lanes without an element use the record `nothing`.
-    fn new<W: Law>(
-        law: &W,
-        body: &Body,
-        set: Set,
-        lists: &IndexLists,
-        elements: Vec<u32>,
-        record: &[u32],
-        nothing: u32,
-    ) -> Self {
+    fn new<W: Law>(lists: &IndexLists, elements: Vec<u32>, constants: Aligned, record: &[u32], nothing: u32) -> Self {
         let corners = lists[elements[0] as usize].len();
         let blocks = elements.len().div_ceil(MOST);
         let mut nodes = vec![nothing * RECORD as u32; blocks * corners * MOST];
@@ -269,7 +268,6 @@ impl Class {
                 nodes[(at / MOST * corners + corner) * MOST + at % MOST] = record[node as usize] * RECORD as u32;
             }
         }
-        let constants = set.run(Prepare { law, body, lists, elements: &elements });
         let [memory, kept] = [0; 2].map(|_| Aligned::zeros(blocks * W::MEMORY * MOST));
         Self { corners, elements, nodes, constants, memory, kept }
     }
@@ -280,6 +278,8 @@ struct Prepare<'a, W> {
     law: &'a W,
     body: &'a Body,
     lists: &'a IndexLists,
+    /// The filled part of each of the lists.
+    fill: Option<&'a [f64]>,
     elements: &'a [u32],
 }
 
@@ -288,13 +288,15 @@ impl<W: Law> Work for Prepare<'_, W> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Aligned {
-        let Self { law, body, lists, elements } = self;
+        let Self { law, body, lists, fill, elements } = self;
         let mut reader = Reader::<L>::new();
         let mut all = Aligned::zeros(0);
         for first in (0..elements.len().next_multiple_of(MOST)).step_by(L::WIDTH) {
             // The last element fills the lanes that are left.
-            let group = Group::of(|lane| &lists[elements[(first + lane).min(elements.len() - 1)] as usize]);
-            reader.read(&group, body, &body.rest, None);
+            let element = |lane: usize| elements[(first + lane).min(elements.len() - 1)] as usize;
+            let group = Group::of(|lane| &lists[element(lane)]);
+            let parts = each!(8, lane => fill.map_or(1.0, |fill| fill[element(lane)]));
+            reader.read(&group, body, &body.rest, None, &parts);
             let constants = reader.prepare(law);
             if first == 0 {
                 all = Aligned::zeros(elements.len().div_ceil(MOST) * constants.len());

@@ -57,13 +57,14 @@ struct Grid {
 }
 
 impl Grid {
-    /// `None` for any other body.
+    /// `None` for any other body, and for one that is filled in part.
     fn of(body: &Body) -> Option<Self> {
         /// Relative to the sides.
         const EQUAL: f64 = 1e-12;
         let first = body.elements.iter().next().filter(|nodes| nodes.len() == 8)?;
         let (row, layer) = (first[2] as usize, first[4] as usize);
         if body.dimension != Dimension::Space
+            || body.fill.is_some()
             || row < 2
             || layer < 2 * row
             || !layer.is_multiple_of(row)

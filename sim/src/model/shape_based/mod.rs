@@ -167,9 +167,12 @@ impl ElasticModel for ShapeBased {
 
     /// An element adds at most `k` and `D` to a node, because its forces are a projection of displacements.
     fn bound(&self, body: &Body) -> Option<Mode> {
-        let mut elements = vec![0.0; body.len()];
-        body.elements.indices().iter().for_each(|&node| elements[node as usize] += 1.0);
-        let most = elements.iter().zip(&body.mass).map(|(elements, mass)| elements / mass).fold(0.0, f64::max);
+        let mut parts = vec![0.0; body.len()];
+        for (element, nodes) in body.elements.iter().enumerate() {
+            let part = body.fill.as_ref().map_or(1.0, |fill| fill[element]);
+            nodes.iter().for_each(|&node| parts[node as usize] += part);
+        }
+        let most = parts.iter().zip(&body.mass).map(|(parts, mass)| parts / mass).fold(0.0, f64::max);
         Some(Mode { stiffness: self.stiffness * most, damping: self.damping * most })
     }
 
@@ -372,20 +375,26 @@ impl Elements {
         Fit { centre, at_rest, rotation, is_global }
     }
 
+    /// `k` (N/m) and `D` (N s/m) of an element.
+    fn constants(&self, element: usize) -> [f64; 2] {
+        let part = self.body.fill.as_ref().map_or(1.0, |fill| fill[element]);
+        [self.model.stiffness, self.model.damping].map(|full| full * part)
+    }
+
     /// α of Eq. (18) of an element with a rotation (rad/s²), from its `Σ R0 rᵀ` (m²).
     fn residual(&self, element: usize, at_rest: DMat3, rotation: DMat3) -> f64 {
-        angular_acceleration(rotation * at_rest, self.model.stiffness, self.inertia[element])
+        let [k, _] = self.constants(element);
+        angular_acceleration(rotation * at_rest, k, self.inertia[element])
     }
 
     /// Eq. (4) for one element: writes the force on each of its corners (N). Returns whether the global solver computed its
     /// rotation.
     #[doc(alias = "Eq. 4")]
     fn forces(&self, element: usize, at: Nodes<'_>, last: &[f64], next: &mut [f64], forces: &mut [DVec3]) -> bool {
-        let ShapeBased { stiffness: k, damping: d, damping_of, .. } = self.model;
-        let (nodes, rest) = self.element(element);
+        let ([k, d], (nodes, rest)) = (self.constants(element), self.element(element));
         let Fit { centre, rotation, is_global, .. } = self.fit(element, at.position, last, next);
         let drift = mean(nodes, at.velocity);
-        let spin = match damping_of {
+        let spin = match self.model.damping_of {
             DampingReading::RelativeMotion => None,
             DampingReading::Deformation => {
                 let corners =
@@ -435,12 +444,12 @@ impl ForceModel for Elements {
         let mut shares = vec![0.0; self.rest.len()];
         let mut alphas = vec![0.0; self.body.elements.len()];
         blocks::for_each(&self.body.elements, 1, &mut alphas, &mut shares, &|element, alpha, shares| {
-            let (nodes, rest) = self.element(element);
+            let ([k, _], (nodes, rest)) = (self.constants(element), self.element(element));
             let (last, mut next) = (self.of(element, memory), [0.0; 9]);
             let Fit { centre, at_rest, rotation, .. } = self.fit(element, at.position, last, &mut next[..last.len()]);
             for ((share, &node), &rest) in shares.iter_mut().zip(nodes).zip(rest) {
                 let squared = (at.position[node as usize] - centre - rotation * rest).length_squared();
-                *share = 0.5 * self.model.stiffness * squared;
+                *share = 0.5 * k * squared;
             }
             alpha[0] = self.residual(element, at_rest, rotation);
         });

@@ -1,0 +1,82 @@
+//! How much of elements, springs and nodes is filled.
+
+use super::body::Body;
+use super::law::Law;
+use super::model::blocks::EntriesOfNode;
+
+/// The filled part of each of some lists of nodes, such as springs; `None` if the body is full.
+///
+/// What is not an element of the body belongs in equal parts to the elements that hold all its nodes, so its filled part is the mean of
+/// theirs. Then stiffness is a sum over elements, `Σ f K`, as masses in proportion are, `Σ f M`, and no mode has a greater quotient of the
+/// two than the stiffest of the elements full and by itself: an element that is hardly filled does not shorten the step. Full
+/// neighbours of such an element keep more of what they share than they lose.
+///
+/// What no element holds has the least part of its nodes.
+pub(crate) fn parts<'a>(body: &Body, lists: impl Iterator<Item = &'a [u32]>) -> Option<Vec<f64>> {
+    let fill = body.fill.as_ref()?;
+    let elements_of = elements_of(body);
+    let part = |nodes: &[u32]| {
+        let (&first, others) = nodes.split_first()?;
+        let hold = |&&element: &&usize| others.iter().all(|node| body.elements[element].contains(node));
+        mean(elements_of.of(first as usize).iter().filter(hold).map(|&element| fill[element]))
+    };
+    let of_node = |&node: &u32| mean(elements_of.of(node as usize).iter().map(|&element| fill[element])).unwrap_or(1.0);
+    let least = |nodes: &[u32]| nodes.iter().map(of_node).fold(1.0, f64::min);
+    Some(lists.map(|nodes| part(nodes).unwrap_or_else(|| least(nodes))).collect())
+}
+
+/// The filled part of each element on which a law acts; `None` if the body is full.
+pub(crate) fn of_law(law: &impl Law, body: &Body) -> Option<Vec<f64>> {
+    match law.elements(body) {
+        Some(own) => parts(body, own.iter()),
+        None => body.fill.clone(),
+    }
+}
+
+/// The mean of the filled parts of each node's elements, 1 for a node of no element; `None` if the body is full.
+pub(crate) fn of_nodes(body: &Body) -> Option<Vec<f64>> {
+    let fill = body.fill.as_ref()?;
+    let elements_of = elements_of(body);
+    let of_node = |node: usize| mean(elements_of.of(node).iter().map(|&element| fill[element])).unwrap_or(1.0);
+    Some((0..body.len()).map(of_node).collect())
+}
+
+/// What is filled of the volumes of elements (m³, in the plane m²): their sum, if the body is full.
+pub(crate) fn volume(fill: Option<&[f64]>, volumes: &[f64]) -> f64 {
+    match fill {
+        Some(fill) => volumes.iter().zip(fill).map(|(volume, part)| volume * part).sum(),
+        None => volumes.iter().sum(),
+    }
+}
+
+/// The elements of each node.
+fn elements_of(body: &Body) -> EntriesOfNode {
+    let corners = body.elements.iter().enumerate();
+    EntriesOfNode::new(body.len(), corners.flat_map(|(element, nodes)| nodes.iter().map(move |&node| (element, node))))
+}
+
+/// The mean of numbers, in order; `None` if there is none.
+fn mean(numbers: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = numbers.fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
+    (count > 0.0).then(|| sum / count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::{Dimension, Solids};
+    use glam::DVec3;
+
+    #[test]
+    fn what_elements_share_is_filled_by_the_mean_of_them() {
+        // Two squares side by side, and a node of no element.
+        let rest: Vec<_> = (0..7).map(|at| DVec3::new(f64::from(at / 2), f64::from(at % 2), 0.0)).collect();
+        let elements = [&[0, 2, 3, 1][..], &[2, 4, 5, 3]].into_iter().collect();
+        let full = Body::new(Dimension::Plane, rest, vec![1.0; 7], elements, Solids::Ordered, None);
+        let springs: [&[u32]; 5] = [&[0, 1], &[2, 3], &[5, 4], &[0, 4], &[4, 6]];
+        assert_eq!((parts(&full, springs.into_iter()), of_nodes(&full)), (None, None));
+        let body = Body { fill: Some(vec![1.0, 0.25]), ..full };
+        assert_eq!(parts(&body, springs.into_iter()), Some(vec![1.0, 0.625, 0.25, 0.25, 0.25]));
+        assert_eq!(of_nodes(&body), Some(vec![1.0, 1.0, 0.625, 0.625, 0.25, 0.25, 1.0]));
+    }
+}
