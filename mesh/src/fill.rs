@@ -5,6 +5,7 @@ mod cubes;
 mod cuts;
 mod embed;
 mod lattice;
+mod parts;
 mod tetrahedra;
 
 use super::{Flaws, Surface};

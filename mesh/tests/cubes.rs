@@ -114,6 +114,82 @@ fn a_cavity_stays_empty_and_pieces_in_each_other_are_one() {
     assert_eq!((filled.cage.elements.len(), filled.cage.filled), (1000, None));
 }
 
+/// How many bodies elements make that share nodes.
+fn bodies(filled: &Filled) -> usize {
+    let mut body: Vec<usize> = (0..filled.cage.nodes.len()).collect();
+    loop {
+        let mut changed = false;
+        for element in filled.cage.elements.iter() {
+            let least = element.iter().map(|&node| body[node as usize]).min().unwrap();
+            for &node in element {
+                changed |= std::mem::replace(&mut body[node as usize], least) != least;
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+    body.iter().enumerate().filter(|(node, body)| node == *body).count()
+}
+
+#[test]
+fn separate_parts_in_a_cube_do_not_grow_together() {
+    // Two legs, in the same cubes for most of their length, that a beam joins above.
+    let leg = |x: f64| block(DVec3::new(x, 0.0, 0.0), DVec3::new(x + 0.13, 0.2, 1.0));
+    let legs = together(&[leg(0.0), leg(0.15)]);
+    let filled = cubes(&legs, 0.1);
+    assert_eq!((filled.flaws.pieces, bodies(&filled)), (2, 2));
+    assert_volume(&filled, 0.1);
+    let single = cubes(&leg(0.0), 0.1).cage.elements.len();
+    assert_eq!(filled.cage.elements.len(), 2 * single);
+    // A horseshoe: its gap is thinner than a cube, and it is one body.
+    let outline = [[0.0, 0.0], [0.43, 0.0], [0.43, 1.0], [0.23, 1.0], [0.23, 0.3], [0.2, 0.3], [0.2, 1.0], [0.0, 1.0]];
+    let mut shoe = Surface::default();
+    for y in [0.0, 0.3] {
+        shoe.points.extend(outline.map(|[x, z]| DVec3::new(x, y, z)));
+    }
+    for n in 0..8 {
+        let [a, b] = [n, (n + 1) % 8];
+        shoe.triangles.extend([[a, b, b + 8], [a, b + 8, a + 8]]);
+    }
+    for [a, b, c] in [[0, 1, 4], [0, 4, 5], [1, 2, 3], [1, 3, 4], [0, 5, 6], [0, 6, 7]] {
+        shoe.triangles.extend([[c, b, a], [a + 8, b + 8, c + 8]]);
+    }
+    for side in [0.1, 0.083, 0.05] {
+        let filled = cubes(&shoe, side);
+        assert_eq!(filled.flaws.boundary, 0);
+        assert_eq!(bodies(&filled), 1);
+        assert_volume(&filled, side);
+        // Pulled apart at the legs, no element spans the gap: the points of each leg share no node.
+        let nodes = |left: bool| {
+            let high = filled.surface.points.iter().enumerate().filter(|(_, at)| at.z > 0.9 && (at.x < 0.21) == left);
+            let mut all: Vec<u32> = high.flat_map(|(point, _)| filled.weights.of(point).0.to_vec()).collect();
+            all.sort_unstable();
+            all
+        };
+        let (left, right) = (nodes(true), nodes(false));
+        assert!(!left.is_empty() && left.iter().all(|node| right.binary_search(node).is_err()), "{side}");
+    }
+    // A plate, thinner than a cube and in any direction, stays in one piece: both of its sides are in the same copies.
+    for turn in [glam::DQuat::IDENTITY, glam::DQuat::from_xyzw(0.3, -0.2, 0.4, 0.8).normalize()] {
+        let plate = block(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.03));
+        let plate = Surface { points: plate.points.iter().map(|&point| turn * point).collect(), ..plate };
+        let filled = cubes(&plate, 0.1);
+        let mut cells: Vec<_> = filled
+            .cage
+            .elements
+            .iter()
+            .map(|of| filled.cage.nodes[of[0] as usize].to_array().map(f64::to_bits))
+            .collect();
+        let all = cells.len();
+        cells.sort_unstable();
+        cells.dedup();
+        println!("{all} copies of {} cubes", cells.len());
+        assert_eq!(bodies(&filled), 1);
+        assert_volume(&filled, 0.1);
+    }
+}
+
 #[test]
 fn open_surfaces_are_filled_to_the_hole() {
     let mut surface = ball(DVec3::ZERO, 1.0, 60);
@@ -161,12 +237,15 @@ fn what_cannot_be_filled_is_refused_with_a_remedy() {
 
 #[test]
 fn scans_are_filled() {
-    for (name, side) in [("armadillo.off", 7.0), ("elephant.off", 0.04), ("cheese.off", 0.04), ("bunny00.off", 0.006)] {
+    for name in ["armadillo.off", "elephant.off", "cheese.off", "bunny00.off"] {
         let Some(surface) = scan(name) else { return };
+        let measures = surface.measures();
+        let side = (measures.high - measures.low).max_element() / 30.0;
         let start = std::time::Instant::now();
         let filled = fill(&surface, Fill::Cubes { side }, MOST).unwrap();
         println!("{name}: {} cubes in {:?}, {:?}", filled.cage.elements.len(), start.elapsed(), filled.flaws);
         assert_carried(&filled);
+        println!("  {} bodies", bodies(&filled));
         if filled.flaws.boundary == 0 {
             assert_volume(&filled, side);
         }

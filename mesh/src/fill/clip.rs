@@ -54,6 +54,11 @@ impl Polygon {
         cut
     }
 
+    /// The part in a cell with this lowest corner.
+    pub(super) fn within(&self, low: DVec3) -> Self {
+        (0..3).fold(*self, |part, axis| part.cut(axis, low[axis], 1.0).cut(axis, low[axis] + 1.0, -1.0))
+    }
+
     /// The normal with twice the polygon's area as its length.
     pub(super) fn area(&self) -> DVec3 {
         let origin = self.corners[0];

@@ -2,13 +2,13 @@
 
 use super::clip::{self, Piece};
 use super::lattice::{Cell, Lattice, too_many};
+use super::parts::{Parts, Scene, corner};
 use super::{Cage, FillError, Filled};
 use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
 use glam::DVec3;
 use localshape_sim::{IndexLists, Weights};
 use rayon::prelude::*;
-use std::collections::HashMap;
 
 /// An element is filled at least by this part, lest its numbers come near to the smallest.
 const LEAST: f64 = 1e-9;
@@ -27,22 +27,34 @@ pub(super) struct Full {
 pub(super) fn fill(mut surface: Surface, flaws: Flaws, side: f64, most: usize) -> Result<Filled, FillError> {
     let (lattice, scaled) = Lattice::about(&mut surface, side, most)?;
     let pieces = clip::pieces(&scaled, &lattice);
-    let cells = cells(&scaled, &flaws, &lattice, &pieces)?;
+    let inside = Inside::new(&scaled);
+    let cells = cells(&inside, &flaws, &lattice, &pieces)?;
     if cells.len() > most {
         return Err(too_many(&surface.measures(), side, cells.len() as f64, most, ""));
     }
-    let mut nodes = Nodes::new(lattice);
+    let scene = Scene { scaled: &scaled, lattice: &lattice, inside: &inside, pieces: &pieces };
+    let parts = scene.parts(&cells, most)?;
+    let mut nodes = Nodes::new(lattice, parts.corners.len());
     let mut elements = IndexLists::default();
-    for full in &cells {
+    for (copy, full) in parts.copies.iter().enumerate() {
         let cell = lattice.cell(full.cell);
-        elements.push(&CORNERS.map(|corner| nodes.of([0, 1, 2].map(|axis| cell[axis] + corner[axis]))));
+        let corner =
+            |at: usize| nodes.of(parts.corners[8 * copy + at], [0, 1, 2].map(|axis| cell[axis] + CORNERS[at][axis]));
+        elements.push(&[0, 1, 2, 3, 4, 5, 6, 7].map(corner));
     }
-    let weights = weights(&surface, &scaled, &lattice, |cell| {
-        let found = cells.binary_search_by_key(&lattice.key(cell), |full| full.cell).ok()?;
-        Some(&elements[found])
-    });
-    let filled = cells.iter().any(|full| full.filled < 1.0).then(|| cells.iter().map(|full| full.filled).collect());
-    Ok(Filled { cage: Cage { nodes: nodes.places, elements, filled, convex: false }, surface, weights, flaws })
+    let weights = weights(&scene, &parts, |copy| &elements[copy]);
+    let filled = parts.copies.iter().map(|full| full.filled).collect();
+    Ok(Filled {
+        cage: Cage { nodes: nodes.places, elements, filled: in_part(filled), convex: false },
+        surface,
+        weights,
+        flaws,
+    })
+}
+
+/// The filled parts of elements, unless all are full.
+pub(super) fn in_part(filled: Vec<f64>) -> Option<Vec<f64>> {
+    filled.iter().any(|&filled| filled < 1.0).then_some(filled)
 }
 
 /// The corners of a cube, with x fastest, then y, then z.
@@ -50,22 +62,26 @@ pub(super) const CORNERS: [Cell; 8] =
     [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]];
 
 /// Nodes at corners of a lattice, numbered as they are met.
-struct Nodes {
+pub(super) struct Nodes {
     lattice: Lattice,
-    numbers: HashMap<Cell, u32>,
-    places: Vec<DVec3>,
+    /// The node of each set of corners.
+    numbers: Vec<u32>,
+    pub(super) places: Vec<DVec3>,
 }
 
 impl Nodes {
-    fn new(lattice: Lattice) -> Self {
-        Self { lattice, numbers: HashMap::new(), places: Vec::new() }
+    pub(super) fn new(lattice: Lattice, sets: usize) -> Self {
+        Self { lattice, numbers: vec![u32::MAX; sets], places: Vec::new() }
     }
 
-    fn of(&mut self, corner: Cell) -> u32 {
-        *self.numbers.entry(corner).or_insert_with(|| {
-            self.places.push(self.lattice.place(DVec3::from_array(corner.map(f64::from))));
-            self.places.len() as u32 - 1
-        })
+    /// The node of a set of corners, which are at this place of the lattice.
+    pub(super) fn of(&mut self, set: u32, place: Cell) -> u32 {
+        let number = &mut self.numbers[set as usize];
+        if *number == u32::MAX {
+            *number = self.places.len() as u32;
+            self.places.push(self.lattice.place(corner(place)));
+        }
+        *number
     }
 }
 
@@ -76,12 +92,11 @@ impl Nodes {
 /// the cell, and the inside of its face towards +x, which is what the shadows of all parts farther along the row add up
 /// to. Where the surface is open, points of the cell are tried instead.
 pub(super) fn cells(
-    scaled: &Surface,
+    inside: &Inside,
     flaws: &Flaws,
     lattice: &Lattice,
     pieces: &[Piece],
 ) -> Result<Vec<Full>, FillError> {
-    let inside = Inside::new(scaled);
     let caps = Surface {
         points: inside.caps().as_flattened().to_vec(),
         triangles: (0..inside.caps().len() as u32).map(|cap| [3 * cap, 3 * cap + 1, 3 * cap + 2]).collect(),
@@ -89,7 +104,7 @@ pub(super) fn cells(
     let capped = clip::pieces(&caps, lattice);
     let grid = Grid { first: DVec3::splat(0.5), side: 1.0, counts: lattice.counts };
     let rows = (0..lattice.counts[1] * lattice.counts[2]).into_par_iter();
-    let cells: Vec<_> = rows.flat_map_iter(|row| row_cells(&inside, &grid, row, pieces, &capped)).collect();
+    let cells: Vec<_> = rows.flat_map_iter(|row| row_cells(inside, &grid, row, pieces, &capped)).collect();
     if cells.iter().all(|full| full.filled <= LEAST) {
         return Err(no_inside(flaws));
     }
@@ -162,26 +177,35 @@ pub(super) fn no_inside(flaws: &Flaws) -> FillError {
     FillError { message, help: Some(help.to_owned()) }
 }
 
-/// The weights of a surface's points in the nodes of the cells that contain them.
-pub(super) fn weights<'e>(
-    surface: &Surface,
-    scaled: &Surface,
-    lattice: &Lattice,
-    nodes: impl Fn(Cell) -> Option<&'e [u32]>,
-) -> Weights {
-    let homes = homes(scaled, lattice);
+/// The weights of a surface's points in the corners of the copies that contain them.
+pub(super) fn weights<'e>(scene: &Scene, parts: &Parts, nodes: impl Fn(usize) -> &'e [u32]) -> Weights {
     let mut weights = Weights::default();
-    for (&point, &(cell, _)) in scaled.points.iter().zip(&homes) {
-        let nodes = nodes(cell).unwrap_or_default();
-        let [x, y, z] = (point - DVec3::from_array(cell.map(f64::from))).clamp(DVec3::ZERO, DVec3::ONE).to_array();
+    for (&point, &(cell, triangle)) in scene.scaled.points.iter().zip(&homes(scene.scaled, scene.lattice)) {
+        let key = (scene.lattice.key(cell), triangle);
+        let copy = match scene.pieces.binary_search_by_key(&key, |piece| (piece.cell, piece.triangle)) {
+            Ok(piece) => parts.copy_of[piece] as usize,
+            // A triangle so thin that it has no piece there.
+            Err(_) => nearest(scene, parts, point),
+        };
+        let low = corner(scene.lattice.cell(parts.copies[copy].cell));
+        let [x, y, z] = (point - low).clamp(DVec3::ZERO, DVec3::ONE).to_array();
         let own = CORNERS.map(|corner| {
             let along = |axis: usize, at: f64| if corner[axis] == 1 { at } else { 1.0 - at };
             along(0, x) * along(1, y) * along(2, z)
         });
-        weights.push(nodes, &own[..nodes.len()]);
+        weights.push(nodes(copy), &own);
     }
-    debug_assert_eq!(weights.len(), surface.points.len());
     weights
+}
+
+/// The copy whose cell is nearest to a point.
+fn nearest(scene: &Scene, parts: &Parts, point: DVec3) -> usize {
+    let away = |full: &Full| {
+        let low = corner(scene.lattice.cell(full.cell));
+        point.distance_squared(point.clamp(low, low + 1.0))
+    };
+    let distances = parts.copies.iter().map(away).enumerate();
+    distances.reduce(|best, other| if other.1 < best.1 { other } else { best }).map_or(0, |(copy, _)| copy)
 }
 
 /// The cell of each point, and a triangle that has a part in that cell with the point as a corner.
