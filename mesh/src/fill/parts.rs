@@ -10,7 +10,7 @@ use super::clip::{Piece, Polygon};
 use super::cubes::{CORNERS, Full};
 use super::lattice::{Cell, Lattice};
 use crate::Surface;
-use crate::inside::{Grid, Inside};
+use crate::inside::Inside;
 use crate::surface::{EdgeUse, Sets};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -263,7 +263,7 @@ impl Scene<'_> {
             middle[axis] = low[axis];
             let is_single = |local: &Local| local.shares.len() == 1;
             let is_full = if is_single(here) && is_single(there) {
-                here.open || there.open || self.inside.grid(&Grid { first: middle, side: 1.0, counts: [1; 3] })[0]
+                here.open || there.open || self.inside.contains(middle)
             } else {
                 true
             };
