@@ -7,12 +7,12 @@ use super::frames::FrameRanges;
 use crate::gpu::{AdapterChoice, Gpu};
 #[cfg(feature = "render")]
 use crate::look::Theme;
+use crate::output::export;
 #[cfg(feature = "render")]
 use crate::reading::captions::typed;
 use crate::reading::setting::Setting;
-#[cfg(feature = "render")]
-use clap::ValueEnum;
-use clap::{Args, ValueHint};
+use clap::builder::PossibleValue;
+use clap::{Args, ValueEnum, ValueHint};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
 
@@ -60,6 +60,10 @@ pub(super) struct RunOptions {
     #[arg(long)]
     pub(super) states: bool,
 
+    /// Also write the bodies for other programs: vtu for ParaView. Several as vtu,usd
+    #[arg(long, value_name = "FORMAT", value_enum, value_delimiter = ',', hide_possible_values = true)]
+    pub(super) write: Vec<export::Format>,
+
     /// Continue after an interruption, from the last checkpoint or, without one, from the start. The results are those
     /// of an uninterrupted command. Existing
     /// frames with the same scene, states, version, adapter and size are not drawn again
@@ -70,6 +74,28 @@ pub(super) struct RunOptions {
     pub(super) threads: ThreadOptions,
     #[command(flatten)]
     pub(super) printing: PrintOptions,
+}
+
+impl RunOptions {
+    /// The formats for other programs, each once.
+    pub(super) fn formats(&self) -> Vec<export::Format> {
+        let mut formats = self.write.clone();
+        formats.sort_unstable();
+        formats.dedup();
+        formats
+    }
+}
+
+impl ValueEnum for export::Format {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Vtu]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(match self {
+            Self::Vtu => "vtu",
+        }))
+    }
 }
 
 /// The number of threads.

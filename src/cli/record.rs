@@ -5,6 +5,7 @@ use super::options::{PrintOptions, RunOptions};
 use super::results::{Pace, Pictures, Results};
 use super::scenes::{Job, with_option};
 use super::{console, interrupt, report};
+use crate::output::export::Export;
 use crate::output::{
     Checkpoint, Claimed, Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, OutputError, STATES_FILE,
     Spent, StatesWriter, StoredStates, Summary, Timings, open_growing, thread_time, waiting_states,
@@ -95,18 +96,27 @@ fn record(
     let begin = || -> Result<_, Failure> {
         let mut first = summary.clone();
         if folder.is_shard() {
-            (first.outcome, first.frames.asked) = (Outcome::Shards, all);
+            (first.outcome, first.frames.asked) = (Outcome::Shards, all.len());
         }
         let folder = folder.prepare(&first)?;
         let pictures = begin_pictures.map(|begin| begin(&scene, folder.path(), &frames)).transpose()?;
-        Ok((folder, pictures))
+        let export = Export::begin(folder.path(), &scene, &runs, &options.formats(), &all)?;
+        Ok((folder, pictures, export))
     };
-    let result = begin().and_then(|(mut folder, pictures)| {
+    let result = begin().and_then(|(mut folder, pictures, export)| {
         let times = Timings::default();
         let checkpoint = folder.take_checkpoint();
-        let recording =
-            Recording { scene: &scene, runs, frames, folder: &folder, summary, last: None, sound: Vec::new(), times };
-        recording.run(pool, options, pictures, stored, checkpoint)
+        let recording = Recording {
+            scene: &scene,
+            runs: runs.clone(),
+            frames: frames.clone(),
+            folder: &folder,
+            summary,
+            last: None,
+            sound: Vec::new(),
+            times,
+        };
+        recording.run(pool, options, (pictures, export), stored, checkpoint)
     });
     if result.is_err() {
         summary.outcome = Outcome::Failed;
@@ -146,7 +156,7 @@ impl<'a> Recording<'a> {
         mut self,
         pool: &ThreadPool,
         options: &RunOptions,
-        mut pictures: Option<Box<dyn Pictures + '_>>,
+        (mut pictures, export): (Option<Box<dyn Pictures + '_>>, Export<'_>),
         stored: Option<StoredStates>,
         checkpoint: Option<Checkpoint>,
     ) -> Result<(), Failure> {
@@ -154,6 +164,12 @@ impl<'a> Recording<'a> {
         let (folder, scene) = (self.folder.path(), self.scene);
         if let (Some(found), Some(pictures)) = (&checkpoint, &mut pictures)
             && let Some(wrong) = pictures.keep(self.frames.get(..found.progress.taken).unwrap_or_default())?
+        {
+            let what = format!("counts on {wrong}").into();
+            return Err(OutputError::Checkpoint { path: folder.to_owned(), what }.into());
+        }
+        if let Some(found) = &checkpoint
+            && let Some(wrong) = export.wrong(self.frames.get(..found.progress.taken).unwrap_or_default())?
         {
             let what = format!("counts on {wrong}").into();
             return Err(OutputError::Checkpoint { path: folder.to_owned(), what }.into());
@@ -180,9 +196,9 @@ impl<'a> Recording<'a> {
         };
         let states = options.states.then(begin).transpose()?;
 
-        let mut results = Results { diagnostics, states, pictures, warned: options.printing.quiet };
+        let mut results = Results { diagnostics, states, export, pictures, warned: options.printing.quiet };
         let made = self.simulate(pool, options.printing, &mut simulation, &mut results);
-        let Results { diagnostics, mut states, pictures, .. } = results;
+        let Results { diagnostics, mut states, export, pictures, .. } = results;
         if let Some(states) = &mut states {
             (0..self.runs.len()).for_each(|place| states.set_last_fit(place, simulation.frames.last_fit(place)));
         }
@@ -190,15 +206,18 @@ impl<'a> Recording<'a> {
         let drawn = pictures.map_or(Ok(()), |pictures| pictures.finish(self.summary, &mut self.times));
         let recorded = diagnostics.map(DiagnosticsWriter::finish);
         let kept = states.map(StatesWriter::finish);
+        let exported = export.finish((!is_shard).then_some(self.summary.frames.recorded));
+        let files = &self.folder.contents().0.files;
         self.summary.files = [
             (DIAGNOSTICS_FILE, matches!(recorded, Some(Ok(())))),
             (STATES_FILE, matches!(kept, Some(Ok(())))),
             (FRAME_FILES, self.summary.frames.written > Some(0) || self.summary.frames.kept > 0),
         ]
         .into_iter()
-        .filter_map(|(name, written)| written.then_some(name))
+        .filter_map(|(name, written)| written.then(|| name.to_owned()))
+        .chain(files.iter().filter(|_| exported.is_ok()).cloned())
         .collect();
-        let tables = recorded.unwrap_or(Ok(())).and(kept.unwrap_or(Ok(())));
+        let tables = recorded.unwrap_or(Ok(())).and(kept.unwrap_or(Ok(()))).and(exported);
         let result = made.and(drawn).and(tables.map_err(Failure::from));
 
         let of_pool = processor_time(pool).zip(simulating).map(|(now, start)| (now - start).as_secs_f64());
@@ -274,7 +293,7 @@ impl<'a> Recording<'a> {
                 let frames = Frames::stored(runner, &self.frames, stored).map_err(OutputError::reading(&read_from))?;
                 return Ok(Simulation { frames, ahead: false, notes: false, read_from: Some(read_from) });
             }
-            if !is_drawn && !options.states {
+            if !is_drawn && !options.states && options.write.is_empty() {
                 runner = runner.without_pictures();
             }
             if let Some(wanted) = &wanted {

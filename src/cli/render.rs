@@ -163,8 +163,13 @@ impl Render {
             bail!("{name} is a file for one frame; render the scenes one at a time, or into a folder");
         };
         let is_part = self.options.resume || self.shard.is_some() || self.from_states.is_some();
-        if self.options.states || is_part || !self.animate.is_empty() || self.options.printing.json {
-            let others = "--states, --from-states, --shard, --resume, --animate or --json";
+        if self.options.states
+            || !self.options.write.is_empty()
+            || is_part
+            || !self.animate.is_empty()
+            || self.options.printing.json
+        {
+            let others = "--states, --write, --from-states, --shard, --resume, --animate or --json";
             bail!("{name} gets one frame and nothing else; with {others} name a folder");
         }
         let (runs, frames) = (self.options.runs(scene)?, self.options.frames(scene, self.at.as_ref())?);

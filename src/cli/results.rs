@@ -1,6 +1,7 @@
 //! Writes the results of frames, and the checkpoints from which an interrupted command continues.
 
 use super::failure::{Failure, note, with_causes};
+use crate::output::export::Export;
 use crate::output::{Checkpoint, Claimed, DiagnosticsWriter, OutputError, StatesWriter, Summary, Timings};
 use crate::runner::history::History;
 use crate::runner::{Frames, Next};
@@ -28,6 +29,8 @@ pub(super) struct Results<'a> {
     /// `None` in a shard.
     pub(super) diagnostics: Option<DiagnosticsWriter<'a>>,
     pub(super) states: Option<StatesWriter>,
+    /// Files for other programs.
+    pub(super) export: Export<'a>,
     pub(super) pictures: Option<Box<dyn Pictures + 'a>>,
     /// Whether the user has read that no checkpoint can be written, or wants no warnings.
     pub(super) warned: bool,
@@ -36,7 +39,7 @@ pub(super) struct Results<'a> {
 impl Results<'_> {
     /// Takes the next result of the frames.
     pub(super) fn take(&mut self, next: &Next, frames: &Frames<'_>) -> Result<(), Failure> {
-        let Self { diagnostics, states, pictures, .. } = self;
+        let Self { diagnostics, states, export, pictures, .. } = self;
         match next {
             Next::TimeSeries(history) => {
                 pictures.iter_mut().for_each(|pictures| pictures.take_history(history));
@@ -48,6 +51,7 @@ impl Results<'_> {
                 if let Some(states) = states {
                     states.write(frame, frames.states())?;
                 }
+                export.write(frame)?;
                 pictures.as_deref_mut().map_or(Ok(()), |pictures| pictures.draw(frame))
             }
             Next::Working | Next::Done => Ok(()),
@@ -66,7 +70,7 @@ impl Results<'_> {
         folder: &Claimed,
         summary: &Summary,
     ) -> Result<(), Failure> {
-        let Self { diagnostics, states, pictures, warned } = self;
+        let Self { diagnostics, states, pictures, warned, .. } = self;
         if let Some(pictures) = pictures {
             pictures.flush()?;
         }

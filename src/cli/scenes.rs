@@ -3,8 +3,8 @@
 use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::{FrameRanges, Moments, Shard};
 use super::options::{RunOptions, SceneOptions};
-use crate::output::shell;
 use crate::output::{Access, Folder, Manifest, OutputError, StoredStates, Whose, recorded};
+use crate::output::{export, shell};
 use crate::scene::{Limits, Scene, SceneError};
 use std::collections::HashMap;
 use std::ffi::OsString;
@@ -70,8 +70,8 @@ pub(super) struct Job {
     pub(super) runs: Vec<usize>,
     /// Numbers of frames, rising.
     pub(super) frames: Vec<u64>,
-    /// The number of frames of all shards together.
-    pub(super) all: usize,
+    /// The frames of all shards together.
+    pub(super) all: Vec<u64>,
     pub(super) folder: Folder,
     /// The states of the frames, if they are read from a file.
     pub(super) stored: Option<StoredStates>,
@@ -116,13 +116,15 @@ impl RunOptions {
         let Wish { pictures, shard, from_states, at } = wish;
         let runs = self.runs(&scene)?;
         let mut frames = self.frames(&scene, at)?;
-        let all = frames.len();
+        let all = frames.clone();
         if let Some(shard) = shard {
             frames = shard.select(&frames).map_err(|message| Failure::usage(format!("--shard: {message}")))?;
         }
         let names = runs.iter().flat_map(|&run| recorded(&scene.runs[run].name, &scene, run)).map(|(name, _)| name);
         let size = pictures.then_some(scene.view.size);
-        let manifest = Manifest { runs: names.collect(), frames: frames.clone(), states: self.states, size };
+        let files = export::files(&scene, &runs, &self.formats());
+        let files = files.map_err(|message| Failure::usage(format!("--write: in “{}” {message}", scene.title)))?;
+        let manifest = Manifest { runs: names.collect(), frames: frames.clone(), states: self.states, files, size };
         let resume = self.resume && !from_states && shard.is_none();
         let access = Access { overwrite: self.overwrite, follows: self.out.is_none(), resume, shard: shard.is_some() };
         let folder = Folder::inspect(path, Whose::of(&scene), manifest, access).map_err(|error| match error {

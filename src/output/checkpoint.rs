@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 const CHECKPOINT_FILE: &str = ".localshape-checkpoint.partial";
 
 /// The first bytes of the file; a digest of the rest follows.
-const MARK: &[u8] = b"localshape checkpoint 4\n";
+const MARK: &[u8] = b"localshape checkpoint 5\n";
 /// The beginning of the marks of all versions.
 const ANY_MARK: &[u8] = b"localshape checkpoint ";
 
@@ -30,6 +30,8 @@ pub(crate) struct Manifest {
     pub frames: Vec<u64>,
     /// Whether states are written.
     pub states: bool,
+    /// Patterns of the files for other programs, below the folder.
+    pub files: Vec<String>,
     /// Width and height of the pictures (px), if frames are drawn. All frames in a folder have the same size and runs.
     pub size: Option<[u32; 2]>,
 }
@@ -98,7 +100,7 @@ impl Checkpoint {
         let found: Self = postcard::from_bytes(rest).map_err(|_| damaged())?;
         if found.manifest != digest(manifest) {
             return Err(format!(
-                "belongs to a command with other frames, runs, states or size; to go on from it, type that command with --resume: {}",
+                "belongs to a command with other frames, runs, states, files or size; to go on from it, type that command with --resume: {}",
                 super::shell::line(&found.command)
             ));
         }
@@ -137,7 +139,7 @@ mod tests {
     }
 
     fn manifest() -> Manifest {
-        Manifest { runs: vec!["one".to_owned()], frames: vec![0, 1, 2], states: false, size: None }
+        Manifest { runs: vec!["one".to_owned()], frames: vec![0, 1, 2], states: false, files: Vec::new(), size: None }
     }
 
     #[test]
@@ -162,7 +164,10 @@ mod tests {
         }
         let other = Manifest { frames: vec![0, 1], ..manifest() };
         let what = Checkpoint::parse(&bytes, &whose(), &other).unwrap_err();
-        assert!(what.starts_with("belongs to a command with other frames, runs, states or size; to go on"), "{what}");
+        assert!(
+            what.starts_with("belongs to a command with other frames, runs, states, files or size; to go on"),
+            "{what}"
+        );
         assert!(what.ends_with("with --resume: localshape render"), "{what}");
         Checkpoint::remove(folder.path()).unwrap();
         assert!(!Checkpoint::is_in(folder.path()));

@@ -3,6 +3,7 @@
 use super::atomic::{remove, remove_leftovers};
 use super::checkpoint::{Checkpoint, Manifest};
 use super::error::kind_of;
+use super::export;
 use super::frame_name::frame_number;
 use super::{
     DIAGNOSTICS_FILE, FolderLock, OutputError, STATES_FILE, SUMMARY_FILE, Summary, is_folder, read_file, read_tags,
@@ -134,7 +135,7 @@ impl Folder {
             Checkpoint::remove(&self.path)?;
             self.remove_leftovers()?;
         }
-        found.remove()?;
+        found.remove(&self.path)?;
         summary.write(&self.path)?;
         Ok(Claimed { folder: self, checkpoint, _lock: lock })
     }
@@ -151,8 +152,11 @@ impl Folder {
 
     /// Removes leftovers of killed processes that wrote the same files.
     fn remove_leftovers(&self) -> Result<(), OutputError> {
-        let Manifest { frames, size, .. } = &self.manifest;
-        remove_leftovers(&self.path, if size.is_some() { frames } else { &[] }, !self.access.shard)
+        let Manifest { frames, files, size, .. } = &self.manifest;
+        let alone = !self.access.shard;
+        remove_leftovers(&self.path, if size.is_some() { frames } else { &[] }, alone)?;
+        let folders = files.iter().filter_map(|pattern| Some(self.path.join(pattern.split_once("/*")?.0)));
+        folders.filter(|path| path.is_dir()).try_for_each(|path| remove_leftovers(&path, &[], alone))
     }
 }
 
@@ -247,6 +251,19 @@ impl Found {
                 }
             }
         }
+        let earlier = owner.as_ref().map(|_| export::patterns_in(path)).unwrap_or_default();
+        let earlier = earlier.iter().filter(|pattern| !manifest.files.contains(pattern));
+        for (pattern, is_own) in manifest.files.iter().map(|one| (one, true)).chain(earlier.map(|one| (one, false))) {
+            for file in export::matching(path, pattern) {
+                match export::scene_of(&file)? {
+                    None if is_own => foreign.push(relative(&file, path)),
+                    None => {}
+                    Some(digest) if version.is_some_and(|version| version.digest == digest) => versions.push(file),
+                    Some(digest) if !scene.owns(&digest) => others.push(file),
+                    Some(_) => {}
+                }
+            }
+        }
         foreign.sort_unstable();
         let is_other_version = others.is_empty() && foreign.is_empty() && unlike.is_empty();
         let hindrance = match (&others[..], &foreign[..], &unlike[..], &versions[..]) {
@@ -274,10 +291,19 @@ impl Found {
         Ok(Self { stale, hindrance, is_other_version, has_summary })
     }
 
-    /// Removes the stale results.
-    fn remove(&self) -> Result<(), OutputError> {
-        self.stale.iter().try_for_each(|path| remove(path))
+    /// Removes the stale results from a folder.
+    fn remove(&self, folder: &Path) -> Result<(), OutputError> {
+        self.stale.iter().try_for_each(|path| remove(path))?;
+        // Folders of runs go with their last file.
+        let folders = self.stale.iter().filter_map(|path| path.parent()).filter(|inner| *inner != folder);
+        folders.for_each(|inner| _ = fs::remove_dir(inner));
+        Ok(())
     }
+}
+
+/// The path of a file below a folder, as it is told.
+fn relative(file: &Path, folder: &Path) -> String {
+    file.strip_prefix(folder).unwrap_or(file).display().to_string()
 }
 
 /// The scene of a summary.
@@ -327,7 +353,7 @@ mod tests {
         };
         let (one, other) = (scene("one", 1.0), scene("other", 2.0));
         let place = tempfile::tempdir().unwrap();
-        let manifest = Manifest { runs: Vec::new(), frames: Vec::new(), states: false, size: None };
+        let manifest = Manifest { runs: Vec::new(), frames: Vec::new(), states: false, files: Vec::new(), size: None };
         let inspect = |scene, access| Folder::inspect(place.path(), Whose::of(scene), manifest.clone(), access);
         let summary = Summary::new(&one, &[0], 0, &[]);
         inspect(&one, Access::default()).unwrap().prepare(&summary).unwrap();

@@ -11,6 +11,7 @@ mod digest;
 #[cfg(feature = "render")]
 mod drawn;
 mod error;
+pub(crate) mod export;
 mod folder;
 mod frame_folder;
 mod frame_name;

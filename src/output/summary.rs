@@ -24,8 +24,8 @@ pub(crate) struct Summary {
     pub outcome: Outcome,
     /// The requested and the written frames.
     pub frames: FrameSummary,
-    /// The other files that were written; frames as a pattern, with their number in `frames.written`.
-    pub files: Vec<&'static str>,
+    /// The other files that were written; files of frames as a pattern, with the number of pictures in `frames.written`.
+    pub files: Vec<String>,
     /// The graphics adapter; `null` without pictures.
     pub adapter: Option<String>,
     /// The requested runs, in the scene's order.

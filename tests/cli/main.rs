@@ -6,6 +6,7 @@ mod bodies;
 mod check;
 mod compare;
 mod disk;
+mod export;
 #[cfg(feature = "render")]
 mod figure;
 mod folders;

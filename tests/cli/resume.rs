@@ -152,7 +152,7 @@ fn a_checkpoint_of_something_else_is_refused() {
     refused(
         " --only Mass-spring --overwrite",
         &[
-            "belongs to a command with other frames, runs, states or size; to go on from it, type that command with --resume: ",
+            "belongs to a command with other frames, runs, states, files or size; to go on from it, type that command with --resume: ",
             "simulate scene.toml;",
         ],
     );

@@ -278,17 +278,38 @@ pub(crate) fn numpy() -> Option<impl Fn(&Path, &str) -> String> {
 /// A function that runs a script in a folder by a Python with a package, `numpy` or `PIL`, and returns its output;
 /// `None`, with a notice, if there is no such Python. With `LOCALSHAPE_REQUIRE_PYTHON=1` this is a failure.
 pub(crate) fn python(package: &str) -> Option<impl Fn(&Path, &str) -> String + use<>> {
+    python_with(package, None, "PYTHON", &format!("apt install python3-{}", package.to_lowercase()))
+}
+
+/// Where `.ci/run` installs the programs that read the files for other programs.
+const VIEWERS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/target/viewers");
+
+/// A function that runs a script in a folder by a Python with NumPy, VTK and USD, as [`python`]. Without them,
+/// `LOCALSHAPE_REQUIRE_VIEWERS=1` is a failure.
+pub(crate) fn viewers() -> Option<impl Fn(&Path, &str) -> String> {
+    python_with("numpy, vtkmodules, pxr", Some(VIEWERS), "VIEWERS", ".ci/run viewers")
+}
+
+/// As [`python`], with a folder of packages, and what is required and installed by which command if there is none.
+fn python_with(
+    package: &str,
+    packages: Option<&'static str>,
+    required: &str,
+    how: &str,
+) -> Option<impl Fn(&Path, &str) -> String + use<>> {
     // A shell reports a missing Python.
-    let run_by = |python: &str, folder: &Path, script: &str| {
+    let run_by = move |python: &str, folder: &Path, script: &str| {
         let mut command = Command::new("sh");
         command.args(["-c", "exec $0 -c \"$1\"", python, script]).current_dir(folder).stdin(Stdio::null());
+        packages.into_iter().for_each(|packages| _ = command.env("PYTHONPATH", packages));
         run(&mut command)
     };
     let has_package = |python: &&str| run_by(python, Path::new("."), &format!("import {package}")).status == Some(0);
     // The first Python may belong to the user, without the packages of the system.
     let Some(python) = ["python3", "/usr/bin/python3"].into_iter().find(has_package) else {
-        let missing = format!("there is no Python with {package}: `apt install python3-{}`", package.to_lowercase());
-        assert!(std::env::var_os("LOCALSHAPE_REQUIRE_PYTHON").is_none_or(|value| value != "1"), "{missing}");
+        let missing = format!("there is no Python with {package}: `{how}`");
+        let required = std::env::var_os(format!("LOCALSHAPE_REQUIRE_{required}"));
+        assert!(required.is_none_or(|value| value != "1"), "{missing}");
         skipped(&missing);
         return None;
     };

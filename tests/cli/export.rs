@@ -1,0 +1,267 @@
+//! `--write`: files for other programs, read by them.
+
+use crate::bodies::{BODIES, scene};
+use crate::support::{Place, SMALL, viewers};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Elements of all kinds in space: cubes, wedges, pyramids and tetrahedra.
+pub(crate) const MIXED: &str = r#"
+title = "Mixed"
+gravity = [0, -9.8, 0]
+time = { duration = 0.1, frames_per_second = 60 }
+[body]
+lattice = { cells = [3, 3, 3], side = 0.1, elements = "mixed", irregular = 0.2 }
+lowest = 0.0
+velocity = [0, -2, 0]
+[[run]]
+name = "Local shape"
+model = { kind = "shape-based", stiffness = 1e4, damping_ratio = 0.1 }
+[[obstacle]]
+kind = "floor"
+[view]
+colour.by = "elastic-energy"
+size = [96, 64]
+"#;
+
+/// Two prisms of seven nodes and more, as convex hulls, a bar and a triangle.
+pub(crate) const HULLS: &str = r#"
+title = "Hulls"
+gravity = [0, -9.8, 0]
+time = { duration = 0.05, frames_per_second = 60 }
+[body]
+nodes = [
+    [0, 0, 0], [1, 0, 0], [1.5, 1, 0], [0.5, 1.6, 0], [-0.5, 1, 0],
+    [0, 0, 1], [1, 0, 1], [1.5, 1, 1], [0.5, 1.6, 1], [-0.5, 1, 1], [0.5, 0.7, 2], [0.5, 3, 0], [0.5, 3, 1],
+]
+elements = [[3, 1, 4, 0, 2, 9, 5, 7, 6, 8], [5, 6, 7, 8, 9, 10], [3, 11], [3, 11, 12]]
+convex = true
+[[run]]
+name = "Local shape"
+model = { kind = "shape-based", stiffness = 1e4 }
+"#;
+
+/// All files below a folder but `run.json`, which has times.
+pub(crate) fn files_below(place: &Place, folder: &str) -> BTreeMap<String, Vec<u8>> {
+    fn collect(root: &Path, at: &Path, into: &mut BTreeMap<String, Vec<u8>>) {
+        for entry in std::fs::read_dir(at).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                collect(root, &path, into);
+            } else {
+                let name = path.strip_prefix(root).unwrap().to_str().unwrap().replace('\\', "/");
+                into.insert(name, std::fs::read(&path).unwrap());
+            }
+        }
+    }
+    let (root, mut files) = (place.path(folder), BTreeMap::new());
+    collect(&root, &root, &mut files);
+    files.remove("run.json");
+    files
+}
+
+/// Reads grids by VTK and compares them with `states.npz`, bit for bit.
+const VTK: &str = r#"
+import numpy
+import xml.etree.ElementTree
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+def grid(path):
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(path)
+    reader.Update()
+    assert reader.GetErrorCode() == 0, path
+    return reader.GetOutput()
+
+def of(filtered, name):
+    filtered.Update()
+    return vtk_to_numpy(filtered.GetOutput().GetCellData().GetArray(name))
+
+states = numpy.load("out/states.npz")
+runs = [name.removesuffix(".position") for name in states.files if name.endswith(".position")]
+for run in runs:
+    own = lambda name: states[f"{run}.{name}"] if f"{run}.{name}" in states.files else states[name]
+    listed = xml.etree.ElementTree.parse(f"out/{run}.pvd").findall("Collection/DataSet")
+    times = [float(one.get("timestep")) for one in listed]
+    assert sorted(set(times)) == list(own("time")), (run, times)
+    names = list(states["bodies"]) if "bodies" in states.files else [None]
+    bodies = own("body") if "bodies" in states.files else numpy.zeros(len(own("rest")), int)
+    shown = [names[at] for at in sorted(set(bodies))]
+    volume = None
+    for frame, time in enumerate(own("time")):
+        here = [one for one in listed if float(one.get("timestep")) == time]
+        assert [one.get("name") for one in here] == shown and [int(one.get("part")) for one in here] == list(range(len(here)))
+        grids = [grid("out/" + one.get("file")) for one in here]
+        assert all(one.GetFieldData().GetArray("TimeValue").GetValue(0) == time for one in grids)
+        points = numpy.concatenate([vtk_to_numpy(one.GetPoints().GetData()) for one in grids])
+        assert points.tobytes() == states[f"{run}.position"][frame].tobytes(), (run, frame)
+        velocity = numpy.concatenate([vtk_to_numpy(one.GetPointData().GetArray("velocity")) for one in grids])
+        assert velocity.tobytes() == states[f"{run}.velocity"][frame].tobytes(), (run, frame)
+    first = grids[0]
+    cells = sum(one.GetNumberOfCells() for one in grids)
+    assert cells == len(own("elements")), cells
+    kinds = sorted({one.GetCellType(cell) for one in grids for cell in range(one.GetNumberOfCells())})
+    arrays = lambda data: [data.GetArrayName(at) for at in range(data.GetNumberOfArrays())]
+    sizes = vtkCellSizeFilter()
+    sizes.SetInputData(grid("out/" + listed[0].get("file")))
+    size = of(sizes, "Volume") + of(sizes, "Area")
+    print(run, kinds, arrays(first.GetPointData()), arrays(first.GetCellData()), round(float(size.sum()), 9), bool((size >= 0).all()))
+"#;
+
+/// What VTK tells of the grids of a scene in `out`.
+fn told(place: &Place, text: &str, options: &str) -> Option<String> {
+    let python = viewers()?;
+    place.write("scene.toml", text);
+    let ran = place.run(&format!("simulate scene.toml -o out --states --write vtu{options} --overwrite"));
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    Some(python(&place.path("."), VTK).trim().to_owned())
+}
+
+#[test]
+fn vtk_reads_the_states_of_all_kinds_of_elements() {
+    let place = Place::new();
+    let Some(mixed) = told(&place, MIXED, "") else { return };
+    assert_eq!(mixed, "Local shape [10, 12, 13, 14] ['velocity', 'elastic-energy'] ['turned_over'] 0.027 True");
+    // A prism over a pentagon, a pyramid on it, a bar and a triangle.
+    let hulls = told(&place, HULLS, "").unwrap();
+    let (area, height) = (1.0 * (1.0 + 2.0) / 2.0 + 0.6 * 2.0 / 2.0, 1.0 + 1.0 / 3.0);
+    let size = area * height + 1.4 / 2.0;
+    assert_eq!(
+        hulls,
+        format!("Local shape [3, 5, 42] ['velocity'] ['turned_over'] {} True", (size * 1e9_f64).round() / 1e9)
+    );
+}
+
+#[test]
+fn vtk_reads_each_body_as_a_part() {
+    let place = Place::new();
+    let Some(told_of_all) = told(&place, &crate::bodies::of_their_own(), " --frames 0-6x2") else { return };
+    let all: Vec<_> = told_of_all.lines().collect();
+    assert_eq!(all.len(), 3, "{told_of_all}");
+    assert!(all[0].starts_with("all [5, 9] ['velocity'] ['turned_over']"), "{told_of_all}");
+    assert!(all[1].starts_with("coarse [9] ") && all[2].starts_with("fine [5, 9] "), "{told_of_all}");
+    assert_eq!(place.names("out/all").len(), 2 * 4);
+}
+
+#[test]
+fn files_are_listed_and_frames_are_those_asked_for() {
+    let place = Place::with_small();
+    place.run("simulate small.toml --write vtu --frames 1,4 --only Mass-spring -o out").good();
+    assert_eq!(place.names("out"), ["Mass-spring", "Mass-spring.pvd", "diagnostics.csv", "run.json"]);
+    assert_eq!(place.names("out/Mass-spring"), ["body_00001.vtu", "body_00004.vtu"]);
+    let files = &place.json("out/run.json")["files"];
+    assert_eq!(*files, serde_json::json!(["diagnostics.csv", "Mass-spring.pvd", "Mass-spring/*.vtu"]));
+    place.run("simulate small.toml --write stl").bad(2, &["'stl'", "--write", "vtu"]);
+    place.run("simulate small.toml --write").bad(2, &["--write", "vtu"]);
+    let same = SMALL.replace("\"Mass-spring\"", "\"local shape\"");
+    place.write("same.toml", &same);
+    let ran = place.run("simulate same.toml --write vtu");
+    ran.bad(2, &["--write: in “Two cubes” the runs “Local shape” and “local shape” would have the same files"]);
+    place.write("odd.toml", &SMALL.replace("\"Mass-spring\"", "\"..\""));
+    place.run("simulate odd.toml --write vtu -o odd/inner").good();
+    assert_eq!(place.names("odd"), ["inner"]);
+    assert_eq!(
+        place.names("odd/inner"),
+        ["Local shape", "Local shape.pvd", "__", "__.pvd", "diagnostics.csv", "run.json"]
+    );
+}
+
+#[test]
+fn files_belong_to_their_scene() {
+    let place = Place::with_small();
+    place.run("simulate small.toml --write vtu").good();
+    place.write("output/small/Local shape/notes.vtu", "mine");
+    // Another version of the scene, with other frames: no file of the first is left.
+    place.write("small.toml", &SMALL.replace("restitution = 0.5", "restitution = 0.6"));
+    let ran = place.run("simulate small.toml --write vtu --only Mass-spring --frames 0-2").good();
+    assert!(ran.out.starts_with("output/small: replacing the results of another version of small.toml"), "{ran:?}");
+    assert_eq!(
+        place.names("output/small"),
+        ["Local shape", "Mass-spring", "Mass-spring.pvd", "diagnostics.csv", "run.json"]
+    );
+    assert_eq!(place.names("output/small/Local shape"), ["notes.vtu"]);
+    assert_eq!(place.names("output/small/Mass-spring").len(), 3);
+    // A file of another program.
+    place.write("out/Mass-spring/body_00001.vtu", "<VTKFile/>");
+    let ran = place.run("simulate small.toml --write vtu -o out");
+    let name = Path::new("Mass-spring").join("body_00001.vtu");
+    ran.bad(2, &["out holds", name.to_str().unwrap(), "was not written by localshape"]);
+    place.run("simulate small.toml --write vtu -o out --overwrite").good();
+    // A file of another scene.
+    place.write("other.toml", &SMALL.replace("Two cubes", "Cubes"));
+    place.run("simulate other.toml --write vtu -o out").bad(2, &["out holds the results of another scene"]);
+    std::fs::remove_file(place.path("out/run.json")).unwrap();
+    place.run("simulate other.toml --write vtu -o out").bad(2, &["out holds", "another scene"]);
+}
+
+/// An interrupted command has the files of all frames until then, and another one goes on from there.
+#[cfg(unix)]
+#[test]
+fn files_after_an_interruption_are_those_without_one() {
+    let place = Place::new();
+    place.write("scene.toml", &crate::support::lasting("20"));
+    place.run("simulate scene.toml --write vtu -o whole").good();
+    for (signal, sign) in [("TERM", "out/Local shape/body_00003.vtu"), ("KILL", "out/Local shape/body_00020.vtu")] {
+        let typed = "simulate scene.toml --write vtu -o out";
+        let running = crate::interrupt::start(&place, typed, sign);
+        crate::interrupt::signal(&running, &[signal]);
+        running.wait();
+        let before = place.names("out/Local shape").len();
+        assert!((4..1201).contains(&before), "{before}");
+        if signal == "TERM" {
+            let listed = place.read("out/Local shape.pvd").matches("<DataSet").count();
+            assert_eq!(listed, place.json("out/run.json")["frames"]["recorded"].as_u64().unwrap() as usize);
+            assert_eq!(listed, before);
+            let lost = place.path("out/Mass-spring/body_00002.vtu");
+            let bytes = std::fs::read(&lost).unwrap();
+            std::fs::remove_file(&lost).unwrap();
+            place.run(&format!("{typed} --resume")).bad(2, &["Mass-spring/body_00002.vtu, which is missing or"]);
+            std::fs::write(&lost, bytes).unwrap();
+            place.run("simulate scene.toml -o out --resume").bad(2, &["other frames, runs, states, files or size"]);
+        }
+        place.run(&format!("{typed} --resume")).good();
+        assert!(files_below(&place, "out") == files_below(&place, "whole"), "{signal}");
+        std::fs::remove_dir_all(place.path("out")).unwrap();
+    }
+}
+
+#[cfg(feature = "render")]
+#[test]
+fn files_beside_pictures_are_those_of_a_simulation() {
+    if !crate::render::can_draw() {
+        return;
+    }
+    let place = Place::with_small();
+    place.run("simulate small.toml --write vtu --states -o made").good();
+    let files = |folder: &str| {
+        let mut files = files_below(&place, folder);
+        files.retain(|name, _| !name.ends_with(".png") && !name.ends_with(".npz"));
+        files
+    };
+    place.run("render small.toml --write vtu -o drawn").good();
+    assert!(files("drawn") == files("made"));
+    place.run("render small.toml --write vtu --from-states made/states.npz -o stored").good();
+    assert!(files("stored") == files("made"));
+    for shard in ["1/2", "2/2"] {
+        place.run(&format!("render small.toml --write vtu --shard {shard} -o shards")).good();
+    }
+    place.run("simulate small.toml -o shards").good();
+    assert!(files("shards") == files("made"));
+    place.run("render small.toml --frames 1 -o one.png --write vtu").bad(2, &["one.png gets one frame", "--write"]);
+}
+
+/// A scene in the plane has points with z = 0.
+#[test]
+fn planes_have_points_in_space() {
+    let place = Place::new();
+    place.write(
+        "plane.toml",
+        &scene(&[1], "[[run]]\nname = \"a\"\nmodel = { kind = \"shape-based\", stiffness = 1e4 }\n"),
+    );
+    place.run("simulate plane.toml --write vtu --frames 0 -o out").good();
+    assert_eq!(place.names("out/a"), [format!("{}_00000.vtu", BODIES[1].0)]);
+    let grid = place.read("out/a/cube_00000.vtu");
+    assert!(grid.contains("NumberOfPoints=\"9\" NumberOfCells=\"4\""), "{grid}");
+}
