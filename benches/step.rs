@@ -7,9 +7,10 @@
 use localshape::internals::multiply_adds;
 use localshape::internals::{lanes, limit_lanes};
 use localshape::scene::{Limits, Scene};
-use localshape::sim::{Crew, World};
+use localshape::sim::{Assembly, Body, Crew, World};
 use rayon::ThreadPoolBuilder;
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The least number of multiply-adds of one lane for a box and step.
@@ -81,6 +82,15 @@ fn scene(copies: usize, body: &str, dimension: &str, runs: &[(&str, &str)]) -> S
             &format!("[[run]]\nname = '{at}'\nmodel = {{ stiffness = 1e4, damping_ratio = 0.1, {model} }}\n{more}\n");
     }
     Scene::parse(&text, "step", &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A body of which every fourth element is half filled, with masses in proportion.
+fn filled_in_part(body: &Body) -> Arc<Body> {
+    let fill: Vec<f64> = (0..body.elements.len()).map(|at| if at % 4 == 0 { 0.5 } else { 1.0 }).collect();
+    let mut body = Body { fill: Some(fill), ..body.clone() };
+    let parts = body.fill_of_nodes().expect("it is filled in part");
+    body.mass.iter_mut().zip(parts).for_each(|(mass, part)| *mass *= part);
+    Arc::new(body)
 }
 
 /// The present floor of the machine: nanoseconds per box and step.
@@ -181,6 +191,10 @@ fn main() {
         if lanes() > 4 {
             cases.push(in_lanes(4, || Case::new("shape, AVX2", &scene_of_lattice, 0, 1)));
         }
+        let mut filled = scene_of_lattice.clone();
+        filled.runs[0].bodies = Arc::new(Assembly::new(vec![filled_in_part(&filled.bodies[0].body)]));
+        cases.push(Case::new("shape, filled in part", &filled, 0, 1));
+        cases.push(Case::new("shape, filled in part, 2 threads", &filled, 0, 2));
         let one = [("kind = 'shape-based'", "")];
         let other = |body: String, dimension: &str, name: &'static str| {
             Case::new(name, &scene(1, &body, dimension, &one), 0, 1)

@@ -129,9 +129,7 @@ impl Fine {
 
     /// Appends the positions of its points (m), from those of the nodes of all bodies.
     pub(super) fn place(&self, position: &[DVec3], points: &mut Vec<DVec3>) {
-        let (nodes, weights) = (&position[self.nodes.clone()], &self.surface.weights);
-        let all = (0..self.surface.rest.len()).into_par_iter().with_min_len(OF_THREAD);
-        points.par_extend(all.map(|point| weights.place(point, nodes)));
+        self.surface.append_positions(&position[self.nodes.clone()], points);
     }
 
     /// Its triangles, with its points at positions (m), seen from an eye.
