@@ -4,6 +4,7 @@ mod clip;
 mod cubes;
 mod cuts;
 mod embed;
+mod graded;
 mod lattice;
 mod parts;
 mod tetrahedra;
@@ -55,7 +56,7 @@ pub struct Cage {
 pub struct Filled {
     /// The elements.
     pub cage: Cage,
-    /// The surface, mended.
+    /// The surface, mended. Triangles larger than the elements are divided, so that they follow them.
     pub surface: Surface,
     /// How the points of the surface follow the nodes of the cage.
     pub weights: Weights,
@@ -73,14 +74,18 @@ pub struct FillError {
     pub help: Option<String>,
 }
 
-/// Fills a surface, which is mended first, with at most so many elements.
+/// Fills a surface, which is mended first, with at most so many elements. Points of the surface that are almost on a plane of
+/// the elements' lattice are moved onto it, by some millionths of the side.
 ///
 /// # Errors
 /// If the surface has no inside, or more elements would be needed.
 pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillError> {
-    let (surface, flaws) = surface.mended();
+    let (mut surface, flaws) = surface.mended();
+    let (Fill::Cubes { side } | Fill::Graded { side } | Fill::Tetrahedra { side } | Fill::Polyhedra { side }) = fill;
+    surface.refine(side, most);
     match fill {
-        Fill::Cubes { side } => cubes::fill(surface, flaws, side, most),
+        Fill::Cubes { side } => cubes::fill(surface, flaws, side, false, most),
+        Fill::Graded { side } => cubes::fill(surface, flaws, side, true, most),
         Fill::Tetrahedra { side } => tetrahedra::fill(surface, flaws, side, most),
         _ => Err(FillError { message: "is not filled in this way yet".to_owned(), help: None }),
     }

@@ -190,6 +190,83 @@ fn separate_parts_in_a_cube_do_not_grow_together() {
     }
 }
 
+/// The volume of an element that is a cube with nodes in the middles of edges and faces.
+fn volume_of(filled: &Filled, element: usize) -> f64 {
+    let nodes: Vec<_> = filled.cage.elements[element].iter().map(|&node| filled.cage.nodes[node as usize]).collect();
+    let (low, high) = localshape_sim::geometry::bounds(&nodes);
+    (high - low).element_product()
+}
+
+#[test]
+fn graded_cubes_are_coarse_inside() {
+    for (surface, side) in [
+        (block(DVec3::ZERO, DVec3::new(1.6, 1.6, 1.6)), 0.1),
+        (ball(DVec3::ZERO, 1.0, 60), 0.06),
+        (ring(1.0, 0.4, 80), 0.05),
+    ] {
+        let fine = cubes(&surface, side);
+        let graded = fill(&surface, Fill::Graded { side }, MOST).unwrap();
+        assert_carried(&graded);
+        assert_eq!(graded.surface, fine.surface);
+        let elements = &graded.cage.elements;
+        println!("{} graded for {} cubes", elements.len(), fine.cage.elements.len());
+        assert!(3 * elements.len() < 2 * fine.cage.elements.len());
+        // They fill the same volume.
+        let parts = |element: usize| graded.cage.filled.as_ref().map_or(1.0, |filled| filled[element]);
+        let sum: f64 = (0..elements.len()).map(|element| parts(element) * volume_of(&graded, element)).sum();
+        assert!((sum / filled_volume(&fine, side) - 1.0).abs() < 1e-12);
+        assert_eq!(bodies(&graded), 1);
+        // Each cube lists a node at all places of nodes on its surface.
+        let mut places = graded.cage.nodes.clone();
+        places.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).unwrap());
+        places.dedup();
+        let mut hanging = 0;
+        for (element, nodes) in elements.iter().enumerate() {
+            let at: Vec<_> = nodes.iter().map(|&node| graded.cage.nodes[node as usize]).collect();
+            let (low, high) = localshape_sim::geometry::bounds(&at);
+            let slack = 1e-9 * side;
+            let inside = places.iter().filter(|node| node.cmpge(low - slack).all() && node.cmple(high + slack).all());
+            assert_eq!(inside.count(), nodes.len(), "element {element}");
+            for (n, place) in at.iter().take(8).enumerate() {
+                let corner = DVec3::select(glam::BVec3::new(n & 1 > 0, n & 2 > 0, n & 4 > 0), high, low);
+                assert!(place.distance(corner) < slack);
+            }
+            hanging += usize::from(nodes.len() > 8);
+            assert!(nodes.len() <= 26);
+        }
+        assert!(hanging > 0);
+        // The simulation takes their faces as those of cubes.
+        let count = graded.cage.nodes.len();
+        let body = localshape_sim::Body::new(
+            localshape_sim::Dimension::Space,
+            graded.cage.nodes.clone(),
+            vec![1.0; count],
+            elements.clone(),
+            localshape_sim::Solids::Ordered,
+            None,
+        );
+        let topology = localshape_sim::Elements {
+            nodes: &body.elements,
+            kinds: &body.kinds,
+            hulls: &body.hulls,
+            rest: &body.rest,
+        };
+        for element in 0..elements.len() {
+            let mut corners = Vec::new();
+            topology.for_each_face(element, |face| corners.push(face.len()));
+            assert_eq!(corners, [4; 6]);
+        }
+    }
+    // Legs stay apart, and more elements than allowed are refused.
+    let leg = |x: f64| block(DVec3::new(x, 0.0, 0.0), DVec3::new(x + 0.63, 0.6, 1.0));
+    let legs = fill(&together(&[leg(0.0), leg(0.65)]), Fill::Graded { side: 0.1 }, MOST).unwrap();
+    assert_carried(&legs);
+    assert_eq!(bodies(&legs), 2);
+    let error = fill(&leg(0.0), Fill::Graded { side: 0.05 }, 500).unwrap_err();
+    assert!(error.message.starts_with("needs "), "{error}");
+    println!("{error} {:?}", error.help);
+}
+
 #[test]
 fn open_surfaces_are_filled_to_the_hole() {
     let mut surface = ball(DVec3::ZERO, 1.0, 60);
@@ -233,6 +310,45 @@ fn what_cannot_be_filled_is_refused_with_a_remedy() {
     let rod =
         Surface { points: cube.points.iter().map(|point| point * 1e-3 + DVec3::splat(point.x)).collect(), ..cube };
     assert!(error(&rod, 1e-4, 1000).contains("at most 1000"));
+}
+
+#[test]
+fn the_side_that_is_offered_fits() {
+    let thin = block(DVec3::ZERO, DVec3::new(1.0, 0.7, 0.02));
+    for surface in [block(DVec3::ZERO, DVec3::ONE), thin, ball(DVec3::ZERO, 1.0, 60), ring(1.0, 0.2, 60)] {
+        for (side, most) in [(0.1, 100), (0.05, 300), (0.03, 2000), (0.02, 900), (0.001, 1000), (1e-7, 50)] {
+            for is_graded in [false, true] {
+                let with = |side| if is_graded { Fill::Graded { side } } else { Fill::Cubes { side } };
+                let Err(error) = fill(&surface, with(side), most) else { continue };
+                let help = error.help.clone().unwrap();
+                let offered = help.strip_prefix("Use a side of ").and_then(|rest| rest.split_once(" or more"));
+                let offered: f64 = offered.unwrap_or_else(|| panic!("{error}: {help}")).0.parse().unwrap();
+                let count = fill(&surface, with(offered), most).map(|filled| filled.cage.elements.len());
+                println!("{error}; {offered}: {count:?}");
+                assert!(count.unwrap() <= most);
+            }
+        }
+    }
+}
+
+#[test]
+fn large_triangles_are_divided_to_follow_the_elements() {
+    let cube = block(DVec3::ZERO, DVec3::new(1.0, 0.5, 0.25));
+    let filled = cubes(&cube, 0.1);
+    let surface = &filled.surface;
+    for of in &surface.triangles {
+        for at in 0..3 {
+            let [from, to] = [of[at], of[(at + 1) % 3]].map(|point| surface.points[point as usize]);
+            assert!(from.distance(to) < 0.1 + 1e-6);
+        }
+    }
+    let (measures, before) = (surface.measures(), cube.measures());
+    assert!(measures.closed && measures.euler == 2);
+    assert!((measures.volume - before.volume).abs() < 1e-6 && (measures.area - before.area).abs() < 1e-5);
+    assert!(surface.triangles.len() < 2000, "{}", surface.triangles.len());
+    // What is fine already stays as it is.
+    let fine = ball(DVec3::ZERO, 1.0, 40).mended().0;
+    assert_eq!(cubes(&fine, 0.3).surface.triangles, fine.triangles);
 }
 
 #[test]

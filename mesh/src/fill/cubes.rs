@@ -1,6 +1,7 @@
 //! Cubes of a lattice.
 
 use super::clip::{self, Piece};
+use super::graded::{self, Graded};
 use super::lattice::{Cell, Lattice, too_many};
 use super::parts::{Parts, Scene, corner};
 use super::{Cage, FillError, Filled};
@@ -24,32 +25,54 @@ pub(super) struct Full {
     pub(super) filled: f64,
 }
 
-pub(super) fn fill(mut surface: Surface, flaws: Flaws, side: f64, most: usize) -> Result<Filled, FillError> {
-    let (lattice, scaled) = Lattice::about(&mut surface, side, most)?;
+/// Fills a surface with cubes of a side, or coarser ones away from the surface.
+pub(super) fn fill(
+    mut surface: Surface,
+    flaws: Flaws,
+    side: f64,
+    is_graded: bool,
+    most: usize,
+) -> Result<Filled, FillError> {
+    // Most cells are joined if cubes are graded, and cells take less memory than elements.
+    let most_cells = if is_graded { most.saturating_mul(8) } else { most };
+    let (lattice, scaled) = Lattice::about(&mut surface, side, most_cells)?;
     let pieces = clip::pieces(&scaled, &lattice);
     let inside = Inside::new(&scaled);
     let cells = cells(&inside, &flaws, &lattice, &pieces)?;
-    if cells.len() > most {
-        return Err(too_many(&surface.measures(), side, cells.len() as f64, most, ""));
+    let refuse = |needed: usize| {
+        let mut measures = surface.measures();
+        if is_graded {
+            // The number of graded cubes grows with the surface.
+            measures.volume = 0.0;
+        }
+        Err(too_many(&measures, side, needed as f64, most, ""))
+    };
+    if cells.len() > most_cells {
+        return refuse(cells.len());
     }
     let scene = Scene { scaled: &scaled, lattice: &lattice, inside: &inside, pieces: &pieces };
-    let parts = scene.parts(&cells, most)?;
+    let parts = scene.parts(&cells);
     let mut nodes = Nodes::new(lattice, parts.corners.len());
-    let mut elements = IndexLists::default();
-    for (copy, full) in parts.copies.iter().enumerate() {
-        let cell = lattice.cell(full.cell);
-        let corner =
-            |at: usize| nodes.of(parts.corners[8 * copy + at], [0, 1, 2].map(|axis| cell[axis] + CORNERS[at][axis]));
-        elements.push(&[0, 1, 2, 3, 4, 5, 6, 7].map(corner));
+    let (elements, filled, weights) = if is_graded {
+        let Graded { elements, filled, element_of } = graded::joined(&scene, &parts, &mut nodes);
+        let weights = weights(&scene, &parts, |copy| &elements[element_of[copy] as usize]);
+        (elements, filled, weights)
+    } else {
+        let mut elements = IndexLists::default();
+        for (copy, full) in parts.copies.iter().enumerate() {
+            let cell = lattice.cell(full.cell);
+            elements.push(&[0, 1, 2, 3, 4, 5, 6, 7].map(|at| {
+                nodes.of(parts.corners[8 * copy + at], [0, 1, 2].map(|axis| cell[axis] + CORNERS[at][axis]))
+            }));
+        }
+        let weights = weights(&scene, &parts, |copy| &elements[copy]);
+        (elements, parts.copies.iter().map(|full| full.filled).collect(), weights)
+    };
+    if elements.len() > most {
+        return refuse(elements.len());
     }
-    let weights = weights(&scene, &parts, |copy| &elements[copy]);
-    let filled = parts.copies.iter().map(|full| full.filled).collect();
-    Ok(Filled {
-        cage: Cage { nodes: nodes.places, elements, filled: in_part(filled), convex: false },
-        surface,
-        weights,
-        flaws,
-    })
+    let cage = Cage { nodes: nodes.places, elements, filled: in_part(filled), convex: false };
+    Ok(Filled { cage, surface, weights, flaws })
 }
 
 /// The filled parts of elements, unless all are full.
@@ -198,14 +221,15 @@ pub(super) fn weights<'e>(scene: &Scene, parts: &Parts, nodes: impl Fn(usize) ->
     weights
 }
 
-/// The copy whose cell is nearest to a point.
+/// The copy with a piece of the surface whose cell is nearest to a point.
 fn nearest(scene: &Scene, parts: &Parts, point: DVec3) -> usize {
-    let away = |full: &Full| {
-        let low = corner(scene.lattice.cell(full.cell));
+    let away = |piece: &Piece| {
+        let low = corner(scene.lattice.cell(piece.cell));
         point.distance_squared(point.clamp(low, low + 1.0))
     };
-    let distances = parts.copies.iter().map(away).enumerate();
-    distances.reduce(|best, other| if other.1 < best.1 { other } else { best }).map_or(0, |(copy, _)| copy)
+    let distances = scene.pieces.iter().map(away).enumerate();
+    let nearest = distances.reduce(|best, other| if other.1 < best.1 { other } else { best });
+    nearest.map_or(0, |(piece, _)| parts.copy_of[piece] as usize)
 }
 
 /// The cell of each point, and a triangle that has a part in that cell with the point as a corner.

@@ -5,7 +5,6 @@
 //! one sees the other through the inside, directly or by way of points that see each other. Copies of neighbouring cells share
 //! nodes where the same part passes their common face.
 
-use super::FillError;
 use super::clip::{Piece, Polygon};
 use super::cubes::{CORNERS, Full};
 use super::lattice::{Cell, Lattice};
@@ -136,7 +135,7 @@ impl Scene<'_> {
     }
 
     /// The cells with one copy for each separate part of the inside, and the corners that copies share.
-    pub(super) fn parts(&self, cells: &[Full], most: usize) -> Result<Parts, FillError> {
+    pub(super) fn parts(&self, cells: &[Full]) -> Parts {
         let edges = Edges::new(self.scaled);
         // The pieces of each cell, and the parts of those with pieces.
         let mut starts = Vec::with_capacity(cells.len() + 1);
@@ -168,15 +167,6 @@ impl Scene<'_> {
             }
             copies.extend(local.shares.iter().map(|share| Full { filled: full.filled * share, ..*full }));
         }
-        if copies.len() > most {
-            return Err(FillError {
-                message: format!(
-                    "needs {} elements, one for each separate part of it in a cube, and at most {most} are allowed",
-                    copies.len()
-                ),
-                help: Some("Use a larger side, or allow more elements.".to_owned()),
-            });
-        }
         let mut corners = Sets::new(8 * copies.len());
         for (at, full) in cells.iter().enumerate() {
             let cell = self.lattice.cell(full.cell);
@@ -202,7 +192,7 @@ impl Scene<'_> {
             }
         }
         let corners = (0..8 * copies.len() as u32).map(|corner| corners.of(corner)).collect();
-        Ok(Parts { copies, corners, copy_of })
+        Parts { copies, corners, copy_of }
     }
 
     /// The parts of two neighbours that are one beyond their common face: the lower face of the cell `above` across an
