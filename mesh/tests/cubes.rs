@@ -296,7 +296,7 @@ fn what_cannot_be_filled_is_refused_with_a_remedy() {
         "needs 1000 elements of side 0.1, and at most 900 are allowed. Use a side of 0.12 or more, or allow more elements."
     );
     assert!(fill(&cube, Fill::Cubes { side: 0.12 }, 900).is_ok());
-    assert!(error(&cube, 1e-9, 900).starts_with("needs about 1000000"), "{}", error(&cube, 1e-9, 900));
+    assert!(error(&cube, 1e-9, 900).starts_with("needs about 1e27"), "{}", error(&cube, 1e-9, 900));
     assert!(error(&cube, 1e-300, 900).starts_with("needs about "));
     assert_eq!(error(&cube, 0.0, 9), "cannot be filled with elements of side 0. Use a positive side.");
     assert_eq!(error(&Surface::default(), 0.1, 9), "has no face with an area. Use a file with faces.");

@@ -33,9 +33,9 @@ pub(super) fn fill(
     is_graded: bool,
     most: usize,
 ) -> Result<Filled, FillError> {
-    // Most cells are joined if cubes are graded, and cells take less memory than elements.
-    let most_cells = if is_graded { most.saturating_mul(8) } else { most };
-    let (lattice, scaled) = Lattice::about(&mut surface, side, most_cells)?;
+    // Many cells are joined if cubes are graded, and cells take less memory than elements.
+    let joined = if is_graded { 4 } else { 1 };
+    let (lattice, scaled) = Lattice::graded(&mut surface, side, most, joined)?;
     let pieces = clip::pieces(&scaled, &lattice);
     let inside = Inside::new(&scaled);
     let cells = cells(&inside, &flaws, &lattice, &pieces)?;
@@ -47,8 +47,8 @@ pub(super) fn fill(
         }
         Err(too_many(&measures, side, needed as f64, most, ""))
     };
-    if cells.len() > most_cells {
-        return refuse(cells.len());
+    if cells.len() / joined / joined > most {
+        return refuse(cells.len() / joined);
     }
     let scene = Scene { scaled: &scaled, lattice: &lattice, inside: &inside, pieces: &pieces };
     let parts = scene.parts(&cells);

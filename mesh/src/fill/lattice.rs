@@ -23,6 +23,16 @@ impl Lattice {
     /// The lattice for a surface that may be filled with at most so many elements, and the surface in units of the
     /// lattice. Points that are almost on a plane of the lattice are on it in both.
     pub(super) fn about(surface: &mut Surface, side: f64, most: usize) -> Result<(Self, Surface), FillError> {
+        Self::graded(surface, side, most, 1)
+    }
+
+    /// The lattice for a surface whose elements are so many cubes on average.
+    pub(super) fn graded(
+        surface: &mut Surface,
+        side: f64,
+        most: usize,
+        cubes: usize,
+    ) -> Result<(Self, Surface), FillError> {
         let measures = surface.measures();
         if surface.triangles.is_empty() {
             let help = Some("Use a file with faces.".to_owned());
@@ -34,13 +44,15 @@ impl Lattice {
         }
         let extent = measures.high - measures.low;
         let counts = extent.to_array().map(|extent| (extent / side - SNAP).ceil().max(1.0));
-        let (needed, slack) = (estimate(&measures, side), 4.0);
+        let (needed, slack) = (estimate(&measures, side) / cubes as f64, 4.0);
         // Each place is visited, whether or not something is in it.
         let rows = counts[1] * counts[2];
         let places = rows * counts[0];
         let is_sane = rows <= 16.0 * most as f64 + 65536.0 && places <= 1024.0 * most as f64 + 1e8 && counts[0] < 1e6;
         if !(needed <= slack * most as f64 && is_sane) {
-            return Err(too_many(&measures, side, needed.max(rows / 16.0), most, "about "));
+            // For all it is known yet, no cubes may be joined at a larger side.
+            let other = |side| boxed(&measures, side);
+            return Err(refused(side, needed.max(rows / 16.0), most, "about ", &measures, other));
         }
         // Triangles that lie over each other by thousands are no surface.
         let overlaps: f64 = surface.triangles.iter().map(|&triangle| pieces(surface.corners(triangle), side)).sum();
@@ -86,26 +98,41 @@ fn pieces([a, b, c]: [DVec3; 3], side: f64) -> f64 {
     1.0 + x + y + z + 0.5 * (x * y + y * z + z * x)
 }
 
+/// About how many cubes hold a part of the inside, or more: all of the box, if less is not certain.
+fn boxed(measures: &Measures, side: f64) -> f64 {
+    let counts = (measures.high - measures.low).max(DVec3::splat(f64::MIN_POSITIVE)) / side;
+    let whole = (counts - SNAP).ceil().max(DVec3::ONE);
+    // What fills its box needs as many more as the box is rounded up to whole cubes.
+    whole.element_product().min(estimate(measures, side) * (whole / counts).element_product().min(1e9))
+}
+
 /// The error for a fill that would need so many elements.
 pub(super) fn too_many(measures: &Measures, side: f64, needed: f64, most: usize, about: &str) -> FillError {
-    // The estimate, scaled to what is known, tells how the number falls with the side. What fills its box needs as many
-    // more as the box is rounded up to whole cubes.
-    let extent = (measures.high - measures.low).max(DVec3::splat(f64::MIN_POSITIVE));
-    let boxed = |side: f64| {
-        let counts = extent / side;
-        estimate(measures, side) * ((counts - SNAP).ceil().max(DVec3::ONE) / counts).element_product().min(1e9)
-    };
-    let factor = needed / boxed(side);
-    let start = if side > 1e-6 * extent.max_element() { side } else { 1e-6 * extent.max_element() };
-    let tries =
-        (1..2000).map(|step| rounded_up(start * (1.0 + 0.01 * f64::from(step) + 1e-4 * f64::from(step * step))));
-    let fits = tries.map(|side| (side, factor * boxed(side))).find(|&(_, number)| number <= 0.95 * most as f64);
-    let remedy = match fits {
-        Some((side, _)) => format!("Use a side of {side} or more, or allow more elements."),
+    // The estimate, scaled to what is known, tells how the number falls with the side.
+    let factor = needed / boxed(measures, side);
+    refused(side, needed, most, about, measures, |side| factor * boxed(measures, side))
+}
+
+/// The error for a fill that would need so many elements, with a function that tells about how many are needed for other
+/// sides.
+fn refused(
+    side: f64,
+    needed: f64,
+    most: usize,
+    about: &str,
+    measures: &Measures,
+    other: impl Fn(f64) -> f64,
+) -> FillError {
+    let start = side.max(1e-9 * (measures.high - measures.low).max_element());
+    let tries = std::iter::successors(Some(start), |side| Some(1.02 * side)).skip(1).take(2000).map(rounded_up);
+    let mut fitting = tries.filter(|&side| other(side) <= 0.95 * most as f64);
+    let needed = if needed < 1e9 { format!("{needed:.0}") } else { format!("{needed:.0e}") };
+    let remedy = match fitting.next() {
+        Some(side) => format!("Use a side of {side} or more, or allow more elements."),
         None => "Allow more elements.".to_owned(),
     };
     FillError {
-        message: format!("needs {about}{needed:.0} elements of side {side}, and at most {most} are allowed"),
+        message: format!("needs {about}{needed} elements of side {side}, and at most {most} are allowed"),
         help: Some(remedy),
     }
 }
