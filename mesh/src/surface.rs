@@ -110,7 +110,13 @@ impl Surface {
         let needed: f64 = self.triangles.iter().map(parts).sum();
         // Not true for a length of zero or one that is no number, either.
         let fits = needed <= 16.0 * most as f64 + 8.0 * self.triangles.len() as f64;
-        while fits && self.halve(longest) {}
+        let is_long = |&of: &[u32; 3]| {
+            let [a, b, c] = self.corners(of);
+            [a.distance(b), b.distance(c), c.distance(a)].into_iter().any(|length| length > longest)
+        };
+        if fits && self.triangles.iter().any(is_long) {
+            while self.halve(longest) {}
+        }
     }
 
     /// Divides longer edges in halves, and returns whether there were some.
