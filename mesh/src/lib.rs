@@ -14,6 +14,6 @@ mod surface;
 mod volume;
 
 pub use fill::{Cage, Fill, FillError, Filled, fill};
-pub use read::{Format, Limits, Mesh, ReadError, read};
+pub use read::{CellKind, Cells, Format, Limits, Mesh, ReadError, read, read_cells};
 pub use surface::{Flaws, Measures, Surface};
 pub use volume::{Group, Volume};

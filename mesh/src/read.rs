@@ -1,4 +1,19 @@
 //! Mesh files.
+//!
+//! Each format is one file, which makes [`Cells`] of bytes: points and cells as they are listed. [`Cells::mesh`] makes a [`Mesh`] of
+//! them, in the same way for all formats. Numbers in a file are never trusted: lists grow as their entries are found.
+
+mod cells;
+mod content;
+mod gmsh;
+mod obj;
+mod off;
+mod ply;
+mod polygon;
+mod source;
+mod stl;
+
+pub use cells::{CellKind, Cells};
 
 use super::{Surface, Volume};
 
@@ -22,31 +37,39 @@ pub enum Format {
     Ply,
     /// Object File Format (`.off`).
     Off,
-    /// Khronos' transmission format (`.gltf`, `.glb`), with its data inside.
+    /// Khronos' transmission format 2.0 (`.gltf`, `.glb`), with its data inside.
     Gltf,
     /// Gmsh 2.2 or 4.1 (`.msh`), ASCII or binary.
     Gmsh,
     /// VTK's legacy format (`.vtk`), ASCII or binary.
     Vtk,
-    /// VTK's unstructured grids in XML (`.vtu`).
+    /// VTK's unstructured grids and polygons in XML (`.vtu`, `.vtp`).
     Vtu,
 }
 
 impl Format {
+    /// All formats.
+    pub const ALL: [Self; 8] =
+        [Self::Obj, Self::Stl, Self::Ply, Self::Off, Self::Gltf, Self::Gmsh, Self::Vtk, Self::Vtu];
+
+    /// The endings of its files, without the dot.
+    pub fn endings(self) -> &'static [&'static str] {
+        match self {
+            Self::Obj => &["obj"],
+            Self::Stl => &["stl"],
+            Self::Ply => &["ply"],
+            Self::Off => &["off"],
+            Self::Gltf => &["gltf", "glb"],
+            Self::Gmsh => &["msh"],
+            Self::Vtk => &["vtk"],
+            Self::Vtu => &["vtu", "vtp"],
+        }
+    }
+
     /// The format of a file with this ending, in any case and without the dot.
     pub fn of(ending: &str) -> Option<Self> {
         let ending = ending.to_ascii_lowercase();
-        Some(match &*ending {
-            "obj" => Self::Obj,
-            "stl" => Self::Stl,
-            "ply" => Self::Ply,
-            "off" => Self::Off,
-            "gltf" | "glb" => Self::Gltf,
-            "msh" => Self::Gmsh,
-            "vtk" => Self::Vtk,
-            "vtu" => Self::Vtu,
-            _ => return None,
-        })
+        Self::ALL.into_iter().find(|format| format.endings().contains(&&*ending))
     }
 }
 
@@ -63,17 +86,39 @@ pub struct Limits {
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{message}")]
 pub struct ReadError {
-    /// What was found, and what was expected: “ends in line 7, in the list of points”.
+    /// What was found, and what was expected: “ends in line 7; expected a coordinate”.
     pub message: String,
     /// What to do.
     pub help: Option<String>,
 }
 
+impl ReadError {
+    fn new(message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self { message: message.into(), help: Some(help.into()) }
+    }
+}
+
 /// Reads a file.
 ///
 /// # Errors
-/// If it is damaged, or larger than the limits, or has neither faces nor cells.
+/// If it is damaged, or larger than the limits, or has neither faces nor cells, or cells without area or volume.
 pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Mesh, ReadError> {
-    let _ = (bytes, limits);
-    Err(ReadError { message: format!("has a format ({format:?}) that is not read yet"), help: None })
+    read_cells(bytes, format, limits)?.mesh()
+}
+
+/// Reads the points and cells of a file as they are listed: in their order, unused and flat ones, too. Files of one mesh at
+/// several moments then have the same points in the same places.
+///
+/// # Errors
+/// If it is damaged, or larger than the limits.
+pub fn read_cells(bytes: &[u8], format: Format, limits: &Limits) -> Result<Cells, ReadError> {
+    content::check(bytes, format)?;
+    match format {
+        Format::Obj => obj::read(bytes, limits),
+        Format::Stl => stl::read(bytes, limits),
+        Format::Ply => ply::read(bytes, limits),
+        Format::Off => off::read(bytes, limits),
+        Format::Gmsh => gmsh::read(bytes, limits),
+        _ => Err(ReadError { message: format!("has a format ({format:?}) that is not read yet"), help: None }),
+    }
 }

@@ -1,7 +1,7 @@
 //! Meshes of cells.
 
 use glam::DVec3;
-use localshape_sim::{Dimension, IndexLists};
+use localshape_sim::{Dimension, IndexLists, Solids};
 
 /// A mesh of cells, which become the elements of a body.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,7 +10,9 @@ pub struct Volume {
     pub dimension: Dimension,
     /// Position of each point, in the unit of the file. Each belongs to a cell.
     pub points: Vec<DVec3>,
-    /// The points of each cell, in the order of [`localshape_sim::Solids::Ordered`], none turned inside out.
+    /// How cells of four, five, six and eight points are read: as hulls only if one of them is another polyhedron.
+    pub solids: Solids,
+    /// The points of each cell, in the order of [`Solids::Ordered`], none turned inside out.
     pub cells: IndexLists,
     /// Sets of points with a name.
     pub groups: Vec<Group>,

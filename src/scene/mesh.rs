@@ -11,10 +11,10 @@ use sha2::{Digest, Sha256};
 use std::path::Path;
 
 /// The endings of mesh files.
-pub(crate) const ENDINGS: [&str; 9] = ["obj", "stl", "ply", "off", "gltf", "glb", "msh", "vtk", "vtu"];
+pub(crate) const ENDINGS: [&str; 10] = ["obj", "stl", "ply", "off", "gltf", "glb", "msh", "vtk", "vtu", "vtp"];
 
 /// Endings of mesh files that are not read.
-const OTHERS: [&str; 12] = ["mesh", "node", "ele", "inp", "fbx", "3mf", "dae", "blend", "step", "stp", "usd", "vtp"];
+const OTHERS: [&str; 11] = ["mesh", "node", "ele", "inp", "fbx", "3mf", "dae", "blend", "step", "stp", "usd"];
 
 /// The number of cells along the longest side of a filled surface, unless a scene tells another.
 pub(crate) const CELLS: u32 = 20;

@@ -268,7 +268,8 @@ fn check_generator(generator: Generator<'_>, place: &Place, report: &mut Collect
 fn listed(file: &BodyFile, lists: Lists, flawed: bool, report: &mut Collector<'_>) -> Option<ResolvedBody> {
     let before = report.total();
     let place = lists.source.body.clone();
-    let (dimension, solids) = (lists.dimension, solids(file));
+    let solids = if file.convex { Solids::Convex } else { lists.solids };
+    let dimension = lists.dimension;
     elements::check(&lists, solids, flawed, report);
     let count = lists.nodes.len();
     for (key, length) in [

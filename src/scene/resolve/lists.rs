@@ -10,7 +10,7 @@ use crate::scene::limits::Limits;
 use crate::scene::mesh;
 use crate::scene::npz::{Array, Npz, Values};
 use crate::scene::recording::full;
-use crate::sim::{Dimension, IndexLists};
+use crate::sim::{Dimension, IndexLists, Solids};
 use glam::DVec3;
 use sha2::{Digest, Sha256};
 use std::path::Path;
@@ -79,6 +79,8 @@ pub(super) struct Lists {
     /// Rest positions (m).
     pub(super) nodes: Vec<DVec3>,
     pub(super) elements: IndexLists,
+    /// How elements of four, five, six and eight nodes are read, unless the scene says.
+    pub(super) solids: Solids,
     pub(super) springs: Option<Vec<[u32; 2]>>,
     pub(super) faces: Option<IndexLists>,
     /// Initial positions (m).
@@ -178,7 +180,8 @@ impl Lists {
             return None;
         }
         let (springs, positions, velocities) = (None, None, None);
-        Some(Self { source, dimension, nodes, elements, springs, faces, positions, velocities, masses })
+        let solids = Solids::Ordered;
+        Some(Self { source, dimension, nodes, elements, solids, springs, faces, positions, velocities, masses })
     }
 
     /// A digest of all lists. It does not depend on compression, the width of numbers or the location of the file.
@@ -315,7 +318,8 @@ impl Reader<'_, '_> {
         let velocities = self.optional("velocities").and_then(|array| self.vectors("velocities", &array, columns));
         let masses = self.optional("masses").and_then(|array| self.masses("masses", &array));
         let (nodes, elements, source) = (nodes?, elements?, self.source.clone());
-        Some(Lists { source, dimension, nodes, elements, springs, faces, positions, velocities, masses })
+        let solids = Solids::Ordered;
+        Some(Lists { source, dimension, nodes, elements, solids, springs, faces, positions, velocities, masses })
     }
 
     /// The header of a required array.

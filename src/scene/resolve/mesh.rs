@@ -87,7 +87,7 @@ fn cells(volume: Volume, file: &BodyFile, place: &Place, name: &str, report: &mu
         report.at_key(&key_path![place; "fill"], message, "remove it: the cells are the elements");
         return None;
     }
-    let Volume { dimension, points: nodes, cells: elements, groups, turned } = volume;
+    let Volume { dimension, solids, points: nodes, cells: elements, groups, turned } = volume;
     if turned > 0 {
         let all = count(elements.len() as u128);
         let message = match turned {
@@ -109,7 +109,7 @@ fn cells(volume: Volume, file: &BodyFile, place: &Place, name: &str, report: &mu
     );
     let source = ListSource { body: place.clone(), file: Some((name.to_owned(), path)) };
     let (springs, faces, positions, velocities, masses) = Default::default();
-    let lists = Lists { source, dimension, nodes, elements, springs, faces, positions, velocities, masses };
+    let lists = Lists { source, dimension, nodes, elements, solids, springs, faces, positions, velocities, masses };
     Some(Made::Cells(Box::new(lists), groups))
 }
 

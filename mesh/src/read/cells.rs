@@ -1,0 +1,429 @@
+//! Points and cells as a file lists them, and the mesh that they make.
+
+use super::polygon::Triangulation;
+use super::source::{DAMAGED, Source};
+use super::{Limits, Mesh, ReadError, Surface, Volume};
+use crate::Group;
+use glam::DVec3;
+use localshape_sim::geometry::volume_by_faces;
+use localshape_sim::{Dimension, ElementKind, IndexLists, Solids};
+use std::collections::{BTreeMap, HashSet};
+
+/// The kind of a cell in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CellKind {
+    /// One point, or several that are not joined.
+    Point,
+    /// A line through its points.
+    Line,
+    /// A triangle, quadrilateral or polygon.
+    Polygon,
+    /// A tetrahedron.
+    Tetrahedron,
+    /// A pyramid on a quadrilateral.
+    Pyramid,
+    /// A wedge between two triangles.
+    Wedge,
+    /// A hexahedron.
+    Hexahedron,
+    /// The convex hull of its corners.
+    Polyhedron,
+}
+
+impl CellKind {
+    /// The kind of elements that such cells become.
+    fn element(self) -> Option<ElementKind> {
+        Some(match self {
+            Self::Point | Self::Line | Self::Polygon => return None,
+            Self::Tetrahedron => ElementKind::Tetrahedron,
+            Self::Pyramid => ElementKind::Pyramid,
+            Self::Wedge => ElementKind::Wedge,
+            Self::Hexahedron => ElementKind::Hexahedron,
+            Self::Polyhedron => ElementKind::Other,
+        })
+    }
+}
+
+/// Points and cells as a file lists them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cells {
+    /// Position of each point, in the unit of the file.
+    pub points: Vec<DVec3>,
+    /// The kind of each cell.
+    pub kinds: Vec<CellKind>,
+    /// The points of each cell without those between its corners, in the order of [`Solids::Ordered`].
+    pub corners: IndexLists,
+    /// Sets of points with a name, in ascending order.
+    pub groups: Vec<Group>,
+}
+
+/// The order in which files list the corners of a hexahedron, around one side and then around the other, as places in the order of
+/// [`Solids::Ordered`]. It is its own inverse.
+const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+
+/// The corners of a hexahedron that a file lists around one side and then around the other, x fastest, then y, then z.
+pub(super) fn along(corners: &[u32; 8]) -> [u32; 8] {
+    AROUND.map(|place| corners[place])
+}
+
+/// Cells while they are read.
+#[derive(Debug)]
+pub(super) struct Builder<'l> {
+    cells: Cells,
+    groups: BTreeMap<String, Vec<u32>>,
+    limits: &'l Limits,
+    /// The highest index of a corner, and the place where it was found. Points may follow the cells that name them.
+    highest: (u32, usize),
+}
+
+impl<'l> Builder<'l> {
+    pub(super) fn new(limits: &'l Limits) -> Self {
+        Self { cells: Cells::default(), groups: BTreeMap::new(), limits, highest: (0, 0) }
+    }
+
+    /// The number of points so far.
+    pub(super) fn points(&self) -> usize {
+        self.cells.points.len()
+    }
+
+    /// Whether there are no cells so far.
+    pub(super) fn is_empty(&self) -> bool {
+        self.cells.kinds.is_empty()
+    }
+
+    /// Refuses numbers of points and cells beyond the limits, before they are read.
+    pub(super) fn expect(&self, points: u64, cells: u64) -> Result<(), ReadError> {
+        for (count, most, what) in [(points, self.limits.points, "points"), (cells, self.limits.corners / 3, "cells")] {
+            if count > most as u64 {
+                return Err(too_many(&count.to_string(), what, most));
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a point, and returns its index.
+    pub(super) fn point(&mut self, point: DVec3) -> Result<u32, ReadError> {
+        /// Coordinates beyond this are not lengths, and products of them would overflow.
+        const FAR: f64 = 1e100;
+        let index = self.cells.points.len();
+        if !(point.abs().max_element() <= FAR && point.is_finite()) {
+            let message = format!("has the point {index} at {point}; expected coordinates between -1e100 and 1e100");
+            return Err(ReadError::new(message, DAMAGED));
+        }
+        let most = self.limits.points.min(u32::MAX as usize - 1);
+        if index >= most {
+            return Err(too_many(&format!("more than {most}"), "points", most));
+        }
+        self.cells.points.push(point);
+        Ok(index as u32)
+    }
+
+    /// The index of a point, counted from 0, that was found at a place.
+    pub(super) fn corner(&mut self, index: i64, at: usize, source: &Source<'_>) -> Result<u32, ReadError> {
+        let corner = u32::try_from(index).map_err(|_| {
+            let message = format!("names a point that it does not have {}", source.place(at));
+            ReadError::new(message, DAMAGED)
+        })?;
+        if corner > self.highest.0 {
+            self.highest = (corner, at);
+        }
+        Ok(corner)
+    }
+
+    /// Adds a cell.
+    pub(super) fn cell(&mut self, kind: CellKind, corners: &[u32]) -> Result<(), ReadError> {
+        let most = self.limits.corners.min(u32::MAX as usize - 1);
+        if corners.is_empty() {
+            return Ok(());
+        }
+        if self.cells.corners.indices().len() + corners.len() > most {
+            return Err(too_many(&format!("more than {most}"), "corners", most));
+        }
+        self.cells.kinds.push(kind);
+        self.cells.corners.push(corners);
+        Ok(())
+    }
+
+    /// Adds a polygon, or what is left of one with less than three corners.
+    pub(super) fn face(&mut self, corners: &[u32]) -> Result<(), ReadError> {
+        match corners.len() {
+            0 => Ok(()),
+            1 => self.cell(CellKind::Point, corners),
+            2 => self.cell(CellKind::Line, corners),
+            _ => self.cell(CellKind::Polygon, corners),
+        }
+    }
+
+    /// Adds a strip of triangles.
+    pub(super) fn strip(&mut self, corners: &[u32]) -> Result<(), ReadError> {
+        for (at, triangle) in corners.windows(3).enumerate() {
+            let [a, b, c] = [triangle[0], triangle[1], triangle[2]];
+            self.face(&if at.is_multiple_of(2) { [a, b, c] } else { [b, a, c] })?;
+        }
+        Ok(())
+    }
+
+    /// Adds points to the set of this name.
+    pub(super) fn group(&mut self, name: String, points: Vec<u32>) {
+        self.groups.entry(name).or_default().extend(points);
+    }
+
+    /// All cells, if each names points that are there. Errors count points from `first`.
+    pub(super) fn finish(mut self, source: &Source<'_>, first: u64) -> Result<Cells, ReadError> {
+        let count = self.cells.points.len();
+        if !self.cells.corners.indices().is_empty() && self.highest.0 as usize >= count {
+            let (index, place) = (u64::from(self.highest.0) + first, source.place(self.highest.1));
+            let message = match count {
+                0 => format!("names point {index} {place}, but has no points"),
+                _ => {
+                    format!("names point {index} {place}, but has points {first} to {}", count as u64 + first - 1)
+                }
+            };
+            return Err(ReadError::new(message, DAMAGED));
+        }
+        self.cells.groups = self
+            .groups
+            .into_iter()
+            .map(|(name, mut points)| {
+                points.sort_unstable();
+                points.dedup();
+                Group { name, points }
+            })
+            .collect();
+        Ok(self.cells)
+    }
+}
+
+fn too_many(found: &str, what: &str, most: usize) -> ReadError {
+    let message = format!("has {found} {what}; at most {most} are read");
+    ReadError::new(message, "make the mesh coarser, with a decimation of the program that wrote it")
+}
+
+/// An area or volume below this part of the cell's bounding cube counts as zero, as in the checks of scenes.
+const FLAT: f64 = 1e-12;
+
+impl Cells {
+    /// The mesh: a volume of the cells with a volume; else, if all faces lie in a plane of equal z, a volume of them in the plane;
+    /// else a surface of triangles. Points that belong to no part of it are left out.
+    ///
+    /// # Errors
+    /// If there are neither cells nor faces, or cells without area or volume.
+    pub fn mesh(self) -> Result<Mesh, ReadError> {
+        let of = |wanted: fn(CellKind) -> bool| self.kinds.iter().filter(|&&kind| wanted(kind)).count();
+        if of(|kind| kind.element().is_some()) > 0 {
+            return self.solids().map(Mesh::Volume);
+        }
+        if of(|kind| kind == CellKind::Polygon) > 0 {
+            return match self.is_plane() {
+                true => self.polygons().map(Mesh::Volume),
+                false => self.surface().map(Mesh::Surface),
+            };
+        }
+        let (points, lines) = (self.points.len(), of(|kind| kind == CellKind::Line));
+        let points = if points == 1 { "1 point".to_owned() } else { format!("{points} points") };
+        let message = match lines {
+            0 => format!("has {points}, but neither faces nor cells"),
+            1 => format!("has {points} and 1 line, but neither faces nor cells"),
+            _ => format!("has {points} and {lines} lines, but neither faces nor cells"),
+        };
+        Err(ReadError::new(message, "write a mesh of triangles or of cells, not points or curves"))
+    }
+
+    /// The cells that a predicate selects, with their number in the file.
+    fn chosen(&self, wanted: impl Fn(CellKind) -> bool) -> impl Iterator<Item = (usize, CellKind, &[u32])> {
+        let all = self.kinds.iter().zip(self.corners.iter()).enumerate();
+        all.filter(move |&(_, (&kind, _))| wanted(kind)).map(|(at, (&kind, corners))| (at, kind, corners))
+    }
+
+    /// Whether all faces have the same z, to round-off.
+    fn is_plane(&self) -> bool {
+        let faces = self.chosen(|kind| kind == CellKind::Polygon);
+        let points = || faces.flat_map(|(.., corners)| corners).map(|&point| self.points[point as usize]);
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        points().for_each(|point| (low, high) = (low.min(point), high.max(point)));
+        high.z - low.z <= 1e-9 * (high - low).max_element()
+    }
+
+    fn surface(self) -> Result<Surface, ReadError> {
+        let mut triangulation = Triangulation::new(&self.points);
+        let mut triangles = Vec::new();
+        for (at, _, corners) in self.chosen(|kind| kind == CellKind::Polygon) {
+            if !triangulation.triangles(corners, &mut triangles) {
+                let message = format!(
+                    "has concave faces that take too long to divide into triangles: the last tried is face {at} with {} corners",
+                    corners.len()
+                );
+                return Err(ReadError::new(message, "divide its faces into triangles in the program that wrote it"));
+            }
+        }
+        let used = Used::new(self.points.len(), triangles.as_flattened());
+        triangles.as_flattened_mut().iter_mut().for_each(|corner| *corner = used.new[*corner as usize]);
+        Ok(Surface { points: used.points(&self.points), triangles })
+    }
+
+    /// The volume in space of all cells that have one.
+    fn solids(self) -> Result<Volume, ReadError> {
+        let hulls =
+            |kind: CellKind, corners: &[u32]| kind == CellKind::Polyhedron && matches!(corners.len(), 5 | 6 | 8);
+        let is_solid = |kind: CellKind| kind.element().is_some();
+        // Elements with so many nodes are told from tetrahedra, pyramids, wedges and hexahedra in no other way.
+        let convex = self.chosen(is_solid).any(|(_, kind, corners)| hulls(kind, corners));
+        let solids = if convex { Solids::Convex } else { Solids::Ordered };
+        let mut parts = Parts::new(Dimension::Space);
+        for (at, kind, corners) in self.chosen(is_solid) {
+            let element = match (kind.element().expect("a solid"), corners.len()) {
+                (ElementKind::Other, 4) => ElementKind::Tetrahedron,
+                (element, _) => element,
+            };
+            let mut cell = corners.to_vec();
+            parts.add(at, element, &mut cell, &self.points);
+        }
+        parts.volume(self, solids)
+    }
+
+    /// The volume in the plane of all faces.
+    fn polygons(mut self) -> Result<Volume, ReadError> {
+        let mut parts = Parts::new(Dimension::Plane);
+        self.points.iter_mut().for_each(|point| point.z = 0.0);
+        for (at, _, corners) in self.chosen(|kind| kind == CellKind::Polygon) {
+            let mut cell = corners.to_vec();
+            cell.dedup();
+            if cell.first() == cell.last() {
+                cell.pop();
+            }
+            parts.add(at, ElementKind::Polygon, &mut cell, &self.points);
+        }
+        parts.volume(self, Solids::Ordered)
+    }
+}
+
+/// The elements of a volume.
+struct Parts {
+    dimension: Dimension,
+    cells: IndexLists,
+    turned: usize,
+    /// Cells without area or volume: how many, and the first in the file.
+    flat: (usize, usize),
+    known: HashSet<[u32; 8]>,
+}
+
+impl Parts {
+    fn new(dimension: Dimension) -> Self {
+        Self { dimension, cells: IndexLists::default(), turned: 0, flat: (0, 0), known: HashSet::new() }
+    }
+
+    /// Adds a cell, in the right order and right side out, unless it is there already: Gmsh 2.2 lists a cell once for each group.
+    fn add(&mut self, at: usize, kind: ElementKind, cell: &mut [u32], points: &[DVec3]) {
+        let mut sorted = cell.to_vec();
+        sorted.sort_unstable();
+        let least = if self.dimension == Dimension::Plane { 3 } else { 4 };
+        let mut is_flat = cell.len() < least || sorted.windows(2).any(|pair| pair[0] == pair[1]);
+        if !is_flat && kind != ElementKind::Other {
+            is_flat = !self.order(kind, cell, points);
+        }
+        if is_flat {
+            self.flat = (self.flat.0 + 1, if self.flat.0 == 0 { at } else { self.flat.1 });
+            return;
+        }
+        if sorted.len() <= 8 {
+            let mut key = [u32::MAX; 8];
+            key[..sorted.len()].copy_from_slice(&sorted);
+            if !self.known.insert(key) {
+                return;
+            }
+        }
+        self.cells.push(cell);
+    }
+
+    /// Puts the corners of a cell into the expected order. Returns false if it has no area or volume.
+    fn order(&mut self, kind: ElementKind, cell: &mut [u32], points: &[DVec3]) -> bool {
+        let (mut low, mut high) = (points[cell[0] as usize], points[cell[0] as usize]);
+        cell.iter().for_each(|&corner| {
+            low = low.min(points[corner as usize]);
+            high = high.max(points[corner as usize]);
+        });
+        let size = (high - low).max_element();
+        let whole = if kind == ElementKind::Polygon { size * size } else { size * size * size };
+        let mut measure = volume_by_faces(kind, cell, points);
+        // A cell that is listed along its axes where it should be listed around, or the other way, crosses itself: it is nearly flat.
+        let other = match (kind, &*cell) {
+            (ElementKind::Hexahedron, &[a, b, c, d, e, f, g, h]) => along(&[a, b, c, d, e, f, g, h]).to_vec(),
+            (ElementKind::Polygon, &[a, b, c, d]) => vec![a, b, d, c],
+            _ => Vec::new(),
+        };
+        let mut is_other = false;
+        if !other.is_empty() {
+            let by_other = volume_by_faces(kind, &other, points);
+            if by_other.abs() > (2.0 * measure.abs()).max(FLAT * whole) {
+                (measure, is_other) = (by_other, true);
+                cell.copy_from_slice(&other);
+            }
+        }
+        if measure.abs() <= FLAT * whole {
+            return false;
+        }
+        if measure < 0.0 {
+            turn(kind, cell);
+        }
+        self.turned += usize::from(measure < 0.0 || is_other);
+        true
+    }
+
+    fn volume(self, cells: Cells, solids: Solids) -> Result<Volume, ReadError> {
+        let (flat, first) = self.flat;
+        if flat > 0 {
+            let what = if self.dimension == Dimension::Plane { "area" } else { "volume" };
+            let shown: Vec<String> = cells.corners[first].iter().take(8).map(u32::to_string).collect();
+            let corners = format!("cell {first}, counted from 0, with the points {}", shown.join(", "));
+            let message = match flat {
+                1 => format!("has a cell without {what}: {corners}"),
+                _ => format!("has {flat} cells without {what}; the first is {corners}"),
+            };
+            return Err(ReadError::new(message, "mesh the object again, or remove these cells"));
+        }
+        let used = Used::new(cells.points.len(), self.cells.indices());
+        let renamed: Vec<u32> = self.cells.indices().iter().map(|&corner| used.new[corner as usize]).collect();
+        let lists = (0..self.cells.len()).map(|at| &renamed[self.cells.range(at)]).collect();
+        let groups = cells.groups.iter().filter_map(|group| {
+            let points = group.points.iter().map(|&point| used.new[point as usize]);
+            let points: Vec<u32> = points.filter(|&point| point != NONE).collect();
+            (!points.is_empty()).then(|| Group { name: group.name.clone(), points })
+        });
+        let groups = groups.collect();
+        let points = used.points(&cells.points);
+        Ok(Volume { dimension: self.dimension, solids, points, cells: lists, groups, turned: self.turned })
+    }
+}
+
+/// Turns a cell over.
+fn turn(kind: ElementKind, cell: &mut [u32]) {
+    match kind {
+        ElementKind::Tetrahedron => cell.swap(1, 2),
+        ElementKind::Pyramid => cell.swap(1, 3),
+        ElementKind::Wedge | ElementKind::Hexahedron => cell.rotate_left(cell.len() / 2),
+        _ => cell.reverse(),
+    }
+}
+
+/// Stands for a point that is left out.
+const NONE: u32 = u32::MAX;
+
+/// New indices of the points in use.
+struct Used {
+    /// The new index of each point, or [`NONE`].
+    new: Vec<u32>,
+}
+
+impl Used {
+    fn new(points: usize, corners: &[u32]) -> Self {
+        let mut new = vec![NONE; points];
+        corners.iter().for_each(|&corner| new[corner as usize] = 0);
+        let used = new.iter_mut().filter(|new| **new != NONE);
+        used.zip(0..).for_each(|(new, index)| *new = index);
+        Self { new }
+    }
+
+    fn points(&self, points: &[DVec3]) -> Vec<DVec3> {
+        points.iter().zip(&self.new).filter(|&(_, &new)| new != NONE).map(|(point, _)| *point).collect()
+    }
+}

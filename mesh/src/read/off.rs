@@ -1,0 +1,50 @@
+//! Object File Format: a header, numbers of points and faces, and one line for each (<http://www.geomview.org/docs/html/OFF.html>).
+
+use super::cells::Builder;
+use super::source::{Scalar, Source};
+use super::{Cells, Format, Limits, ReadError, content};
+use glam::DVec3;
+
+pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
+    let mut source = Source::text(bytes);
+    let mut header = source.next_line(b'#').ok_or_else(|| source.ends("`OFF`"))?;
+    let word = header.word();
+    // Normals (N), colours (C) and coordinates of textures (ST) follow the coordinates in their line.
+    match word.strip_suffix(b"OFF") {
+        Some(b"" | b"C" | b"N" | b"CN" | b"NC" | b"ST" | b"STC" | b"STN" | b"STCN") => {}
+        Some(_) => {
+            let found = header.wrong(word, "points in space: `OFF`, `COFF`, `NOFF` or `STOFF`").message;
+            return Err(ReadError::new(found, "write it with three coordinates for each point"));
+        }
+        None => return Err(content::no_beginning(bytes, Format::Off, "`OFF`")),
+    }
+    if header.peek() == b"BINARY" {
+        return Err(ReadError::new("is a binary OFF file; expected text", "write it as text, or as binary PLY"));
+    }
+    // The numbers are in the same line, or in the next.
+    let mut numbers = match header.is_done() {
+        false => header,
+        true => source.next_line(b'#').ok_or_else(|| source.ends("the number of points"))?,
+    };
+    let points = numbers.count(Scalar::I64, "the number of points")?;
+    let faces = numbers.count(Scalar::I64, "the number of faces")?;
+    let mut builder = Builder::new(limits);
+    builder.expect(points, faces)?;
+    for at in 0..points {
+        let mut line = source.next_line(b'#').ok_or_else(|| source.ends(&format!("point {} of {points}", at + 1)))?;
+        let mut coordinate = || line.float(Scalar::F64, "a coordinate");
+        builder.point(DVec3::new(coordinate()?, coordinate()?, coordinate()?))?;
+    }
+    let mut corners = Vec::new();
+    for at in 0..faces {
+        let mut line = source.next_line(b'#').ok_or_else(|| source.ends(&format!("face {} of {faces}", at + 1)))?;
+        corners.clear();
+        for _ in 0..line.count(Scalar::I64, "the number of corners of a face")? {
+            let start = line.at;
+            let index = line.integer(Scalar::I64, "the index of a point")?;
+            corners.push(builder.corner(index, start, &line)?);
+        }
+        builder.face(&corners)?;
+    }
+    builder.finish(&source, 0)
+}

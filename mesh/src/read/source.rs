@@ -1,0 +1,261 @@
+//! Bytes read one number or word after the other, as text or as binary numbers.
+
+use super::ReadError;
+
+/// The remedy for a file that ends early.
+pub(super) const CUT: &str = "the file is incomplete: copy, download or write it again";
+/// The remedy for damage.
+pub(super) const DAMAGED: &str = "the file is damaged: copy, download or write it again";
+
+/// How numbers are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Coding {
+    Text,
+    Little,
+    Big,
+}
+
+/// A type of binary numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    /// The number of bytes.
+    pub(super) fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
+        }
+    }
+}
+
+/// Bytes, and a place in them.
+#[derive(Clone, Debug)]
+pub(super) struct Source<'b> {
+    /// The whole file.
+    bytes: &'b [u8],
+    /// The place of the next byte.
+    pub(super) at: usize,
+    /// The end of what is read: of the file, or of a line.
+    end: usize,
+    /// How numbers are written.
+    pub(super) coding: Coding,
+}
+
+fn is_space(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t'..=b'\r')
+}
+
+impl<'b> Source<'b> {
+    /// A text, without its byte order mark.
+    pub(super) fn text(bytes: &'b [u8]) -> Self {
+        let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        Self { bytes, at, end: bytes.len(), coding: Coding::Text }
+    }
+
+    /// What is left.
+    pub(super) fn rest(&self) -> &'b [u8] {
+        &self.bytes[self.at..self.end]
+    }
+
+    /// A place in words: a line of a text, or a byte.
+    pub(super) fn place(&self, at: usize) -> String {
+        match self.coding {
+            Coding::Text => {
+                let before = &self.bytes[..at.min(self.bytes.len())];
+                format!("in line {}", 1 + before.iter().filter(|&&byte| byte == b'\n').count())
+            }
+            _ => format!("at byte {at}"),
+        }
+    }
+
+    fn skip_space(&mut self) {
+        while self.at < self.end {
+            match self.bytes[self.at] {
+                byte if is_space(byte) => self.at += 1,
+                // A line that is continued in the next.
+                b'\\' if matches!(self.rest(), [b'\\', b'\n', ..] | [b'\\', b'\r', b'\n', ..]) => self.at += 1,
+                _ => break,
+            }
+        }
+    }
+
+    /// Whether nothing but space is left.
+    pub(super) fn is_done(&mut self) -> bool {
+        self.skip_space();
+        self.at == self.end
+    }
+
+    /// The next word, empty at the end.
+    pub(super) fn word(&mut self) -> &'b [u8] {
+        self.skip_space();
+        let rest = self.rest();
+        let length = rest.iter().position(|&byte| is_space(byte)).unwrap_or(rest.len());
+        self.at += length;
+        &rest[..length]
+    }
+
+    /// The next word, without going on.
+    pub(super) fn peek(&mut self) -> &'b [u8] {
+        let at = self.at;
+        let word = self.word();
+        self.at = at;
+        word
+    }
+
+    /// The rest of the line, and goes to the next.
+    pub(super) fn line(&mut self) -> &'b [u8] {
+        let rest = self.rest();
+        let length = rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
+        self.at += (length + 1).min(rest.len());
+        rest[..length].strip_suffix(b"\r").unwrap_or(&rest[..length])
+    }
+
+    /// The next line that is not empty and not a comment, with the lines that continue it.
+    pub(super) fn next_line(&mut self, comment: u8) -> Option<Self> {
+        while !self.is_done() {
+            let start = self.at;
+            while self.line().ends_with(b"\\") && self.at < self.end {}
+            if self.bytes[start] != comment {
+                return Some(Self { at: start, end: self.at, ..self.clone() });
+            }
+        }
+        None
+    }
+
+    /// So many bytes.
+    pub(super) fn take(&mut self, count: usize, expected: &str) -> Result<&'b [u8], ReadError> {
+        let rest = self.rest();
+        if count > rest.len() {
+            return Err(self.ends(expected));
+        }
+        self.at += count;
+        Ok(&rest[..count])
+    }
+
+    /// So many binary numbers, not looked at.
+    pub(super) fn skip(&mut self, count: u64, scalar: Scalar, expected: &str) -> Result<(), ReadError> {
+        if self.coding == Coding::Text {
+            for _ in 0..count {
+                self.float(scalar, expected)?;
+            }
+            return Ok(());
+        }
+        let length = usize::try_from(count).ok().and_then(|count| count.checked_mul(scalar.size()));
+        self.take(length.unwrap_or(usize::MAX), expected)?;
+        Ok(())
+    }
+
+    fn array<const N: usize>(&mut self, expected: &str) -> Result<[u8; N], ReadError> {
+        match self.rest().first_chunk::<N>() {
+            Some(bytes) => {
+                self.at += N;
+                let mut bytes = *bytes;
+                if self.coding == Coding::Big {
+                    bytes.reverse();
+                }
+                Ok(bytes)
+            }
+            None => Err(self.ends(expected)),
+        }
+    }
+
+    /// A number: a coordinate, for example.
+    pub(super) fn float(&mut self, scalar: Scalar, expected: &str) -> Result<f64, ReadError> {
+        if self.coding != Coding::Text {
+            return match scalar {
+                Scalar::F32 => Ok(f64::from(f32::from_le_bytes(self.array(expected)?))),
+                Scalar::F64 => Ok(f64::from_le_bytes(self.array(expected)?)),
+                _ => Ok(self.integer(scalar, expected)? as f64),
+            };
+        }
+        let word = self.word();
+        match std::str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok()).filter(|value| value.is_finite())
+        {
+            Some(value) => Ok(value),
+            None => Err(self.wrong(word, expected)),
+        }
+    }
+
+    /// An integer: an index, for example.
+    pub(super) fn integer(&mut self, scalar: Scalar, expected: &str) -> Result<i64, ReadError> {
+        if self.coding == Coding::Text {
+            let word = self.word();
+            return integer(word).ok_or_else(|| self.wrong(word, expected));
+        }
+        let start = self.at;
+        let whole = |value: f64| (value.fract() == 0.0 && value.abs() < 1e15).then_some(value as i64);
+        let value = match scalar {
+            Scalar::I8 => Some(i8::from_le_bytes(self.array(expected)?).into()),
+            Scalar::U8 => Some(u8::from_le_bytes(self.array(expected)?).into()),
+            Scalar::I16 => Some(i16::from_le_bytes(self.array(expected)?).into()),
+            Scalar::U16 => Some(u16::from_le_bytes(self.array(expected)?).into()),
+            Scalar::I32 => Some(i32::from_le_bytes(self.array(expected)?).into()),
+            Scalar::U32 => Some(u32::from_le_bytes(self.array(expected)?).into()),
+            Scalar::I64 => Some(i64::from_le_bytes(self.array(expected)?)),
+            Scalar::U64 => i64::try_from(u64::from_le_bytes(self.array(expected)?)).ok(),
+            Scalar::F32 => whole(f32::from_le_bytes(self.array(expected)?).into()),
+            Scalar::F64 => whole(f64::from_le_bytes(self.array(expected)?)),
+        };
+        value.ok_or_else(|| {
+            ReadError::new(format!("has a number out of range {}; expected {expected}", self.place(start)), DAMAGED)
+        })
+    }
+
+    /// A number of things that follow.
+    pub(super) fn count(&mut self, scalar: Scalar, expected: &str) -> Result<u64, ReadError> {
+        let start = self.at;
+        let count = self.integer(scalar, expected)?;
+        u64::try_from(count).map_err(|_| self.found(&count.to_string(), start, expected))
+    }
+
+    /// The error of a word that was just read, or of the end.
+    pub(super) fn wrong(&self, word: &[u8], expected: &str) -> ReadError {
+        if word.is_empty() { self.ends(expected) } else { self.found(&quoted(word), self.at - word.len(), expected) }
+    }
+
+    /// The error of something found at a place.
+    pub(super) fn found(&self, found: &str, at: usize, expected: &str) -> ReadError {
+        let found = if found.starts_with('`') { found.to_owned() } else { format!("`{found}`") };
+        ReadError::new(format!("has {found} {}; expected {expected}", self.place(at)), DAMAGED)
+    }
+
+    /// The error of an end.
+    pub(super) fn ends(&self, expected: &str) -> ReadError {
+        if self.end < self.bytes.len() {
+            let place = self.place(self.end.saturating_sub(1));
+            return ReadError::new(format!("has nothing more {place}; expected {expected}"), DAMAGED);
+        }
+        ReadError::new(format!("ends {}; expected {expected}", self.place(self.bytes.len())), CUT)
+    }
+}
+
+/// An integer as text.
+pub(super) fn integer(word: &[u8]) -> Option<i64> {
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// The beginning of some bytes, in quotes and readable.
+pub(super) fn quoted(bytes: &[u8]) -> String {
+    /// The most characters that are shown.
+    const MOST: usize = 24;
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * MOST)]);
+    let mut shown: String = text.chars().take(MOST).flat_map(char::escape_debug).collect();
+    if text.chars().count() > MOST {
+        shown.push('…');
+    }
+    format!("`{shown}`")
+}

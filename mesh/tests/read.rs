@@ -1,0 +1,338 @@
+//! Files of every format are read, and broken ones are told.
+
+use glam::DVec3;
+use localshape_mesh::{CellKind, Format, Limits, Mesh, Surface, Volume, read, read_cells};
+use localshape_sim::geometry::volume_by_faces;
+use localshape_sim::{Dimension, ElementKind};
+
+const LIMITS: Limits = Limits { points: 1_000_000, corners: 8_000_000 };
+
+fn surface(bytes: &[u8], format: Format) -> Surface {
+    match read(bytes, format, &LIMITS) {
+        Ok(Mesh::Surface(surface)) => surface,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn volume(bytes: &[u8], format: Format) -> Volume {
+    match read(bytes, format, &LIMITS) {
+        Ok(Mesh::Volume(volume)) => volume,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The message and the remedy of a refusal.
+fn refusal(bytes: &[u8], format: Format) -> String {
+    let error = read(bytes, format, &LIMITS).expect_err("a refusal");
+    format!("{} ({})", error.message, error.help.expect("a remedy"))
+}
+
+/// The volume inside a closed surface.
+fn inside(surface: &Surface) -> f64 {
+    let at = |point: u32| surface.points[point as usize];
+    surface.triangles.iter().map(|&[a, b, c]| at(a).dot(at(b).cross(at(c))) / 6.0).sum()
+}
+
+/// The corners of a unit cube, x fastest, then y, then z.
+fn corners() -> [DVec3; 8] {
+    std::array::from_fn(|bits| DVec3::new((bits & 1) as f64, (bits >> 1 & 1) as f64, (bits >> 2) as f64))
+}
+
+/// The sides of a unit cube, counter-clockwise from outside.
+const SIDES: [[usize; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+
+/// The triangles of a unit cube.
+fn triangles() -> Vec<[usize; 3]> {
+    SIDES.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
+}
+
+fn lines(points: impl IntoIterator<Item = DVec3>) -> String {
+    points.into_iter().map(|p| format!("{} {} {}\n", p.x, p.y, p.z)).collect()
+}
+
+fn check_cube(surface: &Surface) {
+    assert_eq!(surface.points.len(), 8);
+    assert_eq!(surface.triangles.len(), 12);
+    assert!((inside(surface) - 1.0).abs() < 1e-12, "{}", inside(surface));
+}
+
+#[test]
+fn a_cube_is_read_from_obj() {
+    let mut text = String::from("# a cube\nmtllib none.mtl\no cube\n");
+    for point in corners() {
+        text += &format!("v {} {} {} 1.0\nvt 0 0\n", point.x, point.y, point.z);
+    }
+    text += "usemtl red\ns off\n";
+    for [a, b, c, d] in &SIDES[..3] {
+        text += &format!("f {}/1 {}//2 {} \\\n {}/1/1\n", a + 1, b + 1, c + 1, d + 1);
+    }
+    // Counted backwards.
+    for side in &SIDES[3..] {
+        text += &format!("f {}\r\n", side.map(|corner| (corner as i64 - 8).to_string()).join(" "));
+    }
+    check_cube(&surface(text.as_bytes(), Format::Obj));
+}
+
+#[test]
+fn a_cube_is_read_from_off() {
+    let faces: String =
+        SIDES.iter().map(|side| format!("4 {}  255 0 0\n", side.map(|corner| corner.to_string()).join(" "))).collect();
+    for header in ["OFF\n# a cube\n8 6 0\n", "OFF 8 6 12\n", "COFF\n\n8 6\n"] {
+        check_cube(&surface(format!("{header}{}{faces}", lines(corners())).as_bytes(), Format::Off));
+    }
+}
+
+/// Binary numbers of either order of bytes.
+fn number(bytes: &[u8], is_big: bool) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    if is_big {
+        bytes.reverse();
+    }
+    bytes
+}
+
+#[test]
+fn a_cube_is_read_from_ply() {
+    let header = |format: &str| {
+        format!(
+            "ply\nformat {format} 1.0\ncomment a cube\nelement vertex 8\nproperty uchar red\nproperty float x\n\
+             property double y\nproperty float z\nelement face 6\nproperty list uchar float uv\n\
+             property list uchar int vertex_indices\nelement nothing 4000000000\nend_header\n"
+        )
+    };
+    let mut text = header("ascii");
+    for point in corners() {
+        text += &format!("255 {} {} {}\n", point.x, point.y, point.z);
+    }
+    for side in SIDES {
+        text += &format!("2 0.5 0.5 4 {}\n", side.map(|corner| corner.to_string()).join(" "));
+    }
+    check_cube(&surface(text.as_bytes(), Format::Ply));
+    for (name, is_big) in [("binary_little_endian", false), ("binary_big_endian", true)] {
+        let mut bytes = header(name).into_bytes();
+        for point in corners() {
+            bytes.push(255);
+            bytes.extend(number(&(point.x as f32).to_le_bytes(), is_big));
+            bytes.extend(number(&point.y.to_le_bytes(), is_big));
+            bytes.extend(number(&(point.z as f32).to_le_bytes(), is_big));
+        }
+        for side in SIDES {
+            bytes.push(1);
+            bytes.extend(number(&0.5f32.to_le_bytes(), is_big));
+            bytes.push(4);
+            side.iter().for_each(|&corner| bytes.extend(number(&(corner as i32).to_le_bytes(), is_big)));
+        }
+        check_cube(&surface(&bytes, Format::Ply));
+        let cut = refusal(&bytes[..bytes.len() - 3], Format::Ply);
+        let length = bytes.len() - 3;
+        assert_eq!(
+            cut,
+            format!(
+                "ends at byte {length}; expected the index of a point (the file is incomplete: copy, download or write it again)"
+            )
+        );
+    }
+}
+
+#[test]
+fn strips_of_ply_alternate() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n\
+                element tristrips 1\nproperty list int int vertex_indices\nend_header\n\
+                0 0 0\n1 0 0\n0 1 1\n1 1 1\n0 2 2\n9 0 1 2 3 4 -1 0 1 2\n";
+    let found = surface(text.as_bytes(), Format::Ply);
+    assert_eq!(found.triangles, [[0, 1, 2], [2, 1, 3], [2, 3, 4], [0, 1, 2]]);
+}
+
+fn stl() -> (String, Vec<u8>) {
+    let mut text = String::from("solid a cube of facet\n");
+    let mut binary = b"solid but binary".to_vec();
+    binary.resize(80, b' ');
+    binary.extend(12u32.to_le_bytes());
+    for triangle in triangles() {
+        text += " facet normal 0 0 0\n  outer loop\n";
+        binary.extend([0; 12]);
+        for corner in triangle.map(|corner| corners()[corner]) {
+            text += &format!("   vertex {:e} {} {}\n", corner.x, corner.y, corner.z);
+            corner.to_array().iter().for_each(|&value| binary.extend((value as f32).to_le_bytes()));
+        }
+        text += "  endloop\n endfacet\n";
+        binary.extend([7, 7]);
+    }
+    (text + "endsolid a cube\n", binary)
+}
+
+#[test]
+fn a_cube_is_read_from_stl() {
+    let (text, binary) = stl();
+    check_cube(&surface(text.as_bytes(), Format::Stl));
+    check_cube(&surface(&binary, Format::Stl));
+    assert!(
+        refusal(&binary[..400], Format::Stl).starts_with("ends after 6 triangles; expected 12 by its binary header"),
+    );
+    assert!(refusal(text[..300].trim_end().as_bytes(), Format::Stl).starts_with("ends in line "));
+}
+
+#[test]
+fn a_concave_polygon_keeps_its_area_and_its_corners_on_straight_sides() {
+    // A comb with a corner on its straight back, in several planes and from either side.
+    let flat =
+        [[0., 0.], [6., 0.], [6., 4.], [5., 4.], [5., 1.], [4., 1.], [4., 4.], [3., 4.], [3., 1.], [2., 1.], [2., 4.]];
+    let flat = [&flat[..], &[[0., 4.], [0., 2.], [0., 1.]]].concat();
+    let area = 6.0 * 4.0 - 2.0 * 3.0;
+    for turn in 0..3 {
+        for back in [false, true] {
+            let mut points: Vec<DVec3> = flat
+                .iter()
+                .map(|&[x, y]| {
+                    let mut point = [x, y, 0.25 * x];
+                    point.rotate_right(turn);
+                    DVec3::from(point)
+                })
+                .collect();
+            if back {
+                points.reverse();
+            }
+            let text = format!(
+                "OFF\n{} 1 0\n{}{} {}\n",
+                points.len(),
+                lines(points.iter().copied()),
+                points.len(),
+                (0..points.len()).map(|at| at.to_string()).collect::<Vec<_>>().join(" ")
+            );
+            let found = surface(text.as_bytes(), Format::Off);
+            assert_eq!(found.triangles.len(), points.len() - 2);
+            let whole: DVec3 = (0..points.len()).map(|at| points[at].cross(points[(at + 1) % points.len()])).sum();
+            let mut sum = 0.0;
+            for &corners in &found.triangles {
+                let [a, b, c] = corners.map(|corner| found.points[corner as usize]);
+                let normal = (b - a).cross(c - a);
+                assert!(normal.dot(whole) > 0.0, "{corners:?} is turned over or flat");
+                sum += 0.5 * normal.length();
+            }
+            assert!((sum - area * (1.0f64 + 0.25 * 0.25).sqrt()).abs() < 1e-12, "{sum}");
+        }
+    }
+}
+
+#[test]
+fn a_polygon_that_crosses_itself_is_divided_somehow() {
+    let text = "OFF\n5 1 0\n0 0 0\n2 2 1\n2 0 0\n0 2 1\n1 3 0\n5 0 1 2 3 4\n";
+    assert_eq!(surface(text.as_bytes(), Format::Off).triangles.len(), 3);
+}
+
+#[test]
+fn faces_in_a_plane_are_a_volume_of_it_and_turned_counter_clockwise() {
+    // A triangle, a clockwise one, and a quadrilateral whose corners are listed along its axes.
+    let text = "OFF\n7 3 0\n9 9 9\n0 0 2\n1 0 2\n0 1 2\n1 1 2\n2 0 2\n2 1 2\n3 1 2 3\n3 2 3 4\n4 2 5 4 6\n";
+    let found = volume(text.as_bytes(), Format::Off);
+    assert_eq!(found.dimension, Dimension::Plane);
+    assert_eq!(found.points.len(), 6, "a point without faces is dropped");
+    assert_eq!(found.turned, 2);
+    let areas = found.cells.iter().map(|cell| volume_by_faces(ElementKind::Polygon, cell, &found.points));
+    assert_eq!(areas.collect::<Vec<_>>(), [0.5, 0.5, 1.0]);
+}
+
+#[test]
+fn cells_are_given_as_they_are_listed() {
+    let text = "OFF\n4 2 0\n9 9 9\n0 0 0\n1 0 1\n0 1 1\n3 1 2 3\n2 1 2\n";
+    let found = read_cells(text.as_bytes(), Format::Off, &LIMITS).expect("sound");
+    assert_eq!(found.points.len(), 4);
+    assert_eq!(found.kinds, [CellKind::Polygon, CellKind::Line]);
+    assert_eq!(&found.corners[0], [1, 2, 3]);
+}
+
+#[test]
+fn refusals_say_where_and_what_to_do() {
+    use Format::{Gltf, Obj, Off, Ply, Stl, Vtu};
+    let damaged = "(the file is damaged: copy, download or write it again)";
+    let incomplete = "(the file is incomplete: copy, download or write it again)";
+    for (format, text, expected) in [
+        (Off, "", format!("is empty {incomplete}")),
+        (Off, "OFF\n8 6 0\n0 0", format!("ends in line 3; expected a coordinate {incomplete}")),
+        (Off, "OFF\n8 6 0\n0 0\n1 2 3", format!("has nothing more in line 3; expected a coordinate {damaged}")),
+        (Off, "OFF\n8 6 0\n0 0 0\n", format!("ends in line 4; expected point 2 of 8 {incomplete}")),
+        (Off, "OFF\n1 1 0\n0 0 x\n", format!("has `x` in line 3; expected a coordinate {damaged}")),
+        (Off, "OFF\n1 1 0\n0 0 nan\n", format!("has `nan` in line 3; expected a coordinate {damaged}")),
+        (Off, "OFF\n1 1 0\n0 0 1e300\n", "has the point 0 at [0, 0, ".to_owned()),
+        (Off, "OFF\n1 1 0\n0 0 0\n3 0 0 7\n", format!("names point 7 in line 4, but has points 0 to 0 {damaged}")),
+        (Off, "OFF\n1 1 0\n0 0 0\n3 0 0 -7\n", format!("names a point that it does not have in line 4 {damaged}")),
+        (Off, "OFF\n99999999999 1 0\n", "has 99999999999 points; at most 1000000 are read (make".to_owned()),
+        (Off, "4OFF\n1 1 0\n", "has `4OFF` in line 1; expected points in space: `OFF`".to_owned()),
+        (Off, "what\n", "begins with `what`; expected `OFF`, as an OFF file does (check".to_owned()),
+        (
+            Obj,
+            "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 4\n",
+            format!("names point 4 in line 4, but has points 1 to 3 {damaged}"),
+        ),
+        (Obj, "f 1 2 4\n", format!("names point 4 in line 1, but has no points {damaged}")),
+        (
+            Obj,
+            "v 0 0 0\nf 0 1 1\n",
+            format!("has `0` in line 2; expected the number of a point, counted from 1 {damaged}"),
+        ),
+        (Obj, "v 0 0 0\nv 0 0 1\nl 1 2\n", "has 2 points, but neither faces nor cells (write".to_owned()),
+        (Obj, "hello world\n", "has `hello` in line 1; expected `v`, `f` or another keyword of OBJ".to_owned()),
+        (Ply, "ply\nformat ascii 1.0\n", format!("ends in line 3; expected `end_header` {incomplete}")),
+        (Ply, "ply\nformat utf8 1.0\n", "has `utf8` in line 2; expected `ascii`, `binary_little_endian`".to_owned()),
+        (
+            Stl,
+            "solid\nfacet\nvertex 0 0 0\nvertex 0 0\nendloop",
+            format!("has `endloop` in line 5; expected a coordinate {damaged}"),
+        ),
+        (
+            Obj,
+            "<!DOCTYPE html>\n<p>not found",
+            "is a page of the Web (HTML), and no mesh file (the download gave".to_owned(),
+        ),
+        (
+            Obj,
+            "OFF\n1 0 0\n",
+            "has the content of an OFF file, but the ending of an OBJ file (name it `.off`)".to_owned(),
+        ),
+        (
+            Ply,
+            "solid a\nfacet normal",
+            "has the content of an STL file, but the ending of a PLY file (name it `.stl`)".to_owned(),
+        ),
+        (Vtu, "{}", "has the content of a glTF file, but the ending of a VTU file (name it `.gltf`)".to_owned()),
+        (Gltf, "\u{1f}\u{fffd}", String::new()),
+    ] {
+        if !expected.is_empty() {
+            let found = refusal(text.as_bytes(), format);
+            assert!(found.starts_with(&expected), "{text:?}: {found}\nexpected: {expected}");
+        }
+    }
+    let (_, binary) = stl();
+    assert!(refusal(&binary, Obj).starts_with("has "), "a binary STL file named .obj");
+}
+
+#[test]
+fn limits_hold() {
+    let limits = Limits { points: 7, corners: 1000 };
+    let text = format!("OFF\n8 0 0\n{}", lines(corners()));
+    let error = read(text.as_bytes(), Format::Off, &limits).expect_err("a limit");
+    assert_eq!(error.message, "has 8 points; at most 7 are read");
+    let obj: String = corners().iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z)).collect();
+    let error = read(obj.as_bytes(), Format::Obj, &limits).expect_err("a limit");
+    assert_eq!(error.message, "has more than 7 points; at most 7 are read");
+    let limits = Limits { points: 8, corners: 35 };
+    let (text, _) = stl();
+    let error = read(text.as_bytes(), Format::Stl, &limits).expect_err("a limit");
+    assert_eq!(error.message, "has more than 35 corners; at most 35 are read");
+}
+
+/// The time is bounded for hostile polygons, too.
+#[test]
+fn a_polygon_with_very_many_teeth_is_refused_or_read() {
+    let teeth = 100_000;
+    let mut text = format!("OFF\n{} 1 0\n", 2 * teeth + 1);
+    for tooth in 0..2 * teeth {
+        text +=
+            &format!("{tooth} {} {}\n", if tooth % 2 == 0 { 1.0 } else { 1000.0 - 1e-3 * f64::from(tooth) }, tooth % 3);
+    }
+    text += &format!("{teeth} -1e6 0\n{}", 2 * teeth + 1);
+    (0..=2 * teeth).for_each(|at| text += &format!(" {at}"));
+    let found = read(text.as_bytes(), Format::Off, &LIMITS);
+    let error = found.expect_err("too much work");
+    assert!(error.message.starts_with("has concave faces that take too long to divide"), "{error}");
+}
