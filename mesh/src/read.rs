@@ -5,13 +5,17 @@
 
 mod cells;
 mod content;
+mod gltf;
 mod gmsh;
+mod kinds;
 mod obj;
 mod off;
 mod ply;
 mod polygon;
 mod source;
 mod stl;
+mod vtk;
+mod vtu;
 
 pub use cells::{CellKind, Cells};
 
@@ -119,6 +123,8 @@ pub fn read_cells(bytes: &[u8], format: Format, limits: &Limits) -> Result<Cells
         Format::Ply => ply::read(bytes, limits),
         Format::Off => off::read(bytes, limits),
         Format::Gmsh => gmsh::read(bytes, limits),
-        _ => Err(ReadError { message: format!("has a format ({format:?}) that is not read yet"), help: None }),
+        Format::Gltf => gltf::read(bytes, limits),
+        Format::Vtk => vtk::read(bytes, limits),
+        Format::Vtu => vtu::read(bytes, limits),
     }
 }

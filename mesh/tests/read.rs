@@ -253,7 +253,11 @@ fn refusals_say_where_and_what_to_do() {
         (Off, "OFF\n8 6 0\n0 0 0\n", format!("ends in line 4; expected point 2 of 8 {incomplete}")),
         (Off, "OFF\n1 1 0\n0 0 x\n", format!("has `x` in line 3; expected a coordinate {damaged}")),
         (Off, "OFF\n1 1 0\n0 0 nan\n", format!("has `nan` in line 3; expected a coordinate {damaged}")),
-        (Off, "OFF\n1 1 0\n0 0 1e300\n", "has the point 0 at [0, 0, ".to_owned()),
+        (
+            Off,
+            "OFF\n1 1 0\n0 0 1e300\n",
+            "has point 0 at [0.0, 0.0, 1e300]; expected coordinates up to 1e100 ".to_owned(),
+        ),
         (Off, "OFF\n1 1 0\n0 0 0\n3 0 0 7\n", format!("names point 7 in line 4, but has points 0 to 0 {damaged}")),
         (Off, "OFF\n1 1 0\n0 0 0\n3 0 0 -7\n", format!("names a point that it does not have in line 4 {damaged}")),
         (Off, "OFF\n99999999999 1 0\n", "has 99999999999 points; at most 1000000 are read (make".to_owned()),

@@ -107,7 +107,8 @@ impl<'l> Builder<'l> {
         const FAR: f64 = 1e100;
         let index = self.cells.points.len();
         if !(point.abs().max_element() <= FAR && point.is_finite()) {
-            let message = format!("has the point {index} at {point}; expected coordinates between -1e100 and 1e100");
+            let [x, y, z] = point.to_array();
+            let message = format!("has point {index} at [{x:?}, {y:?}, {z:?}]; expected coordinates up to 1e100");
             return Err(ReadError::new(message, DAMAGED));
         }
         let most = self.limits.points.min(u32::MAX as usize - 1);
@@ -365,7 +366,8 @@ impl Parts {
         if measure < 0.0 {
             turn(kind, cell);
         }
-        self.turned += usize::from(measure < 0.0 || is_other);
+        // Programs list wedges from either triangle: Gmsh from the lower, VTK from the upper.
+        self.turned += usize::from(is_other || measure < 0.0 && kind != ElementKind::Wedge);
         true
     }
 

@@ -60,7 +60,6 @@ fn header<'b>(bytes: &'b [u8], source: &mut Source<'b>) -> Result<(Coding, Vec<E
         let mut line = Source::text(text);
         let wrong = |word: &[u8], expected: &str| source.found(&quoted(word), start, expected);
         match line.word() {
-            b"" | b"comment" | b"obj_info" => {}
             b"format" => {
                 coding = Some(match line.word() {
                     b"ascii" => Coding::Text,
@@ -88,7 +87,8 @@ fn header<'b>(bytes: &'b [u8], source: &mut Source<'b>) -> Result<(Coding, Vec<E
                 let coding = coding.ok_or_else(|| wrong(text, "`format` before it"))?;
                 return Ok((coding, elements));
             }
-            word => return Err(wrong(word, "`element`, `property` or `end_header`")),
+            // Comments. Blender 2.4 writes one without its keyword.
+            _ => {}
         }
     }
 }

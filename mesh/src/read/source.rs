@@ -66,6 +66,11 @@ impl<'b> Source<'b> {
         Self { bytes, at, end: bytes.len(), coding: Coding::Text }
     }
 
+    /// A part of a text.
+    pub(super) fn part(bytes: &'b [u8], start: usize, end: usize) -> Self {
+        Self { bytes, at: start, end, coding: Coding::Text }
+    }
+
     /// What is left.
     pub(super) fn rest(&self) -> &'b [u8] {
         &self.bytes[self.at..self.end]
@@ -93,9 +98,11 @@ impl<'b> Source<'b> {
         }
     }
 
-    /// Whether nothing but space is left.
+    /// Whether nothing is left, except space after a text.
     pub(super) fn is_done(&mut self) -> bool {
-        self.skip_space();
+        if self.coding == Coding::Text {
+            self.skip_space();
+        }
         self.at == self.end
     }
 
@@ -251,7 +258,7 @@ pub(super) fn integer(word: &[u8]) -> Option<i64> {
 /// The beginning of some bytes, in quotes and readable.
 pub(super) fn quoted(bytes: &[u8]) -> String {
     /// The most characters that are shown.
-    const MOST: usize = 24;
+    const MOST: usize = 40;
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * MOST)]);
     let mut shown: String = text.chars().take(MOST).flat_map(char::escape_debug).collect();
     if text.chars().count() > MOST {

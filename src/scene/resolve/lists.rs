@@ -107,6 +107,7 @@ impl Lists {
         let all =
             |typed: &Option<Vec<Vec<u32>>>| Some(typed.as_ref()?.iter().map(Vec::as_slice).collect::<IndexLists>());
         Some(Self {
+            solids: Solids::Ordered,
             source: ListSource { body: place.clone(), file: None },
             dimension,
             nodes: points(&file.nodes, "nodes")?,

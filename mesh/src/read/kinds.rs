@@ -1,0 +1,85 @@
+//! The types of cells of VTK, in its files of both formats (`vtkCellType.h`).
+
+use super::ReadError;
+use super::cells::{Builder, CellKind, along};
+use super::source::DAMAGED;
+
+/// Adds a cell of a type. Of cells of higher order the corners are taken, which VTK lists first.
+pub(super) fn add(kind: i64, corners: &[u32], builder: &mut Builder<'_>) -> Result<(), ReadError> {
+    use CellKind::{Hexahedron, Line, Point, Polygon, Polyhedron, Pyramid, Tetrahedron, Wedge};
+    // The kind, and the number of corners; 0 if it is open. Cells of first order have no other points.
+    let (cell, count) = match kind {
+        0 => return Ok(()),
+        1 | 2 => (Point, 0),
+        3 | 4 | 21 | 35 | 68 | 75 => (Line, 0),
+        6 => return builder.strip(corners),
+        7 => (Polygon, 0),
+        5 | 22 | 34 | 69 | 76 => (Polygon, 3),
+        8 | 9 | 23 | 28 | 30 | 70 | 77 => (Polygon, 4),
+        36 => (Polygon, corners.len() / 2),
+        10 | 24 | 71 | 78 => (Tetrahedron, 4),
+        11 | 12 | 25 | 29 | 33 | 72 | 79 => (Hexahedron, 8),
+        13 | 26 | 31 | 32 | 73 | 80 => (Wedge, 6),
+        14 | 27 | 37 | 74 | 81 => (Pyramid, 5),
+        15 => (Polyhedron, 10),
+        16 => (Polyhedron, 12),
+        41 => (Polyhedron, 0),
+        _ => {
+            let message = format!("has a cell of type {kind}; expected a type of cells that VTK documents, up to 81");
+            return Err(ReadError::new(message, "write it again with linear cells"));
+        }
+    };
+    let is_first_order = matches!(kind, 5 | 8..=16);
+    if corners.len() < count || is_first_order && corners.len() != count || count == 0 && corners.is_empty() {
+        let message = format!("has a cell of type {kind} with {} points; expected {}", corners.len(), count.max(1));
+        return Err(ReadError::new(message, DAMAGED));
+    }
+    match (kind, if count == 0 { corners } else { &corners[..count] }) {
+        // Pixels and voxels are listed along their axes.
+        (8, &[a, b, c, d]) => builder.cell(cell, &[a, b, d, c]),
+        (12.., &[a, b, c, d, e, f, g, h]) if cell == Hexahedron => {
+            builder.cell(cell, &along(&[a, b, c, d, e, f, g, h]))
+        }
+        (7 | 36, corners) => builder.face(corners),
+        (_, corners) => builder.cell(cell, corners),
+    }
+}
+
+/// Adds a polyhedron with these faces, as a tetrahedron, pyramid, wedge or hexahedron if it is one.
+pub(super) fn polyhedron(faces: &[Vec<u32>], builder: &mut Builder<'_>) -> Result<(), ReadError> {
+    let mut points: Vec<u32> = faces.concat();
+    points.sort_unstable();
+    points.dedup();
+    let triangles = faces.iter().filter(|face| face.len() == 3).count();
+    let quadrilaterals = faces.iter().filter(|face| face.len() == 4).count();
+    let (kind, base) = match (points.len(), triangles, quadrilaterals, faces.len()) {
+        (4, 4, 0, 4) => (CellKind::Tetrahedron, 3),
+        (5, 4, 1, 5) => (CellKind::Pyramid, 4),
+        (6, 2, 3, 5) => (CellKind::Wedge, 3),
+        (8, 0, 6, 6) => (CellKind::Hexahedron, 4),
+        _ => return builder.cell(CellKind::Polyhedron, &points),
+    };
+    // Faces are listed counter-clockwise from outside, and the base of a cell from inside.
+    let base = faces.iter().find(|face| face.len() == base);
+    let base: Vec<u32> = base.into_iter().flatten().rev().copied().collect();
+    // The corner above one of the base is its neighbour that is not in the base.
+    let above = |corner: u32| {
+        let around =
+            faces.iter().flat_map(|face| (0..face.len()).map(move |at| [face[at], face[(at + 1) % face.len()]]));
+        let edges = around.flat_map(|[a, b]| [[a, b], [b, a]]);
+        edges.filter(|&[from, to]| from == corner && !base.contains(&to)).map(|[_, to]| to).next()
+    };
+    let mut corners = base.clone();
+    match kind {
+        CellKind::Tetrahedron | CellKind::Pyramid => corners.extend(above(base[0])),
+        _ => corners.extend(base.iter().filter_map(|&corner| above(corner))),
+    }
+    let mut sorted = corners.clone();
+    sorted.sort_unstable();
+    match *corners {
+        // Faces that do not fit together.
+        _ if sorted != points => builder.cell(CellKind::Polyhedron, &points),
+        [a, b, c, d, e, f, g, h] => builder.cell(kind, &along(&[a, b, c, d, e, f, g, h])),
+        _ => builder.cell(kind, &corners),
+    }
+}
