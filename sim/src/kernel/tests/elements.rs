@@ -37,6 +37,9 @@ fn any_elements_step_like_the_reference() {
         ("anything flat", pieces([4, 5, 0], &[3, 4], 7)),
         ("one triangle", pieces([1, 1, 0], &[3], 8)),
         ("squares", whole([9, 1, 0], 0.1, 9)),
+        ("a lattice, filled in part", filled(whole([3, 4, 2], 0.0, 3))),
+        ("anything, filled in part", filled(pieces([4, 3, 5], &[4, 5, 6, 7, 8], 6))),
+        ("flat, filled in part", filled(pieces([4, 5, 0], &[3, 4], 7))),
     ] {
         for rotation in [TWICE, Rotation::Optimum] {
             for damping in [0.0, 10.0] {
@@ -60,8 +63,9 @@ fn any_scheme_steps_like_the_reference() {
 /// Several parts that share nodes, and blocks that are not full; then so many parts that what they need is prefetched.
 #[test]
 fn a_body_of_several_parts_steps_like_the_reference() {
-    for (cells, steps, is_large) in [([23, 17, 19], 50, false), ([45, 33, 33], 3, true)] {
-        let body = pieces(cells, &[4, 6, 8], 11);
+    let some = || pieces([23, 17, 19], &[4, 6, 8], 11);
+    let many = pieces([45, 33, 33], &[4, 6, 8], 11);
+    for (body, steps, is_large) in [(some(), 50, false), (filled(some()), 50, false), (many, 3, true)] {
         assert_eq!(parts(&body.elements) > SMALL, is_large);
         let start = start(&body, 3);
         let start = (start.clone(), rotations(&body, &start));

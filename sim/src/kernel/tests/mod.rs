@@ -101,6 +101,13 @@ pub(super) fn pieces(cells: [u32; 3], counts: &[usize], seed: u64) -> Arc<Body> 
     body(dimension, rest, elements, random)
 }
 
+/// The body with elements that are filled in part.
+pub(super) fn filled(body: Arc<Body>) -> Arc<Body> {
+    let random = &mut Random(41);
+    let fill = body.elements.iter().map(|_| [1.0, 0.9, 0.37, 0.2][random.below(4)]).collect();
+    Arc::new(Body { fill: Some(fill), ..Body::clone(&body) })
+}
+
 /// Rotated, stretched and moving.
 pub(super) fn start(body: &Body, seed: u64) -> State {
     let random = &mut Random(seed);

@@ -54,7 +54,12 @@ fn springs_step_like_the_reference() {
         assert_springs_step_like_the_reference(&body, &springs, damping, true);
         assert_springs_step_like_the_reference(&body, &[[9, 4]], damping, true);
         let random = &mut Random(18);
-        let springs: Vec<[u32; 2]> = (0..90).map(|_| [random.below(62) as u32, 62 + random.below(62) as u32]).collect();
+        let mut springs: Vec<[u32; 2]> =
+            (0..90).map(|_| [random.below(62) as u32, 62 + random.below(62) as u32]).collect();
+        assert_springs_step_like_the_reference(&body, &springs, damping, false);
+        // Of elements that are filled in part, and of none.
+        let body = filled(body);
+        springs.extend(body.topology().springs(Springs::All));
         assert_springs_step_like_the_reference(&body, &springs, damping, false);
     }
 }
