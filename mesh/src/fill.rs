@@ -3,10 +3,12 @@
 mod clip;
 mod cubes;
 mod cuts;
+mod draft;
 mod embed;
 mod graded;
 mod lattice;
 mod parts;
+mod polyhedra;
 mod tetrahedra;
 
 use super::{Flaws, Surface};
@@ -86,7 +88,7 @@ pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillEr
     match fill {
         Fill::Cubes { side } => cubes::fill(surface, flaws, side, false, most),
         Fill::Graded { side } => cubes::fill(surface, flaws, side, true, most),
+        Fill::Polyhedra { side } => polyhedra::fill(surface, flaws, side, most),
         Fill::Tetrahedra { side } => tetrahedra::fill(surface, flaws, side, most),
-        _ => Err(FillError { message: "is not filled in this way yet".to_owned(), help: None }),
     }
 }

@@ -98,37 +98,68 @@ fn stiffest(body: &Body, whole: f64) -> f64 {
 /// The square of the distance of the nodes of a tetrahedron of the lattice from their mean, for sides of 1.
 const OF_TETRAHEDRON: f64 = 0.3125;
 
-fn tetrahedra(surface: &Surface, side: f64) -> (Filled, Body) {
-    let filled = fill(surface, Fill::Tetrahedra { side }, MOST).unwrap();
+/// The same for the corners of a cube.
+const OF_CUBE: f64 = 0.75;
+
+fn filled(surface: &Surface, with: Fill) -> (Filled, Body) {
+    let filled = fill(surface, with, MOST).unwrap();
     let body = checked(&filled);
     (filled, body)
 }
 
+/// Both ways to fill a surface.
+fn both(side: f64) -> [Fill; 2] {
+    [Fill::Tetrahedra { side }, Fill::Polyhedra { side }]
+}
+
 #[test]
-fn the_volume_of_tetrahedra_tends_to_that_of_the_surface() {
+fn the_volume_of_elements_tends_to_that_of_the_surface() {
     for surface in round() {
-        let expected = volume(&surface.points, &surface.triangles);
-        let error = |side: f64| {
-            let (_, body) = tetrahedra(&surface, side);
-            volumes_at_rest(&body).iter().sum::<f64>() / expected - 1.0
-        };
-        let errors = [0.1, 0.05, 0.025].map(error);
-        assert!(
-            errors[0].abs() < 0.05
-                && errors[1].abs() < 0.4 * errors[0].abs()
-                && errors[2].abs() < 0.4 * errors[1].abs()
-        );
+        let expected = surface.measures().volume;
+        let error =
+            |with: Fill| (volumes_at_rest(&filled(&surface, with).1).iter().sum::<f64>() / expected - 1.0).abs();
+        let errors = [0.1, 0.05, 0.025].map(|side| both(side).map(error));
+        // Nodes of tetrahedra are on the surface: a quarter of the error for half of the side.
+        for ([tetrahedra, polyhedra], most) in errors.into_iter().zip([0.04, 0.01, 0.0025]) {
+            assert!(tetrahedra < most && polyhedra < 1.2 * most, "{errors:?}");
+        }
     }
 }
 
 #[test]
-fn tetrahedra_of_a_block_of_whole_cells_are_the_block() {
+fn elements_of_a_block_of_whole_cells_are_the_block() {
     let surface = block(DVec3::ZERO, DVec3::new(1.0, 0.5, 0.75));
-    let (filled, body) = tetrahedra(&surface, 0.25);
-    assert!((volumes_at_rest(&body).iter().sum::<f64>() - 0.375).abs() < 1e-15);
-    assert!(
-        (0..8).all(|point| filled.weights.place(point, &filled.cage.nodes).distance(surface.points[point]) < 1e-15)
-    );
+    for with in both(0.25) {
+        let (filled, body) = filled(&surface, with);
+        assert!((volumes_at_rest(&body).iter().sum::<f64>() - 0.375).abs() < 1e-15);
+        let place = |point: usize| filled.weights.place(point, &filled.cage.nodes);
+        assert!((0..8).all(|point| place(point).distance(surface.points[point]) < 1e-15));
+        if let Fill::Polyhedra { .. } = with {
+            assert_eq!(filled.cage.elements.len(), 24);
+            assert!(filled.cage.elements.iter().all(|element| element.len() == 8));
+        }
+    }
+}
+
+#[test]
+fn outer_nodes_of_tetrahedra_are_on_the_surface() {
+    let (size, tilt) = (DVec3::new(1.0, 0.7, 0.8), DQuat::from_xyzw(0.2, 0.3, -0.1, 0.9).normalize());
+    let mut surface = block(-0.5 * size, 0.5 * size);
+    surface.points.iter_mut().for_each(|point| *point = tilt * *point);
+    let (filled, body) = filled(&surface, Fill::Tetrahedra { side: 0.05 });
+    let parts = filled.cage.filled.clone().unwrap_or(vec![1.0; body.elements.len()]);
+    let mut compared = 0;
+    for face in (0..body.faces.nodes.len()).filter(|&face| body.faces.outer[face].is_none()) {
+        // Elements filled in part are wider than the body.
+        if parts[body.faces.inner[face].unwrap() as usize] == 1.0 {
+            for &node in &body.faces.nodes[face] {
+                let within = (tilt.inverse() * body.rest[node as usize]).abs() - 0.5 * size;
+                assert!(within.max_element().abs() < 1e-12);
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 1000);
 }
 
 /// Scans, with the largest side 1.
@@ -147,9 +178,10 @@ fn assert_filled(filled: &Filled, body: &Body, slack: f64) {
 }
 
 /// Checks that no weight is far from those of points inside.
-fn assert_gentle(filled: &Filled) {
+fn assert_gentle(filled: &Filled, most: f64) {
     let all = (0..filled.weights.len()).flat_map(|point| filled.weights.of(point).1);
-    assert!(all.fold(0.0f64, |most, weight| most.max(weight.abs())) < 4.0);
+    let found = all.fold(0.0f64, |most, weight| most.max(weight.abs()));
+    assert!(found < most, "{found}");
 }
 
 /// Thin parts are as wide as cells, so that all of a scan hangs together at any side.
@@ -158,14 +190,29 @@ fn dihedral_angles_of_tetrahedra_are_bounded() {
     let shapes = round().into_iter().chain([block(DVec3::ZERO, DVec3::new(1.0, 0.63, 0.77))]);
     for (name, surface) in scans().chain(shapes.map(|shape| ("shape", shape))) {
         for (cells, slack) in [(12.0, 0.07), (20.0, 0.04), (30.0, 0.03)] {
-            let (filled, body) = tetrahedra(&surface, 1.0 / cells);
+            let (filled, body) = filled(&surface, Fill::Tetrahedra { side: 1.0 / cells });
             let [least, greatest] = angles(&body);
             assert!(least > 10.7 && greatest < 164.8, "{name}, {cells} cells: {least}° to {greatest}°");
             // No element needs a step shorter by more than √8 than those of the lattice.
             let stiff = stiffest(&body, OF_TETRAHEDRON / cells / cells);
             assert!(stiff < 8.0, "{name}, {cells} cells: {stiff}");
             assert_filled(&filled, &body, slack);
-            assert_gentle(&filled);
+            assert_gentle(&filled, 4.0);
+        }
+    }
+}
+
+#[test]
+fn scans_are_filled_with_polyhedra_of_limited_stiffness() {
+    let shapes = round().into_iter().chain([block(DVec3::ZERO, DVec3::new(1.0, 0.63, 0.77))]);
+    for (name, surface) in scans().chain(shapes.map(|shape| ("shape", shape))) {
+        for (cells, slack) in [(12.0, 0.12), (20.0, 0.07), (30.0, 0.04)] {
+            let (filled, body) = filled(&surface, Fill::Polyhedra { side: 1.0 / cells });
+            // The smallest element is a corner of a cube with edges of a quarter: a step shorter by √(64/3) = 4.6.
+            let stiff = stiffest(&body, OF_CUBE / cells / cells);
+            assert!(stiff < 21.34, "{name}, {cells} cells: {stiff}");
+            assert_filled(&filled, &body, slack);
+            assert_gentle(&filled, 6.0);
         }
     }
 }
@@ -173,30 +220,36 @@ fn dihedral_angles_of_tetrahedra_are_bounded() {
 #[test]
 fn a_sheet_thinner_than_the_elements_is_filled_in_part() {
     let surface = block(DVec3::ZERO, DVec3::new(1.0, 0.03, 0.7));
-    let (filled, body) = tetrahedra(&surface, 0.1);
-    assert!(filled.cage.filled.is_some());
-    assert_filled(&filled, &body, 0.5);
+    for with in both(0.1) {
+        let (filled, body) = filled(&surface, with);
+        assert!(filled.cage.filled.is_some());
+        assert_filled(&filled, &body, 0.05);
+    }
 }
 
 #[test]
 fn the_number_of_threads_decides_nothing() {
     let surface = ring(0.5, 0.03, 60);
-    let fills = [1, 2, 5].map(|threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| fill(&surface, Fill::Tetrahedra { side: 0.1 }, MOST).unwrap())
-    });
-    assert!(fills[0].cage.filled.is_some(), "thin parts are widened, too");
-    assert!(fills[0] == fills[1] && fills[0] == fills[2]);
+    for with in both(0.1) {
+        let fills = [1, 2, 5].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| fill(&surface, with, MOST).unwrap())
+        });
+        assert!(fills[0].cage.filled.is_some(), "thin parts are widened, too");
+        assert!(fills[0] == fills[1] && fills[0] == fills[2]);
+    }
 }
 
 #[test]
 fn more_elements_than_allowed_are_refused() {
     let surface = ball(DVec3::ZERO, 0.5, 48);
-    for (side, message) in [(0.1, "needs 6768 elements"), (1e-3, "needs about "), (1e-9, "needs about ")] {
-        let refused = fill(&surface, Fill::Tetrahedra { side }, 5000).unwrap_err();
-        assert!(refused.message.starts_with(message), "{refused}");
-        assert!(refused.message.ends_with("and at most 5000 are allowed"), "{refused}");
-        assert!(refused.help.is_some());
+    for (side, message) in [(0.05, "needs "), (1e-3, "needs about "), (1e-9, "needs about ")] {
+        for with in both(side) {
+            let refused = fill(&surface, with, 4000).unwrap_err();
+            assert!(refused.message.starts_with(message), "{refused}");
+            assert!(refused.message.ends_with("and at most 4000 are allowed"), "{refused}");
+            assert!(refused.help.is_some());
+        }
     }
 }
 
@@ -206,6 +259,8 @@ fn what_has_no_inside_is_refused() {
         points: vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
     };
-    let refused = fill(&sheet, Fill::Tetrahedra { side: 0.1 }, MOST).unwrap_err();
-    assert!(refused.message.starts_with("has no inside"), "{refused}");
+    for with in both(0.1) {
+        let refused = fill(&sheet, with, MOST).unwrap_err();
+        assert!(refused.message.starts_with("has no inside"), "{refused}");
+    }
 }

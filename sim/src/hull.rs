@@ -4,7 +4,7 @@
 //! nodes along edges and inside faces, needs the tolerances that are most of this file. Their order of faces, on which
 //! springs and sums depend, may also change between versions.
 
-use super::element::{ElementKind, around};
+use super::element::{ElementKind, around, face_table};
 use super::lists::IndexLists;
 use glam::DVec3;
 use std::collections::HashSet;
@@ -87,10 +87,36 @@ pub(crate) fn faces(points: &[DVec3]) -> Vec<Vec<u32>> {
     if size <= 0.0 || !size.is_finite() {
         return Vec::new();
     }
+    if let Some(faces) = of_box(points, low, high) {
+        return faces;
+    }
     let middle = low + 0.5 * (high - low);
     let scaled: Vec<_> = points.iter().map(|&point| (point - middle) / size).collect();
     let tries = TOLERANCES.into_iter().find_map(|tolerance| Cloud::new(&scaled, tolerance).faces());
-    let mut faces = tries.unwrap_or_default();
+    sorted(tries.unwrap_or_default())
+}
+
+/// The faces of points that are the corners of a box along the axes, as most are in bodies cut from a lattice: the same faces, some
+/// fifty times as fast.
+fn of_box(points: &[DVec3], low: DVec3, high: DVec3) -> Option<Vec<Vec<u32>>> {
+    if points.len() != 8 || (high - low).min_element() < 1e-3 * (high - low).max_element() {
+        return None;
+    }
+    let mut corners = [None; 8];
+    for (place, point) in (0u32..).zip(points) {
+        let (is_low, is_high) = (point.cmpeq(low), point.cmpeq(high));
+        if is_low.bitmask() | is_high.bitmask() != 7 {
+            return None;
+        }
+        corners[is_high.bitmask() as usize] = Some(place);
+    }
+    // As in the table of hexahedra, whose corners are numbered with x fastest, then y, then z.
+    let face = |of: &&[u8]| of.iter().map(|&corner| corners[corner as usize]).collect::<Option<Vec<_>>>();
+    face_table(ElementKind::Hexahedron).iter().map(face).collect::<Option<Vec<_>>>().map(sorted)
+}
+
+/// Faces that each begin with the lowest index, in rising order.
+fn sorted(mut faces: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
     for face in &mut faces {
         let lowest = (0..face.len()).min_by_key(|&at| face[at]).unwrap_or(0);
         face.rotate_left(lowest);
@@ -429,6 +455,22 @@ mod tests {
                 assert_hull(points, &faces, 1e-6);
                 assert!(faces.iter().all(|face| face.iter().min() == face.first()) && faces.is_sorted());
             });
+        }
+    }
+
+    #[test]
+    fn boxes_along_the_axes_have_the_faces_that_are_found_for_any_points() {
+        let mut noise = Noise(3);
+        for _ in 0..200 {
+            let (low, size) = (noise.vector() - 0.5, noise.vector() + 0.01);
+            let corner = |bit: u32| low + size * DVec3::from_array([0, 1, 2].map(|axis| f64::from(bit >> axis & 1)));
+            let mut points: Vec<_> = (0..8).map(corner).collect();
+            (1..8).for_each(|at| points.swap(at, (noise.next() * at as f64) as usize));
+            let (low, high) = bounds(&points);
+            let size = (high - low).max_element();
+            let scaled: Vec<_> = points.iter().map(|&point| (point - low) / size).collect();
+            let found = TOLERANCES.into_iter().find_map(|tolerance| Cloud::new(&scaled, tolerance).faces()).unwrap();
+            assert_eq!(of_box(&points, low, high), Some(sorted(found)));
         }
     }
 

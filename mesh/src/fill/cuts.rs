@@ -1,8 +1,8 @@
 //! Where a surface cuts the edges of a lattice.
 
-use super::{FillError, lattice};
-use crate::Surface;
+use super::{FillError, clip, cubes, lattice};
 use crate::inside::{Grid, Inside};
+use crate::{Flaws, Surface};
 use glam::{DVec2, DVec3, IVec3};
 use rayon::prelude::*;
 
@@ -54,8 +54,8 @@ impl Lattice {
         let counts = DVec3::from_array(lattice.counts.map(|count| count as f64)) + 2.0;
         let boxed = counts.element_product();
         // All points of the lattice are listed.
-        if boxed > 16.0 * most as f64 + 1e6 {
-            return Err(lattice::too_many(&surface.measures(), side, boxed / 16.0, most, "about "));
+        if boxed > 8.0 * most as f64 + 1e6 {
+            return Err(lattice::too_many(&surface.measures(), side, boxed / 8.0, most, "about "));
         }
         scaled.points.iter_mut().for_each(|point| *point = 2.0 * (*point + 1.0));
         let inside = Inside::new(&scaled);
@@ -119,9 +119,34 @@ impl Lattice {
         inside
     }
 
-    /// Whether a place (m) is inside.
-    pub(super) fn contains(&self, at: DVec3) -> bool {
-        self.inside.contains(self.halves(at))
+    /// The part of each cube that is inside, with x fastest, then y, then z.
+    ///
+    /// # Errors
+    /// If nothing is inside.
+    pub(super) fn filled(&self, flaws: &Flaws) -> Result<Vec<f64>, FillError> {
+        // Without the cubes outside.
+        let counts = (self.cubes - 2).as_usizevec3().to_array();
+        let lattice = lattice::Lattice { origin: self.origin + self.side, side: self.side, counts };
+        let most = (self.cubes - 2).as_dvec3();
+        let points = self.surface.points.iter().map(|&point| (0.5 * point - 1.0).clamp(DVec3::ZERO, most)).collect();
+        let scaled = Surface { points, triangles: self.surface.triangles.clone() };
+        let cells = cubes::cells(&Inside::new(&scaled), flaws, &lattice, &clip::pieces(&scaled, &lattice))?;
+        let mut filled = vec![0.0; self.cubes.as_usizevec3().element_product()];
+        for full in cells {
+            let cube = IVec3::from_array(lattice.cell(full.cell).map(|at| at as i32 + 1));
+            filled[self.cube(cube)] = full.filled;
+        }
+        Ok(filled)
+    }
+
+    /// The place of a cube in lists.
+    fn cube(&self, cube: IVec3) -> usize {
+        ((cube.z * self.cubes.y + cube.y) * self.cubes.x + cube.x) as usize
+    }
+
+    /// The place in lists of the cube that contains a place (m), or of the nearest.
+    pub(super) fn cube_at(&self, at: DVec3) -> usize {
+        self.cube((0.5 * self.halves(at)).floor().as_ivec3().clamp(IVec3::ZERO, self.cubes - 1))
     }
 
     /// The cuts of all edges with one end inside, where the surface crosses them first seen from that end. An edge across a hole of
@@ -151,10 +176,10 @@ impl Lattice {
                 if !self.holds(to) || is_inside[index] == is_inside[self.index(to)] {
                     continue;
                 }
-                let slot = slot(index, edge);
-                while found.next_if(|next| next.0 < slot).is_some() {}
+                let own = slot(index, edge);
+                while found.next_if(|next| next.0 < own).is_some() {}
                 let (mut part, mut is_first) = (0.5, true);
-                while let Some((_, next)) = found.next_if(|next| next.0 == slot) {
+                while let Some((_, next)) = found.next_if(|next| next.0 == own) {
                     if is_first || !is_inside[index] {
                         part = next;
                     }
@@ -166,8 +191,13 @@ impl Lattice {
                 } else if !is_inside[index] && wide[self.index(to)] {
                     part = 1.0 - part_wide;
                 }
-                cuts.slots.push(slot);
+                cuts.slots.push(own);
                 cuts.parts.push(part);
+            }
+            let point = slot(index, EDGES.len());
+            while found.next_if(|next| next.0 < point).is_some() {}
+            if found.next_if(|next| next.0 == point).is_some() {
+                cuts.on.push(index);
             }
         }
         cuts
@@ -269,6 +299,9 @@ impl Lattice {
                         continue;
                     }
                     let index = self.index(from);
+                    if lowest < highest && at == highest {
+                        found.push((slot(index, EDGES.len()), 0.0));
+                    }
                     if is_inside[index] != is_inside[self.index(from + direction)] {
                         found.push((slot(index, edge), (steps - f64::from(at)).clamp(0.0, 1.0)));
                     }
@@ -278,9 +311,12 @@ impl Lattice {
     }
 }
 
-/// The number of an edge that starts at a point of the lattice.
+/// The numbers of the edges that start at each point of the lattice, and one for the point itself.
+const SLOTS: usize = EDGES.len() + 1;
+
+/// The number of an edge that starts at a point of the lattice, or, with the number of edges, of the point.
 fn slot(index: usize, edge: usize) -> u64 {
-    (index * EDGES.len() + edge) as u64
+    (index * SLOTS + edge) as u64
 }
 
 /// Cuts of edges by a surface, in the order of the points of the lattice at which the edges start, then of [`EDGES`].
@@ -289,6 +325,8 @@ pub(super) struct Cuts {
     slots: Vec<u64>,
     /// The part of the way along the edge, from 0 to 1.
     pub(super) parts: Vec<f64>,
+    /// The points of the lattice that are on the surface to round-off, in rising order.
+    pub(super) on: Vec<usize>,
 }
 
 impl Cuts {
@@ -300,6 +338,6 @@ impl Cuts {
     /// The start of the edge of a cut, by its place in lists, and the direction of the edge.
     pub(super) fn edge(&self, cut: usize) -> (usize, usize) {
         let slot = self.slots[cut] as usize;
-        (slot / EDGES.len(), slot % EDGES.len())
+        (slot / SLOTS, slot % SLOTS)
     }
 }

@@ -5,8 +5,9 @@
 //! each tetrahedron, equal on both sides of a shared face, and reproduce affine maps. Elements have to be seen whole from the mean
 //! of their nodes, as convex ones are.
 
-use super::cubes::no_inside;
+use super::cubes::in_part;
 use super::cuts::Lattice;
+use super::draft::Draft;
 use crate::surface::Sets;
 use crate::{Cage, FillError, Flaws, Surface};
 use glam::{DVec3, I64Vec3};
@@ -18,18 +19,14 @@ use rayon::prelude::*;
 /// that element turns.
 const FAR: f64 = 0.75;
 
-/// An element is filled at least by this part: samples miss what is thinner than their distance.
-const LEAST: f64 = 0.01;
+/// Elements farther away than so many sides have nothing to do with a point.
+const VERY_FAR: f64 = 2.0;
+
+/// An element is filled at least by this part.
+const LEAST: f64 = 1e-3;
 
 /// A weight that is negative by less than this is round-off.
 const CLOSE: f64 = 1e-10;
-
-/// Elements made from a lattice.
-pub(super) struct Draft {
-    pub(super) cage: Cage,
-    /// Whether each element has corners that count as inside because the body is thin there.
-    pub(super) is_wide: Vec<bool>,
-}
 
 /// Elements that carry a surface, and its weights.
 ///
@@ -54,7 +51,8 @@ pub(super) fn carry(
         let fan = Fan::new(&body);
         let found = fan.locate(&surface.points, lattice.side);
         let hung = Hung::new(&body, &pieces, &found);
-        let is_lost = |place: &Option<Place>, piece: u32| place.is_none_or(|place| !hung.carries(&place, piece));
+        let is_lost =
+            |place: &Option<Place>, piece: u32| place.is_none_or(|place| place.is_far || !hung.carries(&place, piece));
         let has_lost = |of: &&[u32; 3]| of.iter().any(|&point| is_lost(&found[point as usize], pieces[point as usize]));
         let samples = |of: &[u32; 3]| {
             let piece = pieces[of[0] as usize];
@@ -63,9 +61,8 @@ pub(super) fn carry(
         let (places, of_places): (Vec<DVec3>, Vec<u32>) =
             surface.triangles.iter().filter(has_lost).flat_map(samples).unzip();
         if places.is_empty() {
-            let (cage, weights) = hung.finished(draft, &fan, &found, lattice);
-            let is_empty = cage.filled.iter().flatten().all(|&part| part <= LEAST) && cage.filled.is_some();
-            return if is_empty { Err(no_inside(flaws)) } else { Ok((cage, weights)) };
+            let filled = fan.filled(&draft.is_wide, lattice, flaws)?;
+            return Ok(hung.finished(draft.cage, filled, &fan, &found));
         }
         let before = wide.clone();
         let found = fan.locate(&places, lattice.side);
@@ -147,14 +144,12 @@ impl Hung {
         self.carriers[piece as usize] == self.parts[place.element as usize]
     }
 
-    /// The elements of the parts that carry something, how far they are filled, and the weights.
-    fn finished(&self, draft: Draft, fan: &Fan, found: &[Option<Place>], lattice: &Lattice) -> (Cage, Weights) {
-        let Draft { cage, is_wide } = draft;
-        let filled = fan.filled(&is_wide, lattice);
+    /// The elements of the parts that carry something, and the weights.
+    fn finished(&self, cage: Cage, filled: Option<Vec<f64>>, fan: &Fan, found: &[Option<Place>]) -> (Cage, Weights) {
         let mut is_kept = vec![false; self.parts.len()];
         self.carriers.iter().filter(|&&part| part != NONE).for_each(|&part| is_kept[part as usize] = true);
         let mut numbers = vec![NONE; cage.nodes.len()];
-        let mut kept = Cage { filled: is_wide.contains(&true).then(Vec::new), convex: cage.convex, ..Cage::default() };
+        let mut kept = Cage { filled: filled.is_some().then(Vec::new), convex: cage.convex, ..Cage::default() };
         let elements = cage.elements.iter().enumerate();
         for (element, nodes) in elements.filter(|&(element, _)| is_kept[self.parts[element] as usize]) {
             let number = |&node: &u32| {
@@ -165,7 +160,9 @@ impl Hung {
                 numbers[node as usize]
             };
             kept.elements.push(&nodes.iter().map(number).collect::<Vec<_>>());
-            kept.filled.iter_mut().for_each(|all| all.push(filled[element]));
+            if let (Some(kept), Some(filled)) = (&mut kept.filled, &filled) {
+                kept.push(filled[element]);
+            }
         }
         let spread = |place: &Place| {
             let (nodes, weights) = fan.spread(place);
@@ -193,6 +190,8 @@ struct Place {
     element: u32,
     corners: [u32; 4],
     weights: [f64; 4],
+    /// Whether the point is farther from the element than [`FAR`].
+    is_far: bool,
 }
 
 /// Elements divided into tetrahedra.
@@ -205,6 +204,8 @@ struct Fan {
     nodes: usize,
     /// All tetrahedra, by element.
     simplices: Vec<Simplex>,
+    /// Where those of each element begin; the last number is where all end.
+    starts: Vec<usize>,
     /// Tetrahedra whose last three corners are on the outside.
     outside: Vec<Simplex>,
 }
@@ -216,6 +217,7 @@ impl Fan {
             means: IndexLists::default(),
             nodes: body.rest.len(),
             simplices: Vec::new(),
+            starts: Vec::new(),
             outside: Vec::new(),
         };
         let is_simple = |element: u32| body.kinds[element as usize] == ElementKind::Tetrahedron;
@@ -252,6 +254,8 @@ impl Fan {
         }
         fan.simplices.sort_by_key(|simplex| simplex.element);
         fan.outside.sort_by_key(|simplex| simplex.element);
+        let count = body.elements.len() as u32;
+        fan.starts = (0..=count).map(|at| fan.simplices.partition_point(|of| of.element < at)).collect();
         fan
     }
 
@@ -267,81 +271,108 @@ impl Fan {
         simplex.corners.map(|corner| self.points[corner as usize])
     }
 
-    /// The simplex that carries each point: the first that contains it, or the first of the nearest on the outside.
+    /// The tetrahedra of an element.
+    fn of(&self, element: usize) -> &[Simplex] {
+        &self.simplices[self.starts[element]..self.starts[element + 1]]
+    }
+
+    /// What carries each point: the first element that contains it, or the first of the nearest; `None` if all are very far.
     fn locate(&self, points: &[DVec3], side: f64) -> Vec<Option<Place>> {
         let (low, high) = bounds(&self.points);
-        let all: Vec<_> = self.simplices.iter().map(|simplex| bounds(&self.corners(simplex))).collect();
+        let box_of = |element: usize| {
+            let corners = self.of(element).iter().flat_map(|simplex| self.corners(simplex));
+            let (low, high) =
+                corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+            (low - CLOSE * side, high + CLOSE * side)
+        };
+        let elements: Vec<_> = (0..self.starts.len() - 1).into_par_iter().map(box_of).collect();
         let mut cells = Grid::new(low, high, side);
         cells.mark(points);
-        cells.fill(&all);
-        let outer: Vec<_> = self.outside.iter().map(|simplex| bounds(&self.corners(simplex)[1..])).collect();
-        let mut faces = Grid::new(low, high, side);
-        faces.fill(&outer);
+        cells.fill(&elements);
+        let outside: Vec<_> = self.outside.iter().map(|simplex| bounds(&self.corners(simplex)[1..])).collect();
+        let mut faces = Grid::new(low, high, 0.5 * side);
+        faces.fill(&outside);
         let locate = |&point: &DVec3| {
-            let containing = cells.at(cells.cell(point)).iter().find_map(|&at| {
-                let simplex = self.simplices[at as usize];
-                let weights = weights(self.corners(&simplex), point);
-                weights.iter().all(|&weight| weight >= -CLOSE).then_some((simplex, weights))
+            let containing = cells.at(cells.cell(point)).iter().find_map(|&element| {
+                let (low, high) = elements[element as usize];
+                if !(point.cmpge(low).all() && point.cmple(high).all()) {
+                    return None;
+                }
+                self.of(element as usize).iter().find_map(|simplex| {
+                    let weights = weights(self.corners(simplex), point);
+                    weights.iter().all(|&weight| weight >= -CLOSE).then_some((*simplex, weights))
+                })
             });
-            let (simplex, weights) = containing.or_else(|| {
-                let simplex = self.outside[self.nearest(&faces, point, side)? as usize];
-                Some((simplex, weights(self.corners(&simplex), point)))
-            })?;
-            Some(Place { element: simplex.element, corners: simplex.corners, weights })
+            if let Some((simplex, weights)) = containing {
+                return Some(Place { element: simplex.element, corners: simplex.corners, weights, is_far: false });
+            }
+            let (face, distance) = self.nearest(&faces, &outside, point, VERY_FAR * side)?;
+            let simplex = self.outside[face as usize];
+            let weights = weights(self.corners(&simplex), point);
+            Some(Place { element: simplex.element, corners: simplex.corners, weights, is_far: distance > FAR * side })
         };
         points.par_iter().map(locate).collect()
     }
 
-    /// The simplex with the nearest face on the outside that is not too far.
-    fn nearest(&self, faces: &Grid, point: DVec3, side: f64) -> Option<u32> {
+    /// The simplex with the nearest face on the outside, and its distance, up to a greatest one.
+    fn nearest(&self, faces: &Grid, boxes: &[(DVec3, DVec3)], point: DVec3, most: f64) -> Option<(u32, f64)> {
         let cell = faces.cell(point);
-        let (mut best, mut nearest) = (None, FAR * side);
+        let (mut best, mut nearest) = (None, most);
         for ring in 0.. {
             // Faces in this ring are at least so far away.
-            if nearest <= (ring - 1) as f64 * side {
+            if nearest <= (ring - 1) as f64 * faces.cell {
                 break;
             }
-            for at in faces.ring(cell, ring) {
-                for &face in faces.at(at) {
-                    let [_, a, b, c] = self.corners(&self.outside[face as usize]);
-                    let distance = point.distance(nearest_of([a, b, c], point));
-                    if distance < nearest || (distance == nearest && best.is_none_or(|best| face < best)) {
-                        (best, nearest) = (Some(face), distance);
-                    }
+            for &face in faces.ring(cell, ring).flat_map(|at| faces.at(at)) {
+                let (low, high) = boxes[face as usize];
+                if point.distance_squared(point.clamp(low, high)) > nearest * nearest {
+                    continue;
+                }
+                let [_, a, b, c] = self.corners(&self.outside[face as usize]);
+                let distance = point.distance(nearest_of([a, b, c], point));
+                if distance < nearest || (distance == nearest && best.is_none_or(|best| face < best)) {
+                    (best, nearest) = (Some(face), distance);
                 }
             }
         }
-        best
+        Some((best?, nearest))
     }
 
-    /// The part of each element that is inside, by samples, or 1 for those that are not wide.
-    fn filled(&self, is_wide: &[bool], lattice: &Lattice) -> Vec<f64> {
-        let starts: Vec<usize> =
-            (0..=is_wide.len() as u32).map(|at| self.simplices.partition_point(|of| of.element < at)).collect();
-        let filled = |element: usize| {
-            if !is_wide[element] {
-                return 1.0;
-            }
-            let simplices = &self.simplices[starts[element]..starts[element + 1]];
-            // 56 samples in a tetrahedron, four in each of many.
-            let steps = if simplices.len() == 1 { 5 } else { 1 };
-            let (mut full, mut all) = (0.0, 0.0);
-            for simplex in simplices {
-                let [a, b, c, d] = self.corners(simplex);
-                let volume = (b - a).cross(c - a).dot(d - a).abs();
-                for (i, j, k) in (0..=steps)
-                    .flat_map(|i| (0..=steps - i).flat_map(move |j| (0..=steps - i - j).map(move |k| (i, j, k))))
-                {
-                    let along = |count: i32| (f64::from(count) + 0.5) / f64::from(steps + 2);
-                    all += volume;
-                    if lattice.contains(a + (b - a) * along(i) + (c - a) * along(j) + (d - a) * along(k)) {
-                        full += volume;
-                    }
-                }
-            }
-            (full / all).max(LEAST)
+    /// The part of each element that is filled. What is inside a cube of the lattice, less the elements there that are not wide, fills
+    /// its wide ones evenly.
+    fn filled(&self, is_wide: &[bool], lattice: &Lattice, flaws: &Flaws) -> Result<Option<Vec<f64>>, FillError> {
+        if !is_wide.contains(&true) {
+            return Ok(None);
+        }
+        let inside = lattice.filled(flaws)?;
+        let cube = lattice.side * lattice.side * lattice.side;
+        // The cubes in which an element lies, and the volume there, in cubes.
+        let shares = |element: usize| {
+            let of = self.of(element);
+            of.iter().flat_map(move |simplex| {
+                let corners = self.corners(simplex);
+                let [a, b, c, d] = corners;
+                let volume = (b - a).cross(c - a).dot(d - a).abs() / 6.0 / cube;
+                let mean = 0.25 * (a + b + c + d);
+                // Single tetrahedra may lie in several cubes.
+                let pull = if of.len() == 1 { 0.4 } else { 0.0 };
+                corners.map(|corner| (lattice.cube_at(mean.lerp(corner, pull)), 0.25 * volume))
+            })
         };
-        (0..is_wide.len()).into_par_iter().map(filled).collect()
+        let [mut full, mut wide] = [vec![0.0; inside.len()], vec![0.0; inside.len()]];
+        for (element, &is_wide) in is_wide.iter().enumerate() {
+            let sum = if is_wide { &mut wide } else { &mut full };
+            shares(element).for_each(|(cube, volume)| sum[cube] += volume);
+        }
+        let part = |element: usize| {
+            let (mut filled, mut all) = (0.0, 0.0);
+            for (cube, volume) in shares(element) {
+                filled += volume * ((inside[cube] - full[cube]) / wide[cube]).clamp(0.0, 1.0);
+                all += volume;
+            }
+            (filled / all).clamp(LEAST, 1.0)
+        };
+        Ok(in_part((0..is_wide.len()).map(|element| if is_wide[element] { part(element) } else { 1.0 }).collect()))
     }
 
     /// The nodes of a place and the weight of each.
@@ -475,5 +506,77 @@ impl Grid {
         let along = move || -ring..=ring;
         let all = along().flat_map(move |z| along().flat_map(move |y| along().map(move |x| I64Vec3::new(x, y, z))));
         all.filter(move |by| by.abs().max_element() == ring).map(move |by| middle + by)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cube, half of the next one, and a prism on the rest of it.
+    fn cage() -> Cage {
+        let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+        let square = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (2.0, 0.1), (1.7, 0.8), (2.3, 1.0)];
+        let nodes = [0.0, 1.0].iter().flat_map(|&z| square.map(|(x, y)| at(x, y, z))).collect();
+        let elements = [&[0, 1, 2, 3, 7, 8, 9, 10][..], &[1, 3, 4, 5, 8, 10, 11, 12], &[4, 5, 6, 11, 12, 13]];
+        Cage { nodes, elements: elements.into_iter().collect(), filled: None, convex: true }
+    }
+
+    /// The weight of each node.
+    fn dense(fan: &Fan, simplex: &Simplex, point: DVec3) -> Vec<f64> {
+        let weights = weights(fan.corners(simplex), point);
+        let place = Place { element: simplex.element, corners: simplex.corners, weights, is_far: false };
+        let mut all = vec![0.0; fan.nodes];
+        let (nodes, own) = fan.spread(&place);
+        nodes.iter().zip(own).for_each(|(&node, weight)| all[node as usize] += weight);
+        all
+    }
+
+    #[test]
+    fn weights_are_continuous_across_faces() {
+        let body = body(&cage());
+        let fan = Fan::new(&body);
+        let shared: Vec<_> = (0..body.faces.nodes.len()).filter(|&face| body.faces.outer[face].is_some()).collect();
+        assert_eq!(shared.len(), 2);
+        let mut compared = 0;
+        for one in &fan.simplices {
+            for other in fan
+                .simplices
+                .iter()
+                .filter(|other| other.element > one.element && other.corners[1..] == one.corners[1..])
+            {
+                let [_, a, b, c] = fan.corners(one);
+                for point in [a, b, c, 0.5 * (a + b), 0.2 * a + 0.5 * b + 0.3 * c, (a + b + c) / 3.0] {
+                    let [from_one, from_other] = [one, other].map(|simplex| dense(&fan, simplex, point));
+                    assert!(from_one.iter().zip(&from_other).all(|(one, other)| (one - other).abs() < 1e-14));
+                }
+                compared += 1;
+            }
+        }
+        assert_eq!(compared, 8, "four parts of each shared face");
+    }
+
+    #[test]
+    fn points_follow_the_first_element_that_holds_them_or_the_nearest() {
+        let body = body(&cage());
+        let fan = Fan::new(&body);
+        let at = |x: f64, y: f64| DVec3::new(x, y, 0.5);
+        let points = [at(0.5, 0.5), at(1.0, 0.5), at(1.3, 0.5), at(1.3, -0.4), at(1.3, -0.9), at(1.3, -9.0)];
+        let found = fan.locate(&points, 1.0);
+        let elements: Vec<_> = found.iter().map(|place| place.map(|place| (place.element, place.is_far))).collect();
+        let expected = [(0, false), (0, false), (1, false), (1, false), (1, true)];
+        assert_eq!(elements[..5], expected.map(Some));
+        assert_eq!(elements[5], None);
+    }
+
+    #[test]
+    fn the_nearest_point_of_a_triangle_is_in_it_on_a_side_or_a_corner() {
+        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let nearest = |x: f64, y: f64| nearest_of(triangle, DVec3::new(x, y, 0.7));
+        assert_eq!(nearest(0.2, 0.3), DVec3::new(0.2, 0.3, 0.0));
+        assert_eq!(nearest(0.25, -2.0), DVec3::new(0.25, 0.0, 0.0));
+        assert_eq!(nearest(1.0, 1.0), DVec3::new(0.5, 0.5, 0.0));
+        assert_eq!(nearest(-1.0, -1.0), DVec3::ZERO);
+        assert_eq!(nearest(3.0, 0.5), DVec3::X);
     }
 }

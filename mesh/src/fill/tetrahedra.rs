@@ -5,11 +5,11 @@
 //! close to a cut have been moved to it. Dihedral angles are between 10.7° and 164.8°.
 
 use super::cuts::{AXES, Cuts, EDGES, Lattice};
-use super::embed::{self, Draft};
+use super::draft::{Draft, Drafting};
 use super::lattice::too_many;
-use crate::{Cage, FillError, Filled, Flaws, Surface};
+use super::{FillError, Filled, embed};
+use crate::{Flaws, Surface};
 use glam::{DVec3, IVec3};
-use localshape_sim::IndexLists;
 
 /// A point of the lattice is moved to a cut of one of its edges that is nearer than this part of the edge: for edges along the axes
 /// and for the shorter others. The paper proves its bound of angles for these.
@@ -39,7 +39,7 @@ enum Where {
 /// A corner of a tetrahedron: a point of the lattice, or a cut.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
-    /// The point or cut, as an index of nodes that may be used.
+    /// The point by its place in lists, or the cut, counted on from the last point.
     node: usize,
     /// Twice its place before points were moved, with cuts in the middles of edges, from which the order of corners follows.
     place: IVec3,
@@ -81,14 +81,12 @@ impl<'l> Stuffing<'l> {
         Self { lattice, cuts, places }
     }
 
-    /// All tetrahedra, and whether each has a corner that is `wide` or beside one; or their number if there are more than `most`.
+    /// All tetrahedra, or their number if there are more than `most`.
     fn draft(&self, wide: &[bool], most: usize) -> Result<Draft, usize> {
-        let mut more = 0;
-        let mut found: Vec<[usize; 4]> = Vec::new();
-        for cube in 0..self.lattice.cubes.element_product() {
-            let cubes = self.lattice.cubes;
-            let at = IVec3::new(cube % cubes.x, cube / cubes.x % cubes.y, cube / cubes.x / cubes.y);
-            let middle = 2 * at + 1;
+        let mut drafting = Drafting::new(self.lattice, &self.cuts, wide, false, most);
+        let cubes = self.lattice.cubes;
+        for cube in 0..cubes.element_product() {
+            let middle = 2 * IVec3::new(cube % cubes.x, cube / cubes.x % cubes.y, cube / cubes.x / cubes.y) + 1;
             for axis in 0..AXES {
                 let beside = middle + EDGES[axis];
                 if !self.lattice.holds(beside) {
@@ -97,54 +95,15 @@ impl<'l> Stuffing<'l> {
                 let [along, u, v] = [0, 1, 2].map(|turn| EDGES[(axis + turn) % AXES] / 2);
                 let ring = [-u - v, u - v, u + v, v - u].map(|corner| middle + along + corner);
                 for start in 0..4 {
-                    self.cut([middle, beside, ring[start], ring[(start + 1) % 4]], &mut found);
+                    self.cut([middle, beside, ring[start], ring[(start + 1) % 4]], &mut drafting);
                 }
             }
-            if found.len() > most {
-                more += found.len();
-                found.clear();
-            }
         }
-        if more > 0 {
-            return Err(more + found.len());
-        }
-        let mut numbers = vec![u32::MAX; self.lattice.len() + self.cuts.parts.len()];
-        let (mut nodes, mut elements, mut is_wide) = (Vec::new(), IndexLists::default(), Vec::new());
-        for corners in found {
-            is_wide.push(corners.iter().any(|&node| self.ends(node).into_iter().any(|end| wide[end])));
-            elements.push(&corners.map(|node| {
-                if numbers[node] == u32::MAX {
-                    numbers[node] = nodes.len() as u32;
-                    nodes.push(self.position(node));
-                }
-                numbers[node]
-            }));
-        }
-        Ok(Draft { cage: Cage { nodes, elements, filled: None, convex: false }, is_wide })
-    }
-
-    /// The points of the lattice at the ends of an edge with a cut, or a point twice.
-    fn ends(&self, node: usize) -> [usize; 2] {
-        if node < self.places.len() {
-            return [node; 2];
-        }
-        let (from, edge) = self.cuts.edge(node - self.places.len());
-        [from, self.lattice.index(self.lattice.point(from) + EDGES[edge])]
-    }
-
-    /// The position of a point of the lattice, or of a cut (m).
-    fn position(&self, node: usize) -> DVec3 {
-        let cut = match self.places.get(node) {
-            Some(Where::On(cut)) => *cut as usize,
-            Some(_) => return self.lattice.at(self.lattice.point(node)),
-            None => node - self.places.len(),
-        };
-        let (from, edge) = self.cuts.edge(cut);
-        self.lattice.along(self.lattice.point(from), edge, self.cuts.parts[cut])
+        drafting.finished()
     }
 
     /// Appends the tetrahedra of the part inside of a tetrahedron of the lattice.
-    fn cut(&self, corners: [IVec3; 4], found: &mut Vec<[usize; 4]>) {
+    fn cut(&self, corners: [IVec3; 4], drafting: &mut Drafting<'_>) {
         let place = |corner: IVec3| self.places[self.lattice.index(corner)];
         let count = |side| corners.iter().filter(|&&corner| place(corner) == side).count();
         let (ins, outs) = (count(Where::Inside), count(Where::Outside));
@@ -158,7 +117,7 @@ impl<'l> Stuffing<'l> {
             Where::Outside => 2,
         });
         let [a, b, c, d] = sorted;
-        let mut add = |corners: [Corner; 4]| found.push(ordered(corners));
+        let mut add = |corners: [Corner; 4]| drafting.push(&ordered(corners));
         let (whole, cut) = (|point| self.whole(point), |inside, outside| self.cut_of(inside, outside));
         match [ins, outs] {
             [_, 0] => add(sorted.map(whole)),
@@ -183,14 +142,34 @@ impl<'l> Stuffing<'l> {
                 let [tops, bottoms] = [a, b].map(|corner| [whole(corner), cut(corner, c), cut(corner, d)]);
                 // A diagonal from the bottom, `b`, ends at the cut of `a`.
                 let [to_c, to_d] = [c, d].map(|out| meets_first(b, a, out));
-                // Any diagonal of the surface will do that fits the other two.
-                prism(tops, bottoms, |_, other| if other == 1 { to_c } else { to_d }).into_iter().for_each(add);
+                // Any diagonal of the surface fits if the other two start at one corner: the shorter one.
+                let between = |one: Corner, other: Corner| self.position(one).distance_squared(self.position(other));
+                let is_shorter = between(bottoms[1], tops[2]) <= between(tops[1], bottoms[2]);
+                prism(tops, bottoms, |one, other| match [one, other] {
+                    [0, 1] => to_c,
+                    [1, 2] if to_c == to_d => is_shorter,
+                    _ => to_d,
+                })
+                .into_iter()
+                .for_each(add);
             }
         }
     }
 
     fn whole(&self, point: IVec3) -> Corner {
-        Corner { node: self.lattice.index(point), place: 2 * point }
+        let index = self.lattice.index(point);
+        let node = match self.places[index] {
+            Where::On(cut) => self.places.len() + cut as usize,
+            _ => index,
+        };
+        Corner { node, place: 2 * point }
+    }
+
+    /// Where a cut is (m).
+    fn position(&self, cut: Corner) -> DVec3 {
+        let cut = cut.node - self.places.len();
+        let (from, edge) = self.cuts.edge(cut);
+        self.lattice.along(self.lattice.point(from), edge, self.cuts.parts[cut])
     }
 
     /// The cut between a point inside and one outside.
