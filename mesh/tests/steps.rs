@@ -1,0 +1,100 @@
+//! Surfaces filled with cubes, in motion: cubes that are hardly filled do not shorten the step.
+
+mod common;
+
+use common::{ball, ring};
+use glam::DVec3;
+use localshape_mesh::{Cage, Fill, Filled, Surface, fill};
+use localshape_sim::geometry::volumes_at_rest;
+use localshape_sim::model::shape_based::ShapeBased;
+use localshape_sim::stability::Stability;
+use localshape_sim::{
+    Body, Carried, Dimension, Integrator, Motion, Obstacle, Shape, Solids, State, Status, Stepping, Surroundings, World,
+};
+use std::sync::Arc;
+
+/// Density (kg/m³).
+const DENSITY: f64 = 1000.0;
+
+/// A surface filled with cubes of a side (m), whose masses are in proportion to what is filled.
+fn body(surface: &Surface, side: f64) -> Arc<Body> {
+    let Filled { cage: Cage { nodes, elements, filled, .. }, surface, weights, .. } =
+        fill(surface, Fill::Cubes { side }, 100_000).expect("it has an inside");
+    let count = nodes.len();
+    let body = Body::new(Dimension::Space, nodes, vec![0.0; count], elements, Solids::Ordered, None);
+    let Surface { points: rest, triangles } = surface;
+    let mut body = Body { fill: filled, carried: Some(Arc::new(Carried { rest, triangles, weights })), ..body };
+    for (element, volume) in volumes_at_rest(&body).into_iter().enumerate() {
+        let part = body.fill.as_ref().map_or(1.0, |fill| fill[element]);
+        let nodes = &body.elements[element];
+        nodes.iter().for_each(|&node| body.mass[node as usize] += DENSITY * part * volume / nodes.len() as f64);
+    }
+    Arc::new(body)
+}
+
+/// One full cube.
+fn cube(side: f64) -> Arc<Body> {
+    body(&common::block(DVec3::ZERO, DVec3::splat(side)), side)
+}
+
+/// The volume in the carried surface (m³), with the nodes at positions (m).
+fn volume(body: &Body, nodes: &[DVec3]) -> f64 {
+    let carried = body.carried.as_ref().expect("a surface");
+    let points = carried.positions(nodes);
+    let of = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|point| points[point as usize] - points[0]);
+        a.dot(b.cross(c)) / 6.0
+    };
+    carried.triangles.iter().map(of).sum()
+}
+
+#[test]
+fn bodies_of_cubes_have_the_step_of_one_full_cube() {
+    let side = 0.2;
+    let one = cube(side);
+    assert_eq!(one.fill, None);
+    for (name, surface) in [("ball", ball(DVec3::new(0.03, 0.01, 1.02), 1.0, 40)), ("ring", ring(1.0, 0.35, 40))] {
+        let body = body(&surface, side);
+        let fill = body.fill.as_ref().expect("cubes at the surface");
+        let least = fill.iter().copied().fold(1.0, f64::min);
+        assert!(least < 0.01, "{name}: {least}");
+        assert!((body.lightest() / one.lightest() - 1.0).abs() < 1e-9, "{name}: {}", body.lightest());
+        let ratio = 0.1;
+        let stiffness = 1e5;
+        let damping = 2.0 * ratio * (stiffness * body.lightest()).sqrt();
+        let model = ShapeBased { damping, ..ShapeBased::new(stiffness) };
+        let integrator = Integrator::SemiImplicitEuler;
+        let limit = |body| Stability::of(body, &model, integrator, &[], 1.0).largest;
+        assert!(limit(&body) > 0.999 * limit(&one), "{name}: {} {}", limit(&body), limit(&one));
+        // It falls onto a floor with nearly the largest step.
+        let step = 0.9 * limit(&one);
+        let low = body.rest.iter().fold(f64::INFINITY, |low: f64, rest| low.min(rest.z));
+        let floor = Obstacle {
+            shape: Shape::Floor { normal: DVec3::Z, height: low - 0.05 },
+            motion: Motion::Still,
+            pivot: DVec3::ZERO,
+            restitution: 0.3,
+            friction: 0.3,
+            friction_of: Default::default(),
+        };
+        let gravity = DVec3::Z * -9.8;
+        let around = Surroundings { gravity, obstacles: vec![floor], ..Surroundings::default() };
+        let start = State::at_rest(body.rest.clone());
+        let mut world = World::new(&body, start, &model, around, Stepping::new(integrator, step));
+        let before = world.diagnostics();
+        // Of 1 m of height (J).
+        let weight = 9.8 * body.mass.iter().sum::<f64>();
+        for _ in 0..20 {
+            world.advance((0.1 / step) as u64);
+            let now = world.diagnostics();
+            assert!(world.status() == Status::Ok, "{name}: {:?}", world.status());
+            // Rebounds at large steps add some.
+            assert!(now.energy < before.energy + 0.1 * weight, "{name}: {} {weight}", now.energy - before.energy);
+            // What is filled of the cubes has nearly the volume in the surface.
+            let ratio = volume(&body, &world.state().position) / volume(&body, &body.rest);
+            assert!((ratio - now.volume_ratio).abs() < 0.02 && ratio > 0.7, "{name}: {ratio} {}", now.volume_ratio);
+        }
+        let end = world.diagnostics();
+        assert!(end.kinetic < 0.01 * weight, "{name} comes to rest: {} {weight}", end.kinetic);
+    }
+}
