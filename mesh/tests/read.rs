@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use localshape_mesh::{CellKind, Format, Limits, Mesh, Surface, Volume, read, read_cells};
-use localshape_sim::geometry::volume_by_faces;
-use localshape_sim::{Dimension, ElementKind};
+use localshape_sim::geometry::{kind, volume_by_faces};
+use localshape_sim::{Dimension, ElementKind, Solids};
 
 const LIMITS: Limits = Limits { points: 1_000_000, corners: 8_000_000 };
 
@@ -308,6 +308,148 @@ fn refusals_say_where_and_what_to_do() {
     }
     let (_, binary) = stl();
     assert!(refusal(&binary, Obj).starts_with("has "), "a binary STL file named .obj");
+}
+
+/// A file in `tests/files`, which Gmsh 4.15, VTK 9.7 or a script of a few lines has written.
+fn file(name: &str) -> (Vec<u8>, Format) {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files").join(name);
+    let ending = name.rsplit('.').next().expect("an ending");
+    (std::fs::read(path).expect("a file"), Format::of(ending).expect("a format"))
+}
+
+/// The volume of all cells that have the order of their kind.
+fn whole(volume: &Volume) -> f64 {
+    let of = |cell: &[u32]| volume_by_faces(kind(volume.dimension, volume.solids, cell.len()), cell, &volume.points);
+    volume.cells.iter().map(of).sum()
+}
+
+#[test]
+fn cells_and_groups_are_read_from_gmsh() {
+    let mut points = Vec::new();
+    for name in ["bar-2.2.msh", "bar-2.2-binary.msh", "bar-4.1.msh", "bar-4.1-binary.msh"] {
+        let (bytes, format) = file(name);
+        let found = volume(&bytes, format);
+        assert_eq!((found.dimension, found.turned), (Dimension::Space, 0), "{name}");
+        assert!(found.cells.iter().all(|cell| cell.len() == 4), "{name}");
+        assert!((whole(&found) - 2.0).abs() < 1e-12, "{name}: {}", whole(&found));
+        let names: Vec<&str> = found.groups.iter().map(|group| &*group.name).collect();
+        assert_eq!(names, ["bar", "both ends", "left", "surface 9"], "{name}");
+        // A box of 2 × 1 × 1 from the origin along x.
+        let at = |group: usize| found.groups[group].points.iter().map(|&point| found.points[point as usize].x);
+        assert_eq!(found.groups[0].points.len(), found.points.len(), "{name}");
+        assert!(at(1).any(|x| x == 0.0) && at(1).any(|x| x == 2.0) && at(1).all(|x| x == 0.0 || x == 2.0), "{name}");
+        assert!(at(2).all(|x| x == 0.0) && at(3).all(|x| x == 2.0), "{name}");
+        points.push(found.points.len());
+    }
+    assert!(points.windows(2).all(|pair| pair[0] == pair[1]));
+}
+
+#[test]
+fn corners_of_second_order_elements_in_a_plane_are_read() {
+    let (bytes, format) = file("sheet-4.1.msh");
+    let found = volume(&bytes, format);
+    assert_eq!((found.dimension, found.turned), (Dimension::Plane, 0));
+    assert!(found.points.iter().all(|point| point.z == 0.0), "it lies at z = 3 in the file");
+    assert!((whole(&found) - 2.0).abs() < 1e-12);
+    assert_eq!(found.groups.iter().map(|group| &*group.name).collect::<Vec<_>>(), ["left edge", "sheet"]);
+    assert!(found.groups[0].points.iter().all(|&point| found.points[point as usize].x == 0.0));
+}
+
+#[test]
+fn cells_of_all_kinds_are_read_from_vtk_files_in_every_coding() {
+    let mut first = None;
+    for name in [
+        "cells-4.2.vtk",
+        "cells-4.2-binary.vtk",
+        "cells-5.1.vtk",
+        "cells-5.1-binary.vtk",
+        "cells-text.vtu",
+        "cells-packed.vtu",
+        "cells-plain.vtu",
+        "cells-raw.vtu",
+        "cells-raw-packed.vtu",
+        "cells-base64.vtu",
+    ] {
+        let (bytes, format) = file(name);
+        let found = volume(&bytes, format);
+        // Two tetrahedra, one of them turned over, a pyramid, a wedge, and four cubes: listed around, along their axes where they
+        // should be listed around, as a voxel, and by faces.
+        let measures: Vec<f64> = found
+            .cells
+            .iter()
+            .map(|cell| volume_by_faces(kind(found.dimension, found.solids, cell.len()), cell, &found.points))
+            .collect();
+        let expected = [1.0 / 6.0, 1.0 / 6.0, 1.0 / 3.0, 0.5, 1.0, 1.0, 1.0, 1.0];
+        assert_eq!(measures.len(), expected.len(), "{name}");
+        assert!(
+            measures.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-12),
+            "{name}: {measures:?}"
+        );
+        assert_eq!((found.turned, found.solids), (2, Solids::Ordered), "{name}");
+        let listed = read_cells(&bytes, format, &LIMITS).expect("sound");
+        assert_eq!(
+            listed.points.len(),
+            found.points.len() + 1 + 3 + 2 + 1,
+            "{name}: points of other cells and of none"
+        );
+        assert_eq!(listed.kinds.len(), 11, "{name}");
+        assert_eq!(*first.get_or_insert(found.clone()), found, "{name}");
+    }
+}
+
+#[test]
+fn other_polyhedra_make_all_cells_hulls() {
+    let (bytes, format) = file("hulls.vtu");
+    let found = volume(&bytes, format);
+    assert_eq!(found.solids, Solids::Convex);
+    assert_eq!(found.cells.iter().map(<[u32]>::len).collect::<Vec<_>>(), [6, 4]);
+}
+
+#[test]
+fn a_cube_is_read_from_files_of_every_format_of_surfaces() {
+    for name in [
+        "cube.obj",
+        "cube.off",
+        "cube.ply",
+        "cube-text.ply",
+        "cube.stl",
+        "cube-text.stl",
+        "cube.vtk",
+        "cube-binary.vtk",
+        "cube.vtp",
+    ] {
+        let (bytes, format) = file(name);
+        check_cube(&surface(&bytes, format));
+    }
+}
+
+#[test]
+fn nodes_of_gltf_move_turn_and_mirror_meshes() {
+    // A unit cube, and one that is mirrored, stretched to 2, turned by a quarter, and moved. Points of another part are left out.
+    let (bytes, format) = file("cubes.glb");
+    let found = surface(&bytes, format);
+    assert_eq!((found.points.len(), found.triangles.len()), (16, 24));
+    assert!((inside(&found) - 3.0).abs() < 1e-6, "both look out: {}", inside(&found));
+    let (low, high) = localshape_sim::geometry::bounds(&found.points);
+    assert!(low.distance(DVec3::new(10.0, -2.0, 0.0)) < 1e-6, "{low}");
+    assert!(high.distance(DVec3::new(15.0, 1.0, 1.0)) < 1e-6, "{high}");
+    // As text, with one corner raised by 1 by a sparse list.
+    let (bytes, format) = file("cubes.gltf");
+    let found = surface(&bytes, format);
+    assert!((inside(&found) - 4.0).abs() < 1e-6, "{}", inside(&found));
+}
+
+#[test]
+fn files_cut_anywhere_are_refused_with_a_remedy_or_read() {
+    for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/files")).expect("files") {
+        let name = entry.expect("a file").file_name().into_string().expect("a name");
+        let (bytes, format) = file(&name);
+        for length in (0..bytes.len()).step_by(1 + bytes.len() / 200) {
+            if let Err(error) = read(&bytes[..length], format, &LIMITS) {
+                assert!(error.help.is_some() && !error.message.contains('\n'), "{name} cut to {length} bytes: {error}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -4,11 +4,13 @@
 //! of the file allow.
 
 use crate::golden::{Pixels, is_record};
+use crate::mesh::{self, Fill, Format, Mesh};
 use crate::output::{Access, Folder, Manifest, StoredStates, Whose, read_tags};
 use crate::reading::setting::Setting;
 use crate::runner::{Frames, Next, Progress, Runner};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene};
+use crate::sim::geometry::bounds;
 use crate::sim::{Diagnostic, State};
 use std::fs;
 use std::path::Path;
@@ -22,11 +24,19 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 12] = [
+pub const READERS: [Reader; 20] = [
     Reader { name: "scene", read: scene },
     Reader { name: "setting", read: setting },
     Reader { name: "figure", read: figure },
     Reader { name: "body", read: body },
+    Reader { name: "obj", read: |bytes| mesh(bytes, Format::Obj) },
+    Reader { name: "stl", read: |bytes| mesh(bytes, Format::Stl) },
+    Reader { name: "ply", read: |bytes| mesh(bytes, Format::Ply) },
+    Reader { name: "off", read: |bytes| mesh(bytes, Format::Off) },
+    Reader { name: "gltf", read: |bytes| mesh(bytes, Format::Gltf) },
+    Reader { name: "gmsh", read: |bytes| mesh(bytes, Format::Gmsh) },
+    Reader { name: "vtk", read: |bytes| mesh(bytes, Format::Vtk) },
+    Reader { name: "vtu", read: |bytes| mesh(bytes, Format::Vtu) },
     Reader { name: "font", read: font },
     Reader { name: "states", read: states },
     Reader { name: "recording", read: recording },
@@ -101,6 +111,19 @@ fn body(bytes: &[u8]) -> bool {
         bytes,
         &SCENE.replace("body.lattice = { cells = [1, 1, 1], side = 0.1 }", "body = { file = 'body.npz', lowest = 0 }"),
     )
+}
+
+/// Reads a mesh, and fills a surface with cubes.
+fn mesh(bytes: &[u8], format: Format) -> bool {
+    let limits = mesh::Limits { points: LIMITS.nodes as usize, corners: LIMITS.corners as usize };
+    let found = mesh::read(bytes, format, &limits);
+    if let Ok(Mesh::Surface(surface)) = &found {
+        let (low, high) = bounds(&surface.points);
+        let side = (high - low).max_element() / 6.0;
+        // Whether it can be filled is another question.
+        let _ = mesh::fill(surface, Fill::Cubes { side }, 1000);
+    }
+    found.is_ok()
 }
 
 /// Reads the font of a scene, and writes with it.
