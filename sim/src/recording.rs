@@ -4,13 +4,14 @@ use super::body::Body;
 use super::crew::Crew;
 use super::dynamics::{Dynamics, SpeedLimit};
 use super::model::{ElasticModel, ForceModel, Report, Scratch, Share};
+use super::part::Part;
 use super::state::{Divergence, Nodes, Runaway, State, Status};
 use super::system::System;
 use glam::DVec3;
 use std::sync::Arc;
 
 /// The states of a run that was computed elsewhere. A [`World`](super::World) that plays it shows its states after each
-/// number of steps, and computes none.
+/// number of steps, and computes none. It is that of an earlier simulation or of another program.
 pub trait Recording: Send + Sync {
     /// Where it ends, as a divergence: the first step without a state, and the time of its last state (s).
     fn end(&self) -> Divergence;
@@ -23,13 +24,15 @@ pub trait Recording: Send + Sync {
 /// Takes states from a recording.
 pub(super) struct ByRecording {
     recording: Box<dyn Recording>,
+    /// The code that would compute the states, and reports on them.
+    reporting: Box<dyn Dynamics>,
     /// The number of steps after which the state is the present one.
     shown: Option<u64>,
 }
 
 impl ByRecording {
-    pub(super) fn new(recording: Box<dyn Recording>) -> Self {
-        Self { recording, shown: None }
+    pub(super) fn new(recording: Box<dyn Recording>, reporting: Box<dyn Dynamics>) -> Self {
+        Self { recording, reporting, shown: None }
     }
 }
 
@@ -60,8 +63,19 @@ impl Dynamics for ByRecording {
         }
     }
 
-    fn divergence(&self, _: &System, _: &State, _: Runaway) -> Divergence {
-        self.recording.end()
+    fn report(&self, part: &Part, state: &State, share: Option<&mut Share<'_>>, crew: &Crew) -> Report {
+        self.reporting.report(part, state, share, crew)
+    }
+
+    fn divergence(&self, system: &System, _: &State, _: Runaway) -> Divergence {
+        let end = self.recording.end();
+        // A recording may be of other parts.
+        let elements = system.parts.get(end.part).map_or(0, |part| part.body.elements.len());
+        match end.element {
+            Some(element) if element >= elements => Divergence { part: 0, element: None, ..end },
+            None if end.part >= system.parts.len() => Divergence { part: 0, ..end },
+            _ => end,
+        }
     }
 
     fn restart(&mut self) {

@@ -184,9 +184,13 @@ impl World {
         let parts: Vec<_> = bodies.iter().map(|body| (Arc::clone(body), &Unknown as &dyn ElasticModel)).collect();
         let surroundings = Surroundings { gravity, ..Surroundings::default() };
         let stepping = Stepping { kernel: Kernel::Reference, ..Stepping::new(Integrator::default(), step) };
-        let mut world = Self::of_parts(&parts, initial, surroundings, stepping);
-        world.dynamics = Box::new(ByRecording::new(recording));
-        world
+        Self::of_parts(&parts, initial, surroundings, stepping).playing(recording)
+    }
+
+    /// Shows the states of a recording from now on, which has these bodies, moments and memory. Diagnostics are those of the
+    /// models.
+    pub fn playing(self, recording: Box<dyn Recording>) -> Self {
+        Self { dynamics: Box::new(ByRecording::new(recording, self.dynamics)), ..self }
     }
 
     /// Takes steps by a method of another crate from now on, with forces of the reference code.

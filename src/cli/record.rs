@@ -8,18 +8,18 @@ use super::{console, interrupt, report};
 use crate::output::export::Export;
 use crate::output::{
     Checkpoint, Claimed, Clock, DIAGNOSTICS_FILE, DiagnosticsWriter, FRAME_FILES, Outcome, OutputError, STATES_FILE,
-    Spent, StatesWriter, StoredStates, Summary, Timings, open_growing, thread_time, waiting_states,
+    Spent, StatesWriter, Summary, Timings, open_growing, thread_time, waiting_states,
 };
 use crate::reading::setting::Setting;
 use crate::runner::cause::Cause;
-use crate::runner::{Frames, Meetings, Next, Progress, Runner};
+use crate::runner::{Frames, Meetings, Next, Progress, Runner, Stored};
 use crate::scene::{Run, Scene};
 use crate::sim::{self, Frame, State};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Value, json};
 use std::error::Error;
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
@@ -157,7 +157,7 @@ impl<'a> Recording<'a> {
         pool: &ThreadPool,
         options: &RunOptions,
         (mut pictures, export): (Option<Box<dyn Pictures + '_>>, Export<'_>),
-        stored: Option<StoredStates>,
+        stored: Option<Stored>,
         checkpoint: Option<Checkpoint>,
     ) -> Result<(), Failure> {
         let (total, simulating) = (Clock::process(), processor_time(pool));
@@ -275,7 +275,7 @@ impl<'a> Recording<'a> {
         pool: &ThreadPool,
         options: &RunOptions,
         pictures: Option<&dyn Pictures>,
-        stored: Option<StoredStates>,
+        stored: Option<Stored>,
         progress: Option<Progress>,
     ) -> Result<Simulation<'a>, Failure> {
         let (scene, folder) = (self.scene, self.folder.path());
@@ -289,9 +289,9 @@ impl<'a> Recording<'a> {
         pool.install(|| {
             let mut runner = Runner::new(scene, &self.runs);
             if let Some(stored) = stored {
-                let read_from = stored.path().to_owned();
-                let frames = Frames::stored(runner, &self.frames, stored).map_err(OutputError::reading(&read_from))?;
-                return Ok(Simulation { frames, ahead: false, notes: false, read_from: Some(read_from) });
+                let path = stored.path().to_owned();
+                let frames = Frames::stored(runner, &self.frames, stored).map_err(OutputError::reading(&path))?;
+                return Ok(Simulation { frames, ahead: false, notes: false, is_stored: true });
             }
             if !is_drawn && !options.states && options.write.is_empty() {
                 runner = runner.without_pictures();
@@ -314,7 +314,7 @@ impl<'a> Recording<'a> {
                 true => self.unusable(&error),
                 false => OutputError::writing(folder)(error),
             })?;
-            Ok(Simulation { frames, ahead, notes: wanted.is_some() && !ahead, read_from: None })
+            Ok(Simulation { frames, ahead, notes: wanted.is_some() && !ahead, is_stored: false })
         })
     }
 
@@ -334,12 +334,12 @@ impl<'a> Recording<'a> {
         self.sound = simulation.frames.states().cloned().collect();
         // Runs that diverged between the last frame and the checkpoint.
         for ((summary, &run), sound) in self.summary.runs.iter().zip(&self.runs).zip(&mut self.sound) {
-            if simulation.read_from.is_none() && sound.status != sim::Status::Ok && summary.cause.is_none() {
+            if !simulation.is_stored && sound.status != sim::Status::Ok && summary.cause.is_none() {
                 *sound = self.scene.world(run).state().clone();
             }
         }
         // Frames that are not kept cannot be continued, and states that are read need no checkpoint.
-        let can_resume = simulation.read_from.is_none()
+        let can_resume = !simulation.is_stored
             && !self.folder.is_shard()
             && (results.pictures.is_none() || self.summary.frames.size.is_some());
         // A continued command has told of bodies that overlap at the checkpoint.
@@ -352,12 +352,12 @@ impl<'a> Recording<'a> {
             if can_resume && pace.is_due() {
                 pace.take(|| results.save(&mut simulation.frames, simulation.ahead, self.folder, self.summary))?;
             }
-            let Simulation { frames, notes, read_from, .. } = simulation;
+            let Simulation { frames, notes, is_stored, .. } = simulation;
             let clock = Clock::thread();
             let next = pool.install(|| frames.next(slice));
             self.times.simulate += Spent { cpu: None, ..clock.spent() };
             bar.set_position(frames.steps()[0]);
-            let next = next.map_err(|error| match read_from {
+            let next = next.map_err(|error| match frames.unreadable() {
                 Some(file) => OutputError::reading(file)(error),
                 None => OutputError::writing(self.folder.path())(error),
             })?;
@@ -372,7 +372,7 @@ impl<'a> Recording<'a> {
                     for message in meetings.look(&frame).iter().filter(|_| !printing.quiet) {
                         bar.suspend(|| note(message));
                     }
-                    if read_from.is_none() {
+                    if !*is_stored {
                         let states: Vec<_> = frames.states().collect();
                         pool.install(|| self.find_causes(&states));
                     }
@@ -410,8 +410,8 @@ struct Simulation<'a> {
     ahead: bool,
     /// Whether the time series are known after the last frame.
     notes: bool,
-    /// The file from which states are read instead of simulated.
-    read_from: Option<PathBuf>,
+    /// Whether stored states are shown, whose causes of divergence are not searched for.
+    is_stored: bool,
 }
 
 /// Steps of each of some runs between tests for an interruption: some milliseconds, at some 2 ns for each corner of an

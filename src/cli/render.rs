@@ -15,10 +15,11 @@ use super::still::{
 use crate::animation::Format;
 use crate::gpu::adapter_name;
 use crate::output::shell;
-use crate::output::{AtomicFile, FolderLock, OutputError, StoredStates, Tags, folder_of};
+use crate::output::{AtomicFile, FolderLock, OutputError, Tags, folder_of};
 use crate::picture::Composer;
 use crate::reading::beside::similar;
 use crate::reading::words::short;
+use crate::runner::Stored;
 use crate::scene::Scene;
 use clap::{Args, ValueHint};
 use std::ffi::OsString;
@@ -115,7 +116,9 @@ impl Render {
         jobs.iter().try_for_each(|job| check_compared(&job.scene, &job.runs))?;
         if let (Some(file), [job]) = (&self.from_states, &mut jobs[..]) {
             file.metadata().map_err(|error| missing(file, "npz", error))?;
-            job.stored = Some(StoredStates::open(file, &job.scene, &job.runs, &job.frames)?);
+            let stored = Stored::open(file, &job.scene, &job.runs, &job.frames);
+            let refused = |what: String| OutputError::States { path: file.to_owned(), what: what.into() };
+            job.stored = Some(stored.map_err(refused)?);
         }
         // The device is opened after all other checks, and before any folder is changed.
         let lit = jobs.iter().map(|job| &job.scene).filter(|scene| scene.is_lit());

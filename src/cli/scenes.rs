@@ -3,8 +3,9 @@
 use super::failure::{Failure, Status, complain, warn, with_causes};
 use super::frames::{FrameRanges, Moments, Shard};
 use super::options::{RunOptions, SceneOptions};
-use crate::output::{Access, Folder, Manifest, OutputError, StoredStates, Whose, recorded};
+use crate::output::{Access, Folder, Manifest, OutputError, Whose, recorded};
 use crate::output::{export, shell};
+use crate::runner::Stored;
 use crate::scene::{Limits, Scene, SceneError};
 use std::collections::HashMap;
 use std::ffi::OsString;
@@ -74,7 +75,7 @@ pub(super) struct Job {
     pub(super) all: Vec<u64>,
     pub(super) folder: Folder,
     /// The states of the frames, if they are read from a file.
-    pub(super) stored: Option<StoredStates>,
+    pub(super) stored: Option<Stored>,
 }
 
 /// The differences between the commands that run scenes.

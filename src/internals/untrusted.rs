@@ -5,9 +5,9 @@
 
 use crate::golden::{Pixels, is_record};
 use crate::mesh::{self, Fill, Format, Mesh};
-use crate::output::{Access, Folder, Manifest, StoredStates, Whose, read_tags};
+use crate::output::{Access, Folder, Manifest, Whose, read_tags};
 use crate::reading::setting::Setting;
-use crate::runner::{Frames, Next, Progress, Runner};
+use crate::runner::{Frames, Next, Progress, Runner, Stored};
 use crate::scene::figure::Figure;
 use crate::scene::{Limits, Scene};
 use crate::sim::geometry::bounds;
@@ -141,7 +141,7 @@ fn recording(bytes: &[u8]) -> bool {
 fn states(bytes: &[u8]) -> bool {
     in_folder("states.npz", bytes, |path| {
         let scene = Scene::parse(SCENE, "scene.toml", &LIMITS).expect("sound");
-        let Ok(stored) = StoredStates::open(path, &scene, &[0, 1], &[0]) else { return false };
+        let Ok(stored) = Stored::open(path, &scene, &[0, 1], &[0]) else { return false };
         let Ok(mut frames) = Frames::stored(Runner::new(&scene, &[0, 1]), &[0], stored) else { return false };
         loop {
             match frames.next(1) {

@@ -5,10 +5,11 @@
 
 use super::atomic::{remove, sync_folder};
 use super::diagnostics::Rows;
-use super::states::{Course, Origin};
+use super::states::Written;
 use super::{OutputError, Whose, read_file, write_whole};
 use crate::runner::Progress;
 use crate::runner::cause::Cause;
+use crate::scene::Origin;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -50,7 +51,7 @@ pub(crate) struct Checkpoint {
     /// The rows of the frames written so far; `None` if no frame is written before the end of the simulation.
     pub(crate) rows: Option<Rows>,
     /// The states written so far, if states are written.
-    pub(crate) course: Option<Course>,
+    pub(crate) course: Option<Written>,
 }
 
 impl Checkpoint {
@@ -64,7 +65,7 @@ impl Checkpoint {
     /// # Errors
     /// If it cannot be written; an earlier one is then unchanged.
     pub(crate) fn write(&self, folder: &Path, whose: &Whose) -> Result<(), OutputError> {
-        let origin = Origin::of(whose);
+        let origin = Origin::new(&whose.digest, &whose.title);
         let mut rest = postcard::to_allocvec(&origin).expect("plain data");
         rest.extend(postcard::to_allocvec(self).expect("plain data"));
         // The names of frames and of hidden files must be on the disk before the checkpoint is.
@@ -175,16 +176,18 @@ mod tests {
 
     #[test]
     fn one_of_another_version_or_scene_is_refused() {
+        let origin = |whose: &Whose| Origin::new(&whose.digest, &whose.title);
         let of = |origin: Origin| {
             let rest = postcard::to_allocvec(&origin).unwrap();
             Checkpoint::parse(&[MARK, &Sha256::digest(&rest), &rest].concat(), &whose(), &manifest()).unwrap_err()
         };
-        let older = Origin { version: "0.0.1".to_owned(), ..Origin::of(&whose()) };
+        let mut older = origin(&whose());
+        "0.0.1".clone_into(&mut older.version);
         assert!(of(older).starts_with("was written by localshape 0.0.1, and this is "));
         let edited = Whose { digest: "cd".repeat(32), ..whose() };
-        assert_eq!(of(Origin::of(&edited)), "belongs to another version of “Cubes”; expected “Cubes” as it is now");
+        assert_eq!(of(origin(&edited)), "belongs to another version of “Cubes”; expected “Cubes” as it is now");
         let other = Whose { title: "Springs".to_owned(), ..edited };
-        assert_eq!(of(Origin::of(&other)), "belongs to another scene, “Springs”; expected “Cubes” as it is now");
-        assert_eq!(of(Origin::of(&whose())), "is damaged or cut short", "nothing follows");
+        assert_eq!(of(origin(&other)), "belongs to another scene, “Springs”; expected “Cubes” as it is now");
+        assert_eq!(of(origin(&whose())), "is damaged or cut short", "nothing follows");
     }
 }

@@ -21,7 +21,6 @@ mod lock;
 mod png;
 pub(crate) mod shell;
 mod states;
-mod stored;
 mod summary;
 mod timing;
 
@@ -36,7 +35,6 @@ pub(crate) use frame_name::FRAME_FILES;
 pub(crate) use lock::FolderLock;
 pub use png::{Compression, Shown, Tags, encode, read_tags};
 pub(crate) use states::{STATES_FILE, StatesWriter};
-pub(crate) use stored::StoredStates;
 pub(crate) use summary::{Numbers, Outcome, RunStatus, RunSummary, SUMMARY_FILE, Summary, document};
 pub(crate) use timing::{Clock, thread_time};
 pub use timing::{Spent, Timings};

@@ -1,10 +1,10 @@
 //! `states.npz`: bodies, and their positions and velocities in every frame, for analysis in other programs.
 
 use super::atomic::open_growing;
-use super::{AtomicFile, OutputError, Whose};
+use super::{AtomicFile, OutputError};
 use crate::runner::history::History;
-use crate::scene::{Run, Scene};
-use crate::sim::{Assembly, Divergence, Frame, State, Status};
+use crate::scene::{COURSE, Course, Origin, Run, Scene, StoredRun};
+use crate::sim::{Assembly, Frame, State, Status};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -21,9 +21,6 @@ pub(crate) const STATES_FILE: &str = "states.npz";
 /// The hidden file of frames until they are arranged.
 const SPOOL: &str = ".localshape-states.partial";
 
-/// The name of the array of bytes that only this program reads.
-pub(super) const COURSE: &str = "localshape";
-
 /// Writes the states of frames, one after the other, with bounded memory.
 ///
 /// The archive has `time` (F), the time of each frame (s), and for each run `NAME.position` (m) and `NAME.velocity`
@@ -37,7 +34,7 @@ pub(super) const COURSE: &str = "localshape";
 /// N). Runs of other bodies have all these arrays but `bodies` of their own: `NAME.rest` and so on.
 ///
 /// For drawing, the archive also has the memory of models and constraints, `NAME.memory` (F × M), and the array of
-/// bytes `localshape` with an [`Origin`] and a [`Course`].
+/// bytes `localshape` with an [`Origin`], a [`Course`] and the time series of the scene.
 ///
 /// Each array grows with every frame, and the number of frames is known only at the end. So frames are first written to
 /// a hidden file, one record each, and rearranged at the end, which temporarily needs twice the disk space.
@@ -56,43 +53,15 @@ pub(crate) struct StatesWriter {
     /// The time step of each run (s).
     steps: Vec<f64>,
     origin: Origin,
-    course: Course,
+    written: Written,
 }
 
-/// The program and the scene that states come from.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Origin {
-    /// Version of this crate. Other versions may read [`Course`] differently.
-    pub(super) version: String,
-    /// Digest of the scene.
-    pub(super) digest: String,
-    pub(super) title: String,
-}
-
-/// The data of states that pictures need besides the arrays; it grows with each frame.
+/// What is written about states besides the arrays; it grows with each frame.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Course {
-    /// Numbers of the frames, rising.
-    pub(super) frames: Vec<u64>,
-    /// The runs, in the scene's order.
-    pub(super) runs: Vec<StoredRun>,
+pub(crate) struct Written {
+    course: Course,
     /// The time series of the scene, if its pictures need them and it was simulated to its end.
-    pub(super) history: Option<History>,
-}
-
-/// One run of a [`Course`].
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct StoredRun {
-    pub(super) name: String,
-    /// The length of the model's part of the memory; the rest belongs to constraints.
-    pub(super) model: usize,
-    /// The divergence of the run, if it diverged.
-    pub(super) divergence: Option<Divergence>,
-    /// The result of [`Stored::last_fit`](crate::runner::Stored::last_fit), with the state as bytes.
-    pub(super) last_fit: Option<Option<(Vec<u8>, f64)>>,
-    /// The SHA-256 of positions, velocities and memory of each frame. Single frames are read, and the archive's own
-    /// checksums cover all frames.
-    pub(super) digests: Vec<[u8; 32]>,
+    history: Option<History>,
 }
 
 /// The bodies of a run.
@@ -117,33 +86,6 @@ struct Array {
     length: usize,
 }
 
-impl Origin {
-    /// The origin of the results of a scene in this program.
-    pub(super) fn of(whose: &Whose) -> Self {
-        let version = env!("CARGO_PKG_VERSION").to_owned();
-        Self { version, digest: whose.digest.clone(), title: whose.title.clone() }
-    }
-
-    /// Why results of this origin cannot be used for a scene, in words; `None` if they can.
-    pub(super) fn refusal(&self, digest: &str, title: &str) -> Option<String> {
-        let (version, found) = (env!("CARGO_PKG_VERSION"), &self.title);
-        if self.version != version {
-            return Some(format!("was written by localshape {}, and this is {version}", self.version));
-        }
-        let other = if found == title { "another version of" } else { "another scene," };
-        (self.digest != digest || digest.is_empty())
-            .then(|| format!("belongs to {other} “{found}”; expected “{title}” as it is now"))
-    }
-}
-
-impl Course {
-    /// Whether the course can be continued with these runs.
-    fn fits(&self, runs: &[StoredRun]) -> bool {
-        let kinds = |runs: &[StoredRun]| runs.iter().map(|run| (run.name.clone(), run.model)).collect::<Vec<_>>();
-        kinds(&self.runs) == kinds(runs) && self.runs.iter().all(|run| run.digests.len() == self.frames.len())
-    }
-}
-
 impl StatesWriter {
     /// Creates the file in `folder`, for frames of `runs`, indices into the scene's runs. Their states have the kind of
     /// `states`. The file continues after the frames `before` of another process.
@@ -155,7 +97,7 @@ impl StatesWriter {
         scene: &Scene,
         runs: &[usize],
         states: impl Iterator<Item = &'s State>,
-        before: Option<Course>,
+        before: Option<Written>,
     ) -> Result<Self, OutputError> {
         let path = folder.join(STATES_FILE);
         let mut arrays = vec![Array { name: "time".to_owned(), shape: String::new(), offset: 0, length: 8 }];
@@ -170,8 +112,8 @@ impl StatesWriter {
                 arrays.push(Array { name, shape: String::new(), offset: record, length: 8 });
                 record += 8;
             }
-            let (nodes, model) = (state.position.len(), state.memory.model.len());
-            let memory = model + state.memory.constraints.len();
+            let nodes = state.position.len();
+            let memory = state.memory.model.len() + state.memory.constraints.len();
             let nodes_of = format!(" {nodes}, 3");
             for (quantity, shape, length) in [
                 ("position", nodes_of.clone(), 24 * nodes),
@@ -183,7 +125,7 @@ impl StatesWriter {
                 record += length as u64;
             }
             let name = scene.runs[run].name.clone();
-            stored.push(StoredRun { name, model, divergence: None, last_fit: None, digests: Vec::new() });
+            stored.push(StoredRun::new(&name));
         }
         let mesh = |&run: &usize| {
             let is_first = Arc::ptr_eq(&scene.runs[run].bodies, &scene.runs[runs[0]].bodies);
@@ -194,15 +136,15 @@ impl StatesWriter {
         let is_own = |(at, mesh): &(usize, Mesh)| *at == 0 || !mesh.prefix.is_empty();
         let meshes = runs.iter().map(mesh).enumerate().filter(is_own).map(|(_, mesh)| mesh).collect();
         let names = scene.bodies.iter().map(|body| body.name.clone()).filter(|_| scene.bodies.len() > 1).collect();
-        let origin = Origin::of(&Whose::of(scene));
-        let course = match before {
-            Some(before) if before.fits(&stored) => before,
+        let origin = Origin::new(&scene.digest, &scene.title);
+        let written = match before {
+            Some(before) if before.course.fits(&stored) => before,
             Some(_) => return Err(OutputError::reading(&path)(io::ErrorKind::InvalidData.into())),
-            None => Course { runs: stored, ..Course::default() },
+            None => Written { course: Course { runs: stored, ..Course::default() }, history: None },
         };
-        let length = course.frames.len() as u64 * record;
+        let length = written.course.frames.len() as u64 * record;
         let spool = open_growing(&folder.join(SPOOL), length).map_err(OutputError::writing(&path))?;
-        Ok(Self { path, spool, names, meshes, arrays, record, own_time, steps, origin, course })
+        Ok(Self { path, spool, names, meshes, arrays, record, own_time, steps, origin, written })
     }
 
     /// Appends one frame, with the state of each run in it.
@@ -216,45 +158,45 @@ impl StatesWriter {
     ) -> Result<(), OutputError> {
         let mut record = Vec::with_capacity(self.record as usize);
         record.extend(frame.time.to_le_bytes());
-        let runs = frame.runs.iter().zip(&self.own_time).zip(&mut self.course.runs);
+        let course = &mut self.written.course;
+        let runs = frame.runs.iter().zip(&self.own_time).zip(&mut course.runs);
         for (((run, &own_time), stored), state) in runs.zip(states) {
             if own_time {
                 record.extend(run.snapshot.time.to_le_bytes());
             }
-            let start = record.len();
-            for vector in state.position.iter().chain(&state.velocity) {
-                record.extend(vector_bytes(vector));
+            let vectors = |vectors: &[DVec3]| vectors.iter().flat_map(vector_bytes).collect();
+            let memory = state.memory.model.iter().chain(&state.memory.constraints);
+            let memory: Vec<_> = memory.flat_map(|number| number.to_le_bytes()).collect();
+            let rows: [Vec<u8>; 3] = [vectors(&state.position), vectors(&state.velocity), memory];
+            for (digests, row) in stored.digests.iter_mut().zip(&rows) {
+                digests.push(Sha256::digest(row).into());
+                record.extend(row);
             }
-            record.extend(
-                state.memory.model.iter().chain(&state.memory.constraints).flat_map(|number| number.to_le_bytes()),
-            );
-            stored.digests.push(Sha256::digest(&record[start..]).into());
             if let Status::Diverged(divergence) = state.status {
                 stored.divergence = Some(divergence);
             }
         }
         assert_eq!(record.len() as u64, self.record, "every frame shows the runs that the file was begun for");
         self.spool.write_all(&record).map_err(OutputError::writing(&self.path))?;
-        self.course.frames.push(frame.index);
+        course.frames.push(frame.index);
         Ok(())
     }
 
     /// Stores the drawn state of a run, by its place among the runs, if the run diverges; see
     /// [`Frames::last_fit`](crate::runner::Frames::last_fit).
     pub(crate) fn set_last_fit(&mut self, place: usize, found: Option<Option<(&State, f64)>>) {
-        let bytes = |(state, times_wider): (&State, f64)| (state.to_bytes(), times_wider);
-        self.course.runs[place].last_fit = found.map(|found| found.map(bytes));
+        self.written.course.runs[place].set_last_fit(found.flatten());
     }
 
     /// Adds the time series of the scene.
     pub(crate) fn set_history(&mut self, history: &History) {
-        self.course.history = Some(history.clone());
+        self.written.history = Some(history.clone());
     }
 
     /// Makes the frames written so far survive a power failure.
-    pub(crate) fn sync(&mut self) -> io::Result<Course> {
+    pub(crate) fn sync(&mut self) -> io::Result<Written> {
         self.spool.sync_data()?;
-        Ok(self.course.clone())
+        Ok(self.written.clone())
     }
 
     /// Rearranges the frames written so far and renames the file to its final name.
@@ -282,7 +224,8 @@ impl StatesWriter {
 
     fn fill(&mut self, archive: &mut ZipWriter<BufWriter<&mut File>>) -> io::Result<()> {
         let mut part = Vec::new();
-        let frames = self.course.frames.len() as u64;
+        let Written { course, .. } = &self.written;
+        let frames = course.frames.len() as u64;
         for array in &self.arrays {
             let shape = format!("({frames},{})", array.shape);
             begin(archive, &array.name, "<f8", &shape, frames * array.length as u64)?;
@@ -293,7 +236,7 @@ impl StatesWriter {
                 archive.write_all(&part)?;
             }
         }
-        for (run, step) in self.course.runs.iter().zip(&self.steps) {
+        for (run, step) in course.runs.iter().zip(&self.steps) {
             begin(archive, &format!("{}.step", run.name), "<f8", "()", 8)?;
             archive.write_all(&step.to_le_bytes())?;
         }
@@ -302,7 +245,7 @@ impl StatesWriter {
         }
         fill_names(archive, &self.names)?;
         let mut bytes = postcard::to_allocvec(&self.origin).expect("plain data");
-        bytes.extend(postcard::to_allocvec(&self.course).expect("plain data"));
+        bytes.extend(postcard::to_allocvec(&self.written).expect("plain data"));
         begin(archive, COURSE, "|u1", &format!("({},)", bytes.len()), bytes.len() as u64)?;
         archive.write_all(&bytes)
     }

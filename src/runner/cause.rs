@@ -34,7 +34,8 @@ impl Cause {
         divergence: Divergence,
         threads: usize,
     ) -> Option<Self> {
-        if divergence.is_end || divergence.step - sound.steps > most_steps(&scene.runs[run]) {
+        let is_recorded = scene.runs[run].recording.is_some();
+        if is_recorded || divergence.is_end || divergence.step - sound.steps > most_steps(&scene.runs[run]) {
             return None;
         }
         let mut world = scene.world(run);

@@ -1,13 +1,14 @@
-//! Frames in rising order: simulated on request, all simulated before the first one, or read from stored
-//! states. The progress can be saved, so that another process continues.
+//! Frames in rising order: simulated or recorded on request, or all simulated before the first one. The progress can be
+//! saved, so that another process continues.
 
 use super::last_fit::Fitting;
-use super::{History, Runner, Running};
+use super::{History, Runner, Running, Stored};
 use crate::sim::{Frame, State};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::Path;
 
 /// Frames of a scene in rising order. The scene is simulated once, even if the first frame needs the time series of the
 /// whole scene, or not at all if its states are stored.
@@ -20,7 +21,9 @@ pub(crate) struct Frames<'a> {
     is_searching: bool,
     /// The steps of each run in earlier processes.
     before: Vec<u64>,
-    source: Source<'a>,
+    /// The stored time series, until they are returned.
+    known: Option<History>,
+    source: Source,
 }
 
 /// The progress of a simulation, from which it continues with the same bits.
@@ -50,28 +53,11 @@ impl Progress {
 }
 
 /// The source of the states of frames.
-enum Source<'a> {
-    /// The simulation, one frame after the other.
+enum Source {
+    /// The runs, one frame after the other.
     Simulated,
-    /// The simulation, after its end: states wait until the time series are known.
+    /// The runs, after their end: states wait until the time series are known.
     Waiting(Waiting),
-    /// An earlier simulation, with its time series until they are returned.
-    Stored(Box<dyn Stored + 'a>, Option<History>),
-}
-
-/// The stored results of an earlier simulation of the same runs of the same scene.
-pub(crate) trait Stored: Send {
-    /// The state of the run with this index in a frame, after its number of steps.
-    ///
-    /// # Errors
-    /// The state cannot be read.
-    fn state(&mut self, place: usize, frame: u64, steps: u64) -> io::Result<State>;
-
-    /// Takes the time series, if there are any.
-    fn take_history(&mut self) -> Option<History>;
-
-    /// The result of [`Frames::last_fit`] for a run.
-    fn last_fit(&self, place: usize) -> Option<Option<(State, f64)>>;
 }
 
 /// The states of frames, stored until they are drawn.
@@ -104,7 +90,7 @@ impl<'a> Frames<'a> {
             None => Source::Simulated,
         };
         let before = vec![0; runner.runs.len()];
-        Self { runner, frames: frames.to_vec(), taken: 0, is_searching: false, before, source }
+        Self { runner, frames: frames.to_vec(), taken: 0, is_searching: false, before, known: None, source }
     }
 
     /// The progress of the simulation; `None` once it is finished. Waiting states are on the disk then.
@@ -170,10 +156,7 @@ impl<'a> Frames<'a> {
                     Ok::<_, io::Error>((state.ok_or(io::ErrorKind::InvalidData)?, wider))
                 };
                 let found = found.map(read).transpose()?;
-                let present = running.world.state().clone();
-                let found = found.map(|(state, wider)| Fitting::new(&mut running.world, state, wider));
-                running.world.set_state(present);
-                running.last_fit = found.into();
+                running.last_fit = found.map(|(state, wider)| Fitting::new(&mut running.world, state, wider)).into();
             }
             let note = running.notes.get(running.series.times.len()).filter(|_| running.series.divergence.is_none());
             let first = note.map_or(u64::MAX, |&note| running.world.steps_at(note)).min(running.world.steps_at(next));
@@ -186,22 +169,13 @@ impl<'a> Frames<'a> {
         Ok(())
     }
 
-    /// Stored frames of a runner, in rising order.
+    /// Stored frames of a runner at its start, in rising order.
     ///
     /// # Errors
-    /// The stored results do not belong to these runs.
-    pub(crate) fn stored(mut runner: Runner<'a>, frames: &[u64], mut stored: impl Stored + 'a) -> io::Result<Self> {
-        for (place, running) in runner.runs.iter_mut().enumerate() {
-            let Some(found) = stored.last_fit(place) else { continue };
-            if found.as_ref().is_some_and(|(state, _)| !running.world.takes(state)) {
-                return Err(io::ErrorKind::InvalidData.into());
-            }
-            let found = found.map(|(state, times_wider)| Fitting::new(&mut running.world, state, times_wider));
-            running.last_fit = found.into();
-        }
-        let history = stored.take_history();
-        let source = Source::Stored(Box::new(stored), history);
-        Ok(Self { source, ..Self::new(runner, frames, None) })
+    /// The stored states do not belong to these runs.
+    pub(crate) fn stored(runner: Runner<'a>, frames: &[u64], stored: Stored) -> io::Result<Self> {
+        let runner = runner.playing(&stored.recordings).ok_or(io::ErrorKind::InvalidData)?;
+        Ok(Self { known: stored.history, ..Self::new(runner, frames, None) })
     }
 
     /// Advances each run by at most `most_steps`.
@@ -209,10 +183,8 @@ impl<'a> Frames<'a> {
     /// # Errors
     /// Stored states cannot be written or read.
     pub(crate) fn next(&mut self, most_steps: u64) -> io::Result<Next> {
-        let Self { runner, frames, taken, is_searching, source, .. } = self;
-        if let Source::Stored(_, history) = source
-            && let Some(history) = history.take()
-        {
+        let Self { runner, frames, taken, is_searching, known, source, .. } = self;
+        if let Some(history) = known.take() {
             return Ok(Next::TimeSeries(history));
         }
         if let Source::Waiting(waiting) = source
@@ -228,7 +200,7 @@ impl<'a> Frames<'a> {
                 waiting.reached += 1;
                 return Ok(Next::Working);
             }
-            runner.scene.check_recordings()?;
+            runner.check()?;
             waiting.is_known = true;
             return Ok(Next::TimeSeries(runner.take_history()));
         }
@@ -237,15 +209,14 @@ impl<'a> Frames<'a> {
         if matches!(source, Source::Simulated) && !runner.advance_towards(moment, most_steps) {
             return Ok(Next::Working);
         }
+        runner.check()?;
         let (first, scene) = (*taken * runner.runs.len(), runner.scene);
-        for (place, running) in runner.runs.iter_mut().enumerate().filter(|_| !*is_searching) {
-            let state = match source {
-                Source::Simulated => continue,
-                Source::Waiting(waiting) => State::from_bytes(&waiting.states.get(first + place)?),
-                Source::Stored(stored, _) => Some(stored.state(place, frame, running.world.steps_at(moment))?),
-            };
-            let state = state.filter(|state| running.world.takes(state));
-            running.world.set_state(state.ok_or(io::ErrorKind::InvalidData)?);
+        if let (Source::Waiting(waiting), false) = (source, *is_searching) {
+            for (place, running) in runner.runs.iter_mut().enumerate() {
+                let state = State::from_bytes(&waiting.states.get(first + place)?);
+                let state = state.filter(|state| running.world.takes(state));
+                running.world.set_state(state.ok_or(io::ErrorKind::InvalidData)?);
+            }
         }
         let found = runner.runs.par_iter_mut().map(|running| running.find_last_fit(scene, most_steps));
         *is_searching = !found.reduce(|| true, |one, other| one && other);
@@ -253,16 +224,13 @@ impl<'a> Frames<'a> {
             return Ok(Next::Working);
         }
         *taken += 1;
-        let taken = runner.taken(frame);
-        runner.scene.check_recordings()?;
-        Ok(Next::Frame(taken))
+        Ok(Next::Frame(runner.taken(frame)))
     }
 
     /// The steps taken so far and the steps at the end, of all runs together.
     pub(crate) fn steps(&self) -> [u64; 2] {
         let scene = self.runner.scene;
         let last = match self.source {
-            Source::Stored(..) => return [0; 2],
             Source::Waiting(_) => scene.last_frame(),
             Source::Simulated => self.frames.last().copied().unwrap_or(0),
         };
@@ -283,15 +251,13 @@ impl<'a> Frames<'a> {
     /// The steps of each run in this process.
     pub(crate) fn simulated(&self) -> Vec<u64> {
         let runs = self.reached().into_iter().zip(&self.before).zip(&self.runner.runs);
-        let is_recorded = |running: &Running| self.runner.scene.runs[running.run].recording.is_some();
-        runs.map(|((steps, before), running)| if is_recorded(running) { 0 } else { steps - before }).collect()
+        runs.map(|((steps, before), running)| if running.recording.is_some() { 0 } else { steps - before }).collect()
     }
 
     /// The steps of each run so far.
     fn reached(&self) -> Vec<u64> {
         let end = self.runner.scene.moment(self.runner.scene.last_frame());
         let steps = |running: &Running| match &self.source {
-            Source::Stored(..) => 0,
             // Finished runs are then set back to each frame.
             Source::Waiting(waiting) if waiting.is_known => running.world.steps_at(end),
             _ => running.world.steps(),
@@ -314,6 +280,11 @@ impl<'a> Frames<'a> {
     /// The time series so far, unless they were returned.
     pub(crate) fn take_history(&mut self) -> History {
         self.runner.take_history()
+    }
+
+    /// The file with states that could not be read, after an error.
+    pub(crate) fn unreadable(&self) -> Option<&Path> {
+        Some(self.runner.fault()?.0)
     }
 
     /// The number of frames returned.

@@ -23,8 +23,11 @@ impl Fitting {
     /// The last fit with a state, in the world of its run, which takes the state, and the final width of the body
     /// that grew most relative to it.
     pub(crate) fn new(world: &mut World, state: State, times_wider: f64) -> Self {
+        let present = world.state().clone();
         world.set_state(state.clone());
-        Self { state, shown: LastFit { snapshot: world.snapshot(), times_wider } }
+        let snapshot = world.snapshot();
+        world.set_state(present);
+        Self { state, shown: LastFit { snapshot, times_wider } }
     }
 }
 

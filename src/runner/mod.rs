@@ -7,16 +7,22 @@ pub(crate) mod history;
 mod last_fit;
 mod meetings;
 pub(crate) mod moments;
+mod stored;
 
 use crate::look::Traced;
-use crate::scene::Scene;
-use crate::sim::{Body, Crew, Diagnostic, Frame, Integrator, Moment, RunFrame, Status, Stepping, Surroundings, World};
-pub(crate) use frames::{Frames, Next, Progress, Stored};
+use crate::scene::{Recorded, Scene};
+use crate::sim::{
+    Body, Crew, Diagnostic, Frame, Integrator, Moment, RunFrame, State, Status, Stepping, Surroundings, World,
+};
+pub(crate) use frames::{Frames, Next, Progress};
 pub use history::{History, TimeSeries};
 use last_fit::{Fitting, Search, fits};
 pub(crate) use meetings::Meetings;
 use rayon::prelude::*;
+use std::io;
+use std::path::Path;
 use std::sync::{Arc, OnceLock};
+pub(crate) use stored::Stored;
 
 /// Simulates runs of a scene and returns frames in rising order.
 ///
@@ -44,6 +50,8 @@ struct Running {
     threads: usize,
     /// Whether the run is drawn.
     is_drawn: bool,
+    /// The recording whose states it shows.
+    recording: Option<Arc<Recorded>>,
     /// The drawn state after a divergence, found as soon as it is needed.
     last_fit: OnceLock<Option<Fitting>>,
     /// The search for that state, while it runs.
@@ -69,7 +77,7 @@ impl<'a> Runner<'a> {
             let threads = share.min(body.elements.len() / LEAST).max(1);
             let mut world = scene.world(run);
             world.set_crew(Crew::new(threads));
-            Running {
+            let running = Running {
                 run,
                 world,
                 step: scene.runs[run].step,
@@ -80,11 +88,42 @@ impl<'a> Runner<'a> {
                 series: TimeSeries::new(run),
                 threads,
                 is_drawn: true,
+                recording: None,
                 last_fit: OnceLock::new(),
                 search: None,
+            };
+            match &scene.runs[run].recording {
+                Some(recording) => running.showing(recording),
+                None => running,
             }
         };
         Self { scene, runs: runs.iter().map(running).collect() }
+    }
+
+    /// Shows the recordings of its runs from now on, in place of steps; `None` if they are those of other bodies or models.
+    fn playing(mut self, recordings: &[Arc<Recorded>]) -> Option<Self> {
+        let play = |(running, recording): (Running, &Arc<Recorded>)| {
+            let State { position, memory, .. } = running.world.state();
+            let memory = memory.model.len() + memory.constraints.len();
+            if (recording.nodes(), recording.memory()) != (position.len(), Some(memory)) {
+                return None;
+            }
+            let world = running.world.playing(Box::new(recording.player(running.step)));
+            Some(Running { world, ..running }.showing(recording))
+        };
+        self.runs = self.runs.into_iter().zip(recordings).map(play).collect::<Option<_>>()?;
+        Some(self)
+    }
+
+    /// Fails if the states shown could not be read.
+    fn check(&self) -> io::Result<()> {
+        self.fault().map_or(Ok(()), |(_, what)| Err(io::Error::new(io::ErrorKind::InvalidData, what)))
+    }
+
+    /// The file with a recording of which a row could not be read, and why. The states shown are then wrong.
+    fn fault(&self) -> Option<(&Path, String)> {
+        let recordings = self.runs.iter().filter_map(|running| running.recording.as_ref());
+        recordings.filter_map(|recording| Some((recording.path(), recording.fault()?))).next()
     }
 
     /// Leaves out computations for pictures: the field that colours the scene, and the last fitting states of runs that
@@ -211,10 +250,27 @@ impl Running {
         RunFrame { last_fit: shown.cloned().map(Box::new), ..frame }
     }
 
-    /// Whether pictures show the present state, as always for a recording, which ends in its last state.
+    /// Whether pictures show the present state.
     fn shows_itself(&self, scene: &Scene) -> bool {
-        let run = &scene.runs[self.run];
-        run.recording.is_some() || self.world.status() == Status::Ok && fits(run, &self.world.state().position)
+        self.world.status() == Status::Ok && fits(&scene.runs[self.run], &self.world.state().position)
+    }
+
+    /// Shows what a recording of its world knows about its end, and searches for nothing more.
+    fn showing(mut self, recording: &Arc<Recorded>) -> Self {
+        let Self { world, .. } = &mut self;
+        let mut last_fit = None;
+        if let Some((state, times_wider)) = recording.last_fit() {
+            let mut state = state.clone();
+            if recording.memory().is_none() {
+                // Nothing of its model is known here.
+                state.memory = world.state().memory.clone();
+                if let Status::Diverged(divergence) = &mut state.status {
+                    (divergence.part, divergence.element) = (0, None);
+                }
+            }
+            last_fit = world.takes(&state).then(|| Fitting::new(world, state, *times_wider));
+        }
+        Self { recording: Some(Arc::clone(recording)), last_fit: last_fit.into(), ..self }
     }
 
     /// Searches for the drawn state through about this many steps. Returns whether it is known or not needed.
@@ -230,6 +286,8 @@ impl Running {
     }
 
     fn advance_towards(&mut self, scene: &Scene, moment: Moment, most_steps: u64) -> bool {
+        // Recorded states take no steps.
+        let most_steps = if self.recording.is_some() { u64::MAX } else { most_steps };
         let (target, mut left) = (self.world.steps_at(moment), most_steps);
         while let (Some(&note), None) = (self.notes.get(self.series.times.len()), self.series.divergence) {
             if self.world.steps_at(note) > target {

@@ -39,6 +39,7 @@ pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;
 pub use recording::Recorded;
+pub(crate) use recording::{COURSE, Course, Origin, StoredRun};
 pub use schema::schema;
 pub use summary::{BodySummary, PartSummary, RunSummary, SceneSummary};
 
@@ -273,7 +274,12 @@ impl Scene {
 
     /// Fails if a row of a recording could not be read since the scene was loaded. The states shown are then wrong.
     pub(crate) fn check_recordings(&self) -> io::Result<()> {
-        self.runs.iter().filter_map(|run| run.recording.as_ref()).try_for_each(|recording| recording.fault())
+        self.runs.iter().filter_map(|run| run.recording.as_ref()).try_for_each(|recording| match recording.fault() {
+            Some(what) => {
+                Err(io::Error::new(io::ErrorKind::InvalidData, format!("{}: {what}", recording.path().display())))
+            }
+            None => Ok(()),
+        })
     }
 
     /// Whether its bodies are in the plane or in space.

@@ -287,22 +287,31 @@ impl Npz {
         Ok(Head { dtype, by_columns, shape, length: (start + length) as u64, entry, is_packed })
     }
 
-    /// The numbers of an array: without an axis as one number, with one axis as one column, with three axes with the last two in one row.
-    pub(crate) fn values(&mut self, array: &Array) -> Result<Values, String> {
+    /// Reads all numbers of an array in blocks of up to `most` bytes, and compares the checksum.
+    pub(crate) fn blocks(&mut self, array: &Array, most: usize, each: &mut dyn FnMut(&[u8])) -> Result<(), String> {
         let broken = |error| format!("cannot be read, the file is damaged or cut short ({error})");
-        let expected = array.bytes().unwrap_or(u64::MAX);
+        let mut left = array.bytes().unwrap_or(u64::MAX);
         let mut entry = self.zip.by_index(array.index).map_err(|error| broken(error.into()))?;
         std::io::copy(&mut (&mut entry).take(array.head), &mut std::io::sink()).map_err(broken)?;
-        let mut bytes = Vec::with_capacity(expected.min(MOST_RESERVED) as usize);
-        // Reading one byte more than expected makes the reader verify the checksum.
-        entry.take(expected.saturating_add(1)).read_to_end(&mut bytes).map_err(broken)?;
-        if bytes.len() as u64 != expected {
-            return Err(format!(
-                "is cut short: {} of {} bytes are there",
-                count(bytes.len() as u128),
-                count(expected.into())
-            ));
+        let mut block = Vec::new();
+        while left > 0 {
+            block.clear();
+            let read = (&mut entry).take(left.min(most as u64)).read_to_end(&mut block).map_err(broken)?;
+            if read == 0 {
+                return Err(format!("is cut short: {} bytes are missing", count(left.into())));
+            }
+            left -= read as u64;
+            each(&block);
         }
+        // At the end the reader compares the checksum.
+        entry.read(&mut [0]).map_err(broken).map(drop)
+    }
+
+    /// The numbers of an array: without an axis as one number, with one axis as one column, with three axes with the last two in one row.
+    pub(crate) fn values(&mut self, array: &Array) -> Result<Values, String> {
+        let expected = array.bytes().unwrap_or(u64::MAX);
+        let mut bytes = Vec::with_capacity(expected.min(MOST_RESERVED) as usize);
+        self.blocks(array, 1 << 20, &mut |block| bytes.extend_from_slice(block))?;
         let [rows, columns] = match array.shape[..] {
             [] => [1, 1],
             [rows] => [rows, 1],
@@ -327,11 +336,6 @@ impl Npz {
 }
 
 impl Array {
-    /// Whether the array has double precision numbers, row by row.
-    pub(crate) fn is_plain(&self) -> bool {
-        self.dtype == Dtype::Float64 && !self.by_columns
-    }
-
     /// Whether the array has numbers with a point.
     pub(crate) fn is_float(&self) -> bool {
         matches!(self.dtype, Dtype::Float64 | Dtype::Float32)

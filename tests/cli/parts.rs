@@ -225,7 +225,7 @@ fn states_that_do_not_fit_are_refused() {
     std::fs::write(place.path("states/states.npz"), &states[..states.len() / 2]).unwrap();
     refused(2, &["states/states.npz is a damaged NumPy archive, or is cut short"]);
     place.run("simulate small.toml --states --only Mass-spring -o states --overwrite").good();
-    refused(2, &["states.npz has no states of “Local shape”, only of “Mass-spring”; choose among these with --only"]);
+    refused(2, &["states.npz has no run \"Local shape\", only \"Mass-spring\"; choose among these with --only"]);
 
     // With one changed bit in frame 3, earlier frames are drawn, and their files are whole.
     let position = |frame: usize| {
@@ -238,7 +238,7 @@ fn states_that_do_not_fit_are_refused() {
     damaged[position(3)] ^= 1;
     std::fs::write(place.path("states/states.npz"), &damaged).unwrap();
     let ran = place.run("render small.toml --from-states states/states.npz -o out");
-    ran.bad(4, &["cannot read states/states.npz: frame 3 of “Local shape” is damaged"]);
+    ran.bad(4, &["cannot read states/states.npz: the state of “Local shape” at 0.05027 s is damaged"]);
     assert_eq!(place.json("out/run.json")["outcome"], "failed");
     let names = ["diagnostics.csv", "frame_00000.png", "frame_00001.png", "frame_00002.png", "run.json"];
     assert_eq!(place.names("out"), names);

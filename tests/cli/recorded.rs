@@ -89,6 +89,35 @@ fn frames_of_a_recording_are_drawn_alone_in_shards_and_resumed() {
     assert_eq!(pictures(&place, "shards"), pictures(&place, "whole"));
 }
 
+/// A run that diverged is played back with its divergence, the state that its pictures show, and the words about it.
+#[test]
+fn our_own_run_that_diverged_is_played_back_as_such() {
+    let Some(place) = place_to_draw() else { return };
+    let wild = PLANE
+        .replace("\"shape-based\", stiffness = 1e4 }", "\"mass-spring\", stiffness = 1e4 }\nstep = \"T/2\"")
+        .replace("duration = 0.1", "duration = 1");
+    place.write("wild.toml", &wild);
+    place.run("render wild.toml --states -o own").too_large_steps();
+    let played = recorded(&wild, "\"own/states.npz\"").replace("step = \"T/2\"\n", "");
+    place.write("played.toml", &played);
+    place.run("render played.toml -o played").good();
+    let (own, played) = (pictures(&place, "own"), pictures(&place, "played"));
+    assert!(own.len() == 61 && own == played);
+    let run = |folder: &str| {
+        let mut run = place.json(&format!("{folder}/run.json"))["runs"][0].clone();
+        ["status", "time", "step", "element"].map(|key| run[key].take())
+    };
+    assert_eq!(run("own"), run("played"));
+    assert_eq!(run("own")[0], "diverged");
+    // Numbers that were changed since are not those of the run that diverged.
+    let Some(python) = crate::support::numpy() else { return };
+    let script = "import numpy; states = dict(numpy.load('own/states.npz')); states['Local shape.position'][3] += 1\n\
+                  numpy.savez('own/states.npz', **states)";
+    python(&place.path("."), script);
+    place.run("render played.toml -o changed").good();
+    assert_eq!(run("changed")[0], "ok");
+}
+
 /// After its last moment a recording shows its last state, and says so.
 #[test]
 fn a_recording_ends() {

@@ -9,7 +9,7 @@ use crate::reading::words::count;
 use crate::scene::Together;
 use crate::scene::file::{RunFile, StatesFile};
 use crate::scene::limits::Limits;
-use crate::scene::recording::{Flaw, Recorded};
+use crate::scene::recording::{Archive, Flaw, Recorded};
 use crate::sim::{Assembly, Dimension, State};
 use std::path::Path;
 use std::sync::Arc;
@@ -48,10 +48,15 @@ impl ReadRecording {
             report.at(&place(at, run), format!("`{file}` {}", missing(&path)), near);
             return None;
         }
-        match Recorded::open(&path, chosen, &run.name) {
-            Ok(recorded) => {
-                let (source, known) = (source(at, run), report.total());
-                let own = Lists::recorded(&mut recorded.archive(), recorded.name(), source, limits, report);
+        let known = report.total();
+        let open = |report: &mut Collector<'_>| -> Result<_, Flaw> {
+            let mut archive = Archive::open(&path, chosen, &run.name)?;
+            let (npz, name) = archive.parts();
+            let own = Lists::recorded(npz, name, source(at, run), limits, report);
+            Ok((archive.recorded()?, own))
+        };
+        match open(report) {
+            Ok((recorded, own)) => {
                 let (recorded, file) = (Arc::new(recorded), file.to_owned());
                 (report.total() == known).then_some(Self { recorded, own, file })
             }
@@ -66,7 +71,7 @@ impl ReadRecording {
     /// A digest of the recording and its body.
     pub(super) fn digest(&self) -> String {
         let own = self.own.as_ref().map(Lists::digest).unwrap_or_default();
-        self.recorded.digest() + &own
+        self.recorded.digest().to_owned() + &own
     }
 
     /// Whether the body in the archive is the scene's, and how the recording moves it; `None` after reporting a mistake.
@@ -97,17 +102,17 @@ impl ReadRecording {
         let start = State::new(start.position, start.velocity);
         let Some(own) = &self.own else {
             let expected = all.bodies.whole().len();
-            if nodes == expected as u64 {
+            if nodes == expected {
                 return Some(Shown::Bodies(start));
             }
-            let [nodes, expected] = [nodes.into(), expected as u128].map(count);
+            let [nodes, expected] = [nodes, expected].map(|nodes| count(nodes as u128));
             let message = format!("`{file}: position` has {nodes} nodes, and the bodies of the run have {expected}");
             let help = "expected the same nodes, or a body of its own: the arrays `rest` and `elements`";
             report.at(&place, message, help.to_owned());
             return None;
         };
-        if own.nodes.len() as u64 != nodes {
-            let [nodes, rest] = [nodes.into(), own.nodes.len() as u128].map(count);
+        if own.nodes.len() != nodes {
+            let [nodes, rest] = [nodes, own.nodes.len()].map(|nodes| count(nodes as u128));
             let message = format!("`{file}: position` has {nodes} nodes, and `rest` has {rest}; expected as many");
             report.at(&place, message, None);
             return None;

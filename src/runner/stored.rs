@@ -1,0 +1,38 @@
+//! Stored states of a scene: recordings of its runs, from which frames are drawn without simulating, and its time series.
+
+use super::History;
+use crate::scene::{Recorded, Scene};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The stored states of some runs.
+#[derive(Debug)]
+pub(crate) struct Stored {
+    path: PathBuf,
+    pub(super) recordings: Vec<Arc<Recorded>>,
+    pub(super) history: Option<History>,
+}
+
+impl Stored {
+    /// The file.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Opens the states of some frames and runs of a scene, if the file has everything that their pictures need.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is damaged, or has other states; the message is the rest of a sentence about it.
+    pub(crate) fn open(path: &Path, scene: &Scene, runs: &[usize], frames: &[u64]) -> Result<Self, String> {
+        let names: Vec<_> = runs.iter().map(|&run| &*scene.runs[run].name).collect();
+        let found = Recorded::stored(path, [&scene.digest, &scene.title], &names, frames);
+        let (recordings, history) = found.map_err(|flaw| flaw.to_string())?;
+        let mut history: Option<History> = postcard::from_bytes(&history).unwrap_or_default();
+        if scene.time_series().is_some() && history.is_none() {
+            let help = "simulate it again with --states and all frames, or with --frames up to the last one";
+            return Err(format!("lacks the course of the scene to its end, which its pictures show; {help}"));
+        }
+        history.iter_mut().for_each(|history| history.series.retain(|series| runs.contains(&series.run)));
+        Ok(Self { path: path.to_owned(), recordings: recordings.into_iter().map(Arc::new).collect(), history })
+    }
+}

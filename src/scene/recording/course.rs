@@ -1,0 +1,141 @@
+//! The array of an archive that only this program reads: the scene that its states come from, its frames, and how its runs
+//! ended.
+
+use super::Flaw;
+use crate::scene::npz::Npz;
+use crate::sim::{Divergence, State};
+use serde::{Deserialize, Serialize};
+
+/// The name of the array.
+pub(crate) const COURSE: &str = "localshape";
+/// The remedy for an archive without the states of a scene.
+const AGAIN: &str = "simulate the scene again with --states";
+
+/// The program and the scene that results come from.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Origin {
+    /// Version of this crate. Other versions may read what follows differently.
+    pub(crate) version: String,
+    /// Digest of the scene.
+    digest: String,
+    title: String,
+}
+
+impl Origin {
+    /// The origin of the results of a scene with a digest and a title in this program.
+    pub(crate) fn new(digest: &str, title: &str) -> Self {
+        Self { version: env!("CARGO_PKG_VERSION").to_owned(), digest: digest.to_owned(), title: title.to_owned() }
+    }
+
+    /// Why results of this origin cannot be used for a scene, in words; `None` if they can.
+    pub(crate) fn refusal(&self, digest: &str, title: &str) -> Option<String> {
+        let (version, found) = (env!("CARGO_PKG_VERSION"), &self.title);
+        if self.version != version {
+            return Some(format!("was written by localshape {}, and this is {version}", self.version));
+        }
+        let other = if found == title { "another version of" } else { "another scene," };
+        (self.digest != digest || digest.is_empty())
+            .then(|| format!("belongs to {other} “{found}”; expected “{title}” as it is now"))
+    }
+}
+
+/// What an archive says about its states. After it come the time series of the scene.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Course {
+    /// Numbers of the frames, rising.
+    pub(crate) frames: Vec<u64>,
+    /// The runs, in the scene's order.
+    pub(crate) runs: Vec<StoredRun>,
+}
+
+/// One run of a [`Course`].
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct StoredRun {
+    pub(crate) name: String,
+    /// The divergence of the run, if it diverged.
+    pub(crate) divergence: Option<Divergence>,
+    /// The drawn state of a run that diverges, if a frame shows it, as bytes, and the final width of the body relative to it.
+    last_fit: Option<(Vec<u8>, f64)>,
+    /// The SHA-256 of positions, velocities and memory in each frame. Single frames are read, and the archive's own
+    /// checksums cover all frames.
+    pub(crate) digests: [Vec<[u8; 32]>; 3],
+}
+
+impl StoredRun {
+    /// A run without frames.
+    pub(crate) fn new(name: &str) -> Self {
+        Self { name: name.to_owned(), ..Self::default() }
+    }
+
+    /// Sets the drawn state of a run that diverges.
+    pub(crate) fn set_last_fit(&mut self, found: Option<(&State, f64)>) {
+        self.last_fit = found.map(|(state, times_wider)| (state.to_bytes(), times_wider));
+    }
+
+    /// How it ended, as bytes for a digest; none if nothing is known.
+    pub(super) fn end(&self) -> Vec<u8> {
+        let known = self.divergence.is_some() || self.last_fit.is_some();
+        let end = known.then(|| postcard::to_allocvec(&(&self.divergence, &self.last_fit)).expect("plain data"));
+        end.unwrap_or_default()
+    }
+
+    /// That state.
+    pub(super) fn last_fit(&self) -> Option<(State, f64)> {
+        let (bytes, times_wider) = self.last_fit.as_ref()?;
+        Some((State::from_bytes(bytes)?, *times_wider))
+    }
+}
+
+impl Course {
+    /// Whether the course can be continued with these runs.
+    pub(crate) fn fits(&self, runs: &[StoredRun]) -> bool {
+        let is_whole = |run: &StoredRun| run.digests.iter().all(|digests| digests.len() == self.frames.len());
+        self.runs.iter().map(|run| &run.name).eq(runs.iter().map(|run| &run.name)) && self.runs.iter().all(is_whole)
+    }
+
+    /// The course in an archive, its origin, and the bytes after it.
+    pub(super) fn read(npz: &mut Npz) -> Result<(Origin, Self, Vec<u8>), Flaw> {
+        let flaw = |message: String| Flaw::new(COURSE, message).with_help(AGAIN);
+        let missing = || Flaw::new("", format!("has no array `{COURSE}`, which `localshape simulate --states` writes"));
+        let array = npz.array(COURSE).ok_or_else(|| missing().with_help(AGAIN))?.map_err(flaw)?;
+        // Packed data could unfold to any size, and this program packs nothing.
+        if !npz.has_room_for(&array) {
+            return Err(flaw("is packed, or longer than the file".to_owned()));
+        }
+        let values = npz.values(&array).map_err(flaw)?;
+        let damaged = |_| flaw("was not written by this program".to_owned());
+        let (origin, rest): (Origin, _) = postcard::take_from_bytes(values.bytes()).map_err(damaged)?;
+        if origin.version != env!("CARGO_PKG_VERSION") {
+            return Ok((origin, Self::default(), Vec::new()));
+        }
+        let (course, rest): (Self, _) = postcard::take_from_bytes(rest).map_err(damaged)?;
+        let rest = rest.to_vec();
+        if !course.fits(&course.runs) || !course.frames.is_sorted() {
+            return Err(flaw("does not fit its frames".to_owned()));
+        }
+        Ok((origin, course, rest))
+    }
+
+    /// The course in an archive of a scene with a digest and a title, and the bytes of its time series.
+    pub(super) fn of_scene(npz: &mut Npz, digest: &str, title: &str) -> Result<(Self, Vec<u8>), Flaw> {
+        let (origin, course, rest) = Self::read(npz)?;
+        match origin.refusal(digest, title) {
+            Some(why) => Err(Flaw::new("", why).with_help(AGAIN)),
+            None => Ok((course, rest)),
+        }
+    }
+
+    /// Refuses frames that the course does not have.
+    pub(super) fn check_frames(&self, frames: &[u64]) -> Result<(), Flaw> {
+        let Some(missing) = frames.iter().find(|frame| self.frames.binary_search(frame).is_err()) else {
+            return Ok(());
+        };
+        let there = match self.frames[..] {
+            [] => "no frame".to_owned(),
+            [frame] => format!("frame {frame} only"),
+            [first, .., last] => format!("{} frames from {first} to {last}", self.frames.len()),
+        };
+        let help = "choose among them with --frames, or simulate all with --states";
+        Err(Flaw::new("", format!("lacks frame {missing}: it has {there}")).with_help(help))
+    }
+}

@@ -1,0 +1,293 @@
+//! Runs that were computed elsewhere: positions and velocities over time, in a file beside the scene; and the stored states
+//! of an earlier simulation, which are drawn instead of simulating.
+//!
+//! Rows of the file are read when they are shown, so memory does not grow with the recording. A kind of file is a reader of
+//! [`Rows`], and a function that opens it.
+
+mod archive;
+mod course;
+
+pub(super) use archive::{Archive, full};
+pub(crate) use course::{COURSE, Course, Origin, StoredRun};
+
+use crate::reading::words::{count, short};
+use crate::sim::{Divergence, Recording, State};
+use glam::DVec3;
+use std::collections::VecDeque;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A moment is shown exactly if it is nearer than this share of the time to the next recorded one.
+const AT: f64 = 1e-9;
+/// Rows that are kept: those of central differences on both sides of a moment, with velocities or without.
+const KEPT: usize = 4;
+
+/// A run of a file.
+#[derive(Debug)]
+pub struct Recorded {
+    path: PathBuf,
+    /// Its name in the file; empty for plain names.
+    name: String,
+    /// The recorded moments (s), rising.
+    times: Vec<f64>,
+    /// The time step of the program that made it (s), if it is known.
+    step: Option<f64>,
+    /// The program that made it, in its own words, or the name of the file.
+    source: String,
+    nodes: usize,
+    /// The number of coordinates of each node.
+    columns: usize,
+    /// Whether the third coordinate, if there is one, is zero everywhere.
+    is_flat: bool,
+    has_velocities: bool,
+    /// The length of the memory of models and constraints in each moment, if it is recorded.
+    memory: Option<usize>,
+    /// Where the run diverged, if it is known. Its last moment is then the last finite state.
+    divergence: Option<Divergence>,
+    /// The drawn state of a run that diverges, if it is known, and the final width of the body relative to it.
+    last_fit: Option<(State, f64)>,
+    /// A digest of its moments, words and end, 64 hexadecimal digits.
+    digest: String,
+    rows: Mutex<Box<dyn Rows>>,
+    /// Why a row could not be read.
+    fault: Mutex<Option<String>>,
+}
+
+/// The moments of a file, read one at a time.
+pub(super) trait Rows: fmt::Debug + Send {
+    /// The numbers of a quantity in a moment: all coordinates of the first node, then those of the second, and so on.
+    ///
+    /// # Errors
+    /// The row cannot be read, or has changed; the message is the rest of a sentence about it.
+    fn row(&mut self, of: Quantity, moment: usize) -> Result<Vec<f64>, String>;
+}
+
+/// What is recorded in each moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quantity {
+    Position,
+    Velocity,
+    Memory,
+}
+
+/// A mistake in a file.
+#[derive(Clone, Debug)]
+pub(crate) struct Flaw {
+    /// The array or entry; empty for the whole file.
+    pub(super) place: String,
+    pub(super) message: String,
+    pub(super) help: Option<String>,
+}
+
+impl Flaw {
+    fn new(place: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { place: place.into(), message: message.into(), help: None }
+    }
+
+    fn with_help(self, help: impl Into<String>) -> Self {
+        Self { help: Some(help.into()), ..self }
+    }
+}
+
+impl fmt::Display for Flaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { place, message, help } = self;
+        if !place.is_empty() {
+            write!(f, "`{place}` ")?;
+        }
+        write!(f, "{message}")?;
+        help.iter().try_for_each(|help| write!(f, "; {help}"))
+    }
+}
+
+impl Recorded {
+    /// The file.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The number of recorded moments.
+    pub fn moments(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Whether velocities are recorded. Otherwise they are central differences of positions.
+    pub fn has_velocities(&self) -> bool {
+        self.has_velocities
+    }
+
+    /// The time step of the program that made it (s), if it is known.
+    pub(super) fn step(&self) -> Option<f64> {
+        self.step
+    }
+
+    /// The program that made it, or the name of the file.
+    pub fn source(&self) -> &str {
+        &self.source
+    }
+
+    /// Where it comes from, and its number of states: `MuJoCo 4.0, recorded, 61 states`.
+    pub(crate) fn description(&self) -> String {
+        let moments = count(self.moments() as u128);
+        format!("{}, recorded, {moments} state{}", self.source(), if self.moments() == 1 { "" } else { "s" })
+    }
+
+    /// The number of nodes.
+    pub(crate) fn nodes(&self) -> usize {
+        self.nodes
+    }
+
+    /// The length of the memory of models and constraints, if it is recorded.
+    pub(crate) fn memory(&self) -> Option<usize> {
+        self.memory
+    }
+
+    /// The number of coordinates of each node, and whether the third is zero everywhere.
+    pub(super) fn coordinates(&self) -> (usize, bool) {
+        (self.columns, self.is_flat)
+    }
+
+    /// A digest of its moments, words and end, 64 hexadecimal digits.
+    pub(super) fn digest(&self) -> &str {
+        &self.digest
+    }
+
+    /// The drawn state of a run that diverges, if it is known, and the final width of the body relative to it.
+    pub(crate) fn last_fit(&self) -> Option<&(State, f64)> {
+        self.last_fit.as_ref()
+    }
+
+    /// Its states after numbers of steps (s).
+    pub(crate) fn player(self: &Arc<Self>, step: f64) -> Player {
+        Player { recorded: Arc::clone(self), step, rows: VecDeque::new() }
+    }
+
+    /// The state at the start.
+    pub(super) fn start(self: &Arc<Self>) -> State {
+        let mut state = State::default();
+        self.player(1.0).show(0, &mut state);
+        state
+    }
+
+    /// Why a row could not be read since it was opened, if one could not. The states shown are then wrong.
+    pub(crate) fn fault(&self) -> Option<String> {
+        self.fault.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// The numbers of a quantity in a recorded moment.
+    fn row(&self, of: Quantity, moment: usize) -> Result<Vec<f64>, String> {
+        let row = self.rows.lock().unwrap_or_else(PoisonError::into_inner).row(of, moment);
+        row.map_err(|what| {
+            let of = if self.name.is_empty() { String::new() } else { format!(" of “{}”", self.name) };
+            format!("the state{of} at {} s {what}", short(self.times[moment]))
+        })
+    }
+}
+
+/// The states of a recording after numbers of steps. Moments between two recorded ones are linear in time.
+#[derive(Debug)]
+pub(crate) struct Player {
+    recorded: Arc<Recorded>,
+    /// Time of a step (s).
+    step: f64,
+    /// The rows read last: their quantities, moments and vectors.
+    rows: VecDeque<(Quantity, usize, Arc<[DVec3]>)>,
+}
+
+impl Player {
+    /// Positions or velocities in a recorded moment.
+    fn row(&mut self, of: Quantity, moment: usize) -> Result<Arc<[DVec3]>, String> {
+        if let Some((_, _, row)) = self.rows.iter().find(|(known, at, _)| (*known, *at) == (of, moment)) {
+            return Ok(Arc::clone(row));
+        }
+        let numbers = self.recorded.row(of, moment)?;
+        let vector = |node: &[f64]| DVec3::new(node[0], node[1], node.get(2).copied().unwrap_or(0.0));
+        let row: Arc<[DVec3]> = numbers.chunks_exact(self.recorded.columns).map(vector).collect();
+        if self.rows.len() == KEPT {
+            self.rows.pop_front();
+        }
+        self.rows.push_back((of, moment, Arc::clone(&row)));
+        Ok(row)
+    }
+
+    /// The velocities in a recorded moment: the recorded ones, or central differences of positions. At the first and last
+    /// moment, differences on one side.
+    fn velocity(&mut self, moment: usize) -> Result<Vec<DVec3>, String> {
+        if self.recorded.has_velocities() {
+            return Ok(self.row(Quantity::Velocity, moment)?.to_vec());
+        }
+        let recorded = Arc::clone(&self.recorded);
+        let times = &recorded.times;
+        let here = self.row(Quantity::Position, moment)?;
+        let mut slope = |other: Option<usize>| -> Result<Option<(f64, Vec<DVec3>)>, String> {
+            let Some(other) = other.filter(|&other| other < times.len()) else { return Ok(None) };
+            let (there, apart) = (self.row(Quantity::Position, other)?, times[other] - times[moment]);
+            Ok(Some((apart.abs(), there.iter().zip(&*here).map(|(&there, &here)| (there - here) / apart).collect())))
+        };
+        Ok(match (slope(moment.checked_sub(1))?, slope(Some(moment + 1))?) {
+            // The slope of the parabola through three moments: with equal intervals the mean of both slopes.
+            (Some((before, falling)), Some((after, rising))) => {
+                let share = before / (before + after);
+                falling.iter().zip(&rising).map(|(falling, rising)| falling.lerp(*rising, share)).collect()
+            }
+            (Some((_, slope)), None) | (None, Some((_, slope))) => slope,
+            (None, None) => vec![DVec3::ZERO; here.len()],
+        })
+    }
+
+    /// Writes positions, velocities, and in a recorded moment the memory, at a time (s).
+    fn show_at(&mut self, time: f64, state: &mut State) -> Result<(), String> {
+        let (times, last) = (&self.recorded.times, self.recorded.times.len() - 1);
+        let before = times.partition_point(|&moment| moment <= time).saturating_sub(1);
+        let share = if before == last { 0.0 } else { (time - times[before]) / (times[before + 1] - times[before]) };
+        let exact = match share {
+            ..=AT => Some(before),
+            _ if share >= 1.0 - AT => Some(before + 1),
+            _ => None,
+        };
+        if let Some(moment) = exact {
+            state.position = self.row(Quantity::Position, moment)?.to_vec();
+            state.velocity = self.velocity(moment)?;
+            if self.recorded.memory.is_some() {
+                let mut numbers = self.recorded.row(Quantity::Memory, moment)?.into_iter();
+                let memory = &mut state.memory;
+                memory
+                    .model
+                    .iter_mut()
+                    .chain(&mut memory.constraints)
+                    .zip(&mut numbers)
+                    .for_each(|(to, from)| *to = from);
+            }
+            return Ok(());
+        }
+        let between = |one: &[DVec3], other: &[DVec3]| {
+            one.iter().zip(other).map(|(one, other)| one.lerp(*other, share)).collect()
+        };
+        let (from, to) = (self.velocity(before)?, self.velocity(before + 1)?);
+        state.velocity = between(&from, &to);
+        state.position = between(&*self.row(Quantity::Position, before)?, &*self.row(Quantity::Position, before + 1)?);
+        Ok(())
+    }
+}
+
+impl Recording for Player {
+    fn end(&self) -> Divergence {
+        let time = self.recorded.times.last().copied().unwrap_or_default();
+        self.recorded.divergence.unwrap_or(Divergence {
+            time,
+            // A moment shows the nearest step.
+            step: ((time / self.step).round() as u64).saturating_add(1),
+            part: 0,
+            element: None,
+            is_end: true,
+        })
+    }
+
+    fn show(&mut self, steps: u64, state: &mut State) {
+        if let Err(what) = self.show_at(steps as f64 * self.step, state) {
+            let mut fault = self.recorded.fault.lock().unwrap_or_else(PoisonError::into_inner);
+            fault.get_or_insert(what);
+        }
+    }
+}
