@@ -106,6 +106,13 @@ pub(crate) fn colour(
         Some(range) => rising(range, &key_path![table, "colour", "range"], report)?,
         None => [0.0, scenes.iter().fold(0.0, |most: f64, scene| most.max(scene.largest(typed.by)))],
     };
+    let mut runs = scenes.iter().flat_map(|scene| &scene.runs).peekable();
+    if typed.by == Field::ElasticEnergy && runs.peek().is_some() && runs.all(|run| run.models.is_empty()) {
+        let message = format!("`{table}.colour.by` is \"elastic-energy\", which no run has");
+        let help = "recordings have none; colour by another field, such as \"strain\"".to_owned();
+        report.at(&key_path![table, "colour", "by"], message, help);
+        return None;
+    }
     let (path, is_compared) = (key_path![table, "colour", "to"], typed.by == Field::Distance);
     match &typed.to {
         None if is_compared => {

@@ -3,7 +3,7 @@
 use super::atomic::open_growing;
 use super::{AtomicFile, OutputError};
 use crate::runner::history::History;
-use crate::scene::{COURSE, Course, Origin, Run, Scene, StoredRun};
+use crate::scene::{COURSE, Course, Origin, Run, Scene, SceneBody, StoredRun};
 use crate::sim::{Assembly, Frame, State, Status};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -135,7 +135,9 @@ impl StatesWriter {
         };
         let is_own = |(at, mesh): &(usize, Mesh)| *at == 0 || !mesh.prefix.is_empty();
         let meshes = runs.iter().map(mesh).enumerate().filter(is_own).map(|(_, mesh)| mesh).collect();
-        let names = scene.bodies.iter().map(|body| body.name.clone()).filter(|_| scene.bodies.len() > 1).collect();
+        // A body without a name is the only one besides those of recordings.
+        let name = |body: &SceneBody| if body.name.is_empty() { "body".to_owned() } else { body.name.clone() };
+        let names = scene.bodies.iter().map(name).filter(|_| scene.bodies.len() > 1).collect();
         let origin = Origin::new(&scene.digest, &scene.title);
         let written = match before {
             Some(before) if before.course.fits(&stored) => before,
@@ -185,7 +187,8 @@ impl StatesWriter {
     /// Stores the drawn state of a run, by its place among the runs, if the run diverges; see
     /// [`Frames::last_fit`](crate::runner::Frames::last_fit).
     pub(crate) fn set_last_fit(&mut self, place: usize, found: Option<Option<(&State, f64)>>) {
-        self.written.course.runs[place].set_last_fit(found.flatten());
+        let bytes = |(state, times_wider): (&State, f64)| (state.to_bytes(), times_wider);
+        self.written.course.runs[place].last_fit = found.flatten().map(bytes);
     }
 
     /// Adds the time series of the scene.

@@ -105,7 +105,7 @@ impl<'a> Runner<'a> {
         let play = |(running, recording): (Running, &Arc<Recorded>)| {
             let State { position, memory, .. } = running.world.state();
             let memory = memory.model.len() + memory.constraints.len();
-            if (recording.nodes(), recording.memory()) != (position.len(), Some(memory)) {
+            if (recording.nodes, recording.memory) != (position.len(), Some(memory)) {
                 return None;
             }
             let world = running.world.playing(Box::new(recording.player(running.step)));
@@ -123,7 +123,7 @@ impl<'a> Runner<'a> {
     /// The file with a recording of which a row could not be read, and why. The states shown are then wrong.
     fn fault(&self) -> Option<(&Path, String)> {
         let recordings = self.runs.iter().filter_map(|running| running.recording.as_ref());
-        recordings.filter_map(|recording| Some((recording.path(), recording.fault()?))).next()
+        recordings.filter_map(|recording| Some((&*recording.path, recording.fault()?))).next()
     }
 
     /// Leaves out computations for pictures: the field that colours the scene, and the last fitting states of runs that
@@ -259,9 +259,9 @@ impl Running {
     fn showing(mut self, recording: &Arc<Recorded>) -> Self {
         let Self { world, .. } = &mut self;
         let mut last_fit = None;
-        if let Some((state, times_wider)) = recording.last_fit() {
+        if let Some((state, times_wider)) = &recording.last_fit {
             let mut state = state.clone();
-            if recording.memory().is_none() {
+            if recording.memory.is_none() {
                 // Nothing of its model is known here.
                 state.memory = world.state().memory.clone();
                 if let Status::Diverged(divergence) = &mut state.status {

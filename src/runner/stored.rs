@@ -1,7 +1,7 @@
 //! Stored states of a scene: recordings of its runs, from which frames are drawn without simulating, and its time series.
 
 use super::History;
-use crate::scene::{Recorded, Scene};
+use crate::scene::{Archive, Course, Flaw, Recorded, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -24,15 +24,24 @@ impl Stored {
     /// # Errors
     /// If the file cannot be read, is damaged, or has other states; the message is the rest of a sentence about it.
     pub(crate) fn open(path: &Path, scene: &Scene, runs: &[usize], frames: &[u64]) -> Result<Self, String> {
-        let names: Vec<_> = runs.iter().map(|&run| &*scene.runs[run].name).collect();
-        let found = Recorded::stored(path, [&scene.digest, &scene.title], &names, frames);
-        let (recordings, history) = found.map_err(|flaw| flaw.to_string())?;
-        let mut history: Option<History> = postcard::from_bytes(&history).unwrap_or_default();
+        let read = || -> Result<_, Flaw> {
+            let (course, history) = Course::of_scene(path, &scene.digest, &scene.title)?;
+            let recorded = |&run: &usize| {
+                let name = &scene.runs[run].name;
+                let archive = Archive::open(path, Some(name), name);
+                let archive = archive.map_err(|flaw| flaw.with_help("choose among these with --only"));
+                archive?.stored(&course).map(Arc::new)
+            };
+            let recordings = runs.iter().map(recorded).collect::<Result<_, _>>()?;
+            course.check_frames(frames)?;
+            Ok((recordings, postcard::from_bytes(&history).unwrap_or_default()))
+        };
+        let (recordings, mut history): (_, Option<History>) = read().map_err(|flaw| flaw.to_string())?;
         if scene.time_series().is_some() && history.is_none() {
             let help = "simulate it again with --states and all frames, or with --frames up to the last one";
             return Err(format!("lacks the course of the scene to its end, which its pictures show; {help}"));
         }
         history.iter_mut().for_each(|history| history.series.retain(|series| runs.contains(&series.run)));
-        Ok(Self { path: path.to_owned(), recordings: recordings.into_iter().map(Arc::new).collect(), history })
+        Ok(Self { path: path.to_owned(), recordings, history })
     }
 }

@@ -39,7 +39,7 @@ pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;
 pub use recording::Recorded;
-pub(crate) use recording::{COURSE, Course, Origin, StoredRun};
+pub(crate) use recording::{Archive, COURSE, Course, Flaw, Origin, StoredRun};
 pub use schema::schema;
 pub use summary::{BodySummary, PartSummary, RunSummary, SceneSummary};
 
@@ -276,7 +276,7 @@ impl Scene {
     pub(crate) fn check_recordings(&self) -> io::Result<()> {
         self.runs.iter().filter_map(|run| run.recording.as_ref()).try_for_each(|recording| match recording.fault() {
             Some(what) => {
-                Err(io::Error::new(io::ErrorKind::InvalidData, format!("{}: {what}", recording.path().display())))
+                Err(io::Error::new(io::ErrorKind::InvalidData, format!("{}: {what}", recording.path.display())))
             }
             None => Ok(()),
         })

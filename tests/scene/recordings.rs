@@ -174,6 +174,10 @@ fn damaged_recordings_are_refused_with_place_and_remedy() {
     );
     wrong(&[&sound[..], &[doubles("rest", "(4, 2)", &REST)]].concat(), "`played.npz` has no array `elements`");
     wrong(
+        &[&sound[..], &[doubles("mass", "(4,)", &[1.0; 4])]].concat(),
+        "`played.npz: mass` belongs to a body, whose nodes at rest are missing",
+    );
+    wrong(
         &[sound[0].clone(), indices("position", "(3, 4, 2)", &[0; 24])],
         "`played.npz: position` is int64; expected float64 or float32",
     );
@@ -199,6 +203,39 @@ fn damaged_recordings_are_refused_with_place_and_remedy() {
     assert!(error.to_string().contains("`played.npz` has no run \"c\""), "{error}");
     let chosen = SCENE.replace("'played.npz'", "{ file = 'played.npz', run = 'b' }");
     assert!(load(&chosen, &stored(&runs)).1.is_ok());
+}
+
+#[test]
+fn arrays_that_are_not_read_are_told() {
+    let warned = |name: &str| {
+        let more = doubles(name, "(3, 4, 2)", &[0.0; 24]);
+        let scene = load(SCENE, &stored(&[&swing(5.0, 0.5)[..], &[more]].concat())).1;
+        let scene = scene.unwrap_or_else(|error| panic!("{error}"));
+        scene.warnings.iter().fold(String::new(), |all, one| format!("{all}{}; {:?}", one.message, one.help))
+    };
+    assert_eq!(warned("velocity"), "");
+    let message = warned("velocities");
+    assert!(message.contains("`played.npz: velocities` is not an array of a recording, and is not read"), "{message}");
+    assert!(message.contains("did you mean `velocity`?"), "{message}");
+    // Of another run.
+    assert_eq!(warned("other.velocities"), "");
+}
+
+/// Every block is read once, and its checksum compared.
+#[test]
+fn a_changed_number_is_found() {
+    let mut bytes = stored(&swing(5.0, 0.5));
+    let number = 1.0_f64.to_le_bytes();
+    let at = bytes.windows(16).rposition(|two| two[8..] == number).expect("a coordinate");
+    bytes[at + 8] ^= 1;
+    wrong_bytes(&bytes, "`played.npz: position` cannot be read, the file is damaged or cut short (Invalid checksum)");
+}
+
+#[test]
+fn energies_of_recordings_are_no_colours() {
+    let scene = format!("{SCENE}[view]\ncolour = {{ by = 'elastic-energy' }}\n");
+    let error = load(&scene, &stored(&swing(5.0, 0.5))).1.expect_err("no energies").to_string();
+    assert!(error.contains("`view.colour.by` is \"elastic-energy\", which no run has"), "{error}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::{Flaw, Quantity, Recorded, Rows};
 use crate::reading::words::{list, nearest, quoted};
 use crate::scene::file::LARGEST;
 use crate::scene::npz::{Array, Npz};
-use crate::sim::Divergence;
+use crate::sim::{Divergence, State};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -15,7 +15,7 @@ const BLOCK: usize = 1 << 23;
 
 /// A run of an archive.
 #[derive(Debug)]
-pub(in crate::scene) struct Archive {
+pub(crate) struct Archive {
     path: PathBuf,
     npz: Npz,
     /// Its name in the archive; empty for plain names.
@@ -63,38 +63,10 @@ impl Quantity {
     }
 }
 
-impl Recorded {
-    /// The recordings of runs with these names in the stored states of a scene with a digest and a title, if the file has
-    /// these frames; and the bytes of the time series of the scene. Rows are compared with the digests that were written with
-    /// them.
-    ///
-    /// # Errors
-    /// If the file cannot be read, is damaged, or has other states.
-    pub(crate) fn stored(
-        path: &Path,
-        [digest, title]: [&str; 2],
-        names: &[&str],
-        frames: &[u64],
-    ) -> Result<(Vec<Self>, Vec<u8>), Flaw> {
-        let open = || Npz::open(path).map_err(|message| Flaw::new("", message));
-        let (course, history) = Course::of_scene(&mut open()?, digest, title)?;
-        let recorded = |name: &&str| {
-            let unknown = |flaw| Flaw::with_help(flaw, "choose among these with --only");
-            let npz = open()?;
-            let run = choose(&npz.names(), Some(name), name).map_err(unknown)?;
-            let archive = Archive { path: path.to_owned(), npz, run };
-            archive.stored(&course)
-        };
-        let recorded = names.iter().map(recorded).collect::<Result<_, _>>()?;
-        course.check_frames(frames)?;
-        Ok((recorded, history))
-    }
-}
-
 impl Archive {
     /// Opens a run of an archive: the `chosen` one, or the one with plain names, the only one, or the one called like the
     /// run that shows it.
-    pub(in crate::scene) fn open(path: &Path, chosen: Option<&str>, shown_as: &str) -> Result<Self, Flaw> {
+    pub(crate) fn open(path: &Path, chosen: Option<&str>, shown_as: &str) -> Result<Self, Flaw> {
         let npz = Npz::open(path).map_err(|message| Flaw::new("", message))?;
         let run = choose(&npz.names(), chosen, shown_as)?;
         Ok(Self { path: path.to_owned(), npz, run })
@@ -133,8 +105,12 @@ impl Archive {
         self.of_tracks(tracks, times, own.as_ref())
     }
 
-    /// The stored states of the run.
-    fn stored(mut self, course: &Course) -> Result<Recorded, Flaw> {
+    /// The states of the run as this program has stored them. Rows are compared with the digests of its course when they are
+    /// read.
+    ///
+    /// # Errors
+    /// The arrays are not those of the course.
+    pub(crate) fn stored(mut self, course: &Course) -> Result<Recorded, Flaw> {
         let Some(run) = course.runs.iter().find(|run| run.name == self.run) else {
             return Err(Flaw::new("", format!("is damaged: it says nothing about {}", quoted(&self.run))));
         };
@@ -175,7 +151,7 @@ impl Archive {
             hash.update(track.of.key());
             track.digests.iter().for_each(|digest| hash.update(digest));
         }
-        own.iter().for_each(|own| hash.update(own.end()));
+        divergence.iter().for_each(|divergence| hash.update(divergence.step.to_le_bytes()));
         let position = &tracks[0].array.shape;
         let memory = tracks.iter().find(|track| track.of == Quantity::Memory);
         Ok(Recorded {
@@ -190,7 +166,10 @@ impl Archive {
             has_velocities: tracks.iter().any(|track| track.of == Quantity::Velocity),
             memory: memory.map(|track| track.array.shape[1] as usize),
             divergence,
-            last_fit: own.and_then(StoredRun::last_fit),
+            last_fit: own.and_then(|own| {
+                let (bytes, times_wider) = own.last_fit.as_ref()?;
+                Some((State::from_bytes(bytes)?, *times_wider))
+            }),
             digest: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
             rows: Mutex::new(Box::new(ArchiveRows { npz: self.npz, tracks })),
             fault: Mutex::default(),

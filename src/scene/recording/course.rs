@@ -3,8 +3,9 @@
 
 use super::Flaw;
 use crate::scene::npz::Npz;
-use crate::sim::{Divergence, State};
+use crate::sim::Divergence;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 /// The name of the array.
 pub(crate) const COURSE: &str = "localshape";
@@ -55,7 +56,7 @@ pub(crate) struct StoredRun {
     /// The divergence of the run, if it diverged.
     pub(crate) divergence: Option<Divergence>,
     /// The drawn state of a run that diverges, if a frame shows it, as bytes, and the final width of the body relative to it.
-    last_fit: Option<(Vec<u8>, f64)>,
+    pub(crate) last_fit: Option<(Vec<u8>, f64)>,
     /// The SHA-256 of positions, velocities and memory in each frame. Single frames are read, and the archive's own
     /// checksums cover all frames.
     pub(crate) digests: [Vec<[u8; 32]>; 3],
@@ -65,24 +66,6 @@ impl StoredRun {
     /// A run without frames.
     pub(crate) fn new(name: &str) -> Self {
         Self { name: name.to_owned(), ..Self::default() }
-    }
-
-    /// Sets the drawn state of a run that diverges.
-    pub(crate) fn set_last_fit(&mut self, found: Option<(&State, f64)>) {
-        self.last_fit = found.map(|(state, times_wider)| (state.to_bytes(), times_wider));
-    }
-
-    /// How it ended, as bytes for a digest; none if nothing is known.
-    pub(super) fn end(&self) -> Vec<u8> {
-        let known = self.divergence.is_some() || self.last_fit.is_some();
-        let end = known.then(|| postcard::to_allocvec(&(&self.divergence, &self.last_fit)).expect("plain data"));
-        end.unwrap_or_default()
-    }
-
-    /// That state.
-    pub(super) fn last_fit(&self) -> Option<(State, f64)> {
-        let (bytes, times_wider) = self.last_fit.as_ref()?;
-        Some((State::from_bytes(bytes)?, *times_wider))
     }
 }
 
@@ -94,6 +77,9 @@ impl Course {
     }
 
     /// The course in an archive, its origin, and the bytes after it.
+    ///
+    /// # Errors
+    /// There is none, or it is damaged.
     pub(super) fn read(npz: &mut Npz) -> Result<(Origin, Self, Vec<u8>), Flaw> {
         let flaw = |message: String| Flaw::new(COURSE, message).with_help(AGAIN);
         let missing = || Flaw::new("", format!("has no array `{COURSE}`, which `localshape simulate --states` writes"));
@@ -116,9 +102,13 @@ impl Course {
         Ok((origin, course, rest))
     }
 
-    /// The course in an archive of a scene with a digest and a title, and the bytes of its time series.
-    pub(super) fn of_scene(npz: &mut Npz, digest: &str, title: &str) -> Result<(Self, Vec<u8>), Flaw> {
-        let (origin, course, rest) = Self::read(npz)?;
+    /// The course in a file with the states of a scene, which has a digest and a title, and the bytes of its time series.
+    ///
+    /// # Errors
+    /// The file cannot be read, or has other states.
+    pub(crate) fn of_scene(path: &Path, digest: &str, title: &str) -> Result<(Self, Vec<u8>), Flaw> {
+        let mut npz = Npz::open(path).map_err(|message| Flaw::new("", message))?;
+        let (origin, course, rest) = Self::read(&mut npz)?;
         match origin.refusal(digest, title) {
             Some(why) => Err(Flaw::new("", why).with_help(AGAIN)),
             None => Ok((course, rest)),
@@ -126,7 +116,7 @@ impl Course {
     }
 
     /// Refuses frames that the course does not have.
-    pub(super) fn check_frames(&self, frames: &[u64]) -> Result<(), Flaw> {
+    pub(crate) fn check_frames(&self, frames: &[u64]) -> Result<(), Flaw> {
         let Some(missing) = frames.iter().find(|frame| self.frames.binary_search(frame).is_err()) else {
             return Ok(());
         };

@@ -7,7 +7,8 @@
 mod archive;
 mod course;
 
-pub(super) use archive::{Archive, full};
+pub(crate) use archive::Archive;
+pub(super) use archive::full;
 pub(crate) use course::{COURSE, Course, Origin, StoredRun};
 
 use crate::reading::words::{count, short};
@@ -15,7 +16,7 @@ use crate::sim::{Divergence, Recording, State};
 use glam::DVec3;
 use std::collections::VecDeque;
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A moment is shown exactly if it is nearer than this share of the time to the next recorded one.
@@ -26,29 +27,31 @@ const KEPT: usize = 4;
 /// A run of a file.
 #[derive(Debug)]
 pub struct Recorded {
-    path: PathBuf,
+    /// The file.
+    pub(crate) path: PathBuf,
     /// Its name in the file; empty for plain names.
     name: String,
     /// The recorded moments (s), rising.
     times: Vec<f64>,
     /// The time step of the program that made it (s), if it is known.
-    step: Option<f64>,
+    pub(super) step: Option<f64>,
     /// The program that made it, in its own words, or the name of the file.
     source: String,
-    nodes: usize,
+    /// The number of nodes.
+    pub(crate) nodes: usize,
     /// The number of coordinates of each node.
-    columns: usize,
+    pub(super) columns: usize,
     /// Whether the third coordinate, if there is one, is zero everywhere.
-    is_flat: bool,
+    pub(super) is_flat: bool,
     has_velocities: bool,
     /// The length of the memory of models and constraints in each moment, if it is recorded.
-    memory: Option<usize>,
+    pub(crate) memory: Option<usize>,
     /// Where the run diverged, if it is known. Its last moment is then the last finite state.
     divergence: Option<Divergence>,
     /// The drawn state of a run that diverges, if it is known, and the final width of the body relative to it.
-    last_fit: Option<(State, f64)>,
+    pub(crate) last_fit: Option<(State, f64)>,
     /// A digest of its moments, words and end, 64 hexadecimal digits.
-    digest: String,
+    pub(super) digest: String,
     rows: Mutex<Box<dyn Rows>>,
     /// Why a row could not be read.
     fault: Mutex<Option<String>>,
@@ -85,7 +88,8 @@ impl Flaw {
         Self { place: place.into(), message: message.into(), help: None }
     }
 
-    fn with_help(self, help: impl Into<String>) -> Self {
+    /// With a remedy.
+    pub(crate) fn with_help(self, help: impl Into<String>) -> Self {
         Self { help: Some(help.into()), ..self }
     }
 }
@@ -102,11 +106,6 @@ impl fmt::Display for Flaw {
 }
 
 impl Recorded {
-    /// The file.
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// The number of recorded moments.
     pub fn moments(&self) -> usize {
         self.times.len()
@@ -115,11 +114,6 @@ impl Recorded {
     /// Whether velocities are recorded. Otherwise they are central differences of positions.
     pub fn has_velocities(&self) -> bool {
         self.has_velocities
-    }
-
-    /// The time step of the program that made it (s), if it is known.
-    pub(super) fn step(&self) -> Option<f64> {
-        self.step
     }
 
     /// The program that made it, or the name of the file.
@@ -131,31 +125,6 @@ impl Recorded {
     pub(crate) fn description(&self) -> String {
         let moments = count(self.moments() as u128);
         format!("{}, recorded, {moments} state{}", self.source(), if self.moments() == 1 { "" } else { "s" })
-    }
-
-    /// The number of nodes.
-    pub(crate) fn nodes(&self) -> usize {
-        self.nodes
-    }
-
-    /// The length of the memory of models and constraints, if it is recorded.
-    pub(crate) fn memory(&self) -> Option<usize> {
-        self.memory
-    }
-
-    /// The number of coordinates of each node, and whether the third is zero everywhere.
-    pub(super) fn coordinates(&self) -> (usize, bool) {
-        (self.columns, self.is_flat)
-    }
-
-    /// A digest of its moments, words and end, 64 hexadecimal digits.
-    pub(super) fn digest(&self) -> &str {
-        &self.digest
-    }
-
-    /// The drawn state of a run that diverges, if it is known, and the final width of the body relative to it.
-    pub(crate) fn last_fit(&self) -> Option<&(State, f64)> {
-        self.last_fit.as_ref()
     }
 
     /// Its states after numbers of steps (s).

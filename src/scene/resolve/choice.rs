@@ -3,6 +3,7 @@
 use super::{Place, body};
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::{list, nearest, quoted};
+use crate::scene::Run;
 use crate::scene::file::{ModelFile, RunFile, RunSource};
 use std::collections::BTreeMap;
 
@@ -127,15 +128,10 @@ pub(super) fn find(name: &str, names: &[&str], path: &[PathPart<'_>], report: &m
     found
 }
 
-/// Warns of bodies that no run has.
-pub(super) fn warn_of_unused(
-    choices: &[Option<Choice<'_>>],
-    names: &[&str],
-    places: &[Place],
-    report: &mut Collector<'_>,
-) {
+/// Warns of bodies that no run has. A recording with a body of its own has no other.
+pub(super) fn warn_of_unused(runs: &[Run], names: &[&str], places: &[Place], report: &mut Collector<'_>) {
     for (body, place) in places.iter().enumerate() {
-        if choices.iter().flatten().all(|choice| !choice.of.contains(&body)) {
+        if runs.iter().all(|run| !run.of.contains(&body)) {
             let message = format!("no run has {}", body::in_words(names[body]));
             report.warn(place, message, "add it to `bodies` of a run, or remove it");
         }

@@ -326,8 +326,8 @@ fn physics(parts: &SceneParts, beside: Vec<Option<Beside>>, limits: &Limits, rep
         runs::Around { choices: &choices, recordings: &parts.recordings, bodies: all, grips: grips.as_deref() };
     let runs = runs::resolve(&parts.runs, parts.time.as_ref(), around, report);
     let (runs, own) = runs.map_or_else(Default::default, |(runs, own)| (Some(runs), own));
-    if let (true, Some(names), Some(_)) = (is_plural, names, &runs) {
-        choice::warn_of_unused(&choices, &names, &parts.places, report);
+    if let (true, Some(names), Some(runs)) = (is_plural, names, &runs) {
+        choice::warn_of_unused(runs, &names, &parts.places, report);
     }
     Physics { gravity, bodies, obstacles, runs, own }
 }

@@ -5,11 +5,11 @@ use super::lists::{ListSource, Lists};
 use super::{Place, body};
 use crate::reading::beside::{missing, similar};
 use crate::reading::collector::{Collector, key_path};
-use crate::reading::words::count;
-use crate::scene::Together;
+use crate::reading::words::{count, list, nearest};
 use crate::scene::file::{RunFile, StatesFile};
 use crate::scene::limits::Limits;
 use crate::scene::recording::{Archive, Flaw, Recorded};
+use crate::scene::{COURSE, Together};
 use crate::sim::{Assembly, Dimension, State};
 use std::path::Path;
 use std::sync::Arc;
@@ -52,6 +52,7 @@ impl ReadRecording {
         let open = |report: &mut Collector<'_>| -> Result<_, Flaw> {
             let mut archive = Archive::open(&path, chosen, &run.name)?;
             let (npz, name) = archive.parts();
+            check_names(&npz.names(), name, file, &place(at, run), report);
             let own = Lists::recorded(npz, name, source(at, run), limits, report);
             Ok((archive.recorded()?, own))
         };
@@ -71,7 +72,7 @@ impl ReadRecording {
     /// A digest of the recording and its body.
     pub(super) fn digest(&self) -> String {
         let own = self.own.as_ref().map(Lists::digest).unwrap_or_default();
-        self.recorded.digest().to_owned() + &own
+        self.recorded.digest.clone() + &own
     }
 
     /// Whether the body in the archive is the scene's, and how the recording moves it; `None` after reporting a mistake.
@@ -85,7 +86,7 @@ impl ReadRecording {
         report: &mut Collector<'_>,
     ) -> Option<Shown> {
         let (file, place) = (&self.file, place(at, run));
-        let (columns, is_flat) = self.recorded.coordinates();
+        let Recorded { columns, is_flat, .. } = *self.recorded;
         let wrong = match (dimension, columns) {
             (Dimension::Space, 2) => Some("has 2 coordinates for each node, and the scene is in space; expected 3"),
             (Dimension::Plane, 3) if !is_flat => {
@@ -97,7 +98,7 @@ impl ReadRecording {
             report.at(&place, format!("`{file}: position` {wrong}"), None);
             return None;
         }
-        let (nodes, known) = (self.recorded.nodes(), report.total());
+        let (nodes, known) = (self.recorded.nodes, report.total());
         let start = self.recorded.start();
         let start = State::new(start.position, start.velocity);
         let Some(own) = &self.own else {
@@ -134,6 +135,31 @@ impl ReadRecording {
         own.dimension = dimension;
         let made = body::recorded(own, run.name.clone(), start, report)?;
         (report.total() == known).then(|| Shown::Own(Box::new(made)))
+    }
+}
+
+/// The names of arrays in a recording.
+const ARRAYS: [&str; 9] = ["position", "time", "velocity", "rest", "elements", "faces", "mass", "step", "engine"];
+/// Further arrays in states of this program.
+const OWN: [&str; 4] = ["memory", "body", "bodies", COURSE];
+
+/// Reports arrays of a body without its nodes, and warns of arrays that are not read.
+fn check_names(names: &[String], run: &str, file: &str, place: &Place, report: &mut Collector<'_>) {
+    let key = |name: &str| name.strip_prefix(run).and_then(|rest| rest.strip_prefix('.')).unwrap_or(name).to_owned();
+    // Those with a point belong to other runs.
+    let keys: Vec<_> = names.iter().map(|name| (name, key(name))).filter(|(_, key)| !key.contains('.')).collect();
+    let has_rest = keys.iter().any(|(_, key)| key == "rest");
+    for (name, key) in &keys {
+        if ["elements", "faces", "mass"].contains(&&**key) && !has_rest {
+            let message = format!("`{file}: {name}` belongs to a body, whose nodes at rest are missing");
+            report.at(place, message, "expected `rest` and `elements` beside it, or neither".to_owned());
+        } else if !ARRAYS.contains(&&**key) && !OWN.contains(&&**key) {
+            let help = match nearest(key, &ARRAYS) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("known here: {}", list(&ARRAYS, "and", str::to_owned)),
+            };
+            report.warn(place, format!("`{file}: {name}` is not an array of a recording, and is not read"), help);
+        }
     }
 }
 

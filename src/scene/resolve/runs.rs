@@ -144,7 +144,7 @@ pub(super) fn resolve<'a>(
             return None;
         }
         let recorded = parts.recording.as_ref().map(|recording| {
-            StepFile::Seconds(recording.step().unwrap_or(1.0 / time.frames_per_second / STEPS_OF_FRAME))
+            StepFile::Seconds(recording.step.unwrap_or(1.0 / time.frames_per_second / STEPS_OF_FRAME))
         });
         let of_run = if recorded.is_some() { "states" } else { "step" };
         let (of_run, shared) = (key_path!["run", at, of_run], key_path!["time", "step"]);
@@ -205,8 +205,11 @@ pub(super) fn resolve<'a>(
         let kernel = run.kernel.unwrap_or(fastest);
         if kernel == Kernel::Fast && fastest != Kernel::Fast {
             let path = key_path!["run", at, "kernel"];
+            let slow = parts.iter().position(|(model, _)| Kernel::of(model, integrator) != Kernel::Fast);
+            let slow = slow.filter(|_| parts.of.len() > 1).and_then(|slow| around.bodies?.0.get(parts.of[slow]));
+            let of = slow.map_or(String::new(), |body| format!(" of {}", body.in_words()));
             let message = format!(
-                "`run[{at}].kernel` is \"fast\", but this `integrator`, `model.rotation` or `model.damping_of` has no vectorised steps"
+                "`run[{at}].kernel` is \"fast\", but this `integrator`, `model.rotation` or `model.damping_of`{of} has no vectorised steps"
             );
             report.at(&path, message, "remove it, or write \"reference\"");
             return None;
