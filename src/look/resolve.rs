@@ -57,6 +57,7 @@ impl View {
         }
         view.visible = Visible::usual(scene.dimension(), scene.nodes().into_iter().max().unwrap_or(0));
         set(&mut view.visible, typed, "show", report);
+        view.visible.surfaces |= view.visible.cage;
         let text_scale = get(typed, "text_scale", report).unwrap_or(TextScaleFile::Times(view.look.text_scale));
         let usual = view.columns.unwrap_or(panels.clamp(1, 3));
         if let TextScaleFile::Points { .. } = text_scale {

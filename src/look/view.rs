@@ -278,6 +278,8 @@ words! {
         /// An arrow to each node from its place in the best-fitting rigid placement of the rest shape. Only for nodes on
         /// the surface that face the viewer, and for at most 500.
         displacements,
+        /// The edges of the elements that carry a fine surface, as lines over it. Surfaces are drawn, too.
+        cage,
     }
 }
 

@@ -1,12 +1,16 @@
 //! Fine surfaces that coarse bodies carry. What does not depend on the frame, such as creases and the triangles around each
 //! point, is found once.
 
+use super::chart::needed;
+use super::field::NOWHERE;
 use super::narrow::{narrow, narrow_count, narrow_point};
+use super::page::{self, joined};
 use super::shadow::{Edge, edges};
-use super::surface::{Border, SurfaceLines, Surroundings};
+use super::shell::Side;
+use super::surface::{Border, SurfaceLines, Surroundings, newell};
 use super::{LineKind, Mesh, Vertex};
 use crate::look::BODIES;
-use crate::picture::field::NOWHERE;
+use crate::sim::geometry::{around, ordered};
 use crate::sim::{Assembly, Carried};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -19,6 +23,8 @@ const CREASE: f64 = 0.766;
 /// The least cosine between the normal at a corner of a visible triangle and the direction to the viewer. Interpolated normals
 /// lean away near outlines, and would be lit from behind.
 const LEAST_FACING: f64 = 0.01;
+/// Points of contours and creases that lie nearer than this to the straight line between others are left out (px).
+const STRAIGHT: f64 = 0.15;
 /// The least number of points or triangles for one thread.
 const OF_THREAD: usize = 2048;
 
@@ -213,17 +219,52 @@ impl Surroundings<'_> {
             let shown = fine.triangles.iter().zip(&faces).filter(|(_, face)| face.is_seen == is_seen);
             mesh.triangles.extend(shown.map(|(triangle, _)| triangle.map(|corner| base + corner)));
         }
+        let (mut contours, mut creases) = (Vec::new(), Vec::new());
         for (edge, is_crease) in &fine.seams {
-            let ends = || edge.ends.map(|point| points[point as usize]);
             let [one, other] = edge.triangles().map(|at| at.map(|at| faces[at as usize].is_seen));
             if one != other {
-                let line = self.line(ends(), LineKind::Contour, 1.0);
-                lines.drawn.push(line);
-                lines.borders.push(Border { line, edge: None });
+                contours.push(edge.ends);
             } else if *is_crease && one == Some(true) {
-                lines.borders.push(Border { line: self.line(ends(), LineKind::Edge, 1.0), edge: None });
+                creases.push(edge.ends);
             }
         }
+        for ends in self.long(&contours, points) {
+            let line = self.line(ends, LineKind::FineContour, 1.0);
+            lines.drawn.push(line);
+            lines.borders.push(Border { line, edge: None });
+        }
+        let of_creases = self.long(&creases, points).into_iter();
+        let border = |ends| Border { line: self.line(ends, LineKind::Edge, 1.0), edge: None };
+        lines.borders.extend(of_creases.map(border));
+    }
+
+    /// Adds the edges of faces that carry a surface to the lines: of sound elements those of faces towards the viewer, of
+    /// turned-over elements all.
+    pub(super) fn add_cage(&self, faces: &[Side], kind: LineKind, lines: &mut SurfaceLines) {
+        let (mut nodes, mut edges) = (Vec::new(), Vec::new());
+        for side in faces {
+            self.corners(side, &mut nodes);
+            let corners: Vec<_> = nodes.iter().map(|&node| self.at(node)).collect();
+            if kind.is_alarm() || self.facing(corners[0], newell(&corners)) >= 0.0 {
+                edges.extend(around(&nodes).map(ordered));
+            }
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        lines.drawn.extend(edges.into_iter().map(|ends| self.line(ends.map(|node| self.at(node)), kind, 0.0)));
+    }
+
+    /// The ends (m) of lines between pairs of points, joined, and without points that could not be told from straight lines.
+    fn long(&self, pairs: &[[u32; 2]], points: &[DVec3]) -> Vec<[DVec3; 2]> {
+        let place = |point: u32| points[point as usize];
+        let pixel = |point: u32| self.lens.project(place(point)).map_or([f64::NAN; 2], |(pixel, _)| pixel);
+        let mut all = Vec::with_capacity(pairs.len());
+        for line in joined(pairs, |point| page::point(pixel(point).into())) {
+            let needed = needed(&line.iter().map(|&point| pixel(point)).collect::<Vec<_>>(), STRAIGHT);
+            let kept: Vec<_> = line.into_iter().zip(needed).filter_map(|(at, kept)| kept.then(|| place(at))).collect();
+            all.extend(kept.array_windows().copied());
+        }
+        all
     }
 }
 

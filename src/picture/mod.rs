@@ -297,6 +297,8 @@ pub(crate) enum LineKind {
     AlarmContour = 3,
     /// An edge of an element without faces.
     Bar = 4,
+    /// A place where a carried surface turns away from the viewer. It continues the line before it that ends where it begins.
+    FineContour = 5,
     /// An edge of a solid obstacle.
     ObstacleEdge = 8,
     /// A place where the surface of a solid obstacle turns away from the viewer or ends at the floor.

@@ -138,6 +138,36 @@ pub(super) fn point(at: DVec2) -> Vec2 {
     at.to_array().map(narrow).into()
 }
 
+/// Lines between pairs of points, joined to lines that are as long and straight as possible.
+pub(super) fn joined(pairs: &[[u32; 2]], place: impl Fn(u32) -> Vec2) -> Vec<Vec<u32>> {
+    let mut ends: HashMap<u32, Vec<usize>> = HashMap::new();
+    for (at, pair) in pairs.iter().enumerate() {
+        pair.iter().for_each(|&end| ends.entry(end).or_default().push(at));
+    }
+    let (mut lines, mut is_used) = (Vec::new(), vec![false; pairs.len()]);
+    for first in 0..pairs.len() {
+        if std::mem::replace(&mut is_used[first], true) {
+            continue;
+        }
+        let mut line = pairs[first].to_vec();
+        // From one end, then from the other.
+        for _ in 0..2 {
+            while let [.., from, to] = line[..] {
+                let other = |at: usize| if pairs[at][0] == to { pairs[at][1] } else { pairs[at][0] };
+                let way = |from: u32, to: u32| (place(to) - place(from)).normalize_or_zero();
+                let straight = |at: &usize| way(from, to).dot(way(to, other(*at)));
+                let free = ends[&to].iter().copied().filter(|&at| !is_used[at]);
+                let Some(next) = free.max_by(|a, b| straight(a).total_cmp(&straight(b))) else { break };
+                is_used[next] = true;
+                line.push(other(next));
+            }
+            line.reverse();
+        }
+        lines.push(line);
+    }
+    lines
+}
+
 /// A colour with an opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Paint {
@@ -223,29 +253,8 @@ impl Path {
     /// coverage of pixels where lines overlap, so that joints of single lines would be darker, and dashes would begin anew.
     pub(super) fn joined(pairs: &[[u32; 2]], points: &[Vec2]) -> Self {
         let place = |point: u32| points[point as usize];
-        let mut ends: HashMap<u32, Vec<usize>> = HashMap::new();
-        for (at, pair) in pairs.iter().enumerate() {
-            pair.iter().for_each(|&end| ends.entry(end).or_default().push(at));
-        }
-        let (mut path, mut is_used) = (Self::default(), vec![false; pairs.len()]);
-        for first in 0..pairs.len() {
-            if std::mem::replace(&mut is_used[first], true) {
-                continue;
-            }
-            let mut line = pairs[first].to_vec();
-            // From one end, then from the other.
-            for _ in 0..2 {
-                while let [.., from, to] = line[..] {
-                    let other = |at: usize| if pairs[at][0] == to { pairs[at][1] } else { pairs[at][0] };
-                    let way = |from: u32, to: u32| (place(to) - place(from)).normalize_or_zero();
-                    let straight = |at: &usize| way(from, to).dot(way(to, other(*at)));
-                    let free = ends[&to].iter().copied().filter(|&at| !is_used[at]);
-                    let Some(next) = free.max_by(|a, b| straight(a).total_cmp(&straight(b))) else { break };
-                    is_used[next] = true;
-                    line.push(other(next));
-                }
-                line.reverse();
-            }
+        let mut path = Self::default();
+        for line in joined(pairs, place) {
             path.add_line(&line.into_iter().map(place).collect::<Vec<_>>());
         }
         path

@@ -216,12 +216,12 @@ impl Surroundings<'_> {
         self.bodies.whole()
     }
 
-    fn at(&self, node: u32) -> DVec3 {
+    pub(super) fn at(&self, node: u32) -> DVec3 {
         self.position[node as usize]
     }
 
     /// The corners of a face as seen from outside of the set that it bounds.
-    fn corners(&self, side: &Side, nodes: &mut Vec<u32>) {
+    pub(super) fn corners(&self, side: &Side, nodes: &mut Vec<u32>) {
         nodes.clear();
         nodes.extend_from_slice(&self.body().faces.nodes[side.face as usize]);
         if side.reversed {
@@ -313,7 +313,7 @@ impl Surroundings<'_> {
     }
 
     /// The component of an outward normal at a point towards the viewer, in units of its length times the distance.
-    fn facing(&self, point: DVec3, normal: DVec3) -> f64 {
+    pub(super) fn facing(&self, point: DVec3, normal: DVec3) -> f64 {
         -normal.dot(point - self.lens.eye)
     }
 
@@ -530,7 +530,7 @@ fn bilinear_normal([a, b, c, d]: [DVec3; 4], [u, v]: [f64; 2]) -> DVec3 {
 }
 
 /// The mean normal of a polygon, with twice the length of its area (Newell's method).
-fn newell(corners: &[DVec3]) -> DVec3 {
+pub(super) fn newell(corners: &[DVec3]) -> DVec3 {
     let next = corners.iter().cycle().skip(1);
     corners.iter().zip(next).map(|(&a, &b)| (a - corners[0]).cross(b - corners[0])).sum()
 }

@@ -182,9 +182,12 @@ impl<'a> Depths<'a> {
     }
 
     /// The share of a contour that is outer outline, that is a step of depth inside the body, and that is hidden.
-    fn contour(&self, at: &Sample, of_obstacle: bool) -> [f32; 3] {
+    fn contour(&self, at: &Sample, kind: LineKind) -> [f32; 3] {
+        let (of_obstacle, is_fine) = (kind == LineKind::ObstacleContour, kind == LineKind::FineContour);
         let normal = at.along.perp();
-        let across = normal * (0.9 + 1.3 * self.panel.sight.line_scale);
+        // Fine surfaces have many contours beside each other: only the outermost is the outline.
+        let reach = if is_fine { 0.0 } else { 1.3 };
+        let across = normal * (0.9 + reach * self.panel.sight.line_scale);
         let (soft, distance) = (self.panel.sight.soft, self.distance(at.depth));
         let step = STEP * soft;
         mean(|tap| {
@@ -238,16 +241,16 @@ impl<'a> Depths<'a> {
                 let [visible, behind_others, behind_these] = ALARM_ALPHAS;
                 [seen * visible + behind * (behind_these + free * (behind_others - behind_these)), 0.0, 0.0]
             }
-            LineKind::Contour => {
-                let [outline, step, _] = self.contour(at, false);
+            LineKind::Contour | LineKind::FineContour => {
+                let [outline, step, _] = self.contour(at, line.kind);
                 [line.strength * step, line.strength * outline, 0.0]
             }
             LineKind::ObstacleContour => {
-                let [outline, step, _] = self.contour(at, true).map(|share| share * faded());
+                let [outline, step, _] = self.contour(at, line.kind).map(|share| share * faded());
                 [step, outline, 0.0]
             }
             LineKind::AlarmContour => {
-                let [outline, step, hidden] = self.contour(at, false).map(|share| line.strength * share);
+                let [outline, step, hidden] = self.contour(at, line.kind).map(|share| line.strength * share);
                 // At the end of the set, its outline is drawn at full strength.
                 let across = at.along.perp() * (0.9 + 1.3 * self.panel.sight.line_scale);
                 let [ends] = mean(|tap| {
@@ -379,7 +382,7 @@ impl Style {
             LineKind::Bar => [Self::HiddenBar, Self::Bar, Self::Bar],
             LineKind::ObstacleEdge => [Self::ObstacleEdge; 3],
             LineKind::AlarmEdge => [Self::AlarmEdge; 3],
-            LineKind::Contour => [Self::Step, Self::Outline, Self::Outline],
+            LineKind::Contour | LineKind::FineContour => [Self::Step, Self::Outline, Self::Outline],
             LineKind::AlarmContour => [Self::AlarmStep, Self::Outline, Self::AlarmFold],
             LineKind::ObstacleContour => [Self::ObstacleStep, Self::ObstacleOutline, Self::ObstacleOutline],
         }
@@ -426,7 +429,9 @@ pub(super) fn item(depths: &Depths<'_>, picture: &Picture) -> Option<Item> {
                 continue;
             }
             for (run, level) in runs(&levels).into_iter().filter(|&(_, level)| level > 0) {
-                paths[style as usize][level - 1].0.extend(segment.part(run, levels.len()).0);
+                let (path, part) = (&mut paths[style as usize][level - 1].0, segment.part(run, levels.len()).0);
+                let continues = line.kind == LineKind::FineContour && are_joined(path, &part);
+                path.extend(&part[usize::from(continues)..]);
             }
         }
     }
@@ -501,6 +506,12 @@ impl Segment {
         };
         Path(vec![Step::Move(place(run.start)), Step::Line(place(run.end))])
     }
+}
+
+/// Whether a line ends where another one begins.
+fn are_joined(line: &[Step], next: &[Step]) -> bool {
+    const CLOSE: f32 = 1e-3;
+    matches!((line.last(), next.first()), (Some(Step::Line(end)), Some(Step::Move(start))) if end.distance(*start) < CLOSE)
 }
 
 /// Runs of equal values.

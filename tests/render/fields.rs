@@ -9,8 +9,8 @@ use localshape::runner::Runner;
 use localshape::scene::Scene;
 use localshape::sim::{Divergence, Field, Frame, Status};
 
-const NOTHING: Visible = Visible { surfaces: false, nodes: false, springs: false, displacements: false };
-const EVERYTHING: Visible = Visible { surfaces: true, nodes: true, springs: true, displacements: true };
+const NOTHING: Visible = Visible::NONE;
+const EVERYTHING: Visible = Visible { surfaces: true, nodes: true, springs: true, displacements: true, cage: true };
 const FIELDS: [Field; 4] = [Field::Strain, Field::Displacement, Field::Speed, Field::ElasticEnergy];
 
 /// The scene of Fig. 4(b) with a field, and one of its frames.
@@ -374,7 +374,8 @@ fn every_combination_is_drawn_the_same_twice() {
     let mut last = before.clone();
     for bits in 1..16_u32 {
         let bit = |at: u32| bits >> at & 1 == 1;
-        scene.view.visible = Visible { surfaces: bit(0), nodes: bit(1), springs: bit(2), displacements: bit(3) };
+        scene.view.visible =
+            Visible { surfaces: bit(0), nodes: bit(1), springs: bit(2), displacements: bit(3), ..NOTHING };
         let image = renderer.draw(&compose(&scene, &frame)).expect("the device works");
         assert!(image != last, "{bits:b}");
         assert_eq!(image, renderer.draw(&compose(&scene, &frame)).expect("the device works"), "{bits:b}");

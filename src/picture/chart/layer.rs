@@ -231,8 +231,14 @@ fn outside(points: &[[f64; 2]], spans: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
 
 /// A curve with fewer points, with all others hardly away from it (Douglas and Peucker).
 pub(in crate::picture) fn simplified(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    points.iter().zip(needed(points, EXACT)).filter_map(|(&point, kept)| kept.then_some(point)).collect()
+}
+
+/// Whether each point of a line is needed, so that the straight lines between the needed ones lie nowhere farther from it than a
+/// distance.
+pub(in crate::picture) fn needed(points: &[[f64; 2]], distance: f64) -> Vec<bool> {
     let mut kept = vec![false; points.len()];
-    let Some(last) = points.len().checked_sub(1) else { return Vec::new() };
+    let Some(last) = points.len().checked_sub(1) else { return kept };
     (kept[0], kept[last]) = (true, true);
     let mut open = vec![(0, last)];
     while let Some((from, to)) = open.pop() {
@@ -247,12 +253,12 @@ pub(in crate::picture) fn simplified(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let between = points[from..to].iter().enumerate().skip(1);
         let farthest =
             between.map(|(at, point)| (off(point), from + at)).max_by(|one, other| one.0.total_cmp(&other.0));
-        if let Some((_, at)) = farthest.filter(|(off, _)| *off > EXACT * EXACT) {
+        if let Some((_, at)) = farthest.filter(|(off, _)| *off > distance * distance) {
             kept[at] = true;
             open.extend([(from, at), (at, to)]);
         }
     }
-    points.iter().zip(kept).filter_map(|(&point, kept)| kept.then_some(point)).collect()
+    kept
 }
 
 #[cfg(test)]

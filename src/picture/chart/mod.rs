@@ -14,7 +14,7 @@ pub use annotation::Annotation;
 pub(super) use annotation::{Flag, ring};
 pub use axis::Axis;
 pub use layer::Layer;
-pub(super) use layer::simplified;
+pub(super) use layer::{needed, simplified};
 pub use names::Name;
 pub(super) use names::spread;
 pub(super) use series::{name, style};

@@ -47,10 +47,11 @@ impl Draft<'_> {
         let over = &self.run.snapshot.turned_over;
         let fine = &self.bodies.skin.fine;
         let mut sets = boundaries(self.body, over);
-        if !fine.is_empty() {
-            let is_shown = |side: &Side| !fine.iter().any(|fine| fine.faces.contains(&(side.face as usize)));
-            sets.iter_mut().for_each(|sides| sides.retain(is_shown));
-        }
+        let is_cage = |side: &mut Side| fine.iter().any(|fine| fine.faces.contains(&(side.face as usize)));
+        let cages: [Vec<_>; 2] = match fine.is_empty() {
+            true => Default::default(),
+            false => sets.each_mut().map(|sides| sides.extract_if(.., is_cage).collect()),
+        };
         let total = sets.iter().map(Vec::len).sum();
         let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
         surroundings.add(&sets[0], total, kinds, &mut sound, lines);
@@ -74,6 +75,11 @@ impl Draft<'_> {
             surroundings.add_carried(fine, own, over, &of_nodes, &mut sound, lines);
             points = others;
         }
+        if self.scene.view.visible.cage {
+            surroundings.add_cage(&cages[0], LineKind::Edge, lines);
+        }
+        // Edges of turned-over elements are always drawn.
+        surroundings.add_cage(&cages[1], LineKind::AlarmEdge, lines);
         // Coloured strokes replace them.
         if self.of_nodes.is_empty() {
             lines.drawn.extend(self.bare_lines().into_iter().map(|(ends, over)| {
