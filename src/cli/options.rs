@@ -60,7 +60,7 @@ pub(super) struct RunOptions {
     #[arg(long)]
     pub(super) states: bool,
 
-    /// Also write the bodies for other programs: vtu for ParaView. Several as vtu,usd
+    /// Also write the bodies in motion for other programs: vtu (ParaView), usd, gltf, obj, or several of them as vtu,usd
     #[arg(long, value_name = "FORMAT", value_enum, value_delimiter = ',', hide_possible_values = true)]
     pub(super) write: Vec<export::Format>,
 
@@ -88,13 +88,11 @@ impl RunOptions {
 
 impl ValueEnum for export::Format {
     fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Vtu]
+        &[Self::Vtu, Self::Usd, Self::Gltf, Self::Obj]
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(match self {
-            Self::Vtu => "vtu",
-        }))
+        Self::ALL.into_iter().find(|(format, _)| format == self).map(|(_, name)| PossibleValue::new(name))
     }
 }
 

@@ -194,7 +194,8 @@ impl<'a> Recording<'a> {
             let made = StatesWriter::create(folder, scene, &self.runs, simulation.frames.states(), course);
             made.map_err(|error| if goes_on { self.unusable(&error) } else { error })
         };
-        let states = options.states.then(begin).transpose()?;
+        let keeps = options.states || options.write.iter().any(|format| format.is_of_course());
+        let states = keeps.then(begin).transpose()?;
 
         let mut results = Results { diagnostics, states, export, pictures, warned: options.printing.quiet };
         let made = self.simulate(pool, options.printing, &mut simulation, &mut results);
@@ -205,8 +206,8 @@ impl<'a> Recording<'a> {
 
         let drawn = pictures.map_or(Ok(()), |pictures| pictures.finish(self.summary, &mut self.times));
         let recorded = diagnostics.map(DiagnosticsWriter::finish);
-        let kept = states.map(StatesWriter::finish);
-        let exported = export.finish((!is_shard).then_some(self.summary.frames.recorded));
+        let exported = export.finish((!is_shard).then_some(self.summary.frames.recorded), states.as_mut());
+        let kept = states.filter(|_| options.states).map(StatesWriter::finish);
         let files = &self.folder.contents().0.files;
         self.summary.files = [
             (DIAGNOSTICS_FILE, matches!(recorded, Some(Ok(())))),

@@ -110,6 +110,10 @@ impl Render {
         if let (Some(file), true) = (&self.from_states, scenes.len() > 1) {
             bail!("{} has the states of one scene; render the scenes one at a time", file.display());
         }
+        let of_course = self.options.write.iter().find(|format| format.is_of_course());
+        if let (Some(_), Some(_)) = (of_course, self.shard) {
+            bail!("--write usd and gltf: a shard has no whole course of a run; write them with `localshape simulate`");
+        }
         let from_states = self.from_states.is_some();
         let wish = Wish { pictures: !self.no_frames, shard: self.shard, from_states, at: self.at.as_ref() };
         let mut jobs = self.options.jobs(scenes, wish, words)?;

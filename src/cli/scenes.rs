@@ -123,7 +123,7 @@ impl RunOptions {
         }
         let names = runs.iter().flat_map(|&run| recorded(&scene.runs[run].name, &scene, run)).map(|(name, _)| name);
         let size = pictures.then_some(scene.view.size);
-        let files = export::files(&scene, &runs, &self.formats());
+        let files = export::files(&scene, &runs, &self.formats(), all.len());
         let files = files.map_err(|message| Failure::usage(format!("--write: in “{}” {message}", scene.title)))?;
         let manifest = Manifest { runs: names.collect(), frames: frames.clone(), states: self.states, files, size };
         let resume = self.resume && !from_states && shard.is_none();

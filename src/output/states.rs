@@ -3,6 +3,7 @@
 use super::atomic::open_growing;
 use super::{AtomicFile, OutputError};
 use crate::runner::history::History;
+use crate::scene::npy::begin;
 use crate::scene::{COURSE, Course, Origin, Run, Scene, SceneBody, StoredRun};
 use crate::sim::{Assembly, Frame, State, Status};
 use glam::DVec3;
@@ -10,10 +11,10 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipWriter};
+use zip::ZipWriter;
 
 /// The name of the file in its folder.
 pub(crate) const STATES_FILE: &str = "states.npz";
@@ -184,6 +185,29 @@ impl StatesWriter {
         Ok(())
     }
 
+    /// Reads back a quantity, `position` or `velocity`, of some nodes of a run, by its place among the runs, in the frame with this
+    /// place.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub(super) fn read(
+        &mut self,
+        place: usize,
+        quantity: &str,
+        frame: usize,
+        nodes: &Range<usize>,
+    ) -> io::Result<Vec<DVec3>> {
+        let name = format!("{}.{quantity}", self.course.runs[place].name);
+        let array = self.arrays.iter().find(|array| array.name == name).ok_or(io::ErrorKind::NotFound)?;
+        let mut bytes = vec![0; 24 * nodes.len()];
+        self.spool.seek(SeekFrom::Start(frame as u64 * self.record + array.offset + 24 * nodes.start as u64))?;
+        self.spool.read_exact(&mut bytes)?;
+        let number = |bytes: &[u8; 8]| f64::from_le_bytes(*bytes);
+        let vector =
+            |bytes: &[u8; 24]| DVec3::from_slice(&bytes.as_chunks::<8>().0.iter().map(number).collect::<Vec<_>>());
+        Ok(bytes.as_chunks::<24>().0.iter().map(vector).collect())
+    }
+
     /// Stores the drawn state of a run, by its place among the runs, if the run diverges; see
     /// [`Frames::last_fit`](crate::runner::Frames::last_fit).
     pub(crate) fn set_last_fit(&mut self, place: usize, found: Option<Option<(&State, f64)>>) {
@@ -307,38 +331,6 @@ fn fill_lists<'l>(
     Ok(())
 }
 
-/// Begins an array of `length` bytes in the archive; its numbers are written next.
-fn begin(
-    archive: &mut ZipWriter<BufWriter<&mut File>>,
-    name: &str,
-    number: &str,
-    shape: &str,
-    bytes: u64,
-) -> io::Result<()> {
-    let header = header(number, shape);
-    let options = SimpleFileOptions::default()
-        .compression_method(CompressionMethod::Stored)
-        .last_modified_time(DateTime::default())
-        .unix_permissions(0o644)
-        .large_file(header.len() as u64 + bytes >= u64::from(u32::MAX));
-    archive.start_file(format!("{name}.npy"), options)?;
-    archive.write_all(&header)
-}
-
-/// The header of an array in NumPy's file format, version 1.0, for a number type and a shape in Python's notation.
-fn header(number: &str, shape: &str) -> Vec<u8> {
-    let mut text = format!("{{'descr': '{number}', 'fortran_order': False, 'shape': {shape}, }}");
-    // There are ten bytes before the text; the data begin at a multiple of 64.
-    let unpadded = 10 + text.len() + 1;
-    text.extend(std::iter::repeat_n(' ', unpadded.next_multiple_of(64) - unpadded));
-    text.push('\n');
-    let length = u16::try_from(text.len()).expect("a short text");
-    let mut header = b"\x93NUMPY\x01\x00".to_vec();
-    header.extend(length.to_le_bytes());
-    header.extend(text.bytes());
-    header
-}
-
 /// The three coordinates, little-endian.
 pub(super) fn vector_bytes(vector: &DVec3) -> [u8; 24] {
     let mut bytes = [0; 24];
@@ -346,19 +338,4 @@ pub(super) fn vector_bytes(vector: &DVec3) -> [u8; 24] {
         into.copy_from_slice(&coordinate.to_le_bytes());
     }
     bytes
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn header_is_aligned() {
-        for shape in ["(181,)", "(181, 64, 3)", "(181, 1000000, 3)"] {
-            let header = header("<f8", shape);
-            assert_eq!(header.len() % 64, 0);
-            assert_eq!(usize::from(header[8]) + 256 * usize::from(header[9]), header.len() - 10);
-            assert_eq!(header.last(), Some(&b'\n'));
-        }
-    }
 }

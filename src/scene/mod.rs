@@ -20,6 +20,7 @@ mod gone;
 mod limits;
 mod load;
 pub(crate) mod mesh;
+pub(crate) mod npy;
 pub(crate) mod npz;
 mod recording;
 pub(crate) mod reference;

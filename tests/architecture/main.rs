@@ -65,13 +65,16 @@ fn only_gpu_and_render_name_wgpu() {
     }
 }
 
-/// Double precision is converted to single precision in one file, relative to the panel's origin.
+/// Double precision is converted to single precision in one file, relative to the panel's origin, and in another one for formats of
+/// other programs.
 #[test]
 fn one_place_narrows() {
-    let narrowing = offenders("picture", &["as f32", "as_vec2(", "as_vec3(", "as_mat4(", "as_quat("]);
-    let elsewhere: Vec<_> = narrowing.iter().filter(|line| !line.contains("narrow.rs:")).collect();
-    assert_eq!(elsewhere, [""; 0]);
-    assert!(!narrowing.is_empty());
+    for room in ["picture", "output/export"] {
+        let narrowing = offenders(room, &["as f32", "as_vec2(", "as_vec3(", "as_mat4(", "as_quat("]);
+        let elsewhere: Vec<_> = narrowing.iter().filter(|line| !line.contains("narrow.rs:")).collect();
+        assert_eq!(elsewhere, [""; 0]);
+        assert!(!narrowing.is_empty());
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! `--write`: files for other programs, read by them.
 
 use crate::bodies::{BODIES, scene};
-use crate::support::{Place, SMALL, viewers};
+use crate::support::{Place, SMALL, validated, viewers};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -264,4 +264,169 @@ fn planes_have_points_in_space() {
     assert_eq!(place.names("out/a"), [format!("{}_00000.vtu", BODIES[1].0)]);
     let grid = place.read("out/a/cube_00000.vtu");
     assert!(grid.contains("NumberOfPoints=\"9\" NumberOfCells=\"4\""), "{grid}");
+}
+
+/// Reads files of the course, and of frames as surfaces, and compares them with `states.npz`.
+const OTHERS: &str = r##"
+import json, numpy, struct, sys
+from pxr import Usd, UsdGeom
+
+states = numpy.load("out/states.npz")
+names = list(states["bodies"]) if "bodies" in states.files else ["body"]
+
+def read_obj(path):
+    time, bodies, lists = None, [], []
+    for line in open(path):
+        words = line.split()
+        if words[:2] == ["#", "time"]:
+            time = float(words[2])
+        elif words[0] == "o":
+            bodies.append((" ".join(words[1:]), []))
+        elif words[0] == "v":
+            bodies[-1][1].append([float(word) for word in words[1:]])
+        elif words[0] in "fl":
+            lists.append([int(word) - 1 for word in words[1:]])
+    return time, bodies, lists
+
+def read_glb(path):
+    data = open(path, "rb").read()
+    magic, version, length, size, kind = struct.unpack_from("<4sIII4s", data)
+    assert (magic, version, length, kind) == (b"glTF", 2, len(data), b"JSON")
+    document, binary = json.loads(data[20:20 + size]), data[20 + size + 8:]
+    def array(at):
+        accessor = document["accessors"][at]
+        view = document["bufferViews"][accessor["bufferView"]]
+        kind = {5126: "<f4", 5123: "<u2", 5125: "<u4"}[accessor["componentType"]]
+        columns = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}[accessor["type"]]
+        count = accessor["count"]
+        start = view["byteOffset"] + accessor["byteOffset"]
+        return numpy.frombuffer(binary, kind, count * columns, start).reshape(count, columns)
+    return document, array
+
+def points_of_glb(document, array, frame):
+    """The points of each mesh in a frame, moved by its skin."""
+    animation = document["animations"][0]
+    output = lambda channel: array(animation["samplers"][channel["sampler"]]["output"])
+    moved = {channel["target"]["node"]: output(channel)[frame].astype(float) for channel in animation["channels"]}
+    for node in document["nodes"]:
+        if "mesh" not in node:
+            continue
+        skin = document["skins"][node["skin"]]
+        attributes = document["meshes"][node["mesh"]]["primitives"][0]["attributes"]
+        at, joints, weights = (array(attributes[key]) for key in ("POSITION", "JOINTS_0", "WEIGHTS_0"))
+        back = array(skin["inverseBindMatrices"])[:, 12:15].astype(float)
+        place = numpy.array([moved[joint] for joint in skin["joints"]]) + back
+        yield node["name"], (weights[:, :, None] * (at[:, None, :].astype(float) + place[joints])).sum(axis=1)
+
+carried = "carried" in sys.argv[1:]
+for run in [name.removesuffix(".position") for name in states.files if name.endswith(".position")]:
+    own = lambda name: states[f"{run}.{name}"] if f"{run}.{name}" in states.files else states[name]
+    times, position, velocity = own("time"), states[f"{run}.position"], states[f"{run}.velocity"]
+    bodies = own("body") if "bodies" in states.files else numpy.zeros(len(own("rest")), int)
+    shown = [names[at] for at in sorted(set(bodies))]
+    expected = lambda frame: [position[frame][bodies == at] for at in sorted(set(bodies))]
+    stage = Usd.Stage.Open(f"out/{run}.usda")
+    assert UsdGeom.GetStageUpAxis(stage) == "Y" and UsdGeom.GetStageMetersPerUnit(stage) == 1
+    rate = stage.GetTimeCodesPerSecond()
+    assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (times[0] * rate, times[-1] * rate)
+    meshes = [prim for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh)]
+    curves = [prim for prim in stage.Traverse() if prim.IsA(UsdGeom.BasisCurves)]
+    assert stage.GetDefaultPrim().GetMetadata("displayName") == run
+    faces = 0
+    for mesh in map(UsdGeom.Mesh, meshes):
+        counts, indices = mesh.GetFaceVertexCountsAttr().Get(), mesh.GetFaceVertexIndicesAttr().Get()
+        good, why = UsdGeom.Mesh.ValidateTopology(indices, counts, len(mesh.GetPointsAttr().Get(times[0] * rate)))
+        assert good, why
+        assert mesh.GetSubdivisionSchemeAttr().Get() == "none" and mesh.GetPointsAttr().GetNumTimeSamples() == len(times)
+        faces += len(counts)
+    document, array = read_glb(f"out/{run}.glb")
+    seconds = array(document["animations"][0]["samplers"][0]["input"])[:, 0]
+    assert (seconds == times.astype("f4")).all()
+    for frame, time in enumerate(times):
+        if meshes and len(meshes) == len(shown) and not carried:
+            for mesh, points, at in zip(map(UsdGeom.Mesh, meshes), expected(frame), sorted(set(bodies))):
+                found = numpy.array(mesh.GetPointsAttr().Get(time * rate))
+                assert (found == points.astype("f4")).all(), (run, frame)
+                moving = numpy.array(mesh.GetVelocitiesAttr().Get(time * rate))
+                assert (moving == velocity[frame][bodies == at].astype("f4")).all()
+                low, high = mesh.GetExtentAttr().Get(time * rate)
+                assert (numpy.array(low) == found.min(axis=0)).all() and (numpy.array(high) == found.max(axis=0)).all()
+        moment, written, lists = read_obj(f"out/{run}/frame_{frame:05}.obj")
+        assert moment == time and [name for name, _ in written] == shown, (moment, time, written)
+        reference = [numpy.array(points) for _, points in written]
+        if not carried:
+            assert all((one == other).all() for one, other in zip(reference, expected(frame)))
+        else:
+            found = numpy.array(UsdGeom.Mesh(meshes[0]).GetPointsAttr().Get(time * rate))
+            assert (found == reference[0].astype("f4")).all()
+        skinned = list(points_of_glb(document, array, frame))
+        assert [name for name, _ in skinned] == shown
+        apart = max(numpy.abs(one - other).max() for (_, one), other in zip(skinned, reference))
+        # Eight nodes of a cube are followed by four, which is the same for affine motions, as at the start.
+        assert apart < (1e-6 if not carried or frame == 0 else 2e-3), (run, frame, apart)
+    print(run, len(shown), faces, len(curves), sum(len(one) == 2 for one in lists), len(lists))
+"##;
+
+/// What USD and own readers tell of the files of a scene in `out`, after the validator of glTF has found nothing.
+fn others(place: &Place, text: &str, word: &str, options: &str) -> Option<String> {
+    let python = viewers()?;
+    place.write("scene.toml", text);
+    let ran =
+        place.run(&format!("simulate scene.toml -o out --states --write usd,gltf --write obj{options} --overwrite"));
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    for name in place.names("out").iter().filter(|name| name.ends_with(".glb")) {
+        validated(&place.path("out").join(name));
+    }
+    let script = OTHERS.replace("sys.argv[1:]", &format!("[\"{word}\"]"));
+    Some(python(&place.path("."), &script).trim().to_owned())
+}
+
+#[test]
+fn other_programs_read_the_states_of_all_kinds_of_elements() {
+    let place = Place::new();
+    let Some(mixed) = others(&place, MIXED, "", "") else { return };
+    assert!(mixed.starts_with("Local shape 1 ") && mixed.contains(" 0 0 "), "{mixed}");
+    // Six faces of the prism, five more of the pyramid, and a triangle; a bar.
+    assert_eq!(others(&place, HULLS, "", "").unwrap(), "Local shape 1 12 1 1 13");
+}
+
+#[test]
+fn other_programs_read_each_of_several_bodies() {
+    let place = Place::new();
+    let Some(told) = others(&place, &crate::bodies::of_their_own(), "", " --frames 0-4x2,6") else { return };
+    let runs: Vec<_> = told.lines().map(|line| line.split(' ').take(2).collect::<Vec<_>>()).collect();
+    assert_eq!(runs, [["all", "2"], ["coarse", "1"], ["fine", "1"]], "{told}");
+}
+
+#[test]
+fn a_skin_has_no_more_nodes_than_its_format_has_numbers_for() {
+    let place = Place::new();
+    place.write("large.toml", &SMALL.replace("cells = [2, 1, 1]", "cells = [400, 40, 3]"));
+    let ran = place.run("simulate large.toml --write gltf --frames 0");
+    ran.bad(2, &["--write: in “Two cubes” \"body\" has 65 764 nodes, and a skin of glTF at most 65 535; write usd"]);
+    assert!(!place.path("output").exists());
+    #[cfg(feature = "render")]
+    place
+        .run("render large.toml --write usd --shard 1/2")
+        .bad(2, &["--write usd and gltf: a shard has no whole course"]);
+}
+
+/// Files of the course hold the frames until an interruption, and all after the next command.
+#[cfg(unix)]
+#[test]
+fn courses_after_an_interruption_are_those_without_one() {
+    let place = Place::new();
+    place.write("scene.toml", &crate::support::lasting("20"));
+    place.run("simulate scene.toml --write usd,gltf,obj -o whole").good();
+    let typed = "simulate scene.toml --write usd,gltf,obj -o out";
+    let running = crate::interrupt::start(&place, typed, "out/Local shape/frame_00003.obj");
+    crate::interrupt::signal(&running, &["TERM"]);
+    running.wait();
+    let recorded = place.json("out/run.json")["frames"]["recorded"].as_u64().unwrap();
+    let stage = place.read("out/Mass-spring.usda");
+    let samples = stage.split("points.timeSamples").nth(1).unwrap().split('}').next().unwrap().matches(": [").count();
+    assert_eq!(samples as u64, recorded);
+    assert!(place.path("out/Mass-spring.glb").exists() && !place.path("out/states.npz").exists());
+    place.run(&format!("{typed} --resume")).good();
+    assert!(files_below(&place, "out") == files_below(&place, "whole"));
 }

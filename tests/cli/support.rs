@@ -290,6 +290,23 @@ pub(crate) fn viewers() -> Option<impl Fn(&Path, &str) -> String> {
     python_with("numpy, vtkmodules, pxr", Some(VIEWERS), "VIEWERS", ".ci/run viewers")
 }
 
+/// Validates a file by the validator of glTF, which must find nothing, not even a hint. Without it,
+/// `LOCALSHAPE_REQUIRE_VIEWERS=1` is a failure.
+pub(crate) fn validated(file: &Path) {
+    let script = "const validator = require(process.argv[1] + '/node_modules/gltf-validator');\n\
+                  const bytes = new Uint8Array(require('fs').readFileSync(process.argv[2]));\n\
+                  validator.validateBytes(bytes).then(report => console.log(JSON.stringify(report.issues)));";
+    if !Path::new(VIEWERS).join("node_modules/gltf-validator").is_dir() {
+        let missing = "there is no validator of glTF: `.ci/run viewers`";
+        assert!(std::env::var_os("LOCALSHAPE_REQUIRE_VIEWERS").is_none_or(|value| value != "1"), "{missing}");
+        return skipped(missing);
+    }
+    let ran = run(Command::new("node").args(["-e", script, VIEWERS]).arg(file).stdin(Stdio::null()));
+    let found = ran.json();
+    let counts = ["numErrors", "numWarnings", "numInfos", "numHints"].map(|kind| found[kind].as_u64());
+    assert_eq!(counts, [Some(0); 4], "{}: {found:#}", file.display());
+}
+
 /// As [`python`], with a folder of packages, and what is required and installed by which command if there is none.
 fn python_with(
     package: &str,

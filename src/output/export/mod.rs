@@ -3,21 +3,32 @@
 //! Each run has files under its own name. Files of single frames are written when the frame is known, and files of the whole
 //! course at the end.
 
+mod course;
+mod glb;
+mod influence;
 mod mark;
+mod narrow;
+mod obj;
 mod pvd;
+mod surface;
+mod usda;
 mod vtu;
 
-use super::{OutputError, write_whole};
+use super::{AtomicFile, OutputError, StatesWriter, write_whole};
 use crate::reading::captions::typed;
-use crate::scene::Scene;
+use crate::reading::words::{count, quoted};
+use crate::scene::{Run, Scene};
 use crate::sim::{Body, Carried, Frame, RunFrame, Snapshot, Support};
+use course::Course;
 pub(super) use mark::scene_of;
 use mark::{mark, starts_with};
 use rayon::prelude::*;
 use std::fs;
+use std::io::{self, BufWriter, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use surface::Surface;
 use vtu::{Cells, Column};
 
 /// A format of files for other programs.
@@ -25,15 +36,55 @@ use vtu::{Cells, Column};
 pub(crate) enum Format {
     /// VTK's unstructured grids, one for each body and frame, with a list of them and their times for each run.
     Vtu,
+    /// Universal Scene Description, one file for each run.
+    Usd,
+    /// glTF, one file for each run.
+    Gltf,
+    /// Wavefront's surfaces, one file for each run and frame.
+    Obj,
+}
+
+impl Format {
+    /// All formats with their names.
+    pub(crate) const ALL: [(Self, &'static str); 4] =
+        [(Self::Vtu, "vtu"), (Self::Usd, "usd"), (Self::Gltf, "gltf"), (Self::Obj, "obj")];
+
+    /// Whether it has the whole course of a run in one file, for which the states of all frames are kept.
+    pub(crate) fn is_of_course(self) -> bool {
+        matches!(self, Self::Usd | Self::Gltf)
+    }
 }
 
 /// The files of some runs for other programs.
 pub(crate) struct Export<'a> {
     scene: &'a Scene,
     folder: PathBuf,
+    formats: Vec<Format>,
+    /// The grids of the runs, if they are written.
     series: Vec<Series>,
+    /// The surfaces of the runs, if they are written.
+    surfaces: Vec<OfRun>,
     /// The requested frames, those of other shards included.
     frames: Vec<u64>,
+}
+
+/// The surfaces of a run.
+struct OfRun {
+    /// The place of the run among the requested ones.
+    place: usize,
+    /// The index of the run in the scene.
+    run: usize,
+    /// What the names of its files begin with, and the name of its folder.
+    stem: String,
+    bodies: Vec<OfBody>,
+}
+
+/// The surface of a body.
+struct OfBody {
+    /// Its name in the scene, or `body` if it has none.
+    name: String,
+    nodes: Range<usize>,
+    surface: Surface,
 }
 
 /// Files of one run that are shown together.
@@ -80,11 +131,16 @@ impl<'a> Export<'a> {
     ) -> Result<Self, OutputError> {
         let wants_grids = formats.contains(&Format::Vtu);
         let series: Vec<_> = if wants_grids { all_series(scene, runs).collect() } else { Vec::new() };
-        for one in &series {
-            let path = folder.join(&one.stem);
+        let wants_surfaces = formats.iter().any(|&format| format != Format::Vtu);
+        let surfaces: Vec<_> = if wants_surfaces { all_surfaces(scene, runs).collect() } else { Vec::new() };
+        let has_frames = formats.contains(&Format::Obj);
+        let stems = surfaces.iter().filter(|_| has_frames).map(|run| &run.stem);
+        for stem in series.iter().map(|one| &one.stem).chain(stems) {
+            let path = folder.join(stem);
             fs::create_dir_all(&path).map_err(OutputError::writing(&path))?;
         }
-        Ok(Self { scene, folder: folder.to_owned(), series, frames: frames.to_vec() })
+        let (folder, formats, frames) = (folder.to_owned(), formats.to_vec(), frames.to_vec());
+        Ok(Self { scene, folder, formats, series, surfaces, frames })
     }
 
     /// Writes the files of a frame.
@@ -96,7 +152,24 @@ impl<'a> Export<'a> {
         files.par_iter().try_for_each(|(series, part)| {
             let path = self.folder.join(series.grid_file(part, frame.index));
             write_whole(&path, &self.grid(series, part, frame.index, &frame.runs[series.place]))
+        })?;
+        if !self.formats.contains(&Format::Obj) {
+            return Ok(());
+        }
+        self.surfaces.par_iter().try_for_each(|run| {
+            let Snapshot { time, position, .. } = &frame.runs[run.place].snapshot;
+            let bodies = run.bodies.iter().map(|body| (&*body.name, &body.surface, &position[body.nodes.clone()]));
+            let text = obj::document(&mark(self.scene, Some(frame.index)), *time, bodies);
+            write_whole(&self.folder.join(run.frame_file(frame.index)), text.as_bytes())
         })
+    }
+
+    /// The files of a frame, below the output folder.
+    fn frame_files(&self, frame: u64) -> impl Iterator<Item = String> {
+        let grids =
+            self.series.iter().flat_map(move |one| one.parts.iter().map(move |part| one.grid_file(part, frame)));
+        let has_frames = self.formats.contains(&Format::Obj);
+        grids.chain(self.surfaces.iter().filter(move |_| has_frames).map(move |run| run.frame_file(frame)))
     }
 
     /// The grid of a part in a frame.
@@ -136,8 +209,7 @@ impl<'a> Export<'a> {
     pub(crate) fn wrong(&self, frames: &[u64]) -> Result<Option<String>, OutputError> {
         for &frame in frames {
             let mark = mark(self.scene, Some(frame));
-            for (series, part) in self.series.iter().flat_map(|one| one.parts.iter().map(move |part| (one, part))) {
-                let file = series.grid_file(part, frame);
+            for file in self.frame_files(frame) {
                 if !starts_with(&self.folder.join(&file), &mark)? {
                     return Ok(Some(format!("{file}, which is missing or has been replaced since; restore it")));
                 }
@@ -146,15 +218,19 @@ impl<'a> Export<'a> {
         Ok(None)
     }
 
-    /// Writes the files of the course, with the first `recorded` frames; with `None`, those of all shards.
+    /// Writes the files of the course, with the first `recorded` frames; with `None`, those of all shards. `states` has the states of
+    /// these frames, if a format needs them.
     ///
     /// # Errors
     /// If one cannot be written.
-    pub(crate) fn finish(self, recorded: Option<usize>) -> Result<(), OutputError> {
+    pub(crate) fn finish(self, recorded: Option<usize>, states: Option<&mut StatesWriter>) -> Result<(), OutputError> {
         let frames = &self.frames[..recorded.unwrap_or(self.frames.len()).min(self.frames.len())];
+        if let Some(states) = states {
+            self.write_courses(frames, states)?;
+        }
         self.series.iter().try_for_each(|series| {
             let path = self.folder.join(format!("{}.pvd", series.stem));
-            let time = |frame| self.scene.frame_step(series.run, frame) as f64 * self.scene.runs[series.run].step;
+            let time = |frame| self.time(series.run, frame);
             let files = frames.iter().flat_map(|&frame| {
                 let file = move |part: &Part| (time(frame), part.name.clone(), series.grid_file(part, frame));
                 series.parts.iter().map(file)
@@ -162,6 +238,70 @@ impl<'a> Export<'a> {
             write_whole(&path, pvd::document(&mark(self.scene, None), files).as_bytes())
         })
     }
+
+    /// Writes the files that have the whole course of a run. There are none without a frame.
+    fn write_courses(&self, frames: &[u64], states: &mut StatesWriter) -> Result<(), OutputError> {
+        for run in self.surfaces.iter().filter(|_| !frames.is_empty()) {
+            let times = frames.iter().map(|&frame| self.time(run.run, frame)).collect();
+            let mut course = Course { states: &mut *states, place: run.place, times };
+            let (mark, name) = (mark(self.scene, None), &self.scene.runs[run.run].name);
+            let head = usda::Head { mark: &mark, name, rate: self.scene.frames_per_second };
+            if self.formats.contains(&Format::Usd) {
+                self.write_course(run, "usda", |to| usda::write(to, &head, run, &mut course))?;
+            }
+            if self.formats.contains(&Format::Gltf) {
+                self.write_course(run, "glb", |to| glb::write(to, (&mark, name), run, &mut course))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes a file of a run piece by piece.
+    fn write_course(
+        &self,
+        run: &OfRun,
+        ending: &str,
+        write: impl FnOnce(&mut BufWriter<&mut fs::File>) -> io::Result<()>,
+    ) -> Result<(), OutputError> {
+        let path = self.folder.join(format!("{}.{ending}", run.stem));
+        let mut file = AtomicFile::create(&path)?;
+        let mut to = BufWriter::new(file.file());
+        let written = write(&mut to).and_then(|()| to.flush());
+        // After an error, the rest is not tried again.
+        drop(to.into_parts());
+        written.map_err(OutputError::writing(&path))?;
+        file.commit()
+    }
+
+    /// The time of a run in a frame (s).
+    fn time(&self, run: usize, frame: u64) -> f64 {
+        self.scene.frame_step(run, frame) as f64 * self.scene.runs[run].step
+    }
+}
+
+impl OfRun {
+    /// The file of the surfaces in a frame, below the output folder.
+    fn frame_file(&self, frame: u64) -> String {
+        format!("{}/frame_{frame:05}.obj", self.stem)
+    }
+}
+
+/// The surfaces of some runs.
+fn all_surfaces<'a>(scene: &'a Scene, runs: &'a [usize]) -> impl Iterator<Item = OfRun> + 'a {
+    runs.iter().enumerate().map(|(place, &run)| {
+        let (of, bodies) = (&scene.runs[run].of, &scene.runs[run].bodies);
+        let body = |(at, body): (usize, &Arc<Body>)| {
+            let name = or_body(&scene.bodies[of[at]].name).to_owned();
+            OfBody { name, nodes: bodies.nodes(at), surface: Surface::of(body) }
+        };
+        let bodies = bodies.bodies().iter().enumerate().map(body).collect();
+        OfRun { place, run, stem: file_name(&scene.runs[run].name), bodies }
+    })
+}
+
+/// The name of a body in files.
+fn or_body(name: &str) -> &str {
+    if name.is_empty() { "body" } else { name }
 }
 
 impl Series {
@@ -182,8 +322,14 @@ fn all_series<'a>(scene: &'a Scene, runs: &'a [usize]) -> impl Iterator<Item = S
                     Shape::Elements(body) => Cells::of_body(body),
                     Shape::Surface(carried) => Cells::of_triangles(&carried.triangles),
                 };
-                let stem = if name.is_empty() { "body".to_owned() } else { file_name(&name) };
-                Some(Part { stem, name, shape, nodes: bodies.nodes(at), elements: bodies.elements(at), cells })
+                Some(Part {
+                    stem: file_name(or_body(&name)),
+                    name,
+                    shape,
+                    nodes: bodies.nodes(at),
+                    elements: bodies.elements(at),
+                    cells,
+                })
             };
             let parts: Vec<_> = bodies.bodies().iter().enumerate().filter_map(part).collect();
             let stem = file_name(&scene.runs[run].name) + ending;
@@ -197,11 +343,11 @@ fn all_series<'a>(scene: &'a Scene, runs: &'a [usize]) -> impl Iterator<Item = S
 /// The ending of names of series of carried surfaces.
 const SURFACE: &str = "-surface";
 
-/// Patterns of the files for some runs of a scene, below the output folder.
+/// Patterns of the files for some runs and frames of a scene, below the output folder.
 ///
 /// # Errors
-/// If two runs or bodies would have the same files, in words.
-pub(crate) fn files(scene: &Scene, runs: &[usize], formats: &[Format]) -> Result<Vec<String>, String> {
+/// If two runs or bodies would have the same files, or a format does not take them, in words.
+pub(crate) fn files(scene: &Scene, runs: &[usize], formats: &[Format], frames: usize) -> Result<Vec<String>, String> {
     let mut files = Vec::new();
     if formats.is_empty() {
         return Ok(files);
@@ -219,6 +365,12 @@ pub(crate) fn files(scene: &Scene, runs: &[usize], formats: &[Format]) -> Result
                         stems.into_iter().flatten().flat_map(|stem| [format!("{stem}.pvd"), format!("{stem}/*.vtu")]),
                     );
                 }
+                Format::Usd => files.push(format!("{stem}.usda")),
+                Format::Gltf => {
+                    fits_gltf(scene, run, frames)?;
+                    files.push(format!("{stem}.glb"));
+                }
+                Format::Obj => files.push(format!("{stem}/*.obj")),
             }
         }
         same_name(run.body_names(scene), "bodies")?;
@@ -227,6 +379,23 @@ pub(crate) fn files(scene: &Scene, runs: &[usize], formats: &[Format]) -> Result
     match (1..files.len()).find(|&at| lower[..at].contains(&lower[at])) {
         Some(at) => Err(format!("two runs would both have the file {}; rename one of them", files[at])),
         None => Ok(files),
+    }
+}
+
+/// Refuses runs that glTF has no numbers for.
+fn fits_gltf(scene: &Scene, run: &Run, frames: usize) -> Result<(), String> {
+    let help = "write usd or vtu, or make the body of fewer elements";
+    for (at, body) in run.bodies.bodies().iter().enumerate().filter(|(_, body)| body.len() > glb::MOST_NODES) {
+        let name = quoted(or_body(&scene.bodies[run.of[at]].name));
+        let [nodes, most] = [body.len(), glb::MOST_NODES].map(|nodes| count(nodes as u128));
+        return Err(format!("{name} has {nodes} nodes, and a skin of glTF at most {most}; {help}"));
+    }
+    match glb::least_length(run.bodies.bodies().iter().map(|body| body.len()), frames) > u32::MAX.into() {
+        true => Err(format!(
+            "the motion of {} is longer than the 4 GiB of a file of glTF; choose some frames with --frames, or {help}",
+            quoted(&run.name)
+        )),
+        false => Ok(()),
     }
 }
 
@@ -290,8 +459,8 @@ pub(super) fn patterns_in(folder: &Path) -> Vec<String> {
 }
 
 /// The endings of files of the whole course, and of single frames.
-const COURSE_ENDINGS: &[&str] = &[".pvd"];
-const FRAME_ENDINGS: &[&str] = &[".vtu"];
+const COURSE_ENDINGS: [&str; 3] = [".glb", ".pvd", ".usda"];
+const FRAME_ENDINGS: [&str; 2] = [".obj", ".vtu"];
 
 #[cfg(test)]
 mod tests {
@@ -316,7 +485,7 @@ mod tests {
         ] {
             fs::write(place.path().join(name), "").unwrap();
         }
-        assert_eq!(patterns_in(place.path()), ["run.pvd", "run/*.vtu"]);
+        assert_eq!(patterns_in(place.path()), ["run.pvd", "run/*.obj", "run/*.vtu"]);
         let found = |pattern: &str| matching(place.path(), pattern).len();
         assert_eq!(["run.pvd", "run/*.vtu", "other.pvd", "other/*.vtu"].map(found), [1, 2, 0, 0]);
     }

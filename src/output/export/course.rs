@@ -1,0 +1,27 @@
+//! The states of a run over its course, read back frame by frame.
+
+use crate::output::StatesWriter;
+use glam::DVec3;
+use std::io;
+use std::ops::Range;
+
+/// The recorded frames of a run.
+pub(super) struct Course<'c> {
+    pub(super) states: &'c mut StatesWriter,
+    /// The place of the run among the recorded ones.
+    pub(super) place: usize,
+    /// The time of each frame (s), rising; at least one.
+    pub(super) times: Vec<f64>,
+}
+
+impl Course<'_> {
+    /// The positions of some nodes in a frame (m).
+    pub(super) fn positions(&mut self, frame: usize, nodes: &Range<usize>) -> io::Result<Vec<DVec3>> {
+        self.states.read(self.place, "position", frame, nodes)
+    }
+
+    /// The velocities of some nodes in a frame (m/s).
+    pub(super) fn velocities(&mut self, frame: usize, nodes: &Range<usize>) -> io::Result<Vec<DVec3>> {
+        self.states.read(self.place, "velocity", frame, nodes)
+    }
+}

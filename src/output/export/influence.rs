@@ -1,0 +1,121 @@
+//! The nodes that a point of a carried surface follows, at most four of them, as graphics devices take them.
+//!
+//! A point in a cube follows eight corners. The nodes of a cell span tetrahedra, and the point follows the corners of the one in which
+//! it lies at rest. It is then at the same place at rest, and moves with affine motions as before. The tetrahedra are those whose
+//! corners, raised by their heights into a fourth dimension, bound their hull from below: a regular triangulation
+//! (Gelfand, Kapranov and Zelevinsky 1994). Heights belong to nodes, so that cells beside each other divide their common face alike, and
+//! the surface has no cracks.
+
+use crate::sim::Carried;
+use glam::{DMat3, DVec3};
+
+/// The greatest number of nodes.
+pub(super) const MOST: usize = 4;
+
+/// A corner counts as used above this weight, and a point as inside a tetrahedron if none is below its negative.
+const LEAST: f64 = 1e-9;
+
+/// The nodes of a point of a surface and their weights, above zero and with the sum 1.
+pub(super) fn of(carried: &Carried, point: usize, rest: &[DVec3]) -> Vec<(u32, f64)> {
+    let (nodes, weights) = carried.weights.of(point);
+    let mut all: Vec<(u32, f64)> = Vec::new();
+    for (&node, &weight) in nodes.iter().zip(weights) {
+        match all.iter_mut().find(|(other, _)| *other == node) {
+            Some((_, sum)) => *sum += weight,
+            None => all.push((node, weight)),
+        }
+    }
+    all.retain(|(_, weight)| weight.abs() > LEAST);
+    if all.len() <= MOST && all.iter().all(|(_, weight)| *weight > 0.0) {
+        return all;
+    }
+    let at: DVec3 = all.iter().map(|&(node, weight)| rest[node as usize] * weight).sum();
+    tetrahedron(&all, at, rest).unwrap_or_else(|| {
+        // Nodes in a plane, or a point outside their hull.
+        all.retain(|(_, weight)| *weight > 0.0);
+        all.sort_by(|one, other| other.1.total_cmp(&one.1));
+        all.truncate(MOST);
+        let sum: f64 = all.iter().map(|(_, weight)| weight).sum();
+        all.into_iter().map(|(node, weight)| (node, weight / sum)).collect()
+    })
+}
+
+/// The tetrahedron of nodes with the least height at a point, and the weights of its corners there.
+fn tetrahedron(all: &[(u32, f64)], at: DVec3, rest: &[DVec3]) -> Option<Vec<(u32, f64)>> {
+    let corner = |place: usize| rest[all[place].0 as usize] - at;
+    let size = (0..all.len()).map(|place| corner(place).length_squared()).fold(0.0, f64::max);
+    // Nodes on a sphere, such as the corners of a cube, differ by a little of their own.
+    let height = |place: usize| {
+        let mixed = u64::from(all[place].0).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11;
+        corner(place).length_squared() / size + 1e-3 * (mixed as f64 / (1_u64 << 53) as f64)
+    };
+    let mut best: Option<(f64, [usize; MOST], [f64; MOST])> = None;
+    for a in 0..all.len() {
+        for b in a + 1..all.len() {
+            for c in b + 1..all.len() {
+                for d in c + 1..all.len() {
+                    let origin = corner(a);
+                    let sides = DMat3::from_cols(corner(b) - origin, corner(c) - origin, corner(d) - origin);
+                    if sides.determinant().abs() <= LEAST * size * size.sqrt() {
+                        continue;
+                    }
+                    let DVec3 { x, y, z } = sides.inverse() * -origin;
+                    let (places, weights) = ([a, b, c, d], [1.0 - x - y - z, x, y, z]);
+                    let sum = places.iter().zip(weights).map(|(&place, weight)| height(place) * weight).sum();
+                    if weights.iter().all(|weight| *weight >= -LEAST) && best.is_none_or(|(least, ..)| sum < least) {
+                        best = Some((sum, places, weights));
+                    }
+                }
+            }
+        }
+    }
+    let (_, places, weights) = best?;
+    let used = places.into_iter().zip(weights).filter(|(_, weight)| *weight > LEAST);
+    Some(used.map(|(place, weight)| (all[place].0, weight)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::Weights;
+
+    /// Points of a cube, by trilinear weights.
+    fn cube() -> (Carried, Vec<DVec3>) {
+        let rest: Vec<_> =
+            (0..8).map(|at: u32| DVec3::from_array([0, 1, 2].map(|axis| f64::from(at >> axis & 1)))).collect();
+        let (mut weights, mut points) = (Weights::default(), Vec::new());
+        for at in 0..1000_u32 {
+            let point = DVec3::from_array([at % 10, at / 10 % 10, at / 100].map(|place| f64::from(place) / 9.0));
+            let weight = |corner: &DVec3| (0..3).map(|axis| 1.0 - (corner[axis] - point[axis]).abs()).product::<f64>();
+            weights.push(&[0, 1, 2, 3, 4, 5, 6, 7], &rest.iter().map(weight).collect::<Vec<_>>());
+            points.push(point);
+        }
+        (Carried { rest: points, triangles: Vec::new(), weights }, rest)
+    }
+
+    #[test]
+    fn points_stay_where_they_are_at_rest() {
+        let (carried, rest) = cube();
+        for (point, &at) in carried.rest.iter().enumerate() {
+            let found = of(&carried, point, &rest);
+            assert!(!found.is_empty() && found.len() <= MOST && found.iter().all(|(_, weight)| *weight > 0.0));
+            let sum: f64 = found.iter().map(|(_, weight)| weight).sum();
+            let there: DVec3 = found.iter().map(|&(node, weight)| rest[node as usize] * weight).sum();
+            assert!((sum - 1.0).abs() < 1e-8 && there.distance(at) < 1e-8, "{at}: {found:?}");
+        }
+    }
+
+    /// However the corners move, points near each other stay near each other.
+    #[test]
+    fn the_surface_has_no_cracks() {
+        let (carried, rest) = cube();
+        let moved: Vec<_> =
+            rest.iter().map(|at| *at + DVec3::splat(0.5 * (at.x - at.y * at.z + at.x * at.y * at.z))).collect();
+        let place = |point: usize| -> DVec3 {
+            of(&carried, point, &rest).into_iter().map(|(node, weight)| moved[node as usize] * weight).sum()
+        };
+        for point in (0..1000).filter(|at| at % 10 < 9) {
+            assert!(place(point).distance(place(point + 1)) < 4.0 / 9.0, "{point}");
+        }
+    }
+}
