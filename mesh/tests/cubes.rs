@@ -267,6 +267,34 @@ fn graded_cubes_are_coarse_inside() {
     println!("{error} {:?}", error.help);
 }
 
+/// Graded cubes are of the material of plain ones: the same deformation of a block needs the same energy.
+#[test]
+fn coarse_cubes_are_as_stiff_as_the_fine_ones_in_their_place() {
+    use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+    use localshape_sim::{Body, Dimension, Integrator, Solids, State, Stepping, Surroundings, World};
+    let energy = |with: Fill| {
+        let cage = fill(&block(DVec3::ZERO, DVec3::splat(2.0)), with, MOST).unwrap().cage;
+        let count = cage.nodes.len();
+        let stretch = DMat3::from_cols_array(&[1.02, 0.03, 0.01, 0.03, 0.99, -0.02, 0.01, -0.02, 1.01]);
+        let moved = cage.nodes.iter().map(|&node| stretch * node).collect();
+        let mut body = Body::new(Dimension::Space, cage.nodes, vec![1.0; count], cage.elements, Solids::Ordered, None);
+        body.fill = cage.stiffness;
+        let model = ShapeBased {
+            stiffness: 1.0,
+            damping: 0.0,
+            passes: 2,
+            rotation: RotationReading::Robust,
+            damping_of: DampingReading::RelativeMotion,
+        };
+        let stepping = Stepping::new(Integrator::SemiImplicitEuler, 1e-4);
+        let state = State::new(moved, vec![DVec3::ZERO; count]);
+        World::new(&std::sync::Arc::new(body), state, &model, Surroundings::default(), stepping).diagnostics().elastic
+    };
+    let ratio = energy(Fill::Graded { side: 0.1 }) / energy(Fill::Cubes { side: 0.1 });
+    println!("{ratio}");
+    assert!((ratio - 1.0).abs() < 0.012, "{ratio}");
+}
+
 #[test]
 fn open_surfaces_are_filled_to_the_hole() {
     let mut surface = ball(DVec3::ZERO, 1.0, 60);

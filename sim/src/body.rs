@@ -27,7 +27,8 @@ pub struct Body {
     /// The faces of the elements, or the listed ones.
     pub faces: Faces,
     /// The part of each element's volume that is filled, above 0 and at most 1. Its stiffness and its damping are in proportion; its
-    /// share in the masses of its nodes has to be, and then it does not shorten the stable step. `None` if all are full.
+    /// share in the masses of its nodes has to be, and then it does not shorten the stable step. More than 1 is a full element that is
+    /// so many times stiffer than others of the same material, as it is larger. `None` if all are full and alike.
     pub fill: Option<Vec<f64>>,
     /// The fine surface that stands for the body in pictures.
     pub carried: Option<Arc<Carried>>,

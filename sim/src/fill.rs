@@ -44,7 +44,7 @@ pub(crate) fn of_nodes(body: &Body) -> Option<Vec<f64>> {
 /// What is filled of the volumes of elements (m³, in the plane m²): their sum, if the body is full.
 pub(crate) fn volume(fill: Option<&[f64]>, volumes: &[f64]) -> f64 {
     match fill {
-        Some(fill) => volumes.iter().zip(fill).map(|(volume, part)| volume * part).sum(),
+        Some(fill) => volumes.iter().zip(fill).map(|(volume, part)| volume * part.min(1.0)).sum(),
         None => volumes.iter().sum(),
     }
 }

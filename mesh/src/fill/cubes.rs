@@ -53,10 +53,10 @@ pub(super) fn fill(
     let scene = Scene { scaled: &scaled, lattice: &lattice, inside: &inside, pieces: &pieces };
     let parts = scene.parts(&cells);
     let mut nodes = Nodes::new(lattice, parts.corners.len());
-    let (elements, filled, weights) = if is_graded {
-        let Graded { elements, filled, element_of } = graded::joined(&scene, &parts, &mut nodes);
+    let (elements, filled, stiffness, weights) = if is_graded {
+        let Graded { elements, filled, stiffness, element_of } = graded::joined(&scene, &parts, &mut nodes);
         let weights = weights(&scene, &parts, |copy| &elements[element_of[copy] as usize]);
-        (elements, filled, weights)
+        (elements, filled, Some(stiffness), weights)
     } else {
         let mut elements = IndexLists::default();
         for (copy, full) in parts.copies.iter().enumerate() {
@@ -66,12 +66,12 @@ pub(super) fn fill(
             }));
         }
         let weights = weights(&scene, &parts, |copy| &elements[copy]);
-        (elements, parts.copies.iter().map(|full| full.filled).collect(), weights)
+        (elements, parts.copies.iter().map(|full| full.filled).collect(), None, weights)
     };
     if elements.len() > most {
         return refuse(elements.len());
     }
-    let cage = Cage { nodes: nodes.places, elements, filled: in_part(filled), convex: false };
+    let cage = Cage { nodes: nodes.places, elements, filled: in_part(filled), stiffness, convex: false };
     Ok(Filled { cage, surface, weights, flaws })
 }
 

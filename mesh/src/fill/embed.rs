@@ -519,7 +519,7 @@ mod tests {
         let square = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (2.0, 0.1), (1.7, 0.8), (2.3, 1.0)];
         let nodes = [0.0, 1.0].iter().flat_map(|&z| square.map(|(x, y)| at(x, y, z))).collect();
         let elements = [&[0, 1, 2, 3, 7, 8, 9, 10][..], &[1, 3, 4, 5, 8, 10, 11, 12], &[4, 5, 6, 11, 12, 13]];
-        Cage { nodes, elements: elements.into_iter().collect(), filled: None, convex: true }
+        Cage { nodes, elements: elements.into_iter().collect(), convex: true, ..Cage::default() }
     }
 
     /// The weight of each node.

@@ -199,7 +199,7 @@ fn generated(
 /// A surface with the elements that fill it, whose edges have a length (m).
 fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Collector<'_>) -> Option<ResolvedBody> {
     let before = report.total();
-    let Filled { cage: Cage { nodes, elements, filled, convex }, surface, weights, .. } = of;
+    let Filled { cage: Cage { nodes, elements, filled, stiffness, convex }, surface, weights, .. } = of;
     let solids = if convex { Solids::Convex } else { Solids::Ordered };
     let count = nodes.len();
     let mut body = Body::new(Dimension::Space, nodes, vec![1.0; count], elements, solids, None);
@@ -211,6 +211,11 @@ fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Co
         return None;
     }
     body.mass = mass?;
+    if let Some(stiffness) = stiffness {
+        // After the masses, which are in proportion to volumes.
+        let parts = body.fill.unwrap_or_else(|| vec![1.0; stiffness.len()]);
+        body.fill = Some(parts.iter().zip(&stiffness).map(|(part, stiffness)| part * stiffness).collect());
+    }
     let name = file.name.clone().unwrap_or_default();
     let body = Arc::new(body);
     Some(ResolvedBody { name, body, initial, springs: None, side, has_cells: false, groups: Vec::new() })
