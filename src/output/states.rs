@@ -197,7 +197,7 @@ impl StatesWriter {
         frame: usize,
         nodes: &Range<usize>,
     ) -> io::Result<Vec<DVec3>> {
-        let name = format!("{}.{quantity}", self.course.runs[place].name);
+        let name = format!("{}.{quantity}", self.written.course.runs[place].name);
         let array = self.arrays.iter().find(|array| array.name == name).ok_or(io::ErrorKind::NotFound)?;
         let mut bytes = vec![0; 24 * nodes.len()];
         self.spool.seek(SeekFrom::Start(frame as u64 * self.record + array.offset + 24 * nodes.start as u64))?;

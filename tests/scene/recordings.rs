@@ -207,7 +207,7 @@ fn damaged_recordings_are_refused_with_place_and_remedy() {
 
 #[test]
 fn arrays_that_are_not_read_are_told() {
-    let warned = |name: &str| {
+    let warned = |name: &'static str| {
         let more = doubles(name, "(3, 4, 2)", &[0.0; 24]);
         let scene = load(SCENE, &stored(&[&swing(5.0, 0.5)[..], &[more]].concat())).1;
         let scene = scene.unwrap_or_else(|error| panic!("{error}"));
