@@ -270,7 +270,7 @@ impl Cells {
         // Elements with so many nodes are told from tetrahedra, pyramids, wedges and hexahedra in no other way.
         let convex = self.chosen(is_solid).any(|(_, kind, corners)| hulls(kind, corners));
         let solids = if convex { Solids::Convex } else { Solids::Ordered };
-        let mut parts = Parts::new(Dimension::Space);
+        let mut parts = Parts::new(Dimension::Space, self.kinds.len());
         for (at, kind, corners) in self.chosen(is_solid) {
             let element = match (kind.element().expect("a solid"), corners.len()) {
                 (ElementKind::Other, 4) => ElementKind::Tetrahedron,
@@ -284,7 +284,7 @@ impl Cells {
 
     /// The volume in the plane of all faces.
     fn polygons(mut self) -> Result<Volume, ReadError> {
-        let mut parts = Parts::new(Dimension::Plane);
+        let mut parts = Parts::new(Dimension::Plane, self.kinds.len());
         self.points.iter_mut().for_each(|point| point.z = 0.0);
         for (at, _, corners) in self.chosen(|kind| kind == CellKind::Polygon) {
             let mut cell = corners.to_vec();
@@ -309,8 +309,9 @@ struct Parts {
 }
 
 impl Parts {
-    fn new(dimension: Dimension) -> Self {
-        Self { dimension, cells: IndexLists::default(), turned: 0, flat: (0, 0), known: HashSet::new() }
+    /// The parts of a volume with about this number of cells.
+    fn new(dimension: Dimension, cells: usize) -> Self {
+        Self { dimension, cells: IndexLists::default(), turned: 0, flat: (0, 0), known: HashSet::with_capacity(cells) }
     }
 
     /// Adds a cell, in the right order and right side out, unless it is there already: Gmsh 2.2 lists a cell once for each group.

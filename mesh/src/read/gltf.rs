@@ -76,6 +76,12 @@ fn document(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), ReadError> {
         let message = format!("has its mesh packed by {}; expected plain data", quoted(name.as_bytes()));
         return Err(ReadError::new(message, "export it again without compression"));
     }
+    // The validation looks up the lists of attributes before it checks that they are there.
+    let lists = json.accessors.len();
+    let mut attributes = json.meshes.iter().flat_map(|mesh| &mesh.primitives).flat_map(|part| part.attributes.values());
+    if let Some(list) = attributes.find(|list| list.value() >= lists) {
+        return Err(no(format!("a mesh names the list {} of {lists}", list.value())));
+    }
     let mut first = None;
     json.validate(&json, gltf::json::Path::new, &mut |path, error| {
         let path = path().to_string();

@@ -39,6 +39,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     if reader.cells.is_some() {
         return Err(reader.source.ends("`CELL_TYPES`"));
     }
+    reader.source.coding = coding;
     reader.builder.finish(&reader.source, 0)
 }
 
