@@ -268,8 +268,10 @@ fn planes_have_points_in_space() {
 
 /// Reads files of the course, and of frames as surfaces, and compares them with `states.npz`.
 const OTHERS: &str = r##"
-import json, numpy, struct, sys
+import glob, json, numpy, struct, sys
 from pxr import Usd, UsdGeom
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 states = numpy.load("out/states.npz")
 names = list(states["bodies"]) if "bodies" in states.files else ["body"]
@@ -351,7 +353,7 @@ for run in [name.removesuffix(".position") for name in states.files if name.ends
                 assert (moving == velocity[frame][bodies == at].astype("f4")).all()
                 low, high = mesh.GetExtentAttr().Get(time * rate)
                 assert (numpy.array(low) == found.min(axis=0)).all() and (numpy.array(high) == found.max(axis=0)).all()
-        moment, written, lists = read_obj(f"out/{run}/frame_{frame:05}.obj")
+        moment, written, lists = read_obj(sorted(glob.glob(f"out/{glob.escape(run)}/frame_*.obj"))[frame])
         assert moment == time and [name for name, _ in written] == shown, (moment, time, written)
         reference = [numpy.array(points) for _, points in written]
         if not carried:
@@ -359,6 +361,10 @@ for run in [name.removesuffix(".position") for name in states.files if name.ends
         else:
             found = numpy.array(UsdGeom.Mesh(meshes[0]).GetPointsAttr().Get(time * rate))
             assert (found == reference[0].astype("f4")).all()
+            reader = vtkXMLUnstructuredGridReader()
+            reader.SetFileName(f"out/{run}-surface/body_{frame:05}.vtu")
+            reader.Update()
+            assert (vtk_to_numpy(reader.GetOutput().GetPoints().GetData()) == reference[0]).all()
         skinned = list(points_of_glb(document, array, frame))
         assert [name for name, _ in skinned] == shown
         apart = max(numpy.abs(one - other).max() for (_, one), other in zip(skinned, reference))
@@ -396,6 +402,27 @@ fn other_programs_read_each_of_several_bodies() {
     let Some(told) = others(&place, &crate::bodies::of_their_own(), "", " --frames 0-4x2,6") else { return };
     let runs: Vec<_> = told.lines().map(|line| line.split(' ').take(2).collect::<Vec<_>>()).collect();
     assert_eq!(runs, [["all", "2"], ["coarse", "1"], ["fine", "1"]], "{told}");
+}
+
+/// Other programs show the surface that cubes carry.
+#[test]
+fn other_programs_read_carried_surfaces() {
+    let place = Place::new();
+    let corners =
+        ["1 0 0", "-1 0 0", "0 1 0", "0 -1 0", "0 0 1", "0 0 -1"].map(|corner| format!("v {corner}\n")).concat();
+    let faces =
+        ["1 3 5", "3 2 5", "2 4 5", "4 1 5", "3 1 6", "2 3 6", "4 2 6", "1 4 6"].map(|face| format!("f {face}\n"));
+    place.write("octahedron.obj", &(corners + &faces.concat()));
+    let body = "mesh = \"octahedron.obj\"\nscale = 0.1\nmass_total = 1\nfill = { with = \"cubes\", cells = 4 }";
+    let text =
+        MIXED.replace("lattice = { cells = [3, 3, 3], side = 0.1, elements = \"mixed\", irregular = 0.2 }", body);
+    let Some(told) = others(&place, &text.replace("colour.by = \"elastic-energy\"\n", ""), "carried", " --write vtu")
+    else {
+        return;
+    };
+    // Triangles larger than elements are divided.
+    assert!(told.starts_with("Local shape 1 ") && told.contains(" 0 0 "), "{told}");
+    assert_eq!(place.read("out/Local shape-surface.pvd").matches("<DataSet").count(), 7);
 }
 
 #[test]

@@ -83,7 +83,7 @@ impl Document {
         let name = serde_json::to_string(name).expect("a text");
         let points = surface.carried.as_ref().map_or(rest, |carried| &carried.rest);
         let (low, high) = bounds(points);
-        let ends = |ends: DVec3| serde_json::to_string(&singles(ends)).expect("numbers");
+        let ends = |ends: DVec3| serde_json::to_string(&singles(ends).map(f64::from)).expect("numbers");
         let range = format!(",\"min\":{},\"max\":{}", ends(low), ends(high));
         let at =
             self.array(floats(points.iter().copied().flat_map(singles)), VERTICES, FLOAT, "VEC3", points.len(), &range);
@@ -188,7 +188,7 @@ pub(super) fn write(
 ) -> io::Result<()> {
     let frames = course.times.len();
     let mut document = Document::default();
-    let (first, last) = (single(course.times[0]), single(course.times[frames - 1]));
+    let [first, last] = [course.times[0], course.times[frames - 1]].map(|time| f64::from(single(time)));
     let range = format!(",\"min\":[{first}],\"max\":[{last}]");
     let times = floats(course.times.iter().map(|&time| single(time)));
     let times = document.array(times, "", FLOAT, "SCALAR", frames, &range);

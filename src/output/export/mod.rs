@@ -159,7 +159,8 @@ impl<'a> Export<'a> {
         self.surfaces.par_iter().try_for_each(|run| {
             let Snapshot { time, position, .. } = &frame.runs[run.place].snapshot;
             let bodies = run.bodies.iter().map(|body| (&*body.name, &body.surface, &position[body.nodes.clone()]));
-            let text = obj::document(&mark(self.scene, Some(frame.index)), *time, bodies);
+            let text =
+                obj::document(&mark(self.scene, Some(frame.index)), [*time, self.scene.runs[run.run].step], bodies);
             write_whole(&self.folder.join(run.frame_file(frame.index)), text.as_bytes())
         })
     }
@@ -235,7 +236,10 @@ impl<'a> Export<'a> {
                 let file = move |part: &Part| (time(frame), part.name.clone(), series.grid_file(part, frame));
                 series.parts.iter().map(file)
             });
-            write_whole(&path, pvd::document(&mark(self.scene, None), files).as_bytes())
+            write_whole(
+                &path,
+                pvd::document(&mark(self.scene, None), self.scene.runs[series.run].step, files).as_bytes(),
+            )
         })
     }
 

@@ -4,13 +4,13 @@ use super::surface::Surface;
 use glam::DVec3;
 use std::fmt::Write;
 
-/// A file of bodies at a time (s), each with its name, its surface and the positions of its nodes (m).
+/// A file of bodies at a time (s) of a run with a time step (s), each with its name, its surface and the positions of its nodes (m).
 pub(super) fn document<'b>(
     mark: &str,
-    time: f64,
+    [time, step]: [f64; 2],
     bodies: impl Iterator<Item = (&'b str, &'b Surface, &'b [DVec3])>,
 ) -> String {
-    let mut text = format!("# {mark}\n# time {time}\n");
+    let mut text = format!("# {mark}\n# time {time}\n# step {step}\n");
     let mut first = 1;
     for (name, surface, nodes) in bodies {
         let points = surface.points(nodes);

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-/// A list of grids: the time (s), the name and the file of each.
-pub(super) fn document(mark: &str, files: impl Iterator<Item = (f64, String, String)>) -> String {
+/// A list of grids of a run with a time step (s): the time (s), the name and the file of each.
+pub(super) fn document(mark: &str, step: f64, files: impl Iterator<Item = (f64, String, String)>) -> String {
     let mut text = format!(
-        "<?xml version=\"1.0\"?>\n<!-- {mark} -->\n\
+        "<?xml version=\"1.0\"?>\n<!-- {mark} -->\n<!-- step {step} -->\n\
          <VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n"
     );
     let (mut before, mut part) = (None, 0);
