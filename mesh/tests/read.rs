@@ -262,6 +262,11 @@ fn refusals_say_where_and_what_to_do() {
         (Off, "OFF\n1 1 0\n0 0 0\n3 0 0 -7\n", format!("names a point that it does not have in line 4 {damaged}")),
         (Off, "OFF\n99999999999 1 0\n", "has 99999999999 points; at most 1000000 are read (make".to_owned()),
         (Off, "4OFF\n1 1 0\n", "has `4OFF` in line 1; expected points in space: `OFF`".to_owned()),
+        (
+            Off,
+            "OFF\n2 1 0\n0 0 0\n1 1 1\n4 0 1 1 0\n",
+            "has faces with less than three different corners only (mesh".to_owned(),
+        ),
         (Off, "what\n", "begins with `what`; expected `OFF`, as an OFF file does (check".to_owned()),
         (
             Obj,

@@ -257,6 +257,10 @@ impl Cells {
                 return Err(ReadError::new(message, "divide its faces into triangles in the program that wrote it"));
             }
         }
+        if triangles.is_empty() {
+            let message = "has faces with less than three different corners only";
+            return Err(ReadError::new(message, "mesh the object again"));
+        }
         let used = Used::new(self.points.len(), triangles.as_flattened());
         triangles.as_flattened_mut().iter_mut().for_each(|corner| *corner = used.new[*corner as usize]);
         Ok(Surface { points: used.points(&self.points), triangles })
