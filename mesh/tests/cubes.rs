@@ -389,7 +389,7 @@ fn scans_are_filled() {
         let filled = fill(&surface, Fill::Cubes { side }, MOST).unwrap();
         println!("{name}: {} cubes in {:?}, {:?}", filled.cage.elements.len(), start.elapsed(), filled.flaws);
         assert_carried(&filled);
-        println!("  {} bodies", bodies(&filled));
+        assert_eq!(bodies(&filled), 1);
         if filled.flaws.boundary == 0 {
             assert_volume(&filled, side);
         }
@@ -408,16 +408,61 @@ fn scans_are_filled() {
 
 #[test]
 fn soups_of_triangles_are_filled_too() {
-    let whole = ball(DVec3::ZERO, 1.0, 40);
+    let whole = ball(DVec3::ZERO, 1.0, 264);
     // Each triangle for itself, a little smaller.
     let mut soup = apart(&whole);
     for triangle in soup.points.chunks_mut(3) {
         let middle = triangle.iter().sum::<DVec3>() / 3.0;
         triangle.iter_mut().for_each(|point| *point = middle + (*point - middle) * 0.999);
     }
-    let filled = cubes(&soup, 0.2);
-    let (expected, found) = (whole.mended().0.measures().volume, filled_volume(&filled, 0.2));
-    assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+    let start = std::time::Instant::now();
+    let filled = cubes(&soup, 0.06);
+    println!("{} triangles in {:?}", soup.triangles.len(), start.elapsed());
+    let (expected, found) = (whole.mended().0.measures().volume, filled_volume(&filled, 0.06));
+    assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
+}
+
+/// Whatever a surface is, it is filled or refused, and what is filled carries all points.
+#[test]
+fn any_triangles_are_filled_or_refused() {
+    let mut state = 1u64;
+    let mut next = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as u32
+    };
+    let (mut filled, mut refused) = (0, 0);
+    for case in 0..200 {
+        let count = 3 + next() % 12;
+        // Coarse grids give equal points, triangles in planes of the lattice and triangles without area.
+        let grid = [2, 3, 5, 1000][case % 4];
+        let scale = [1.0, 1e-3, 1e3, 1e-150, 1e150, 1e300][case / 4 % 6];
+        let odd = [f64::NAN, f64::INFINITY, -0.0, 1e308, f64::MIN_POSITIVE];
+        let mut coordinate = || match next() % 200 {
+            0 => odd[next() as usize % 5],
+            _ => f64::from(next() % grid) / f64::from(grid - 1) * scale,
+        };
+        let points: Vec<_> = (0..count).map(|_| DVec3::new(coordinate(), coordinate(), coordinate())).collect();
+        let number = next() % 40;
+        let triangles =
+            (0..number).map(|_| [0; 3].map(|_: u32| next() % (count + u32::from(case % 50 == 0)))).collect();
+        let surface = Surface { points, triangles };
+        let side = scale * [0.1, 0.25, 0.5, 3.0][case / 24 % 4];
+        for with in [Fill::Cubes { side }, Fill::Graded { side }] {
+            match fill(&surface, with, 2000) {
+                Ok(of) => {
+                    filled += 1;
+                    assert_carried(&of);
+                    assert!(of.cage.elements.len() <= 2000);
+                    assert!(of.cage.filled.iter().flatten().all(|&part| part > 0.0 && part <= 1.0));
+                }
+                Err(error) => {
+                    refused += 1;
+                    assert!(error.help.is_some(), "{error}");
+                }
+            }
+        }
+    }
+    assert!(filled > 50 && refused > 50, "{filled} {refused}");
 }
 
 #[test]

@@ -36,7 +36,9 @@ pub(super) fn fill(
     // Many cells are joined if cubes are graded, and cells take less memory than elements.
     let joined = if is_graded { 4 } else { 1 };
     let (lattice, scaled) = Lattice::graded(&mut surface, side, most, joined)?;
-    let pieces = clip::pieces(&scaled, &lattice);
+    let mut pieces = clip::pieces(&scaled, &lattice);
+    let homes = homes(&scaled, &lattice);
+    hold(&mut pieces, &homes, &lattice);
     let inside = Inside::new(&scaled);
     let cells = cells(&inside, &flaws, &lattice, &pieces)?;
     let refuse = |needed: usize| {
@@ -55,7 +57,7 @@ pub(super) fn fill(
     let mut nodes = Nodes::new(lattice, parts.corners.len());
     let (elements, filled, stiffness, weights) = if is_graded {
         let Graded { elements, filled, stiffness, element_of } = graded::joined(&scene, &parts, &mut nodes);
-        let weights = weights(&scene, &parts, |copy| &elements[element_of[copy] as usize]);
+        let weights = weights(&scene, &parts, &homes, |copy| &elements[element_of[copy] as usize]);
         (elements, filled, Some(stiffness), weights)
     } else {
         let mut elements = IndexLists::default();
@@ -65,7 +67,7 @@ pub(super) fn fill(
                 nodes.of(parts.corners[8 * copy + at], [0, 1, 2].map(|axis| cell[axis] + CORNERS[at][axis]))
             }));
         }
-        let weights = weights(&scene, &parts, |copy| &elements[copy]);
+        let weights = weights(&scene, &parts, &homes, |copy| &elements[copy]);
         (elements, parts.copies.iter().map(|full| full.filled).collect(), None, weights)
     };
     if elements.len() > most {
@@ -200,18 +202,35 @@ pub(super) fn no_inside(flaws: &Flaws) -> FillError {
     FillError { message, help: Some(help.to_owned()) }
 }
 
+/// Adds pieces without area, so that each point has a piece of its triangle in its cell: some triangles have no area.
+fn hold(pieces: &mut Vec<Piece>, homes: &[(Cell, u32)], lattice: &Lattice) {
+    let key = |piece: &Piece| (piece.cell, piece.triangle);
+    let known = pieces.len();
+    for &(cell, triangle) in homes {
+        let cell = lattice.key(cell);
+        if pieces[..known].binary_search_by_key(&(cell, triangle), key).is_err() {
+            pieces.push(Piece { cell, triangle, volume: 0.0, shadow: 0.0 });
+        }
+    }
+    if pieces.len() > known {
+        pieces.sort_unstable_by_key(key);
+        pieces.dedup_by_key(|piece| key(piece));
+    }
+}
+
 /// The weights of a surface's points in the corners of the copies that contain them.
-pub(super) fn weights<'e>(scene: &Scene, parts: &Parts, nodes: impl Fn(usize) -> &'e [u32]) -> Weights {
+pub(super) fn weights<'e>(
+    scene: &Scene,
+    parts: &Parts,
+    homes: &[(Cell, u32)],
+    nodes: impl Fn(usize) -> &'e [u32],
+) -> Weights {
     let mut weights = Weights::default();
-    for (&point, &(cell, triangle)) in scene.scaled.points.iter().zip(&homes(scene.scaled, scene.lattice)) {
+    for (&point, &(cell, triangle)) in scene.scaled.points.iter().zip(homes) {
         let key = (scene.lattice.key(cell), triangle);
-        let copy = match scene.pieces.binary_search_by_key(&key, |piece| (piece.cell, piece.triangle)) {
-            Ok(piece) => parts.copy_of[piece] as usize,
-            // A triangle so thin that it has no piece there.
-            Err(_) => nearest(scene, parts, point),
-        };
-        let low = corner(scene.lattice.cell(parts.copies[copy].cell));
-        let [x, y, z] = (point - low).clamp(DVec3::ZERO, DVec3::ONE).to_array();
+        let piece = scene.pieces.binary_search_by_key(&key, |piece| (piece.cell, piece.triangle));
+        let copy = parts.copy_of[piece.expect("each point has a piece")] as usize;
+        let [x, y, z] = (point - corner(cell)).clamp(DVec3::ZERO, DVec3::ONE).to_array();
         let own = CORNERS.map(|corner| {
             let along = |axis: usize, at: f64| if corner[axis] == 1 { at } else { 1.0 - at };
             along(0, x) * along(1, y) * along(2, z)
@@ -219,17 +238,6 @@ pub(super) fn weights<'e>(scene: &Scene, parts: &Parts, nodes: impl Fn(usize) ->
         weights.push(nodes(copy), &own);
     }
     weights
-}
-
-/// The copy with a piece of the surface whose cell is nearest to a point.
-fn nearest(scene: &Scene, parts: &Parts, point: DVec3) -> usize {
-    let away = |piece: &Piece| {
-        let low = corner(scene.lattice.cell(piece.cell));
-        point.distance_squared(point.clamp(low, low + 1.0))
-    };
-    let distances = scene.pieces.iter().map(away).enumerate();
-    let nearest = distances.reduce(|best, other| if other.1 < best.1 { other } else { best });
-    nearest.map_or(0, |(piece, _)| parts.copy_of[piece] as usize)
 }
 
 /// The cell of each point, and a triangle that has a part in that cell with the point as a corner.
