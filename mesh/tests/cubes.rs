@@ -317,22 +317,22 @@ fn what_cannot_be_filled_is_refused_with_a_remedy() {
     let cube = block(DVec3::ZERO, DVec3::ONE);
     let error = |surface: &Surface, side, most| {
         let error = fill(surface, Fill::Cubes { side }, most).unwrap_err();
-        format!("{error}. {}", error.help.as_ref().unwrap())
+        format!("{error}; {}", error.help.as_ref().unwrap())
     };
     assert_eq!(
         error(&cube, 0.1, 900),
-        "needs 1000 elements of side 0.1, and at most 900 are allowed. Use a side of 0.12 or more, or allow more elements."
+        "needs 1000 elements of side 0.1, and at most 900 are allowed; use a side of 0.12 or more, or allow more elements"
     );
     assert!(fill(&cube, Fill::Cubes { side: 0.12 }, 900).is_ok());
     assert!(error(&cube, 1e-9, 900).starts_with("needs about 1e27"), "{}", error(&cube, 1e-9, 900));
     assert!(error(&cube, 1e-300, 900).starts_with("needs about "));
-    assert_eq!(error(&cube, 0.0, 9), "cannot be filled with elements of side 0. Use a positive side.");
-    assert_eq!(error(&Surface::default(), 0.1, 9), "has no face with an area. Use a file with faces.");
+    assert_eq!(error(&cube, 0.0, 9), "cannot be filled with elements of side 0; use a positive side");
+    assert_eq!(error(&Surface::default(), 0.1, 9), "has no face with an area; use a file with faces");
     let sheet = Surface { triangles: cube.triangles[..2].to_vec(), ..cube.clone() };
     assert_eq!(
         error(&sheet, 0.1, 9000),
-        "has no inside: it is open, 4 of its edges belong to one triangle only. Give it a thickness, or close its holes, in \
-         the program that made it."
+        "has no inside: it is open, 4 of its edges belong to one triangle only; give it a thickness, or close its holes, in \
+         the program that made it"
     );
     // A thin rod across a large box.
     let rod =
@@ -349,7 +349,7 @@ fn the_side_that_is_offered_fits() {
                 let with = |side| if is_graded { Fill::Graded { side } } else { Fill::Cubes { side } };
                 let Err(error) = fill(&surface, with(side), most) else { continue };
                 let help = error.help.clone().unwrap();
-                let offered = help.strip_prefix("Use a side of ").and_then(|rest| rest.split_once(" or more"));
+                let offered = help.strip_prefix("use a side of ").and_then(|rest| rest.split_once(" or more"));
                 let offered: f64 = offered.unwrap_or_else(|| panic!("{error}: {help}")).0.parse().unwrap();
                 let count = fill(&surface, with(offered), most).map(|filled| filled.cage.elements.len());
                 println!("{error}; {offered}: {count:?}");

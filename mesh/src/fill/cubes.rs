@@ -191,12 +191,12 @@ fn sampled(inside: &Inside, grid: &Grid, key: usize) -> f64 {
 /// The error for a surface without an inside.
 pub(super) fn no_inside(flaws: &Flaws) -> FillError {
     let (message, help) = match flaws.boundary + flaws.inconsistent {
-        0 => ("has no inside: its volume is zero".to_owned(), "Use a surface with a thickness."),
+        0 => ("has no inside: its volume is zero".to_owned(), "use a surface with a thickness"),
         _ => {
             let number = flaws.boundary;
             let edges = if number == 1 { "edge belongs" } else { "edges belong" };
             let message = format!("has no inside: it is open, {number} of its {edges} to one triangle only");
-            (message, "Give it a thickness, or close its holes, in the program that made it.")
+            (message, "give it a thickness, or close its holes, in the program that made it")
         }
     };
     FillError { message, help: Some(help.to_owned()) }

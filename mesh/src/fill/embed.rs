@@ -84,7 +84,7 @@ pub(super) fn carry(
         }
         if wide == before {
             let message = format!("falls into pieces if it is filled with elements of side {}", lattice.side);
-            return Err(FillError { message, help: Some("Use a smaller side, or fill it with cubes.".to_owned()) });
+            return Err(FillError { message, help: Some("use a smaller side, or fill it with cubes".to_owned()) });
         }
     }
 }

@@ -35,11 +35,11 @@ impl Lattice {
     ) -> Result<(Self, Surface), FillError> {
         let measures = surface.measures();
         if surface.triangles.is_empty() {
-            let help = Some("Use a file with faces.".to_owned());
+            let help = Some("use a file with faces".to_owned());
             return Err(FillError { message: "has no face with an area".to_owned(), help });
         }
         if !(side > 0.0 && side.is_finite()) {
-            let help = Some("Use a positive side.".to_owned());
+            let help = Some("use a positive side".to_owned());
             return Err(FillError { message: format!("cannot be filled with elements of side {side}"), help });
         }
         let extent = measures.high - measures.low;
@@ -62,7 +62,7 @@ impl Lattice {
                     "has {} triangles that lie over each other: they reach into elements of side {side} some {overlaps:.0} times",
                     surface.triangles.len()
                 ),
-                help: Some(format!("Use a larger side, or more than {most} elements.")),
+                help: Some(format!("use a larger side, or more than {most} elements")),
             });
         }
         let counts = counts.map(|count| count as usize);
@@ -128,8 +128,8 @@ fn refused(
     let mut fitting = tries.filter(|&side| other(side) <= 0.95 * most as f64);
     let needed = if needed < 1e9 { format!("{needed:.0}") } else { format!("{needed:.0e}") };
     let remedy = match fitting.next() {
-        Some(side) => format!("Use a side of {side} or more, or allow more elements."),
-        None => "Allow more elements.".to_owned(),
+        Some(side) => format!("use a side of {side} or more, or allow more elements"),
+        None => "allow more elements".to_owned(),
     };
     FillError {
         message: format!("needs {about}{needed} elements of side {side}, and at most {most} are allowed"),
