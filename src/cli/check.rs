@@ -1,4 +1,4 @@
-//! `check`: what scenes contain, or every mistake in them.
+//! `check`: what scenes and meshes contain, or every mistake in them.
 
 use super::console::{print, print_json};
 use super::failure::{Failure, Status, complain, note, warn, with_causes};
@@ -10,13 +10,16 @@ use crate::reading::Mistake;
 #[cfg(feature = "render")]
 use crate::runner::Runner;
 use crate::scene::Scene;
+use crate::scene::mesh::{MeshSummary, is_mesh};
 use clap::Args;
 use serde_json::{Value, json};
+use std::path::Path;
 
 const EXAMPLES: &str = "\
 Examples:
   localshape check scenes/fig4b.toml
-  localshape check scenes/*.toml --quiet && echo all right";
+  localshape check scenes/*.toml --quiet && echo all right
+  localshape check hare.ply";
 
 /// Why a scene cannot be printed in its size.
 #[cfg(feature = "render")]
@@ -28,7 +31,8 @@ fn too_small(_: &Scene) -> Option<String> {
     None
 }
 
-/// Check scenes and print what they contain, or every mistake in them
+/// Check scenes and print what they contain, or every mistake in them. A mesh file is checked alone: its size, its flaws, and
+/// the elements that would fill it
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Check {
@@ -47,9 +51,18 @@ pub(super) struct Check {
 impl Check {
     pub(super) fn run(self) -> Result<Status, Failure> {
         let mut failed = None;
-        let mut documents = Vec::new();
+        let (mut documents, mut meshes) = (Vec::new(), Vec::new());
         for (number, path) in self.scenes.scenes.iter().enumerate() {
             let file = path.to_string_lossy();
+            let blank = if number > 0 { "\n" } else { "" };
+            if is_mesh(path) {
+                let document = self.mesh(path, blank)?;
+                if document["ok"] == false {
+                    failed = Some(worse(failed, Status::Usage));
+                }
+                meshes.push(document);
+                continue;
+            }
             let loaded = self.scenes.load(path).map(|scene| self.resized(scene));
             let refused = loaded.as_ref().ok().and_then(too_small);
             match loaded {
@@ -81,7 +94,6 @@ impl Check {
                         );
                         continue;
                     }
-                    let blank = if number > 0 { "\n" } else { "" };
                     print(&format!("{blank}{}\n", scene.summary().to_string().trim_end()))?;
                     warn(path, &scene);
                     let no_room = no_room(&scene);
@@ -102,9 +114,36 @@ impl Check {
             }
         }
         if self.printing.json {
-            print_json(&json!({ "scenes": Value::from(documents) }))?;
+            let mut all = json!({ "scenes": documents });
+            if !meshes.is_empty() {
+                all["meshes"] = meshes.into();
+            }
+            print_json(&all)?;
         }
         Ok(failed.unwrap_or(Status::Done))
+    }
+
+    /// Checks a mesh file, and prints what it contains unless a document does.
+    fn mesh(&self, path: &Path, blank: &str) -> Result<Value, Failure> {
+        let file = path.to_string_lossy();
+        let (is_text, limits) = (!self.printing.json, self.scenes.limits());
+        let (document, error) = match MeshSummary::read(path, &limits) {
+            Ok(mesh) => {
+                if is_text && !self.printing.quiet {
+                    print(&format!("{blank}{mesh}"))?;
+                }
+                let error = mesh.fault();
+                (json!({ "file": file, "ok": error.is_none(), "error": error, "mesh": mesh }), error)
+            }
+            Err((message, help)) => {
+                let error = help.map_or_else(|| message.clone(), |help| format!("{message}; {help}"));
+                (json!({ "file": file, "ok": false, "error": error }), Some(error))
+            }
+        };
+        if let Some(error) = error.filter(|_| is_text) {
+            complain(&format!("{file} {error}"));
+        }
+        Ok(document)
     }
 
     /// A scene in the requested size.

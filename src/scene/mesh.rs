@@ -1,5 +1,9 @@
 //! Mesh files: read, put upright in metres, filled, and what is wrong with them in words.
 
+mod summary;
+
+pub(crate) use summary::MeshSummary;
+
 use super::limits::Limits;
 use crate::reading::beside::{self, Wrong};
 use crate::reading::words::{count, list, nearest};
@@ -11,7 +15,9 @@ use sha2::{Digest, Sha256};
 use std::path::Path;
 
 /// The endings of mesh files.
-pub(crate) const ENDINGS: [&str; 10] = ["obj", "stl", "ply", "off", "gltf", "glb", "msh", "vtk", "vtu", "vtp"];
+fn endings() -> Vec<&'static str> {
+    Format::ALL.into_iter().flat_map(Format::endings).copied().collect()
+}
 
 /// Endings of mesh files that are not read.
 const OTHERS: [&str; 11] = ["mesh", "node", "ele", "inp", "fbx", "3mf", "dae", "blend", "step", "stp", "usd"];
@@ -30,8 +36,9 @@ pub(crate) struct MeshFile {
 impl MeshFile {
     /// Reads a file. A message is the predicate of a sentence about the file.
     pub(crate) fn read(path: &Path, limits: &Limits) -> Result<Self, Wrong> {
-        let expected = format!("expected a mesh: {}", list(&ENDINGS, "or", |ending| format!(".{ending}")));
-        let bytes = beside::bytes(path, &ENDINGS, limits.file, "a mesh", &expected)?;
+        let endings = endings();
+        let expected = format!("expected a mesh: {}", list(&endings, "or", |ending| format!(".{ending}")));
+        let bytes = beside::bytes(path, &endings, limits.file, "a mesh", &expected)?;
         let ending = ending(path);
         let Some(format) = Format::of(&ending) else {
             let (found, help) = match &*ending {
@@ -49,8 +56,13 @@ impl MeshFile {
     }
 }
 
+/// Whether a file has the ending of a mesh.
+pub(crate) fn is_mesh(path: &Path) -> bool {
+    Format::of(&ending(path)).is_some()
+}
+
 /// The ending of a file in small letters.
-pub(crate) fn ending(path: &Path) -> String {
+fn ending(path: &Path) -> String {
     path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
@@ -61,13 +73,13 @@ fn other(ending: &str) -> Option<String> {
             "export it again: surfaces from Blender as .ply or .glb, cells from Gmsh or meshio as .vtu".to_owned(),
         );
     }
-    nearest(ending, &ENDINGS).map(|near| format!("did you mean .{near}?"))
+    nearest(ending, &endings()).map(|near| format!("did you mean .{near}?"))
 }
 
 /// Why an archive of arrays cannot be read from a mesh file, and what to write instead; `None` for other files.
 pub(crate) fn instead_of_archive(path: &Path, name: &str) -> Option<Wrong> {
     let ending = ending(path);
-    if ENDINGS.contains(&&*ending) {
+    if is_mesh(path) {
         return Some((format!("is a mesh (.{ending})"), Some(format!("write mesh = {name:?} in place of `file`"))));
     }
     let message =
@@ -151,8 +163,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_ending_has_a_format() {
-        assert!(ENDINGS.iter().all(|ending| Format::of(ending).is_some()));
+    fn files_are_read_or_not() {
         assert!(OTHERS.iter().all(|ending| Format::of(ending).is_none()));
     }
 

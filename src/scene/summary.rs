@@ -60,6 +60,9 @@ pub struct BodySummary {
     pub start: [Vec<f64>; 2],
     /// Its mass (kg).
     pub mass: f64,
+    /// Number of triangles of the fine surface that it carries.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub carried: Option<usize>,
 }
 
 /// One run of a [`SceneSummary`].
@@ -119,6 +122,7 @@ impl BodySummary {
             extent: coordinates(high - low, body.dimension),
             start: corners(&initial.position, body.dimension),
             mass: body.mass.iter().sum(),
+            carried: body.carried.as_ref().map(|carried| carried.triangles.len()),
         }
     }
 }
@@ -307,7 +311,9 @@ impl fmt::Display for SceneSummary {
                 _ => format!("{} elements ({kinds})", count(body.element_count as u128)),
             };
             let name = titled(&body.name);
-            line("body", &format!("{name}{nodes} nodes, {elements}, {extent} m, {} kg", short(body.mass)))?;
+            let carried = body.carried.map(|triangles| format!(", carrying {} triangles", count(triangles as u128)));
+            let (mass, carried) = (short(body.mass), carried.unwrap_or_default());
+            line("body", &format!("{name}{nodes} nodes, {elements}, {extent} m, {mass} kg{carried}"))?;
             let [low, high] = &body.start;
             // Users copy regions of nodes from it, so it holds all nodes.
             let ranges: Vec<_> = low.iter().zip(high).map(|(&low, &high)| ends([low, high])).collect();

@@ -231,3 +231,38 @@ fn what_cannot_be_meant_is_told() {
     place.write("twice.toml", &SMALL.replace("[[run]]", "[run]"));
     place.run("check twice.toml").bad(2, &["write `[[run]]` before each of several"]);
 }
+
+/// A tetrahedron, and the same without one of its faces.
+const MESHES: [(&str, &str); 2] = [
+    ("whole.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"),
+    ("sheet.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n"),
+];
+
+#[test]
+fn says_what_a_mesh_is() {
+    let place = Place::with_small();
+    MESHES.iter().for_each(|(name, text)| place.write(name, text));
+    let ran = place.run("check whole.obj").good();
+    for word in
+        ["4 points, 4 triangles", "2 × 2 × 2 in the unit of the file", "closed, volume 1.333", "cubes", "polyhedra"]
+    {
+        assert!(ran.out.contains(word), "{word}: {}", ran.out);
+    }
+    assert_eq!(place.run("check whole.obj small.toml --quiet").good().out, "");
+    let ran = place.run("check sheet.obj absent.ply");
+    assert_eq!(ran.status, Some(2), "{ran:?}");
+    for word in ["sheet.obj has no inside", "absent.ply is not there"] {
+        assert!(ran.err.contains(word), "{word}: {}", ran.err);
+    }
+    let document = place.run("check whole.obj sheet.obj small.toml --json").json();
+    assert_eq!(document["scenes"][0]["ok"], true);
+    let [whole, sheet] = [0, 1].map(|mesh| &document["meshes"][mesh]);
+    assert_eq!((&whole["ok"], &sheet["ok"]), (&true.into(), &false.into()));
+    assert_eq!((&whole["mesh"]["points"], &whole["mesh"]["surface"]["closed"]), (&4.into(), &true.into()));
+    let fills = whole["mesh"]["surface"]["fills"].as_array().unwrap();
+    assert_eq!(
+        fills.iter().map(|fill| &fill["with"]).collect::<Vec<_>>(),
+        ["cubes", "graded", "tetrahedra", "polyhedra"]
+    );
+    assert!(fills[0]["elements"].as_u64().unwrap() > 1000 && fills[0]["side"] == 0.1, "{}", fills[0]);
+}

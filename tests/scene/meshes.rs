@@ -59,3 +59,132 @@ fn keys_of_meshes_belong_to_meshes() {
     wrong(&fill("side = 0"), &[], &["`body.fill.side` is 0; expected a number greater than 0"]);
     wrong(&SCENE.replace("density", "scale = 'mm'\ndensity"), &[], &["`body.scale` is the string \"mm\"", "0.001"]);
 }
+
+/// A cube with a side of 1, as eight points and six quadrilaterals.
+const CUBE: &str = "\
+v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1
+f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6
+";
+
+/// A hexahedron with a group of four nodes at x = 0.
+const BRICK: &str = "\
+$MeshFormat\n2.2 0 8\n$EndMeshFormat
+$PhysicalNames\n2\n2 1 \"clamped\"\n3 2 \"brick\"\n$EndPhysicalNames
+$Nodes\n8\n1 0 0 0\n2 2 0 0\n3 2 1 0\n4 0 1 0\n5 0 0 1\n6 2 0 1\n7 2 1 1\n8 0 1 1\n$EndNodes
+$Elements\n2\n1 3 2 1 1 1 4 8 5\n2 5 2 2 1 1 2 3 4 5 6 7 8\n$EndElements
+";
+
+fn loaded(scene: &str, files: &[(&str, &str)]) -> Scene {
+    let files: Vec<_> = files.iter().map(|(name, text)| (*name, text.as_bytes())).collect();
+    load(scene, &files).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The scene with a file and other lines in its body.
+fn with(name: &str, lines: &str) -> String {
+    SCENE.replace("mesh = 'body.ply'", &format!("mesh = '{name}'\n{lines}"))
+}
+
+#[test]
+fn a_surface_is_filled_and_carried() {
+    let cube = [("cube.obj", CUBE)];
+    let scene = loaded(&with("cube.obj", "fill.cells = 2"), &cube);
+    let body = &scene.bodies[0].body;
+    assert_eq!((body.len(), body.elements.len(), &body.fill), (27, 8, &None));
+    assert!((body.mass.iter().sum::<f64>() - 1000.0).abs() < 1e-9);
+    let carried = body.carried.as_ref().unwrap();
+    assert_eq!(carried.positions(&body.rest).len(), carried.rest.len());
+    assert_eq!(scene.warnings, []);
+    // By default some 20 cells lie along the longest side.
+    let elements = |lines: &str| loaded(&with("cube.obj", lines), &cube).bodies[0].body.elements.len();
+    assert_eq!(elements(""), 8000);
+    assert_eq!(elements("fill.side = 0.5"), 8);
+    assert_eq!(elements("scale = 0.001\nfill.side = 0.0005"), 8);
+    // A cube that is cut has a part of the mass of all cubes, in proportion to its filling.
+    let scene = loaded(&with("cube.obj", "fill.side = 0.4"), &cube);
+    let body = &scene.bodies[0].body;
+    assert!((body.mass.iter().sum::<f64>() - 1000.0).abs() < 1e-9);
+    assert_eq!(body.fill.as_ref().map(Vec::len), Some(27));
+}
+
+#[test]
+fn a_mesh_is_put_upright_in_metres() {
+    let tall = CUBE.replace("v 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1", "v 0 0 3\nv 1 0 3\nv 0 1 3\nv 1 1 3");
+    let extent = |lines: &str| {
+        let scene = loaded(&with("tall.obj", &format!("{lines}\nfill.cells = 3")), &[("tall.obj", &tall)]);
+        scene.summary().bodies[0].extent.clone()
+    };
+    assert_eq!(extent(""), [1.0, 1.0, 3.0]);
+    assert_eq!(extent("up = 'z'"), [1.0, 3.0, 1.0]);
+    assert_eq!(extent("up = 'z'\nscale = 0.5"), [0.5, 1.5, 0.5]);
+    // A file in millimetres is as long as a house.
+    let large = CUBE.replace('1', "150");
+    let large = large.lines().filter(|line| line.starts_with('v')).collect::<Vec<_>>().join("\n")
+        + &CUBE[CUBE.find("\nf").unwrap()..];
+    let warnings = |lines: &str| loaded(&with("large.obj", lines), &[("large.obj", &large)]).warnings;
+    assert!(warnings("fill.cells = 2")[0].message.contains("`large.obj` is 150 m long, as no `scale` is given"));
+    assert_eq!(warnings("fill.cells = 2\nscale = 1"), []);
+}
+
+#[test]
+fn cells_become_elements_and_groups_are_named() {
+    let held = |nodes: &str| {
+        let scene = with("brick.msh", "") + &format!("[[hold]]\nnodes = '{nodes}'\n");
+        let scene = loaded(&scene, &[("brick.msh", BRICK)]);
+        let body = &scene.bodies[0].body;
+        assert_eq!((body.len(), body.elements.len(), body.mass.iter().sum::<f64>()), (8, 1, 2000.0));
+        assert!(body.carried.is_none() && body.fill.is_none());
+        let grips = &scene.runs[0].grips;
+        let mut at: Vec<_> = grips[0].nodes.iter().map(|&node| body.rest[node as usize].x).collect();
+        at.dedup();
+        (grips[0].nodes.len(), at)
+    };
+    assert_eq!(held("clamped"), (4, vec![0.0]));
+    assert_eq!(held("right"), (4, vec![2.0]));
+    assert_eq!(held("brick").0, 8);
+    let scene = with("brick.msh", "") + "[[hold]]\nnodes = 'clampd'\n";
+    let expected = ["\"back\", or a group of the mesh: \"brick\" or \"clamped\"", "did you mean \"clamped\"?"];
+    wrong(&scene, &[("brick.msh", BRICK.as_bytes())], &expected);
+    wrong(&with("brick.msh", "fill = {}"), &[("brick.msh", BRICK.as_bytes())], &["is about surfaces", "has cells"]);
+}
+
+#[test]
+fn a_filled_body_needs_its_density_or_its_whole_mass() {
+    let cube: &[(&str, &[u8])] = &[("cube.obj", CUBE.as_bytes())];
+    let scene = with("cube.obj", "fill.cells = 2").replace("density = 1000.0", "KEY");
+    wrong(&scene.replace("KEY", ""), cube, &["neither `density` nor `mass_total`", "such as density = 1000"]);
+    wrong(&scene.replace("KEY", "mass = 1"), cube, &["`body.mass` is that of every node", "`density`"]);
+    let whole = loaded(&scene.replace("KEY", "mass_total = 3"), &[("cube.obj", CUBE)]);
+    assert!((whole.bodies[0].body.mass.iter().sum::<f64>() - 3.0).abs() < 1e-12);
+}
+
+#[test]
+fn flaws_are_told_with_their_number() {
+    let warned = |mesh: &str| {
+        let scene = loaded(&with("body.obj", "fill.cells = 8"), &[("body.obj", mesh)]);
+        scene.warnings.iter().map(|one| one.message.clone()).collect::<Vec<_>>().join("\n")
+    };
+    let turned = CUBE.replace("f 1 3 4 2", "f 2 4 3 1");
+    assert_eq!(warned(&turned), "`body.obj` is mended: 2 triangles turned over");
+    let doubled = format!("{CUBE}f 1 3 4 2\n");
+    assert_eq!(warned(&doubled), "`body.obj` is mended: 2 doubled triangles left out");
+    let open = CUBE.replace("f 2 4 8 6\n", "");
+    let message = "`body.obj` has 4 open edges, and is filled where its triangles enclose most";
+    assert_eq!(warned(&open), message);
+    let far = |line: &str| line.split(' ').skip(1).map(|at| at.parse::<f64>().unwrap() + 3.0).collect::<Vec<_>>();
+    let points = CUBE.lines().filter(|line| line.starts_with('v')).map(far);
+    let points: String = points.map(|at| format!("v {} {} {}\n", at[0], at[1], at[2])).collect();
+    let faces = "f 9 11 12 10\nf 13 14 16 15\nf 9 10 14 13\nf 11 15 16 12\nf 9 13 15 11\nf 10 12 16 14\n";
+    let two = format!("{CUBE}{points}{faces}");
+    assert_eq!(warned(&two), "`body.obj` makes 2 parts that share no node, so nothing holds them together");
+}
+
+#[test]
+fn the_digest_is_of_the_content_of_a_mesh() {
+    let digest = |name: &str, lines: &str, mesh: &str| loaded(&with(name, lines), &[(name, mesh)]).digest;
+    let cube = digest("cube.obj", "", CUBE);
+    assert_eq!(cube.len(), 64);
+    let defaults = "fill = { with = 'cubes', cells = 20 }\nscale = 1\nup = 'y'";
+    assert_eq!(digest("other.obj", defaults, CUBE), cube);
+    assert_ne!(digest("cube.obj", "fill.cells = 21", CUBE), cube);
+    assert_ne!(digest("cube.obj", "", &format!("{CUBE}# a comment\n")), cube);
+}

@@ -1,0 +1,251 @@
+//! What a mesh file contains in words and numbers, as `check` prints them.
+
+use super::{CELLS, MeshFile, left, longest, mended, parts};
+use crate::reading::beside::Wrong;
+use crate::reading::captions;
+use crate::reading::words::{count, list, quoted, short};
+use crate::scene::limits::Limits;
+use crate::sim::Body;
+use crate::sim::geometry::bounds;
+use localshape_mesh::{Fill, Flaws, Measures, Mesh, Surface, Volume, fill};
+use serde::Serialize;
+use std::fmt;
+use std::path::Path;
+
+/// The contents of a mesh file. It prints as a short table. Lengths are in the unit of the file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct MeshSummary {
+    /// Number of points.
+    points: usize,
+    /// Sides of the box around them.
+    extent: [f64; 3],
+    #[serde(flatten)]
+    content: Content,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Content {
+    Cells(CellsSummary),
+    Surface(SurfaceSummary),
+}
+
+/// Cells, which become elements.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct CellsSummary {
+    count: usize,
+    /// Number of cells of each kind, such as `240 tetrahedra`.
+    kinds: Vec<String>,
+    /// Number of cells that are turned inside out in the file.
+    turned: usize,
+    /// Number of parts that share no point.
+    parts: usize,
+    groups: Vec<GroupSummary>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct GroupSummary {
+    name: String,
+    /// Number of points.
+    points: usize,
+}
+
+/// A surface, which is filled. Numbers are those of the mended surface.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct SurfaceSummary {
+    triangles: usize,
+    area: f64,
+    /// The volume inside, if the surface is closed.
+    volume: Option<f64>,
+    closed: bool,
+    welded: usize,
+    degenerate: usize,
+    doubled: usize,
+    turned: usize,
+    open_edges: usize,
+    edges_of_several: usize,
+    inconsistent_edges: usize,
+    pieces: usize,
+    /// What each fill would give.
+    fills: Vec<FillSummary>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct FillSummary {
+    /// Its name in scenes.
+    with: &'static str,
+    /// The side of its lattice.
+    side: f64,
+    elements: usize,
+    nodes: usize,
+    /// Number of parts that share no node.
+    parts: usize,
+    /// Why it is not possible.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
+}
+
+impl MeshSummary {
+    /// Reads a file. A message is the predicate of a sentence about the file.
+    pub(crate) fn read(path: &Path, limits: &Limits) -> Result<Self, Wrong> {
+        Ok(match MeshFile::read(path, limits)?.mesh {
+            Mesh::Volume(volume) => Self::of_cells(volume),
+            Mesh::Surface(surface) => Self::of_surface(&surface, limits),
+        })
+    }
+
+    fn of_cells(volume: Volume) -> Self {
+        let Volume { dimension, points, solids, cells, groups, turned } = volume;
+        let (low, high) = bounds(&points);
+        let (number, parts) = (points.len(), parts(points.len(), &cells));
+        let body = Body::new(dimension, points, vec![1.0; number], cells, solids, None);
+        let of_kind = |(number, name): (usize, &str)| format!("{} {name}", count(number as u128));
+        let group = |group: localshape_mesh::Group| GroupSummary { name: group.name, points: group.points.len() };
+        let content = Content::Cells(CellsSummary {
+            count: body.elements.len(),
+            kinds: captions::elements(&body).into_iter().map(of_kind).collect(),
+            turned,
+            parts,
+            groups: groups.into_iter().map(group).collect(),
+        });
+        Self { points: number, extent: (high - low).to_array(), content }
+    }
+
+    fn of_surface(surface: &Surface, limits: &Limits) -> Self {
+        let (surface, flaws) = surface.mended();
+        let Measures { volume, area, closed, low, high, .. } = surface.measures();
+        let Flaws { welded, degenerate, doubled, turned, boundary, non_manifold, inconsistent, pieces } = flaws;
+        let side = longest(&surface.points) / f64::from(CELLS);
+        let most = usize::try_from(limits.nodes).unwrap_or(usize::MAX).min(u32::MAX as usize);
+        let fills = [
+            ("cubes", Fill::Cubes { side }),
+            ("graded", Fill::Graded { side }),
+            ("tetrahedra", Fill::Tetrahedra { side }),
+            ("polyhedra", Fill::Polyhedra { side }),
+        ];
+        let fills = fills.map(|(with, chosen)| match fill(&surface, chosen, most) {
+            Ok(filled) => {
+                let (elements, nodes) = (filled.cage.elements.len(), filled.cage.nodes.len());
+                FillSummary { with, side, elements, nodes, parts: parts(nodes, &filled.cage.elements), error: None }
+            }
+            Err(error) => {
+                let error = error.help.map_or(error.message.clone(), |help| format!("{}; {help}", error.message));
+                FillSummary { with, side, elements: 0, nodes: 0, parts: 0, error: Some(error) }
+            }
+        });
+        let content = Content::Surface(SurfaceSummary {
+            triangles: surface.triangles.len(),
+            area,
+            volume: closed.then_some(volume),
+            closed,
+            welded,
+            degenerate,
+            doubled,
+            turned,
+            open_edges: boundary,
+            edges_of_several: non_manifold,
+            inconsistent_edges: inconsistent,
+            pieces,
+            fills: fills.into(),
+        });
+        Self { points: surface.points.len(), extent: (high - low).to_array(), content }
+    }
+
+    /// Why it cannot be a body; `None` if it can.
+    pub(crate) fn fault(&self) -> Option<String> {
+        match &self.content {
+            Content::Surface(surface) if surface.fills.iter().all(|fill| fill.error.is_some()) => {
+                surface.fills.first()?.error.clone()
+            }
+            _ => None,
+        }
+    }
+}
+
+impl SurfaceSummary {
+    fn flaws(&self) -> Flaws {
+        let &Self { welded, degenerate, doubled, turned, pieces, .. } = self;
+        let (boundary, non_manifold, inconsistent) = (self.open_edges, self.edges_of_several, self.inconsistent_edges);
+        Flaws { welded, degenerate, doubled, turned, boundary, non_manifold, inconsistent, pieces }
+    }
+}
+
+impl fmt::Display for MeshSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut line = |name: &str, text: &str| writeln!(f, "  {name:<10} {text}");
+        let several =
+            |number: usize, one: &str| format!("{} {one}{}", count(number as u128), if number == 1 { "" } else { "s" });
+        let sides: Vec<_> = self.extent.iter().map(|&side| short(side)).collect();
+        let size = format!("{} in the unit of the file", sides.join(" × "));
+        let points = several(self.points, "point");
+        let in_parts =
+            |parts: usize| if parts > 1 { format!(", {parts} parts that share no node") } else { String::new() };
+        match &self.content {
+            Content::Cells(cells) => {
+                let kinds = list(&cells.kinds, "and", str::to_owned);
+                line("cells", &format!("{points}, {kinds}{}", in_parts(cells.parts)))?;
+                line("size", &size)?;
+                if cells.turned > 0 {
+                    line("mended", &format!("{} turned over, which were inside out", several(cells.turned, "cell")))?;
+                }
+                for group in &cells.groups {
+                    line("group", &format!("{}: {}", quoted(&group.name), several(group.points, "point")))?;
+                }
+            }
+            Content::Surface(surface) => {
+                line("surface", &format!("{points}, {}", several(surface.triangles, "triangle")))?;
+                line("size", &size)?;
+                let measure = match surface.volume {
+                    Some(volume) => format!("closed, volume {}", short(volume)),
+                    None => "not closed".to_owned(),
+                };
+                let pieces = several(surface.pieces, "separate piece");
+                line("form", &format!("{measure}, area {}, {pieces}", short(surface.area)))?;
+                let (mended, left) = (mended(&surface.flaws()), left(&surface.flaws()));
+                for (name, flaws) in [("mended", mended), ("flaws", left)].iter().filter(|(_, flaws)| !flaws.is_empty())
+                {
+                    line(name, &list(flaws, "and", str::to_owned))?;
+                }
+                for fill in &surface.fills {
+                    let size = match &fill.error {
+                        Some(error) => format!("none: the surface {error}"),
+                        None => {
+                            let [elements, nodes] = [fill.elements, fill.nodes].map(|number| count(number as u128));
+                            let parts = in_parts(fill.parts);
+                            format!(
+                                "{elements} elements, {nodes} nodes{parts}, with {CELLS} cells of {}",
+                                short(fill.side)
+                            )
+                        }
+                    };
+                    line(fill.with, &size)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_surface_is_described_with_all_its_fillings() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/hare.ply");
+        let mesh = MeshSummary::read(&path, &Limits::default()).unwrap();
+        let text = mesh.to_string();
+        for words in ["6 972 points, 13 944 triangles", "closed, volume 0.01", "1 separate piece", "20 cells of 0.03"] {
+            assert!(text.contains(words), "{words}: {text}");
+        }
+        assert!(!text.contains("flaws") && !text.contains("mended"), "{text}");
+        assert_eq!(mesh.fault(), None, "{text}");
+        let json = serde_json::to_value(&mesh).unwrap();
+        let fills = json["surface"]["fills"].as_array().unwrap();
+        let names: Vec<_> = fills.iter().map(|fill| fill["with"].as_str().unwrap()).collect();
+        assert_eq!(names, ["cubes", "graded", "tetrahedra", "polyhedra"]);
+        for fill in fills {
+            assert!(fill["elements"].as_u64() > Some(500) && fill["parts"] == 1 && fill["error"].is_null(), "{fill}");
+        }
+    }
+}
