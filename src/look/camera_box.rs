@@ -6,6 +6,9 @@ use crate::sim::{Assembly, Body};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+/// So many points of a carried surface, evenly spread, stand for all.
+const MANY_POINTS: usize = 10_000;
+
 /// The box around a body at one moment, along the axes of a camera.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CameraBox {
@@ -25,14 +28,22 @@ pub(crate) struct CameraBoxes {
 }
 
 impl CameraBox {
-    /// The box around a body whose nodes are at positions (m); `None` if it has none, or not all are finite.
+    /// The box around a body whose nodes are at positions (m), or around the surface that it carries; `None` if it has
+    /// none, or not all are finite.
     fn new(view: &View, body: &Body, position: &[DVec3]) -> Option<Self> {
         let axes = axes(view.camera.azimuth, view.camera.elevation);
         let centre = Traced::Centre.of(body, position);
         let (mut low, mut high) = (DVec3::ZERO, DVec3::ZERO);
-        for way in position.iter().map(|&at| at - centre) {
-            let seen = DVec3::from_array(axes.map(|axis| way.dot(axis)));
+        let mut add = |at: DVec3| {
+            let seen = DVec3::from_array(axes.map(|axis| (at - centre).dot(axis)));
             (low, high) = (low.min(seen), high.max(seen));
+        };
+        match &body.carried {
+            Some(surface) if view.visible.surfaces && !view.visible.cage => {
+                let points = (0..surface.rest.len()).step_by(surface.rest.len().div_ceil(MANY_POINTS).max(1));
+                points.for_each(|point| add(surface.weights.place(point, position)));
+            }
+            _ => position.iter().for_each(|&at| add(at)),
         }
         (centre.is_finite() && low.is_finite() && high.is_finite()).then_some(Self { centre, corners: [low, high] })
     }

@@ -69,7 +69,7 @@ impl Draft<'_> {
             Some(shades) if !fine.is_empty() => shades.of_nodes(self.body),
             _ => Vec::new(),
         };
-        let mut points = &self.skin[self.bodies.skin.nodes.len()..];
+        let mut points = self.carried();
         for fine in fine {
             let (own, others) = points.split_at(fine.surface.rest.len());
             surroundings.add_carried(fine, own, over, &of_nodes, &mut sound, lines);

@@ -159,6 +159,11 @@ impl<'a> Draft<'a> {
         points.filter_map(|&at| self.pixel(at)).fold(none, |[low, high], at| [low.min(at), high.max(at)])
     }
 
+    /// The points of carried surfaces (m), body after body.
+    pub(super) fn carried(&self) -> &[DVec3] {
+        self.skin.get(self.bodies.skin.nodes.len()..).unwrap_or_default()
+    }
+
     /// A point (m) in the panel's coordinates.
     pub(super) fn relative(&self, point: DVec3) -> [f32; 3] {
         narrow_point((point - self.origin) / self.side).to_array()

@@ -13,8 +13,9 @@ impl Draft<'_> {
         if let Some(radius) = self.bead_radius() {
             room = room.max(radius + 2.0);
         }
-        let [body, around] =
-            [&self.position[..], around_obstacles].map(|points| region(self.viewport, points.iter(), &self.lens, room));
+        let [nodes, surfaces, around] = [&self.position[..], self.carried(), around_obstacles]
+            .map(|points| region(self.viewport, points.iter(), &self.lens, room));
+        let body = union(nodes, surfaces);
         // Obstacles are drawn below the rows of words, if there are any.
         let has_words = self.scene.view.labels.are_in_panels();
         let region = union(body, if has_words { overlap(around, self.between_words()) } else { around });
@@ -29,7 +30,9 @@ impl Draft<'_> {
             let pixel = self.lens.project(at).map(|(pixel, _)| pixel);
             pixel.is_some_and(|[x, y]| (left..=left + width).contains(&x) && (top..=top + height).contains(&y))
         };
-        !self.framing.moves && !self.diverged && !self.position.iter().all(is_inside)
+        // The elements that carry a surface are not seen.
+        let seen = if self.carried().is_empty() { &self.position[..] } else { &self.skin };
+        !self.framing.moves && !self.diverged && !seen.iter().all(is_inside)
     }
 }
 
