@@ -14,6 +14,6 @@ mod surface;
 mod volume;
 
 pub use fill::{Cage, Fill, FillError, Filled, fill};
-pub use read::{CellKind, Cells, Format, Limits, Mesh, ReadError, read, read_cells};
+pub use read::{CellKind, Cells, Format, Limits, Listed, Mesh, ReadError, read, read_cells, read_list};
 pub use surface::{Flaws, Measures, Surface};
 pub use volume::{Group, Volume};

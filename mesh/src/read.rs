@@ -12,12 +12,14 @@ mod obj;
 mod off;
 mod ply;
 mod polygon;
+mod pvd;
 mod source;
 mod stl;
 mod vtk;
 mod vtu;
 
 pub use cells::{CellKind, Cells};
+pub use pvd::{Listed, read_list};
 
 use super::{Surface, Volume};
 

@@ -26,6 +26,7 @@ mod recording;
 pub(crate) mod reference;
 mod resolve;
 mod schema;
+mod sequence;
 mod stability;
 mod step;
 mod structure;

@@ -55,6 +55,8 @@ pub struct Cells {
     pub corners: IndexLists,
     /// Sets of points with a name, in ascending order.
     pub groups: Vec<Group>,
+    /// Velocity of each point, in the unit of the file a second: the point data `velocity` of VTK's grids.
+    pub velocities: Option<Vec<DVec3>>,
 }
 
 /// The order in which files list the corners of a hexahedron, around one side and then around the other, as places in the order of
@@ -164,6 +166,11 @@ impl<'l> Builder<'l> {
         Ok(())
     }
 
+    /// Adds the velocities of the next points.
+    pub(super) fn velocities(&mut self, velocities: Vec<DVec3>) {
+        self.cells.velocities.get_or_insert_default().extend(velocities);
+    }
+
     /// Adds points to the set of this name.
     pub(super) fn group(&mut self, name: String, points: Vec<u32>) {
         self.groups.entry(name).or_default().extend(points);
@@ -182,6 +189,8 @@ impl<'l> Builder<'l> {
             };
             return Err(ReadError::new(message, DAMAGED));
         }
+        // Some pieces may have none.
+        self.cells.velocities = self.cells.velocities.filter(|all| all.len() == count);
         self.cells.groups = self
             .groups
             .into_iter()

@@ -36,6 +36,10 @@ impl Array {
     }
 }
 
+/// Where the only array beside points and cells that is read stands: the velocities of points.
+const POINT_DATA: &[u8] = b"PointData";
+const VELOCITY: &[u8] = b"velocity";
+
 /// How the arrays of a file are written.
 struct Layout<'b> {
     bytes: &'b [u8],
@@ -112,8 +116,9 @@ fn pieces(
                     b"DataArray" => {
                         let parent = path.last().cloned().unwrap_or_default();
                         let wanted: [&[u8]; 6] = [b"Points", b"Cells", b"Verts", b"Lines", b"Polys", b"Strips"];
-                        if wanted.contains(&&*parent) {
-                            let key = (parent, attribute(&tag, "Name")?.unwrap_or_default().into_bytes());
+                        let name = attribute(&tag, "Name")?.unwrap_or_default().into_bytes();
+                        if wanted.contains(&&*parent) || parent == POINT_DATA && name == VELOCITY {
+                            let key = (parent, name);
                             let scalar = scalar(&attribute(&tag, "type")?.unwrap_or_default())?;
                             let start = reader.buffer_position() as usize;
                             match attribute(&tag, "format")?.as_deref() {
@@ -232,6 +237,15 @@ impl Layout<'_> {
                 let mut coordinate = || source.float(array.scalar, "a coordinate");
                 builder.point(DVec3::new(coordinate()?, coordinate()?, coordinate()?)).map(drop)
             })?;
+        }
+        if let Some(array) = piece.get(&(POINT_DATA.to_vec(), VELOCITY.to_vec())) {
+            let mut velocities = Vec::new();
+            self.each(array, VELOCITY, 3 * limits.points, |source| {
+                let mut component = || source.float(array.scalar, "a velocity");
+                velocities.push(DVec3::new(component()?, component()?, component()?));
+                Ok(())
+            })?;
+            builder.velocities(velocities);
         }
         let get = |parent: &[u8], name: &[u8]| piece.get(&(parent.to_vec(), name.to_vec()));
         let integers = |parent: &[u8], name: &[u8]| match get(parent, name) {

@@ -119,13 +119,15 @@ impl SceneParts {
             None => Some(FontFiles::default()),
         };
         let runs: Vec<Option<RunFile>> = several(file, "run", report);
+        let time: Option<TimeFile> = part(file, "time", report);
+        let rate = time.as_ref().map_or(1.0, |time| time.frames_per_second);
         let recording =
-            |(at, run): (usize, &Option<RunFile>)| ReadRecording::read(folder, at, run.as_ref()?, limits, report);
+            |(at, run): (usize, &Option<RunFile>)| ReadRecording::read(folder, at, run.as_ref()?, rate, limits, report);
         let recordings = runs.iter().enumerate().map(recording).collect();
         Self {
             title: part(file, "title", report),
             gravity: part(file, "gravity", report),
-            time: part(file, "time", report),
+            time,
             bodies,
             places,
             beside,

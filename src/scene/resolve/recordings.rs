@@ -9,6 +9,7 @@ use crate::reading::words::{count, list, nearest};
 use crate::scene::file::{RunFile, StatesFile};
 use crate::scene::limits::Limits;
 use crate::scene::recording::{Archive, Flaw, Recorded};
+use crate::scene::sequence::{self, Sequence};
 use crate::scene::{COURSE, Together};
 use crate::sim::{Assembly, Dimension, State};
 use std::path::Path;
@@ -22,6 +23,18 @@ pub(super) struct ReadRecording {
     own: Option<Lists>,
     /// The name of its file as typed.
     file: String,
+    alike: Alike,
+}
+
+/// When a body in a file is that of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Alike {
+    /// Nodes at rest and elements are equal.
+    Whole,
+    /// Elements are equal. Files of single moments do not tell the rest shape.
+    Elements,
+    /// There are as many nodes. Surfaces do not tell elements.
+    Nodes,
 }
 
 /// What a recording shows.
@@ -38,11 +51,19 @@ impl ReadRecording {
         folder: &Path,
         at: usize,
         run: &RunFile,
+        rate: f64,
         limits: &Limits,
         report: &mut Collector<'_>,
     ) -> Option<Self> {
         let (file, chosen) = run.states.as_ref()?.parts();
-        let path = folder.join(file);
+        let sequence = sequence::is_one(file).then(|| Sequence::read(folder, file, rate, limits)).transpose();
+        let sequence = sequence.map_err(|flaw| told(at, run, file, flaw, report)).ok()?;
+        let path = sequence.as_ref().map_or_else(|| folder.join(file), |made| made.archive.path().to_owned());
+        let alike = match sequence.as_ref().map(|made| made.has_elements) {
+            None => Alike::Whole,
+            Some(true) => Alike::Elements,
+            Some(false) => Alike::Nodes,
+        };
         if !path.exists() {
             let near = similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?"));
             report.at(&place(at, run), format!("`{file}` {}", missing(&path)), near);
@@ -59,11 +80,10 @@ impl ReadRecording {
         match open(report) {
             Ok((recorded, own)) => {
                 let (recorded, file) = (Arc::new(recorded), file.to_owned());
-                (report.total() == known).then_some(Self { recorded, own, file })
+                (report.total() == known).then_some(Self { recorded, own, file, alike })
             }
-            Err(Flaw { place: found, message, help }) => {
-                let found = if found.is_empty() { file.to_owned() } else { format!("{file}: {found}") };
-                report.at(&place(at, run), format!("`{found}` {message}"), help);
+            Err(flaw) => {
+                told(at, run, file, flaw, report);
                 None
             }
         }
@@ -123,7 +143,7 @@ impl ReadRecording {
             report.at(&place, message, None);
             return None;
         }
-        if is_same(own, &all.bodies) {
+        if is_same(own, &all.bodies, self.alike) {
             return Some(Shown::Bodies(start));
         }
         if run.bodies.is_some() {
@@ -173,6 +193,13 @@ impl StatesFile {
     }
 }
 
+/// Reports a mistake in a file.
+fn told(at: usize, run: &RunFile, file: &str, flaw: Flaw, report: &mut Collector<'_>) {
+    let Flaw { place: found, message, help } = flaw;
+    let found = if found.is_empty() { file.to_owned() } else { format!("{file}: {found}") };
+    report.at(&place(at, run), format!("`{found}` {message}"), help);
+}
+
 /// The place of the file's name in the scene.
 fn place(at: usize, run: &RunFile) -> Place {
     match run.states {
@@ -187,14 +214,14 @@ fn source(at: usize, run: &RunFile) -> ListSource {
 }
 
 /// Whether a body in an archive is made of the same nodes and elements as the bodies of a run.
-fn is_same(own: &Lists, bodies: &Assembly) -> bool {
+fn is_same(own: &Lists, bodies: &Assembly, alike: Alike) -> bool {
     /// The greatest distance of two equal nodes, as a share of the body's size: single precision is enough.
     const APART: f64 = 1e-6;
     let whole = bodies.whole();
     let near = APART * whole.extent();
     let is_near = |(one, other): (&glam::DVec3, &glam::DVec3)| one.distance(*other) <= near;
+    let has_elements = || own.elements.len() == whole.elements.len() && own.elements.iter().eq(whole.elements.iter());
     own.nodes.len() == whole.len()
-        && own.elements.len() == whole.elements.len()
-        && own.elements.iter().eq(whole.elements.iter())
-        && own.nodes.iter().zip(&whole.rest).all(is_near)
+        && (alike == Alike::Nodes || has_elements())
+        && (alike != Alike::Whole || own.nodes.iter().zip(&whole.rest).all(is_near))
 }
