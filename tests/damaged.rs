@@ -1,6 +1,6 @@
 //! Sound files of every kind are read. Damaged ones are refused or read, and never end the program. `fuzz/` looks for more.
 
-use localshape::internals::untrusted::{READERS, SCENE, checkpoint_of_scene};
+use localshape::internals::untrusted::{GRID, LIST, READERS, SCENE, checkpoint_of_scene};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -96,6 +96,8 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
         "vtu" => [files("mesh/tests/files", "vtu"), files("mesh/tests/files", "vtp")].concat(),
         "font" => files("assets/fonts", "otf"),
         "states" | "recording" => vec![simulated("states.npz")],
+        "list" => vec![LIST.into()],
+        "moment" => vec![GRID.into()],
         "summary" => vec![simulated("run.json")],
         "checkpoint" => vec![checkpoint_of_scene()],
         "state" => vec![localshape::sim::State::at_rest(vec![glam::DVec3::ONE; 3]).to_bytes()],

@@ -24,7 +24,7 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 20] = [
+pub const READERS: [Reader; 22] = [
     Reader { name: "scene", read: scene },
     Reader { name: "setting", read: setting },
     Reader { name: "figure", read: figure },
@@ -40,6 +40,8 @@ pub const READERS: [Reader; 20] = [
     Reader { name: "font", read: font },
     Reader { name: "states", read: states },
     Reader { name: "recording", read: recording },
+    Reader { name: "list", read: list },
+    Reader { name: "moment", read: moment },
     Reader { name: "checkpoint", read: checkpoint },
     Reader { name: "state", read: |bytes| State::from_bytes(bytes).is_some() },
     Reader { name: "summary", read: summary },
@@ -71,6 +73,33 @@ pub const SCENE: &str = "
     name = 'springs'
     model = { kind = 'mass-spring', stiffness = 1e4 }
 ";
+
+/// The model of a run of [`SCENE`], in whose place recordings stand.
+const MODEL: &str = "model = { kind = 'shape-based', stiffness = 1e4 }";
+
+/// A list of grids for the reader of lists.
+pub const LIST: &str = "<?xml version=\"1.0\"?>
+<!-- step 0.0005 -->
+<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\"><Collection>
+<DataSet timestep=\"0\" part=\"0\" file=\"grid.vtu\"/>
+<DataSet timestep=\"0.05\" part=\"0\" file=\"grid.vtu\"/>
+</Collection></VTKFile>";
+
+/// The grid that it names: a cube.
+pub const GRID: &str = "<?xml version=\"1.0\"?>
+<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid>
+<Piece NumberOfPoints=\"8\" NumberOfCells=\"1\">
+<PointData><DataArray type=\"Float32\" Name=\"velocity\" NumberOfComponents=\"3\" format=\"ascii\">
+0 1 0 0 1 0 0 1 0 0 1 0 0 1 0 0 1 0 0 1 0 0 1 0
+</DataArray></PointData>
+<Points><DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" format=\"ascii\">
+0 0 0 0.1 0 0 0 0.1 0 0.1 0.1 0 0 0 0.1 0.1 0 0.1 0 0.1 0.1 0.1 0.1 0.1
+</DataArray></Points>
+<Cells>
+<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 3 2 4 5 7 6</DataArray>
+<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">8</DataArray>
+<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">12</DataArray>
+</Cells></Piece></UnstructuredGrid></VTKFile>";
 
 /// Reads a scene and takes its first steps.
 fn scene(bytes: &[u8]) -> bool {
@@ -133,8 +162,22 @@ fn font(bytes: &[u8]) -> bool {
 
 /// Reads a NumPy archive as the recording of a run.
 fn recording(bytes: &[u8]) -> bool {
-    let model = "model = { kind = 'shape-based', stiffness = 1e4 }";
-    beside("states.npz", bytes, &SCENE.replace(model, "states = 'states.npz'"))
+    beside("states.npz", bytes, &SCENE.replace(MODEL, "states = 'states.npz'"))
+}
+
+/// Reads a list of grids as the recording of a run, beside the grid that it names.
+fn list(bytes: &[u8]) -> bool {
+    in_folder("list.pvd", bytes, |path| {
+        fs::write(path.with_file_name("grid.vtu"), GRID).expect("a file");
+        let file = path.with_file_name("scene.toml");
+        fs::write(&file, SCENE.replace(MODEL, "states = 'list.pvd'")).expect("a file");
+        begin(Scene::load(&file, &LIMITS))
+    })
+}
+
+/// Reads a grid as the only moment of the recording of a run.
+fn moment(bytes: &[u8]) -> bool {
+    beside("moment_0.vtu", bytes, &SCENE.replace(MODEL, "states = 'moment_*.vtu'"))
 }
 
 /// Reads the states of [`SCENE`] up to its first frame.

@@ -17,9 +17,10 @@ use zip::ZipWriter;
 
 /// The formats of single moments.
 const FORMATS: [Format; 2] = [Format::Obj, Format::Vtu];
-/// The comment in a surface that tells its time (s).
+/// The comments by which this program tells the time of a surface, and the time step of the run of surfaces and of lists (s).
 const TIME: &str = "# time ";
-/// Where this comment is searched for (bytes).
+const STEPS: [&str; 2] = ["# step ", "<!-- step "];
+/// Where these comments are searched for (bytes).
 const HEAD: usize = 1024;
 
 /// A sequence as an archive.
@@ -38,11 +39,12 @@ pub(super) fn is_one(file: &str) -> bool {
 impl Sequence {
     /// Reads all files of a sequence in a folder. Those with numbers follow each other at a rate (1/s), and the first is at the start.
     pub(super) fn read(folder: &Path, file: &str, rate: f64, limits: &Limits) -> Result<Self, Flaw> {
-        let moments = if file.contains('*') { numbered(folder, file, rate)? } else { listed(folder, file, limits)? };
+        let (moments, step) =
+            if file.contains('*') { (numbered(folder, file, rate)?, None) } else { listed(folder, file, limits)? };
         let failed = |error: io::Error| flaw("", format!("cannot be brought into one file: {error}"));
         let mut archive = NamedTempFile::new().map_err(failed)?;
         let mut velocities = tempfile::tempfile().map_err(failed)?;
-        let has_elements = write(&mut archive, &mut velocities, file, &moments, limits)?;
+        let has_elements = write(&mut archive, &mut velocities, file, (&moments, step), limits)?;
         Ok(Self { archive, has_elements })
     }
 }
@@ -58,8 +60,8 @@ struct Listed {
     files: Vec<PathBuf>,
 }
 
-/// The moments in a list of VTK's files.
-fn listed(folder: &Path, file: &str, limits: &Limits) -> Result<Vec<Listed>, Flaw> {
+/// The moments in a list of VTK's files, and the time step (s) if the list tells it.
+fn listed(folder: &Path, file: &str, limits: &Limits) -> Result<(Vec<Listed>, Option<f64>), Flaw> {
     let path = folder.join(file);
     let told = |(message, help): Wrong| Flaw { place: String::new(), message, help };
     let bytes =
@@ -74,14 +76,14 @@ fn listed(folder: &Path, file: &str, limits: &Limits) -> Result<Vec<Listed>, Fla
             None => moments.push(Listed { time, files: vec![file] }),
         }
     }
-    Ok(moments)
+    Ok((moments, step_in(&bytes)))
 }
 
 /// The moments in files with numbers in place of the star in a name.
 fn numbered(folder: &Path, pattern: &str, rate: f64) -> Result<Vec<Listed>, Flaw> {
     let path = folder.join(pattern);
     let (within, name) = (path.parent().unwrap_or(folder), path.file_name().unwrap_or_default().to_string_lossy());
-    let Some((before, after)) = name.split_once('*').filter(|(_, after)| !after.contains('*')) else {
+    let Some((before, after)) = name.split_once('*').filter(|_| pattern.matches('*').count() == 1) else {
         let help = "expected one star, in the name of the file, as in frames/*.obj".to_owned();
         return Err(Flaw { help: Some(help), ..flaw("", "does not name numbered files") });
     };
@@ -92,8 +94,8 @@ fn numbered(folder: &Path, pattern: &str, rate: f64) -> Result<Vec<Listed>, Flaw
         let name = entry.file_name().into_string().ok()?;
         let inner = name.strip_prefix(before)?.strip_suffix(after)?;
         // A name may have further words before its number.
-        let digits = inner.rfind(|c: char| !c.is_ascii_digit()).map_or(inner, |at| &inner[at..][1..]);
-        Some((digits.parse::<u64>().ok()?, inner[..inner.len() - digits.len()].to_owned(), entry.path()))
+        let stem = inner.trim_end_matches(|c: char| c.is_ascii_digit());
+        Some((inner[stem.len()..].parse::<u64>().ok()?, stem.to_owned(), entry.path()))
     };
     let mut found: Vec<(u64, String, PathBuf)> = entries.filter_map(number).collect();
     found.sort();
@@ -121,6 +123,7 @@ fn name_of(path: &Path) -> String {
 #[derive(Default)]
 struct Moment {
     time: Option<f64>,
+    step: Option<f64>,
     points: Vec<DVec3>,
     velocities: Vec<DVec3>,
     /// The cells of each file.
@@ -138,13 +141,14 @@ impl Moment {
             let Some(format) = FORMATS.into_iter().find(|format| format.endings().contains(&&*ending)) else {
                 return Err(flaw(&name, "is neither a grid (.vtu, .vtp) nor a surface (.obj)"));
             };
-            let bytes = beside::bytes(path, &[&ending], limits.file, "a moment", "expected a file").map_err(told)?;
+            let bytes = beside::bytes(path, &[&*ending], limits.file, "a moment", "expected a file").map_err(told)?;
             let most = |limit: u64| usize::try_from(limit).unwrap_or(usize::MAX).min(u32::MAX as usize);
             let limits = mesh::Limits { points: most(limits.nodes), corners: most(limits.corners) };
             let cells = mesh::read_cells(&bytes, format, &limits).map_err(|error| told((error.message, error.help)))?;
             if format == Format::Obj {
                 moment.is_surface = true;
-                moment.time = time_in(&bytes);
+                moment.time = number_in(&bytes, TIME);
+                moment.step = step_in(&bytes);
             }
             moment.points.extend(&cells.points);
             moment.velocities.extend(cells.velocities.iter().flatten());
@@ -181,11 +185,16 @@ impl Moment {
     }
 }
 
-/// The time (s) in the head of a surface, if this program has written it.
-fn time_in(bytes: &[u8]) -> Option<f64> {
+/// The number in a comment in the head of a file.
+fn number_in(bytes: &[u8], comment: &str) -> Option<f64> {
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]);
-    let words = head.lines().find_map(|line| line.strip_prefix(TIME))?;
-    words.trim().parse().ok().filter(|time: &f64| time.is_finite())
+    let words = head.lines().find_map(|line| line.strip_prefix(comment))?;
+    words.split_whitespace().next()?.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+/// The time step (s) that a file tells.
+fn step_in(bytes: &[u8]) -> Option<f64> {
+    STEPS.iter().find_map(|comment| number_in(bytes, comment)).filter(|step| *step > 0.0)
 }
 
 /// Writes the archive, with velocities in a file of their own until all positions are known. Returns whether the elements are those of
@@ -194,7 +203,7 @@ fn write(
     archive: &mut NamedTempFile,
     velocities: &mut File,
     file: &str,
-    moments: &[Listed],
+    (moments, step): (&[Listed], Option<f64>),
     limits: &Limits,
 ) -> Result<bool, Flaw> {
     let failed = |error: io::Error| flaw("", format!("cannot be brought into one file: {error}"));
@@ -240,6 +249,10 @@ fn write(
         }
         begin(&mut zip, "time", "<f8", &format!("({frames},)"), 8 * frames as u64)?;
         times.iter().try_for_each(|time| zip.write_all(&time.to_le_bytes()))?;
+        if let Some(step) = step.or(first.step) {
+            begin(&mut zip, "step", "<f8", "()", 8)?;
+            zip.write_all(&step.to_le_bytes())?;
+        }
         let elements = first.elements();
         if !elements.is_empty() {
             begin(&mut zip, "rest", "<f8", &format!("({nodes}, 3)"), 24 * nodes as u64)?;

@@ -143,8 +143,9 @@ pub(in crate::scene) struct RunFile {
     #[schemars(with = "Option<BTreeMap<String, ModelParameters>>")]
     pub(in crate::scene) models: Option<BTreeMap<String, ModelFile>>,
     /// States that another program computed, in place of `model`: a NumPy archive beside the scene, such as
-    /// `"mujoco.npz"`, or `{ file = "states.npz", run = "Local shape" }` for one of several runs in it. Between recorded
-    /// moments nodes move linearly in time. The run ends with the recording. `docs/recordings.md` tells what is in the archive.
+    /// `"mujoco.npz"`, or `{ file = "states.npz", run = "Local shape" }` for one of several runs in it. Also ParaView's lists of grids,
+    /// such as `"soft.pvd"`, and numbered files, such as `"frames/*.obj"`. Between recorded
+    /// moments nodes move linearly in time. The run ends with the recording. `docs/recordings.md` tells what is in the files.
     pub(in crate::scene) states: Option<StatesFile>,
     /// Time step of this run, with the T of `[time]`. `"auto"` uses the prediction of this run alone. Default: that of
     /// `[time]`.

@@ -220,7 +220,16 @@ fn is_same(own: &Lists, bodies: &Assembly, alike: Alike) -> bool {
     let whole = bodies.whole();
     let near = APART * whole.extent();
     let is_near = |(one, other): (&glam::DVec3, &glam::DVec3)| one.distance(*other) <= near;
-    let has_elements = || own.elements.len() == whole.elements.len() && own.elements.iter().eq(whole.elements.iter());
+    // Grids list the corners of some elements in another order.
+    let sorted = |nodes: &[u32]| {
+        let mut nodes = nodes.to_vec();
+        nodes.sort_unstable();
+        nodes
+    };
+    let is_element =
+        |(one, other): (&[u32], &[u32])| one == other || alike == Alike::Elements && sorted(one) == sorted(other);
+    let has_elements =
+        || own.elements.len() == whole.elements.len() && own.elements.iter().zip(whole.elements.iter()).all(is_element);
     own.nodes.len() == whole.len()
         && (alike == Alike::Nodes || has_elements())
         && (alike != Alike::Whole || own.nodes.iter().zip(&whole.rest).all(is_near))
