@@ -141,7 +141,8 @@ fn filled(
         report.warn(&path, message, None);
     }
     let left = mesh::left(&filled.flaws);
-    if !left.is_empty() {
+    // Pieces that touch in an edge are closed all the same.
+    if !left.is_empty() && !filled.surface.measures().closed {
         let message = format!(
             "`{name}` has {}, and is filled where its triangles enclose most",
             list(&left, "and", str::to_owned)
