@@ -290,8 +290,8 @@ impl Reader<'_, '_> {
         for at in 0..kind.nodes {
             let start = self.source.at;
             let tag = self.source.integer(scalar, "the number of a node")?;
-            if at < kind.corners {
-                corners[at] = self.tags.get(tag).ok_or_else(|| {
+            if let Some(corner) = corners[..kind.corners].get_mut(at) {
+                *corner = self.tags.get(tag).ok_or_else(|| {
                     let message = format!("names node {tag} {}, which it does not have", self.source.place(start));
                     ReadError::new(message, DAMAGED)
                 })?;

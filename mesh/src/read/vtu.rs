@@ -53,7 +53,10 @@ struct Layout<'b> {
 }
 
 /// The arrays of a piece by the names of their elements and their own.
-type Piece = BTreeMap<(Vec<u8>, Vec<u8>), Array>;
+type Piece = BTreeMap<Key, Array>;
+
+/// The names of an element and of an array in it.
+type Key = (Vec<u8>, Vec<u8>);
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     // Raw data are no XML, so what stands before them is read alone.
@@ -91,7 +94,7 @@ fn pieces(
     let mut path: Vec<Vec<u8>> = Vec::new();
     let mut piece = Piece::new();
     // The array whose text follows, with its start.
-    let mut open: Option<((Vec<u8>, Vec<u8>), Scalar, bool, usize)> = None;
+    let mut open: Option<(Key, Scalar, bool, usize)> = None;
     let (mut is_begun, mut is_ended) = (false, false);
     loop {
         let before = reader.buffer_position();
@@ -133,11 +136,11 @@ fn pieces(
                                     piece.insert(key, Array { scalar, place });
                                 }
                                 Some("binary") if is_empty => {
-                                    drop(piece.insert(key, Array::inside(scalar, true, start, start)))
+                                    piece.insert(key, Array::inside(scalar, true, start, start));
                                 }
                                 Some("binary") => open = Some((key, scalar, true, start)),
                                 Some("ascii") | None if is_empty => {
-                                    drop(piece.insert(key, Array::inside(scalar, false, start, start)))
+                                    piece.insert(key, Array::inside(scalar, false, start, start));
                                 }
                                 Some("ascii") | None => open = Some((key, scalar, false, start)),
                                 Some(other) => {
