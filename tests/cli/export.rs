@@ -457,3 +457,135 @@ fn courses_after_an_interruption_are_those_without_one() {
     place.run(&format!("{typed} --resume")).good();
     assert!(files_below(&place, "out") == files_below(&place, "whole"));
 }
+
+/// A scene whose runs show these files in place of their models.
+fn played(scene: &str, file: &str) -> String {
+    let line = |line: &str| if line.starts_with("model = ") { format!("states = \"{file}\"") } else { line.to_owned() };
+    scene.lines().map(|one| line(one) + "\n").collect()
+}
+
+/// The states of frames in `diagnostics.csv`: kinetic energy, momenta and shape.
+fn told_states(place: &Place, folder: &str) -> Vec<String> {
+    let table = place.read(&format!("{folder}/diagnostics.csv"));
+    let state = |line: &str| {
+        let cells: Vec<_> = line.split(',').collect();
+        [&cells[..5], &cells[6..13], &cells[14..17]].concat().join(",")
+    };
+    table.lines().map(state).collect()
+}
+
+#[test]
+fn our_own_files_played_back_have_the_states_of_the_run() {
+    let place = Place::new();
+    let bodies = scene(&[0, 1, 2], "[[run]]\nname = \"soft\"\nmodel = { kind = \"shape-based\", stiffness = 1e4 }\n");
+    for (name, text, run) in
+        [("mixed", MIXED, "Local shape"), ("bodies", &bodies, "soft"), ("hulls", HULLS, "Local shape")]
+    {
+        let text = &text.replace("colour.by = \"elastic-energy\"\n", "");
+        place.write(&format!("{name}.toml"), text);
+        place.run(&format!("simulate {name}.toml --write vtu,obj -o {name}")).good();
+        place.write("played.toml", &played(text, &format!("{name}/{run}.pvd")));
+        place.run("simulate played.toml -o played --write vtu --overwrite").good();
+        assert_eq!(told_states(&place, "played"), told_states(&place, name));
+        // The grids that are written again have the same points and velocities.
+        let grid = |folder: &str| {
+            let mut files = files_below(&place, folder);
+            files.retain(|file, _| file.ends_with(".vtu"));
+            let part = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap().split_once("<VTKFile").unwrap().1.to_owned();
+            files.into_values().map(part).collect::<Vec<_>>()
+        };
+        assert!(grid("played") == grid(name), "{name}");
+        // Surfaces have no velocities.
+        place.write("surfaces.toml", &played(text, &format!("{name}/{run}/*.obj")));
+        place.run("simulate surfaces.toml -o surfaces --write obj --overwrite").good();
+        let surfaces = |folder: &str| {
+            let mut files = files_below(&place, folder);
+            files.retain(|file, _| file.ends_with(".obj"));
+            let part = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap().split_once("# time").unwrap().1.to_owned();
+            files.into_values().map(part).collect::<Vec<_>>()
+        };
+        assert!(surfaces("surfaces") == surfaces(name), "{name}");
+    }
+}
+
+/// Pictures of a recording are those of the run.
+#[cfg(feature = "render")]
+#[test]
+fn our_own_files_played_back_give_the_pictures_of_the_run() {
+    let Some(place) = crate::render::place_to_draw() else { return };
+    let text = MIXED
+        .replace("colour.by = \"elastic-energy\"", "camera.distance = 2\nlabels = [\"name\", \"clock\", \"number\"]");
+    place.write("mixed.toml", &text);
+    place.run("render mixed.toml --write vtu -o mixed").good();
+    place.write("played.toml", &played(&text, "mixed/Local shape.pvd"));
+    place.run("render played.toml -o played").good();
+    let pictures = |folder: &str| {
+        let mut files = files_below(&place, folder);
+        files.retain(|file, _| file.ends_with(".png"));
+        files
+            .into_values()
+            .map(|bytes| localshape::internals::Pixels::from_bytes(&bytes).unwrap().bytes)
+            .collect::<Vec<_>>()
+    };
+    let (own, again) = (pictures("mixed"), pictures("played"));
+    assert_eq!(own.len(), 7);
+    assert!(own == again);
+}
+
+/// A run of surfaces alone has a body of its own.
+#[test]
+fn surfaces_of_other_programs_are_bodies_of_their_own() {
+    let place = Place::with_small();
+    for frame in 1..=5 {
+        let height = 0.1 * f64::from(frame);
+        let corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
+        let corner = |[x, y, z]: [i32; 3]| format!("v {} {} {}\n", x, f64::from(y) + height, z);
+        let faces = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+        place.write(&format!("thrown/tetra_{frame:04}.obj"), &(corners.map(corner).concat() + faces));
+    }
+    let run = "[[run]]\nname = \"Thrown\"\nstates = \"thrown/tetra_*.obj\"\n";
+    place.write("scene.toml", &SMALL.replace("[[obstacle]]", &format!("{run}[[obstacle]]")));
+    place.run("simulate scene.toml --only Thrown --write vtu -o out").good();
+    let run = &place.json("out/run.json")["runs"][0];
+    assert_eq!(run["status"], "ended");
+    // Five moments at 60 frames per second.
+    assert!((run["time"].as_f64().unwrap() - 4.0 / 60.0).abs() < 1e-12, "{run}");
+    let told = place.run("check scene.toml").good();
+    assert!(told.out.contains("tetra_*.obj, recorded, 5 states"), "{told:?}");
+}
+
+#[test]
+fn broken_sequences_are_told() {
+    let place = Place::with_small();
+    place.run("simulate small.toml --write vtu,obj --only Mass-spring -o out").good();
+    let refused = |file: &str, words: &[&str]| {
+        place.write("played.toml", &SMALL.replace("model = { kind = \"mass-spring\", stiffness = 1e4, damping_ratio = 0.1, springs = \"edges+one-diagonal\" }", &format!("states = \"{file}\"")));
+        place.run("simulate played.toml -o played").bad(2, words);
+    };
+    let list = place.read("out/Mass-spring.pvd");
+    refused("out/Mass.pvd", &["`out/Mass.pvd` is not there", "Mass-spring.pvd"]);
+    place.write("out/broken.pvd", &list.replace("body_00003", "body_00013"));
+    refused("out/broken.pvd", &["`out/broken.pvd: body_00013.vtu` is not there"]);
+    place.write("out/broken.pvd", &list.replace("Mass-spring/body_00003.vtu", "../small.toml"));
+    refused("out/broken.pvd", &["`out/broken.pvd: small.toml` is neither a grid"]);
+    let mut lines: Vec<_> = list.lines().collect();
+    lines.swap(5, 6);
+    place.write("out/broken.pvd", &lines.join("\n"));
+    refused("out/broken.pvd", &["`out/broken.pvd` has the time", "in line 7; expected rising times"]);
+    place.write("out/broken.pvd", &list.replace("Collection", "Grid"));
+    refused("out/broken.pvd", &["is a VTK file of the type `Grid`; expected `Collection`"]);
+    place.write("out/broken.pvd", "<VTKFile type=\"Collection\"></VTKFile>");
+    refused("out/broken.pvd", &["lists no file"]);
+    let grid = place.read("out/Mass-spring/body_00002.vtu");
+    place.write("out/Mass-spring/body_00002.vtu", &grid[..grid.len() / 2]);
+    refused("out/Mass-spring.pvd", &["`out/Mass-spring.pvd: body_00002.vtu` "]);
+    place.write("three.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    std::fs::copy(place.path("three.obj"), place.path("out/Mass-spring/frame_00003.obj")).unwrap();
+    refused("out/Mass-spring/*.obj", &["frame_00003.obj` has 3 points, and frame_00000.obj has 12; expected the same"]);
+    std::fs::rename(place.path("out/Mass-spring/frame_00003.obj"), place.path("out/Mass-spring/other_00003.obj"))
+        .unwrap();
+    refused("out/Mass-spring/*.obj", &["names several sequences, frame_… and other_…", "write more of the name"]);
+    refused("out/Mass-spring/*.stl", &["names no file"]);
+    refused("none/*.obj", &["cannot be read"]);
+    refused("*/frame_*.obj", &["does not name numbered files"]);
+}
