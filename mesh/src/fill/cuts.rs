@@ -27,7 +27,7 @@ const CLOSE: f64 = 1e-9;
 
 /// Where edges are cut, as a part of the way from an end that counts as inside because the body is thin there: for edges along the axes
 /// and for others. Just so far that the end is not moved to the cut.
-pub(super) const WIDE: [f64; 2] = [0.25, 0.42];
+pub(super) const WIDE: [f64; 2] = [0.29, 0.40];
 
 /// A lattice of cubes around a surface. Points are counted in halves of the side: corners of cubes have even coordinates, their
 /// middles odd ones.
