@@ -49,9 +49,6 @@ pub struct Cage {
     pub elements: IndexLists,
     /// The part of each element's volume that is inside the surface, above 0 and at most 1; `None` if all are full.
     pub filled: Option<Vec<f64>>,
-    /// The stiffness of each element, if it were full, relative to that of a cube with the side asked for and of the same material; `None`
-    /// if all are alike.
-    pub stiffness: Option<Vec<f64>>,
     /// Whether elements are the convex hulls of their nodes, in any order.
     pub convex: bool,
 }

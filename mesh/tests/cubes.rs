@@ -270,6 +270,7 @@ fn graded_cubes_are_coarse_inside() {
 /// Graded cubes are of the material of plain ones: the same deformation of a block needs the same energy.
 #[test]
 fn coarse_cubes_are_as_stiff_as_the_fine_ones_in_their_place() {
+    use localshape_sim::geometry::relative_stiffness;
     use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
     use localshape_sim::{Body, Dimension, Integrator, Solids, State, Stepping, Surroundings, World};
     let energy = |with: Fill| {
@@ -278,7 +279,7 @@ fn coarse_cubes_are_as_stiff_as_the_fine_ones_in_their_place() {
         let stretch = DMat3::from_cols_array(&[1.02, 0.03, 0.01, 0.03, 0.99, -0.02, 0.01, -0.02, 1.01]);
         let moved = cage.nodes.iter().map(|&node| stretch * node).collect();
         let mut body = Body::new(Dimension::Space, cage.nodes, vec![1.0; count], cage.elements, Solids::Ordered, None);
-        body.fill = cage.stiffness;
+        body.stiffness = Some(relative_stiffness(&body, 0.1));
         let model = ShapeBased {
             stiffness: 1.0,
             damping: 0.0,

@@ -27,9 +27,11 @@ pub struct Body {
     /// The faces of the elements, or the listed ones.
     pub faces: Faces,
     /// The part of each element's volume that is filled, above 0 and at most 1. Its stiffness and its damping are in proportion; its
-    /// share in the masses of its nodes has to be, and then it does not shorten the stable step. More than 1 is a full element that is
-    /// so many times stiffer than others of the same material, as it is larger. `None` if all are full and alike.
+    /// share in the masses of its nodes has to be, and then it does not shorten the stable step. `None` if all are full.
     pub fill: Option<Vec<f64>>,
+    /// The stiffness and the damping of each element, if it is full, relative to those of the model; `None` if all are 1. Elements of
+    /// one material and different sizes differ in it.
+    pub stiffness: Option<Vec<f64>>,
     /// The fine surface that stands for the body in pictures.
     pub carried: Option<Arc<Carried>>,
 }
@@ -61,7 +63,7 @@ impl Body {
             }
             None => Elements { nodes: &elements, kinds: &kinds, hulls: &hulls, rest: &rest }.shared_faces(),
         };
-        Self { dimension, rest, mass, elements, kinds, hulls, faces, fill: None, carried: None }
+        Self { dimension, rest, mass, elements, kinds, hulls, faces, fill: None, stiffness: None, carried: None }
     }
 
     /// All bodies as one, with the nodes, elements and faces of the first before those of the second, and so on. The whole
@@ -75,10 +77,13 @@ impl Body {
         for body in others {
             // The first other body makes a copy of the first one.
             let whole = Arc::make_mut(&mut whole);
-            if whole.fill.is_some() || body.fill.is_some() {
-                let part = |of: &Self| of.fill.clone().unwrap_or_else(|| vec![1.0; of.elements.len()]);
-                whole.fill = Some([part(whole), part(body)].concat());
-            }
+            let counts = [whole.elements.len(), body.elements.len()];
+            let joined = |of: [&Option<Vec<f64>>; 2]| {
+                let [one, other] = [0, 1].map(|at| of[at].clone().unwrap_or_else(|| vec![1.0; counts[at]]));
+                of.iter().any(|of| of.is_some()).then(|| [one, other].concat())
+            };
+            whole.fill = joined([&whole.fill, &body.fill]);
+            whole.stiffness = joined([&whole.stiffness, &body.stiffness]);
             whole.carried = None;
             assert_eq!(whole.dimension, body.dimension, "bodies of one dimension");
             let (node, element) = (whole.len() as u32, whole.elements.len() as u32);

@@ -1,35 +1,65 @@
-//! How much of elements, springs and nodes is filled.
+//! How much of elements, springs and nodes is filled, and how stiff they are in proportion.
 
 use super::body::Body;
+use super::diagnose::volumes_at_rest;
 use super::law::Law;
 use super::model::blocks::EntriesOfNode;
+use glam::DVec3;
 
-/// The filled part of each of some lists of nodes, such as springs; `None` if the body is full.
+/// The stiffness of each element, as far as it is filled, relative to the model's; `None` if all are 1.
+pub(crate) fn of_elements(body: &Body) -> Option<Vec<f64>> {
+    (body.fill.is_some() || body.stiffness.is_some())
+        .then(|| (0..body.elements.len()).map(|element| of_element(body, element)).collect())
+}
+
+/// The stiffness of each element of a body in space, relative to that of a cube with this side (m) and of the same material.
 ///
-/// What is not an element of the body belongs in equal parts to the elements that hold all its nodes, so its filled part is the mean of
-/// theirs. Then stiffness is a sum over elements, `Σ f K`, as masses in proportion are, `Σ f M`, and no mode has a greater quotient of the
+/// A material of modulus μ gives an element of volume V and nodes `R0` about their mean the stiffness `6 μ V / Σ |R0|²`, a cube `μ`
+/// times its side: with them, elements of the shape model have the energy density of the material, if their nodes spread alike in all
+/// directions.
+pub fn relative_stiffness(body: &Body, side: f64) -> Vec<f64> {
+    let of_element = |(nodes, volume): (&[u32], f64)| {
+        let rest = || nodes.iter().map(|&node| body.rest[node as usize]);
+        let middle = rest().sum::<DVec3>() / nodes.len() as f64;
+        let spread: f64 = rest().map(|rest| (rest - middle).length_squared()).sum();
+        6.0 * volume / (spread * side)
+    };
+    body.elements.iter().zip(volumes_at_rest(body)).map(of_element).collect()
+}
+
+/// The stiffness of an element, as far as it is filled, relative to the model's.
+pub(crate) fn of_element(body: &Body, element: usize) -> f64 {
+    let factor = |of: &Option<Vec<f64>>| of.as_ref().map_or(1.0, |of| of[element]);
+    factor(&body.fill) * factor(&body.stiffness)
+}
+
+/// The relative stiffness of each of some lists of nodes, such as springs; `None` if all are 1.
+///
+/// What is not an element of the body belongs in equal parts to the elements that hold all its nodes, so its relative stiffness is the
+/// mean of theirs. Then stiffness is a sum over elements, `Σ f K`, as masses in proportion are, `Σ f M`, and no mode has a greater quotient of the
 /// two than the stiffest of the elements full and by itself: an element that is hardly filled does not shorten the step. Full
 /// neighbours of such an element keep more of what they share than they lose.
 ///
 /// What no element holds has the least part of its nodes.
 pub(crate) fn parts<'a>(body: &Body, lists: impl Iterator<Item = &'a [u32]>) -> Option<Vec<f64>> {
-    let fill = body.fill.as_ref()?;
+    let of_elements = of_elements(body)?;
     let elements_of = elements_of(body);
     let part = |nodes: &[u32]| {
         let (&first, others) = nodes.split_first()?;
         let hold = |&&element: &&usize| others.iter().all(|node| body.elements[element].contains(node));
-        mean(elements_of.of(first as usize).iter().filter(hold).map(|&element| fill[element]))
+        mean(elements_of.of(first as usize).iter().filter(hold).map(|&element| of_elements[element]))
     };
-    let of_node = |&node: &u32| mean(elements_of.of(node as usize).iter().map(|&element| fill[element])).unwrap_or(1.0);
-    let least = |nodes: &[u32]| nodes.iter().map(of_node).fold(1.0, f64::min);
+    let of_node =
+        |&node: &u32| mean(elements_of.of(node as usize).iter().map(|&element| of_elements[element])).unwrap_or(1.0);
+    let least = |nodes: &[u32]| nodes.iter().map(of_node).fold(f64::INFINITY, f64::min);
     Some(lists.map(|nodes| part(nodes).unwrap_or_else(|| least(nodes))).collect())
 }
 
-/// The filled part of each element on which a law acts; `None` if the body is full.
+/// The relative stiffness of each element on which a law acts; `None` if all are 1.
 pub(crate) fn of_law(law: &impl Law, body: &Body) -> Option<Vec<f64>> {
     match law.elements(body) {
         Some(own) => parts(body, own.iter()),
-        None => body.fill.clone(),
+        None => of_elements(body),
     }
 }
 
@@ -44,7 +74,7 @@ pub(crate) fn of_nodes(body: &Body) -> Option<Vec<f64>> {
 /// What is filled of the volumes of elements (m³, in the plane m²): their sum, if the body is full.
 pub(crate) fn volume(fill: Option<&[f64]>, volumes: &[f64]) -> f64 {
     match fill {
-        Some(fill) => volumes.iter().zip(fill).map(|(volume, part)| volume * part.min(1.0)).sum(),
+        Some(fill) => volumes.iter().zip(fill).map(|(volume, part)| volume * part).sum(),
         None => volumes.iter().sum(),
     }
 }

@@ -4,6 +4,7 @@ pub use super::alike::Alike;
 pub use super::contact::ground;
 pub use super::diagnose::{volume_by_faces, volumes_at_rest};
 pub use super::element::{around, kind, ordered};
+pub use super::fill::relative_stiffness;
 pub use super::hull::bounds;
 pub use super::overlap::overlaps;
 

@@ -55,10 +55,10 @@ pub(super) fn fill(
     let scene = Scene { scaled: &scaled, lattice: &lattice, inside: &inside, pieces: &pieces };
     let parts = scene.parts(&cells);
     let mut nodes = Nodes::new(lattice, parts.corners.len());
-    let (elements, filled, stiffness, weights) = if is_graded {
-        let Graded { elements, filled, stiffness, element_of } = graded::joined(&scene, &parts, &mut nodes);
+    let (elements, filled, weights) = if is_graded {
+        let Graded { elements, filled, element_of } = graded::joined(&scene, &parts, &mut nodes);
         let weights = weights(&scene, &parts, &homes, |copy| &elements[element_of[copy] as usize]);
-        (elements, filled, Some(stiffness), weights)
+        (elements, filled, weights)
     } else {
         let mut elements = IndexLists::default();
         for (copy, full) in parts.copies.iter().enumerate() {
@@ -68,12 +68,12 @@ pub(super) fn fill(
             }));
         }
         let weights = weights(&scene, &parts, &homes, |copy| &elements[copy]);
-        (elements, parts.copies.iter().map(|full| full.filled).collect(), None, weights)
+        (elements, parts.copies.iter().map(|full| full.filled).collect(), weights)
     };
     if elements.len() > most {
         return refuse(elements.len());
     }
-    let cage = Cage { nodes: nodes.places, elements, filled: in_part(filled), stiffness, convex: false };
+    let cage = Cage { nodes: nodes.places, elements, filled: in_part(filled), convex: false };
     Ok(Filled { cage, surface, weights, flaws })
 }
 

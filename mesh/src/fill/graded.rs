@@ -7,8 +7,7 @@
 
 use super::cubes::{CORNERS, Nodes};
 use super::lattice::{Cell, Lattice};
-use super::parts::{Parts, Scene, corner};
-use glam::DVec3;
+use super::parts::{Parts, Scene};
 use localshape_sim::IndexLists;
 use std::collections::HashSet;
 
@@ -22,11 +21,10 @@ struct Cube {
     copy: u32,
 }
 
-/// Elements made of copies, the part of each that is inside, the stiffness of each relative to a single cell, and the element of each copy that touches the surface.
+/// Elements made of copies, the part of each that is inside, and the element of each copy that touches the surface.
 pub(super) struct Graded {
     pub(super) elements: IndexLists,
     pub(super) filled: Vec<f64>,
-    pub(super) stiffness: Vec<f64>,
     pub(super) element_of: Vec<u32>,
 }
 
@@ -42,22 +40,13 @@ pub(super) fn joined(scene: &Scene, parts: &Parts, nodes: &mut Nodes) -> Graded 
             is_node[set(cube, corner.map(|end| 2 * end)) as usize] = true;
         }
     }
-    let mut graded = Graded {
-        elements: IndexLists::default(),
-        filled: vec![],
-        stiffness: vec![],
-        element_of: vec![0; parts.copies.len()],
-    };
+    let mut graded =
+        Graded { elements: IndexLists::default(), filled: vec![], element_of: vec![0; parts.copies.len()] };
     for cube in &cubes {
         let mut own = Vec::with_capacity(8);
-        // The sums of places from the middle and of their squares, in halves of the side.
-        let (mut sum, mut squares) = (DVec3::ZERO, 0.0);
         let mut push = |at: Cell| {
             let set = set(cube, at);
             if is_node[set as usize] {
-                let place = corner(at) - 1.0;
-                sum += place;
-                squares += place.length_squared();
                 own.push(nodes.of(set, [0, 1, 2].map(|axis| cube.low[axis] + at[axis] * cube.side / 2)));
             }
         };
@@ -71,9 +60,6 @@ pub(super) fn joined(scene: &Scene, parts: &Parts, nodes: &mut Nodes) -> Graded 
         }
         graded.element_of[cube.copy as usize] = graded.elements.len() as u32;
         graded.elements.push(&own);
-        // A material of modulus μ gives an element of volume V and nodes R₀ about their mean the constant 6 μ V / Σ |R₀|².
-        let spread = squares - sum.length_squared() / own.len() as f64;
-        graded.stiffness.push(24.0 * f64::from(cube.side) / spread);
         graded.filled.push(if cube.side > 1 { 1.0 } else { parts.copies[cube.copy as usize].filled });
     }
     graded

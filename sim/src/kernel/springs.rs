@@ -99,7 +99,7 @@ impl Stencil {
         /// Lanes for each spring, at most: if less than half of them are used, the gathering kernel is faster.
         const SPARSE: usize = 2;
         let &Conditions { gravity, step, set, .. } = conditions;
-        let Body { rest, mass, fill: None, .. } = body else { return None };
+        let Body { rest, mass, fill: None, stiffness: None, .. } = body else { return None };
         let nodes = rest.len();
         let chunks = nodes.div_ceil(CHUNK).max(1);
         let mut sorted: Vec<(usize, usize, usize)> = Vec::with_capacity(springs.len());

@@ -7,9 +7,10 @@ use super::{Beside, Place, direction, elements, mass, mesh, vector};
 use crate::reading::captions::typed;
 use crate::reading::collector::{Collector, PathPart, key_path, written};
 use crate::reading::words::quoted;
-use crate::scene::file::{BodyFile, Cells, Coordinates, Lattice, SideFile, StartShape};
+use crate::scene::file::{BodyFile, Cells, Coordinates, FillKind, Lattice, SideFile, StartShape};
 use crate::scene::generate::{Generator, Made, brought_to_start};
 use crate::scene::limits::BodySize;
+use crate::sim::geometry::relative_stiffness;
 use crate::sim::{Body, Carried, Dimension, IndexLists, Solids, State};
 use glam::DVec3;
 use localshape_mesh::{Cage, Filled, Group};
@@ -199,11 +200,14 @@ fn generated(
 /// A surface with the elements that fill it, whose edges have a length (m).
 fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Collector<'_>) -> Option<ResolvedBody> {
     let before = report.total();
-    let Filled { cage: Cage { nodes, elements, filled, stiffness, convex }, surface, weights, .. } = of;
+    let Filled { cage: Cage { nodes, elements, filled, convex }, surface, weights, .. } = of;
     let solids = if convex { Solids::Convex } else { Solids::Ordered };
     let count = nodes.len();
     let mut body = Body::new(Dimension::Space, nodes, vec![1.0; count], elements, solids, None);
     body.fill = filled;
+    // Cubes are all alike.
+    let is_alike = file.fill.as_ref().is_none_or(|fill| fill.with == FillKind::Cubes);
+    body.stiffness = (!is_alike).then(|| relative_stiffness(&body, side));
     body.carried = Some(Arc::new(Carried { rest: surface.points, triangles: surface.triangles, weights }));
     let mass = mass::resolve(file, &body, place, report);
     let initial = start(file, place, body.rest.clone(), None, Dimension::Space, report);
@@ -211,11 +215,6 @@ fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Co
         return None;
     }
     body.mass = mass?;
-    if let Some(stiffness) = stiffness {
-        // After the masses, which are in proportion to volumes.
-        let parts = body.fill.unwrap_or_else(|| vec![1.0; stiffness.len()]);
-        body.fill = Some(parts.iter().zip(&stiffness).map(|(part, stiffness)| part * stiffness).collect());
-    }
     let name = file.name.clone().unwrap_or_default();
     let body = Arc::new(body);
     Some(ResolvedBody { name, body, initial, springs: None, side, has_cells: false, groups: Vec::new() })

@@ -65,6 +65,7 @@ impl Grid {
         let (row, layer) = (first[2] as usize, first[4] as usize);
         if body.dimension != Dimension::Space
             || body.fill.is_some()
+            || body.stiffness.is_some()
             || row < 2
             || layer < 2 * row
             || !layer.is_multiple_of(row)

@@ -14,6 +14,7 @@ mod in_lanes;
 use super::{ElasticModel, ForceModel, Late, Misfit, Report, Scratch, Share, TypedModel, Vectorised, blocks};
 use crate::body::Body;
 use crate::element::Dimension;
+use crate::fill;
 use crate::kernel::lattice::{self, LatticeStepper};
 use crate::kernel::{Compiled, Conditions, Rotation, Stepper};
 use crate::mode::Mode;
@@ -169,7 +170,7 @@ impl ElasticModel for ShapeBased {
     fn bound(&self, body: &Body) -> Option<Mode> {
         let mut parts = vec![0.0; body.len()];
         for (element, nodes) in body.elements.iter().enumerate() {
-            let part = body.fill.as_ref().map_or(1.0, |fill| fill[element]);
+            let part = fill::of_element(body, element);
             nodes.iter().for_each(|&node| parts[node as usize] += part);
         }
         let most = parts.iter().zip(&body.mass).map(|(parts, mass)| parts / mass).fold(0.0, f64::max);
@@ -377,7 +378,7 @@ impl Elements {
 
     /// `k` (N/m) and `D` (N s/m) of an element.
     fn constants(&self, element: usize) -> [f64; 2] {
-        let part = self.body.fill.as_ref().map_or(1.0, |fill| fill[element]);
+        let part = fill::of_element(&self.body, element);
         [self.model.stiffness, self.model.damping].map(|full| full * part)
     }
 
