@@ -148,7 +148,7 @@ fn main() -> io::Result<()> {
         false => [[a, b, d], [b, c, d]],
     };
     let triangles: Vec<[u32; 3]> = quadrilaterals.iter().flat_map(cut).collect();
-    let path = format!("{}/scenes/meshes/hare.ply", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/scenes/hare.ply", env!("CARGO_MANIFEST_DIR"));
     write(BufWriter::new(File::create(&path)?), &points, &triangles)?;
     println!("{path}: {} points, {} triangles", points.len(), triangles.len());
     Ok(())

@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn a_surface_is_described_with_all_its_fillings() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/hare.ply");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/hare.ply");
         let mesh = MeshSummary::read(&path, &Limits::default()).unwrap();
         let text = mesh.to_string();
         for words in ["6 972 points, 13 944 triangles", "closed, volume 0.01", "1 separate piece", "20 cells of 0.03"] {
