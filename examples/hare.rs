@@ -14,7 +14,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 
 /// The side of the lattice's cells (m).
-const SIDE: f64 = 0.0112;
+const SIDE: f64 = 0.0113;
 /// The number of times that points are evened out.
 const ROUNDS: usize = 12;
 

@@ -113,7 +113,7 @@ fn a_block_that_carries_its_own_faces_looks_the_same() {
         let [one, other] = [plain.clone(), carrying(&plain, own)].map(|scene| draw(gpu, &picture(&scene, index)));
         // Contours of carried surfaces are joined at corners. Goldens tolerate 1 % and 0.03 %.
         let shares = [2, 16].map(|by| apart(&one, &other, by));
-        assert!(shares[0] < 3e-4 && shares[1] < 1.5e-4, "{index}: {shares:?}");
+        assert!(shares.iter().all(|share| *share < 3e-4), "{index}: {shares:?}");
     }
 }
 

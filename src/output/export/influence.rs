@@ -40,14 +40,22 @@ pub(super) fn of(carried: &Carried, point: usize, rest: &[DVec3]) -> Vec<(u32, f
     })
 }
 
+/// A number from 0 to 1 that depends on a number in no simple way, so that sums of a few hardly ever agree (SplitMix64: G. Steele,
+/// D. Lea, C. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014).
+fn mixed(number: u32) -> f64 {
+    let mut bits = (u64::from(number) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
 /// The tetrahedron of nodes with the least height at a point, and the weights of its corners there.
 fn tetrahedron(all: &[(u32, f64)], at: DVec3, rest: &[DVec3]) -> Option<Vec<(u32, f64)>> {
     let corner = |place: usize| rest[all[place].0 as usize] - at;
     let size = (0..all.len()).map(|place| corner(place).length_squared()).fold(0.0, f64::max);
     // Nodes on a sphere, such as the corners of a cube, differ by a little of their own.
     let height = |place: usize| {
-        let mixed = u64::from(all[place].0).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11;
-        corner(place).length_squared() / size + 1e-3 * (mixed as f64 / (1_u64 << 53) as f64)
+        corner(place).length_squared() / size + 1e-3 * mixed(all[place].0)
     };
     let mut best: Option<(f64, [usize; MOST], [f64; MOST])> = None;
     for a in 0..all.len() {

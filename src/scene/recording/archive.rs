@@ -89,7 +89,7 @@ impl Archive {
             let run = course.runs.swap_remove(run);
             tracks.iter().zip(&run.digests).all(|(track, digests)| track.digests == *digests).then_some(run)
         });
-        let times = self.times(tracks[0].array.shape[0], own.is_some())?;
+        let times = self.times(tracks[0].array.shape[0], &tracks[0].digests)?;
         let name = self.name("time").unwrap_or_default();
         match times[..] {
             [start, ..] if start > 0.0 => {
@@ -128,7 +128,7 @@ impl Archive {
             }
             track.digests.clone_from(digests);
         }
-        let times = self.times(moments, true)?;
+        let times = self.times(moments, &tracks[0].digests)?;
         self.of_tracks(tracks, times, Some(run))
     }
 
@@ -227,9 +227,9 @@ impl Archive {
         [full(&self.run, key), key.to_owned()].into_iter().find(|name| names.contains(name))
     }
 
-    /// The times of the moments, rising. Frames of this program that are nearer than a step have the same state at the same
-    /// time.
-    fn times(&mut self, moments: u64, is_own: bool) -> Result<Vec<f64>, Flaw> {
+    /// The times of the moments, rising. Moments of the same state may have the same time, as frames of this program that are nearer
+    /// than a step, or come after a divergence. `digests` are those of the positions.
+    fn times(&mut self, moments: u64, digests: &[[u8; 32]]) -> Result<Vec<f64>, Flaw> {
         let Some(name) = self.name("time") else {
             let message = format!("has no array `{}`, the time of each moment (s)", full(&self.run, "time"));
             return Err(Flaw::new("", message));
@@ -240,11 +240,10 @@ impl Archive {
             if time.is_nan() || time.abs() > LARGEST {
                 return Err(Flaw::new(place(), format!("is {time}; expected a finite time (s)")));
             }
-            if let Some(before) = at
-                .checked_sub(1)
-                .map(|before| times[before])
-                .filter(|&before| time < before || time == before && !is_own)
-            {
+            let falls = |&before: &usize| {
+                time < times[before] || time == times[before] && digests.get(before) != digests.get(at)
+            };
+            if let Some(before) = at.checked_sub(1).filter(falls).map(|before| times[before]) {
                 return Err(Flaw::new(place(), format!("is {time}, after {before}; expected rising times")));
             }
         }
