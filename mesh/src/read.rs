@@ -109,7 +109,12 @@ impl ReadError {
 /// # Errors
 /// If it is damaged, or larger than the limits, or has neither faces nor cells, or cells without area or volume.
 pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Mesh, ReadError> {
-    read_cells(bytes, format, limits)?.mesh()
+    let cells = read_cells(bytes, format, limits)?;
+    match format {
+        Format::Gmsh | Format::Vtk | Format::Vtu => cells.mesh(),
+        // A flat surface is not a body in the plane.
+        Format::Obj | Format::Stl | Format::Ply | Format::Off | Format::Gltf => cells.faces(),
+    }
 }
 
 /// Reads the points and cells of a file as they are listed: in their order, unused and flat ones, too. Files of one mesh at

@@ -20,7 +20,7 @@ pub(crate) fn bytes(path: &Path, endings: &[&str], longest: u64, what: &str, exp
         return Err((format!("is {kind}; {expected}"), None));
     }
     let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(longest + 1).read_to_end(&mut bytes));
+    let read = File::open(path).and_then(|file| file.take(longest.saturating_add(1)).read_to_end(&mut bytes));
     read.map_err(|error| (format!("cannot be read: {error}"), None))?;
     match bytes.len() as u64 > longest {
         true => Err((format!("is larger than {}, the most that {what} may have", size(longest.into())), None)),

@@ -32,6 +32,15 @@ pub enum SceneError {
         /// Files in the folder that may be scenes.
         scenes: Vec<PathBuf>,
     },
+    /// The file is a mesh.
+    #[error(
+        "{}: this is a mesh, not a scene; see what it contains with `localshape check`, and name it as `mesh` in [body] of a scene",
+        path.display()
+    )]
+    Mesh {
+        /// The path.
+        path: PathBuf,
+    },
     /// The system refused to read the file.
     #[error("{}: the file cannot be read", path.display())]
     Unreadable {

@@ -2,6 +2,7 @@
 
 use super::error::SceneError;
 use super::limits::Limits;
+use super::mesh::is_mesh;
 use super::resolve::SceneParts;
 use super::schema::SCHEMA;
 use super::structure::ValidFile;
@@ -34,6 +35,9 @@ impl Scene {
     /// # Errors
     /// As [`Self::load`]. A mistake in a setting is reported like one in the file.
     pub(crate) fn load_with(path: &Path, settings: &[Setting], limits: &Limits) -> Result<Self, SceneError> {
+        if is_mesh(path) && path.is_file() {
+            return Err(SceneError::Mesh { path: path.to_owned() });
+        }
         let text = text_of(path, limits, FIGURE)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let name = path.display().to_string();

@@ -239,6 +239,14 @@ impl Cells {
         Err(ReadError::new(message, "write a mesh of triangles or of cells, not points or curves"))
     }
 
+    /// The faces as a surface of triangles, without points that belong to none.
+    ///
+    /// # Errors
+    /// If there are no faces.
+    pub(super) fn faces(self) -> Result<Mesh, ReadError> {
+        if self.kinds.contains(&CellKind::Polygon) { self.surface().map(Mesh::Surface) } else { self.mesh() }
+    }
+
     /// The cells that a predicate selects, with their number in the file.
     fn chosen(&self, wanted: impl Fn(CellKind) -> bool) -> impl Iterator<Item = (usize, CellKind, &[u32])> {
         let all = self.kinds.iter().zip(self.corners.iter()).enumerate();

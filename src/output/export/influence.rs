@@ -54,9 +54,7 @@ fn tetrahedron(all: &[(u32, f64)], at: DVec3, rest: &[DVec3]) -> Option<Vec<(u32
     let corner = |place: usize| rest[all[place].0 as usize] - at;
     let size = (0..all.len()).map(|place| corner(place).length_squared()).fold(0.0, f64::max);
     // Nodes on a sphere, such as the corners of a cube, differ by a little of their own.
-    let height = |place: usize| {
-        corner(place).length_squared() / size + 1e-3 * mixed(all[place].0)
-    };
+    let height = |place: usize| corner(place).length_squared() / size + 1e-3 * mixed(all[place].0);
     let mut best: Option<(f64, [usize; MOST], [f64; MOST])> = None;
     for a in 0..all.len() {
         for b in a + 1..all.len() {

@@ -202,6 +202,7 @@ fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Co
     let before = report.total();
     let Filled { cage: Cage { nodes, elements, filled, convex }, surface, weights, .. } = of;
     let solids = if convex { Solids::Convex } else { Solids::Ordered };
+    let measures = surface.measures();
     let count = nodes.len();
     let mut body = Body::new(Dimension::Space, nodes, vec![1.0; count], elements, solids, None);
     body.fill = filled;
@@ -215,6 +216,13 @@ fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Co
         return None;
     }
     body.mass = mass?;
+    if let Some(density) = file.density
+        && measures.closed
+    {
+        // Tetrahedra and polyhedra fill it a little more or less, but its mass is that of its own volume.
+        let found: f64 = body.mass.iter().sum();
+        body.mass.iter_mut().for_each(|mass| *mass *= density * measures.volume / found);
+    }
     let name = file.name.clone().unwrap_or_default();
     let body = Arc::new(body);
     Some(ResolvedBody { name, body, initial, springs: None, side, has_cells: false, groups: Vec::new() })

@@ -87,6 +87,12 @@ fn cells(volume: Volume, file: &BodyFile, place: &Place, name: &str, report: &mu
         report.at_key(&key_path![place; "fill"], message, "remove it: the cells are the elements");
         return None;
     }
+    if file.density.is_none() && file.mass_total.is_none() && file.mass.is_none() {
+        let message =
+            format!("`{}` has none of `density`, `mass_total` and `mass`, which a mesh needs", written(place));
+        report.at(&path, message, "write `density` (kg/m³), such as density = 1000");
+        return None;
+    }
     let Volume { dimension, solids, points: nodes, cells: elements, groups, turned } = volume;
     if turned > 0 {
         let all = count(elements.len() as u128);
@@ -127,6 +133,18 @@ fn filled(
     check_mass(file, place, name, report)?;
     let typed = file.fill.clone().unwrap_or_default();
     let (chosen, side) = chosen(&typed, longest);
+    if side > longest {
+        let message = format!(
+            "`{}` is longer than `{name}`, which is {} m long",
+            written(&key_path![place; "fill", "side"]),
+            short(longest)
+        );
+        report.warn(
+            &key_path![place; "fill", "side"],
+            message,
+            "use a smaller side: elements larger than a body do not bend with it",
+        );
+    }
     let most = usize::try_from(most).unwrap_or(usize::MAX).min(u32::MAX as usize);
     let filled = match fill(surface, chosen, most) {
         Ok(filled) => filled,
