@@ -84,6 +84,7 @@ pub struct FillError {
 pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillError> {
     let (mut surface, flaws) = surface.mended();
     let (Fill::Cubes { side } | Fill::Graded { side } | Fill::Tetrahedra { side } | Fill::Polyhedra { side }) = fill;
+    lattice::check(&surface, fill, side, most)?;
     surface.refine(side, most);
     match fill {
         Fill::Cubes { side } => cubes::fill(surface, flaws, side, false, most),

@@ -37,6 +37,17 @@ fn assert_carried(filled: &Filled) {
     }
 }
 
+/// Checks that each point follows some nodes, wholly.
+fn assert_followed(filled: &Filled) {
+    assert_eq!(filled.weights.len(), filled.surface.points.len());
+    for at in 0..filled.weights.len() {
+        let (nodes, weights) = filled.weights.of(at);
+        assert!(!nodes.is_empty());
+        let size: f64 = weights.iter().map(|weight| weight.abs()).sum();
+        assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12 * size, "{weights:?}");
+    }
+}
+
 fn cubes(surface: &Surface, side: f64) -> Filled {
     let filled = fill(surface, Fill::Cubes { side }, MOST).unwrap();
     assert_carried(&filled);
@@ -448,11 +459,18 @@ fn any_triangles_are_filled_or_refused() {
             (0..number).map(|_| [0; 3].map(|_: u32| next() % (count + u32::from(case % 50 == 0)))).collect();
         let surface = Surface { points, triangles };
         let side = scale * [0.1, 0.25, 0.5, 3.0][case / 24 % 4];
-        for with in [Fill::Cubes { side }, Fill::Graded { side }] {
-            match fill(&surface, with, 2000) {
+        for with in [Fill::Cubes { side }, Fill::Graded { side }, Fill::Tetrahedra { side }, Fill::Polyhedra { side }] {
+            let start = std::time::Instant::now();
+            let found = fill(&surface, with, 2000);
+            println!("TIME {:.2} {case} {with:?}", start.elapsed().as_secs_f64());
+            match found {
                 Ok(of) => {
                     filled += 1;
-                    assert_carried(&of);
+                    match with {
+                        Fill::Cubes { .. } | Fill::Graded { .. } => assert_carried(&of),
+                        // Points outside of all elements follow the nearest with weights below zero.
+                        _ => assert_followed(&of),
+                    }
                     assert!(of.cage.elements.len() <= 2000);
                     assert!(of.cage.filled.iter().flatten().all(|&part| part > 0.0 && part <= 1.0));
                 }

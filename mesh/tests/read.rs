@@ -487,3 +487,94 @@ fn a_polygon_with_very_many_teeth_is_refused_or_read() {
     let error = found.expect_err("too much work");
     assert!(error.message.starts_with("has concave faces that take too long to divide"), "{error}");
 }
+
+#[test]
+fn a_cell_listed_twice_is_turned_over_once() {
+    let cell = "4 0 2 1 3\n";
+    let text = format!(
+        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 0 1 0 0 0 1 2 2 2\n\
+         CELLS 3 14\n{cell}{cell}3 0 1 4\nCELL_TYPES 3\n10 10 21\n"
+    );
+    let found = volume(text.as_bytes(), Format::Vtk);
+    assert_eq!((found.cells.len(), found.turned, found.points.len()), (1, 1, 4));
+    // The point between the ends of a line of second order is left out.
+    let listed = read_cells(text.as_bytes(), Format::Vtk, &LIMITS).expect("sound");
+    assert_eq!((listed.kinds[2], &listed.corners[2]), (CellKind::Line, &[0, 1][..]));
+}
+
+#[test]
+fn data_that_are_skipped_may_be_no_numbers() {
+    let head = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n";
+    let tail = "POINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\nPOLYGONS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+    let fields = "FIELD FieldData 2\nnames 1 2 string\na text%20here\n\nheat 2 1 float\nnan -inf\n";
+    assert_eq!(surface(format!("{head}{fields}{tail}").as_bytes(), Format::Vtk).triangles.len(), 4);
+    let cut = refusal(format!("{head}FIELD FieldData 1\nnames 1 9 string\na\nb\n").as_bytes(), Format::Vtk);
+    assert!(cut.starts_with("ends in line 9; expected a text of an array"), "{cut}");
+    // In binary, texts follow their lengths of one, two and four bytes.
+    let mut bytes = head.replace("ASCII", "BINARY").into_bytes();
+    bytes.extend(b"FIELD FieldData 1\nnames 1 3 string\n\xc2\nx\x80\x01y\x40\0\0\x02ab\n");
+    bytes.extend(b"POINTS 3 float\n");
+    for number in [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0] {
+        bytes.extend(number.to_be_bytes());
+    }
+    bytes.extend(b"\nPOLYGONS 1 4\n");
+    for number in [3i32, 0, 1, 2] {
+        bytes.extend(number.to_be_bytes());
+    }
+    assert_eq!(surface(&bytes, Format::Vtk).triangles, [[0, 1, 2]]);
+    let stl =
+        "solid\nfacet normal nan nan nan\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 1\nendloop\nendfacet\n";
+    assert_eq!(surface(stl.as_bytes(), Format::Stl).triangles.len(), 1);
+}
+
+#[test]
+fn faces_named_again_and_again_are_refused() {
+    let limits = Limits { points: 1000, corners: 1000 };
+    let face: String = (0..1000).map(|point| format!("{point} ")).collect();
+    let array = |name: &str, numbers: &str| format!("<DataArray type=\"Int64\" Name=\"{name}\">{numbers}</DataArray>");
+    let text = format!(
+        "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece><Points><DataArray type=\"Float64\">{}</DataArray></Points>\
+         <Cells>{}{}{}{}{}{}{}</Cells></Piece></UnstructuredGrid></VTKFile>",
+        "0 0 1 ".repeat(1000),
+        array("connectivity", "0"),
+        array("offsets", "1"),
+        array("types", "42"),
+        array("face_connectivity", &face),
+        array("face_offsets", "1000"),
+        array("polyhedron_to_faces", &"0 ".repeat(1000)),
+        array("polyhedron_offsets", "1000"),
+    );
+    let error = read(text.as_bytes(), Format::Vtu, &limits).expect_err("a limit");
+    assert_eq!(error.message, "has more than 18000 numbers in its arrays and faces");
+}
+
+/// Pieces that share packed data cost as much as others.
+#[test]
+fn data_unpacked_again_and_again_are_refused() {
+    let (bytes, format) = file("cells-raw-packed.vtu");
+    let place = |part: &[u8]| bytes.windows(part.len()).position(|window| window == part).expect("a part");
+    let (start, end) = (place(b"<Piece"), place(b"</Piece>") + 8);
+    let many = [&bytes[..start], &bytes[start..end].repeat(100), &bytes[end..]].concat();
+    assert_eq!(volume(&many, format).cells.len(), 800);
+    let limits = Limits { points: 10_000, corners: 1000 };
+    let error = read(&many, format, &limits).expect_err("a limit");
+    assert!(error.message.starts_with("has more than "), "{error}");
+}
+
+#[test]
+fn only_the_first_buffer_of_gltf_is_the_data_of_the_file() {
+    let (bytes, format) = file("cubes.glb");
+    let text = String::from_utf8_lossy(&bytes[20..]);
+    let length = u32::from_le_bytes(bytes[12..16].try_into().expect("four bytes")) as usize;
+    let json = text[..length].trim_end().replacen(
+        "\"buffers\": [",
+        "\"buffers\": [{\"byteLength\":1,\"uri\":\"data:a;base64,AA==\"},",
+        1,
+    );
+    assert_ne!(json.len(), length, "it has a list of buffers");
+    let json = format!("{json}{}", " ".repeat((4 - json.len() % 4) % 4));
+    let rest = &bytes[20 + length..];
+    let total = (20 + json.len() + rest.len()) as u32;
+    let file = [&bytes[..8], &total.to_le_bytes(), &(json.len() as u32).to_le_bytes(), b"JSON", json.as_bytes(), rest];
+    assert!(refusal(&file.concat(), format).starts_with("has no data for its buffer 1 "));
+}

@@ -2,7 +2,8 @@
 //! and `assimp-testmodels`, and those in folders named by `LOCALSHAPE_MESHES`. With `LOCALSHAPE_REQUIRE_MESHES=1` missing packages are a
 //! failure.
 
-use localshape_mesh::{Format, Limits, Mesh, read};
+use localshape_mesh::{Fill, Format, Limits, Mesh, Surface, fill, read};
+use localshape_sim::geometry::bounds;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -43,7 +44,36 @@ fn meshes(folder: &Path) -> Vec<(PathBuf, Format)> {
     found
 }
 
-/// Reads all meshes in a folder. Returns the number of those that are read, and the names and messages of the others.
+/// Fills a surface with elements of every kind, or is told why not.
+fn check_fills(surface: &Surface, name: &str) {
+    /// More than twelve cubes along each side need, as tetrahedra.
+    const MOST: usize = 50_000;
+    /// Larger ones take longer, and have nothing else.
+    const TRIANGLES: usize = 30_000;
+    if surface.triangles.len() > TRIANGLES {
+        return;
+    }
+    let (low, high) = bounds(&surface.points);
+    let side = (high - low).max_element() / 12.0;
+    for with in [Fill::Cubes { side }, Fill::Graded { side }, Fill::Tetrahedra { side }, Fill::Polyhedra { side }] {
+        let start = std::time::Instant::now();
+        let found = fill(surface, with, MOST);
+        println!("TIME {:.2} {name} {with:?}", start.elapsed().as_secs_f64());
+        match found {
+            Ok(filled) => {
+                let elements = filled.cage.elements.len();
+                assert!((1..=MOST).contains(&elements), "{name}: {elements}");
+                assert_eq!(filled.weights.len(), filled.surface.points.len(), "{name}");
+            }
+            Err(error) => {
+                assert!(error.help.is_some() && error.message.len() < 400, "{name}: {error}");
+                println!("{name} {with:?}: {error}");
+            }
+        }
+    }
+}
+
+/// Reads all meshes in a folder. The surfaces among them are filled. Returns the number of those that are read, and the names and messages of the others.
 fn answers(folder: &Path) -> (usize, Vec<(String, String)>) {
     let mut read_ones = 0;
     let mut refused = Vec::new();
@@ -56,6 +86,7 @@ fn answers(folder: &Path) -> (usize, Vec<(String, String)>) {
                 let corners = surface.triangles.as_flattened();
                 assert!(corners.iter().all(|&corner| (corner as usize) < surface.points.len()), "{name}");
                 println!("{name}: {} points, {} triangles", surface.points.len(), surface.triangles.len());
+                check_fills(&surface, &name);
                 read_ones += 1;
             }
             Ok(Mesh::Volume(volume)) => {

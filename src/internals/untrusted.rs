@@ -142,15 +142,17 @@ fn body(bytes: &[u8]) -> bool {
     )
 }
 
-/// Reads a mesh, and fills a surface with cubes.
+/// Reads a mesh, and fills a surface with elements of every kind.
 fn mesh(bytes: &[u8], format: Format) -> bool {
     let limits = mesh::Limits { points: LIMITS.nodes as usize, corners: LIMITS.corners as usize };
     let found = mesh::read(bytes, format, &limits);
     if let Ok(Mesh::Surface(surface)) = &found {
         let (low, high) = bounds(&surface.points);
         let side = (high - low).max_element() / 6.0;
-        // Whether it can be filled is another question.
-        let _ = mesh::fill(surface, Fill::Cubes { side }, 1000);
+        for fill in [Fill::Cubes { side }, Fill::Graded { side }, Fill::Tetrahedra { side }, Fill::Polyhedra { side }] {
+            // Whether it can be filled is another question.
+            let _ = mesh::fill(surface, fill, 1000);
+        }
     }
     found.is_ok()
 }

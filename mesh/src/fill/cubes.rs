@@ -2,7 +2,7 @@
 
 use super::clip::{self, Piece};
 use super::graded::{self, Graded};
-use super::lattice::{Cell, Lattice, too_many};
+use super::lattice::{Cell, JOINED, Lattice, too_many};
 use super::parts::{Parts, Scene, corner};
 use super::{Cage, FillError, Filled};
 use crate::inside::{Grid, Inside};
@@ -34,8 +34,8 @@ pub(super) fn fill(
     most: usize,
 ) -> Result<Filled, FillError> {
     // Many cells are joined if cubes are graded, and cells take less memory than elements.
-    let joined = if is_graded { 4 } else { 1 };
-    let (lattice, scaled) = Lattice::graded(&mut surface, side, most, joined)?;
+    let joined = if is_graded { JOINED } else { 1 };
+    let (lattice, scaled) = Lattice::about(&mut surface, side, most)?;
     let mut pieces = clip::pieces(&scaled, &lattice);
     let homes = homes(&scaled, &lattice);
     hold(&mut pieces, &homes, &lattice);

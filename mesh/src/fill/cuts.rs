@@ -48,15 +48,10 @@ impl Lattice {
     /// The lattice around a surface, whose points nearly on planes of the lattice are moved to them.
     ///
     /// # Errors
-    /// If more than `most` elements, or very many cubes outside, would be needed.
+    /// If its triangles lie over each other by thousands.
     pub(super) fn around(surface: &mut Surface, side: f64, has_middles: bool, most: usize) -> Result<Self, FillError> {
         let (lattice, mut scaled) = lattice::Lattice::about(surface, side, most)?;
         let counts = DVec3::from_array(lattice.counts.map(|count| count as f64)) + 2.0;
-        let boxed = counts.element_product();
-        // All points of the lattice are listed.
-        if boxed > 8.0 * most as f64 + 1e6 {
-            return Err(lattice::too_many(&surface.measures(), side, boxed / 8.0, most, "about "));
-        }
         scaled.points.iter_mut().for_each(|point| *point = 2.0 * (*point + 1.0));
         let inside = Inside::new(&scaled);
         Ok(Self { origin: lattice.origin - side, side, cubes: counts.as_ivec3(), has_middles, surface: scaled, inside })

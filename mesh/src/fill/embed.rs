@@ -286,11 +286,11 @@ impl Fan {
             (low - CLOSE * side, high + CLOSE * side)
         };
         let elements: Vec<_> = (0..self.starts.len() - 1).into_par_iter().map(box_of).collect();
-        let mut cells = Grid::new(low, high, side);
+        let mut cells = Grid::new(low, high, side, elements.len());
         cells.mark(points);
         cells.fill(&elements);
         let outside: Vec<_> = self.outside.iter().map(|simplex| bounds(&self.corners(simplex)[1..])).collect();
-        let mut faces = Grid::new(low, high, 0.5 * side);
+        let mut faces = Grid::new(low, high, 0.5 * side, outside.len());
         faces.fill(&outside);
         let locate = |&point: &DVec3| {
             let containing = cells.at(cells.cell(point)).iter().find_map(|&element| {
@@ -442,8 +442,13 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(low: DVec3, high: DVec3, cell: f64) -> Self {
-        let cells = ((high - low) / cell).floor().as_i64vec3() + 1;
+    /// A grid with cells of this side, or larger ones if there were far more cells than boxes, as about a slanted rod.
+    fn new(low: DVec3, high: DVec3, mut cell: f64, boxes: usize) -> Self {
+        let counts = |cell: f64| ((high - low) / cell).floor() + 1.0;
+        while counts(cell).element_product() > 16.0 * boxes as f64 + 65536.0 {
+            cell *= 2.0;
+        }
+        let cells = counts(cell).as_i64vec3();
         Self { low, cell, cells, marked: None, starts: Vec::new(), items: Vec::new() }
     }
 
@@ -567,6 +572,19 @@ mod tests {
         let expected = [(0, false), (0, false), (1, false), (1, false), (1, true)];
         assert_eq!(elements[..5], expected.map(Some));
         assert_eq!(elements[5], None);
+    }
+
+    #[test]
+    fn a_grid_has_no_more_cells_than_boxes_need() {
+        let (low, high) = (DVec3::ZERO, DVec3::splat(1e5));
+        let boxes: Vec<_> = (0..1000).map(|n| DVec3::splat(100.0 * f64::from(n))).map(|low| (low, low + 1.0)).collect();
+        let mut grid = Grid::new(low, high, 1.0, boxes.len());
+        assert!(grid.cells.element_product() < 100_000);
+        grid.fill(&boxes);
+        for (item, &(low, _)) in (0u32..).zip(&boxes) {
+            assert!(grid.at(grid.cell(low + 0.5)).contains(&item));
+        }
+        assert_eq!(Grid::new(low, DVec3::splat(40.0), 1.0, 1000).cell, 1.0);
     }
 
     #[test]

@@ -1,12 +1,59 @@
 //! The lattice of cubes about a surface, and how large it may be.
 
-use super::FillError;
+use super::{Fill, FillError};
 use crate::{Measures, Surface};
 use glam::DVec3;
 
 /// Points nearer than this to a plane of the lattice, in units of its side, are moved onto it. Single precision and typed
 /// decimals would otherwise leave layers of cells with hardly any filling.
 const SNAP: f64 = 4e-6;
+
+/// The number of cubes along each axis about a surface.
+fn counts(measures: &Measures, side: f64) -> [f64; 3] {
+    (measures.high - measures.low).to_array().map(|extent| (extent / side - SNAP).ceil().max(1.0))
+}
+
+/// Refuses a surface without triangles, and a side with which far more elements than allowed, or very many cubes outside, would be
+/// needed.
+pub(super) fn check(surface: &Surface, fill: Fill, side: f64, most: usize) -> Result<(), FillError> {
+    let measures = surface.measures();
+    if surface.triangles.is_empty() {
+        let help = Some("use a file with faces".to_owned());
+        return Err(FillError { message: "has no face with an area".to_owned(), help });
+    }
+    if !(side > 0.0 && side.is_finite()) {
+        let help = Some("use a positive side".to_owned());
+        return Err(FillError { message: format!("cannot be filled with elements of side {side}"), help });
+    }
+    let counts = counts(&measures, side);
+    let joined = if matches!(fill, Fill::Graded { .. }) { JOINED } else { 1 };
+    let (needed, slack) = (estimate(&measures, side) / joined as f64, 4.0);
+    // Each place is visited, whether or not something is in it.
+    let rows = counts[1] * counts[2];
+    let places = rows * counts[0];
+    let is_sane = rows <= 16.0 * most as f64 + 65536.0 && places <= 1024.0 * most as f64 + 1e8 && counts[0] < 1e6;
+    if !(needed <= slack * most as f64 && is_sane) {
+        // For all it is known yet, no cubes may be joined at a larger side.
+        let other = |side| boxed(&measures, side);
+        return Err(refused(side, needed.max(rows / 16.0), most, "about ", &measures, other));
+    }
+    if let Fill::Tetrahedra { .. } | Fill::Polyhedra { .. } = fill {
+        // All points of the lattice are listed, with a layer of cubes outside.
+        let boxed: f64 = counts.into_iter().map(|count| count + 2.0).product();
+        if boxed > 8.0 * most as f64 + 1e6 {
+            return Err(too_many(&measures, side, boxed / 8.0, most, "about "));
+        }
+        // Cubes are numbered by 32 bits.
+        if boxed > f64::from(i32::MAX) {
+            let message = format!("has a box of {boxed:.0e} cubes of side {side}, and at most 2e9 can be cut");
+            return Err(FillError { message, help: Some("use a larger side, or fill it with cubes".to_owned()) });
+        }
+    }
+    Ok(())
+}
+
+/// About how many cubes are joined on average if they are graded.
+pub(super) const JOINED: usize = 4;
 
 /// A lattice of cubes about the middle of a surface's box.
 #[derive(Clone, Copy, Debug)]
@@ -20,40 +67,14 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// The lattice for a surface that may be filled with at most so many elements, and the surface in units of the
-    /// lattice. Points that are almost on a plane of the lattice are on it in both.
+    /// The lattice for a surface that is checked, and the surface in units of the lattice. Points that are almost on a plane of
+    /// the lattice are on it in both.
+    ///
+    /// # Errors
+    /// If its triangles lie over each other by thousands.
     pub(super) fn about(surface: &mut Surface, side: f64, most: usize) -> Result<(Self, Surface), FillError> {
-        Self::graded(surface, side, most, 1)
-    }
-
-    /// The lattice for a surface whose elements are so many cubes on average.
-    pub(super) fn graded(
-        surface: &mut Surface,
-        side: f64,
-        most: usize,
-        cubes: usize,
-    ) -> Result<(Self, Surface), FillError> {
         let measures = surface.measures();
-        if surface.triangles.is_empty() {
-            let help = Some("use a file with faces".to_owned());
-            return Err(FillError { message: "has no face with an area".to_owned(), help });
-        }
-        if !(side > 0.0 && side.is_finite()) {
-            let help = Some("use a positive side".to_owned());
-            return Err(FillError { message: format!("cannot be filled with elements of side {side}"), help });
-        }
-        let extent = measures.high - measures.low;
-        let counts = extent.to_array().map(|extent| (extent / side - SNAP).ceil().max(1.0));
-        let (needed, slack) = (estimate(&measures, side) / cubes as f64, 4.0);
-        // Each place is visited, whether or not something is in it.
-        let rows = counts[1] * counts[2];
-        let places = rows * counts[0];
-        let is_sane = rows <= 16.0 * most as f64 + 65536.0 && places <= 1024.0 * most as f64 + 1e8 && counts[0] < 1e6;
-        if !(needed <= slack * most as f64 && is_sane) {
-            // For all it is known yet, no cubes may be joined at a larger side.
-            let other = |side| boxed(&measures, side);
-            return Err(refused(side, needed.max(rows / 16.0), most, "about ", &measures, other));
-        }
+        let counts = counts(&measures, side);
         // Triangles that lie over each other by thousands are no surface.
         let overlaps: f64 = surface.triangles.iter().map(|&triangle| pieces(surface.corners(triangle), side)).sum();
         if overlaps > 64.0 * most as f64 + 16.0 * surface.triangles.len() as f64 + 1e6 {

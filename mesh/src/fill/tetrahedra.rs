@@ -232,8 +232,7 @@ fn prism(tops: [Corner; 3], bottoms: [Corner; 3], precedes: impl Fn(usize, usize
 
 /// The nodes of a tetrahedron in the order in which its volume is positive.
 fn ordered(corners: [Corner; 4]) -> [usize; 4] {
-    let [a, b, c, d] = corners.map(|corner| corner.place - corners[0].place);
-    let _ = a;
+    let [_, b, c, d] = corners.map(|corner| corner.place - corners[0].place);
     let [first, second, third, last] = corners.map(|corner| corner.node);
     if b.cross(c).dot(d) > 0 { [first, second, third, last] } else { [first, third, second, last] }
 }

@@ -340,6 +340,13 @@ impl Parts {
         let mut sorted = cell.to_vec();
         sorted.sort_unstable();
         let least = if self.dimension == Dimension::Plane { 3 } else { 4 };
+        if sorted.len() <= 8 {
+            let mut key = [u32::MAX; 8];
+            key[..sorted.len()].copy_from_slice(&sorted);
+            if !self.known.insert(key) {
+                return;
+            }
+        }
         let mut is_flat = cell.len() < least || sorted.windows(2).any(|pair| pair[0] == pair[1]);
         if !is_flat && kind != ElementKind::Other {
             is_flat = !self.order(kind, cell, points);
@@ -347,13 +354,6 @@ impl Parts {
         if is_flat {
             self.flat = (self.flat.0 + 1, if self.flat.0 == 0 { at } else { self.flat.1 });
             return;
-        }
-        if sorted.len() <= 8 {
-            let mut key = [u32::MAX; 8];
-            key[..sorted.len()].copy_from_slice(&sorted);
-            if !self.known.insert(key) {
-                return;
-            }
         }
         self.cells.push(cell);
     }

@@ -13,6 +13,7 @@ use gltf::json::validation::{Error, Validate};
 use gltf::mesh::Mode;
 use gltf::scene::Transform;
 use gltf::{Accessor, Document, Node, Primitive, Semantic};
+use std::borrow::Cow;
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     let (document, blob) = document(bytes)?;
@@ -109,14 +110,18 @@ fn old() -> ReadError {
     ReadError::new("is a glTF 1.0 file; expected 2.0", "export it again as glTF 2.0 (.glb)")
 }
 
-/// The data of a buffer.
-fn data(buffer: &gltf::Buffer<'_>, blob: Option<&[u8]>) -> Result<Vec<u8>, ReadError> {
+/// The data of a buffer. Only the first may be the binary data of the file.
+fn data<'b>(buffer: &gltf::Buffer<'_>, blob: Option<&'b [u8]>) -> Result<Cow<'b, [u8]>, ReadError> {
     let index = buffer.index();
     match buffer.source() {
-        Data::Bin => blob.map(<[u8]>::to_vec).ok_or_else(|| ReadError::new("ends before its binary data", CUT)),
+        Data::Bin if index == 0 => {
+            blob.map(Cow::Borrowed).ok_or_else(|| ReadError::new("ends before its binary data", CUT))
+        }
+        Data::Bin => Err(ReadError::new(format!("has no data for its buffer {index}"), DAMAGED)),
         Data::Uri(uri) => match uri.strip_prefix("data:").and_then(|data| data.split_once(";base64,")) {
             Some((_, text)) => STANDARD
                 .decode(text.trim())
+                .map(Cow::Owned)
                 .map_err(|error| ReadError::new(format!("has damaged Base64 in its buffer {index}: {error}"), DAMAGED)),
             None => {
                 let message = format!("has its data in another file, {}; expected data inside", quoted(uri.as_bytes()));
@@ -143,7 +148,7 @@ fn matrix(transform: Transform) -> DMat4 {
 fn triangles(
     primitive: &Primitive<'_>,
     transform: DMat4,
-    buffers: &[Vec<u8>],
+    buffers: &[Cow<'_, [u8]>],
     limits: &Limits,
     builder: &mut Builder<'_>,
 ) -> Result<(), ReadError> {
@@ -188,7 +193,12 @@ fn triangles(
 }
 
 /// The numbers of a list with so many in each row.
-fn numbers(accessor: &Accessor<'_>, columns: usize, buffers: &[Vec<u8>], most: usize) -> Result<Vec<f64>, ReadError> {
+fn numbers(
+    accessor: &Accessor<'_>,
+    columns: usize,
+    buffers: &[Cow<'_, [u8]>],
+    most: usize,
+) -> Result<Vec<f64>, ReadError> {
     let (index, count) = (accessor.index(), accessor.count());
     if count > most {
         let message = format!("has {count} entries in its list {index}; at most {most} are read");
@@ -242,7 +252,7 @@ fn rows(
     count: usize,
     columns: usize,
     kind: DataType,
-    buffers: &[Vec<u8>],
+    buffers: &[Cow<'_, [u8]>],
 ) -> Result<Vec<f64>, ReadError> {
     let size = kind.size() * columns;
     let stride = view.stride().unwrap_or(size);

@@ -7,6 +7,7 @@ use super::source::{Coding, DAMAGED, Scalar, Source, quoted};
 use super::{Cells, Format, Limits, ReadError, content};
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
+use std::rc::Rc;
 
 /// A dimension and the number of an entity or of a group.
 type Key = (i64, i64);
@@ -21,7 +22,7 @@ struct Reader<'b, 'l> {
     /// The names of physical groups.
     names: HashMap<Key, String>,
     /// The physical groups of each entity.
-    physical: HashMap<Key, Vec<i64>>,
+    physical: HashMap<Key, Rc<[i64]>>,
     tags: Tags,
     /// The points of each physical group.
     groups: BTreeMap<Key, Vec<u32>>,
@@ -176,7 +177,7 @@ impl Reader<'_, '_> {
                 }
                 physical.sort_unstable();
                 physical.dedup();
-                self.physical.insert((dimension, tag), physical);
+                self.physical.insert((dimension, tag), physical.into());
             }
         }
         Ok(())

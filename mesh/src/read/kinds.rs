@@ -11,7 +11,8 @@ pub(super) fn add(kind: i64, corners: &[u32], builder: &mut Builder<'_>) -> Resu
     let (cell, count) = match kind {
         0 => return Ok(()),
         1 | 2 => (Point, 0),
-        3 | 4 | 21 | 35 | 68 | 75 => (Line, 0),
+        3 | 4 => (Line, 0),
+        21 | 35 | 68 | 75 => (Line, 2),
         6 => return builder.strip(corners),
         7 => (Polygon, 0),
         5 | 22 | 34 | 69 | 76 => (Polygon, 3),

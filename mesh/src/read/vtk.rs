@@ -2,7 +2,7 @@
 //! (<https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html>).
 
 use super::cells::Builder;
-use super::source::{Coding, DAMAGED, Scalar, Source, quoted};
+use super::source::{Coding, DAMAGED, Scalar, Source};
 use super::{Cells, Format, Limits, ReadError, content, kinds};
 use glam::DVec3;
 
@@ -230,21 +230,40 @@ impl Reader<'_, '_> {
     fn fields(&mut self) -> Result<(), ReadError> {
         self.source.word();
         for _ in 0..self.source.count(Scalar::I64, "the number of arrays")? {
-            let mut name = self.source.word();
-            if name.eq_ignore_ascii_case(b"METADATA") {
+            if self.source.word().eq_ignore_ascii_case(b"METADATA") {
                 self.metadata();
-                name = self.source.word();
+                self.source.word();
             }
             let columns = self.source.count(Scalar::I64, "the number of columns of an array")?;
             let rows = self.source.count(Scalar::I64, "the number of rows of an array")?;
             if self.source.peek().eq_ignore_ascii_case(b"string") {
-                let message = format!("has the array {} of texts in its fields; expected numbers", quoted(name));
-                return Err(ReadError::new(message, "write it without field data"));
+                self.texts(columns.saturating_mul(rows))?;
+                continue;
             }
             let scalar = self.scalar()?;
             self.source.coding = self.coding;
             self.source.skip(columns.saturating_mul(rows), scalar, "a number of an array")?;
             self.source.coding = Coding::Text;
+        }
+        Ok(())
+    }
+
+    /// Skips texts: lines, or bytes after their number. The first two bits of the number tell its length.
+    fn texts(&mut self, count: u64) -> Result<(), ReadError> {
+        self.source.line();
+        for _ in 0..count {
+            if self.coding == Coding::Text {
+                if self.source.rest().is_empty() {
+                    return Err(self.source.ends("a text of an array"));
+                }
+                self.source.line();
+                continue;
+            }
+            let expected = "the length of a text of an array";
+            let first = self.source.rest().first().copied().unwrap_or(0);
+            let number = self.source.take(8 >> (first >> 6), expected)?;
+            let length = number[1..].iter().fold(u64::from(first & 63), |sum, &byte| sum << 8 | u64::from(byte));
+            self.source.take(usize::try_from(length).unwrap_or(usize::MAX), "a text of an array")?;
         }
         Ok(())
     }

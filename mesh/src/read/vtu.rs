@@ -11,6 +11,7 @@ use glam::DVec3;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::io::Read;
 
@@ -50,6 +51,10 @@ struct Layout<'b> {
     packer: String,
     /// The data at the end, and whether they are raw.
     appended: Option<(&'b [u8], bool)>,
+    /// The most numbers of all arrays that are no text and of the faces of polyhedra, and how many of them are left: several pieces
+    /// may name the same data, and packed data may be small.
+    most: usize,
+    left: Cell<usize>,
 }
 
 /// The arrays of a piece by the names of their elements and their own.
@@ -65,7 +70,17 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         Some(begin) => Some(appended(&bytes[begin..])?),
         None => None,
     };
-    let mut layout = Layout { bytes, coding: Coding::Little, header: Scalar::U32, packer: String::new(), appended };
+    // Positions and velocities, and lists of the faces of polyhedra, where each corner belongs to several faces.
+    let most = limits.points.saturating_mul(6).saturating_add(limits.corners.saturating_mul(12));
+    let mut layout = Layout {
+        bytes,
+        coding: Coding::Little,
+        header: Scalar::U32,
+        packer: String::new(),
+        appended,
+        most,
+        left: Cell::new(most),
+    };
     let mut builder = Builder::new(limits);
     pieces(&bytes[..begin.unwrap_or(bytes.len())], begin.is_some(), &mut layout, &mut builder, limits)?;
     builder.finish(&Source::text(bytes), 0)
@@ -288,7 +303,9 @@ impl Layout<'_> {
                 let corner = |builder: &mut Builder<'_>, index: i64| corner(builder, index, first);
                 if kind == 42 {
                     let mut faces = Vec::new();
-                    for face in polyhedra.faces_of(cell)? {
+                    let found = polyhedra.faces_of(cell)?;
+                    self.spend(found.iter().map(|face| 1 + face.len()).sum())?;
+                    for face in found {
                         faces.push(face.iter().map(|&index| corner(builder, index)).collect::<Result<Vec<_>, _>>()?);
                     }
                     kinds::polyhedron(&faces, builder)?;
@@ -299,6 +316,22 @@ impl Layout<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Counts numbers.
+    fn spend(&self, count: usize) -> Result<(), ReadError> {
+        match self.left.get().checked_sub(count) {
+            Some(left) => {
+                self.left.set(left);
+                Ok(())
+            }
+            None => Err(self.too_long()),
+        }
+    }
+
+    fn too_long(&self) -> ReadError {
+        let message = format!("has more than {} numbers in its arrays and faces", self.most);
+        ReadError::new(message, COARSER)
     }
 
     /// The integers of an array.
@@ -343,7 +376,9 @@ impl Layout<'_> {
 
     /// The bytes of an array that is no text.
     fn unpacked(&self, array: &Array, name: &[u8], most: usize) -> Result<Cow<'_, [u8]>, ReadError> {
-        let most = most.saturating_mul(array.scalar.size());
+        let size = array.scalar.size();
+        let too_long = || if most < self.left.get() { too_long(name, most) } else { self.too_long() };
+        let most = most.min(self.left.get()).saturating_mul(size);
         let cut = || ReadError::new(format!("ends in its array {}", quoted(name)), CUT);
         let (encoded, is_raw) = match array.place {
             Place::Text(start, end) | Place::Inline(start, end) => (&self.bytes[start..end], false),
@@ -375,9 +410,10 @@ impl Layout<'_> {
         let first = number(&get(word)?, 0);
         if self.packer.is_empty() {
             if first > most {
-                return Err(too_long(name, most / array.scalar.size()));
+                return Err(too_long());
             }
             let bytes = get(word + first)?;
+            self.spend(first / size)?;
             return Ok(match bytes {
                 Cow::Borrowed(bytes) => Cow::Borrowed(&bytes[word..word + first]),
                 Cow::Owned(mut bytes) => {
@@ -407,20 +443,24 @@ impl Layout<'_> {
             let left = most - bytes.len();
             let is_read = block.take(left as u64 + 1).read_to_end(&mut bytes).is_ok();
             if bytes.len() > most {
-                return Err(too_long(name, most / array.scalar.size()));
+                return Err(too_long());
             }
             if !is_read {
                 return Err(ReadError::new(format!("has damaged packed data in its array {}", quoted(name)), DAMAGED));
             }
             start += length;
         }
+        self.spend(bytes.len().max(total) / size)?;
         Ok(Cow::Owned(bytes))
     }
 }
 
+/// The remedy for large files.
+const COARSER: &str = "make the mesh coarser, with a decimation of the program that wrote it";
+
 fn too_long(name: &[u8], most: usize) -> ReadError {
     let message = format!("has more than {most} numbers in its array {}", quoted(name));
-    ReadError::new(message, "make the mesh coarser, with a decimation of the program that wrote it")
+    ReadError::new(message, COARSER)
 }
 
 /// A corner of a piece whose points begin at `first`.
