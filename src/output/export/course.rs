@@ -10,6 +10,8 @@ pub(super) struct Course<'c> {
     pub(super) states: &'c mut StatesWriter,
     /// The place of the run among the recorded ones.
     pub(super) place: usize,
+    /// The places of the frames among the recorded ones, one for each time.
+    pub(super) frames: Vec<usize>,
     /// The time of each frame (s), rising; at least one.
     pub(super) times: Vec<f64>,
 }
@@ -17,11 +19,11 @@ pub(super) struct Course<'c> {
 impl Course<'_> {
     /// The positions of some nodes in a frame (m).
     pub(super) fn positions(&mut self, frame: usize, nodes: &Range<usize>) -> io::Result<Vec<DVec3>> {
-        self.states.read(self.place, "position", frame, nodes)
+        self.states.read(self.place, "position", self.frames[frame], nodes)
     }
 
     /// The velocities of some nodes in a frame (m/s).
     pub(super) fn velocities(&mut self, frame: usize, nodes: &Range<usize>) -> io::Result<Vec<DVec3>> {
-        self.states.read(self.place, "velocity", frame, nodes)
+        self.states.read(self.place, "velocity", self.frames[frame], nodes)
     }
 }

@@ -231,9 +231,8 @@ impl<'a> Export<'a> {
         }
         self.series.iter().try_for_each(|series| {
             let path = self.folder.join(format!("{}.pvd", series.stem));
-            let time = |frame| self.time(series.run, frame);
-            let files = frames.iter().flat_map(|&frame| {
-                let file = move |part: &Part| (time(frame), part.name.clone(), series.grid_file(part, frame));
+            let files = self.moments(series.run, frames).into_iter().flat_map(|(at, time)| {
+                let file = move |part: &Part| (time, part.name.clone(), series.grid_file(part, frames[at]));
                 series.parts.iter().map(file)
             });
             write_whole(
@@ -246,8 +245,8 @@ impl<'a> Export<'a> {
     /// Writes the files that have the whole course of a run. There are none without a frame.
     fn write_courses(&self, frames: &[u64], states: &mut StatesWriter) -> Result<(), OutputError> {
         for run in self.surfaces.iter().filter(|_| !frames.is_empty()) {
-            let times = frames.iter().map(|&frame| self.time(run.run, frame)).collect();
-            let mut course = Course { states: &mut *states, place: run.place, times };
+            let (places, times) = self.moments(run.run, frames).into_iter().unzip();
+            let mut course = Course { states: &mut *states, place: run.place, frames: places, times };
             let (mark, name) = (mark(self.scene, None), &self.scene.runs[run.run].name);
             let head = usda::Head { mark: &mark, name, rate: self.scene.frames_per_second };
             if self.formats.contains(&Format::Usd) {
@@ -277,9 +276,13 @@ impl<'a> Export<'a> {
         file.commit()
     }
 
-    /// The time of a run in a frame (s).
-    fn time(&self, run: usize, frame: u64) -> f64 {
-        self.scene.frame_step(run, frame) as f64 * self.scene.runs[run].step
+    /// The frames of a run that show different steps: their places among some frames, and their times (s), rising. Of frames that show
+    /// one step, because steps are longer than the time between frames, it is the first.
+    fn moments(&self, run: usize, frames: &[u64]) -> Vec<(usize, f64)> {
+        let time = |&frame: &u64| self.scene.frame_step(run, frame) as f64 * self.scene.runs[run].step;
+        let mut moments: Vec<_> = frames.iter().map(time).enumerate().collect();
+        moments.dedup_by_key(|(_, time)| *time);
+        moments
     }
 }
 

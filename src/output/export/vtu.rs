@@ -36,6 +36,7 @@ impl Cells {
                 (ElementKind::Polygon | ElementKind::Triangle, _) => lists.push(5, nodes),
                 (ElementKind::Tetrahedron, _) => lists.push(10, nodes),
                 (ElementKind::Hexahedron, _) => lists.push(12, &[0, 1, 3, 2, 4, 5, 7, 6].map(|at: usize| nodes[at])),
+                // The first triangle looks towards the second since VTK 9.7; before, it looked away.
                 (ElementKind::Wedge, _) => lists.push(13, nodes),
                 (ElementKind::Pyramid, _) => lists.push(14, nodes),
                 // All nodes in a line, or in a plane.
