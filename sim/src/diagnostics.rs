@@ -288,7 +288,7 @@ diagnostics! { facts:
     TurnedOver, turned_over: usize, "turned over", "", Summaries =
         facts.bodies.iter().flat_map(BodyFacts::turned_over).filter(|&turned| turned).count();
 
-    /// Total signed volume divided by the volume at rest; in the plane, area.
+    /// Total signed volume of what is filled of the elements, divided by that at rest; in the plane, area.
     VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries =
         facts.total(|body| fill::volume(body.fill, &body.volumes)) / facts.total(|body| body.volume_at_rest);
 

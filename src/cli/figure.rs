@@ -93,6 +93,7 @@ impl FigureCommand {
             return Ok(Status::Done);
         }
         Format::check_name(&self.out)?;
+        self.threads.start()?;
         let mut figures = self.load()?;
         if !self.printing.quiet {
             figures.iter().for_each(warn_of_figure);
@@ -104,7 +105,7 @@ impl FigureCommand {
         let lit = figures.iter().filter(|figure| figure.is_lit());
         let gpu = self.device.open(lit.map(|figure| figure.size))?;
         interrupt::listen();
-        let pool = record::pool(self.threads.count())?;
+        let pool = self.threads.pool()?;
         let folder = self.folder();
         std::fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
         let _lock = FolderLock::beside_others(folder);

@@ -1,6 +1,5 @@
 //! Options that several commands share.
 
-#[cfg(feature = "render")]
 use super::failure::Failure;
 use super::frames::FrameRanges;
 #[cfg(feature = "render")]
@@ -14,6 +13,7 @@ use crate::reading::setting::Setting;
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum, ValueHint};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::path::PathBuf;
 
 /// The scenes of a command.
@@ -114,6 +114,24 @@ impl ThreadOptions {
     pub(super) fn count_or(self, usual: usize) -> usize {
         self.threads.map_or(usual, usize::from)
     }
+
+    /// Starts the threads that share all work outside of runs, such as filling a surface and moving it with its body. A process has
+    /// them once.
+    pub(super) fn start(self) -> Result<(), Failure> {
+        let pool = ThreadPoolBuilder::new().num_threads(self.count()).thread_name(|at| format!("share {at}"));
+        pool.build_global().map_err(|error| no_threads(&error))
+    }
+
+    /// The threads that simulate.
+    pub(super) fn pool(self) -> Result<ThreadPool, Failure> {
+        let pool = ThreadPoolBuilder::new().num_threads(self.count()).thread_name(|at| format!("simulate {at}"));
+        pool.build().map_err(|error| no_threads(&error))
+    }
+}
+
+/// The failure of a system that does not start threads.
+fn no_threads(error: &ThreadPoolBuildError) -> Failure {
+    Failure::usage(format!("--threads: the system does not start so many threads ({error})"))
 }
 
 /// The output of a command to the terminal.

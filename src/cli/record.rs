@@ -15,7 +15,7 @@ use crate::runner::cause::Cause;
 use crate::runner::{Frames, Meetings, Next, Progress, Runner, Stored};
 use crate::scene::{Run, Scene};
 use crate::sim::{self, Frame, State};
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::error::Error;
 use std::ffi::OsString;
@@ -39,7 +39,7 @@ pub(super) fn run_all(
     pictures: Option<(&AdapterOf<'_>, &Begin<'_>)>,
 ) -> Result<Status, Failure> {
     interrupt::listen();
-    let pool = pool(options.threads.count())?;
+    let pool = options.threads.pool()?;
     let command: Vec<_> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let mut documents: Vec<Value> = Vec::new();
     let mut interrupted = false;
@@ -129,12 +129,6 @@ pub(super) fn merge(document: &mut Value, more: Value) {
     if let (Value::Object(document), Value::Object(more)) = (document, more) {
         document.extend(more);
     }
-}
-
-/// The threads that simulate.
-pub(super) fn pool(threads: usize) -> Result<ThreadPool, Failure> {
-    let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(|at| format!("simulate {at}")).build();
-    pool.map_err(|error| Failure::usage(format!("--threads: the system does not start so many threads ({error})")))
 }
 
 /// One scene on its way.

@@ -100,6 +100,7 @@ impl Render {
         self.options.out.as_deref().map_or(Ok(()), FileFormat::check_name)?;
         // The theme is a key of the scene, so frames of two themes belong to two scenes.
         self.scenes.set.extend(self.theme.map(ThemeOption::setting));
+        self.options.threads.start()?;
         let mut scenes = self.scenes.load_all(self.options.printing.quiet)?;
         scenes.iter_mut().for_each(|scene| self.resize(scene));
         scenes.iter().try_for_each(|scene| self.check(scene))?;
@@ -197,7 +198,7 @@ impl Render {
         let _lock = FolderLock::beside_others(folder);
         let mut file = AtomicFile::create(path)?;
         interrupt::listen();
-        let pool = record::pool(self.options.threads.count())?;
+        let pool = self.options.threads.pool()?;
         let Some((frame, history)) = one_frame(scene, &runs, frame, &pool, &self.options, folder)? else {
             return Ok(Status::Interrupted);
         };

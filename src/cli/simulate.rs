@@ -34,6 +34,7 @@ pub(super) struct Simulate {
 impl Simulate {
     pub(super) fn run(self, words: &[OsString]) -> Result<Status, Failure> {
         let options = &self.options;
+        options.threads.start()?;
         let jobs = options.jobs(self.scenes.load_all(options.printing.quiet)?, Wish::default(), words)?;
         record::run_all(jobs, options, &self.scenes.set, words, false, None)
     }

@@ -7,8 +7,8 @@ pub(crate) use summary::MeshSummary;
 use super::limits::Limits;
 use crate::reading::beside::{self, Wrong};
 use crate::reading::words::{count, list, nearest};
-use crate::sim::IndexLists;
 use crate::sim::geometry::bounds;
+use crate::sim::{ElementKind, IndexLists};
 use glam::DVec3;
 use localshape_mesh::{self as mesh, Flaws, Format, Mesh};
 use sha2::{Digest, Sha256};
@@ -125,6 +125,23 @@ pub(crate) fn parts(nodes: usize, elements: &IndexLists) -> usize {
         }
     }
     (0..).zip(&leads).filter(|&(node, &leads)| node == leads).count()
+}
+
+/// The first corners of two sides of a polygon that cross each other, by their places in it.
+pub(crate) fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2]> {
+    /// The most nodes of a polygon whose sides are compared pairwise.
+    const MOST_COMPARED: usize = 2000;
+    let count = corners.len();
+    if kind != ElementKind::Polygon || !(4..=MOST_COMPARED).contains(&count) {
+        return None;
+    }
+    let side = |at: usize| [corners[at], corners[(at + 1) % count]];
+    let turn = |[a, b]: [DVec3; 2], c: DVec3| (b - a).cross(c - a).z;
+    let apart = |one: [DVec3; 2], other: [DVec3; 2]| turn(one, other[0]) * turn(one, other[1]) < 0.0;
+    (0..count)
+        .flat_map(|one| (one + 2..count).map(move |other| [one, other]))
+        .filter(|&[one, other]| (other + 1) % count != one)
+        .find(|&[one, other]| apart(side(one), side(other)) && apart(side(other), side(one)))
 }
 
 /// What was wrong with a surface and is mended, in words; empty for nothing. Welded points are no flaw: some formats have no

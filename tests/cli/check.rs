@@ -266,3 +266,30 @@ fn says_what_a_mesh_is() {
     );
     assert!(fills[0]["elements"].as_u64().unwrap() > 1000 && fills[0]["side"] == 0.1, "{}", fills[0]);
 }
+
+/// Two hexahedra side by side, and a pentagon that crosses itself.
+#[test]
+fn says_what_cells_are() {
+    let place = Place::with_small();
+    let points = [0, 1, 2].map(|x| format!("{x} 0 0 {x} 1 0 {x} 0 1 {x} 1 1\n")).concat();
+    place.write(
+        "bricks.vtk",
+        &format!(
+            "# vtk DataFile Version 3.0\nbricks\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 12 double\n{points}CELLS 2 18\n\
+             8 0 4 5 1 2 6 7 3\n8 4 8 9 5 6 10 11 7\nCELL_TYPES 2\n12 12\n"
+        ),
+    );
+    place.write(
+        "crossed.vtk",
+        "# vtk DataFile Version 3.0\ncrossed\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n\
+         0 0 0 4 0 0 4 4 0 1 -1 0 0 4 0\nCELLS 1 6\n5 0 1 2 3 4\nCELL_TYPES 1\n7\n",
+    );
+    let ran = place.run("check bricks.vtk").good();
+    for word in ["12 points, 2 hexahedra", "2 × 1 × 1 in the unit", "volume 2, 10 outer faces"] {
+        assert!(ran.out.contains(word), "{word}: {}", ran.out);
+    }
+    let document = place.run("check bricks.vtk --json").json();
+    let cells = &document["meshes"][0]["mesh"]["cells"];
+    assert_eq!((&cells["volume"], &cells["outer_faces"]), (&2.0.into(), &10.into()));
+    place.run("check crossed.vtk").bad(2, &["crossed.vtk has a cell, elements[0], whose sides", "cross"]);
+}

@@ -148,6 +148,35 @@ fn cells_become_elements_and_groups_are_named() {
     wrong(&with("brick.msh", "fill = {}"), &[("brick.msh", BRICK.as_bytes())], &["is about surfaces", "has cells"]);
 }
 
+/// A group comes before a side of the same name, in its own body only.
+#[test]
+fn a_group_with_the_name_of_a_side_leaves_the_sides_of_other_bodies() {
+    let block = |lines: &str| {
+        let other = "[[body]]\nname = 'block'\nlattice = { cells = [1, 1, 1], side = 1 }\noffset = [9, 0, 0]\n[[run]]";
+        with("brick.msh", lines).replace("[body]", "[[body]]\nname = 'brick'").replace("[[run]]", other)
+            + "[[hold]]\nnodes = 'right'\n"
+    };
+    let brick = BRICK.replace("clamped", "right");
+    let scene = loaded(&block(""), &[("brick.msh", &brick)]);
+    let held: Vec<_> = scene.runs[0].grips.iter().map(|grip| grip.nodes.clone()).collect();
+    // The group lies on the left side of the brick, the block has no group.
+    assert_eq!(held, [vec![0, 3, 4, 7], vec![9, 11, 13, 15]]);
+}
+
+#[test]
+fn groups_of_a_filled_surface_are_told_to_be_lost() {
+    let surface = "\
+$MeshFormat\n2.2 0 8\n$EndMeshFormat
+$PhysicalNames\n1\n2 1 \"foot\"\n$EndPhysicalNames
+$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes
+$Elements\n4\n1 2 2 1 1 1 3 2\n2 2 2 0 1 1 2 4\n3 2 2 0 1 1 4 3\n4 2 2 0 1 2 3 4\n$EndElements
+";
+    let scene = |nodes: &str| with("foot.msh", "fill.cells = 4") + &format!("[[hold]]\nnodes = '{nodes}'\n");
+    assert!(!loaded(&scene("bottom"), &[("foot.msh", surface)]).runs[0].grips.is_empty());
+    let expected = ["`hold[0].nodes` is \"foot\"", "\"bottom\"", "a surface that is filled has no groups"];
+    wrong(&scene("foot"), &[("foot.msh", surface.as_bytes())], &expected);
+}
+
 #[test]
 fn a_filled_body_needs_its_density_or_its_whole_mass() {
     let cube: &[(&str, &[u8])] = &[("cube.obj", CUBE.as_bytes())];

@@ -89,7 +89,7 @@ const ARRAYS: usize = 10;
 
 impl Stencil {
     /// The springs of a body with a stiffness (N/m) and a damping (N s/m), or `None` if they form no families, so that most
-    /// lanes would be empty, or if the body is filled in part.
+    /// lanes would be empty, or if elements are filled in part or differ in stiffness.
     pub(crate) fn new(
         springs: &[[u32; 2]],
         [stiffness, damping]: [f64; 2],

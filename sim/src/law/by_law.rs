@@ -34,7 +34,7 @@ pub struct ByLaw<W> {
     body: Arc<Body>,
     /// Those of the law, if they are not the body's.
     elements: Option<IndexLists>,
-    /// The filled part of each element, unless all are full.
+    /// The relative stiffness of each element; `None` if all are 1.
     fill: Option<Vec<f64>>,
     gather: OnceLock<Gather>,
 }
@@ -55,7 +55,7 @@ impl<W: Law> ByLaw<W> {
         self.elements.as_ref().unwrap_or(&self.body.elements)
     }
 
-    /// The filled parts of `count` elements from one on, unless all are full.
+    /// The relative stiffness of `count` elements from one on; `None` if all are 1.
     #[inline(always)]
     fn parts<L: Lanes>(&self, first: usize, count: usize) -> Option<L> {
         let of_lane = |fill: &[f64], lane: usize| fill[first + lane.min(count - 1)];

@@ -1,12 +1,12 @@
-//! Elements that are filled in part.
+//! Elements that are filled in part, or differ in stiffness.
 
 use super::{Corners, Element, Law};
 use crate::body::Body;
 use crate::lanes::{Lanes, each};
 use crate::lists::IndexLists;
 
-/// A law whose forces, energies and residuals are multiplied by the filled part of each element, which is the last of its constants.
-/// It is a law of its own, so that the steps of full elements are compiled without it.
+/// A law whose forces, energies and residuals are multiplied by the relative stiffness of each element, which is the last of its
+/// constants. It is a law of its own, so that the steps of full elements of one stiffness are compiled without it.
 #[derive(Clone)]
 pub(crate) struct Filled<W>(pub(crate) W);
 

@@ -31,9 +31,10 @@ use std::marker::PhantomData;
 /// [`ElasticModel::vectorised`](super::model::ElasticModel::vectorised), and [`ByLaw`] from
 /// [`ElasticModel::prepare`](super::model::ElasticModel::prepare).
 ///
-/// A law is about full elements. Where elements are [filled in part](super::body::Body::fill), forces, energies and the residual are
-/// multiplied by the filled part outside of it. Elements of its own, such as springs, have the mean part of the body's
-/// elements that hold all their nodes.
+/// A law is about full elements of one stiffness. Where elements are [filled in part](super::body::Body::fill) or
+/// [differ in stiffness](super::body::Body::stiffness), forces, energies and the residual are multiplied outside of it by the relative
+/// stiffness, the product of the two. Elements of its own, such as springs, have the mean relative stiffness of the body's elements
+/// that hold all their nodes.
 ///
 /// # Example
 /// A complete model: a rod with the energy `k/(8 L²) (|p|² − L²)²` between any two nodes of an element.
@@ -168,7 +169,7 @@ impl<L: Lanes> Corners<'_, L> {
         self.columns(corner)[RECORD - 1]
     }
 
-    /// The part of elements at rest that is filled.
+    /// The relative stiffness of elements at rest.
     #[inline(always)]
     pub(crate) fn part(&self) -> L {
         self.columns(0)[RECORD - 2]

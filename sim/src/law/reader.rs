@@ -45,7 +45,7 @@ impl<L: Lanes> Reader<L> {
     }
 
     /// Reads elements at rest, and with positions (m) and velocities (m/s) of the nodes; without velocities they are at rest.
-    /// `parts` are the filled parts of the elements.
+    /// `parts` are the relative stiffnesses of the elements.
     #[inline(always)]
     pub(crate) fn read(
         &mut self,

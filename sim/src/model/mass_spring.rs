@@ -152,7 +152,7 @@ impl Vectorised for MassSpring {
 }
 
 impl MassSpring {
-    /// The filled part of each spring; `None` if the body is full.
+    /// The relative stiffness of each spring; `None` if all are 1.
     fn parts(&self, body: &Body) -> Option<Vec<f64>> {
         fill::parts(body, self.springs.iter().map(|ends| &ends[..]))
     }
@@ -237,7 +237,7 @@ struct SpringForces {
     model: MassSpring,
     /// `L_ij` of each spring (m).
     natural_length: Vec<f64>,
-    /// The filled part of each spring, unless the body is full.
+    /// The relative stiffness of each spring; `None` if all are 1.
     parts: Option<Vec<f64>>,
     /// Adds up the spring forces of each node; a spring acts on its second node with the opposite force.
     gather: blocks::SignedGather,

@@ -176,7 +176,7 @@ pub trait ElasticModel: Debug + Send + Sync {
 
 /// The internal forces of a body, as a pure function: the same nodes and the same memory give the same forces and the
 /// same next memory. So trial evaluations and rejected steps have no side effects. Forces and energies of an element are in
-/// proportion to its [filled part](Body::fill).
+/// proportion to its [filled part](Body::fill) and to its [stiffness](Body::stiffness).
 ///
 /// [`ByLaw`] makes them from the [`Law`] of the elements, which is less work and faster.
 pub trait ForceModel: Send + Sync {

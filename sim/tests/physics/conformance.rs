@@ -117,8 +117,16 @@ pub(crate) fn bodies() -> Vec<Arc<Body>> {
         Arc::new(Body { fill: Some(fill), ..Body::clone(body) })
     });
     let filled: Vec<_> = filled.collect();
+    // And with elements that differ in stiffness, filled in part or not.
+    let stiffened = bodies.iter().zip(&filled).enumerate().map(|(at, (full, filled))| {
+        let body = if at % 2 == 0 { full } else { filled };
+        let stiffness = (0..body.elements.len()).map(|element| [0.6, 1.7, 1.0][element % 3]).collect();
+        Arc::new(Body { stiffness: Some(stiffness), ..Body::clone(body) })
+    });
+    let stiffened: Vec<_> = stiffened.collect();
     bodies.extend(unequal);
     bodies.extend(filled);
+    bodies.extend(stiffened);
     bodies
 }
 
@@ -337,8 +345,9 @@ fn an_element_at_a_point_keeps_its_rotation() {
         for _ in 0..3 {
             let forces = worker.follow(&State::at_rest(vec![DVec3::ONE; body.len()]));
             for (force, corner) in forces.iter().zip(&turned) {
-                let part = body.fill.as_ref().map_or(1.0, |fill| fill[0]);
-                let off = *force - (*corner - centre) * (part * STIFFNESS);
+                let [part, relative] =
+                    [&body.fill, &body.stiffness].map(|given| given.as_ref().map_or(1.0, |given| given[0]));
+                let off = *force - (*corner - centre) * (part * relative * STIFFNESS);
                 assert!(off.length() < 1e-11 * STIFFNESS, "{:?}: {off}", body.kinds);
             }
         }
@@ -430,8 +439,9 @@ fn the_order_of_nodes_and_elements_does_not_matter() {
             elements.push(&nodes.iter().map(|&node| renamed(node)).collect::<Vec<_>>());
         }
         let solids = if body.kinds == [ElementKind::Other] { Solids::Convex } else { Solids::Ordered };
-        let fill = body.fill.iter().map(|fill| fill.iter().rev().copied().collect()).next();
-        let other = Body { fill, ..Body::new(body.dimension, rest, mass, elements, solids, None) };
+        let reversed = |given: &Option<Vec<f64>>| Some(given.as_ref()?.iter().rev().copied().collect());
+        let [fill, stiffness] = [&body.fill, &body.stiffness].map(reversed);
+        let other = Body { fill, stiffness, ..Body::new(body.dimension, rest, mass, elements, solids, None) };
         let other = Arc::new(other);
         let state = deformed(&body, 0.2, 1);
         let mut moved = State::at_rest(vec![DVec3::ZERO; body.len()]);

@@ -1,4 +1,4 @@
-//! Bodies whose elements are filled in part: stiffness, damping and mass in proportion.
+//! Bodies whose elements are filled in part, with stiffness, damping and mass in proportion, or differ in stiffness.
 
 use super::conformance::cases;
 use super::support::{Noise, floor, lattice, mass_spring, shape_based, stepped};
@@ -207,5 +207,76 @@ fn bodies_filled_in_part_have_the_same_bits_for_1_2_and_8_threads() {
             (world.state().clone(), world.diagnostics().elastic)
         });
         assert!(ends[0] == ends[1] && ends[0] == ends[2], "{model:?}");
+    }
+}
+
+/// A block of full cubes with elements of this relative stiffness.
+fn stiffened(cells: u32, stiffness: impl Fn(usize) -> f64) -> Arc<Body> {
+    let full = filled(cells, |_| 1.0);
+    let stiffness = (0..full.elements.len()).map(stiffness).collect();
+    Arc::new(Body { fill: None, stiffness: Some(stiffness), ..Body::clone(&full) })
+}
+
+/// Elements of twice the stiffness move like those of a model of twice the stiffness and the damping, with the same bits, and have
+/// the same steps.
+#[test]
+fn relative_stiffness_multiplies_that_of_the_model() {
+    let [one, two] = [1.0, 2.0].map(|stiffness| stiffened(3, |_| stiffness));
+    let models = |stiffness: f64, damping: f64| -> [Box<dyn ElasticModel>; 2] {
+        let springs = mass_spring(&one, stiffness, damping, Springs::EdgesFaceDiagonals);
+        [Box::new(shape_based(stiffness, damping)), Box::new(springs)]
+    };
+    for (stiff, soft) in models(2e4, 14.0).iter().zip(models(1e4, 7.0)) {
+        let pairs = [(&one, &**stiff), (&two, &*soft)];
+        for kernel in [Kernel::Fast, Kernel::Reference] {
+            let [a, b] = pairs.map(|(body, model)| {
+                let stepping = Stepping { kernel, ..Stepping::new(Integrator::SemiImplicitEuler, 2e-4) };
+                let mut world = World::new(body, start(body), model, Surroundings::default(), stepping);
+                world.advance(200);
+                (world.state().clone(), world.diagnostics().elastic)
+            });
+            assert!(a.1 > 0.0);
+            assert!(a == b, "{soft:?} {kernel:?}: {} {}", a.1, b.1);
+        }
+        for integrator in [Integrator::SemiImplicitEuler, Integrator::VelocityVerlet, Integrator::RungeKutta] {
+            let [a, b] = pairs.map(|(body, model)| {
+                let Stability { largest, stretched, .. } = Stability::of(body, model, integrator, &[], 1.0);
+                [largest, stretched.unwrap_or(largest), Stability::certain(body, model, integrator).unwrap_or(0.0)]
+            });
+            a.iter().zip(&b).for_each(|(a, b)| assert!((a - b).abs() <= 1e-12 * a, "{soft:?} {integrator:?}: {a} {b}"));
+        }
+    }
+}
+
+/// The predicted step of a body is at least that of its stiffest element alone, and at least the certain one, and in that step the
+/// body swings without gaining energy.
+#[test]
+fn the_stiffest_element_bounds_the_step() {
+    let most = 4.0;
+    let cube = stiffened(1, |_| most);
+    let mut noise = Noise(8);
+    let random: Vec<f64> = (0..64).map(|_| if noise.next() < 0.0 { 0.01 } else { most }).collect();
+    for body in [
+        stiffened(4, |cell| random[cell]),
+        stiffened(4, |cell| if cell == 21 { most } else { 0.1 }),
+        stiffened(4, |cell| if cell / 16 >= 2 { 1.0 } else { most }),
+    ] {
+        for (model, of_cube) in models(&body).iter().zip(models(&cube)) {
+            let integrator = Integrator::SemiImplicitEuler;
+            let limit = |body, model: &dyn ElasticModel| Stability::of(body, model, integrator, &[], 1.0);
+            let (found, least) = (limit(&body, &**model), limit(&cube, &*of_cube));
+            assert!(found.largest > least.largest * (1.0 - 1e-3), "{model:?}: {found:?} {least:?}");
+            let certain = Stability::certain(&body, &**model, integrator).unwrap_or(0.0);
+            assert!(certain <= found.largest * (1.0 + 1e-3), "{model:?}: {found:?} {certain}");
+            let step = 0.95 * found.stretched.unwrap_or(found.largest).min(found.largest);
+            let mut noise = Noise(4);
+            let position = body.rest.iter().map(|&rest| rest + noise.vector() * 1e-5).collect();
+            let at_rest = vec![DVec3::ZERO; body.len()];
+            let mut world = stepped(&body, State::new(position, at_rest), &**model, integrator, step);
+            let before = world.diagnostics();
+            world.advance(3000);
+            let after = world.diagnostics();
+            assert!(after.elastic < 20.0 * before.elastic, "{model:?}: {} {}", before.elastic, after.elastic);
+        }
     }
 }

@@ -89,8 +89,8 @@ pub(in crate::scene) struct BodyFile {
     /// Mass of each node (kg), instead of one `mass`.
     pub(in crate::scene) masses: Option<Vec<Positive>>,
     /// A mesh file beside the scene. Cells become elements: Gmsh (.msh, 2.2 or 4.1), VTK (.vtk, .vtu). A surface is filled with
-    /// elements, which carry it: .obj, .stl, .ply, .off, .gltf, .glb. It then needs `density` or `mass_total`. `localshape
-    /// check FILE` tells what a file contains.
+    /// elements, which carry it: .obj, .stl, .ply, .off, .gltf, .glb, .vtp, and .msh, .vtk or .vtu without cells. It then needs
+    /// `density` or `mass_total`. `localshape check FILE` tells what a file contains.
     #[schemars(length(min = 1))]
     pub(in crate::scene) mesh: Option<String>,
     /// The elements that fill the surface in `mesh`: `{ with = "cubes", cells = 20 }`.

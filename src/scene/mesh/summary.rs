@@ -1,12 +1,12 @@
 //! What a mesh file contains in words and numbers, as `check` prints them.
 
-use super::{CELLS, MeshFile, left, longest, mended, parts};
+use super::{CELLS, MeshFile, crossing, left, longest, mended, parts};
 use crate::reading::beside::Wrong;
 use crate::reading::captions;
 use crate::reading::words::{count, list, quoted, short};
 use crate::scene::limits::Limits;
-use crate::sim::Body;
-use crate::sim::geometry::bounds;
+use crate::sim::geometry::{bounds, volumes_at_rest};
+use crate::sim::{Body, Dimension};
 use localshape_mesh::{Fill, Flaws, Measures, Mesh, Surface, Volume, fill};
 use serde::Serialize;
 use std::fmt;
@@ -36,11 +36,18 @@ struct CellsSummary {
     count: usize,
     /// Number of cells of each kind, such as `240 tetrahedra`.
     kinds: Vec<String>,
+    /// The sum of their volumes, in the plane of their areas.
+    volume: f64,
+    /// The number of faces that are on the outside; `None` in the plane.
+    outer_faces: Option<usize>,
     /// Number of cells that are turned inside out in the file.
     turned: usize,
     /// Number of parts that share no point.
     parts: usize,
     groups: Vec<GroupSummary>,
+    /// Why they cannot be elements.
+    #[serde(skip)]
+    error: Option<String>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -104,9 +111,13 @@ impl MeshSummary {
         let content = Content::Cells(CellsSummary {
             count: body.elements.len(),
             kinds: captions::elements(&body).into_iter().map(of_kind).collect(),
+            volume: volumes_at_rest(&body).iter().sum(),
+            outer_faces: (dimension == Dimension::Space)
+                .then(|| body.faces.outer.iter().filter(|outer| outer.is_none()).count()),
             turned,
             parts,
             groups: groups.into_iter().map(group).collect(),
+            error: crossed(&body),
         });
         Self { points: number, extent: (high - low).to_array(), content }
     }
@@ -157,9 +168,21 @@ impl MeshSummary {
             Content::Surface(surface) if surface.fills.iter().all(|fill| fill.error.is_some()) => {
                 surface.fills.first()?.error.clone()
             }
-            _ => None,
+            Content::Surface(_) => None,
+            Content::Cells(cells) => cells.error.clone(),
         }
     }
+}
+
+/// What is wrong with the first polygon whose sides cross.
+fn crossed(body: &Body) -> Option<String> {
+    body.elements.iter().zip(&body.kinds).enumerate().find_map(|(at, (nodes, &kind))| {
+        let corners: Vec<_> = nodes.iter().map(|&node| body.rest[node as usize]).collect();
+        let [one, other] =
+            crossing(kind, &corners)?.map(|corner| format!("{}–{}", nodes[corner], nodes[(corner + 1) % nodes.len()]));
+        let help = "list its nodes in order around it, counter-clockwise";
+        Some(format!("has a cell, elements[{at}], whose sides {one} and {other} cross; {help}"))
+    })
 }
 
 impl SurfaceSummary {
@@ -185,6 +208,11 @@ impl fmt::Display for MeshSummary {
                 let kinds = list(&cells.kinds, "and", str::to_owned);
                 line("cells", &format!("{points}, {kinds}{}", in_parts(cells.parts)))?;
                 line("size", &size)?;
+                let form = match cells.outer_faces {
+                    Some(faces) => format!("volume {}, {}", short(cells.volume), several(faces, "outer face")),
+                    None => format!("area {}", short(cells.volume)),
+                };
+                line("form", &form)?;
                 if cells.turned > 0 {
                     line("mended", &format!("{} turned over, which were inside out", several(cells.turned, "cell")))?;
                 }

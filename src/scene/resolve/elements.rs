@@ -3,6 +3,7 @@
 use super::lists::{ListSource, Lists};
 use crate::reading::collector::Collector;
 use crate::reading::words::{count, list};
+use crate::scene::mesh::crossing;
 use crate::sim::geometry::{Alike, bounds, kind, volume_by_faces};
 use crate::sim::{Body, Dimension, ElementKind, Solids};
 use glam::DVec3;
@@ -231,8 +232,6 @@ const CONVEX: &str = "write convex = true in [body] for nodes in any order";
 
 /// The most nodes of an element whose faces are found from its convex hull: more take seconds.
 const MOST_IN_HULL: usize = 10_000;
-/// The most nodes of a polygon whose sides are compared pairwise.
-const MOST_COMPARED: usize = 2000;
 
 /// Whether points lie on a line, to round-off in a box of this size around them.
 fn is_on_a_line(points: &[DVec3], size: f64) -> bool {
@@ -240,21 +239,6 @@ fn is_on_a_line(points: &[DVec3], size: f64) -> bool {
     let along =
         points.iter().map(from).fold(DVec3::ZERO, |a, b| if b.length_squared() > a.length_squared() { b } else { a });
     points.iter().all(|point| along.cross(from(point)).length() <= FLAT.sqrt() * size * size)
-}
-
-/// The first corners of two sides of a polygon that cross each other.
-fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2]> {
-    let count = corners.len();
-    if kind != ElementKind::Polygon || !(4..=MOST_COMPARED).contains(&count) {
-        return None;
-    }
-    let side = |at: usize| [corners[at], corners[(at + 1) % count]];
-    let turn = |[a, b]: [DVec3; 2], c: DVec3| (b - a).cross(c - a).z;
-    let apart = |one: [DVec3; 2], other: [DVec3; 2]| turn(one, other[0]) * turn(one, other[1]) < 0.0;
-    (0..count)
-        .flat_map(|one| (one + 2..count).map(move |other| [one, other]))
-        .filter(|&[one, other]| (other + 1) % count != one)
-        .find(|&[one, other]| apart(side(one), side(other)) && apart(side(other), side(one)))
 }
 
 /// Reports missing and repeated nodes. Returns true if there are none.

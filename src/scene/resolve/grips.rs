@@ -214,7 +214,7 @@ fn listed(list: &[u32], body: &ResolvedBody, path: &[PathPart<'_>], report: &mut
     (report.total() == before).then_some(nodes)
 }
 
-/// The nodes of a group of each body that has one of this name, or of a side of each body at rest.
+/// The nodes of each body: of its group with this name, or else of its side at rest.
 fn named(
     name: &str,
     bodies: &[ResolvedBody],
@@ -226,15 +226,16 @@ fn named(
     let of_body =
         |body: &ResolvedBody| body.groups.iter().find(|group| group.name == name).map(|one| one.points.clone());
     let found: Vec<Option<Vec<u32>>> = bodies.iter().map(of_body).collect();
-    if found.iter().any(Option::is_some) {
-        return Some(found.into_iter().map(Option::unwrap_or_default).collect());
-    }
     let is_flat = bodies[0].body.dimension == Dimension::Plane;
     let is_there = |side: &Side| !(is_flat && [Side::Front, Side::Back].contains(side));
-    if let Some(side) = Side::ALL.into_iter().find(|side| typed(side) == name) {
-        if is_there(&side) {
-            return Some(bodies.iter().map(|body| of_side(side, &body.body)).collect());
-        }
+    let side = Side::ALL.into_iter().find(|side| typed(side) == name);
+    let there = side.filter(is_there);
+    if there.is_some() || found.iter().any(Option::is_some) {
+        let of_side = |body: &ResolvedBody| there.map(|side| of_side(side, &body.body)).unwrap_or_default();
+        let nodes = found.into_iter().zip(bodies).map(|(group, body)| group.unwrap_or_else(|| of_side(body)));
+        return Some(nodes.collect());
+    }
+    if let Some(side) = side {
         let (side, body) = (quoted(name), bodies[0].in_words());
         let message = format!("`{}` is {side}, but {body} is in the plane", written(path));
         report.at(path, message, "expected \"left\", \"right\", \"bottom\" or \"top\"");
@@ -252,8 +253,13 @@ fn named(
             format!("expected {}, or a group of the mesh: {}", list(&sides, "or", quoted), list(&groups, "or", quoted))
         }
     };
+    // A file may have the group all the same.
+    let lost = match bodies.iter().any(|body| body.body.carried.is_some()) {
+        true => "; a surface that is filled has no groups: nodes of its elements are others than those of the file",
+        false => "",
+    };
     let help = nearest(name, &known).map(|near| format!("did you mean {}?", quoted(near)));
-    report.at(path, format!("`{}` is {}; {expected}", written(path), quoted(name)), help);
+    report.at(path, format!("`{}` is {}; {expected}{lost}", written(path), quoted(name)), help);
     None
 }
 

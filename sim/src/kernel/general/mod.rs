@@ -30,8 +30,8 @@ use pass::{OfNodes, OnePart, SharedNodes};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// The last numbers of the record of a node, a cache line: 1/m, and the sum of the filled parts of its elements: their number, if all
-/// are full.
+/// The last numbers of the record of a node, a cache line: 1/m, and the sum of the relative stiffnesses of its elements: their number,
+/// if all are 1.
 const INVERSE_MASS: usize = 6;
 const VALENCE: usize = 7;
 /// Doubles in the sum of a node: the force in x, y, z, and padding.
@@ -104,7 +104,7 @@ struct Shared {
 }
 
 impl<W: Law> General<W> {
-    /// The elements of a body on which a law acts. If some are filled in part, the law is [`Filled`](crate::law::Filled).
+    /// The elements of a body on which a law acts. If their relative stiffness is not 1, the law is [`Filled`](crate::law::Filled).
     pub(crate) fn new(law: W, body: &Body, conditions: &Conditions) -> Self {
         let (own, fill) = (law.elements(body), fill::of_law(&law, body));
         let elements = own.as_ref().unwrap_or(&body.elements);
@@ -278,7 +278,7 @@ struct Prepare<'a, W> {
     law: &'a W,
     body: &'a Body,
     lists: &'a IndexLists,
-    /// The filled part of each of the lists.
+    /// The relative stiffness of each of the lists; `None` if all are 1.
     fill: Option<&'a [f64]>,
     elements: &'a [u32],
 }

@@ -57,7 +57,7 @@ struct Grid {
 }
 
 impl Grid {
-    /// `None` for any other body, and for one that is filled in part.
+    /// `None` for any other body, and for one whose elements are filled in part or differ in stiffness.
     fn of(body: &Body) -> Option<Self> {
         /// Relative to the sides.
         const EQUAL: f64 = 1e-12;

@@ -40,6 +40,9 @@ fn any_elements_step_like_the_reference() {
         ("a lattice, filled in part", filled(whole([3, 4, 2], 0.0, 3))),
         ("anything, filled in part", filled(pieces([4, 3, 5], &[4, 5, 6, 7, 8], 6))),
         ("flat, filled in part", filled(pieces([4, 5, 0], &[3, 4], 7))),
+        ("a lattice of unequal stiffness", stiffened(whole([3, 4, 2], 0.0, 3))),
+        ("flat, of unequal stiffness", stiffened(pieces([4, 5, 0], &[3, 4], 7))),
+        ("both", filled(stiffened(pieces([4, 3, 5], &[4, 5, 6, 7, 8], 6)))),
     ] {
         for rotation in [TWICE, Rotation::Optimum] {
             for damping in [0.0, 10.0] {
@@ -65,7 +68,7 @@ fn any_scheme_steps_like_the_reference() {
 fn a_body_of_several_parts_steps_like_the_reference() {
     let some = || pieces([23, 17, 19], &[4, 6, 8], 11);
     let many = pieces([45, 33, 33], &[4, 6, 8], 11);
-    for (body, steps, is_large) in [(some(), 50, false), (filled(some()), 50, false), (many, 3, true)] {
+    for (body, steps, is_large) in [(some(), 50, false), (filled(stiffened(some())), 50, false), (many, 3, true)] {
         assert_eq!(parts(&body.elements) > SMALL, is_large);
         let start = start(&body, 3);
         let start = (start.clone(), rotations(&body, &start));

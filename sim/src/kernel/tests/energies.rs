@@ -119,6 +119,9 @@ fn energies_residuals_and_strains_are_those_of_the_reference() {
     bodies.push(("a block, filled in part", filled(whole([5, 4, 3], 0.1, 1))));
     bodies.push(("anything, filled in part", filled(pieces([5, 4, 4], &[2, 3, 4, 5, 6, 7, 8], 9))));
     bodies.push(("flat, filled in part", filled(pieces([7, 5, 0], &[3, 4], 10))));
+    bodies.push(("a block of unequal stiffness", stiffened(whole([5, 4, 3], 0.1, 1))));
+    bodies.push(("flat, of unequal stiffness", stiffened(pieces([7, 5, 0], &[3, 4], 10))));
+    bodies.push(("both", filled(stiffened(pieces([5, 4, 4], &[2, 3, 4, 5, 6, 7, 8], 9)))));
     for (name, body) in &bodies {
         let springs: Arc<[[u32; 2]]> = body.topology().springs(Springs::All).into();
         for crush in [None].into_iter().chain(crushes.map(Some)) {

@@ -108,6 +108,13 @@ pub(super) fn filled(body: Arc<Body>) -> Arc<Body> {
     Arc::new(Body { fill: Some(fill), ..Body::clone(&body) })
 }
 
+/// The body with elements that differ in stiffness.
+pub(super) fn stiffened(body: Arc<Body>) -> Arc<Body> {
+    let random = &mut Random(42);
+    let stiffness = body.elements.iter().map(|_| [1.0, 1.7, 0.6, 0.3][random.below(4)]).collect();
+    Arc::new(Body { stiffness: Some(stiffness), ..Body::clone(&body) })
+}
+
 /// Rotated, stretched and moving.
 pub(super) fn start(body: &Body, seed: u64) -> State {
     let random = &mut Random(seed);

@@ -57,10 +57,11 @@ fn springs_step_like_the_reference() {
         let mut springs: Vec<[u32; 2]> =
             (0..90).map(|_| [random.below(62) as u32, 62 + random.below(62) as u32]).collect();
         assert_springs_step_like_the_reference(&body, &springs, damping, false);
-        // Of elements that are filled in part, and of none.
-        let body = filled(body);
+        // Of elements that are filled in part or differ in stiffness, and of none.
         springs.extend(body.topology().springs(Springs::All));
-        assert_springs_step_like_the_reference(&body, &springs, damping, false);
+        for body in [filled(body.clone()), stiffened(body.clone()), filled(stiffened(body))] {
+            assert_springs_step_like_the_reference(&body, &springs, damping, false);
+        }
     }
 }
 
