@@ -72,6 +72,8 @@ fn listed(folder: &Path, file: &str, limits: &Limits) -> Result<(Vec<Listed>, Op
     for mesh::Listed { time, file } in all {
         let file = beside.join(file);
         match moments.last_mut().filter(|last| last.time == time) {
+            // Frames nearer than a time step are of one moment.
+            Some(last) if last.files.contains(&file) => {}
             Some(last) => last.files.push(file),
             None => moments.push(Listed { time, files: vec![file] }),
         }
@@ -150,6 +152,14 @@ impl Moment {
                 moment.time = number_in(&bytes, TIME);
                 moment.step = step_in(&bytes);
             }
+            let corners: usize = moment.cells.iter().chain([&cells]).map(|cells| cells.corners.indices().len()).sum();
+            if moment.points.len() + cells.points.len() > limits.points || corners > limits.corners {
+                let most = count(limits.points as u128);
+                return Err(flaw(
+                    &name,
+                    format!("brings its moment to more points or cells than are allowed, {most} points"),
+                ));
+            }
             moment.points.extend(&cells.points);
             moment.velocities.extend(cells.velocities.iter().flatten());
             moment.cells.push(cells);
@@ -224,6 +234,12 @@ fn write(
             let message = format!("has {found} points, and {before} has {expected}; expected the same in each moment");
             return Err(flaw(name(), message));
         }
+        let is_alike = |(one, other): (&Cells, &Cells)| one.kinds == other.kinds && one.corners == other.corners;
+        if !moment.cells.iter().zip(&first.cells).all(is_alike) {
+            let before = moments[0].files.iter().map(|path| name_of(path)).collect::<Vec<_>>().join(", ");
+            let message = format!("has other cells than {before}; expected the same in each moment");
+            return Err(flaw(name(), message));
+        }
         let time = moment.time.unwrap_or(listed.time);
         if let Some(before) = times.last().filter(|before| time <= **before) {
             return Err(flaw(name(), format!("is at {time} s, after {before} s; expected rising times")));
@@ -258,6 +274,9 @@ fn write(
             begin(&mut zip, "rest", "<f8", &format!("({nodes}, 3)"), 24 * nodes as u64)?;
             first.points.iter().try_for_each(|point| vector(&mut zip, point))?;
             let (rows, columns) = (elements.len(), elements.iter().map(<[u32]>::len).max().unwrap_or(0));
+            if (rows * columns) as u64 > limits.corners {
+                return Err(io::Error::other(format!("one of its {rows} cells has {columns} points")));
+            }
             begin(&mut zip, "elements", "<i8", &format!("({rows}, {columns})"), 8 * (rows * columns) as u64)?;
             for list in elements.iter() {
                 let padded = list.iter().map(|&node| node.into()).chain(std::iter::repeat(-1_i64)).take(columns);

@@ -46,9 +46,11 @@ pub(super) fn add(kind: i64, corners: &[u32], builder: &mut Builder<'_>) -> Resu
     }
 }
 
-/// Adds a polyhedron with these faces, as a tetrahedron, pyramid, wedge or hexahedron if it is one.
-pub(super) fn polyhedron(faces: &[Vec<u32>], builder: &mut Builder<'_>) -> Result<(), ReadError> {
+/// Adds a polyhedron with these faces, as a tetrahedron, pyramid, wedge or hexahedron if it is one. More points than its corners may be
+/// listed: those that hang in its edges and faces.
+pub(super) fn polyhedron(faces: &[Vec<u32>], listed: &[u32], builder: &mut Builder<'_>) -> Result<(), ReadError> {
     let mut points: Vec<u32> = faces.concat();
+    points.extend(listed);
     points.sort_unstable();
     points.dedup();
     let triangles = faces.iter().filter(|face| face.len() == 3).count();

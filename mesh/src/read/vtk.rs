@@ -223,7 +223,7 @@ impl Reader<'_, '_> {
             faces.push(after[..count].iter().map(|&index| corner(index)).collect::<Result<Vec<_>, _>>()?);
             rest = &after[count..];
         }
-        kinds::polyhedron(&faces, &mut self.builder)
+        kinds::polyhedron(&faces, &[], &mut self.builder)
     }
 
     /// Skips arrays of data.

@@ -308,7 +308,8 @@ impl Layout<'_> {
                     for face in found {
                         faces.push(face.iter().map(|&index| corner(builder, index)).collect::<Result<Vec<_>, _>>()?);
                     }
-                    kinds::polyhedron(&faces, builder)?;
+                    let listed = list.iter().map(|&index| corner(builder, index)).collect::<Result<Vec<_>, _>>()?;
+                    kinds::polyhedron(&faces, &listed, builder)?;
                 } else {
                     let corners = list.iter().map(|&index| corner(builder, index)).collect::<Result<Vec<_>, _>>()?;
                     kinds::add(kind, &corners, builder)?;

@@ -235,7 +235,7 @@ fn named(
         let nodes = found.into_iter().zip(bodies).map(|(group, body)| group.unwrap_or_else(|| of_side(body)));
         return Some(nodes.collect());
     }
-    if let Some(side) = side {
+    if side.is_some() {
         let (side, body) = (quoted(name), bodies[0].in_words());
         let message = format!("`{}` is {side}, but {body} is in the plane", written(path));
         report.at(path, message, "expected \"left\", \"right\", \"bottom\" or \"top\"");
