@@ -460,10 +460,7 @@ fn any_triangles_are_filled_or_refused() {
         let surface = Surface { points, triangles };
         let side = scale * [0.1, 0.25, 0.5, 3.0][case / 24 % 4];
         for with in [Fill::Cubes { side }, Fill::Graded { side }, Fill::Tetrahedra { side }, Fill::Polyhedra { side }] {
-            let start = std::time::Instant::now();
-            let found = fill(&surface, with, 2000);
-            println!("TIME {:.2} {case} {with:?}", start.elapsed().as_secs_f64());
-            match found {
+            match fill(&surface, with, 2000) {
                 Ok(of) => {
                     filled += 1;
                     match with {

@@ -56,10 +56,7 @@ fn check_fills(surface: &Surface, name: &str) {
     let (low, high) = bounds(&surface.points);
     let side = (high - low).max_element() / 12.0;
     for with in [Fill::Cubes { side }, Fill::Graded { side }, Fill::Tetrahedra { side }, Fill::Polyhedra { side }] {
-        let start = std::time::Instant::now();
-        let found = fill(surface, with, MOST);
-        println!("TIME {:.2} {name} {with:?}", start.elapsed().as_secs_f64());
-        match found {
+        match fill(surface, with, MOST) {
             Ok(filled) => {
                 let elements = filled.cage.elements.len();
                 assert!((1..=MOST).contains(&elements), "{name}: {elements}");

@@ -285,7 +285,7 @@ fn says_what_cells_are() {
          0 0 0 4 0 0 4 4 0 1 -1 0 0 4 0\nCELLS 1 6\n5 0 1 2 3 4\nCELL_TYPES 1\n7\n",
     );
     let ran = place.run("check bricks.vtk").good();
-    for word in ["12 points, 2 hexahedra", "2 × 1 × 1 in the unit", "volume 2, 10 outer faces"] {
+    for word in ["12 points, 2 cubes", "2 × 1 × 1 in the unit", "volume 2, 10 outer faces"] {
         assert!(ran.out.contains(word), "{word}: {}", ran.out);
     }
     let document = place.run("check bricks.vtk --json").json();
