@@ -78,7 +78,12 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
         paths.iter().map(|path| fs::read(path).expect("a file")).collect()
     };
     match name {
-        "scene" => with_whole_paths([files("scenes", "toml"), files("scenes/elements", "toml")].concat()),
+        "scene" => {
+            let mut texts = [files("scenes", "toml"), files("scenes/elements", "toml")].concat();
+            // Meshes have readers of their own, and are larger than the limits here.
+            texts.retain(|text| !String::from_utf8_lossy(text).contains("\nmesh = "));
+            with_whole_paths(texts)
+        }
         "setting" => [
             "run[0].model.stiffness=2e4",
             "run[\"springs\"].step=T/60",

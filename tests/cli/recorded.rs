@@ -111,7 +111,7 @@ fn our_own_run_that_diverged_is_played_back_as_such() {
     assert_eq!(run("own")[0], "diverged");
     // Numbers that were changed since are not those of the run that diverged.
     let Some(python) = crate::support::numpy() else { return };
-    let script = "import numpy; states = dict(numpy.load('own/states.npz')); states['Local shape.position'][0] += 1\n\
+    let script = "import numpy; states = dict(numpy.load('own/states.npz')); states['Local shape.position'][0, :, 0] += 1\n\
                   numpy.savez('own/states.npz', **states)";
     python(&place.path("."), script);
     place.run("render played.toml -o changed").good();
