@@ -209,7 +209,8 @@ impl<'a> Recording<'a> {
             (FRAME_FILES, self.summary.frames.written > Some(0) || self.summary.frames.kept > 0),
         ]
         .into_iter()
-        .filter_map(|(name, written)| written.then(|| name.to_owned()))
+        .filter(|&(_, written)| written)
+        .map(|(name, _)| name.to_owned())
         .chain(files.iter().filter(|_| exported.is_ok()).cloned())
         .collect();
         let tables = recorded.unwrap_or(Ok(())).and(kept.unwrap_or(Ok(()))).and(exported);

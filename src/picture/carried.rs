@@ -261,8 +261,9 @@ impl Surroundings<'_> {
         let mut all = Vec::with_capacity(pairs.len());
         for line in joined(pairs, |point| page::point(pixel(point).into())) {
             let needed = needed(&line.iter().map(|&point| pixel(point)).collect::<Vec<_>>(), STRAIGHT);
-            let kept: Vec<_> = line.into_iter().zip(needed).filter_map(|(at, kept)| kept.then(|| place(at))).collect();
-            all.extend(kept.array_windows().copied());
+            let kept: Vec<_> =
+                line.into_iter().zip(needed).filter(|&(_, kept)| kept).map(|(at, _)| place(at)).collect();
+            all.extend(kept.windows(2).map(|ends| [ends[0], ends[1]]));
         }
         all
     }

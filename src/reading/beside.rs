@@ -1,8 +1,8 @@
 //! Files in the folder of a scene, such as bodies and fonts.
 
 use super::words::{nearest, size};
-use std::fs::File;
-use std::io::Read;
+use std::fs::{self, File};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 /// A message about a file, and the remedy.
@@ -28,6 +28,14 @@ pub(crate) fn bytes(path: &Path, endings: &[&str], longest: u64, what: &str, exp
     }
 }
 
+/// The paths of all files in a folder.
+///
+/// # Errors
+/// The folder cannot be read.
+pub(crate) fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    fs::read_dir(folder)?.map(|entry| entry.map(|entry| entry.path())).collect()
+}
+
 /// The message for a missing file.
 pub(crate) fn missing(path: &Path) -> String {
     let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
@@ -38,7 +46,7 @@ pub(crate) fn missing(path: &Path) -> String {
 pub(crate) fn similar(path: &Path, endings: &[&str]) -> Option<String> {
     let stem = |name: &Path| name.file_stem().map(|stem| stem.to_string_lossy().into_owned());
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let entries = std::fs::read_dir(folder).ok()?.flatten().take(10_000);
+    let entries = fs::read_dir(folder).ok()?.flatten().take(10_000);
     let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
     let has_ending = |name: &String| {
         let ending = Path::new(name).extension().map(|ending| ending.to_string_lossy().to_lowercase());
@@ -60,7 +68,7 @@ pub(crate) fn in_folders(path: &Path, ending: &str) -> Vec<PathBuf> {
     let is_there = |folder: &&Path| folder.as_os_str().is_empty() || folder.is_dir();
     let Some(folder) = path.ancestors().skip(1).take(2).find(is_there) else { return Vec::new() };
     let seen = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let entries = std::fs::read_dir(seen).into_iter().flatten().flatten().take(10_000);
+    let entries = fs::read_dir(seen).into_iter().flatten().flatten().take(10_000);
     let mut found: Vec<_> = entries.map(|entry| folder.join(entry.file_name()).join(&name)).collect();
     found.retain(|file| file.is_file());
     found.sort();

@@ -9,7 +9,7 @@ use crate::reading::words::count;
 use crate::sim::IndexLists;
 use glam::DVec3;
 use localshape_mesh::{self as mesh, CellKind, Cells, Format};
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
@@ -89,17 +89,16 @@ fn numbered(folder: &Path, pattern: &str, rate: f64) -> Result<Vec<Listed>, Flaw
         let help = "expected one star, in the name of the file, as in frames/*.obj".to_owned();
         return Err(Flaw { help: Some(help), ..flaw("", "does not name numbered files") });
     };
-    let entries = fs::read_dir(within)
+    let entries = beside::entries(within)
         .map_err(|error| flaw("", format!("cannot be read: {error} (looked for {})", within.display())))?;
-    let number = |entry: io::Result<fs::DirEntry>| {
-        let entry = entry.ok()?;
-        let name = entry.file_name().into_string().ok()?;
+    let number = |entry: PathBuf| {
+        let name = entry.file_name()?.to_str()?.to_owned();
         let inner = name.strip_prefix(before)?.strip_suffix(after)?;
         // A name may have further words before its number.
         let stem = inner.trim_end_matches(|c: char| c.is_ascii_digit());
-        Some((inner[stem.len()..].parse::<u64>().ok()?, stem.to_owned(), entry.path()))
+        Some((inner[stem.len()..].parse::<u64>().ok()?, stem.to_owned(), entry))
     };
-    let mut found: Vec<(u64, String, PathBuf)> = entries.filter_map(number).collect();
+    let mut found: Vec<(u64, String, PathBuf)> = entries.into_iter().filter_map(number).collect();
     found.sort();
     let Some((first, stem, _)) = found.first().cloned() else {
         let help = "expected files with numbers in place of the star, such as frame_00000.obj".to_owned();

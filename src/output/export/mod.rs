@@ -392,7 +392,8 @@ pub(crate) fn files(scene: &Scene, runs: &[usize], formats: &[Format], frames: u
 /// Refuses runs that glTF has no numbers for.
 fn fits_gltf(scene: &Scene, run: &Run, frames: usize) -> Result<(), String> {
     let help = "write usd or vtu, or make the body of fewer elements";
-    for (at, body) in run.bodies.bodies().iter().enumerate().filter(|(_, body)| body.len() > glb::MOST_NODES) {
+    let too_large = |(_, body): &(usize, &Arc<Body>)| body.len() > glb::MOST_NODES;
+    if let Some((at, body)) = run.bodies.bodies().iter().enumerate().find(too_large) {
         let name = quoted(or_body(&scene.bodies[run.of[at]].name));
         let [nodes, most] = [body.len(), glb::MOST_NODES].map(|nodes| count(nodes as u128));
         return Err(format!("{name} has {nodes} nodes, and a skin of glTF at most {most}; {help}"));

@@ -235,7 +235,7 @@ impl Player {
         };
         let (from, to) = (self.velocity(before)?, self.velocity(before + 1)?);
         state.velocity = between(&from, &to);
-        state.position = between(&*self.row(Quantity::Position, before)?, &*self.row(Quantity::Position, before + 1)?);
+        state.position = between(&self.row(Quantity::Position, before)?, &self.row(Quantity::Position, before + 1)?);
         Ok(())
     }
 }
