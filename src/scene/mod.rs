@@ -55,6 +55,7 @@ use crate::sim::model::{ElasticModel, Report};
 use crate::sim::{Assembly, Body, Dimension, Grip, Integrator, Obstacle, Shape};
 use crate::sim::{Diagnostic, Kernel, Moment, State};
 use glam::DVec3;
+#[cfg(feature = "render")]
 use std::io;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -275,6 +276,7 @@ impl Scene {
     }
 
     /// Fails if a row of a recording could not be read since the scene was loaded. The states shown are then wrong.
+    #[cfg(feature = "render")]
     pub(crate) fn check_recordings(&self) -> io::Result<()> {
         self.runs.iter().filter_map(|run| run.recording.as_ref()).try_for_each(|recording| match recording.fault() {
             Some(what) => {
