@@ -2,7 +2,6 @@
 
 use super::carried::Carried;
 use super::element::{Dimension, ElementKind, Solids, around, kind};
-use super::fill;
 use super::hull::{Hulls, bounds};
 use super::lists::IndexLists;
 use super::topology::{Elements, Faces, assign_faces};
@@ -122,7 +121,15 @@ impl Body {
 
     /// The mean of the filled parts of each node's elements, 1 for a node of no element; `None` if all elements are full.
     pub fn fill_of_nodes(&self) -> Option<Vec<f64>> {
-        fill::of_nodes(self)
+        let fill = self.fill.as_ref()?;
+        let mut of_nodes = vec![(0.0, 0.0); self.len()];
+        for (nodes, part) in self.elements.iter().zip(fill) {
+            for &node in nodes {
+                let (sum, count) = &mut of_nodes[node as usize];
+                (*sum, *count) = (*sum + part, *count + 1.0);
+            }
+        }
+        Some(of_nodes.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { 1.0 }).collect())
     }
 
     /// The largest side of the box around the body at rest (m).

@@ -1,30 +1,13 @@
 //! How much of elements, springs and nodes is filled, and how stiff they are in proportion.
 
 use super::body::Body;
-use super::diagnose::volumes_at_rest;
 use super::law::Law;
 use super::model::blocks::EntriesOfNode;
-use glam::DVec3;
 
 /// The stiffness of each element, as far as it is filled, relative to the model's; `None` if all are 1.
 pub(crate) fn of_elements(body: &Body) -> Option<Vec<f64>> {
     (body.fill.is_some() || body.stiffness.is_some())
         .then(|| (0..body.elements.len()).map(|element| of_element(body, element)).collect())
-}
-
-/// The stiffness of each element of a body in space, relative to that of a cube with this side (m) and of the same material.
-///
-/// A material of modulus μ gives an element of volume V and nodes `R0` about their mean the stiffness `6 μ V / Σ |R0|²`, a cube `μ`
-/// times its side: with them, elements of the shape model have the energy density of the material, if their nodes spread alike in all
-/// directions.
-pub fn relative_stiffness(body: &Body, side: f64) -> Vec<f64> {
-    let of_element = |(nodes, volume): (&[u32], f64)| {
-        let rest = || nodes.iter().map(|&node| body.rest[node as usize]);
-        let middle = rest().sum::<DVec3>() / nodes.len() as f64;
-        let spread: f64 = rest().map(|rest| (rest - middle).length_squared()).sum();
-        6.0 * volume / (spread * side)
-    };
-    body.elements.iter().zip(volumes_at_rest(body)).map(of_element).collect()
 }
 
 /// The stiffness of an element, as far as it is filled, relative to the model's.
@@ -63,14 +46,6 @@ pub(crate) fn of_law(law: &impl Law, body: &Body) -> Option<Vec<f64>> {
     }
 }
 
-/// The mean of the filled parts of each node's elements, 1 for a node of no element; `None` if the body is full.
-pub(crate) fn of_nodes(body: &Body) -> Option<Vec<f64>> {
-    let fill = body.fill.as_ref()?;
-    let elements_of = elements_of(body);
-    let of_node = |node: usize| mean(elements_of.of(node).iter().map(|&element| fill[element])).unwrap_or(1.0);
-    Some((0..body.len()).map(of_node).collect())
-}
-
 /// What is filled of the volumes of elements (m³, in the plane m²): their sum, if the body is full.
 pub(crate) fn volume(fill: Option<&[f64]>, volumes: &[f64]) -> f64 {
     match fill {
@@ -104,9 +79,9 @@ mod tests {
         let elements = [&[0, 2, 3, 1][..], &[2, 4, 5, 3]].into_iter().collect();
         let full = Body::new(Dimension::Plane, rest, vec![1.0; 7], elements, Solids::Ordered, None);
         let springs: [&[u32]; 5] = [&[0, 1], &[2, 3], &[5, 4], &[0, 4], &[4, 6]];
-        assert_eq!((parts(&full, springs.into_iter()), of_nodes(&full)), (None, None));
+        assert_eq!((parts(&full, springs.into_iter()), full.fill_of_nodes()), (None, None));
         let body = Body { fill: Some(vec![1.0, 0.25]), ..full };
         assert_eq!(parts(&body, springs.into_iter()), Some(vec![1.0, 0.625, 0.25, 0.25, 0.25]));
-        assert_eq!(of_nodes(&body), Some(vec![1.0, 1.0, 0.625, 0.625, 0.25, 0.25, 1.0]));
+        assert_eq!(body.fill_of_nodes(), Some(vec![1.0, 1.0, 0.625, 0.625, 0.25, 0.25, 1.0]));
     }
 }

@@ -4,7 +4,6 @@ pub use super::alike::Alike;
 pub use super::contact::ground;
 pub use super::diagnose::{volume_by_faces, volumes_at_rest};
 pub use super::element::{around, kind, ordered};
-pub use super::fill::relative_stiffness;
 pub use super::hull::bounds;
 pub use super::overlap::overlaps;
 
@@ -12,6 +11,21 @@ use super::body::Body;
 use super::element::Dimension;
 use glam::DVec3;
 use std::f64::consts::PI;
+
+/// The stiffness of each element of a body in space, relative to that of a cube with this side (m) and of the same material.
+///
+/// A material of modulus μ gives an element of volume V and nodes `R0` about their mean the stiffness `6 μ V / Σ |R0|²`, a cube `μ`
+/// times its side: with them, elements of the shape model have the energy density of the material, if their nodes spread alike in all
+/// directions.
+pub fn relative_stiffness(body: &Body, side: f64) -> Vec<f64> {
+    let of_element = |(nodes, volume): (&[u32], f64)| {
+        let rest = || nodes.iter().map(|&node| body.rest[node as usize]);
+        let middle = rest().sum::<DVec3>() / nodes.len() as f64;
+        let spread: f64 = rest().map(|rest| (rest - middle).length_squared()).sum();
+        6.0 * volume / (spread * side)
+    };
+    body.elements.iter().zip(volumes_at_rest(body)).map(of_element).collect()
+}
 
 /// Whether a point (m) lies inside the surface of a body whose nodes are at `position` (m), in the plane inside one of its
 /// elements.
