@@ -223,13 +223,20 @@ fn a_polygon_that_crosses_itself_is_divided_somehow() {
 #[test]
 fn faces_in_a_plane_are_a_volume_of_it_and_turned_counter_clockwise() {
     // A triangle, a clockwise one, and a quadrilateral whose corners are listed along its axes.
-    let text = "OFF\n7 3 0\n9 9 9\n0 0 2\n1 0 2\n0 1 2\n1 1 2\n2 0 2\n2 1 2\n3 1 2 3\n3 2 3 4\n4 2 5 4 6\n";
-    let found = volume(text.as_bytes(), Format::Off);
+    let points = "9 9 9\n0 0 2\n1 0 2\n0 1 2\n1 1 2\n2 0 2\n2 1 2\n";
+    let faces = "3 1 2 3\n3 2 3 4\n4 2 5 4 6\n";
+    let text = format!(
+        "# vtk DataFile Version 3.0\nfaces\nASCII\nDATASET POLYDATA\nPOINTS 7 double\n{points}POLYGONS 3 13\n{faces}"
+    );
+    let found = volume(text.as_bytes(), Format::Vtk);
     assert_eq!(found.dimension, Dimension::Plane);
     assert_eq!(found.points.len(), 6, "a point without faces is dropped");
     assert_eq!(found.turned, 2);
     let areas = found.cells.iter().map(|cell| volume_by_faces(ElementKind::Polygon, cell, &found.points));
     assert_eq!(areas.collect::<Vec<_>>(), [0.5, 0.5, 1.0]);
+    // A format of surfaces alone says that they bound something.
+    let text = format!("OFF\n7 3 0\n{points}{faces}");
+    assert_eq!(surface(text.as_bytes(), Format::Off).triangles.len(), 4);
 }
 
 #[test]
