@@ -11,7 +11,7 @@
 
 use super::Surface;
 use super::surface::{EdgeUse, Sets, net};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
@@ -374,8 +374,7 @@ impl Caps {
                 sum += to.dot(lump.area) / (distance * distance * distance);
                 at = lump.next;
             } else if lump.next == at + 1 {
-                sum +=
-                    self.triangles[lump.range.clone()].iter().map(|triangle| solid_angle(triangle, point)).sum::<f64>();
+                sum += solid_angle(&self.triangles[lump.range.clone()], point);
                 at = lump.next;
             } else {
                 at += 1;
@@ -385,16 +384,28 @@ impl Caps {
     }
 }
 
-/// The solid angle of a triangle seen from a point, positive from behind (A. van Oosterom and J. Strackee, 1983).
-fn solid_angle(triangle: &[DVec3; 3], point: DVec3) -> f64 {
+/// The solid angle of triangles seen from a point, positive from behind. Their half angles are those of vectors in a plane, which are
+/// turned by each other: one arc tangent is enough.
+fn solid_angle(triangles: &[[DVec3; 3]], point: DVec3) -> f64 {
+    let (mut sum, mut turns) = (DVec2::X, 0.0);
+    for half in triangles.iter().filter_map(|triangle| half_angle(triangle, point)) {
+        let next = sum.rotate(half);
+        let [was_left, turns_left, is_left] = [sum, half, next].map(|vector| vector.y >= 0.0);
+        if was_left == turns_left && is_left != was_left {
+            turns += if turns_left { 1.0 } else { -1.0 };
+        }
+        sum = next;
+    }
+    2.0 * (libm::atan2(sum.y, sum.x) + std::f64::consts::TAU * turns)
+}
+
+/// A vector at the angle of half the solid angle of a triangle (A. van Oosterom and J. Strackee, 1983). There is none on the plane of the
+/// triangle: on the triangle itself, half of the sphere is hidden from one side and half from the other.
+fn half_angle(triangle: &[DVec3; 3], point: DVec3) -> Option<DVec2> {
     let [a, b, c] = triangle.map(|corner| corner - point);
     let [la, lb, lc] = [a, b, c].map(DVec3::length);
     let volume = a.dot(b.cross(c));
-    if volume == 0.0 {
-        // On the triangle itself, half of the sphere is hidden from one side and half from the other.
-        return 0.0;
-    }
-    2.0 * libm::atan2(volume, la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)
+    (volume != 0.0).then(|| DVec2::new(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb, volume))
 }
 
 #[cfg(test)]
@@ -477,7 +488,7 @@ mod tests {
             let mut unclear = 0;
             for _ in 0..2000 {
                 let point = noise.vector() * 2.0 - 0.5;
-                let direct: f64 = caps.triangles.iter().map(|triangle| solid_angle(triangle, point)).sum();
+                let direct: f64 = caps.triangles.iter().map(|&triangle| solid_angle(&[triangle], point)).sum();
                 let direct = direct / (4.0 * std::f64::consts::PI);
                 let lumped = caps.winding(point);
                 assert!((lumped - direct).abs() < 0.03, "{lumped} {direct}");

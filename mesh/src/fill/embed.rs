@@ -22,6 +22,9 @@ const FAR: f64 = 0.75;
 /// Elements farther away than so many sides have nothing to do with a point.
 const VERY_FAR: f64 = 2.0;
 
+/// The most times elements are made again with more of the lattice. Scans need two, and steps grow from one to the next.
+const ROUNDS: u32 = 16;
+
 /// An element is filled at least by this part.
 const LEAST: f64 = 1e-3;
 
@@ -33,6 +36,7 @@ const CLOSE: f64 = 1e-10;
 /// `build` makes the elements, given the points of the lattice that count as inside wherever they are. At first there are none. While
 /// points of the surface are far from all elements, or follow elements that do not hang together by faces with those of the rest of
 /// their piece of the surface, the corners of the cells there are added. So thin parts are as wide as cells, and filled in part.
+/// Where that is not enough they go on along the surface, twice as far each time.
 ///
 /// # Errors
 /// If nothing is inside, or as `build` says.
@@ -45,11 +49,11 @@ pub(super) fn carry(
     let pieces = pieces(surface);
     let mut wide = vec![false; lattice.len()];
     let mut touched = Vec::new();
-    loop {
+    for round in 0..ROUNDS {
         let draft = build(&wide)?;
         let body = body(&draft.cage);
         let fan = Fan::new(&body);
-        let found = fan.locate(&surface.points, lattice.side);
+        let found = fan.locate(&surface.points, lattice.side, VERY_FAR);
         let hung = Hung::new(&body, &pieces, &found);
         let is_lost =
             |place: &Option<Place>, piece: u32| place.is_none_or(|place| place.is_far || !hung.carries(&place, piece));
@@ -65,28 +69,31 @@ pub(super) fn carry(
             return Ok(hung.finished(draft.cage, filled, &fan, &found));
         }
         let before = wide.clone();
-        let found = fan.locate(&places, lattice.side);
+        let found = fan.locate(&places, lattice.side, FAR);
         for ((&at, &piece), place) in places.iter().zip(&of_places).zip(&found) {
             if is_lost(place, piece) {
                 lattice.touch(at, &mut wide);
             }
         }
-        if before.contains(&true) {
-            // That was not enough to reach the rest: a step along the surface.
+        if round > 0 {
             if touched.is_empty() {
                 touched = vec![false; lattice.len()];
                 let all = surface.triangles.iter().flat_map(|&of| lattice.samples(of));
                 all.for_each(|at| lattice.touch(at, &mut touched));
             }
-            for point in (0..before.len()).filter(|&point| before[point]) {
-                lattice.neighbours(point).filter(|&beside| touched[beside]).for_each(|beside| wide[beside] = true);
+            let mut front: Vec<_> = (0..before.len()).filter(|&point| before[point]).collect();
+            for _ in 0..1 << (round - 1) {
+                let beside = front.iter().flat_map(|&point| lattice.neighbours(point));
+                front =
+                    beside.filter(|&beside| touched[beside] && !std::mem::replace(&mut wide[beside], true)).collect();
             }
         }
         if wide == before {
-            let message = format!("falls into pieces if it is filled with elements of side {}", lattice.side);
-            return Err(FillError { message, help: Some("use a smaller side, or fill it with cubes".to_owned()) });
+            break;
         }
     }
+    let message = format!("falls into pieces if it is filled with elements of side {}", lattice.side);
+    Err(FillError { message, help: Some("use a smaller side, or fill it with cubes".to_owned()) })
 }
 
 /// No number.
@@ -276,8 +283,9 @@ impl Fan {
         &self.simplices[self.starts[element]..self.starts[element + 1]]
     }
 
-    /// What carries each point: the first element that contains it, or the first of the nearest; `None` if all are very far.
-    fn locate(&self, points: &[DVec3], side: f64) -> Vec<Option<Place>> {
+    /// What carries each point: the first element that contains it, or the first of the nearest; `None` if all are farther than
+    /// so many sides.
+    fn locate(&self, points: &[DVec3], side: f64, most: f64) -> Vec<Option<Place>> {
         let (low, high) = bounds(&self.points);
         let box_of = |element: usize| {
             let corners = self.of(element).iter().flat_map(|simplex| self.corners(simplex));
@@ -290,7 +298,7 @@ impl Fan {
         cells.mark(points);
         cells.fill(&elements);
         let outside: Vec<_> = self.outside.iter().map(|simplex| bounds(&self.corners(simplex)[1..])).collect();
-        let mut faces = Grid::new(low, high, 0.5 * side, outside.len());
+        let mut faces = Grid::new(low, high, side, outside.len());
         faces.fill(&outside);
         let locate = |&point: &DVec3| {
             let containing = cells.at(cells.cell(point)).iter().find_map(|&element| {
@@ -306,7 +314,7 @@ impl Fan {
             if let Some((simplex, weights)) = containing {
                 return Some(Place { element: simplex.element, corners: simplex.corners, weights, is_far: false });
             }
-            let (face, distance) = self.nearest(&faces, &outside, point, VERY_FAR * side)?;
+            let (face, distance) = self.nearest(&faces, &outside, point, most * side)?;
             let simplex = self.outside[face as usize];
             let weights = weights(self.corners(&simplex), point);
             Some(Place { element: simplex.element, corners: simplex.corners, weights, is_far: distance > FAR * side })
@@ -509,8 +517,12 @@ impl Grid {
     /// The cells that are so many cells away along an axis, and no farther along others.
     fn ring(&self, middle: I64Vec3, ring: i64) -> impl Iterator<Item = I64Vec3> {
         let along = move || -ring..=ring;
-        let all = along().flat_map(move |z| along().flat_map(move |y| along().map(move |x| I64Vec3::new(x, y, z))));
-        all.filter(move |by| by.abs().max_element() == ring).map(move |by| middle + by)
+        let rows = along().flat_map(move |z| along().map(move |y| [y, z]));
+        rows.flat_map(move |[y, z]| {
+            let is_whole = y.abs() == ring || z.abs() == ring;
+            let step = if is_whole { 1 } else { 2 * ring as usize };
+            along().step_by(step).map(move |x| middle + I64Vec3::new(x, y, z))
+        })
     }
 }
 
@@ -567,7 +579,7 @@ mod tests {
         let fan = Fan::new(&body);
         let at = |x: f64, y: f64| DVec3::new(x, y, 0.5);
         let points = [at(0.5, 0.5), at(1.0, 0.5), at(1.3, 0.5), at(1.3, -0.4), at(1.3, -0.9), at(1.3, -9.0)];
-        let found = fan.locate(&points, 1.0);
+        let found = fan.locate(&points, 1.0, VERY_FAR);
         let elements: Vec<_> = found.iter().map(|place| place.map(|place| (place.element, place.is_far))).collect();
         let expected = [(0, false), (0, false), (1, false), (1, false), (1, true)];
         assert_eq!(elements[..5], expected.map(Some));

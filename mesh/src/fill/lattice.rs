@@ -3,10 +3,15 @@
 use super::{Fill, FillError};
 use crate::{Measures, Surface};
 use glam::DVec3;
+use std::ops::RangeInclusive;
 
 /// Points nearer than this to a plane of the lattice, in units of its side, are moved onto it. Single precision and typed
 /// decimals would otherwise leave layers of cells with hardly any filling.
 const SNAP: f64 = 4e-6;
+
+/// Lengths of surfaces, and sides of elements up to them. Fourth powers of others and of their parts are too large or too small for
+/// numbers.
+const SIZES: RangeInclusive<f64> = 1e-50..=1e50;
 
 /// The number of cubes along each axis about a surface.
 fn counts(measures: &Measures, side: f64) -> [f64; 3] {
@@ -24,6 +29,13 @@ pub(super) fn check(surface: &Surface, fill: Fill, side: f64, most: usize) -> Re
     if !(side > 0.0 && side.is_finite()) {
         let help = Some("use a positive side".to_owned());
         return Err(FillError { message: format!("cannot be filled with elements of side {side}"), help });
+    }
+    let longest = (measures.high - measures.low).max_element();
+    if !(SIZES.contains(&longest) && side <= *SIZES.end()) {
+        let [least, most] = [SIZES.start(), SIZES.end()];
+        let message =
+            format!("is {longest:e} long; expected {least:e} to {most:e}, and elements of no larger side than that");
+        return Err(FillError { message, help: Some("use another unit of length".to_owned()) });
     }
     let counts = counts(&measures, side);
     let joined = if matches!(fill, Fill::Graded { .. }) { JOINED } else { 1 };

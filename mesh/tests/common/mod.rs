@@ -70,7 +70,7 @@ pub fn apart(surface: &Surface) -> Surface {
 pub fn scan(name: &str) -> Option<Surface> {
     let archive = "/usr/share/doc/libcgal-dev/data.tar.gz";
     let member = format!("data/meshes/{name}");
-    let output = std::process::Command::new("tar").args(["xzOf", archive, &member]).output().ok()?;
+    let output = std::process::Command::new("tar").args(["xzOf", archive, "--occurrence", &member]).output().ok()?;
     if !output.status.success() {
         let _ = std::io::Write::write_all(&mut std::io::stderr(), b"skipped: libcgal-demo is not installed\n");
         return None;
