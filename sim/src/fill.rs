@@ -1,19 +1,19 @@
 //! How much of elements, springs and nodes is filled, and how stiff they are in proportion.
 
 use super::body::Body;
-use super::law::Law;
 use super::model::blocks::EntriesOfNode;
 
 /// The stiffness of each element, as far as it is filled, relative to the model's; `None` if all are 1.
 pub(crate) fn of_elements(body: &Body) -> Option<Vec<f64>> {
-    (body.fill.is_some() || body.stiffness.is_some())
-        .then(|| (0..body.elements.len()).map(|element| of_element(body, element)).collect())
+    product(body.fill.as_deref(), body.stiffness.as_deref())
 }
 
-/// The stiffness of an element, as far as it is filled, relative to the model's.
-pub(crate) fn of_element(body: &Body, element: usize) -> f64 {
-    let factor = |of: &Option<Vec<f64>>| of.as_ref().map_or(1.0, |of| of[element]);
-    factor(&body.fill) * factor(&body.stiffness)
+/// The products of two factors of each element, either of which is 1 if it is not given; `None` if neither is.
+pub(crate) fn product(one: Option<&[f64]>, other: Option<&[f64]>) -> Option<Vec<f64>> {
+    match (one, other) {
+        (Some(one), Some(other)) => Some(one.iter().zip(other).map(|(one, other)| one * other).collect()),
+        (one, other) => one.or(other).map(<[f64]>::to_vec),
+    }
 }
 
 /// The relative stiffness of each of some lists of nodes, such as springs; `None` if all are 1.
@@ -36,14 +36,6 @@ pub(crate) fn parts<'a>(body: &Body, lists: impl Iterator<Item = &'a [u32]>) -> 
         |&node: &u32| mean(elements_of.of(node as usize).iter().map(|&element| of_elements[element])).unwrap_or(1.0);
     let least = |nodes: &[u32]| nodes.iter().map(of_node).fold(f64::INFINITY, f64::min);
     Some(lists.map(|nodes| part(nodes).unwrap_or_else(|| least(nodes))).collect())
-}
-
-/// The relative stiffness of each element on which a law acts; `None` if all are 1.
-pub(crate) fn of_law(law: &impl Law, body: &Body) -> Option<Vec<f64>> {
-    match law.elements(body) {
-        Some(own) => parts(body, own.iter()),
-        None => of_elements(body),
-    }
 }
 
 /// What is filled of the volumes of elements (m³, in the plane m²): their sum, if the body is full.

@@ -9,22 +9,16 @@ pub use super::overlap::overlaps;
 
 use super::body::Body;
 use super::element::Dimension;
+use super::material::per_shear;
 use glam::DVec3;
 use std::f64::consts::PI;
 
 /// The stiffness of each element of a body in space, relative to that of a cube with this side (m) and of the same material.
 ///
-/// A material of modulus μ gives an element of volume V and nodes `R0` about their mean the stiffness `6 μ V / Σ |R0|²`, a cube `μ`
-/// times its side: with them, elements of the shape model have the energy density of the material, if their nodes spread alike in all
-/// directions.
+/// A material gives an element of volume V and nodes `R0` about their mean a stiffness in proportion to `V / Σ |R0|²`
+/// ([`Material::stiffness`](super::Material::stiffness)).
 pub fn relative_stiffness(body: &Body, side: f64) -> Vec<f64> {
-    let of_element = |(nodes, volume): (&[u32], f64)| {
-        let rest = || nodes.iter().map(|&node| body.rest[node as usize]);
-        let middle = rest().sum::<DVec3>() / nodes.len() as f64;
-        let spread: f64 = rest().map(|rest| (rest - middle).length_squared()).sum();
-        6.0 * volume / (spread * side)
-    };
-    body.elements.iter().zip(volumes_at_rest(body)).map(of_element).collect()
+    per_shear(body).into_iter().map(|per_shear| per_shear / side).collect()
 }
 
 /// Whether a point (m) lies inside the surface of a body whose nodes are at `position` (m), in the plane inside one of its

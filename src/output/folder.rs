@@ -345,9 +345,7 @@ mod tests {
     #[test]
     fn scenes_with_models_of_their_own_are_never_taken_for_each_other() {
         let scene = |title: &str, side: f64| {
-            let (rotation, damping_of) = Default::default();
-            let model = ShapeBased { stiffness: 1e4, damping: 0.0, passes: 2, rotation, damping_of };
-            let run = RunBuilder::own(Arc::new(model));
+            let run = RunBuilder::own(Arc::new(ShapeBased::new(1e4)));
             let scene = Scene::builder(title, BodyBuilder::polygon(3, side)).run("run", run);
             scene.build(&Limits::default()).unwrap()
         };

@@ -26,7 +26,6 @@ pub(crate) use stepper::{Scheme, Stepper};
 
 use crate::body::Body;
 use crate::contact::{Bound, Floor};
-use crate::fill;
 use crate::lanes::Set;
 use crate::law::{ByLaw, Energy, Filled, Law};
 use crate::state::Nodes;
@@ -75,7 +74,7 @@ impl Compiled {
         conditions: &Conditions,
         faster: Option<Box<dyn Stepper>>,
     ) -> Self {
-        let stepper = faster.unwrap_or_else(|| match fill::of_elements(body) {
+        let stepper = faster.unwrap_or_else(|| match law.relative_stiffness(body) {
             Some(_) => Box::new(General::new(Filled(law.clone()), body, conditions)),
             None => Box::new(General::new(law.clone(), body, conditions)),
         });

@@ -204,7 +204,7 @@ fn arctangent_turn<L: Lanes>(b: &[[L; 3]; 3]) -> [L; 4] {
 }
 
 #[inline(always)]
-fn cross<L: Lanes>(a: &Vector<L>, b: &Vector<L>) -> Vector<L> {
+pub(crate) fn cross<L: Lanes>(a: &Vector<L>, b: &Vector<L>) -> Vector<L> {
     [a[1].mul_sub(b[2], a[2] * b[1]), a[2].mul_sub(b[0], a[0] * b[2]), a[0].mul_sub(b[1], a[1] * b[0])]
 }
 

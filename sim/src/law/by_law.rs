@@ -3,7 +3,6 @@
 use super::{Law, Reader, alike};
 use crate::body::Body;
 use crate::crew::Crew;
-use crate::fill;
 use crate::lanes::{Lanes, MOST, Set, Work, each};
 use crate::lists::IndexLists;
 use crate::model::blocks::{self, Gather};
@@ -46,7 +45,7 @@ impl<W: Law> ByLaw<W> {
     }
 
     pub(crate) fn with(set: Set, law: W, body: &Arc<Body>) -> Self {
-        let (elements, fill) = (law.elements(body), fill::of_law(&law, body));
+        let (elements, fill) = (law.elements(body), law.relative_stiffness(body));
         Self { set, law, body: Arc::clone(body), elements, fill, gather: OnceLock::new() }
     }
 

@@ -21,6 +21,10 @@ impl<W: Law> Law for Filled<W> {
         self.0.elements(body)
     }
 
+    fn relative_stiffness(&self, body: &Body) -> Option<Vec<f64>> {
+        self.0.relative_stiffness(body)
+    }
+
     fn is_damped(&self) -> bool {
         self.0.is_damped()
     }

@@ -8,13 +8,16 @@
 mod by_law;
 mod filled;
 mod reader;
+mod rigid;
 
 pub use by_law::ByLaw;
 pub(crate) use by_law::Energy;
 pub(crate) use filled::Filled;
 pub(crate) use reader::{Reader, alike};
+pub(crate) use rigid::Rigid;
 
 use super::body::Body;
+use super::fill;
 use super::lanes::{Lanes, MOST};
 use super::lists::IndexLists;
 use super::tally::Tally;
@@ -33,8 +36,8 @@ use std::marker::PhantomData;
 ///
 /// A law is about full elements of one stiffness. Where elements are [filled in part](super::body::Body::fill) or
 /// [differ in stiffness](super::body::Body::stiffness), forces, energies and the residual are multiplied outside of it by the relative
-/// stiffness, the product of the two. Elements of its own, such as springs, have the mean relative stiffness of the body's elements
-/// that hold all their nodes.
+/// stiffness, the product of the two, unless the law has [its own](Self::relative_stiffness). Elements of its own, such as springs, have
+/// the mean relative stiffness of the body's elements that hold all their nodes.
 ///
 /// # Example
 /// A complete model: a rod with the energy `k/(8 L²) (|p|² − L²)²` between any two nodes of an element.
@@ -71,6 +74,14 @@ pub trait Law: Clone + Send + Sync + 'static {
     fn elements(&self, body: &Body) -> Option<IndexLists> {
         let _ = body;
         None
+    }
+
+    /// The relative stiffness of each element on which the law acts, as far as it is filled; `None` if all are 1.
+    fn relative_stiffness(&self, body: &Body) -> Option<Vec<f64>> {
+        match self.elements(body) {
+            Some(own) => fill::parts(body, own.iter()),
+            None => fill::of_elements(body),
+        }
     }
 
     /// Whether forces depend on velocities.

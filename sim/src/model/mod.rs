@@ -10,9 +10,12 @@ pub mod mass_spring;
 pub mod shape_based;
 
 use super::body::Body;
+use super::diagnose::volumes_at_rest;
+use super::element::Dimension;
 pub use super::kernel::Vectorised;
 pub use super::lanes::Lanes;
 pub use super::law::{ByLaw, Corners, Element, Law};
+use super::material::Material;
 #[doc(hidden)]
 pub use super::mode::Mode;
 use super::rotation::RotationReading;
@@ -121,6 +124,12 @@ pub trait ElasticModel: Debug + Send + Sync {
     #[doc(hidden)]
     fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
         let _ = (stiffness, damping);
+        None
+    }
+
+    /// The material of the elements of a body, if they are of one.
+    fn material(&self, body: &Body) -> Option<Material> {
+        let _ = body;
         None
     }
 
@@ -285,6 +294,106 @@ fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Bod
         (Some(constant), None) => Ok(constant),
         (None, Some(ratio)) => Ok(2.0 * ratio * (stiffness * body.lightest()).sqrt()),
         (None, None) => Ok(0.0),
+    }
+}
+
+/// The elastic constant (N/m), that of the stiffest element, from either parameter: the constant, or a material.
+fn stiffness(
+    constant: Option<f64>,
+    young: Option<f64>,
+    poisson: Option<f64>,
+    body: &Body,
+) -> Result<(f64, Option<Material>), Misfit> {
+    match (constant, young) {
+        (Some(constant), None) if poisson.is_none() => Ok((constant, None)),
+        (Some(_), None) => {
+            let message = "`poisson` is a property of a material; give `young` in place of `stiffness`";
+            Err(Misfit { key: "poisson", message: message.into() })
+        }
+        (None, Some(_)) => {
+            let material = material(young, poisson, body)?;
+            Ok((material.stiffness(body).into_iter().fold(0.0, f64::max), Some(material)))
+        }
+        (Some(_), Some(_)) => {
+            Err(Misfit { key: "young", message: "both `stiffness` and `young` are given; keep one of them".into() })
+        }
+        (None, None) => {
+            let message = "neither `stiffness` (N/m) nor `young` (Pa) is given; give one of them";
+            Err(Misfit { key: "stiffness", message: message.into() })
+        }
+    }
+}
+
+/// The material of a body whose elements all have a volume.
+fn material(young: Option<f64>, poisson: Option<f64>, body: &Body) -> Result<Material, Misfit> {
+    let Some(young) = young else {
+        return Err(Misfit { key: "young", message: "give `young` (Pa), the modulus of the material".into() });
+    };
+    let poisson = poisson.unwrap_or(0.0);
+    // The schema has the same bounds; scenes made in code pass them by.
+    if !(0.0..0.5).contains(&poisson) {
+        let message = format!("`poisson` is {poisson}; expected a number from 0 to less than 0.5");
+        return Err(Misfit { key: "poisson", message });
+    }
+    if let Some(element) = volumes_at_rest(body).iter().position(|&volume| volume <= 0.0) {
+        let measure = if body.dimension == Dimension::Plane { "area" } else { "volume" };
+        let message = format!(
+            "element {element} has no {measure}, so that a material gives it no stiffness; give `stiffness` (N/m) in place of `young`"
+        );
+        return Err(Misfit { key: "young", message });
+    }
+    Ok(Material { young, poisson })
+}
+
+/// A number from 0 to 1, in a scene file also as a fraction such as `"1/3"`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "TypedRatio")]
+pub struct Ratio(pub f64);
+
+/// A [`Ratio`] as written in a scene file.
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum TypedRatio {
+    /// From 0 to 1.
+    Number(#[schemars(range(min = 0.0, max = 1.0))] f64),
+    /// Of two whole numbers.
+    Fraction(#[schemars(regex(pattern = r"^[0-9]{1,9} */ *[1-9][0-9]{0,8}$"))] String),
+}
+
+impl TryFrom<TypedRatio> for Ratio {
+    type Error = String;
+
+    fn try_from(typed: TypedRatio) -> Result<Self, String> {
+        let value = match &typed {
+            TypedRatio::Number(number) => Some(*number),
+            TypedRatio::Fraction(text) => text.split_once('/').and_then(|(above, below)| {
+                let whole = |text: &str| text.trim().parse::<u32>().ok().map(f64::from);
+                Some(whole(above)? / whole(below)?)
+            }),
+        };
+        let expected = "expected a number from 0 to 1, or a fraction such as \"1/3\"";
+        value.filter(|value| (0.0..=1.0).contains(value)).map(Self).ok_or_else(|| expected.to_owned())
+    }
+}
+
+impl JsonSchema for Ratio {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Ratio".into()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        TypedRatio::json_schema(generator)
+    }
+}
+
+impl std::fmt::Display for Ratio {
+    /// As a fraction, if its denominator is small.
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let below = (2..10).map(f64::from).find(|below| (self.0 * below - (self.0 * below).round()).abs() < 1e-12);
+        match below.filter(|_| self.0 > 0.0 && self.0 < 1.0) {
+            Some(below) => write!(formatter, "{}/{below}", (self.0 * below).round()),
+            None => write!(formatter, "{}", self.0),
+        }
     }
 }
 

@@ -4,10 +4,12 @@
 use super::example_model::Rods;
 use super::support::{Noise, Remembering, body, forces, lattice, mass_spring, shape_based};
 use glam::DVec3;
+use localshape_sim::geometry::volumes_at_rest;
 use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape_sim::model::{ElasticModel, ModelParameters};
 use localshape_sim::{
-    Body, Dimension, ElementKind, IndexLists, Integrator, Kernel, Solids, Springs, State, Stepping, Surroundings, World,
+    Body, Dimension, ElementKind, IndexLists, Integrator, Kernel, Material, Solids, Springs, State, Stepping,
+    Surroundings, World,
 };
 use std::sync::Arc;
 
@@ -32,6 +34,23 @@ pub(crate) fn cases(body: &Body, damping: f64) -> Vec<Case> {
     if damping > 0.0 {
         all.push(sound(Box::new(ShapeBased { damping_of: DampingReading::Deformation, ..shape.clone() })));
     }
+    let exact = ShapeBased { rotation: RotationReading::Robust, ..shape.clone() };
+    let mut options = vec![ShapeBased { bending: 1.0 / 3.0, ..exact.clone() }];
+    if volumes_at_rest(body).iter().all(|&volume| volume > 0.0) {
+        let of_material = |young, poisson| {
+            let material = Material { young, poisson };
+            let stiffness = material.stiffness(body).into_iter().fold(0.0, f64::max);
+            ShapeBased { stiffness, material: Some(material), ..exact.clone() }
+        };
+        options.push(of_material(2.0 * STIFFNESS, 0.0));
+        options.push(of_material(STIFFNESS, 0.4));
+        options.push(ShapeBased {
+            bending: 0.25,
+            damping_of: DampingReading::Deformation,
+            ..of_material(STIFFNESS, 0.3)
+        });
+    }
+    all.extend(options.into_iter().map(|option| sound(Box::new(option))));
     // In the plane Eq. (9) is exact, and there are no readings.
     if body.dimension == Dimension::Space {
         all.push(sound(Box::new(ShapeBased { rotation: RotationReading::VectorLength, passes: 12, ..shape.clone() })));

@@ -281,7 +281,7 @@ fn a_body_that_diverges_stops_all_at_the_step_before() {
 fn one_body_without_a_kernel_leaves_all_to_the_reference() {
     let body = lattice(2, 0.1);
     let shape = shape_based(STIFFNESS, 10.0);
-    let plain = ShapeBased { damping_of: DampingReading::Deformation, ..shape.clone() };
+    let plain = ShapeBased { rotation: RotationReading::VectorLength, ..shape.clone() };
     let things = [Thing::new(&body, shape, 1), Thing::new(&body, plain, 2)];
     let [fast, reference] = [Kernel::Fast, Kernel::Reference].map(|kernel| {
         let mut world = world(&things.each_ref(), &[], stepping((Integrator::VelocityVerlet, kernel)));

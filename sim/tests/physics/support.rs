@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 use localshape_sim::model::mass_spring::MassSpring;
-use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use localshape_sim::model::shape_based::{RotationReading, ShapeBased};
 use localshape_sim::model::{ElasticModel, ForceModel, Report, Scratch};
 use localshape_sim::{
     Body, Dimension, IndexLists, Integrator, Motion, Obstacle, Shape, Solids, Springs, State, Stepping, Surroundings,
@@ -32,13 +32,7 @@ pub(crate) fn body(dimension: Dimension, rest: &[[f64; 3]], elements: &[&[u32]])
 }
 
 pub(crate) fn shape_based(stiffness: f64, damping: f64) -> ShapeBased {
-    ShapeBased {
-        stiffness,
-        damping,
-        passes: 2,
-        rotation: RotationReading::Arctangent,
-        damping_of: DampingReading::RelativeMotion,
-    }
+    ShapeBased { damping, rotation: RotationReading::Arctangent, ..ShapeBased::new(stiffness) }
 }
 
 pub(crate) fn mass_spring(body: &Body, stiffness: f64, damping: f64, named: Springs) -> MassSpring {

@@ -12,7 +12,7 @@ use crate::study::{Findings, Study};
 use glam::DVec3;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::model::mass_spring::MassSpring;
-use localshape::sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use localshape::sim::model::shape_based::{RotationReading, ShapeBased};
 use localshape::sim::{Body, Integrator, Kernel, Springs, State, Status, Stepping, World};
 use rayon::prelude::*;
 use trials::{Trial, trials};
@@ -61,11 +61,8 @@ pub(crate) const MODELS: [(&str, Model); 4] = [
 impl Model {
     fn prepare(self, body: &Body, stiffness: f64, damping: f64) -> Box<dyn ElasticModel> {
         match self {
-            Self::Shape(rotation) => {
-                let damping_of = DampingReading::RelativeMotion;
-                // Two passes, as the paper advises.
-                Box::new(ShapeBased { stiffness, damping, passes: 2, rotation, damping_of })
-            }
+            // Two passes, as the paper advises.
+            Self::Shape(rotation) => Box::new(ShapeBased { damping, rotation, ..ShapeBased::new(stiffness) }),
             Self::Springs(named) => {
                 let springs = body.topology().springs(named).into();
                 Box::new(MassSpring { stiffness, damping, springs })

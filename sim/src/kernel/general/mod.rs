@@ -18,7 +18,6 @@ use super::stepper::{Pass, Passes, Stepper};
 use super::{Around, Conditions, Lost};
 use crate::body::Body;
 use crate::crew::Crew;
-use crate::fill;
 use crate::gather::Group;
 use crate::hull::bounds;
 use crate::lanes::{Lanes, MOST, Set, Work, each};
@@ -106,7 +105,7 @@ struct Shared {
 impl<W: Law> General<W> {
     /// The elements of a body on which a law acts. If their relative stiffness is not 1, the law is [`Filled`](crate::law::Filled).
     pub(crate) fn new(law: W, body: &Body, conditions: &Conditions) -> Self {
-        let (own, fill) = (law.elements(body), fill::of_law(&law, body));
+        let (own, fill) = (law.elements(body), law.relative_stiffness(body));
         let elements = own.as_ref().unwrap_or(&body.elements);
         let Body { rest, mass, .. } = body;
         let parts = cut(elements, along_curve(elements, rest));

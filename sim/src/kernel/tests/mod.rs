@@ -19,7 +19,7 @@ use crate::lanes::Set;
 use crate::lists::IndexLists;
 use crate::model::ElasticModel;
 use crate::model::mass_spring::MassSpring;
-use crate::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use crate::model::shape_based::{RotationReading, ShapeBased};
 use crate::motion::{Ease, Key, Motion, Offset};
 use crate::rotation::{best, davenport1968, moment, planar};
 use crate::state::Runaway;
@@ -200,7 +200,7 @@ pub(super) fn shape_based(rotation: Rotation, damping: f64) -> ShapeBased {
         // In scalar code, which `rotation` tests against Davenport's method.
         Rotation::Optimum => (RotationReading::Robust, 1),
     };
-    ShapeBased { stiffness: STIFFNESS, damping, passes, rotation, damping_of: DampingReading::RelativeMotion }
+    ShapeBased { damping, passes, rotation, ..ShapeBased::new(STIFFNESS) }
 }
 
 /// A simulation by the reference code.

@@ -1,17 +1,20 @@
-//! Eq. (4) in lanes: the laws of elements in space and in the plane, with or without damping.
+//! Eq. (4) in lanes: the laws of elements in space and in the plane, with or without damping, with or without linear maps.
 //!
 //! With `w = k P + D V` the force of an element on a corner is `−w + w̄ + k M R0`. The first term is computed once for each node. As
-//! `Σ R0 = 0` the moments need no centroid.
+//! `Σ R0 = 0` the moments need no centroid. With maps `F` it is `−w + w̄ + k (M − (1 − β) F) R0` and a force of the volume, with `w = β k P + D V`:
+//! they cost no more for each corner.
 
-use super::ShapeBased;
+use super::affine::AtRest;
+use super::{DampingReading, ShapeBased};
 use crate::body::Body;
 use crate::element::Dimension;
-use crate::kernel::rotation::{self, Arctangent, Matrix, Moments, Optimum, Solver, axial, turned_back};
+use crate::kernel::rotation::{self, Arctangent, Matrix, Moments, Optimum, Solver, axial, cross, turned_back};
 use crate::kernel::shapes::{Shapes, square};
 use crate::kernel::{Compiled, Conditions, Rotation, Stepper};
-use crate::lanes::{Lanes, each};
-use crate::law::{Corners, Element, Law};
+use crate::lanes::{Lanes, MOST, each};
+use crate::law::{Corners, Element, Law, Rigid};
 use crate::model::Report;
+use glam::DMat3;
 use std::sync::Arc;
 
 /// The code of a model by the law of its elements, or with a faster stepper, if there is one.
@@ -22,47 +25,79 @@ pub(super) fn compile(
     conditions: &Conditions,
     faster: Option<Box<dyn Stepper>>,
 ) -> Compiled {
-    /// With a solver of rotations in space.
-    fn in_space<S: Solver>(
-        solver: S,
-        &ShapeBased { stiffness, damping, .. }: &ShapeBased,
-        body: &Arc<Body>,
-        conditions: &Conditions,
-        faster: Option<Box<dyn Stepper>>,
-    ) -> Compiled {
-        match damping > 0.0 {
-            true => Compiled::by(InSpace::<S, true> { stiffness, damping, solver }, body, conditions, faster),
-            false => Compiled::by(InSpace::<S, false> { stiffness, damping, solver }, body, conditions, faster),
-        }
+    let of = Common::new(model, body.dimension);
+    macro_rules! law {
+        ($law:ident<$([$solver:ty],)? $maps:literal> $($field:ident = $value:expr)?) => {
+            match (model.damping > 0.0, model.damping_of) {
+                (false, _) => Compiled::by($law::<$($solver,)? $maps, NONE> { of, $($field: $value)? }, body, conditions, faster),
+                (true, DampingReading::RelativeMotion) => {
+                    Compiled::by($law::<$($solver,)? $maps, RELATIVE> { of, $($field: $value)? }, body, conditions, faster)
+                }
+                (true, DampingReading::Deformation) => {
+                    Compiled::by($law::<$($solver,)? $maps, DEFORMING> { of, $($field: $value)? }, body, conditions, faster)
+                }
+            }
+        };
     }
-    let &ShapeBased { stiffness, damping, .. } = model;
-    match (body.dimension, rotation) {
-        (Dimension::Plane, _) if damping > 0.0 => {
-            Compiled::by(InPlane::<true> { stiffness, damping }, body, conditions, faster)
+    match (body.dimension, rotation, model.fits_maps()) {
+        (Dimension::Plane, _, false) => law!(InPlane<false>),
+        (Dimension::Plane, _, true) => law!(InPlane<true>),
+        (_, Rotation::Optimum, false) => law!(InSpace < [Optimum], false > solver = Optimum),
+        (_, Rotation::Arctangent { passes }, false) => {
+            law!(InSpace < [Arctangent], false > solver = Arctangent { passes })
         }
-        (Dimension::Plane, _) => Compiled::by(InPlane::<false> { stiffness, damping }, body, conditions, faster),
-        (_, Rotation::Optimum) => in_space(Optimum, model, body, conditions, faster),
-        (_, Rotation::Arctangent { passes }) => in_space(Arctangent { passes }, model, body, conditions, faster),
+        // Whoever asks for maps has exact rotations, or the reference code.
+        (_, _, true) => law!(InSpace < [Optimum], true > solver = Optimum),
     }
 }
 
-/// Elements in space.
-#[derive(Clone, Copy)]
-pub(super) struct InSpace<S, const DAMPED: bool> {
+/// The velocity that a law damps: none, the one relative to the mean, or that without the best rigid motion.
+const NONE: u8 = 0;
+const RELATIVE: u8 = 1;
+const DEFORMING: u8 = 2;
+
+/// The numbers of a model.
+#[derive(Clone)]
+pub(super) struct Common {
     /// `k` (N/m).
-    pub(super) stiffness: f64,
+    stiffness: f64,
     /// `D` (N s/m).
-    pub(super) damping: f64,
-    pub(super) solver: S,
+    damping: f64,
+    /// `β`.
+    bending: f64,
+    /// `λ/μ`.
+    volume: f64,
+    /// Decides the relative stiffness of elements.
+    model: Arc<ShapeBased>,
+}
+
+impl Common {
+    fn new(model: &ShapeBased, dimension: Dimension) -> Self {
+        let &ShapeBased { stiffness, damping, bending, .. } = model;
+        Self { stiffness, damping, bending, volume: model.volume(dimension), model: Arc::new(model.clone()) }
+    }
+
+    /// `k` and `D` of the forces of a node.
+    #[inline(always)]
+    fn of_node<const MAPS: bool, const DAMPING: u8>(&self) -> [f64; 2] {
+        [
+            if MAPS { self.bending * self.stiffness } else { self.stiffness },
+            if DAMPING == NONE { 0.0 } else { self.damping },
+        ]
+    }
+}
+
+/// Elements in space. With `MAPS` forces depend on the linear map of an element, too.
+#[derive(Clone)]
+pub(super) struct InSpace<S, const MAPS: bool, const DAMPING: u8> {
+    of: Common,
+    solver: S,
 }
 
 /// Elements in the plane, with the rotation of Eq. (9).
-#[derive(Clone, Copy)]
-pub(super) struct InPlane<const DAMPED: bool> {
-    /// `k` (N/m).
-    pub(super) stiffness: f64,
-    /// `D` (N s/m).
-    pub(super) damping: f64,
+#[derive(Clone)]
+pub(super) struct InPlane<const MAPS: bool, const DAMPING: u8> {
+    of: Common,
 }
 
 /// What an element in space knows.
@@ -72,15 +107,17 @@ pub(super) struct Fit<L> {
     mean: [L; 3],
     /// `Σ r R0ᵀ` (m²), and after all passes `k M` (N/m).
     matrix: Matrix<L>,
+    /// `D ω` (N/m), if damping leaves rotation alone.
+    spin: [L; 3],
     /// The rotation before a pass, if there are several.
     turn: [L; 4],
     /// The lanes that take part in the next pass.
     open: u32,
 }
 
-impl<S: Solver, const DAMPED: bool> Law for InSpace<S, DAMPED> {
-    /// `1 / Σ |R0|²` (1/m²).
-    const OF_ELEMENT: usize = 1;
+impl<S: Solver, const MAPS: bool, const DAMPING: u8> Law for InSpace<S, MAPS, DAMPING> {
+    /// `1 / Σ |R0|²` (1/m²). With maps, also `M⁻¹` (1/m²): xx, yy, zz, xy, xz, yz; and the elastic constant of the volume (J).
+    const OF_ELEMENT: usize = if MAPS { 8 } else { 1 };
     /// `R0` (m).
     const OF_CORNER: usize = 3;
     /// The rotation, a quaternion.
@@ -88,12 +125,16 @@ impl<S: Solver, const DAMPED: bool> Law for InSpace<S, DAMPED> {
     const RESIDUAL: Option<&'static str> = Some(Report::ROTATION);
     type Whole<L: Lanes> = Fit<L>;
 
+    fn relative_stiffness(&self, body: &Body) -> Option<Vec<f64>> {
+        self.of.model.relative_stiffness(body)
+    }
+
     fn is_damped(&self) -> bool {
-        DAMPED
+        DAMPING != NONE
     }
 
     fn of_node(&self) -> [f64; 2] {
-        [self.stiffness, self.damping]
+        self.of.of_node::<MAPS, DAMPING>()
     }
 
     #[inline(always)]
@@ -106,25 +147,39 @@ impl<S: Solver, const DAMPED: bool> Law for InSpace<S, DAMPED> {
             squares = squares + (x * x + y * y + z * z);
         }
         of_element[0] = (one / squares).select(zero.lt(squares), one);
+        if MAPS {
+            let mut moment = [zero; 6];
+            for corner in 0..rest.count() {
+                let [x, y, z] = each!(3, axis => of_corner[3 * corner + axis]);
+                let products = [x * x, y * y, z * z, x * y, x * z, y * z];
+                for entry in 0..6 {
+                    moment[entry] = moment[entry] + products[entry];
+                }
+            }
+            self.of.maps(Dimension::Space, moment, &mut of_element[1..]);
+        }
     }
 
     #[inline(always)]
     fn whole<L: Lanes>(&self, element: &Element<'_, L>) -> Fit<L> {
         let corners = element.corners() as f64;
-        let (zero, k) = (L::splat(0.0), L::splat(self.stiffness));
-        let (k_mean, d_mean) = (L::splat(self.stiffness / corners), L::splat(self.damping / corners));
+        let [k, d] = self.of.of_node::<MAPS, DAMPING>();
+        let (zero, (k, k_mean, d_mean)) = (L::splat(0.0), (L::splat(k), L::splat(k / corners), L::splat(d / corners)));
         let (mut position, mut velocity, mut a) = ([zero; 3], [zero; 3], [[zero; 3]; 3]);
-        let mut first = [zero; 3];
+        let (mut first, mut slow, mut rigid) = ([zero; 3], [zero; 3], Rigid::new());
         for corner in 0..element.corners() {
             let (p, v) = element.corner(corner);
             if corner == 0 {
-                first = p;
+                (first, slow) = (p, v);
             }
             // Relative to the first corner, so that an element with all corners at one point gives exactly zero.
             let p = each!(3, axis => p[axis] - first[axis]);
+            if DAMPING == DEFORMING {
+                rigid.add(p, each!(3, axis => v[axis] - slow[axis]));
+            }
             for axis in 0..3 {
                 position[axis] = position[axis] + p[axis];
-                if DAMPED {
+                if DAMPING == RELATIVE {
                     velocity[axis] = velocity[axis] + v[axis];
                 }
                 let rest = element.of_corner(corner, axis);
@@ -132,11 +187,18 @@ impl<S: Solver, const DAMPED: bool> Law for InSpace<S, DAMPED> {
             }
         }
         let mut mean = each!(3, axis => position[axis].mul_add(k_mean, first[axis] * k));
-        if DAMPED {
+        let mut spin = [zero; 3];
+        if DAMPING == RELATIVE {
             mean = each!(3, axis => velocity[axis].mul_add(d_mean, mean[axis]));
         }
+        if DAMPING == DEFORMING {
+            let ([middle, drift, turning], d) = (rigid.motion(element.corners()), L::splat(d));
+            let still = cross(&turning, &each!(3, axis => middle[axis] + first[axis]));
+            mean = each!(3, axis => (drift[axis] + slow[axis] - still[axis]).mul_add(d, mean[axis]));
+            spin = each!(3, axis => turning[axis] * d);
+        }
         let (turn, open) = if S::ITERATES { (element.memory(), element.live()) } else { ([zero; 4], 0) };
-        Fit { mean, matrix: a, turn, open }
+        Fit { mean, matrix: a, spin, turn, open }
     }
 
     fn passes(&self) -> u32 {
@@ -153,7 +215,14 @@ impl<S: Solver, const DAMPED: bool> Law for InSpace<S, DAMPED> {
         let (turn, open) = self.solver.step(of, last, open, is_last);
         if is_last {
             element.remember(turn);
-            fit.matrix = rotation::matrix(turn, L::splat(self.stiffness));
+            fit.matrix = rotation::matrix(turn, L::splat(self.of.stiffness));
+            if MAPS {
+                let (map, pressure, _) = self.of.stretch(&a, &each!(8, at => element.of_element(at)));
+                let rest = L::splat((self.of.bending - 1.0) * self.of.stiffness);
+                fit.matrix = each!(3, column => each!(3, row => {
+                    map[column][row].mul_add(rest, fit.matrix[column][row] - pressure[column][row])
+                }));
+            }
         } else {
             (fit.turn, fit.open) = (turn, open);
         }
@@ -161,58 +230,94 @@ impl<S: Solver, const DAMPED: bool> Law for InSpace<S, DAMPED> {
 
     #[inline(always)]
     fn force<L: Lanes>(&self, element: &Element<'_, L>, corner: usize, fit: &Fit<L>) -> [L; 3] {
-        let Fit { mean, matrix: m, .. } = fit;
+        let Fit { mean, matrix: m, spin, .. } = fit;
         let [x, y, z] = each!(3, axis => element.of_corner(corner, axis));
-        each!(3, axis => z.mul_add(m[2][axis], y.mul_add(m[1][axis], x.mul_add(m[0][axis], mean[axis]))))
+        let force = each!(3, axis => z.mul_add(m[2][axis], y.mul_add(m[1][axis], x.mul_add(m[0][axis], mean[axis]))));
+        if DAMPING != DEFORMING {
+            return force;
+        }
+        let (p, _) = element.corner(corner);
+        let turning = cross(spin, &p);
+        each!(3, axis => force[axis] + turning[axis])
     }
 
     #[inline(always)]
     fn energy<L: Lanes>(&self, element: &Element<'_, L>, rest: &Corners<'_, L>, shares: &mut [L]) -> L {
         let shapes = Shapes::new(element.corners, *rest);
         let m = shapes.in_space(self.solver, element.memory());
-        energy(&shapes, &m, self.stiffness, shares)
+        let residual = energy(&shapes, &m, self.of.stiffness, shares);
+        if MAPS {
+            let (map, _, volume) = self.of.stretch(&shapes.a, &each!(8, at => element.of_element(at)));
+            self.of.bent(&shapes, &m, &map, volume, shares);
+        }
+        residual
     }
 }
 
-impl<const DAMPED: bool> Law for InPlane<DAMPED> {
+impl<const MAPS: bool, const DAMPING: u8> Law for InPlane<MAPS, DAMPING> {
+    /// With maps as in space, with an entry before them that is not used.
+    const OF_ELEMENT: usize = if MAPS { 8 } else { 0 };
     /// `R0` (m).
     const OF_CORNER: usize = 2;
     /// The rotation, (cos θ, sin θ).
     const MEMORY: usize = 2;
     const RESIDUAL: Option<&'static str> = Some(Report::ROTATION);
-    /// `w̄` (N), and `k` times the rotation (N/m).
-    type Whole<L: Lanes> = [[L; 2]; 2];
+    type Whole<L: Lanes> = FitInPlane<L>;
+
+    fn relative_stiffness(&self, body: &Body) -> Option<Vec<f64>> {
+        self.of.model.relative_stiffness(body)
+    }
 
     fn is_damped(&self) -> bool {
-        DAMPED
+        DAMPING != NONE
     }
 
     fn of_node(&self) -> [f64; 2] {
-        [self.stiffness, self.damping]
+        self.of.of_node::<MAPS, DAMPING>()
     }
 
     #[inline(always)]
-    fn prepare<L: Lanes>(&self, rest: &Corners<'_, L>, _: &mut [L], of_corner: &mut [L]) {
+    fn prepare<L: Lanes>(&self, rest: &Corners<'_, L>, of_element: &mut [L], of_corner: &mut [L]) {
         relative_to_mean::<L, 2>(rest, of_corner);
+        if MAPS {
+            let mut moment = [L::splat(0.0); 6];
+            for corner in 0..rest.count() {
+                let [x, y] = each!(2, axis => of_corner[2 * corner + axis]);
+                moment[0] = moment[0] + x * x;
+                moment[1] = moment[1] + y * y;
+                moment[3] = moment[3] + x * y;
+            }
+            of_element[0] = L::splat(0.0);
+            self.of.maps(Dimension::Plane, moment, &mut of_element[1..]);
+        }
     }
 
     #[inline(always)]
-    fn whole<L: Lanes>(&self, element: &Element<'_, L>) -> [[L; 2]; 2] {
+    fn whole<L: Lanes>(&self, element: &Element<'_, L>) -> FitInPlane<L> {
         let corners = element.corners() as f64;
-        let (zero, k) = (L::splat(0.0), L::splat(self.stiffness));
-        let (k_mean, d_mean) = (L::splat(self.stiffness / corners), L::splat(self.damping / corners));
+        let [k, d] = self.of.of_node::<MAPS, DAMPING>();
+        let (zero, (k, k_mean, d_mean)) = (L::splat(0.0), (L::splat(k), L::splat(k / corners), L::splat(d / corners)));
         let (mut position, mut velocity, mut turn) = ([zero; 2], [zero; 2], [zero; 2]);
-        let mut first = [zero; 2];
+        let (mut first, mut slow, mut rigid) = ([zero; 2], [zero; 2], Rigid::new());
+        // Out of the plane the map is 1.
+        let mut a = [[zero; 3], [zero; 3], [zero, zero, L::splat(1.0)]];
         for corner in 0..element.corners() {
             let (p, v) = element.corner_in_plane(corner);
             let [x, y] = each!(2, axis => element.of_corner(corner, axis));
             if corner == 0 {
-                first = p;
+                (first, slow) = (p, v);
             }
             let [px, py] = each!(2, axis => p[axis] - first[axis]);
             position = [position[0] + px, position[1] + py];
-            if DAMPED {
+            if DAMPING == RELATIVE {
                 velocity = [velocity[0] + v[0], velocity[1] + v[1]];
+            }
+            if DAMPING == DEFORMING {
+                rigid.add([px, py, zero], [v[0] - slow[0], v[1] - slow[1], zero]);
+            }
+            if MAPS {
+                a[0] = [px.mul_add(x, a[0][0]), py.mul_add(x, a[0][1]), zero];
+                a[1] = [px.mul_add(y, a[1][0]), py.mul_add(y, a[1][1]), zero];
             }
             turn[0] = y.mul_add(py, x.mul_add(px, turn[0]));
             turn[1] = y.neg_mul_add(px, x.mul_add(py, turn[1]));
@@ -220,18 +325,40 @@ impl<const DAMPED: bool> Law for InPlane<DAMPED> {
         let turn = rotation::in_plane(turn, element.memory());
         element.remember(turn);
         let mut mean = each!(2, axis => position[axis].mul_add(k_mean, first[axis] * k));
-        if DAMPED {
+        if DAMPING == RELATIVE {
             mean = each!(2, axis => velocity[axis].mul_add(d_mean, mean[axis]));
         }
-        [mean, each!(2, axis => turn[axis] * k)]
+        let mut spin = zero;
+        if DAMPING == DEFORMING {
+            let ([middle, drift, [_, _, turning]], d) = (rigid.motion(element.corners()), L::splat(d));
+            let [x, y] = each!(2, axis => middle[axis] + first[axis]);
+            let still = [-(turning * y), turning * x];
+            mean = each!(2, axis => (drift[axis] + slow[axis] - still[axis]).mul_add(d, mean[axis]));
+            spin = turning * d;
+        }
+        let k = L::splat(self.of.stiffness);
+        let [cosine, sine] = each!(2, axis => turn[axis] * k);
+        let mut matrix = [[cosine, sine], [-sine, cosine]];
+        if MAPS {
+            let (map, pressure, _) = self.of.stretch(&a, &each!(8, at => element.of_element(at)));
+            let rest = L::splat((self.of.bending - 1.0) * self.of.stiffness);
+            matrix = each!(2, column => each!(2, row => {
+                map[column][row].mul_add(rest, matrix[column][row] - pressure[column][row])
+            }));
+        }
+        FitInPlane { mean, matrix, spin }
     }
 
     #[inline(always)]
-    fn force<L: Lanes>(&self, element: &Element<'_, L>, corner: usize, fit: &[[L; 2]; 2]) -> [L; 3] {
-        let [[wx, wy], [cosine, sine]] = *fit;
+    fn force<L: Lanes>(&self, element: &Element<'_, L>, corner: usize, fit: &FitInPlane<L>) -> [L; 3] {
+        let FitInPlane { mean: [wx, wy], matrix: [[cosine, sine], [other_sine, other_cosine]], spin } = *fit;
         let [x, y] = each!(2, axis => element.of_corner(corner, axis));
-        let fx = y.neg_mul_add(sine, x.mul_add(cosine, wx));
-        let fy = y.mul_add(cosine, x.mul_add(sine, wy));
+        let mut fx = y.mul_add(other_sine, x.mul_add(cosine, wx));
+        let mut fy = y.mul_add(other_cosine, x.mul_add(sine, wy));
+        if DAMPING == DEFORMING {
+            let ([px, py], _) = element.corner_in_plane(corner);
+            (fx, fy) = (spin.neg_mul_add(py, fx), spin.mul_add(px, fy));
+        }
         [fx, fy, L::splat(0.0)]
     }
 
@@ -239,8 +366,87 @@ impl<const DAMPED: bool> Law for InPlane<DAMPED> {
     fn energy<L: Lanes>(&self, element: &Element<'_, L>, rest: &Corners<'_, L>, shares: &mut [L]) -> L {
         let shapes = Shapes::new(element.corners, *rest);
         let m = shapes.in_plane(element.memory());
-        energy(&shapes, &m, self.stiffness, shares)
+        let residual = energy(&shapes, &m, self.of.stiffness, shares);
+        if MAPS {
+            let [x, y, _] = shapes.a;
+            let a = [x, y, [L::splat(0.0), L::splat(0.0), L::splat(1.0)]];
+            let (map, _, volume) = self.of.stretch(&a, &each!(8, at => element.of_element(at)));
+            self.of.bent(&shapes, &m, &map, volume, shares);
+        }
+        residual
     }
+}
+
+/// What an element in the plane knows.
+#[derive(Clone, Copy)]
+pub(super) struct FitInPlane<L> {
+    /// `w̄` (N).
+    mean: [L; 2],
+    /// `k` times the rotation (N/m), its columns.
+    matrix: [[L; 2]; 2],
+    /// `D ω` (N/m), if damping leaves rotation alone.
+    spin: L,
+}
+
+impl Common {
+    /// The constants of maps, from `M` (m²): xx, yy, zz, xy, xz, yz.
+    #[inline(always)]
+    fn maps<L: Lanes>(&self, dimension: Dimension, moment: [L; 6], constants: &mut [L]) {
+        let moment = each!([0, 1, 2, 3, 4, 5], entry => moment[entry].to_array());
+        let mut rows = [[0.0; MOST]; 7];
+        for lane in 0..MOST {
+            let [xx, yy, zz, xy, xz, yz] = each!([0, 1, 2, 3, 4, 5], entry => moment[entry][lane]);
+            let matrix = DMat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]);
+            let AtRest { inverse: m, size, .. } = AtRest::of_moment(matrix, dimension);
+            let plane = if dimension == Dimension::Plane { 1.0 } else { 0.0 };
+            let energy = self.volume * size * self.stiffness;
+            let of_lane = [m.x_axis.x, m.y_axis.y, m.z_axis.z + plane, m.x_axis.y, m.x_axis.z, m.y_axis.z, energy];
+            rows.iter_mut().zip(of_lane).for_each(|(row, value)| row[lane] = value);
+        }
+        for (constant, row) in constants.iter_mut().zip(rows) {
+            *constant = L::from_array(row);
+        }
+    }
+
+    /// The linear map of elements with `A = Σ r R0ᵀ` (m²) and the constants of maps; the matrix that gives the force of the volume on a corner as `−matrix · R0` (N/m), and the
+    /// energy of the volume (J).
+    #[inline(always)]
+    fn stretch<L: Lanes>(&self, a: &Matrix<L>, constants: &[L; 8]) -> (Matrix<L>, Matrix<L>, L) {
+        let [_, xx, yy, zz, xy, xz, yz, weight] = *constants;
+        let inverse = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+        let map = product(a, &inverse);
+        if self.volume == 0.0 {
+            let zero = L::splat(0.0);
+            return (map, [[zero; 3]; 3], zero);
+        }
+        let [x, y, z] = &map;
+        let cofactors = [cross(y, z), cross(z, x), cross(x, y)];
+        let volume = x[2].mul_add(cofactors[0][2], x[1].mul_add(cofactors[0][1], x[0] * cofactors[0][0]));
+        let excess = volume - L::splat(1.0);
+        let pressure = weight * excess;
+        let force = product(&each!(3, column => each!(3, row => cofactors[column][row] * pressure)), &inverse);
+        (map, force, L::splat(0.5) * pressure * excess)
+    }
+
+    /// Replaces the energies of corners (J) by those with this model's bending, and adds that of the volume.
+    #[inline(always)]
+    fn bent<L: Lanes>(&self, shapes: &Shapes<'_, L>, m: &Matrix<L>, map: &Matrix<L>, volume: L, shares: &mut [L]) {
+        let half_k = L::splat(0.5 * self.stiffness);
+        let (bending, each_volume) = (L::splat(self.bending), volume / L::splat(shares.len() as f64));
+        for (corner, share) in shares.iter_mut().enumerate() {
+            let (off, whole) = (shapes.displacement(corner, map), shapes.displacement(corner, m));
+            let affine = square(each!(3, axis => whole[axis] - off[axis]));
+            *share = half_k.mul_add(bending.mul_add(square(off), affine), each_volume);
+        }
+    }
+}
+
+/// The product of two matrices.
+#[inline(always)]
+fn product<L: Lanes>(a: &Matrix<L>, b: &Matrix<L>) -> Matrix<L> {
+    each!(3, column => each!(3, row => {
+        a[2][row].mul_add(b[column][2], a[1][row].mul_add(b[column][1], a[0][row] * b[column][0]))
+    }))
 }
 
 /// `R0` of each corner (m), corner by corner.

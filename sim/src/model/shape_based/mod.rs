@@ -6,21 +6,28 @@
 //! Energy: `E = k/2 Σ_e Σ_i |r_i − R_i|²`. With the exact rotation its negative gradient is the elastic force, because
 //! `E` is stationary with respect to the rotation.
 //!
+//! Two options go beyond the paper. With `F` the linear map that fits `r` to `R0` best, [`bending`](ShapeBased::bending) `β` multiplies the
+//! part of the displacement that is not affine, so that `d = β (r − F R0) + (F − R) R0`. A
+//! [Poisson's ratio](ShapeBased::material) adds the energy `½ λ V (det F − 1)²`.
+//!
 //! The centre of an element is the unweighted mean of its nodes: with a centre of mass, unequal masses would give a net
 //! internal force.
 
+mod affine;
 mod in_lanes;
 
-use super::{ElasticModel, ForceModel, Late, Misfit, Report, Scratch, Share, TypedModel, Vectorised, blocks};
+use super::{ElasticModel, ForceModel, Late, Misfit, Ratio, Report, Scratch, Share, TypedModel, Vectorised, blocks};
 use crate::body::Body;
 use crate::element::Dimension;
 use crate::fill;
 use crate::kernel::lattice::{self, LatticeStepper};
 use crate::kernel::{Compiled, Conditions, Rotation, Stepper};
+use crate::material::Material;
 use crate::mode::Mode;
 pub use crate::rotation::RotationReading;
 use crate::rotation::{self, davenport1968, linear_update, planar};
 use crate::state::Nodes;
+use affine::{AtRest, Stretch};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -28,13 +35,28 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The parameters of the model in a scene file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
+#[schemars(extend("oneOf" = [{ "required": ["stiffness"] }, { "required": ["young"] }]))]
 pub struct Parameters {
-    /// Elastic constant of each element, `k_e` of Eq. (4) (N/m).
+    /// Elastic constant of each element, `k_e` of Eq. (4) (N/m). Or give `young`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
-    pub stiffness: f64,
+    pub stiffness: Option<f64>,
+    /// Young's modulus of the material (Pa; N/m in the plane), in place of `stiffness`: each element has the elastic constant that its
+    /// shape needs for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub young: Option<f64>,
+    /// Poisson's ratio of the material, with `young`: an energy of the volume beside that of the shape. Default: 0, the paper's model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 0.5))]
+    pub poisson: Option<f64>,
+    /// A factor of the forces that resist bending, a number or a fraction such as `"1/3"`. With `"1/3"`, lattices of cubes bend like
+    /// the material at any number of cells; the paper's model is stiffer. Default: 1, the paper's model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bending: Option<Ratio>,
     /// Damping constant of each element, `D_e` of Eq. (4) (N s/m). Default: 0. Not together with `damping_ratio`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
@@ -71,8 +93,12 @@ pub enum DampingReading {
 /// The model with its parameters in SI units, checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapeBased {
-    /// Elastic constant `k_e` of each element (N/m).
+    /// Elastic constant `k_e` of each element (N/m), with a material of the stiffest one.
     pub stiffness: f64,
+    /// The material that decides the relative stiffness of the elements, in place of [`Body::stiffness`].
+    pub material: Option<Material>,
+    /// A factor `β` of the part of displacements that is not affine, from 0 to 1.
+    pub bending: f64,
     /// Damping constant `D_e` of each element (N s/m).
     pub damping: f64,
     /// Number of passes at each evaluation of the forces. A pass solves Eq. (15) once.
@@ -86,7 +112,12 @@ pub struct ShapeBased {
 impl Parameters {
     /// A model with this elastic constant (N/m); the other parameters have their defaults.
     pub fn new(stiffness: f64) -> Self {
-        Self { stiffness, damping: None, damping_ratio: None, passes: None, rotation: None, damping_of: None }
+        Self { stiffness: Some(stiffness), ..Self::default() }
+    }
+
+    /// A model of a material with this Young's modulus (Pa); the other parameters have their defaults.
+    pub fn of_material(young: f64) -> Self {
+        Self { young: Some(young), ..Self::default() }
     }
 }
 
@@ -108,9 +139,12 @@ impl TypedModel for Parameters {
             );
             return Err(Misfit { key: "passes", message });
         }
+        let (stiffness, material) = super::stiffness(self.stiffness, self.young, self.poisson, body)?;
         Ok(Arc::new(ShapeBased {
-            stiffness: self.stiffness,
-            damping: super::damping(self.damping, self.damping_ratio, self.stiffness, body)?,
+            stiffness,
+            material,
+            bending: self.bending.map_or(1.0, |bending| bending.0),
+            damping: super::damping(self.damping, self.damping_ratio, stiffness, body)?,
             passes: self.passes.unwrap_or(2),
             rotation: self.rotation.unwrap_or(match self.passes {
                 Some(_) => RotationReading::Arctangent,
@@ -148,7 +182,7 @@ impl ElasticModel for ShapeBased {
             RotationReading::LinearUpdate => ", Eq. (16)",
             RotationReading::Robust => ", exact rotations",
         };
-        format!("{damping}{rotation}")
+        format!("{damping}{}{rotation}", self.beyond_the_paper())
     }
 
     fn choices(&self, body: &Body) -> String {
@@ -163,24 +197,41 @@ impl ElasticModel for ShapeBased {
         if self.damping > 0.0 {
             text += &format!(", damping of {}", super::typed(&self.damping_of));
         }
-        text
+        text + &self.beyond_the_paper()
     }
 
-    /// An element adds at most `k` and `D` to a node, because its forces are a projection of displacements.
+    fn material(&self, body: &Body) -> Option<Material> {
+        let stiffness = || {
+            let parts =
+                fill::product(None, body.stiffness.as_deref()).unwrap_or_else(|| vec![1.0; body.elements.len()]);
+            parts.into_iter().map(|part| self.stiffness * part).collect::<Vec<_>>()
+        };
+        self.material.or_else(|| Material::of_shapes(body, &stiffness()))
+    }
+
+    /// An element adds at most `k` and `D` to a node, because its forces are a projection of displacements. Those of the volume grow
+    /// without a bound.
     fn bound(&self, body: &Body) -> Option<Mode> {
+        if self.volume(body.dimension) > 0.0 {
+            return None;
+        }
         let mut parts = vec![0.0; body.len()];
+        let of_elements = self.relative_stiffness(body);
         for (element, nodes) in body.elements.iter().enumerate() {
-            let part = fill::of_element(body, element);
+            let part = of_elements.as_ref().map_or(1.0, |parts| parts[element]);
             nodes.iter().for_each(|&node| parts[node as usize] += part);
         }
         let most = parts.iter().zip(&body.mass).map(|(parts, mass)| parts / mass).fold(0.0, f64::max);
         Some(Mode { stiffness: self.stiffness * most, damping: self.damping * most })
     }
 
-    /// The readings for comparison and the damping of deformation have the reference code only.
+    /// The readings for comparison have the reference code only.
     fn vectorised(&self) -> Option<&dyn Vectorised> {
-        let is_vectorised = matches!(self.rotation, RotationReading::Arctangent | RotationReading::Robust)
-            && (self.damping == 0.0 || self.damping_of == DampingReading::RelativeMotion);
+        let is_vectorised = match self.rotation {
+            RotationReading::Robust => true,
+            RotationReading::Arctangent => !self.fits_maps(),
+            RotationReading::VectorLength | RotationReading::LinearUpdate => false,
+        };
         is_vectorised.then_some(self)
     }
 
@@ -225,7 +276,9 @@ impl Vectorised for ShapeBased {
         let (&Self { stiffness, damping, .. }, &Conditions { scheme, gravity, step, set }) = (self, conditions);
         let rotation = self.rotation_in_lanes();
         let parameters = lattice::Parameters { stiffness, damping, rotation, gravity, step };
-        let lattice = LatticeStepper::new(body, parameters, scheme, set);
+        let is_printed = !self.fits_maps() && (damping == 0.0 || self.damping_of == DampingReading::RelativeMotion);
+        let is_uniform = self.relative_stiffness(body).is_none();
+        let lattice = (is_printed && is_uniform).then(|| LatticeStepper::new(body, parameters, scheme, set)).flatten();
         self.by_law(body, conditions, lattice.map(|lattice| -> Box<dyn Stepper> { Box::new(lattice) }))
     }
 }
@@ -289,7 +342,41 @@ impl ShapeBased {
     /// An undamped model with this elastic constant (N/m) and exact rotations.
     pub fn new(stiffness: f64) -> Self {
         let (rotation, damping_of) = (RotationReading::Robust, DampingReading::RelativeMotion);
-        Self { stiffness, damping: 0.0, passes: 2, rotation, damping_of }
+        Self { stiffness, material: None, bending: 1.0, damping: 0.0, passes: 2, rotation, damping_of }
+    }
+
+    /// `λ/μ`: 0 without an energy of the volume.
+    fn volume(&self, dimension: Dimension) -> f64 {
+        self.material.map_or(0.0, |material| material.lame_over_shear(dimension))
+    }
+
+    /// Whether forces depend on the linear map that fits an element best.
+    fn fits_maps(&self) -> bool {
+        self.bending != 1.0 || self.material.is_some_and(|material| material.poisson != 0.0)
+    }
+
+    /// The relative stiffness of each element, as far as it is filled; `None` if all are 1.
+    fn relative_stiffness(&self, body: &Body) -> Option<Vec<f64>> {
+        /// Equal stiffnesses differ by round-off only.
+        const EQUAL: f64 = 1e-10;
+        let own = self.material.map(|material| {
+            let parts: Vec<_> = material.stiffness(body).into_iter().map(|own| own / self.stiffness).collect();
+            parts.iter().any(|part| (part - 1.0).abs() > EQUAL).then_some(parts)
+        });
+        let relative = own.as_ref().map_or(body.stiffness.as_deref(), |own| own.as_deref());
+        fill::product(body.fill.as_deref(), relative)
+    }
+
+    /// The options that the paper's model does not have.
+    fn beyond_the_paper(&self) -> String {
+        let mut text = String::new();
+        if let Some(Material { poisson, .. }) = self.material.filter(|material| material.poisson != 0.0) {
+            text += &format!(", ν = {poisson}");
+        }
+        if self.bending != 1.0 {
+            text += &format!(", β = {}", Ratio(self.bending));
+        }
+        text
     }
 
     fn solver(&self, dimension: Dimension) -> Solver {
@@ -328,6 +415,10 @@ struct Elements {
     rest: Vec<DVec3>,
     /// `Σ m |R0|²` of each element (kg m²), Eq. (17).
     inertia: Vec<f64>,
+    /// The relative stiffness of each element; `None` if all are 1.
+    parts: Option<Vec<f64>>,
+    /// How the linear map of each element follows from its corners, if forces depend on it.
+    maps: Option<Vec<AtRest>>,
     /// Adds up the forces on the corners of all elements for each node.
     gather: blocks::Gather,
 }
@@ -353,7 +444,10 @@ impl Elements {
             .map(|element| inertia(&elements[element], &rest[elements.range(element)], &body.mass))
             .collect();
         let gather = blocks::Gather::new(body.len(), elements.indices().iter().copied());
-        Self { solver: model.solver(body.dimension), model, body: Arc::clone(body), rest, inertia, gather }
+        let at_rest = |element: usize| AtRest::new(&rest[elements.range(element)], body.dimension);
+        let maps = model.fits_maps().then(|| (0..elements.len()).map(at_rest).collect());
+        let (solver, parts) = (model.solver(body.dimension), model.relative_stiffness(body));
+        Self { solver, model, body: Arc::clone(body), rest, inertia, parts, maps, gather }
     }
 
     /// The nodes of an element and its shape at rest (m).
@@ -378,8 +472,14 @@ impl Elements {
 
     /// `k` (N/m) and `D` (N s/m) of an element.
     fn constants(&self, element: usize) -> [f64; 2] {
-        let part = fill::of_element(&self.body, element);
+        let part = self.parts.as_ref().map_or(1.0, |parts| parts[element]);
         [self.model.stiffness, self.model.damping].map(|full| full * part)
+    }
+
+    /// The linear map that fits an element best, from its `Σ R0 rᵀ` (m²); `None` if forces do not depend on it.
+    fn stretch(&self, element: usize, at_rest: DMat3) -> Option<Stretch> {
+        let volume = self.model.volume(self.body.dimension);
+        Some(self.maps.as_ref()?[element].stretch(at_rest, volume))
     }
 
     /// α of Eq. (18) of an element with a rotation (rad/s²), from its `Σ R0 rᵀ` (m²).
@@ -393,7 +493,8 @@ impl Elements {
     #[doc(alias = "Eq. 4")]
     fn forces(&self, element: usize, at: Nodes<'_>, last: &[f64], next: &mut [f64], forces: &mut [DVec3]) -> bool {
         let ([k, d], (nodes, rest)) = (self.constants(element), self.element(element));
-        let Fit { centre, rotation, is_global, .. } = self.fit(element, at.position, last, next);
+        let Fit { centre, at_rest, rotation, is_global } = self.fit(element, at.position, last, next);
+        let stretch = self.stretch(element, at_rest);
         let drift = mean(nodes, at.velocity);
         let spin = match self.model.damping_of {
             DampingReading::RelativeMotion => None,
@@ -405,7 +506,10 @@ impl Elements {
         };
         for ((force, &node), &rest) in forces.iter_mut().zip(nodes).zip(rest) {
             let r = at.position[node as usize] - centre;
-            let displacement = r - rotation * rest;
+            let mut displacement = r - rotation * rest;
+            if let Some(Stretch { map, pressure, .. }) = stretch {
+                displacement += (r - map * rest) * (self.model.bending - 1.0) + pressure * rest;
+            }
             let mut relative_velocity = at.velocity[node as usize] - drift;
             if let Some(spin) = spin {
                 relative_velocity -= spin.cross(r);
@@ -448,8 +552,16 @@ impl ForceModel for Elements {
             let ([k, _], (nodes, rest)) = (self.constants(element), self.element(element));
             let (last, mut next) = (self.of(element, memory), [0.0; 9]);
             let Fit { centre, at_rest, rotation, .. } = self.fit(element, at.position, last, &mut next[..last.len()]);
+            let stretch = self.stretch(element, at_rest);
             for ((share, &node), &rest) in shares.iter_mut().zip(nodes).zip(rest) {
-                let squared = (at.position[node as usize] - centre - rotation * rest).length_squared();
+                let r = at.position[node as usize] - centre;
+                let squared = match stretch {
+                    None => (r - rotation * rest).length_squared(),
+                    Some(Stretch { map, volume, .. }) => {
+                        let bent = self.model.bending * (r - map * rest).length_squared();
+                        bent + (map * rest - rotation * rest).length_squared() + volume / nodes.len() as f64
+                    }
+                };
                 *share = 0.5 * k * squared;
             }
             alpha[0] = self.residual(element, at_rest, rotation);
