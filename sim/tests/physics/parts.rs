@@ -4,7 +4,7 @@ use super::support::{Noise, floor, lattice, mass_spring, shape_based};
 use glam::DVec3;
 use localshape_sim::model::ElasticModel;
 use localshape_sim::model::mass_spring::MassSpring;
-use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use localshape_sim::model::shape_based::{RotationReading, ShapeBased};
 use localshape_sim::{
     Assembly, Body, Crew, Dimension, Divergence, Grip, Integrator, Kernel, Motion, Obstacle, Offset, Shape, Solids,
     Springs, State, Status, Stepping, Surroundings, World,
