@@ -66,19 +66,7 @@ impl Parameters {
 
 impl TypedModel for Parameters {
     fn resolve(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
-        let springs = match (self.springs, listed) {
-            (None, Some(listed)) => listed.to_vec(),
-            (named, _) => body.topology().springs(named.unwrap_or(DEFAULT)),
-        };
-        if springs.is_empty() {
-            let topology = super::typed(&self.springs.unwrap_or(DEFAULT));
-            let message = format!(
-                "the topology `{topology}` puts no spring on the body's elements; take `all`, or list the springs in [body]"
-            );
-            return Err(Misfit { key: "springs", message });
-        }
-        let damping = super::damping(self.damping, self.damping_ratio, self.stiffness, body)?;
-        Ok(Arc::new(MassSpring { stiffness: self.stiffness, damping, springs: springs.into() }))
+        Ok(Arc::new(self.model(body, listed)?))
     }
 
     fn most_springs(&self, elements: &BTreeMap<usize, u128>, listed: Option<u128>) -> u128 {
@@ -101,14 +89,32 @@ impl TypedModel for Parameters {
 /// The springs of bodies that list none and of models that name none.
 const DEFAULT: Springs = Springs::EdgesFaceDiagonals;
 
+impl Parameters {
+    /// The model for a body that lists these springs, if it lists any.
+    pub(super) fn model(&self, body: &Body, listed: Option<&[[u32; 2]]>) -> Result<MassSpring, Misfit> {
+        let springs = match (self.springs, listed) {
+            (None, Some(listed)) => listed.to_vec(),
+            (named, _) => body.topology().springs(named.unwrap_or(DEFAULT)),
+        };
+        if springs.is_empty() {
+            let topology = super::typed(&self.springs.unwrap_or(DEFAULT));
+            let message = format!(
+                "the topology `{topology}` puts no spring on the body's elements; take `all`, or list the springs in [body]"
+            );
+            return Err(Misfit { key: "springs", message });
+        }
+        let damping = super::damping(self.damping, self.damping_ratio, self.stiffness, body)?;
+        Ok(MassSpring { stiffness: self.stiffness, damping, springs: springs.into() })
+    }
+}
+
 impl ElasticModel for MassSpring {
     fn stiffness(&self) -> f64 {
         self.stiffness
     }
 
     fn scaled(&self, stiffness: f64, damping: f64) -> Option<Arc<dyn ElasticModel>> {
-        let (stiffness, damping) = (self.stiffness * stiffness, self.damping * damping);
-        Some(Arc::new(MassSpring { stiffness, damping, ..self.clone() }))
+        Some(Arc::new(self.times(stiffness, damping)))
     }
 
     fn damping(&self) -> f64 {
@@ -152,8 +158,14 @@ impl Vectorised for MassSpring {
 }
 
 impl MassSpring {
+    /// This model with its stiffness and its damping multiplied.
+    pub(super) fn times(&self, stiffness: f64, damping: f64) -> Self {
+        let (stiffness, damping) = (self.stiffness * stiffness, self.damping * damping);
+        Self { stiffness, damping, ..self.clone() }
+    }
+
     /// The relative stiffness of each spring; `None` if all are 1.
-    fn parts(&self, body: &Body) -> Option<Vec<f64>> {
+    pub(super) fn parts(&self, body: &Body) -> Option<Vec<f64>> {
         fill::parts(body, self.springs.iter().map(|ends| &ends[..]))
     }
 
@@ -191,14 +203,46 @@ impl<const DAMPED: bool> Law for Spring<DAMPED> {
 
     #[inline(always)]
     fn prepare<L: Lanes>(&self, rest: &Corners<'_, L>, of_element: &mut [L], _: &mut [L]) {
-        let (near, far) = (rest.position(0), rest.position(1));
-        let [x, y, z] = each!(3, axis => near[axis] - far[axis]);
-        of_element[0] = L::splat(self.0.stiffness) * (x * x + y * y + z * z).sqrt();
+        of_element[0] = L::splat(self.0.stiffness) * natural_length(rest);
     }
 
     #[inline(always)]
     fn whole<L: Lanes>(&self, spring: &Element<'_, L>) -> [L; 3] {
-        let MassSpring { stiffness, damping, .. } = self.0;
+        self.0.force::<L, DAMPED>(spring)
+    }
+
+    #[inline(always)]
+    fn force<L: Lanes>(&self, _: &Element<'_, L>, corner: usize, &force: &[L; 3]) -> [L; 3] {
+        if corner == 0 { force } else { each!(3, axis => -force[axis]) }
+    }
+
+    #[inline(always)]
+    fn energy<L: Lanes>(&self, spring: &Element<'_, L>, rest: &Corners<'_, L>, shares: &mut [L]) -> L {
+        shares.fill(L::splat(0.5) * self.0.energy(spring, rest));
+        L::splat(0.0)
+    }
+}
+
+/// The natural length of springs (m).
+#[inline(always)]
+pub(super) fn natural_length<L: Lanes>(rest: &Corners<'_, L>) -> L {
+    let (near, far) = (rest.position(0), rest.position(1));
+    let [x, y, z] = each!(3, axis => near[axis] - far[axis]);
+    (x * x + y * y + z * z).sqrt()
+}
+
+/// The length of springs now (m).
+#[inline(always)]
+pub(super) fn length<L: Lanes>(spring: &Element<'_, L>) -> L {
+    let (near, far) = (spring.corner(0).0, spring.corner(1).0);
+    square(each!(3, axis => far[axis] - near[axis])).sqrt()
+}
+
+impl MassSpring {
+    /// Eq. (1) in lanes: the force on the first nodes of springs (N), whose first constant is `k L` (N).
+    #[inline(always)]
+    pub(super) fn force<L: Lanes, const DAMPED: bool>(&self, spring: &Element<'_, L>) -> [L; 3] {
+        let &Self { stiffness, damping, .. } = self;
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let ((near, slow), (far, fast)) = (spring.corner(0), spring.corner(1));
         let p = each!(3, axis => far[axis] - near[axis]);
@@ -216,19 +260,12 @@ impl<const DAMPED: bool> Law for Spring<DAMPED> {
         each!(3, axis => pull * p[axis])
     }
 
+    /// The energy of springs in lanes (J).
     #[inline(always)]
-    fn force<L: Lanes>(&self, _: &Element<'_, L>, corner: usize, &force: &[L; 3]) -> [L; 3] {
-        if corner == 0 { force } else { each!(3, axis => -force[axis]) }
-    }
-
-    #[inline(always)]
-    fn energy<L: Lanes>(&self, spring: &Element<'_, L>, rest: &Corners<'_, L>, shares: &mut [L]) -> L {
-        let length = |[from, to]: [[L; 3]; 2]| square(each!(3, axis => to[axis] - from[axis])).sqrt();
-        let now = length([spring.corner(0).0, spring.corner(1).0]);
-        let stretch = now - length([rest.position(0), rest.position(1)]);
-        let whole = L::splat(0.5 * self.0.stiffness) * stretch * stretch;
-        shares.fill(L::splat(0.5) * whole);
-        L::splat(0.0)
+    pub(super) fn energy<L: Lanes>(&self, spring: &Element<'_, L>, rest: &Corners<'_, L>) -> L {
+        let (near, far) = (rest.position(0), rest.position(1));
+        let stretch = length(spring) - square(each!(3, axis => far[axis] - near[axis])).sqrt();
+        L::splat(0.5 * self.stiffness) * stretch * stretch
     }
 }
 

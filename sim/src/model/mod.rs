@@ -6,8 +6,10 @@
 //! alone, which implement [`ForceModel`]. Then add it to the list.
 
 pub(crate) mod blocks;
+pub mod limited_springs;
 pub mod mass_spring;
 pub mod shape_based;
+pub mod volume_springs;
 
 use super::body::Body;
 use super::diagnose::volumes_at_rest;
@@ -61,6 +63,10 @@ models! {
     ShapeBased => shape_based,
     /// Springs between pairs of nodes (paper, section 2).
     MassSpring => mass_spring,
+    /// Springs whose elongation is limited (paper, Ref. 4; the formula is our own reading).
+    LimitedSprings => limited_springs,
+    /// Springs and a pressure that keeps the volume of each element (paper, Ref. 3).
+    VolumeSprings => volume_springs,
 }
 
 impl ModelParameters {

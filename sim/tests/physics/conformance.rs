@@ -5,7 +5,9 @@ use super::example_model::Rods;
 use super::support::{Noise, Remembering, body, forces, lattice, mass_spring, shape_based};
 use glam::DVec3;
 use localshape_sim::geometry::volumes_at_rest;
+use localshape_sim::model::limited_springs::LimitedSprings;
 use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+use localshape_sim::model::volume_springs::VolumeSprings;
 use localshape_sim::model::{ElasticModel, ModelParameters};
 use localshape_sim::{
     Body, Dimension, ElementKind, IndexLists, Integrator, Kernel, Material, Solids, Springs, State, Stepping,
@@ -68,6 +70,11 @@ pub(crate) fn cases(body: &Body, damping: f64) -> Vec<Case> {
         let spring = mass_spring(body, STIFFNESS, damping, named);
         assert!(!spring.springs.is_empty(), "{named:?} on {:?}", body.kinds);
         all.push(sound(Box::new(spring)));
+    }
+    let springs = mass_spring(body, STIFFNESS, damping, Springs::EdgesFaceDiagonals);
+    all.extend([0.3, 1.0].map(|limit| sound(Box::new(LimitedSprings { springs: springs.clone(), limit }))));
+    if volumes_at_rest(body).iter().any(|&volume| volume > 0.0) {
+        all.push(sound(Box::new(VolumeSprings { springs, bulk: 3.0 * STIFFNESS })));
     }
     if damping == 0.0 {
         all.push(sound(Box::new(Rods { stiffness: STIFFNESS })));
@@ -492,7 +499,11 @@ fn every_model_is_in_the_suite() {
     let schema = schemars::schema_for!(ModelParameters).to_value();
     let variants = schema["oneOf"].as_array().expect("models to choose from");
     let named: Vec<_> = variants.iter().map(|model| &model["properties"]["kind"]["const"]).collect();
-    assert_eq!(named, ["shape-based", "mass-spring"], "add the model to `cases`, then here");
+    assert_eq!(
+        named,
+        ["shape-based", "mass-spring", "limited-springs", "volume-springs"],
+        "add the model to `cases`, then here"
+    );
 }
 
 /// A new reading of a model, named topology or integrator fails here until the suites include it.
