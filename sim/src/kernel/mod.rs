@@ -94,6 +94,14 @@ pub(crate) enum Rotation {
     Optimum,
 }
 
+/// The velocity that elements damp, as a constant of code: none, the one relative to their mean, or that without the rigid motion that
+/// fits best.
+pub(crate) mod damped {
+    pub(crate) const NONE: u8 = 0;
+    pub(crate) const RELATIVE: u8 = 1;
+    pub(crate) const DEFORMING: u8 = 2;
+}
+
 /// Contact of a node at the end of a step of this number: changes its position (m) and velocity (m/s). The last
 /// argument is its constant acceleration in the step (m/s²), zero if it moved at constant velocity.
 pub(crate) type Resolve<'a> = dyn Fn(u64, &mut DVec3, &mut DVec3, DVec3) + Sync + 'a;

@@ -14,7 +14,7 @@ pub use by_law::ByLaw;
 pub(crate) use by_law::Energy;
 pub(crate) use filled::Filled;
 pub(crate) use reader::{Reader, alike};
-pub(crate) use rigid::Rigid;
+pub(crate) use rigid::{Rigid, Turning};
 
 use super::body::Body;
 use super::fill;

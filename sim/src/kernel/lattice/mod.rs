@@ -7,6 +7,11 @@
 //! - With `w = k P + D V` and `w̄` its mean over a box, Eq. (4) is `−w + w̄ + k M R0`. The sum of `−w` over the boxes of a
 //!   node is a product; `w̄ + k M R0` is `w̄ ± u ± v ± t` with one vector for each axis.
 //! - Both are separable: sums over two nodes or boxes along z, then along x, then along y; for forces in reverse order.
+//! - The linear map that fits a box best is `F = A M⁻¹`, and `M` is diagonal: its columns are sums of edges, too. So bending `β` and an
+//!   energy of the volume change `u`, `v` and `t` only, with `w = β k P + D V`.
+//! - Damping that leaves rotation `ω` alone has the force `D ω × (p − p̄)` in addition: one part of it is in `w̄`, and the other is
+//!   `(Σ D ω) × p`, with a sum over the boxes of a node. The sums over corners that `ω` follows from are those over the differences of
+//!   nodes along z, then of sums and differences along x, then of sums along y: without centre, and without cancellation.
 //!
 //! Nodes of a plane are numbered x fastest, and lanes are consecutive nodes. Boxes have the number of their lowest
 //! node; the last node of a row counts as a box without stiffness, so rows need no padding.
@@ -22,7 +27,7 @@ mod tests;
 
 use super::memory::Aligned;
 use super::stepper::{Passes, Scheme, Stepper};
-use super::{Around, Lost, Rotation};
+use super::{Around, Lost, Rotation, damped};
 use crate::body::Body;
 use crate::crew::Crew;
 use crate::element::Dimension;
@@ -37,8 +42,14 @@ use std::sync::atomic::AtomicU64;
 pub(crate) struct Parameters {
     /// Elastic constant `k_e` of each element (N/m).
     pub(crate) stiffness: f64,
-    /// Damping constant `D_e` of each element (N s/m), for the velocity relative to the element's mean.
+    /// The factor `β` of the part of displacements that is not affine.
+    pub(crate) bending: f64,
+    /// `λ/μ` of the energy of the volume.
+    pub(crate) volume: f64,
+    /// Damping constant `D_e` of each element (N s/m).
     pub(crate) damping: f64,
+    /// The velocity that is [damped].
+    pub(crate) damped: u8,
     /// How rotations are computed.
     pub(crate) rotation: Rotation,
     /// Acceleration of gravity (m/s²).
@@ -191,7 +202,7 @@ struct Pattern {
 /// its boxes there; when both have, the upper thread steps these nodes.
 #[derive(Clone, Copy)]
 struct Slab {
-    /// A ring buffer of boxes: `w̄ + v`, `u` and `t`.
+    /// A ring buffer of boxes: `w̄ + v`, `u`, `t` and `D ω`.
     rows: usize,
     /// A ring buffer of squares of nodes along x and z; see [`Sweep::squares`].
     squares: usize,
@@ -208,8 +219,8 @@ struct Slab {
 impl Slab {
     fn new(grid: &Grid) -> Self {
         let plane = 3 * grid.stride();
-        let squares = 9 * (grid.ring() + MOST);
-        let below = squares + 12 * (grid.ring() + MOST);
+        let squares = 12 * (grid.ring() + MOST);
+        let below = squares + 21 * (grid.ring() + MOST);
         let (lowest, highest) = (below + plane, below + 2 * plane);
         // Threads share no cache line, and no pair of lines that a processor fetches together.
         Self { rows: 0, squares, below, lowest, highest, end: highest + plane + 2 * MOST }
@@ -316,7 +327,7 @@ impl Stepper for LatticeStepper {
     }
 
     fn is_damped(&self) -> bool {
-        self.parameters.damping > 0.0
+        self.parameters.damped != damped::NONE
     }
 
     fn keep(&mut self) {

@@ -4,10 +4,11 @@
 //! `Σ R0 = 0` the moments need no centroid. With maps `F` it is `−w + w̄ + k (M − (1 − β) F) R0` and a force of the volume, with `w = β k P + D V`:
 //! they cost no more for each corner.
 
+use super::ShapeBased;
 use super::affine::AtRest;
-use super::{DampingReading, ShapeBased};
 use crate::body::Body;
 use crate::element::Dimension;
+use crate::kernel::damped::{DEFORMING, NONE, RELATIVE};
 use crate::kernel::rotation::{self, Arctangent, Matrix, Moments, Optimum, Solver, axial, cross, turned_back};
 use crate::kernel::shapes::{Shapes, square};
 use crate::kernel::{Compiled, Conditions, Rotation, Stepper};
@@ -28,14 +29,12 @@ pub(super) fn compile(
     let of = Common::new(model, body.dimension);
     macro_rules! law {
         ($law:ident<$([$solver:ty],)? $maps:literal> $($field:ident = $value:expr)?) => {
-            match (model.damping > 0.0, model.damping_of) {
-                (false, _) => Compiled::by($law::<$($solver,)? $maps, NONE> { of, $($field: $value)? }, body, conditions, faster),
-                (true, DampingReading::RelativeMotion) => {
+            match model.damped() {
+                NONE => Compiled::by($law::<$($solver,)? $maps, NONE> { of, $($field: $value)? }, body, conditions, faster),
+                RELATIVE => {
                     Compiled::by($law::<$($solver,)? $maps, RELATIVE> { of, $($field: $value)? }, body, conditions, faster)
                 }
-                (true, DampingReading::Deformation) => {
-                    Compiled::by($law::<$($solver,)? $maps, DEFORMING> { of, $($field: $value)? }, body, conditions, faster)
-                }
+                _ => Compiled::by($law::<$($solver,)? $maps, DEFORMING> { of, $($field: $value)? }, body, conditions, faster),
             }
         };
     }
@@ -50,11 +49,6 @@ pub(super) fn compile(
         (_, _, true) => law!(InSpace < [Optimum], true > solver = Optimum),
     }
 }
-
-/// The velocity that a law damps: none, the one relative to the mean, or that without the best rigid motion.
-const NONE: u8 = 0;
-const RELATIVE: u8 = 1;
-const DEFORMING: u8 = 2;
 
 /// The numbers of a model.
 #[derive(Clone)]

@@ -21,7 +21,7 @@ use crate::body::Body;
 use crate::element::Dimension;
 use crate::fill;
 use crate::kernel::lattice::{self, LatticeStepper};
-use crate::kernel::{Compiled, Conditions, Rotation, Stepper};
+use crate::kernel::{Compiled, Conditions, Rotation, Stepper, damped};
 use crate::material::Material;
 use crate::mode::Mode;
 pub use crate::rotation::RotationReading;
@@ -273,12 +273,12 @@ impl ElasticModel for ShapeBased {
 
 impl Vectorised for ShapeBased {
     fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled {
-        let (&Self { stiffness, damping, .. }, &Conditions { scheme, gravity, step, set }) = (self, conditions);
-        let rotation = self.rotation_in_lanes();
-        let parameters = lattice::Parameters { stiffness, damping, rotation, gravity, step };
-        let is_printed = !self.fits_maps() && (damping == 0.0 || self.damping_of == DampingReading::RelativeMotion);
+        let (&Self { stiffness, bending, damping, .. }, &Conditions { scheme, gravity, step, set }) =
+            (self, conditions);
+        let (volume, damped, rotation) = (self.volume(body.dimension), self.damped(), self.rotation_in_lanes());
+        let parameters = lattice::Parameters { stiffness, bending, volume, damping, damped, rotation, gravity, step };
         let is_uniform = self.relative_stiffness(body).is_none();
-        let lattice = (is_printed && is_uniform).then(|| LatticeStepper::new(body, parameters, scheme, set)).flatten();
+        let lattice = is_uniform.then(|| LatticeStepper::new(body, parameters, scheme, set)).flatten();
         self.by_law(body, conditions, lattice.map(|lattice| -> Box<dyn Stepper> { Box::new(lattice) }))
     }
 }
@@ -348,6 +348,15 @@ impl ShapeBased {
     /// `λ/μ`: 0 without an energy of the volume.
     fn volume(&self, dimension: Dimension) -> f64 {
         self.material.map_or(0.0, |material| material.lame_over_shear(dimension))
+    }
+
+    /// The velocity that is damped, as a constant of code.
+    fn damped(&self) -> u8 {
+        match (self.damping > 0.0, self.damping_of) {
+            (false, _) => damped::NONE,
+            (true, DampingReading::RelativeMotion) => damped::RELATIVE,
+            (true, DampingReading::Deformation) => damped::DEFORMING,
+        }
     }
 
     /// Whether forces depend on the linear map that fits an element best.

@@ -4,6 +4,7 @@ mod plane;
 
 use super::{Chunk, Grid, LatticeStepper, Parameters, Signal, Slab, slot};
 use crate::crew::{Crew, wait_until};
+use crate::kernel::damped::{DEFORMING, NONE, RELATIVE};
 use crate::kernel::memory::Aligned;
 use crate::kernel::rotation::{Arctangent, Optimum, Solver};
 use crate::kernel::stepper::{Pass, Passes, Scheme};
@@ -31,7 +32,7 @@ pub(super) fn run(
     if some.is_empty() {
         return None;
     }
-    let Parameters { stiffness, damping, rotation, gravity, step } = *parameters;
+    let Parameters { stiffness, bending, volume, damping, damped, rotation, gravity, step } = *parameters;
     let side = grid.sides.element_sum() / 3.0;
     let ratio = (grid.sides / side).to_array();
     let members = crew.threads().min(grid.cells[2]);
@@ -55,8 +56,14 @@ pub(super) fn run(
         stride: grid.stride(),
         box_stride: grid.box_stride(),
         ring: grid.ring(),
-        stiffness,
+        stiffness: bending * stiffness,
         damping,
+        maps: Maps {
+            are_used: bending != 1.0 || volume != 0.0,
+            affine: 0.125 * (1.0 - bending) * stiffness,
+            per_volume: 1.0 / (64.0 * grid.sides.element_product()),
+            pressure: volume * stiffness * grid.sides.length_squared() / (192.0 * grid.sides.element_product()),
+        },
         ratio,
         is_cube: ratio == [1.0; 3],
         // The columns of `A` at rest have length 2 side²; the factor side / 2 is left out.
@@ -86,7 +93,7 @@ pub(super) fn run(
         let slabs = unsafe { sweep.slabs().add(member * sweep.slab.end) };
         let sweep = Sweep { member, slabs, ..sweep };
         macro_rules! run {
-            ($damped:literal) => {
+            ($damped:ident) => {
                 match rotation {
                     Rotation::Optimum => set.run(Solved::<_, $damped>(&sweep, Optimum, &mut found)),
                     Rotation::Arctangent { passes } => {
@@ -95,10 +102,10 @@ pub(super) fn run(
                 }
             };
         }
-        if damping > 0.0 {
-            run!(true)
-        } else {
-            run!(false)
+        match damped {
+            NONE => run!(NONE),
+            RELATIVE => run!(RELATIVE),
+            _ => run!(DEFORMING),
         }
         if let Some(found) = found {
             *lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(found);
@@ -110,6 +117,19 @@ pub(super) fn run(
         crew.run(&work)
     }
     lost.into_inner().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The constants of the linear maps of boxes. The columns of a map are the sums of four edges over four sides.
+#[derive(Clone, Copy)]
+struct Maps {
+    /// Whether forces depend on them.
+    are_used: bool,
+    /// The force on a corner for the sum of the edges along an axis (N/m).
+    affine: f64,
+    /// The relative volume for the product of the three sums (1/m³).
+    per_volume: f64,
+    /// The force on a corner for the product of two of the sums, times the relative excess of the volume (N/m²).
+    pressure: f64,
 }
 
 struct StopOnPanic<'a>(&'a AtomicBool);
@@ -141,8 +161,10 @@ struct Sweep<'a> {
     stride: usize,
     box_stride: usize,
     ring: usize,
+    /// `k` in `w` (N/m).
     stiffness: f64,
     damping: f64,
+    maps: Maps,
     /// The sides divided by their mean.
     ratio: [f64; 3],
     is_cube: bool,
@@ -169,10 +191,10 @@ struct Sweep<'a> {
 // SAFETY: threads write to their own planes, and read those of others only when `Signal` allows it.
 unsafe impl Sync for Sweep<'_> {}
 
-/// A sweep with a solver, with or without damping.
-struct Solved<'a, 'b, S, const DAMPED: bool>(&'a Sweep<'b>, S, &'a mut Option<Lost>);
+/// A sweep with a solver, and the velocity that is damped.
+struct Solved<'a, 'b, S, const DAMPING: u8>(&'a Sweep<'b>, S, &'a mut Option<Lost>);
 
-impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
+impl<S: Solver, const DAMPING: u8> Work for Solved<'_, '_, S, DAMPING> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
@@ -182,9 +204,9 @@ impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
         if sweep.passes.scheme == Scheme::SemiImplicitEuler {
             // Compiled separately with a constant scheme.
             let passes = Passes { scheme: Scheme::SemiImplicitEuler, ..sweep.passes };
-            Sweep { passes, ..sweep }.passes::<L, S, DAMPED>(solver, found);
+            Sweep { passes, ..sweep }.passes::<L, S, DAMPING>(solver, found);
         } else {
-            sweep.passes::<L, S, DAMPED>(solver, found);
+            sweep.passes::<L, S, DAMPING>(solver, found);
         }
     }
 }
@@ -192,7 +214,7 @@ impl<S: Solver, const DAMPED: bool> Work for Solved<'_, '_, S, DAMPED> {
 impl Sweep<'_> {
     /// Executes all passes of `some`.
     #[inline(always)]
-    fn passes<L: Lanes, S: Solver, const DAMPED: bool>(&self, solver: S, found: &mut Option<Lost>) {
+    fn passes<L: Lanes, S: Solver, const DAMPING: u8>(&self, solver: S, found: &mut Option<Lost>) {
         let [first, end] = self.some;
         for pass in 0..end - first {
             let Pass { stage, number, commit, .. } = self.passes.get(first + pass);
@@ -201,7 +223,7 @@ impl Sweep<'_> {
             // threads.
             let bad = unsafe {
                 if stage.has_forces() {
-                    self.pass::<L, S, DAMPED>(pass, &update, solver, commit)
+                    self.pass::<L, S, DAMPING>(pass, &update, solver, commit)
                 } else {
                     self.coast::<L>(pass, &update)
                 }
@@ -244,7 +266,7 @@ impl Sweep<'_> {
         let end = planes * (self.member + 1) / self.members + usize::from(self.member + 1 == self.members);
         for plane in first..end {
             // SAFETY: planes from `first` on belong to this thread and are moved before the others may read them.
-            let bad = unsafe { self.nodes_between::<L, false>(plane, update, |_| (L::splat(0.0), L::splat(0.0))) };
+            let bad = unsafe { self.nodes_between::<L, NONE>(plane, update, |_| (L::splat(0.0), L::splat(0.0))) };
             if bad.is_some() {
                 return bad;
             }
@@ -256,7 +278,7 @@ impl Sweep<'_> {
 
     /// Evaluates the forces on the planes of this thread and moves their nodes, in a pass of this number.
     #[inline(always)]
-    unsafe fn pass<L: Lanes, S: Solver, const DAMPED: bool>(
+    unsafe fn pass<L: Lanes, S: Solver, const DAMPING: u8>(
         &self,
         pass: u64,
         update: &NodeUpdate<'_, L>,
@@ -282,14 +304,15 @@ impl Sweep<'_> {
                 }
                 let above = memory(if is_end { self.slab.highest } else { self.slab.below });
                 let is_shared = plane == first && self.member > 0;
-                if let Some(node) = self.plane::<L, S, DAMPED>(plane, update, solver, commit, above, is_shared) {
+                if let Some(node) = self.plane::<L, S, DAMPING>(plane, update, solver, commit, above, is_shared) {
                     return Some(node);
                 }
             }
             self.signals[self.member].pulled.store(pass + 1, Ordering::Release);
             if is_last {
                 let below = memory(self.slab.below);
-                let bad = self.nodes_between::<L, DAMPED>(planes, update, |at| (L::load(below.add(at)), L::splat(0.0)));
+                let bad =
+                    self.nodes_between::<L, DAMPING>(planes, update, |at| (L::load(below.add(at)), L::splat(0.0)));
                 if bad.is_some() {
                     return bad;
                 }
@@ -302,7 +325,7 @@ impl Sweep<'_> {
                 let below = memory(self.slab.highest).sub(self.slab.end);
                 let lowest = memory(self.slab.lowest);
                 let bad = self
-                    .nodes_between::<L, DAMPED>(first, update, |at| (L::load(below.add(at)), L::load(lowest.add(at))));
+                    .nodes_between::<L, DAMPING>(first, update, |at| (L::load(below.add(at)), L::load(lowest.add(at))));
                 if bad.is_some() {
                     return bad;
                 }

@@ -1,16 +1,65 @@
 //! One plane of boxes and the nodes below it: gather, moments, rotations, forces and update in lanes.
 
 use super::Sweep;
+use crate::kernel::damped::{DEFORMING, NONE, RELATIVE};
 use crate::kernel::lattice::{ACCELERATION, CHUNK, INVERSE_MASS, MEAN, TURN, VELOCITY, slot};
-use crate::kernel::rotation::{Moments, Solver, choose, matrix, turn, turned_back};
+use crate::kernel::rotation::{Moments, Solver, choose, cross, matrix, turn, turned_back};
 use crate::kernel::update::{NodeUpdate, NodeVector};
 use crate::lanes::{Lanes, MOST, each, thrice};
+use crate::law::Turning;
+
+/// The numbers of a square of four nodes along x and z: their sum, their differences along x and z, the sum of their velocities, and the
+/// sums of their [`Turning`]. Only the first [`parts`] are there.
+const SUM: usize = 0;
+const ALONG_X: usize = 3;
+const ALONG_Z: usize = 6;
+const SPEED: usize = 9;
+const TURNING: usize = 12;
+
+/// Count of numbers for each square.
+const fn parts(damping: u8) -> usize {
+    match damping {
+        NONE => 9,
+        RELATIVE => 12,
+        _ => 21,
+    }
+}
+
+/// The squares at both ends of boxes along y.
+struct Ends<L: Lanes> {
+    near: *const f64,
+    far: *const f64,
+    /// The distance between parts.
+    part: usize,
+    distance: L::Distance,
+    line: usize,
+}
+
+impl<L: Lanes> Ends<L> {
+    /// One number of the squares at the lower and at the upper ends.
+    #[inline(always)]
+    unsafe fn get(&self, number: usize) -> [L; 2] {
+        // SAFETY: the ring buffer has these parts in whole vectors, and a vector more.
+        unsafe {
+            let beyond = L::load_beyond(self.far.add(number * self.part), self.distance, self.line);
+            [L::load(self.near.add(number * self.part)), beyond]
+        }
+    }
+
+    /// The sum of both.
+    #[inline(always)]
+    unsafe fn sum(&self, number: usize) -> L {
+        // SAFETY: the caller's.
+        let [near, far] = unsafe { self.get(number) };
+        near + far
+    }
+}
 
 impl Sweep<'_> {
     /// Evaluates the boxes above a plane of nodes, and steps its nodes. Their forces on the next plane are written to
     /// `above`. If the plane `is_shared`, its nodes are not stepped yet.
     #[inline(always)]
-    pub(super) unsafe fn plane<L: Lanes, S: Solver, const DAMPED: bool>(
+    pub(super) unsafe fn plane<L: Lanes, S: Solver, const DAMPING: u8>(
         &self,
         plane: usize,
         update: &NodeUpdate<'_, L>,
@@ -21,7 +70,7 @@ impl Sweep<'_> {
     ) -> Option<usize> {
         let zero = L::splat(0.0);
         let layer = self.grid.layer();
-        let (mut pull_before, mut rise_before) = ([zero; 3], [zero; 3]);
+        let (mut pull_before, mut rise_before, mut spin_before) = ([zero; 3], [zero; 3], [zero; 3]);
         // The place in the ring buffer of rows, and how far the ring buffer of squares is filled.
         let mut own = 0;
         let mut filled = (0, 0);
@@ -32,36 +81,46 @@ impl Sweep<'_> {
             let (below, lowest) = (self.slabs.add(self.slab.below), self.slabs.add(self.slab.lowest));
             let row = self.grid.row().next_multiple_of(MOST);
             for at in (self.ring - row..self.ring).step_by(L::WIDTH) {
-                self.put::<L, 3>(self.slabs.add(self.slab.rows), at, &[[zero; 3]; 3]);
+                self.put_row::<L, DAMPING>(at, &[[zero; 3]; 4]);
             }
             for chunk in (0..layer).step_by(CHUNK) {
                 let boxes = self.box_stride.min(chunk + CHUNK);
                 let end = layer.min(chunk + CHUNK);
-                filled = self.boxes::<L, S, DAMPED>(plane, [chunk, boxes], own, filled, solver, commit);
+                filled = self.boxes::<L, S, DAMPING>(plane, [chunk, boxes], own, filled, solver, commit);
                 for at in (chunk..end).step_by(L::WIDTH) {
-                    let (pull, rise) = self.along_y::<L>(at, own, at < boxes);
+                    let (pull, rise, spin) = self.along_y::<L, DAMPING>(at, own, at < boxes);
                     own = self.next(own, L::WIDTH);
                     let work = self.work.add(at % CHUNK);
                     let first = slot(at, 3);
                     // Along x, and then along z.
+                    let [mut to_low, mut to_high] = each!(2, _side => [zero; 3]);
                     thrice!(axis => {
                         let (high, low) = pull[axis];
                         let here = high.shift_in(pull_before[axis]) + low;
                         let up = rise[axis].shift_in(rise_before[axis]) + rise[axis];
                         (pull_before[axis], rise_before[axis]) = (high, rise[axis]);
+                        (to_low[axis], to_high[axis]) = (here - up, here + up);
+                    });
+                    if DAMPING == DEFORMING {
+                        let all = each!(3, axis => spin[axis].shift_in(spin_before[axis]) + spin[axis]);
+                        spin_before = spin;
+                        to_low = self.turned(plane, at, &all, to_low);
+                        to_high = self.turned(plane + 1, at, &all, to_high);
+                    }
+                    thrice!(axis => {
                         let force = if is_shared {
-                            (here - up).store(lowest.add(first + axis * MOST));
+                            to_low[axis].store(lowest.add(first + axis * MOST));
                             zero
                         } else {
-                            L::load(below.add(first + axis * MOST)) + (here - up)
+                            L::load(below.add(first + axis * MOST)) + to_low[axis]
                         };
                         force.store(work.add(axis * CHUNK));
-                        (here + up).store(above.add(first + axis * MOST));
+                        to_high[axis].store(above.add(first + axis * MOST));
                     });
                 }
                 if !is_shared {
                     let force = |at: usize| each!(3, axis => L::load(self.work.add(axis * CHUNK + at % CHUNK)));
-                    if let Some(node) = self.update::<L, DAMPED>(plane, [chunk, end], update, force) {
+                    if let Some(node) = self.update::<L, DAMPING>(plane, [chunk, end], update, force) {
                         return Some(node);
                     }
                 }
@@ -70,9 +129,21 @@ impl Sweep<'_> {
         None
     }
 
+    /// Forces on nodes (N) with those of boxes of which the sum of `D ω` is `spin` (N/m).
+    #[inline(always)]
+    unsafe fn turned<L: Lanes>(&self, plane: usize, at: usize, spin: &[L; 3], force: [L; 3]) -> [L; 3] {
+        // SAFETY: the caller passes an existing plane and less than a stride.
+        let position = unsafe {
+            let from = self.nodes(plane, at);
+            each!(3, axis => L::load(from.add(axis * MOST)))
+        };
+        let turning = cross(spin, &position);
+        each!(3, axis => force[axis] + turning[axis])
+    }
+
     /// Steps the nodes of a plane between boxes on both sides, whose forces (N) are known.
     #[inline(always)]
-    pub(super) unsafe fn nodes_between<L: Lanes, const DAMPED: bool>(
+    pub(super) unsafe fn nodes_between<L: Lanes, const DAMPING: u8>(
         &self,
         plane: usize,
         update: &NodeUpdate<'_, L>,
@@ -85,7 +156,7 @@ impl Sweep<'_> {
             })
         };
         // SAFETY: these are the nodes of a plane.
-        unsafe { self.update::<L, DAMPED>(plane, [0, self.grid.layer()], update, force) }
+        unsafe { self.update::<L, DAMPING>(plane, [0, self.grid.layer()], update, force) }
     }
 
     /// The place in a ring buffer `steps` after another.
@@ -122,7 +193,7 @@ impl Sweep<'_> {
     /// In several short loops: a rotation is a long chain of dependent operations, and a processor overlaps several of
     /// them in a short loop.
     #[inline(always)]
-    unsafe fn boxes<L: Lanes, S: Solver, const DAMPED: bool>(
+    unsafe fn boxes<L: Lanes, S: Solver, const DAMPING: u8>(
         &self,
         plane: usize,
         [first, end]: [usize; 2],
@@ -140,21 +211,25 @@ impl Sweep<'_> {
         unsafe {
             if first < end {
                 let needed = (end - L::WIDTH + self.grid.row()) / MOST * MOST + 2 * MOST;
-                place = self.squares::<L, DAMPED>(plane, filled, needed, place);
+                place = self.squares::<L, DAMPING>(plane, filled, needed, place);
                 filled = needed;
             }
             for pass in 0..passes {
                 let is_last = pass + 1 == passes;
                 let mut here = own;
                 for at in (first..end).step_by(L::WIDTH) {
-                    let live = L::load(self.live.add(at));
-                    if pass == 0 {
-                        lanes[at % CHUNK][0] = L::bits(L::splat(0.0).lt(live)) as u8;
-                    }
-                    let edges = self.edges::<L, DAMPED>(at, here, live);
-                    here = self.next(here, L::WIDTH);
-                    let b = turned_back(&edges, &matrix(self.turns::<L>(plane, at, pass == 0), scale));
                     let work = self.work.add(at % CHUNK);
+                    let ends = self.ends::<L, DAMPING>(here);
+                    let (edges, sum) = self.edges(&ends);
+                    if pass == 0 {
+                        let live = L::load(self.live.add(at));
+                        lanes[at % CHUNK][0] = L::bits(L::splat(0.0).lt(live)) as u8;
+                        let mean = self.mean::<L, DAMPING>(&ends, &sum, live);
+                        thrice!(axis => mean[axis].store(work.add((MEAN + axis) * CHUNK)));
+                    }
+                    here = self.next(here, L::WIDTH);
+                    let last = self.turns::<L>(plane, at, pass == 0);
+                    let b = turned_back(&self.along_sides(edges), &matrix(last, scale));
                     thrice!(row => thrice!(column => b[row][column].store(work.add((3 * row + column) * CHUNK))));
                 }
                 for at in (first..end).step_by(L::WIDTH) {
@@ -179,8 +254,8 @@ impl Sweep<'_> {
                     let failed = u32::from(open) & !sound;
                     let late = if is_last { sound & !u32::from(last) } else { 0 };
                     if failed | late != 0 {
-                        let edges = self.edges::<L, DAMPED>(at, here, L::load(self.live.add(at)));
-                        let of = Moments { a: &edges, scale, tally: commit.then_some(self.tally) };
+                        let (edges, _) = self.edges(&self.ends::<L, DAMPING>(here));
+                        let of = Moments { a: &self.along_sides(edges), scale, tally: commit.then_some(self.tally) };
                         q = solver.go_on(of, q, late, failed);
                     }
                     here = self.next(here, L::WIDTH);
@@ -226,10 +301,10 @@ impl Sweep<'_> {
         }
     }
 
-    /// Writes, for squares of four nodes along x and z, their sum, their differences along x and along z, and the sum
-    /// of their velocities, in a range of nodes. Returns the place in the ring buffer after them.
+    /// Writes the numbers of squares of four nodes along x and z, in a range of nodes; see [`SUM`]. Returns the place in the ring
+    /// buffer after them.
     #[inline(always)]
-    unsafe fn squares<L: Lanes, const DAMPED: bool>(
+    unsafe fn squares<L: Lanes, const DAMPING: u8>(
         &self,
         plane: usize,
         from: usize,
@@ -245,12 +320,12 @@ impl Sweep<'_> {
                     each!(3, axis => {
                         let (low, high) = (low.add(axis * MOST), high.add(axis * MOST));
                         let (a, b) = (L::load(low), L::load(high));
-                        let speed = if DAMPED {
-                            L::load(low.add(VELOCITY * MOST)) + L::load(high.add(VELOCITY * MOST))
+                        let (v, w) = if DAMPING != NONE {
+                            (L::load(low.add(VELOCITY * MOST)), L::load(high.add(VELOCITY * MOST)))
                         } else {
-                            L::splat(0.0)
+                            (L::splat(0.0), L::splat(0.0))
                         };
-                        (a + b, b - a, speed)
+                        (a + b, b - a, v + w, w - v)
                     })
                 }};
             }
@@ -260,13 +335,24 @@ impl Sweep<'_> {
                 let right = each!(3, axis => left[axis].0.shift_out(next[axis].0));
                 let sum = each!(3, axis => left[axis].0 + right[axis]);
                 let x = each!(3, axis => right[axis] - left[axis].0);
-                let z = each!(3, axis => left[axis].1 + left[axis].1.shift_out(next[axis].1));
+                let beside = each!(3, axis => left[axis].1.shift_out(next[axis].1));
+                let z = each!(3, axis => left[axis].1 + beside[axis]);
+                let v = each!(3, axis => left[axis].2.shift_out(next[axis].2));
+                let speed = each!(3, axis => left[axis].2 + v[axis]);
                 let ring = self.slabs.add(self.slab.squares);
-                if DAMPED {
-                    let speed = each!(3, axis => left[axis].2 + left[axis].2.shift_out(next[axis].2));
-                    self.put(ring, place, &[sum, x, z, speed]);
-                } else {
-                    self.put(ring, place, &[sum, x, z]);
+                match DAMPING {
+                    NONE => self.put(ring, place, &[sum, x, z]),
+                    RELATIVE => self.put(ring, place, &[sum, x, z, speed]),
+                    _ => {
+                        let w = each!(3, axis => left[axis].3.shift_out(next[axis].3));
+                        let both = each!(3, axis => beside[axis] - left[axis].1);
+                        let mut turning = Turning::new();
+                        turning.add(x, x, each!(3, axis => v[axis] - left[axis].2));
+                        turning.add(z, z, each!(3, axis => left[axis].3 + w[axis]));
+                        turning.add(both, both, each!(3, axis => w[axis] - left[axis].3));
+                        let [xx, yy, zz, xy, xz, yz] = turning.squares;
+                        self.put(ring, place, &[sum, x, z, speed, [xx, yy, zz], [xy, xz, yz], turning.momentum]);
+                    }
                 }
                 place = self.next(place, L::WIDTH);
                 left = next;
@@ -275,79 +361,147 @@ impl Sweep<'_> {
         place
     }
 
-    /// The sums of the edges of boxes along each axis: the columns of `A` except for a factor. Writes `w̄`. `own` is
-    /// the place of the squares at the lower ends along y.
+    /// The squares of boxes; `own` is the place of those at the lower ends along y.
     #[inline(always)]
-    unsafe fn edges<L: Lanes, const DAMPED: bool>(&self, at: usize, own: usize, live: L) -> [[L; 3]; 3] {
-        // SAFETY: the ring buffer has the squares in whole vectors, and a vector more.
+    unsafe fn ends<L: Lanes, const DAMPING: u8>(&self, own: usize) -> Ends<L> {
+        let beyond = self.next(own, self.grid.row());
+        let (near, part) = self.ring_place::<L>(own, parts(DAMPING));
+        let (far, _) = self.ring_place::<L>(beyond / MOST * MOST, parts(DAMPING));
+        // SAFETY: both places are in the ring buffer.
+        let [near, far] = unsafe { [near, far].map(|place| self.slabs.add(self.slab.squares + place).cast_const()) };
+        Ends { near, far, part, distance: L::distance(beyond % MOST), line: MOST * parts(DAMPING) }
+    }
+
+    /// The sums of the edges of boxes along each axis, and the sum of their corners.
+    #[inline(always)]
+    unsafe fn edges<L: Lanes>(&self, ends: &Ends<L>) -> ([[L; 3]; 3], [L; 3]) {
+        let mut edges = [[L::splat(0.0); 3]; 3];
+        let mut sum = [L::splat(0.0); 3];
+        // SAFETY: all squares have these numbers.
+        thrice!(axis => unsafe {
+            let [near, far] = ends.get(SUM + axis);
+            edges[0][axis] = ends.sum(ALONG_X + axis);
+            edges[1][axis] = far - near;
+            edges[2][axis] = ends.sum(ALONG_Z + axis);
+            sum[axis] = near + far;
+        });
+        (edges, sum)
+    }
+
+    /// Columns times the sides of boxes, divided by the mean side: from sums of edges the columns of `A` except for a factor.
+    #[inline(always)]
+    fn along_sides<L: Lanes>(&self, columns: [[L; 3]; 3]) -> [[L; 3]; 3] {
+        if self.is_cube {
+            return columns;
+        }
+        each!(3, column => each!(3, axis => columns[column][axis] * L::splat(self.ratio[column])))
+    }
+
+    /// `w̄` of boxes, from the sum of their corners.
+    #[inline(always)]
+    unsafe fn mean<L: Lanes, const DAMPING: u8>(&self, ends: &Ends<L>, sum: &[L; 3], live: L) -> [L; 3] {
+        let (of_p, of_v) = (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
+        each!(3, axis => {
+            let mean = of_p * sum[axis];
+            // SAFETY: with damping, squares have the sums of velocities.
+            if DAMPING == NONE { mean } else { of_v.mul_add(unsafe { ends.sum(SPEED + axis) }, mean) }
+        })
+    }
+
+    /// `D ω` of boxes (N/m), and the force on a corner that does not depend on the corner (N).
+    #[inline(always)]
+    unsafe fn spin<L: Lanes>(&self, ends: &Ends<L>, live: L) -> [[L; 3]; 2] {
+        // SAFETY: with this damping, squares have these numbers.
         unsafe {
-            let row = self.grid.row();
-            let parts = if DAMPED { 12 } else { 9 };
-            let squares = self.slabs.add(self.slab.squares);
-            let (near, part) = self.ring_place::<L>(own, parts);
-            let beyond = self.next(own, row);
-            let (far, _) = self.ring_place::<L>(beyond / MOST * MOST, parts);
-            let (near, far) = (squares.add(near), squares.add(far));
-            let (distance, line) = (L::distance(beyond % MOST), MOST * parts);
-            let work = self.work.add(at % CHUNK);
-            let mut edges = [[L::splat(0.0); 3]; 3];
-            let (of_p, of_v) = (L::splat(0.125 * self.stiffness) * live, L::splat(0.125 * self.damping) * live);
-            thrice!(axis => {
-                let (sum0, sum1) = (L::load(near.add(axis * part)), L::load_beyond(far.add(axis * part), distance, line));
-                let x = (3 + axis) * part;
-                edges[0][axis] = L::load(near.add(x)) + L::load_beyond(far.add(x), distance, line);
-                edges[1][axis] = sum1 - sum0;
-                let z = (6 + axis) * part;
-                edges[2][axis] = L::load(near.add(z)) + L::load_beyond(far.add(z), distance, line);
-                let mut mean = of_p * (sum0 + sum1);
-                if DAMPED {
-                    let v = (9 + axis) * part;
-                    let sum = L::load(near.add(v)) + L::load_beyond(far.add(v), distance, line);
-                    mean = of_v.mul_add(sum, mean);
-                }
-                mean.store(work.add((MEAN + axis) * CHUNK));
+            let mut turning = Turning {
+                squares: each!([0, 1, 2, 3, 4, 5], entry => ends.sum(TURNING + entry)),
+                momentum: each!(3, axis => ends.sum(TURNING + 6 + axis)),
+            };
+            let positions = each!(3, axis => ends.get(SUM + axis));
+            let y = each!(3, axis => positions[axis][1] - positions[axis][0]);
+            let v = each!(3, axis => {
+                let [near, far] = ends.get(SPEED + axis);
+                far - near
             });
-            if !self.is_cube {
-                edges = each!(3, column => each!(3, axis => edges[column][axis] * L::splat(self.ratio[column])));
-            }
-            edges
+            turning.add(each!(3, axis => L::splat(0.5) * y[axis]), y, v);
+            let (spin, d) = (turning.spin(), L::splat(self.damping) * live);
+            let spin = each!(3, axis => spin[axis] * d);
+            let middle = each!(3, axis => L::splat(-0.125) * (positions[axis][0] + positions[axis][1]));
+            [spin, cross(&spin, &middle)]
         }
     }
 
     /// `u`, `v` and `t` of boxes.
     #[inline(always)]
-    unsafe fn shape<L: Lanes>(&self, at: usize) -> [[L; 3]; 3] {
-        // SAFETY: `live` has all boxes of a plane in whole vectors, and `work` those of a chunk.
+    unsafe fn shape<L: Lanes>(&self, at: usize, ends: &Ends<L>, live: L) -> [[L; 3]; 3] {
+        // SAFETY: a chunk of `work` has boxes in whole vectors.
         unsafe {
             let work = self.work.add(at % CHUNK);
             let q = each!(4, part => L::load(work.add((TURN + part) * CHUNK)));
-            let mut shape = matrix(q, L::splat(self.half) * L::load(self.live.add(at)));
-            if !self.is_cube {
-                shape = each!(3, column => each!(3, axis => shape[column][axis] * L::splat(self.ratio[column])));
+            let mut shape = self.along_sides(matrix(q, L::splat(self.half) * live));
+            if self.maps.are_used {
+                let (edges, _) = self.edges(ends);
+                let [x, y, z] = &edges;
+                let cofactors = [cross(y, z), cross(z, x), cross(x, y)];
+                let product = each!(3, axis => x[axis] * cofactors[0][axis]);
+                let volume = (product[0] + product[1]) + product[2];
+                let excess = volume.mul_sub(L::splat(self.maps.per_volume), L::splat(1.0));
+                let (pressure, affine) =
+                    (L::splat(self.maps.pressure) * live * excess, L::splat(self.maps.affine) * live);
+                shape = each!(3, column => each!(3, axis => {
+                    let rest = affine.neg_mul_add(edges[column][axis], shape[column][axis]);
+                    pressure.neg_mul_add(cofactors[column][axis], rest)
+                }));
             }
             shape
         }
     }
 
-    /// Adds up the forces of the boxes of two rows on the nodes between: for each axis the sums for the next node along
-    /// x and for the node itself, and the part whose sign changes along z.
+    /// Writes `w̄ + v`, `u`, `t` and, where it is needed, `D ω` of boxes.
     #[inline(always)]
-    unsafe fn along_y<L: Lanes>(&self, at: usize, own: usize, is_box: bool) -> ([(L, L); 3], [L; 3]) {
-        // SAFETY: a chunk of `work` has boxes in whole vectors; see `put`. The ring buffer can be read from any place.
+    unsafe fn put_row<L: Lanes, const DAMPING: u8>(&self, own: usize, [sum, u, t, spin]: &[[L; 3]; 4]) {
+        // SAFETY: see `put`.
+        unsafe {
+            let rows = self.slabs.add(self.slab.rows);
+            if DAMPING == DEFORMING {
+                self.put(rows, own, &[*sum, *u, *t, *spin]);
+            } else {
+                self.put(rows, own, &[*sum, *u, *t]);
+            }
+        }
+    }
+
+    /// Adds up the forces of the boxes of two rows on the nodes between: for each axis the sums for the next node along
+    /// x and for the node itself, and the part whose sign changes along z; and their `D ω`.
+    #[inline(always)]
+    unsafe fn along_y<L: Lanes, const DAMPING: u8>(
+        &self,
+        at: usize,
+        own: usize,
+        is_box: bool,
+    ) -> ([(L, L); 3], [L; 3], [L; 3]) {
+        // SAFETY: `live` has all boxes of a plane in whole vectors, and a chunk of `work` those of a chunk; see `put`. The ring
+        // buffers can be read from any place.
         unsafe {
             let work = self.work.add(at % CHUNK);
             let zero = [L::splat(0.0); 3];
-            let ([u, v, t], mean) = if is_box {
-                (self.shape::<L>(at), each!(3, axis => L::load(work.add((MEAN + axis) * CHUNK))))
-            } else {
-                ([zero; 3], zero)
-            };
-            self.put(self.slabs.add(self.slab.rows), own, &[each!(3, axis => mean[axis] + v[axis]), u, t]);
+            let ([mut u, mut v, mut t], mut mean, mut spin) = ([zero; 3], zero, zero);
+            if is_box {
+                let (ends, live) = (self.ends::<L, DAMPING>(own), L::load(self.live.add(at)));
+                [u, v, t] = self.shape(at, &ends, live);
+                mean = each!(3, axis => L::load(work.add((MEAN + axis) * CHUNK)));
+                if DAMPING == DEFORMING {
+                    let [turning, still] = self.spin(&ends, live);
+                    (spin, mean) = (turning, each!(3, axis => mean[axis] + still[axis]));
+                }
+            }
+            self.put_row::<L, DAMPING>(own, &[each!(3, axis => mean[axis] + v[axis]), u, t, spin]);
             // From the previous row. Its first lanes may just have been written.
+            let parts = if DAMPING == DEFORMING { 12 } else { 9 };
             let before = self.next(own, self.ring - self.grid.row());
-            let (from, part) = self.ring_place::<L>(before / MOST * MOST, 9);
+            let (from, part) = self.ring_place::<L>(before / MOST * MOST, parts);
             let from = self.slabs.add(self.slab.rows + from);
-            let (distance, line) = (L::distance(before % MOST), MOST * 9);
+            let (distance, line) = (L::distance(before % MOST), MOST * parts);
             let mut pull = [(mean[0], mean[0]); 3];
             let mut rise = t;
             thrice!(axis => {
@@ -355,15 +509,18 @@ impl Sweep<'_> {
                 let along = L::load_beyond(from.add((3 + axis) * part), distance, line) + u[axis];
                 pull[axis] = (sum + along, sum - along);
                 rise[axis] = L::load_beyond(from.add((6 + axis) * part), distance, line) + t[axis];
+                if DAMPING == DEFORMING {
+                    spin[axis] = L::load_beyond(from.add((9 + axis) * part), distance, line) + spin[axis];
+                }
             });
-            (pull, rise)
+            (pull, rise, spin)
         }
     }
 
     /// Eqs. (2) and (3) and contact for a range of nodes of a plane, on which elements act with a force (N) in addition
     /// to `−w`. Returns the first node that becomes too fast, if any.
     #[inline(always)]
-    unsafe fn update<L: Lanes, const DAMPED: bool>(
+    unsafe fn update<L: Lanes, const DAMPING: u8>(
         &self,
         plane: usize,
         [first, end]: [usize; 2],
@@ -388,7 +545,7 @@ impl Sweep<'_> {
                 let mut total = force(at);
                 thrice!(axis => {
                     total[axis] = nodes.position[axis].neg_mul_add(stiffness, total[axis]);
-                    if DAMPED {
+                    if DAMPING != NONE {
                         total[axis] = nodes.velocity[axis].neg_mul_add(damping, total[axis]);
                     }
                 });
