@@ -11,9 +11,13 @@ mod parts;
 mod polyhedra;
 mod tetrahedra;
 
-use super::{Flaws, Surface};
+use super::{Flaws, Group, Surface};
 use glam::DVec3;
 use localshape_sim::{IndexLists, Weights};
+use std::collections::BTreeSet;
+
+/// Weights below this are round-off.
+const CLOSE: f64 = 1e-9;
 
 /// The elements that fill a surface, all of one size (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +55,8 @@ pub struct Cage {
     pub filled: Option<Vec<f64>>,
     /// Whether elements are the convex hulls of their nodes, in any order.
     pub convex: bool,
+    /// For each group of points of the surface, the nodes that carry some of them.
+    pub groups: Vec<Group>,
 }
 
 /// A filled surface.
@@ -74,6 +80,14 @@ pub struct FillError {
     pub message: String,
     /// What to do.
     pub help: Option<String>,
+    /// If too many elements were needed, a side with which few enough are (m); infinite if none is known.
+    pub fitting: Option<f64>,
+}
+
+impl FillError {
+    fn new(message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self { message: message.into(), help: Some(help.into()), fitting: None }
+    }
 }
 
 /// Fills a surface, which is mended first, with at most so many elements. Points of the surface that are almost on a plane of
@@ -86,10 +100,27 @@ pub fn fill(surface: &Surface, fill: Fill, most: usize) -> Result<Filled, FillEr
     let (Fill::Cubes { side } | Fill::Graded { side } | Fill::Tetrahedra { side } | Fill::Polyhedra { side }) = fill;
     lattice::check(&surface, fill, side, most)?;
     surface.refine(side, most);
-    match fill {
+    let filled = match fill {
         Fill::Cubes { side } => cubes::fill(surface, flaws, side, false, most),
         Fill::Graded { side } => cubes::fill(surface, flaws, side, true, most),
         Fill::Polyhedra { side } => polyhedra::fill(surface, flaws, side, most),
         Fill::Tetrahedra { side } => tetrahedra::fill(surface, flaws, side, most),
+    };
+    filled.map(Filled::with_groups)
+}
+
+impl Filled {
+    fn with_groups(mut self) -> Self {
+        let nodes = |&point: &u32| {
+            let (nodes, weights) = self.weights.of(point as usize);
+            // Points in a face do not follow the nodes beyond it.
+            nodes.iter().zip(weights).filter(|(_, weight)| weight.abs() > CLOSE).map(|(&node, _)| node)
+        };
+        let group = |group: &Group| {
+            let nodes: BTreeSet<u32> = group.points.iter().flat_map(nodes).collect();
+            Group { name: group.name.clone(), points: nodes.into_iter().collect() }
+        };
+        self.cage.groups = self.surface.groups.iter().map(group).collect();
+        self
     }
 }

@@ -429,7 +429,8 @@ mod tests {
     fn cube() -> Surface {
         let points = (0..8u32).map(|n| DVec3::from_array([n & 1, n >> 1 & 1, n >> 2].map(f64::from))).collect();
         let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-        Surface { points, triangles: faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect() }
+        let triangles = faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        Surface { points, triangles, ..Surface::default() }
     }
 
     /// The triangles of a surface as caps, for their winding number.

@@ -1,5 +1,6 @@
 //! Surfaces of triangles: what is wrong with them, and mending it.
 
+use super::Group;
 use super::inside::Columns;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -11,6 +12,8 @@ pub struct Surface {
     pub points: Vec<DVec3>,
     /// The points of each triangle, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// Sets of points with a name.
+    pub groups: Vec<Group>,
 }
 
 /// What is wrong with a surface, by number.
@@ -122,6 +125,11 @@ impl Surface {
     /// Divides longer edges in halves, and returns whether there were some.
     fn halve(&mut self, longest: f64) -> bool {
         let mut middles = vec![[None; 3]; self.triangles.len()];
+        // The groups of each point, to which the middle between two of their points belongs, too.
+        let mut groups_of = vec![Vec::new(); self.points.len()];
+        for (group, at) in self.groups.iter().zip(0u32..) {
+            group.points.iter().for_each(|&point| groups_of[point as usize].push(at));
+        }
         for edge in EdgeUse::all(&self.triangles).chunk_by(EdgeUse::same) {
             let [low, high] = [edge[0].low, edge[0].high].map(|point| self.points[point as usize]);
             let middle = low.midpoint(high);
@@ -131,6 +139,11 @@ impl Surface {
                     let from = if one.forward { one.low } else { one.high };
                     let place = self.triangles[one.triangle as usize].iter().position(|&corner| corner == from);
                     middles[one.triangle as usize][place.unwrap_or(0)] = Some(self.points.len() as u32);
+                }
+                for group in &groups_of[edge[0].low as usize] {
+                    if groups_of[edge[0].high as usize].contains(group) {
+                        self.groups[*group as usize].points.push(self.points.len() as u32);
+                    }
                 }
                 self.points.push(middle);
             }
@@ -176,7 +189,7 @@ impl Surface {
         used.dedup();
         let count = used.len();
         used.sort_by_cached_key(|&point| (bits(point), point));
-        let mut first = vec![0; self.points.len()];
+        let mut first: Vec<u32> = (0..self.points.len() as u32).collect();
         for same in used.chunk_by(|&a, &b| bits(a) == bits(b)) {
             same.iter().for_each(|&point| first[point as usize] = same[0]);
             flaws.welded += same.len() - 1;
@@ -192,7 +205,9 @@ impl Surface {
             }
         }
         flaws.degenerate = self.triangles.len() - triangles.len();
-        Self { points: self.points.clone(), triangles }.compact()
+        let mut groups = self.groups.clone();
+        groups.iter_mut().flat_map(|group| &mut group.points).for_each(|point| *point = first[*point as usize]);
+        Self { points: self.points.clone(), triangles, groups }.compact()
     }
 
     /// The surface with those points only that belong to a triangle, in the same order.
@@ -211,7 +226,14 @@ impl Surface {
         for triangle in &mut self.triangles {
             *triangle = triangle.map(|point| number[point as usize]);
         }
-        Self { points, triangles: self.triangles }
+        for group in &mut self.groups {
+            group.points.iter_mut().for_each(|point| *point = number[*point as usize]);
+            group.points.retain(|&point| point != u32::MAX);
+            group.points.sort_unstable();
+            group.points.dedup();
+        }
+        self.groups.retain(|group| !group.points.is_empty());
+        Self { points, ..self }
     }
 
     fn drop_doubled(&mut self, flaws: &mut Flaws) {

@@ -4,7 +4,7 @@ mod common;
 
 use common::{apart, ball, block, ring, scan, together};
 use glam::{DMat3, DVec3};
-use localshape_mesh::{Fill, Filled, Surface, fill};
+use localshape_mesh::{Fill, Filled, Group, Surface, fill};
 
 const MOST: usize = 1_000_000;
 
@@ -460,7 +460,7 @@ fn any_triangles_are_filled_or_refused() {
         let number = next() % 40;
         let triangles =
             (0..number).map(|_| [0; 3].map(|_: u32| next() % (count + u32::from(case % 50 == 0)))).collect();
-        let surface = Surface { points, triangles };
+        let surface = Surface { points, triangles, ..Surface::default() };
         let side = scale * [0.1, 0.25, 0.5, 3.0][case / 24 % 4];
         for with in [Fill::Cubes { side }, Fill::Graded { side }, Fill::Tetrahedra { side }, Fill::Polyhedra { side }] {
             match fill(&surface, with, 2000) {
@@ -495,4 +495,38 @@ fn results_do_not_depend_on_the_number_of_threads() {
     let one = run(1);
     assert_eq!(one, run(3));
     assert_eq!(one, run(8));
+}
+
+#[test]
+fn groups_of_points_are_groups_of_the_nodes_that_carry_them() {
+    let group = |name: &str, points: &[u32]| Group { name: name.to_owned(), points: points.to_vec() };
+    let cube = block(DVec3::ZERO, DVec3::ONE);
+    // Points of the face at z = 0, one corner, and a point that no triangle has.
+    let groups = vec![group("foot", &[0, 1, 2, 3]), group("corner", &[7]), group("loose", &[8])];
+    let points = cube.points.iter().copied().chain([DVec3::splat(2.0)]).collect();
+    let surface = Surface { points, groups, ..cube };
+    let side = 0.25;
+    for with in [Fill::Cubes { side }, Fill::Graded { side }, Fill::Tetrahedra { side }, Fill::Polyhedra { side }] {
+        let cage = fill(&surface, with, MOST).unwrap().cage;
+        let names: Vec<_> = cage.groups.iter().map(|group| &*group.name).collect();
+        assert_eq!(names, ["foot", "corner"]);
+        let places = |group: usize| cage.groups[group].points.iter().map(|&node| cage.nodes[node as usize]);
+        // All nodes of the face, which is divided to follow them.
+        let on_face = cage.nodes.iter().filter(|node| node.z == 0.0).count();
+        assert!(places(0).all(|at| at.z == 0.0) && places(0).count() == on_face && on_face >= 25, "{with:?} {on_face}");
+        assert_eq!(places(1).collect::<Vec<_>>(), [DVec3::ONE], "{with:?}");
+    }
+}
+
+#[test]
+fn far_too_many_elements_are_refused_in_words() {
+    let cube = block(DVec3::ZERO, DVec3::ONE);
+    for (with, words) in [
+        (Fill::Cubes { side: 0.001 }, "needs about 1e9 elements of side 0.001, and at most 8.2 million are allowed"),
+        (Fill::Tetrahedra { side: 1.0 / 150.0 }, "needs about 40 million elements of side 0.006667"),
+    ] {
+        let error = fill(&cube, with, 8_200_000).unwrap_err();
+        println!("{error} {:?}", error.fitting);
+        assert!(error.message.starts_with(words), "{error}");
+    }
 }

@@ -258,6 +258,7 @@ fn what_has_no_inside_is_refused() {
     let sheet = Surface {
         points: vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Surface::default()
     };
     for with in both(0.1) {
         let refused = fill(&sheet, with, MOST).unwrap_err();

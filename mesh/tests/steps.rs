@@ -22,7 +22,7 @@ fn body(surface: &Surface, side: f64) -> Arc<Body> {
         fill(surface, Fill::Cubes { side }, 100_000).expect("it has an inside");
     let count = nodes.len();
     let body = Body::new(Dimension::Space, nodes, vec![0.0; count], elements, Solids::Ordered, None);
-    let Surface { points: rest, triangles } = surface;
+    let Surface { points: rest, triangles, .. } = surface;
     let mut body = Body { fill: filled, carried: Some(Arc::new(Carried { rest, triangles, weights })), ..body };
     for (element, volume) in volumes_at_rest(&body).into_iter().enumerate() {
         let part = body.fill.as_ref().map_or(1.0, |fill| fill[element]);

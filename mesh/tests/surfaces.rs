@@ -110,7 +110,7 @@ fn edges_that_are_open_or_cannot_agree_are_counted() {
         let [c, d] = if n == count - 1 { [1, 0] } else { [2 * n + 2, 2 * n + 3] };
         [[a, b, c], [b, d, c]]
     });
-    let flaws = Surface { points, triangles: triangles.collect() }.mended().1;
+    let flaws = Surface { points, triangles: triangles.collect(), ..Surface::default() }.mended().1;
     assert_eq!((flaws.boundary, flaws.inconsistent, flaws.pieces), (24, 1, 1));
 }
 

@@ -130,7 +130,7 @@ impl Check {
         let (document, error) = match MeshSummary::read(path, &limits) {
             Ok(mesh) => {
                 if is_text && !self.printing.quiet {
-                    print(&format!("{blank}{mesh}"))?;
+                    print(&format!("{blank}  {:<10} {file}\n{mesh}", "mesh"))?;
                 }
                 let error = mesh.fault();
                 (json!({ "file": file, "ok": error.is_none(), "error": error, "mesh": mesh }), error)

@@ -73,7 +73,9 @@ fn other(ending: &str) -> Option<String> {
             "export it again: surfaces from Blender as .ply or .glb, cells from Gmsh or meshio as .vtu".to_owned(),
         );
     }
-    nearest(ending, &endings()).map(|near| format!("did you mean .{near}?"))
+    // Of short endings, others are formats of their own.
+    let near = nearest(ending, &endings()).filter(|near| ending.len() > near.len());
+    near.map(|near| format!("did you mean .{near}?"))
 }
 
 /// Why an archive of arrays cannot be read from a mesh file, and what to write instead; `None` for other files.

@@ -36,7 +36,7 @@ pub use crate::reading::captions::description;
 pub use crate::reading::{Mistake, Mistakes};
 pub use builder::{BodyBuilder, NodeSet, ObstacleBuilder, RunBuilder, SceneBuilder};
 pub use error::SceneError;
-pub use file::{Cells, Coordinates, Lattice, MotionPath, Rotation, Side, Start, StartShape, Swing};
+pub use file::{Cells, Coordinates, Lattice, MotionPath, Rotation, Side, Start, StartShape, Swing, Up};
 pub use limits::Limits;
 #[cfg(feature = "render")]
 pub(crate) use load::is_figure_file;

@@ -248,6 +248,8 @@ fn says_what_a_mesh_is() {
     {
         assert!(ran.out.contains(word), "{word}: {}", ran.out);
     }
+    let both = place.run("check whole.obj sheet.obj").out;
+    assert!(both.contains("mesh       whole.obj") && both.contains("mesh       sheet.obj"), "{both}");
     assert_eq!(place.run("check whole.obj small.toml --quiet").good().out, "");
     let ran = place.run("check sheet.obj absent.ply");
     assert_eq!(ran.status, Some(2), "{ran:?}");

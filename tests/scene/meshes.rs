@@ -38,6 +38,8 @@ fn files_that_are_no_meshes_are_named() {
     wrong(&named("body.npz"), &[("body.npz", b"PK")], &["`body.npz` is a NumPy archive", "`file` in place of `mesh`"]);
     wrong(&named("body.fbx"), &[("body.fbx", b"")], &["`body.fbx` is a .fbx file", ".obj, .stl", "Blender"]);
     wrong(&named("body.stll"), &[("body.stll", b"")], &["is a .stll file", "did you mean .stl?"]);
+    let series = load(&named("body.vtm"), &[("body.vtm", b"")]).unwrap_err().to_string();
+    assert!(series.contains("is a .vtm file") && !series.contains("did you mean"), "{series}");
     wrong(&named("body"), &[("body", b"")], &["`body` has no ending; expected a mesh: .obj, .stl, .ply"]);
     wrong(&named("."), &[], &["`.` is a folder; expected a mesh"]);
 }
@@ -164,17 +166,30 @@ fn a_group_with_the_name_of_a_side_leaves_the_sides_of_other_bodies() {
 }
 
 #[test]
-fn groups_of_a_filled_surface_are_told_to_be_lost() {
+fn groups_of_a_filled_surface_are_the_nodes_that_carry_them() {
     let surface = "\
 $MeshFormat\n2.2 0 8\n$EndMeshFormat
 $PhysicalNames\n1\n2 1 \"foot\"\n$EndPhysicalNames
 $Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes
 $Elements\n4\n1 2 2 1 1 1 3 2\n2 2 2 0 1 1 2 4\n3 2 2 0 1 1 4 3\n4 2 2 0 1 2 3 4\n$EndElements
 ";
-    let scene = |nodes: &str| with("foot.msh", "fill.cells = 4") + &format!("[[hold]]\nnodes = '{nodes}'\n");
-    assert!(!loaded(&scene("bottom"), &[("foot.msh", surface)]).runs[0].grips.is_empty());
-    let expected = ["`hold[0].nodes` is \"foot\"", "\"bottom\"", "a surface that is filled has no groups"];
-    wrong(&scene("foot"), &[("foot.msh", surface.as_bytes())], &expected);
+    for with_ in ["cubes", "graded", "tetrahedra", "polyhedra"] {
+        let scene = |nodes: &str| {
+            let fill = format!("fill = {{ with = '{with_}', side = 0.25 }}");
+            with("foot.msh", &fill) + &format!("[[hold]]\nnodes = '{nodes}'\n")
+        };
+        let held = |nodes: &str| {
+            let scene = loaded(&scene(nodes), &[("foot.msh", surface)]);
+            let body = scene.bodies[0].body.clone();
+            scene.runs[0].grips[0].nodes.iter().map(|&node| body.rest[node as usize]).collect::<Vec<_>>()
+        };
+        // The face at z = 0 is all of the group, with the points between its corners: 15 of them, at distances of a quarter.
+        let foot = held("foot");
+        assert!(foot.len() >= 15, "{with_}: {foot:?}");
+        assert!(foot.iter().all(|at| at.z.abs() < 1e-9), "{with_}: {foot:?}");
+        let expected = ["or a group of the mesh: \"foot\"", "did you mean \"foot\"?"];
+        wrong(&scene("fot"), &[("foot.msh", surface.as_bytes())], &expected);
+    }
 }
 
 #[test]
@@ -183,6 +198,22 @@ fn a_filled_body_needs_its_density_or_its_whole_mass() {
     let scene = with("cube.obj", "fill.cells = 2").replace("density = 1000.0", "KEY");
     wrong(&scene.replace("KEY", ""), cube, &["neither `density` nor `mass_total`", "such as density = 1000"]);
     wrong(&scene.replace("KEY", "mass = 1"), cube, &["`body.mass` is that of every node", "`density`"]);
+    // One mistake is one error.
+    let errors = |scene: &str| load(scene, cube).unwrap_err().mistakes().len();
+    assert_eq!(errors(&scene.replace("KEY", "density = '1000'")), 1);
+    let floor = "[[obstacle]]\nkind = 'floor'\n";
+    assert_eq!(errors(&(scene.replace("KEY", "density = 1000\noffset = [0, -1, 0]") + floor)), 1);
+    assert_eq!(errors(&(scene.replace("KEY", "density = 1000\noffset = [0, -1, 0]\nlowest = '2'") + floor)), 1);
+    // Far too many elements are refused with what to do.
+    let many = |fill: &str| with("cube.obj", fill);
+    let expected = [
+        "needs about 1e9 elements of side 0.001, and at most 8.2 million are allowed",
+        "use cells = ",
+        "--allow-large",
+    ];
+    wrong(&many("fill = { cells = 1000 }"), cube, &expected);
+    wrong(&many("fill = { with = 'tetrahedra', cells = 150 }"), cube, &["needs about 40 million", "use cells = "]);
+    wrong(&many("fill = { side = 0.001 }"), cube, &["use side = 0.0051 or more, or allow more with --allow-large"]);
     let whole = loaded(&scene.replace("KEY", "mass_total = 3"), &[("cube.obj", CUBE)]);
     assert!((whole.bodies[0].body.mass.iter().sum::<f64>() - 3.0).abs() < 1e-12);
 }

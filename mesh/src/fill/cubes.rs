@@ -73,7 +73,7 @@ pub(super) fn fill(
     if elements.len() > most {
         return refuse(elements.len());
     }
-    let cage = Cage { nodes: nodes.places, elements, filled: in_part(filled), convex: false };
+    let cage = Cage { nodes: nodes.places, elements, filled: in_part(filled), ..Cage::default() };
     Ok(Filled { cage, surface, weights, flaws })
 }
 
@@ -125,6 +125,7 @@ pub(super) fn cells(
     let caps = Surface {
         points: inside.caps().as_flattened().to_vec(),
         triangles: (0..inside.caps().len() as u32).map(|cap| [3 * cap, 3 * cap + 1, 3 * cap + 2]).collect(),
+        ..Surface::default()
     };
     let capped = clip::pieces(&caps, lattice);
     let grid = Grid { first: DVec3::splat(0.5), side: 1.0, counts: lattice.counts };
@@ -199,7 +200,7 @@ pub(super) fn no_inside(flaws: &Flaws) -> FillError {
             (message, "give it a thickness, or close its holes, in the program that made it")
         }
     };
-    FillError { message, help: Some(help.to_owned()) }
+    FillError::new(message, help)
 }
 
 /// Adds pieces without area, so that each point has a piece of its triangle in its cell: some triangles have no area.

@@ -124,7 +124,7 @@ impl Lattice {
         let lattice = lattice::Lattice { origin: self.origin + self.side, side: self.side, counts };
         let most = (self.cubes - 2).as_dvec3();
         let points = self.surface.points.iter().map(|&point| (0.5 * point - 1.0).clamp(DVec3::ZERO, most)).collect();
-        let scaled = Surface { points, triangles: self.surface.triangles.clone() };
+        let scaled = Surface { points, triangles: self.surface.triangles.clone(), ..Surface::default() };
         let cells = cubes::cells(&Inside::new(&scaled), flaws, &lattice, &clip::pieces(&scaled, &lattice))?;
         let mut filled = vec![0.0; self.cubes.as_usizevec3().element_product()];
         for full in cells {

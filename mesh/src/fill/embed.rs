@@ -93,7 +93,7 @@ pub(super) fn carry(
         }
     }
     let message = format!("falls into pieces if it is filled with elements of side {}", lattice.side);
-    Err(FillError { message, help: Some("use a smaller side, or fill it with cubes".to_owned()) })
+    Err(FillError::new(message, "use a smaller side, or fill it with cubes"))
 }
 
 /// No number.

@@ -23,30 +23,35 @@ fn counts(measures: &Measures, side: f64) -> [f64; 3] {
 pub(super) fn check(surface: &Surface, fill: Fill, side: f64, most: usize) -> Result<(), FillError> {
     let measures = surface.measures();
     if surface.triangles.is_empty() {
-        let help = Some("use a file with faces".to_owned());
-        return Err(FillError { message: "has no face with an area".to_owned(), help });
+        return Err(FillError::new("has no face with an area", "use a file with faces"));
     }
     if !(side > 0.0 && side.is_finite()) {
-        let help = Some("use a positive side".to_owned());
-        return Err(FillError { message: format!("cannot be filled with elements of side {side}"), help });
+        return Err(FillError::new(format!("cannot be filled with elements of side {side}"), "use a positive side"));
     }
     let longest = (measures.high - measures.low).max_element();
     if !(SIZES.contains(&longest) && side <= *SIZES.end()) {
         let [least, most] = [SIZES.start(), SIZES.end()];
         let message =
             format!("is {longest:e} long; expected {least:e} to {most:e}, and elements of no larger side than that");
-        return Err(FillError { message, help: Some("use another unit of length".to_owned()) });
+        return Err(FillError::new(message, "use another unit of length"));
     }
     let counts = counts(&measures, side);
-    let joined = if matches!(fill, Fill::Graded { .. }) { JOINED } else { 1 };
-    let (needed, slack) = (estimate(&measures, side) / joined as f64, 4.0);
+    // The elements in a cube of the lattice.
+    let each = match fill {
+        Fill::Cubes { .. } | Fill::Polyhedra { .. } => 1.0,
+        Fill::Graded { .. } => 1.0 / JOINED as f64,
+        Fill::Tetrahedra { .. } => 12.0,
+    };
+    // Only a closed surface tells its volume. Walls thinner than elements count with both sides.
+    let slack = if measures.closed { 2.0 } else { 4.0 };
     // Each place is visited, whether or not something is in it.
     let rows = counts[1] * counts[2];
     let places = rows * counts[0];
+    let needed = each * estimate(&measures, side).min(places);
     let is_sane = rows <= 16.0 * most as f64 + 65536.0 && places <= 1024.0 * most as f64 + 1e8 && counts[0] < 1e6;
     if !(needed <= slack * most as f64 && is_sane) {
         // For all it is known yet, no cubes may be joined at a larger side.
-        let other = |side| boxed(&measures, side);
+        let other = |side| each.max(1.0) * boxed(&measures, side);
         return Err(refused(side, needed.max(rows / 16.0), most, "about ", &measures, other));
     }
     if let Fill::Tetrahedra { .. } | Fill::Polyhedra { .. } = fill {
@@ -58,7 +63,7 @@ pub(super) fn check(surface: &Surface, fill: Fill, side: f64, most: usize) -> Re
         // Cubes are numbered by 32 bits.
         if boxed > f64::from(i32::MAX) {
             let message = format!("has a box of {boxed:.0e} cubes of side {side}, and at most 2e9 can be cut");
-            return Err(FillError { message, help: Some("use a larger side, or fill it with cubes".to_owned()) });
+            return Err(FillError::new(message, "use a larger side, or fill it with cubes"));
         }
     }
     Ok(())
@@ -90,13 +95,11 @@ impl Lattice {
         // Triangles that lie over each other by thousands are no surface.
         let overlaps: f64 = surface.triangles.iter().map(|&triangle| pieces(surface.corners(triangle), side)).sum();
         if overlaps > 64.0 * most as f64 + 16.0 * surface.triangles.len() as f64 + 1e6 {
-            return Err(FillError {
-                message: format!(
-                    "has {} triangles that lie over each other: they reach into elements of side {side} some {overlaps:.0} times",
-                    surface.triangles.len()
-                ),
-                help: Some(format!("use a larger side, or more than {most} elements")),
-            });
+            let message = format!(
+                "has {} triangles that lie over each other: they reach into elements of side {side} some {overlaps:.0} times",
+                surface.triangles.len()
+            );
+            return Err(FillError::new(message, format!("use a larger side, or more than {most} elements")));
         }
         let counts = counts.map(|count| count as usize);
         let size = DVec3::from_array(counts.map(|count| count as f64));
@@ -109,7 +112,7 @@ impl Lattice {
             *point = DVec3::select(is_near, lattice.place(near), *point);
             points.push(DVec3::select(is_near, near, at).clamp(DVec3::ZERO, size));
         }
-        Ok((lattice, Surface { points, triangles: surface.triangles.clone() }))
+        Ok((lattice, Surface { points, triangles: surface.triangles.clone(), ..Surface::default() }))
     }
 
     /// The place of a point in units of the lattice.
@@ -159,14 +162,24 @@ fn refused(
     let start = side.max(1e-9 * (measures.high - measures.low).max_element());
     let tries = std::iter::successors(Some(start), |side| Some(1.02 * side)).skip(1).take(2000).map(rounded_up);
     let mut fitting = tries.filter(|&side| other(side) <= 0.95 * most as f64);
-    let needed = if needed < 1e9 { format!("{needed:.0}") } else { format!("{needed:.0e}") };
-    let remedy = match fitting.next() {
+    let fitting = fitting.next();
+    let remedy = match fitting {
         Some(side) => format!("use a side of {side} or more, or allow more elements"),
         None => "allow more elements".to_owned(),
     };
-    FillError {
-        message: format!("needs {about}{needed} elements of side {side}, and at most {most} are allowed"),
-        help: Some(remedy),
+    let side = format!("{side:.3e}").parse().unwrap_or(side);
+    let [needed, most] = [needed, most as f64].map(in_words);
+    let message = format!("needs {about}{needed} elements of side {side}, and at most {most} are allowed");
+    FillError { fitting: Some(fitting.unwrap_or(f64::INFINITY)), ..FillError::new(message, remedy) }
+}
+
+/// A number of elements.
+fn in_words(number: f64) -> String {
+    match number {
+        ..1e5 => format!("{number:.0}"),
+        ..1e7 => format!("{:.1} million", number / 1e6),
+        ..1e9 => format!("{:.0} million", number / 1e6),
+        _ => format!("{number:.0e}"),
     }
 }
 

@@ -280,7 +280,7 @@ impl Cells {
         }
         let used = Used::new(self.points.len(), triangles.as_flattened());
         triangles.as_flattened_mut().iter_mut().for_each(|corner| *corner = used.new[*corner as usize]);
-        Ok(Surface { points: used.points(&self.points), triangles })
+        Ok(Surface { points: used.points(&self.points), triangles, groups: used.groups(&self.groups) })
     }
 
     /// The volume in space of all cells that have one.
@@ -408,12 +408,7 @@ impl Parts {
         let used = Used::new(cells.points.len(), self.cells.indices());
         let renamed: Vec<u32> = self.cells.indices().iter().map(|&corner| used.new[corner as usize]).collect();
         let lists = (0..self.cells.len()).map(|at| &renamed[self.cells.range(at)]).collect();
-        let groups = cells.groups.iter().filter_map(|group| {
-            let points = group.points.iter().map(|&point| used.new[point as usize]);
-            let points: Vec<u32> = points.filter(|&point| point != NONE).collect();
-            (!points.is_empty()).then(|| Group { name: group.name.clone(), points })
-        });
-        let groups = groups.collect();
+        let groups = used.groups(&cells.groups);
         let points = used.points(&cells.points);
         Ok(Volume { dimension: self.dimension, solids, points, cells: lists, groups, turned: self.turned })
     }
@@ -449,5 +444,15 @@ impl Used {
 
     fn points(&self, points: &[DVec3]) -> Vec<DVec3> {
         points.iter().zip(&self.new).filter(|&(_, &new)| new != NONE).map(|(point, _)| *point).collect()
+    }
+
+    /// The groups that have points in use.
+    fn groups(&self, groups: &[Group]) -> Vec<Group> {
+        let group = |group: &Group| {
+            let points = group.points.iter().map(|&point| self.new[point as usize]);
+            let points: Vec<u32> = points.filter(|&point| point != NONE).collect();
+            (!points.is_empty()).then(|| Group { name: group.name.clone(), points })
+        };
+        groups.iter().filter_map(group).collect()
     }
 }

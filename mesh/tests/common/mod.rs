@@ -8,7 +8,8 @@ use localshape_mesh::Surface;
 pub fn block(low: DVec3, high: DVec3) -> Surface {
     let points = (0..8).map(|n| DVec3::select(glam::BVec3::new(n & 1 > 0, n & 2 > 0, n & 4 > 0), high, low)).collect();
     let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-    Surface { points, triangles: faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect() }
+    let triangles = faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    Surface { points, triangles, ..Surface::default() }
 }
 
 /// Several surfaces as one.
@@ -63,7 +64,8 @@ pub fn ring(radius: f64, thickness: f64, around: u32) -> Surface {
 /// The triangles of a surface as they are in a file without shared points.
 pub fn apart(surface: &Surface) -> Surface {
     let points = surface.triangles.as_flattened().iter().map(|&point| surface.points[point as usize]).collect();
-    Surface { points, triangles: (0..surface.triangles.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect() }
+    let triangles = (0..surface.triangles.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
+    Surface { points, triangles, ..Surface::default() }
 }
 
 /// A surface of Debian's package `libcgal-demo`, if it is installed.
@@ -85,5 +87,5 @@ pub fn scan(name: &str) -> Option<Surface> {
         let corners: Vec<u32> = (0..next() as usize).map(|_| next() as u32).collect();
         triangles.extend((2..corners.len()).map(|n| [corners[0], corners[n - 1], corners[n]]));
     }
-    Some(Surface { points, triangles })
+    Some(Surface { points, triangles, ..Surface::default() })
 }

@@ -1,9 +1,10 @@
 //! Bodies made in code.
 
 use crate::scene::file::{
-    BarsFile, BodyFile, Cells, Coordinates, DiscFile, Lattice, PolygonFile, Positive, Rotation, SideFile, SpinFile,
-    Start, StartShape,
+    BarsFile, BodyFile, Cells, Coordinates, DiscFile, FillFile, FillKind, Lattice, PolygonFile, Positive, Rotation,
+    SideFile, SpinFile, Start, StartShape, Up,
 };
+use localshape_mesh::Fill;
 
 /// Builds a body of a scene: rest shape, masses and initial state.
 ///
@@ -53,7 +54,31 @@ impl BodyBuilder {
         Self(BodyFile { bars: Some(bars), ..BodyFile::default() })
     }
 
+    /// A mesh file, by its path from the current directory: cells as they are, or a surface, which is filled with elements and
+    /// needs [`Self::density`] or [`Self::mass_total`].
+    ///
+    /// ```
+    /// use localshape::mesh::Fill;
+    /// use localshape::scene::{BodyBuilder, Limits, Scene};
+    /// use localshape::sim::model::shape_based;
+    ///
+    /// let hare = BodyBuilder::mesh("scenes/hare.ply").fill(Fill::Cubes { side: 0.1 }).density(300.0).lowest(0.5);
+    /// let scene = Scene::builder("hare", hare).run("Local shape", shape_based::Parameters::new(800.0));
+    /// let body = &scene.build(&Limits::default())?.bodies[0].body;
+    /// assert!(body.elements.len() < 200 && body.carried.is_some());
+    /// # Ok::<(), localshape::scene::SceneError>(())
+    /// ```
+    pub fn mesh(file: impl Into<String>) -> Self {
+        Self(BodyFile { mesh: Some(file.into()), ..BodyFile::default() })
+    }
+
     setters! {
+        /// The elements that fill the surface of [`Self::mesh`], with sides (m). Without it, 20 cubes along its longest side.
+        fill(fill: Fill) 0.fill = Some(FillFile::of(fill));
+        /// Length of the unit of a mesh file (m), such as 0.001 for millimetres.
+        scale(scale: f64) 0.scale = Some(Positive(scale));
+        /// The axis of a mesh file that points up. Scenes have y up.
+        up(up: Up) 0.up = Some(up);
         /// The name, which [`RunBuilder::bodies`](super::RunBuilder::bodies) and
         /// [`RunBuilder::by_body`](super::RunBuilder::by_body) use, and result files.
         name(name: impl Into<String>) 0.name = Some(name.into());
@@ -89,6 +114,18 @@ impl BodyBuilder {
         velocity(velocity: impl Into<Coordinates>) 0.velocity = Some(velocity.into());
         /// A rigid spin about the mean of the nodes: the rotation in one second (rad/s).
         spin(rotation: Rotation) 0.spin = Some(SpinFile { axis: rotation.axis, rate: rotation.angle });
+    }
+}
+
+impl FillFile {
+    fn of(fill: Fill) -> Self {
+        let (with, side) = match fill {
+            Fill::Cubes { side } => (FillKind::Cubes, side),
+            Fill::Graded { side } => (FillKind::Graded, side),
+            Fill::Tetrahedra { side } => (FillKind::Tetrahedra, side),
+            Fill::Polyhedra { side } => (FillKind::Polyhedra, side),
+        };
+        Self { with, side: Some(Positive(side)), cells: None }
     }
 }
 

@@ -230,7 +230,7 @@ impl SceneBuilder {
             check_unwritten(body, place, &mut report);
         }
         let is_flawed = report.total() > before;
-        match SceneParts::of(file, &checked, is_flawed).scene(&name, limits, &mut report) {
+        match SceneParts::of(file, &checked, is_flawed, limits, &mut report).scene(&name, limits, &mut report) {
             Some(scene) if report.total() == 0 => {
                 let warnings = scene.warnings.into_iter().map(Mistake::without_text).collect();
                 Ok(Scene { warnings, ..scene })

@@ -201,7 +201,7 @@ pub(in crate::scene) enum FillKind {
 /// An axis of a mesh file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub(in crate::scene) enum Up {
+pub enum Up {
     /// The first coordinate.
     X,
     /// The second coordinate, as in glTF.

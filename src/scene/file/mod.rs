@@ -8,10 +8,8 @@ mod body;
 mod motion;
 mod obstacle;
 
-pub(in crate::scene) use body::{
-    BarsFile, BodyFile, DiscFile, FillFile, FillKind, PolygonFile, SideFile, SpinFile, Up,
-};
-pub use body::{Cells, Lattice, Rotation, Start, StartShape};
+pub(in crate::scene) use body::{BarsFile, BodyFile, DiscFile, FillFile, FillKind, PolygonFile, SideFile, SpinFile};
+pub use body::{Cells, Lattice, Rotation, Start, StartShape, Up};
 pub(in crate::scene) use motion::{GrabFile, HoldFile, KeyFile, NodesFile, RegionFile};
 pub use motion::{MotionPath, Side, Swing};
 pub(in crate::scene) use obstacle::{ObstacleFile, ShapeFile};

@@ -7,7 +7,7 @@ use crate::reading::words::{count, list, quoted, short};
 use crate::scene::limits::Limits;
 use crate::sim::geometry::{bounds, volumes_at_rest};
 use crate::sim::{Body, Dimension};
-use localshape_mesh::{Fill, Flaws, Measures, Mesh, Surface, Volume, fill};
+use localshape_mesh::{Fill, Flaws, Group, Measures, Mesh, Surface, Volume, fill};
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
@@ -73,6 +73,7 @@ struct SurfaceSummary {
     edges_of_several: usize,
     inconsistent_edges: usize,
     pieces: usize,
+    groups: Vec<GroupSummary>,
     /// What each fill would give.
     fills: Vec<FillSummary>,
 }
@@ -92,6 +93,12 @@ struct FillSummary {
     error: Option<String>,
 }
 
+impl GroupSummary {
+    fn new(group: &Group) -> Self {
+        Self { name: group.name.clone(), points: group.points.len() }
+    }
+}
+
 impl MeshSummary {
     /// Reads a file. A message is the predicate of a sentence about the file.
     pub(crate) fn read(path: &Path, limits: &Limits) -> Result<Self, Wrong> {
@@ -107,7 +114,6 @@ impl MeshSummary {
         let (number, parts) = (points.len(), parts(points.len(), &cells));
         let body = Body::new(dimension, points, vec![1.0; number], cells, solids, None);
         let of_kind = |(number, name): (usize, &str)| format!("{} {name}", count(number as u128));
-        let group = |group: localshape_mesh::Group| GroupSummary { name: group.name, points: group.points.len() };
         let content = Content::Cells(CellsSummary {
             count: body.elements.len(),
             kinds: captions::elements(&body).into_iter().map(of_kind).collect(),
@@ -116,7 +122,7 @@ impl MeshSummary {
                 .then(|| body.faces.outer.iter().filter(|outer| outer.is_none()).count()),
             turned,
             parts,
-            groups: groups.into_iter().map(group).collect(),
+            groups: groups.iter().map(GroupSummary::new).collect(),
             error: crossed(&body),
         });
         Self { points: number, extent: (high - low).to_array(), content }
@@ -157,6 +163,7 @@ impl MeshSummary {
             edges_of_several: non_manifold,
             inconsistent_edges: inconsistent,
             pieces,
+            groups: surface.groups.iter().map(GroupSummary::new).collect(),
             fills: fills.into(),
         });
         Self { points: surface.points.len(), extent: (high - low).to_array(), content }
@@ -216,9 +223,6 @@ impl fmt::Display for MeshSummary {
                 if cells.turned > 0 {
                     line("mended", &format!("{} turned over, which were inside out", several(cells.turned, "cell")))?;
                 }
-                for group in &cells.groups {
-                    line("group", &format!("{}: {}", quoted(&group.name), several(group.points, "point")))?;
-                }
             }
             Content::Surface(surface) => {
                 line("surface", &format!("{points}, {}", several(surface.triangles, "triangle")))?;
@@ -250,7 +254,11 @@ impl fmt::Display for MeshSummary {
                 }
             }
         }
-        Ok(())
+        let (Content::Cells(CellsSummary { groups, .. }) | Content::Surface(SurfaceSummary { groups, .. })) =
+            &self.content;
+        groups.iter().try_for_each(|group| {
+            line("group", &format!("{}: {}", quoted(&group.name), several(group.points, "point")))
+        })
     }
 }
 

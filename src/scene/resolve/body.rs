@@ -83,7 +83,7 @@ impl<'a> TypedBody<'a> {
             Some(generator) => Content::Generated(generator),
             None if file.file.is_some() || file.mesh.is_some() => match beside? {
                 Beside::Lists(lists) => Content::Listed(lists, Vec::new()),
-                Beside::Mesh(read) => match mesh::make(read, file, &place, most, report)? {
+                Beside::Mesh(read) => match mesh::make(read, file, &place, flawed, most, report)? {
                     MadeMesh::Cells(lists, groups) => Content::Listed(lists, groups),
                     MadeMesh::Filled(filled, side) => Content::Filled(filled, side),
                 },
@@ -200,7 +200,7 @@ fn generated(
 /// A surface with the elements that fill it, whose edges have a length (m).
 fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Collector<'_>) -> Option<ResolvedBody> {
     let before = report.total();
-    let Filled { cage: Cage { nodes, elements, filled, convex }, surface, weights, .. } = of;
+    let Filled { cage: Cage { nodes, elements, filled, convex, groups }, surface, weights, .. } = of;
     let solids = if convex { Solids::Convex } else { Solids::Ordered };
     let measures = surface.measures();
     let count = nodes.len();
@@ -225,7 +225,7 @@ fn filled(file: &BodyFile, of: Filled, side: f64, place: &Place, report: &mut Co
     }
     let name = file.name.clone().unwrap_or_default();
     let body = Arc::new(body);
-    Some(ResolvedBody { name, body, initial, springs: None, side, has_cells: false, groups: Vec::new() })
+    Some(ResolvedBody { name, body, initial, springs: None, side, has_cells: false, groups })
 }
 
 /// The size of a body with these nodes and elements.

@@ -253,13 +253,8 @@ fn named(
             format!("expected {}, or a group of the mesh: {}", list(&sides, "or", quoted), list(&groups, "or", quoted))
         }
     };
-    // A file may have the group all the same.
-    let lost = match bodies.iter().any(|body| body.body.carried.is_some()) {
-        true => "; a surface that is filled has no groups: nodes of its elements are others than those of the file",
-        false => "",
-    };
     let help = nearest(name, &known).map(|near| format!("did you mean {}?", quoted(near)));
-    report.at(path, format!("`{}` is {}; {expected}{lost}", written(path), quoted(name)), help);
+    report.at(path, format!("`{}` is {}; {expected}", written(path), quoted(name)), help);
     None
 }
 

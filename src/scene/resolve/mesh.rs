@@ -33,11 +33,13 @@ pub(super) fn read(
     read.map_err(|(message, help)| report.at(&key_path![place; "mesh"], format!("`{name}` {message}"), help)).ok()
 }
 
-/// The elements of a mesh with at most so many of them, or `None` after reporting a mistake.
+/// The elements of a mesh with at most so many of them, or `None` after reporting a mistake. `flawed` tells whether keys were left
+/// out because of mistakes.
 pub(super) fn make(
     read: MeshFile,
     file: &BodyFile,
     place: &Place,
+    flawed: bool,
     most: u64,
     report: &mut Collector<'_>,
 ) -> Option<Made> {
@@ -74,13 +76,14 @@ pub(super) fn make(
         report.warn(&path, message, "write scale = 0.001 if its unit is the millimetre, scale = 1 if it is the metre");
     }
     match mesh {
-        Mesh::Volume(volume) => cells(volume, file, place, name, report),
-        Mesh::Surface(surface) => filled(&surface, longest, file, place, most, report),
+        Mesh::Volume(volume) => cells(volume, file, place, flawed, report),
+        Mesh::Surface(surface) => filled(&surface, longest, file, place, flawed, most, report),
     }
 }
 
 /// The cells of a volume.
-fn cells(volume: Volume, file: &BodyFile, place: &Place, name: &str, report: &mut Collector<'_>) -> Option<Made> {
+fn cells(volume: Volume, file: &BodyFile, place: &Place, flawed: bool, report: &mut Collector<'_>) -> Option<Made> {
+    let name = file.mesh.as_deref().unwrap_or_default();
     let path = key_path![place; "mesh"].to_vec();
     if file.fill.is_some() {
         let message = format!("`{}` is about surfaces, but `{name}` has cells", written(&key_path![place; "fill"]));
@@ -88,6 +91,9 @@ fn cells(volume: Volume, file: &BodyFile, place: &Place, name: &str, report: &mu
         return None;
     }
     if file.density.is_none() && file.mass_total.is_none() && file.mass.is_none() {
+        if flawed {
+            return None;
+        }
         let message =
             format!("`{}` has none of `density`, `mass_total` and `mass`, which a mesh needs", written(place));
         report.at(&path, message, "write `density` (kg/m³), such as density = 1000");
@@ -125,12 +131,13 @@ fn filled(
     longest: f64,
     file: &BodyFile,
     place: &Place,
+    flawed: bool,
     most: u64,
     report: &mut Collector<'_>,
 ) -> Option<Made> {
     let name = file.mesh.as_deref().unwrap_or_default();
     let path = key_path![place; "mesh"];
-    check_mass(file, place, name, report)?;
+    check_mass(file, place, flawed, report)?;
     let typed = file.fill.clone().unwrap_or_default();
     let (chosen, side) = chosen(&typed, longest);
     if side > longest {
@@ -145,11 +152,13 @@ fn filled(
             "use a smaller side: elements larger than a body do not bend with it",
         );
     }
+    let limited = most < u64::from(u32::MAX);
     let most = usize::try_from(most).unwrap_or(usize::MAX).min(u32::MAX as usize);
     let filled = match fill(surface, chosen, most) {
         Ok(filled) => filled,
         Err(error) => {
-            report.at(&path, format!("`{name}` {}", error.message), error.help);
+            let help = error.fitting.map_or(error.help, |side| Some(fewer(&typed, side, longest, limited)));
+            report.at(&path, format!("`{name}` {}", error.message), help);
             return None;
         }
     };
@@ -187,8 +196,19 @@ fn chosen(typed: &FillFile, longest: f64) -> (Fill, f64) {
     (chosen, side)
 }
 
+/// How to fill a body of a length (m) with few enough elements: with those of a side (m), or with more allowed if they are limited.
+fn fewer(typed: &FillFile, side: f64, longest: f64, limited: bool) -> String {
+    let fewer = match typed.side {
+        _ if !side.is_finite() => "use fewer `cells`".to_owned(),
+        Some(_) => format!("use side = {side} or more"),
+        None => format!("use cells = {} or fewer", (longest / side).floor().max(1.0)),
+    };
+    if limited { format!("{fewer}, or allow more with --allow-large (in code, `Limits::NONE`)") } else { fewer }
+}
+
 /// Reports a filled body without a mass of its volume.
-fn check_mass(file: &BodyFile, place: &Place, name: &str, report: &mut Collector<'_>) -> Option<()> {
+fn check_mass(file: &BodyFile, place: &Place, flawed: bool, report: &mut Collector<'_>) -> Option<()> {
+    let name = file.mesh.as_deref().unwrap_or_default();
     if file.density.is_some() || file.mass_total.is_some() {
         return Some(());
     }
@@ -200,7 +220,7 @@ fn check_mass(file: &BodyFile, place: &Place, name: &str, report: &mut Collector
             written(&path)
         );
         report.at_key(&path, message, help);
-    } else {
+    } else if !flawed {
         let message =
             format!("`{}` has neither `density` nor `mass_total`, which a filled surface needs", written(place));
         report.at(&key_path![place; "mesh"], message, help);

@@ -102,14 +102,7 @@ impl SceneParts {
             .filter(|body| !has_lists(body))
             .for_each(|body| body.swap_lists(&mut BodyFile::default()));
         let places = places(bodies.len(), file.get("body").is_some_and(Json::is_array));
-        let read_beside = |(body, place): (&Option<BodyFile>, &Place)| {
-            let body = body.as_ref().filter(|body| Generator::of(body).is_none())?;
-            if let Some(file) = &body.file {
-                return Lists::read(folder, file, place, limits, report).map(Box::new).map(Beside::Lists);
-            }
-            mesh::read(folder, body, place, limits, report).map(Beside::Mesh)
-        };
-        let beside = bodies.iter().zip(&places).map(read_beside).collect();
+        let beside = beside(&bodies, &places, folder, limits, report);
         let view: Option<TypedView> =
             if file.contains_key("view") { part(file, "view", report) } else { Some(TypedView::default()) };
         let font = match view.as_ref().and_then(|view| view.get("font")) {
@@ -142,8 +135,15 @@ impl SceneParts {
         }
     }
 
-    /// The valid parts of a scene made in code. `flawed` tells whether its separately checked long lists had a mistake.
-    pub(super) fn of(mut file: SceneFile, checked: &ValidFile, flawed: bool) -> Self {
+    /// The valid parts of a scene made in code. `flawed` tells whether its separately checked long lists had a mistake. Files of bodies
+    /// are searched in the current directory.
+    pub(super) fn of(
+        mut file: SceneFile,
+        checked: &ValidFile,
+        flawed: bool,
+        limits: &Limits,
+        report: &mut Collector<'_>,
+    ) -> Self {
         fn entries<T>(entries: Vec<T>, key: &str, checked: &ValidFile) -> Vec<Option<T>> {
             let is_sound = |at: usize| !checked.valid.get(key).is_some_and(|valid| valid[at].is_null());
             entries.into_iter().enumerate().map(|(at, entry)| Some(entry).filter(|_| is_sound(at))).collect()
@@ -159,7 +159,7 @@ impl SceneParts {
             title: file.title,
             gravity: file.gravity.filter(|_| is_sound("gravity")),
             time: Some(file.time).filter(|_| is_sound("time")),
-            beside: bodies.iter().map(|_| None).collect(),
+            beside: beside(&bodies, &places, Path::new(""), limits, report),
             bodies,
             places,
             flawed: &checked.flawed | &lists,
@@ -205,6 +205,24 @@ impl SceneParts {
         swap(&mut self.bodies, &mut lists);
         digest
     }
+}
+
+/// The content of the own file of each body, searched in a folder.
+fn beside(
+    bodies: &[Option<BodyFile>],
+    places: &[Place],
+    folder: &Path,
+    limits: &Limits,
+    report: &mut Collector<'_>,
+) -> Vec<Option<Beside>> {
+    let read = |(body, place): (&Option<BodyFile>, &Place)| {
+        let body = body.as_ref().filter(|body| Generator::of(body).is_none())?;
+        if let Some(file) = &body.file {
+            return Lists::read(folder, file, place, limits, report).map(Box::new).map(Beside::Lists);
+        }
+        mesh::read(folder, body, place, limits, report).map(Beside::Mesh)
+    };
+    bodies.iter().zip(places).map(read).collect()
 }
 
 /// The places of bodies in a file, in a list or alone.
@@ -314,7 +332,8 @@ fn physics(parts: &SceneParts, beside: Vec<Option<Beside>>, limits: &Limits, rep
         (Some(typed), Some(dimension)) => vector(typed, dimension, &key_path!["gravity"], report),
         _ => Some(DVec3::ZERO),
     };
-    let sound: Vec<_> = bodies.iter().flatten().collect();
+    // Where bodies start is not known without all of their keys.
+    let sound: Vec<_> = bodies.iter().flatten().filter(|_| !flawed).collect();
     let obstacles = obstacles::resolve(&parts.obstacles, dimension, &sound, report);
     let is_plural = bodies.len() > 1;
     let bodies: Option<Vec<_>> = bodies.into_iter().collect();
