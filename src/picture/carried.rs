@@ -5,14 +5,14 @@ use super::chart::needed;
 use super::field::NOWHERE;
 use super::narrow::{narrow, narrow_count, narrow_point};
 use super::page::{self, joined};
-use super::shadow::{Edge, edges};
+use super::shadow::{Shape, edges};
 use super::shell::Side;
-use super::surface::{Border, SurfaceLines, Surroundings, newell};
+use super::surface::{Border, HATCH_PERIOD, SurfaceLines, Surroundings, newell};
 use super::{LineKind, Mesh, Vertex};
 use crate::look::BODIES;
 use crate::sim::geometry::{around, ordered};
-use crate::sim::{Assembly, Carried};
-use glam::DVec3;
+use crate::sim::{Assembly, Body, Carried};
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -22,11 +22,13 @@ use std::sync::Arc;
 const CREASE: f64 = 0.766;
 /// The least cosine between the normal at a corner of a visible triangle and the direction to the viewer. Interpolated normals
 /// lean away near outlines, and would be lit from behind.
-const LEAST_FACING: f64 = 0.01;
+const LEAST_FACING: f32 = 0.01;
 /// Points of contours and creases that lie nearer than this to the straight line between others are left out (px).
 const STRAIGHT: f64 = 0.15;
 /// The least number of points or triangles for one thread.
 const OF_THREAD: usize = 2048;
+/// Marks what is missing.
+const NONE: u32 = u32::MAX;
 
 /// The carried surface of a body.
 #[derive(Debug)]
@@ -41,23 +43,29 @@ pub(super) struct Fine {
     points: Vec<u32>,
     /// The corners of each triangle.
     triangles: Vec<[u32; 3]>,
+    /// The element of the body that moves each triangle, or [`NONE`].
+    movers: Vec<u32>,
     /// For each corner the end of its entries, each three times a triangle plus the place of the corner in it.
     ends: Vec<u32>,
     entries: Vec<u32>,
-    /// Edges, and whether they are creases.
-    seams: Vec<(Edge, bool)>,
+    /// The points at the ends of each edge, and the triangles beside it, or [`NONE`].
+    edges: Vec<[u32; 2]>,
+    beside: Vec<[u32; 2]>,
+    /// The edges that are creases.
+    creases: Vec<u32>,
     /// Whether each edge has triangles on both sides.
     is_closed: bool,
+    /// What casts its shadow.
+    pub(super) shape: Shape,
 }
 
 /// A triangle at a moment.
+#[derive(Clone, Copy)]
 struct Face {
     /// Its normal, with twice the length of its area.
-    normal: DVec3,
+    normal: Vec3,
     /// The factors with which it counts in the normals of its corners.
-    shares: [f64; 3],
-    /// Whether the viewer sees its outside.
-    is_seen: bool,
+    shares: [f32; 3],
 }
 
 impl Fine {
@@ -78,31 +86,28 @@ impl Fine {
             })
             .collect();
         let mut parts: Vec<u32> = (0..3 * triangles.len() as u32).collect();
-        let mut is_closed = true;
-        let seam = |edge: Edge| {
-            let [Some(one), Some(other)] = edge.triangles() else {
-                is_closed = false;
-                return (edge, false);
-            };
+        let all = edges(triangles);
+        let mut creases = Vec::new();
+        for (edge, number) in all.iter().zip(0..) {
+            let [Some(one), Some(other)] = edge.triangles() else { continue };
             let [first, second] = [one, other].map(|at| normals[at as usize]);
-            let is_crease = first.dot(second) < CREASE && first != DVec3::ZERO && second != DVec3::ZERO;
-            if !is_crease {
-                for end in edge.ends {
-                    let [first, second] = [one, other].map(|at| {
-                        let triangle = &triangles[at as usize];
-                        3 * at + triangle.iter().position(|&point| point == end).unwrap_or(0) as u32
-                    });
-                    join(&mut parts, first, second);
-                }
+            if first.dot(second) < CREASE && first != DVec3::ZERO && second != DVec3::ZERO {
+                creases.push(number);
+                continue;
             }
-            (edge, is_crease)
-        };
-        let seams = edges(triangles).into_iter().map(seam).collect();
-        let mut corner_of = vec![u32::MAX; parts.len()];
+            for end in edge.ends {
+                let [first, second] = [one, other].map(|at| {
+                    let triangle = &triangles[at as usize];
+                    3 * at + triangle.iter().position(|&point| point == end).unwrap_or(0) as u32
+                });
+                join(&mut parts, first, second);
+            }
+        }
+        let mut corner_of = vec![NONE; parts.len()];
         let (mut points, mut corners) = (Vec::with_capacity(surface.rest.len()), Vec::with_capacity(parts.len()));
         for entry in 0..parts.len() {
             let part = &mut corner_of[root(&mut parts, entry as u32) as usize];
-            if *part == u32::MAX {
+            if *part == NONE {
                 *part = points.len() as u32;
                 points.push(triangles[entry / 3][entry % 3]);
             }
@@ -118,6 +123,7 @@ impl Fine {
             entries[*place as usize] = entry as u32;
             *place += 1;
         }
+        let beside: Vec<_> = all.iter().map(|edge| edge.triangles().map(|at| at.unwrap_or(NONE))).collect();
         Self {
             surface: Arc::clone(surface),
             body,
@@ -126,10 +132,14 @@ impl Fine {
             faces: bodies.faces(body),
             points,
             triangles: corners.as_chunks().0.to_vec(),
+            movers: movers(surface, &bodies.bodies()[body]),
             ends,
             entries,
-            seams,
-            is_closed,
+            edges: all.into_iter().map(|edge| edge.ends).collect(),
+            is_closed: !beside.as_flattened().contains(&NONE),
+            beside,
+            creases,
+            shape: Shape::new(&surface.rest, triangles),
         }
     }
 
@@ -138,30 +148,40 @@ impl Fine {
         self.surface.append_positions(&position[self.nodes.clone()], points);
     }
 
-    /// Its triangles, with its points at positions (m), seen from an eye.
+    /// Marks the elements inside it, among those of all bodies: full ones that move no triangle.
+    pub(super) fn mark_inside(&self, bodies: &Assembly, elements: &mut [bool]) {
+        let own = &mut elements[self.elements.clone()];
+        let fill = bodies.bodies()[self.body].fill.as_deref();
+        own.iter_mut().enumerate().for_each(|(at, inside)| *inside = fill.is_none_or(|fill| fill[at] >= 1.0));
+        self.movers.iter().filter(|&&mover| mover != NONE).for_each(|&mover| own[mover as usize] = false);
+    }
+
+    /// Its triangles with its points at places, and whether an eye sees their outsides.
     ///
     /// A triangle counts in the normal of a corner by the squares of the lengths of its two sides there (Max 1999, Weights for
     /// computing vertex normals from facet normals), which is exact on spheres.
-    fn seen(&self, points: &[DVec3], eye: DVec3) -> Vec<Face> {
+    fn seen(&self, places: &[Vec3], eye: Vec3) -> (Vec<Face>, Vec<bool>) {
         let face = |triangle: &[u32; 3]| {
-            let [a, b, c] = triangle.map(|point| points[point as usize]);
+            let [a, b, c] = triangle.map(|point| places[point as usize]);
             let normal = (b - a).cross(c - a);
             let squares = [b.distance_squared(c), c.distance_squared(a), a.distance_squared(b)];
             let inverse = 1.0 / (squares[0] * squares[1] * squares[2]);
             let shares = if inverse.is_finite() { squares.map(|square| square * inverse) } else { [0.0; 3] };
-            Face { normal, shares, is_seen: normal.dot(a - eye) <= 0.0 }
+            (Face { normal, shares }, normal.dot(a - eye) <= 0.0)
         };
-        self.surface.triangles.par_iter().with_min_len(OF_THREAD).map(face).collect()
+        let (mut faces, mut seen) = (Vec::new(), Vec::new());
+        self.surface.triangles.par_iter().with_min_len(OF_THREAD).map(face).unzip_into_vecs(&mut faces, &mut seen);
+        (faces, seen)
     }
 
-    /// The unit normal at a corner at a position (m).
-    fn normal(&self, corner: usize, at: DVec3, faces: &[Face], eye: DVec3) -> DVec3 {
+    /// The unit normal at a corner at a place.
+    fn normal(&self, corner: usize, at: Vec3, (faces, seen): &(Vec<Face>, Vec<bool>), eye: Vec3) -> Vec3 {
         let start = corner.checked_sub(1).map_or(0, |before| self.ends[before]) as usize;
-        let (mut sum, mut is_seen) = (DVec3::ZERO, false);
+        let (mut sum, mut is_seen) = (Vec3::ZERO, false);
         for &entry in &self.entries[start..self.ends[corner] as usize] {
-            let face = &faces[entry as usize / 3];
-            sum += face.shares[entry as usize % 3] * face.normal;
-            is_seen |= face.is_seen;
+            let (triangle, place) = (entry as usize / 3, entry as usize % 3);
+            sum += faces[triangle].shares[place] * faces[triangle].normal;
+            is_seen |= seen[triangle];
         }
         let (normal, view) = (sum.normalize_or_zero(), (eye - at).normalize_or_zero());
         let facing = normal.dot(view);
@@ -185,57 +205,116 @@ impl Fine {
     }
 }
 
+/// The element of a body that moves each triangle of a surface: one with all nodes that its points follow or, where the surface
+/// passes from one element to another, that of a point.
+fn movers(surface: &Carried, body: &Body) -> Vec<u32> {
+    let of_element = |(nodes, element): (&'_ [u32], u32)| nodes.iter().map(|&node| (node, element)).collect::<Vec<_>>();
+    let mut around: Vec<(u32, u32)> = body.elements.iter().zip(0..).flat_map(of_element).collect();
+    around.sort_unstable();
+    let nodes = |point: u32| surface.weights.of(point as usize).0;
+    let mover = |points: &[u32]| {
+        let first = *nodes(points[0]).first()?;
+        let around = &around[around.partition_point(|&(node, _)| node < first)..];
+        let mut around = around.iter().take_while(|(node, _)| *node == first).map(|&(_, element)| element);
+        let holds = |element: u32, node| body.elements[element as usize].contains(node);
+        around.find(|&element| points.iter().all(|&point| nodes(point).iter().all(|node| holds(element, node))))
+    };
+    let of_triangle = |triangle: &[u32; 3]| mover(triangle).or_else(|| mover(&triangle[..1])).unwrap_or(NONE);
+    surface.triangles.par_iter().with_min_len(OF_THREAD).map(of_triangle).collect()
+}
+
 impl Surroundings<'_> {
-    /// Adds a carried surface with its points at positions (m) to a mesh, and its lines to the lines. `of_nodes` has the places
-    /// of nodes on the scale of a field, if there is one.
+    /// Adds a carried surface with its points at positions (m) to the meshes of sound and of turned-over elements, and its
+    /// lines to the lines. `of_nodes` has the places of nodes on the scale of a field, if there is one.
     pub(super) fn add_carried(
         &self,
         fine: &Fine,
         points: &[DVec3],
-        turned_over: &[bool],
+        over: &[bool],
         of_nodes: &[f32],
-        mesh: &mut Mesh,
+        [sound, turned_over]: [&mut Mesh; 2],
         lines: &mut SurfaceLines,
     ) {
-        let eye = self.lens.eye;
-        let faces = fine.seen(points, eye);
-        let base = mesh.vertices.len() as u32;
+        let per_side = 1.0 / self.side;
+        let place = |at: &DVec3| narrow_point((at - self.origin) * per_side);
+        let (eye, mut places) = (place(&self.lens.eye), Vec::new());
+        points.par_iter().with_min_len(OF_THREAD).map(place).collect_into_vec(&mut places);
+        let faces = fine.seen(&places, eye);
         let vertex = |corner: usize| {
-            let at = points[fine.points[corner] as usize];
-            let normal = narrow_point(fine.normal(corner, at, &faces, eye));
-            Vertex { position: self.relative(at), normal: normal.to_array(), hatch: 0.0 }
+            let at = places[fine.points[corner] as usize];
+            Vertex { position: at.to_array(), normal: fine.normal(corner, at, &faces, eye).to_array(), hatch: 0.0 }
         };
-        mesh.vertices.par_extend((0..fine.points.len()).into_par_iter().with_min_len(OF_THREAD).map(vertex));
+        let base = sound.vertices.len();
+        sound.vertices.par_extend((0..fine.points.len()).into_par_iter().with_min_len(OF_THREAD).map(vertex));
         if self.coloured {
-            mesh.shades.resize(mesh.vertices.len(), -1.0 - narrow_count(fine.body % BODIES));
+            sound.shades.resize(sound.vertices.len(), -1.0 - narrow_count(fine.body % BODIES));
         } else if self.shades.is_some() {
             let shades = fine.shades(of_nodes);
-            mesh.shades.extend(fine.points.iter().map(|&point| shades[point as usize]));
+            sound.shades.extend(fine.points.iter().map(|&point| shades[point as usize]));
         }
+        let seen = faces.1;
+        let over = over.get(fine.elements.clone()).filter(|over| over.contains(&true));
+        let is_over: Vec<_> = over.map_or_else(Vec::new, |over| {
+            let is_over = |&mover: &u32| over.get(mover as usize).is_some_and(|&over| over);
+            fine.movers.iter().map(is_over).collect()
+        });
         // From outside nobody sees the inside of a closed surface of which no part has turned over.
-        let has_turned = turned_over.get(fine.elements.clone()).is_some_and(|over| over.contains(&true));
-        let sides: &[bool] = if fine.is_closed && !has_turned { &[true] } else { &[true, false] };
-        for &is_seen in sides {
-            let shown = fine.triangles.iter().zip(&faces).filter(|(_, face)| face.is_seen == is_seen);
-            mesh.triangles.extend(shown.map(|(triangle, _)| triangle.map(|corner| base + corner)));
+        let sides: &[bool] = if fine.is_closed && is_over.is_empty() { &[true] } else { &[true, false] };
+        let is_sound = |at: usize| is_over.get(at).is_none_or(|over| !over);
+        for &side in sides {
+            let shown = fine.triangles.iter().enumerate().filter(|&(at, _)| seen[at] == side && is_sound(at));
+            sound.triangles.extend(shown.map(|(_, triangle)| triangle.map(|corner| base as u32 + corner)));
         }
-        let (mut contours, mut creases) = (Vec::new(), Vec::new());
-        for (edge, is_crease) in &fine.seams {
-            let [one, other] = edge.triangles().map(|at| at.map(|at| faces[at as usize].is_seen));
-            if one != other {
-                contours.push(edge.ends);
-            } else if *is_crease && one == Some(true) {
-                creases.push(edge.ends);
-            }
-        }
-        for ends in self.long(&contours, points) {
+        self.add_turned_over(fine, &is_over, sound, turned_over, base);
+        let ends = |edge: usize| fine.edges[edge];
+        let edges_where = |holds: &(dyn Fn([usize; 2]) -> bool + Sync)| -> Vec<_> {
+            let holds = |beside: &[u32; 2]| holds(beside.map(|at| at as usize));
+            let beside = fine.beside.par_iter().with_min_len(OF_THREAD).enumerate();
+            beside.filter(|(_, beside)| holds(beside)).map(|(edge, _)| ends(edge)).collect()
+        };
+        for ends in self.long(&edges_where(&|[one, other]| seen.get(one) != seen.get(other)), points) {
             let line = self.line(ends, LineKind::FineContour, 1.0);
             lines.drawn.push(line);
             lines.borders.push(Border { line, edge: None });
         }
-        let of_creases = self.long(&creases, points).into_iter();
-        let border = |ends| Border { line: self.line(ends, LineKind::Edge, 1.0), edge: None };
-        lines.borders.extend(of_creases.map(border));
+        let are_seen = |&edge: &usize| fine.beside[edge].iter().all(|&at| seen[at as usize]);
+        let creases = fine.creases.iter().map(|&edge| edge as usize).filter(are_seen).map(ends).collect();
+        // The colours change where turned-over elements begin.
+        let rims = match is_over.is_empty() {
+            true => Vec::new(),
+            false => edges_where(&|[one, other]| is_over.get(one) != is_over.get(other)),
+        };
+        for pairs in [creases, rims] {
+            let border = |ends| Border { line: self.line(ends, LineKind::Edge, 1.0), edge: None };
+            lines.borders.extend(self.long(&pairs, points).into_iter().map(border));
+        }
+    }
+
+    /// Adds the triangles of a carried surface that turned-over elements move. Its corners are in the mesh of sound elements,
+    /// from a place on.
+    fn add_turned_over(&self, fine: &Fine, is_over: &[bool], sound: &Mesh, turned_over: &mut Mesh, base: usize) {
+        if is_over.is_empty() {
+            return;
+        }
+        let period = HATCH_PERIOD * self.soft[fine.body];
+        let mut places = vec![NONE; fine.points.len()];
+        let over = fine.triangles.iter().zip(is_over).filter(|(_, over)| **over).map(|(triangle, _)| triangle);
+        for triangle in over {
+            let corner = |corner: u32| {
+                let place = &mut places[corner as usize];
+                if *place == NONE {
+                    *place = turned_over.vertices.len() as u32;
+                    let at = base + corner as usize;
+                    let rest = fine.surface.rest[fine.points[corner as usize] as usize];
+                    let hatch = narrow(rest.dot(DVec3::ONE) / period);
+                    turned_over.vertices.push(Vertex { hatch, ..sound.vertices[at] });
+                    turned_over.shades.extend(sound.shades.get(at));
+                }
+                *place
+            };
+            let triangle = triangle.map(corner);
+            turned_over.triangles.push(triangle);
+        }
     }
 
     /// Adds the edges of faces that carry a surface to the lines: of sound elements those of faces towards the viewer, of

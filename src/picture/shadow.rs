@@ -21,6 +21,8 @@ const KEY_ELEVATION: f64 = 50.0 / 180.0 * std::f64::consts::PI;
 const DIRECTIONS: [usize; 2] = [48, 96];
 /// Bodies of more triangles get fewer directions, or the shadow would take longer than everything else.
 const MANY_TRIANGLES: usize = 6000;
+/// Carried surfaces of more triangles cast the shadows of coarser ones: shadows have few cells, and are blurred.
+const OF_SHAPE: usize = 2000;
 /// The blur of the edges of both shadows (sides), and the largest reach of a blur (cells).
 const BLUR: [f64; 2] = [0.06, 0.14];
 const MOST_BLUR: usize = CELLS / 8;
@@ -131,43 +133,116 @@ pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {
     edges
 }
 
+/// What casts the shadow of a carried surface: the surface or, if that is fine, another one with some of its points.
+#[derive(Debug)]
+pub(super) struct Shape {
+    /// Its points among those of the surface.
+    pub(super) points: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+    edges: Vec<Edge>,
+    /// The number of triangles of the surface.
+    stands_for: usize,
+}
+
+impl Shape {
+    /// The shape of a surface with points at rest (m).
+    ///
+    /// One point stands for all in a cell of a grid whose normals look the same way, so that thin parts keep both their sides
+    /// (Rossignac and Borrel 1993, Multi-resolution 3D approximations). A closed surface stays closed.
+    pub(super) fn new(rest: &[DVec3], triangles: &[[u32; 3]]) -> Self {
+        let mut normals = vec![DVec3::ZERO; rest.len()];
+        let mut area = 0.0;
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|at| rest[at as usize]);
+            let normal = (b - a).cross(c - a);
+            area += normal.length();
+            triangle.iter().for_each(|&at| normals[at as usize] += normal);
+        }
+        // The longest axis and its direction.
+        let way = |normal: DVec3| {
+            let axis = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
+            2 * axis as i64 + i64::from(normal[axis] < 0.0)
+        };
+        let mut side = (area / OF_SHAPE as f64).sqrt();
+        let mut found = (Vec::from_iter(0..rest.len() as u32), triangles.to_vec());
+        while found.1.len() > OF_SHAPE {
+            let key = |at: usize| {
+                let [x, y, z] = (rest[at] / side).floor().to_array().map(|cell| cell as i64);
+                ([x, y, z, way(normals[at])], at as u32)
+            };
+            let mut keys: Vec<_> = (0..rest.len()).map(key).collect();
+            keys.sort_unstable();
+            for alike in keys.chunk_by(|one, other| one.0 == other.0) {
+                let place = |&(_, at): &([i64; 4], u32)| rest[at as usize];
+                let middle = alike.iter().map(place).sum::<DVec3>() / alike.len() as f64;
+                let apart = |one: &([i64; 4], u32)| place(one).distance_squared(middle);
+                let nearest = alike.iter().min_by(|one, other| apart(one).total_cmp(&apart(other)));
+                alike.iter().for_each(|&(_, at)| found.0[at as usize] = nearest.map_or(at, |nearest| nearest.1));
+            }
+            let moved = triangles.iter().map(|triangle| triangle.map(|at| found.0[at as usize]));
+            found.1 = moved.filter(|[a, b, c]| a != b && b != c && c != a).collect();
+            side *= 1.2;
+        }
+        // Only the points that are left.
+        let (stands_for, mut triangles) = (triangles.len(), found.1);
+        let mut points: Vec<_> = triangles.as_flattened().to_vec();
+        points.sort_unstable();
+        points.dedup();
+        points.iter().zip(0..).for_each(|(&point, at)| found.0[point as usize] = at);
+        triangles.as_flattened_mut().iter_mut().for_each(|at| *at = found.0[*at as usize]);
+        Self { points, edges: edges(&triangles), triangles, stands_for }
+    }
+}
+
 /// The closed surfaces that cast shadows, with triangles counter-clockwise as seen from outside.
 pub(super) struct Casters<'a> {
     /// Points (sides from the panel's origin).
     points: Vec<DVec3>,
     triangles: Cow<'a, [[u32; 3]]>,
     edges: Cow<'a, [Edge]>,
+    /// The number of triangles that are seen.
+    count: usize,
 }
 
 impl<'a> Casters<'a> {
     /// A surface with its [`edges`].
     pub(super) fn new(points: Vec<DVec3>, triangles: &'a [[u32; 3]], edges: &'a [Edge]) -> Self {
-        Self { points, triangles: Cow::Borrowed(triangles), edges: Cow::Borrowed(edges) }
+        Self { points, count: triangles.len(), triangles: Cow::Borrowed(triangles), edges: Cow::Borrowed(edges) }
     }
 
     /// Adds a surface.
     pub(super) fn add(&mut self, points: impl Iterator<Item = DVec3>, triangles: &[[u32; 3]]) {
-        if triangles.is_empty() {
-            return;
+        if !triangles.is_empty() {
+            self.count += triangles.len();
+            self.extend(points, triangles, &edges(triangles));
         }
+    }
+
+    /// Adds the shape of a carried surface with its points at places.
+    pub(super) fn add_shape(&mut self, points: impl Iterator<Item = DVec3>, shape: &Shape) {
+        self.count += shape.stands_for;
+        self.extend(points, &shape.triangles, &shape.edges);
+    }
+
+    fn extend(&mut self, points: impl Iterator<Item = DVec3>, triangles: &[[u32; 3]], edges: &[Edge]) {
         let [point, triangle] = [self.points.len(), self.triangles.len()].map(|count| count as u32);
         self.points.extend(points);
-        let moved = |edge: Edge| Edge {
+        let moved = |edge: &Edge| Edge {
             ends: edge.ends.map(|end| point + end),
             // A missing triangle stays missing.
             triangles: edge.triangles.map(|at| at.saturating_add(triangle)),
         };
-        self.edges.to_mut().extend(edges(triangles).into_iter().map(moved));
+        self.edges.to_mut().extend(edges.iter().map(moved));
         self.triangles.to_mut().extend(triangles.iter().map(|triangle| triangle.map(|at| point + at)));
     }
 
     /// Their shadows in key light and in the light of the sky on a plane, within `reach` of `middle` on it, with `soft`
     /// as unit of blur.
     pub(super) fn shades(&self, plane: &Plane, key: DVec3, middle: DVec2, reach: f64, soft: f64) -> [Shade; 2] {
-        let Self { points, triangles, edges } = self;
+        let Self { points, triangles, edges, count } = self;
         let blur = BLUR.map(|blur| blur * soft);
         let feet: Vec<_> = points.iter().map(|&point| plane.foot(point)).collect();
-        let thinning = (triangles.len() / MANY_TRIANGLES + 1).min(6);
+        let thinning = (count / MANY_TRIANGLES + 1).min(6);
         let [of_key, of_sky] = DIRECTIONS.map(|count| count / thinning);
         let frame = Plane::new(key, 0.0);
         let key_directions: Vec<_> = (0..of_key)

@@ -18,7 +18,7 @@ pub(super) struct Skin {
     pub(super) nodes: Vec<u32>,
     /// The carried surfaces.
     pub(super) fine: Vec<Fine>,
-    /// Its triangles, as places among its points.
+    /// Its triangles of faces, as places among its nodes.
     pub(super) triangles: Vec<[u32; 3]>,
     /// The place of each node of the bodies in `nodes`, or [`INSIDE`].
     places: Vec<u32>,
@@ -51,11 +51,6 @@ impl Skin {
                 None => triangles.extend((2..face.len()).map(|at| [face[0], face[at - 1], face[at]].map(&mut place))),
             }
         }
-        let mut first = nodes.len() as u32;
-        for fine in &fine {
-            triangles.extend(fine.surface.triangles.iter().map(|triangle| triangle.map(|point| first + point)));
-            first += fine.surface.rest.len() as u32;
-        }
         Self { nodes, fine, triangles, places }
     }
 
@@ -80,6 +75,13 @@ impl Skin {
             first - count..first
         };
         of_nodes.chain(self.fine.iter().map(|fine| fine.surface.rest.len())).map(range).collect()
+    }
+
+    /// Whether each element of bodies is inside a carried surface; empty without one.
+    pub(super) fn inside(&self, bodies: &Assembly) -> Vec<bool> {
+        let mut inside = vec![false; if self.fine.is_empty() { 0 } else { bodies.whole().elements.len() }];
+        self.fine.iter().for_each(|fine| fine.mark_inside(bodies, &mut inside));
+        inside
     }
 
     /// Whether a node is on the surface.

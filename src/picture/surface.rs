@@ -16,7 +16,7 @@ use glam::DVec3;
 use std::collections::HashMap;
 
 /// Stripes of the hatch have this period along `X + Y + Z` of the body at rest (units of soft distances).
-const HATCH_PERIOD: f64 = 0.30;
+pub(super) const HATCH_PERIOD: f64 = 0.30;
 /// The largest distance of the flat pieces of a patch from it (px).
 const FLATNESS: f64 = 0.35;
 /// The finest cut of a patch in each direction, and of few faces: the cut that gives this many cells in all.

@@ -37,6 +37,8 @@ const OFFSET: f32 = 0.0016;
 const FADED: f32 = 0.0008;
 /// From this step of depth on, a contour inside the body is drawn (soft units).
 const STEP: f32 = 0.22;
+/// Gaps of up to twice this length in contours of fine surfaces are closed (samples, a pixel apart).
+const GAP: usize = 4;
 /// Below this step (soft units) an obstacle does not hide its own contour or that of another.
 const ROUND_STEP: f32 = 0.8;
 
@@ -418,20 +420,30 @@ pub(super) fn item(depths: &Depths<'_>, picture: &Picture) -> Option<Item> {
     let mut paths: Vec<[Path; LEVELS]> = Style::ALL.map(|_| Default::default()).into();
     let mut drawn = HashSet::new();
     let lines = if panel.region[2..].contains(&0) { &[] } else { &panel.lines[..] };
-    for line in lines {
-        let nearer = if line.kind.is_alarm() { NEARER } else { 0.0 };
-        let Some(segment) = depths.segment([line.from, line.to], panel.region, nearer) else { continue };
-        let levels: Vec<_> = segment.samples().map(|(at, _)| depths.levels(line, &at)).collect();
-        for (at, style) in Style::of(line.kind).into_iter().enumerate() {
-            let levels: Vec<_> = levels.iter().map(|levels| levels[at]).collect();
-            // Coverage of a line drawn twice would add up: both sets of elements have contours along common edges.
-            if levels.iter().all(|&level| level == 0) || !drawn.insert((style as usize, segment.key())) {
-                continue;
-            }
-            for (run, level) in runs(&levels).into_iter().filter(|&(_, level)| level > 0) {
-                let (path, part) = (&mut paths[style as usize][level - 1].0, segment.part(run, levels.len()).0);
-                let continues = line.kind == LineKind::FineContour && are_joined(path, &part);
-                path.extend(&part[usize::from(continues)..]);
+    let continues = |one: &Line, next: &Line| [one, next].iter().all(|line| is_fine(line)) && one.to == next.from;
+    for chain in lines.chunk_by(continues) {
+        let sampled = |line: &Line| {
+            let nearer = if line.kind.is_alarm() { NEARER } else { 0.0 };
+            let segment = depths.segment([line.from, line.to], panel.region, nearer)?;
+            let levels: Vec<_> = segment.samples().map(|(at, _)| depths.levels(line, &at)).collect();
+            Some((segment, levels))
+        };
+        let mut parts: Vec<_> = chain.iter().filter_map(sampled).collect();
+        if is_fine(&chain[0]) {
+            close_gaps(&mut parts.iter_mut().flat_map(|(_, levels)| levels).collect::<Vec<_>>());
+        }
+        for (segment, levels) in parts {
+            for (at, style) in Style::of(chain[0].kind).into_iter().enumerate() {
+                let levels: Vec<_> = levels.iter().map(|levels| levels[at]).collect();
+                // Coverage of a line drawn twice would add up: both sets of elements have contours along common edges.
+                if levels.iter().all(|&level| level == 0) || !drawn.insert((style as usize, segment.key())) {
+                    continue;
+                }
+                for (run, level) in runs(&levels).into_iter().filter(|&(_, level)| level > 0) {
+                    let (path, part) = (&mut paths[style as usize][level - 1].0, segment.part(run, levels.len()).0);
+                    let continues = is_fine(&chain[0]) && are_joined(path, &part);
+                    path.extend(&part[usize::from(continues)..]);
+                }
             }
         }
     }
@@ -450,6 +462,24 @@ pub(super) fn item(depths: &Depths<'_>, picture: &Picture) -> Option<Item> {
         depths.stroke(&edge, PLATE_EDGE_ALPHA, |_| 1.0, &mut items);
     }
     (!items.is_empty()).then(|| Item::inside(panel.viewport, items))
+}
+
+/// Whether a line is a contour of a fine surface.
+fn is_fine(line: &Line) -> bool {
+    line.kind == LineKind::FineContour
+}
+
+/// Closes short gaps in a contour: pixels are too coarse to tell an outline from a fold of the surface close to it.
+fn close_gaps(samples: &mut [&mut [usize; 3]]) {
+    for at in 0..3 {
+        let levels: Vec<_> = samples.iter().map(|levels| levels[at]).collect();
+        let around = |levels: &[usize], best: fn(usize, usize) -> usize| -> Vec<usize> {
+            let near = |at: usize| &levels[at.saturating_sub(GAP)..(at + GAP + 1).min(levels.len())];
+            (0..levels.len()).map(|at| near(at).iter().copied().fold(levels[at], best)).collect()
+        };
+        let closed = around(&around(&levels, usize::max), usize::min);
+        samples.iter_mut().zip(closed).for_each(|(levels, level)| levels[at] = level);
+    }
 }
 
 /// Consecutive corners of a polygon.

@@ -105,3 +105,43 @@ fn wild_coordinates_do_no_harm() {
     let [a, b] = Casters::new(points, &triangles, &edges).shades(&plane, key, DVec2::ZERO, 4.0, 1.0);
     assert!(a.length.is_finite() && b.length.is_finite() && a.corner.iter().all(|at| at.is_finite()));
 }
+
+#[test]
+fn a_coarse_shape_is_closed_and_casts_nearly_the_same_shadow() {
+    const ROWS: u32 = 60;
+    const COLUMNS: u32 = 120;
+    let place = |row: u32, column: u32| {
+        let angles = [(row, ROWS, 1.0), (column, COLUMNS, 2.0)];
+        let [polar, round] = angles.map(|(at, of, half)| half * std::f64::consts::PI * f64::from(at) / f64::from(of));
+        let across = libm::sin(polar);
+        DVec3::new(across * libm::cos(round), 1.0 + 0.15 * libm::cos(polar), across * libm::sin(round))
+    };
+    // A flat disc with round edges.
+    let points: Vec<_> = (0..=ROWS).flat_map(|row| (0..COLUMNS).map(move |column| place(row, column))).collect();
+    let at = |row: u32, column: u32| if row % ROWS == 0 { row * COLUMNS } else { row * COLUMNS + column % COLUMNS };
+    let cells = (0..ROWS).flat_map(|row| (0..COLUMNS).map(move |column| (row, column)));
+    let triangles: Vec<_> = cells
+        .flat_map(|(row, column)| {
+            let [a, b] = [0, 1].map(|right| at(row, column + right));
+            let [d, c] = [0, 1].map(|right| at(row + 1, column + right));
+            [[a, b, c], [a, c, d]].into_iter().filter(|[a, b, c]| a != b && b != c && c != a)
+        })
+        .collect();
+    assert!(triangles.len() > 3 * OF_SHAPE);
+    let shape = Shape::new(&points, &triangles);
+    assert!(shape.triangles.len() <= OF_SHAPE && shape.triangles.len() > OF_SHAPE / 4, "{}", shape.triangles.len());
+    assert!(shape.edges.iter().all(|edge| edge.triangles().iter().all(Option::is_some)));
+    let edges = edges(&triangles);
+    let fine = Casters::new(points.clone(), &triangles, &edges);
+    let mut coarse = Casters::new(Vec::new(), &[], &[]);
+    coarse.add_shape(shape.points.iter().map(|&at| points[at as usize]), &shape);
+    let plane = Plane::new(DVec3::Y, 0.0);
+    let key = DVec3::new(-1.0, 2.0, 0.5).normalize();
+    let [fine, coarse] = [fine, coarse].map(|casters| casters.shades(&plane, key, DVec2::ZERO, 4.0, 1.0));
+    for (one, other) in fine.iter().zip(&coarse) {
+        assert_eq!(one.cells.len(), other.cells.len());
+        let apart = one.cells.iter().zip(&other.cells).map(|(a, b)| a.abs_diff(*b));
+        let dark = one.cells.iter().filter(|cell| **cell > 200).count();
+        assert!(dark > 100 && apart.max() < Some(26), "{dark}");
+    }
+}

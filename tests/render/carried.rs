@@ -171,7 +171,7 @@ fn fields_are_carried_to_the_points() {
 }
 
 #[test]
-fn the_elements_that_carry_a_surface_are_drawn_when_asked_or_turned_over() {
+fn turned_over_elements_are_seen_on_a_surface_and_in_it_and_others_when_asked() {
     let without = picture(&carrying(&block(3, ""), own), 0);
     assert_eq!(count(&without.panels[0], LineKind::Edge), 0);
     // Three sides of 24 edges, which share nine.
@@ -186,6 +186,14 @@ fn the_elements_that_carry_a_surface_are_drawn_when_asked_or_turned_over() {
     turned.runs[0].snapshot.turned_over[13] = true;
     let panel = &unknown(&scene).compose(&turned).panels[0];
     assert_eq!((count(panel, LineKind::AlarmEdge), panel.sound.triangles.len()), (12, 6 * 9 * 2));
+    // A turned-over element that moves a part of the surface has that part, with a hatch.
+    turned.runs[0].snapshot.turned_over[13] = false;
+    turned.runs[0].snapshot.turned_over[0] = true;
+    let panel = &unknown(&scene).compose(&turned).panels[0];
+    assert_eq!([&panel.turned_over, &panel.sound].map(|mesh| mesh.triangles.len()), [6, 6 * 9 * 2 - 6]);
+    assert_eq!(count(panel, LineKind::AlarmEdge), 0);
+    let hatches = || panel.turned_over.vertices.iter().map(|vertex| vertex.hatch);
+    assert!(hatches().fold(f32::MIN, f32::max) - hatches().fold(f32::MAX, f32::min) > 0.5);
     assert_eq!(without.panels[0].sound.triangles.len(), 3 * 9 * 2);
 }
 

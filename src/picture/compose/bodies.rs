@@ -29,11 +29,13 @@ pub(super) struct Bodies<'a> {
     pub(super) tally: Tally,
     /// The signed area of each polygon of a body in the plane.
     rest_areas: Vec<f64>,
-    /// The surface that is seen, and the edges of its triangles if it casts a shadow.
+    /// The surface that is seen, and the edges of its faces' triangles if it casts a shadow.
     pub(super) skin: Skin,
     pub(super) seams: Vec<shadow::Edge>,
     /// The points of the skin that belong together: of the elements of each body, and of carried surfaces.
     pub(super) parts: Vec<Range<usize>>,
+    /// Whether each element is inside a carried surface; empty if there is none.
+    pub(super) inside: Vec<bool>,
     /// The surface of the elements, if others are seen in its place.
     cage: Option<Skin>,
     /// The triangles of faces that are not convex.
@@ -76,6 +78,7 @@ impl<'a> Bodies<'a> {
             edges: if view.visible.surfaces { Edges::default() } else { Edges::new(body) },
             bearers: if view.visible.displacements { bearers(body, of_elements, &bare) } else { Vec::new() },
             parts: skin.parts(assembly),
+            inside: skin.inside(assembly),
             skin,
             cage,
             ears,

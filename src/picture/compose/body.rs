@@ -47,11 +47,17 @@ impl Draft<'_> {
         let over = &self.run.snapshot.turned_over;
         let fine = &self.bodies.skin.fine;
         let mut sets = boundaries(self.body, over);
-        let is_cage = |side: &mut Side| fine.iter().any(|fine| fine.faces.contains(&(side.face as usize)));
+        let is_cage = |side: &Side| fine.iter().any(|fine| fine.faces.contains(&(side.face as usize)));
         let cages: [Vec<_>; 2] = match fine.is_empty() {
             true => Default::default(),
-            false => sets.each_mut().map(|sides| sides.extract_if(.., is_cage).collect()),
+            false => sets.each_mut().map(|sides| sides.extract_if(.., |side| is_cage(side)).collect()),
         };
+        // Turned-over elements inside a carried surface are drawn themselves, others move a part of it, which is drawn.
+        if !cages[1].is_empty() {
+            let inside = over.iter().zip(&self.bodies.inside).map(|(over, inside)| *over && *inside).collect::<Vec<_>>();
+            let [_, inside] = boundaries(self.body, &inside);
+            sets[1].extend(inside.into_iter().filter(|side| is_cage(side)));
+        }
         let total = sets.iter().map(Vec::len).sum();
         let kinds = Lines { edge: LineKind::Edge, contour: LineKind::Contour };
         surroundings.add(&sets[0], total, kinds, &mut sound, lines);
@@ -72,14 +78,13 @@ impl Draft<'_> {
         let mut points = self.carried();
         for fine in fine {
             let (own, others) = points.split_at(fine.surface.rest.len());
-            surroundings.add_carried(fine, own, over, &of_nodes, &mut sound, lines);
+            surroundings.add_carried(fine, own, over, &of_nodes, [&mut sound, &mut turned_over], lines);
             points = others;
         }
         if self.scene.view.visible.cage {
             surroundings.add_cage(&cages[0], LineKind::Edge, lines);
+            surroundings.add_cage(&cages[1], LineKind::AlarmEdge, lines);
         }
-        // Edges of turned-over elements are always drawn.
-        surroundings.add_cage(&cages[1], LineKind::AlarmEdge, lines);
         // Coloured strokes replace them.
         if self.of_nodes.is_empty() {
             lines.drawn.extend(self.bare_lines().into_iter().map(|(ends, over)| {

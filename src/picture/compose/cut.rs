@@ -1,6 +1,6 @@
 //! Obstacles that leave their panel fade instead of being cut off.
 
-use super::draft::Draft;
+use super::draft::{Draft, PixelBox};
 use super::plane_body::path_of;
 use super::plane_marks::soft;
 use crate::picture::layout::Rectangle;
@@ -26,7 +26,7 @@ impl Draft<'_> {
         let [left, right] = [left + beside, right - beside];
         let mut over = [0.0_f64; 4];
         for solid in solids {
-            let [low, high] = self.bounds(solid.iter());
+            let [low, high] = PixelBox::new(&self.lens, solid).corners;
             if low.x < right && high.x > left && low.y < bottom && high.y > top {
                 let beyond = [left - low.x, top - low.y, high.x - right, high.y - bottom];
                 over.iter_mut().zip(beyond).for_each(|(over, beyond)| *over = over.max(beyond));

@@ -16,6 +16,7 @@ use crate::scene::Scene;
 use crate::sim::{Assembly, Body, Dimension, RunFrame, Snapshot, Status};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
+use std::cell::OnceCell;
 
 /// Coordinates of diverged runs are clamped to this (sides).
 const FARTHEST: f64 = 1e12;
@@ -44,6 +45,8 @@ pub(super) struct Draft<'a> {
     pub(super) position: Cow<'a, [DVec3]>,
     /// The points of the skin (m); empty if not all nodes are known.
     pub(super) skin: Vec<DVec3>,
+    /// The boxes around its parts (px).
+    boxes: OnceCell<Vec<PixelBox>>,
     /// The shown field.
     pub(super) shades: Option<Shades>,
     /// Its places on the colour scale at the nodes, if lines or discs show them.
@@ -114,6 +117,7 @@ impl<'a> Draft<'a> {
             origin: framing.target,
             side: view.side,
             skin: bodies.skin.points(&position),
+            boxes: OnceCell::new(),
             position,
             shades,
             of_nodes,
@@ -153,10 +157,17 @@ impl<'a> Draft<'a> {
         self.lens.project(point).map(|(pixel, _)| pixel.into())
     }
 
-    /// The corners of the box around points (m) before the camera (px).
-    pub(super) fn bounds<'p>(&self, points: impl Iterator<Item = &'p DVec3>) -> [DVec2; 2] {
-        let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
-        points.filter_map(|&at| self.pixel(at)).fold(none, |[low, high], at| [low.min(at), high.max(at)])
+    /// The box around each part of the skin (px).
+    pub(super) fn boxes(&self) -> &[PixelBox] {
+        self.boxes.get_or_init(|| {
+            let parts = self.bodies.parts.iter().cloned();
+            parts.map(|part| PixelBox::new(&self.lens, self.skin.get(part).unwrap_or_default())).collect()
+        })
+    }
+
+    /// The boxes around carried surfaces.
+    pub(super) fn carried_boxes(&self) -> &[PixelBox] {
+        &self.boxes()[self.bodies.parts.len() - self.bodies.skin.fine.len()..]
     }
 
     /// The points of carried surfaces (m), body after body.
@@ -167,6 +178,29 @@ impl<'a> Draft<'a> {
     /// A point (m) in the panel's coordinates.
     pub(super) fn relative(&self, point: DVec3) -> [f32; 3] {
         narrow_point((point - self.origin) / self.side).to_array()
+    }
+}
+
+/// The box around points in the picture.
+pub(super) struct PixelBox {
+    /// The lower and the upper corner of the box around points before the camera (px).
+    pub(super) corners: [DVec2; 2],
+    /// Whether all points are before the camera.
+    pub(super) is_ahead: bool,
+}
+
+impl PixelBox {
+    /// The box around points (m).
+    pub(super) fn new<'p>(lens: &Lens, points: impl IntoIterator<Item = &'p DVec3>) -> Self {
+        let mut all = Self { corners: [DVec2::INFINITY, DVec2::NEG_INFINITY], is_ahead: true };
+        for &point in points {
+            let [low, high] = all.corners;
+            match lens.project(point).map(|(pixel, _)| DVec2::from(pixel)) {
+                Some(pixel) => all.corners = [low.min(pixel), high.max(pixel)],
+                None => all.is_ahead = false,
+            }
+        }
+        all
     }
 }
 

@@ -51,14 +51,17 @@ impl Draft<'_> {
             return;
         }
         let skin = &self.bodies.skin;
+        let node = |at: u32| skin.nodes[at as usize];
+        let mut triangles: Vec<_> = skin.triangles.iter().map(|corners| corners.map(node)).collect();
         // All nodes, and after them the points of carried surfaces.
         let mut points = position.to_vec();
-        skin.fine.iter().for_each(|fine| fine.place(position, &mut points));
+        for fine in &skin.fine {
+            let first = points.len() as u32;
+            triangles.extend(fine.surface.triangles.iter().map(|triangle| triangle.map(|point| first + point)));
+            fine.place(position, &mut points);
+        }
         let pixels = points.iter().map(|&at| self.pixel(at)).collect::<Option<Vec<_>>>();
         let Some(pixels) = pixels else { return };
-        let point =
-            |at: u32| skin.nodes.get(at as usize).copied().unwrap_or(at + (self.body.len() - skin.nodes.len()) as u32);
-        let triangles: Vec<_> = skin.triangles.iter().map(|corners| corners.map(point)).collect();
         let bars = self.bodies.bare.iter().flat_map(|&element| self.body.topology().edges_of(element));
         let path = ghost::outline(&pixels, &triangles, &bars.collect::<Vec<_>>(), self.around(room));
         let [width, halo] = [STRONG, TICK].map(|width| narrow(width * self.scale.line()));

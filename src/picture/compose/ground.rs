@@ -118,8 +118,15 @@ impl Draft<'_> {
         let mut casters = if self.skin.is_empty() {
             Casters::new(Vec::new(), &[], &[])
         } else {
-            Casters::new(self.skin.iter().map(relative).collect(), &skin.triangles, seams)
+            let nodes = &self.skin[..skin.nodes.len()];
+            Casters::new(nodes.iter().map(relative).collect(), &skin.triangles, seams)
         };
+        let mut carried = self.carried();
+        for fine in skin.fine.iter().filter(|_| !self.skin.is_empty()) {
+            let (own, others) = carried.split_at(fine.surface.rest.len());
+            casters.add_shape(fine.shape.points.iter().map(|&at| relative(&own[at as usize])), &fine.shape);
+            carried = others;
+        }
         casters.add(staged.shadow_points.iter().map(relative), &staged.shadow_triangles);
         casters
     }

@@ -1,6 +1,6 @@
 //! Composes one panel from its parts.
 
-use super::draft::Draft;
+use super::draft::{Draft, PixelBox};
 use super::plane_body::PlaneBody;
 use super::plane_marks::node_radius;
 use crate::picture::arrows;
@@ -97,11 +97,7 @@ impl Draft<'_> {
         if self.diverged {
             return 1.0;
         }
-        let size = |points: Range<usize>| {
-            let [low, high] = self.bounds(self.skin.get(points).into_iter().flatten());
-            (high - low).max_element()
-        };
-        let of_bodies = self.bodies.parts.iter().cloned().map(size);
+        let of_bodies = self.boxes().iter().map(|PixelBox { corners: [low, high], .. }| (high - low).max_element());
         let widest = of_bodies.fold(f64::NEG_INFINITY, f64::max) / self.scale.line();
         let share = ((widest - APART) / (CHART - APART)).clamp(0.0, 1.0);
         1.0 - (1.0 - LEAST_CONTOUR) * (1.0 - share * share * (3.0 - 2.0 * share))

@@ -1,6 +1,6 @@
 //! Marks of bodies in the plane: nodes, ring arrows for the orientation of elements, and floors seen from the side.
 
-use super::draft::Draft;
+use super::draft::{Draft, PixelBox};
 use crate::colour::Colour;
 use crate::look::FloorStyle;
 use crate::picture::Item;
@@ -167,7 +167,7 @@ impl Draft<'_> {
     fn callouts(&self, mut places: Vec<Circle>, marks: &mut Vec<Item>) {
         let (unit, colour) = (self.scale.line(), self.palette.alarm_text);
         let disc = GAP * unit;
-        let [low, high] = self.bounds(self.position.iter());
+        let [low, high] = PixelBox::new(&self.lens, &*self.position).corners;
         let [_, top, _, bottom] = sides(self.viewport.map(f64::from));
         let away = SHORT * unit + disc;
         // Each sign is on the nearer side. Signs that would touch are above each other, and none is below the body, on

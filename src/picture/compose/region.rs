@@ -1,7 +1,6 @@
 //! The part of a panel that the body and its lines may cover.
 
-use super::draft::Draft;
-use crate::picture::camera::Lens;
+use super::draft::{Draft, PixelBox};
 use crate::picture::layout::Rectangle;
 use crate::picture::layout::steps::FREE;
 use glam::{DVec2, DVec3};
@@ -13,9 +12,9 @@ impl Draft<'_> {
         if let Some(radius) = self.bead_radius() {
             room = room.max(radius + 2.0);
         }
-        let [nodes, surfaces, around] = [&self.position[..], self.carried(), around_obstacles]
-            .map(|points| region(self.viewport, points.iter(), &self.lens, room));
-        let body = union(nodes, surfaces);
+        let region = |of: &PixelBox| region(self.viewport, of, room);
+        let [nodes, around] = [&self.position[..], around_obstacles].map(|points| region(&PixelBox::new(&self.lens, points)));
+        let body = self.carried_boxes().iter().map(region).fold(nodes, union);
         // Obstacles are drawn below the rows of words, if there are any.
         let has_words = self.scene.view.labels.are_in_panels();
         let region = union(body, if has_words { overlap(around, self.between_words()) } else { around });
@@ -26,13 +25,19 @@ impl Draft<'_> {
     /// Whether the body leaves the panel, if the camera does not follow it.
     pub(super) fn is_cut(&self) -> bool {
         let [left, top, width, height] = self.viewport.map(f64::from);
-        let is_inside = |&at: &DVec3| {
-            let pixel = self.lens.project(at).map(|(pixel, _)| pixel);
-            pixel.is_some_and(|[x, y]| (left..=left + width).contains(&x) && (top..=top + height).contains(&y))
+        let is_inside = |PixelBox { corners: [low, high], is_ahead }: &PixelBox| {
+            let is_empty = low.x > high.x;
+            let [from, to] = [DVec2::new(left, top), DVec2::new(left + width, top + height)];
+            *is_ahead && (is_empty || (low.cmpge(from).all() && high.cmple(to).all()))
         };
+        if self.framing.moves || self.diverged {
+            return false;
+        }
         // The elements that carry a surface are not seen.
-        let seen = if self.carried().is_empty() { &self.position[..] } else { &self.skin };
-        !self.framing.moves && !self.diverged && !seen.iter().all(is_inside)
+        match self.carried().is_empty() {
+            true => !is_inside(&PixelBox::new(&self.lens, &*self.position)),
+            false => !self.boxes().iter().all(is_inside),
+        }
     }
 }
 
@@ -56,20 +61,12 @@ fn overlap([x, y, width, height]: Rectangle, [x2, y2, width2, height2]: Rectangl
     [left, top, right - left, bottom - top]
 }
 
-/// The part of a panel that points and the lines between them may cover, with `room` (px) around it.
-fn region<'p>(viewport: Rectangle, points: impl Iterator<Item = &'p DVec3>, lens: &Lens, room: f64) -> Rectangle {
-    let [left, top, width, height] = viewport;
-    let mut low = DVec2::INFINITY;
-    let mut high = DVec2::NEG_INFINITY;
-    for &point in points {
-        match lens.project(point) {
-            Some((pixel, _)) => {
-                low = low.min(DVec2::from(pixel));
-                high = high.max(DVec2::from(pixel));
-            }
-            // Points behind the camera may appear anywhere.
-            None => return viewport,
-        }
+/// The part of a panel that points in a box and the lines between them may cover, with `room` (px) around it.
+fn region(viewport: Rectangle, of: &PixelBox, room: f64) -> Rectangle {
+    let ([left, top, width, height], [low, high]) = (viewport, of.corners);
+    // Points behind the camera may appear anywhere.
+    if !of.is_ahead {
+        return viewport;
     }
     let within = |at: f64, start: u32, length: u32| at.clamp(f64::from(start), f64::from(start + length)) as u32;
     if low.x > high.x {
