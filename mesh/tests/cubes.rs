@@ -282,7 +282,7 @@ fn graded_cubes_are_coarse_inside() {
 #[test]
 fn coarse_cubes_are_as_stiff_as_the_fine_ones_in_their_place() {
     use localshape_sim::geometry::relative_stiffness;
-    use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
+    use localshape_sim::model::shape_based::ShapeBased;
     use localshape_sim::{Body, Dimension, Integrator, Solids, State, Stepping, Surroundings, World};
     let energy = |with: Fill| {
         let cage = fill(&block(DVec3::ZERO, DVec3::splat(2.0)), with, MOST).unwrap().cage;
@@ -291,13 +291,7 @@ fn coarse_cubes_are_as_stiff_as_the_fine_ones_in_their_place() {
         let moved = cage.nodes.iter().map(|&node| stretch * node).collect();
         let mut body = Body::new(Dimension::Space, cage.nodes, vec![1.0; count], cage.elements, Solids::Ordered, None);
         body.stiffness = Some(relative_stiffness(&body, 0.1));
-        let model = ShapeBased {
-            stiffness: 1.0,
-            damping: 0.0,
-            passes: 2,
-            rotation: RotationReading::Robust,
-            damping_of: DampingReading::RelativeMotion,
-        };
+        let model = ShapeBased::new(1.0);
         let stepping = Stepping::new(Integrator::SemiImplicitEuler, 1e-4);
         let state = State::new(moved, vec![DVec3::ZERO; count]);
         World::new(&std::sync::Arc::new(body), state, &model, Surroundings::default(), stepping).diagnostics().elastic
