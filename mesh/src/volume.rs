@@ -10,6 +10,8 @@ pub struct Volume {
     pub dimension: Dimension,
     /// Position of each point, in the unit of the file. Each belongs to a cell.
     pub points: Vec<DVec3>,
+    /// The place of each point among all points of the file, rising.
+    pub places: Vec<u32>,
     /// How cells of four, five, six and eight points are read: as hulls only if one of them is another polyhedron.
     pub solids: Solids,
     /// The points of each cell, in the order of [`Solids::Ordered`], none turned inside out.

@@ -249,6 +249,25 @@ fn cells_are_given_as_they_are_listed() {
 }
 
 #[test]
+fn elements_of_files_without_solids_are_faces_or_else_lines() {
+    let elements = |lists: &str, dimension| {
+        let text = format!("OFF\n6 {} 0\n9 9 9\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n{lists}", lists.lines().count());
+        read_cells(text.as_bytes(), Format::Off, &LIMITS).expect("sound").elements(dimension)
+    };
+    let found = |lists: &str, dimension| {
+        let Volume { places, cells, turned, .. } = elements(lists, dimension).expect("elements");
+        (places, cells.iter().map(<[u32]>::to_vec).collect::<Vec<_>>(), turned)
+    };
+    // Clockwise in the plane.
+    assert_eq!(found("4 4 3 2 1\n2 1 5\n", Dimension::Plane), (vec![1, 2, 3, 4], vec![vec![0, 1, 2, 3]], 1));
+    let triangles = vec![vec![0, 1, 2], vec![0, 2, 3]];
+    assert_eq!(found("4 1 2 3 4\n2 1 5\n", Dimension::Space), (vec![1, 2, 3, 4], triangles, 0));
+    assert_eq!(found("2 1 5\n2 5 3\n", Dimension::Space), (vec![1, 3, 5], vec![vec![0, 2], vec![2, 1]], 0));
+    let error = elements("1 2\n", Dimension::Space).expect_err("points only");
+    assert_eq!(error.message, "has 6 points, but neither faces nor cells");
+}
+
+#[test]
 fn refusals_say_where_and_what_to_do() {
     use Format::{Gltf, Obj, Off, Ply, Stl, Vtu};
     let damaged = "(the file is damaged: copy, download or write it again)";
@@ -405,6 +424,10 @@ fn cells_of_all_kinds_are_read_from_vtk_files_in_every_coding() {
             "{name}: points of other cells and of none"
         );
         assert_eq!(listed.kinds.len(), 11, "{name}");
+        // Moments of a recording find their points by their places.
+        let points: Vec<DVec3> = found.places.iter().map(|&place| listed.points[place as usize]).collect();
+        assert_eq!(points, found.points, "{name}");
+        assert_eq!(listed.elements(Dimension::Space).expect("cells"), found, "{name}");
         assert_eq!(*first.get_or_insert(found.clone()), found, "{name}");
     }
 }

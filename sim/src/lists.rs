@@ -21,7 +21,7 @@ impl IndexLists {
     }
 
     /// Appends all lists of others, whose indices are counted from `first`.
-    pub(crate) fn append(&mut self, others: &Self, first: u32) {
+    pub fn append(&mut self, others: &Self, first: u32) {
         let end = self.indices.len();
         self.offsets.extend(others.offsets[1..].iter().map(|offset| end + offset));
         self.indices.extend(others.indices.iter().map(|index| first + index));

@@ -15,20 +15,23 @@ pub struct Limits {
     pub springs: u64,
     /// Length of the scene file, and of each mesh file (bytes).
     pub file: u64,
+    /// Points in all moments of a recording in files of single moments, which are copied: up to 48 bytes each.
+    pub recorded: u64,
 }
 
 impl Default for Limits {
     /// Eight million nodes, a block of 200 × 200 × 200 with three runs: it needs about 20 GB, which a workstation has,
     /// and seconds a step. One more digit in each of three counts exceeds it. A scene file may have 256 MiB, about four
-    /// million listed nodes.
+    /// million listed nodes. Copies of recorded moments may have 10 GB on disk.
     fn default() -> Self {
-        Self { nodes: 8_200_000, corners: 200_000_000, springs: 700_000_000, file: 256 << 20 }
+        Self { nodes: 8_200_000, corners: 200_000_000, springs: 700_000_000, file: 256 << 20, recorded: 200_000_000 }
     }
 }
 
 impl Limits {
     /// No limits except 32-bit indices and the machine's memory.
-    pub const NONE: Self = Self { nodes: u64::MAX, corners: u64::MAX, springs: u64::MAX, file: u64::MAX };
+    pub const NONE: Self =
+        Self { nodes: u64::MAX, corners: u64::MAX, springs: u64::MAX, file: u64::MAX, recorded: u64::MAX };
 }
 
 /// The size of a body before it is made.

@@ -187,6 +187,11 @@ impl Npz {
             [b'P', b'K', ..] => {}
             _ => return Err("is not a NumPy archive (.npz); expected one written by numpy.savez".to_owned()),
         }
+        Self::of(file)
+    }
+
+    /// The archive in a file.
+    pub(crate) fn of(file: File) -> Result<Self, String> {
         let broken = |error| format!("is a damaged NumPy archive, or is cut short ({error})");
         let length = file.metadata().map_err(|error| format!("cannot be read: {error}"))?.len();
         Ok(Self { zip: ZipArchive::new(BufReader::new(file)).map_err(broken)?, length })

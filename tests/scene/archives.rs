@@ -637,7 +637,7 @@ fn any_bytes_in_an_archive() {
         state ^= state << 17;
         (state % bound as u64) as usize
     };
-    let small = Limits { nodes: 5000, corners: 50_000, springs: 100_000, file: 1 << 20 };
+    let small = Limits { nodes: 5000, corners: 50_000, springs: 100_000, file: 1 << 20, ..Limits::default() };
     let place = Place::new(&[]);
     for bytes in BY_NUMPY {
         for _ in 0..1500 {

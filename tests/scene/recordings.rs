@@ -254,3 +254,123 @@ fn a_run_has_a_model_or_states() {
     // Steps of the scene are those of other runs.
     assert!(load(&SCENE.replace("[time]", &time.replace("step = 0.1\n", "")), &stored(&swing(5.0, 0.5))).1.is_ok());
 }
+
+/// Loads a scene in space with this body, and a run that shows a sequence of files beside it.
+fn load_sequence(files: &[(&str, &[u8])], body: &str, states: &str, limits: &Limits) -> Result<Scene, SceneError> {
+    let folder = tempfile::tempdir().unwrap();
+    files.iter().for_each(|(name, bytes)| std::fs::write(folder.path().join(name), bytes).unwrap());
+    let time = "[time]\nduration = 1\nframes_per_second = 10\n";
+    let run = format!("[[run]]\nname = 'Played'\nstates = '{states}'\n");
+    std::fs::write(folder.path().join("scene.toml"), format!("{time}{run}[body]\n{body}\n")).unwrap();
+    Scene::load(&folder.path().join("scene.toml"), limits)
+}
+
+/// The scene of a sequence that is not of its body.
+fn of_sequence(files: &[(&str, &[u8])], states: &str) -> Scene {
+    const BLOCK: &str = "lattice = { cells = [1, 1, 1], side = 0.1 }";
+    load_sequence(files, BLOCK, states, &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Cells in VTK's order, along axes and turned over; lines, faces and points of none; hulls.
+#[test]
+fn a_moment_has_the_elements_of_the_same_file_as_a_mesh() {
+    let cells = include_bytes!("../../mesh/tests/files/cells-base64.vtu");
+    let hulls = include_bytes!("../../mesh/tests/files/hulls.vtu");
+    for (bytes, warnings) in [(&cells[..], 1), (&hulls[..], 0)] {
+        let files = [("cells.vtu", bytes), ("cells_7.vtu", bytes)];
+        let body = "mesh = 'cells.vtu'\nup = 'y'\ndensity = 1";
+        let with_mesh = load_sequence(&files, body, "cells_*.vtu", &Limits::default());
+        let with_mesh = with_mesh.unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(with_mesh.runs[0].of, [0], "the body of the scene");
+        let mesh = with_mesh.runs[0].body();
+        let alone = of_sequence(&files, "cells_*.vtu");
+        assert_eq!(alone.runs[0].of, [1], "a body of its own");
+        let own = alone.runs[0].body();
+        assert_eq!((&own.rest, &own.elements, &own.kinds), (&mesh.rest, &mesh.elements, &mesh.kinds));
+        for scene in [&with_mesh, &alone] {
+            assert_eq!(scene.world(0).state().position, mesh.rest);
+            let is_turned = |message: &str| message.contains("turned inside out, and are turned over");
+            assert_eq!(scene.warnings.iter().filter(|one| is_turned(&one.message)).count(), warnings);
+        }
+    }
+}
+
+/// A tetrahedron, or a hull of four points, moved along x, as a grid.
+fn tetrahedron(kind: u8, x: f64) -> Vec<u8> {
+    let (y, z) = (x + 1.0, x);
+    let array = |kind: &str, name: &str, more: &str, numbers: &str| {
+        format!("<DataArray type='{kind}' Name='{name}' {more} format='ascii'>{numbers}</DataArray>")
+    };
+    let points = array("Float64", "Points", "NumberOfComponents='3'", &format!("{x} 0 0 {y} 0 0 {z} 1 0 {z} 0 1"));
+    let lists =
+        [("Int64", "connectivity", "0 1 2 3"), ("Int64", "offsets", "4"), ("UInt8", "types", &kind.to_string())];
+    let lists = lists.map(|(kind, name, numbers)| array(kind, name, "", numbers)).concat();
+    format!(
+        "<VTKFile type='UnstructuredGrid' version='1.0' byte_order='LittleEndian'><UnstructuredGrid>\
+         <Piece NumberOfPoints='4' NumberOfCells='1'><Points>{points}</Points><Cells>{lists}</Cells></Piece>\
+         </UnstructuredGrid></VTKFile>"
+    )
+    .into_bytes()
+}
+
+/// A list of grids: times, files and parts.
+fn list(sets: &[(f64, &str, &str)]) -> Vec<u8> {
+    let set = |(time, file, part): &(f64, &str, &str)| format!("<DataSet timestep='{time}' file='{file}' {part}/>");
+    let sets: String = sets.iter().map(set).collect();
+    format!("<VTKFile type='Collection'><Collection>{sets}</Collection></VTKFile>").into_bytes()
+}
+
+#[test]
+fn the_kinds_of_cells_are_in_the_digest() {
+    let [tetrahedron, hull] = [10, 41].map(|kind| of_sequence(&[("m_0.vtu", &tetrahedron(kind, 0.0))], "m_*.vtu"));
+    assert_eq!(tetrahedron.world(0).state().position, hull.world(0).state().position);
+    assert_ne!(tetrahedron.digest, hull.digest);
+}
+
+#[test]
+fn files_of_one_time_are_bodies_of_a_moment_or_the_same_state() {
+    let (a, b) = (tetrahedron(10, 0.0), tetrahedron(10, 3.0));
+    let load = |sets: &[(f64, &str, &str)]| {
+        let files = [("a.vtu", &a[..]), ("b.vtu", &b[..]), ("list.pvd", &list(sets)[..])];
+        let body = "lattice = { cells = [1, 1, 1], side = 0.1 }";
+        load_sequence(&files, body, "list.pvd", &Limits::default())
+    };
+    let sound = |sets: &[(f64, &str, &str)]| load(sets).unwrap_or_else(|error| panic!("{error}"));
+    for parts in [["", ""], ["part='0'", "part='1'"]] {
+        let scene = sound(&[(0.0, "a.vtu", parts[0]), (0.0, "b.vtu", parts[1])]);
+        assert_eq!((scene.runs[0].body().len(), scene.runs[0].body().elements.len()), (8, 2));
+        assert_eq!(scene.runs[0].recording.as_ref().unwrap().moments(), 1);
+    }
+    // Frames nearer than a time step.
+    for part in ["", "part='0'"] {
+        let scene = sound(&[(0.0, "a.vtu", part), (0.5, "b.vtu", part), (0.5, "b.vtu", part), (1.0, "a.vtu", part)]);
+        let mut world = scene.world(0);
+        world.advance_towards(Moment::at(0.5), u64::MAX);
+        assert_eq!(world.state().position[0], DVec3::X * 3.0);
+        assert_eq!(world.state().velocity[0], DVec3::ZERO, "the mean of both sides");
+    }
+    let error = load(&[(0.0, "a.vtu", "part='0'"), (0.0, "b.vtu", "part='0'")]).expect_err("two states");
+    expect(
+        &error,
+        0,
+        "6:10 `list.pvd: b.vtu` is at 0 s in another state than a.vtu; expected rising times if they are bodies of one moment, list them in a .pvd file with a `part` each",
+    );
+}
+
+#[test]
+fn moments_are_bounded_before_they_are_copied() {
+    let grids = [0.0, 1.0].map(|x| tetrahedron(10, x));
+    let files = [("m_0.vtu", &grids[0][..]), ("m_1.vtu", &grids[1][..])];
+    let load = |recorded| {
+        let body = "lattice = { cells = [1, 1, 1], side = 0.1 }";
+        load_sequence(&files, body, "m_*.vtu", &Limits { recorded, ..Limits::default() })
+    };
+    let recording = load(8).unwrap_or_else(|error| panic!("{error}")).runs[0].recording.clone().expect("a recording");
+    assert!(recording.path.ends_with("m_*.vtu"), "{:?}: the file as typed", recording.path);
+    let error = load(7).expect_err("too many");
+    expect(
+        &error,
+        0,
+        "6:10 `m_*.vtu` has 2 moments of 4 points; the limit is 7 points in all moments list fewer moments, or allow it with --allow-large",
+    );
+}

@@ -16,7 +16,7 @@ impl Numbers {
 }
 
 /// The limits are small enough for a mutated count not to make a case slow.
-const SMALL: Limits = Limits { nodes: 5000, corners: 50_000, springs: 100_000, file: 1 << 20 };
+const SMALL: Limits = Limits { nodes: 5000, corners: 50_000, springs: 100_000, file: 1 << 20, recorded: 50_000 };
 
 const EXPLICIT: &str = include_str!("explicit.toml");
 

@@ -42,6 +42,14 @@ impl CellKind {
             Self::Polyhedron => ElementKind::Other,
         })
     }
+
+    fn is_solid(self) -> bool {
+        self.element().is_some()
+    }
+
+    fn is_face(self) -> bool {
+        self == Self::Polygon
+    }
 }
 
 /// Points and cells as a file lists them.
@@ -219,24 +227,8 @@ impl Cells {
     /// # Errors
     /// If there are neither cells nor faces, or cells without area or volume.
     pub fn mesh(self) -> Result<Mesh, ReadError> {
-        let of = |wanted: fn(CellKind) -> bool| self.kinds.iter().filter(|&&kind| wanted(kind)).count();
-        if of(|kind| kind.element().is_some()) > 0 {
-            return self.solids().map(Mesh::Volume);
-        }
-        if of(|kind| kind == CellKind::Polygon) > 0 {
-            return match self.is_plane() {
-                true => self.polygons().map(Mesh::Volume),
-                false => self.surface().map(Mesh::Surface),
-            };
-        }
-        let (points, lines) = (self.points.len(), of(|kind| kind == CellKind::Line));
-        let points = if points == 1 { "1 point".to_owned() } else { format!("{points} points") };
-        let message = match lines {
-            0 => format!("has {points}, but neither faces nor cells"),
-            1 => format!("has {points} and 1 line, but neither faces nor cells"),
-            _ => format!("has {points} and {lines} lines, but neither faces nor cells"),
-        };
-        Err(ReadError::new(message, "write a mesh of triangles or of cells, not points or curves"))
+        let is_volume = self.has(CellKind::is_solid) || self.has(CellKind::is_face) && self.is_plane();
+        if is_volume { self.elements(Dimension::Plane).map(Mesh::Volume) } else { self.faces() }
     }
 
     /// The faces as a surface of triangles, without points that belong to none.
@@ -244,7 +236,36 @@ impl Cells {
     /// # Errors
     /// If there are no faces.
     pub(super) fn faces(self) -> Result<Mesh, ReadError> {
-        if self.kinds.contains(&CellKind::Polygon) { self.surface().map(Mesh::Surface) } else { self.mesh() }
+        let mut triangles = self.triangles()?;
+        let used = Used::new(self.points.len(), triangles.as_flattened());
+        triangles.as_flattened_mut().iter_mut().for_each(|corner| *corner = used.new[*corner as usize]);
+        Ok(Mesh::Surface(Surface { points: used.of(&self.points), triangles, groups: used.groups(&self.groups) }))
+    }
+
+    /// All that could be elements of one kind: the cells with a volume; else the faces, in space as triangles; else the lines. Points
+    /// that belong to none of them are left out.
+    ///
+    /// # Errors
+    /// If there is nothing of it, or cells without area or volume.
+    pub fn elements(self, dimension: Dimension) -> Result<Volume, ReadError> {
+        if self.has(CellKind::is_solid) {
+            return self.solids();
+        }
+        if self.has(CellKind::is_face) && dimension == Dimension::Plane {
+            return self.polygons();
+        }
+        let mut lists = IndexLists::default();
+        self.chosen(|kind| kind == CellKind::Line)
+            .flat_map(|(.., line)| line.windows(2))
+            .for_each(|one| lists.push(one));
+        if lists.is_empty() || self.has(CellKind::is_face) {
+            lists = self.triangles()?.iter().map(<[u32; 3]>::as_slice).collect();
+        }
+        Ok(self.volume(dimension, Solids::Ordered, &lists, 0))
+    }
+
+    fn has(&self, wanted: fn(CellKind) -> bool) -> bool {
+        self.kinds.iter().any(|&kind| wanted(kind))
     }
 
     /// The cells that a predicate selects, with their number in the file.
@@ -255,17 +276,18 @@ impl Cells {
 
     /// Whether all faces have the same z, to round-off.
     fn is_plane(&self) -> bool {
-        let faces = self.chosen(|kind| kind == CellKind::Polygon);
+        let faces = self.chosen(CellKind::is_face);
         let points = || faces.flat_map(|(.., corners)| corners).map(|&point| self.points[point as usize]);
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         points().for_each(|point| (low, high) = (low.min(point), high.max(point)));
         high.z - low.z <= 1e-9 * (high - low).max_element()
     }
 
-    fn surface(self) -> Result<Surface, ReadError> {
+    /// The triangles of all faces.
+    fn triangles(&self) -> Result<Vec<[u32; 3]>, ReadError> {
         let mut triangulation = Triangulation::new(&self.points);
         let mut triangles = Vec::new();
-        for (at, _, corners) in self.chosen(|kind| kind == CellKind::Polygon) {
+        for (at, _, corners) in self.chosen(CellKind::is_face) {
             if !triangulation.triangles(corners, &mut triangles) {
                 let message = format!(
                     "has concave faces that take too long to divide into triangles: the last tried is face {at} with {} corners",
@@ -274,25 +296,42 @@ impl Cells {
                 return Err(ReadError::new(message, "divide its faces into triangles in the program that wrote it"));
             }
         }
-        if triangles.is_empty() {
+        if triangles.is_empty() && self.has(CellKind::is_face) {
             let message = "has faces with less than three different corners only";
             return Err(ReadError::new(message, "mesh the object again"));
         }
-        let used = Used::new(self.points.len(), triangles.as_flattened());
-        triangles.as_flattened_mut().iter_mut().for_each(|corner| *corner = used.new[*corner as usize]);
-        Ok(Surface { points: used.points(&self.points), triangles, groups: used.groups(&self.groups) })
+        if triangles.is_empty() {
+            let points = self.points.len();
+            let points = if points == 1 { "1 point".to_owned() } else { format!("{points} points") };
+            let message = match self.chosen(|kind| kind == CellKind::Line).count() {
+                0 => format!("has {points}, but neither faces nor cells"),
+                1 => format!("has {points} and 1 line, but neither faces nor cells"),
+                lines => format!("has {points} and {lines} lines, but neither faces nor cells"),
+            };
+            return Err(ReadError::new(message, "write a mesh of triangles or of cells, not points or curves"));
+        }
+        Ok(triangles)
+    }
+
+    /// A volume of some lists of points, with only their points.
+    fn volume(self, dimension: Dimension, solids: Solids, lists: &IndexLists, turned: usize) -> Volume {
+        let used = Used::new(self.points.len(), lists.indices());
+        let renamed: Vec<u32> = lists.indices().iter().map(|&corner| used.new[corner as usize]).collect();
+        let cells = (0..lists.len()).map(|at| &renamed[lists.range(at)]).collect();
+        let groups = used.groups(&self.groups);
+        let (points, places) = (used.of(&self.points), used.of(&(0..self.points.len() as u32).collect::<Vec<_>>()));
+        Volume { dimension, points, places, solids, cells, groups, turned }
     }
 
     /// The volume in space of all cells that have one.
     fn solids(self) -> Result<Volume, ReadError> {
         let hulls =
             |kind: CellKind, corners: &[u32]| kind == CellKind::Polyhedron && matches!(corners.len(), 5 | 6 | 8);
-        let is_solid = |kind: CellKind| kind.element().is_some();
         // Elements with so many nodes are told from tetrahedra, pyramids, wedges and hexahedra in no other way.
-        let convex = self.chosen(is_solid).any(|(_, kind, corners)| hulls(kind, corners));
+        let convex = self.chosen(CellKind::is_solid).any(|(_, kind, corners)| hulls(kind, corners));
         let solids = if convex { Solids::Convex } else { Solids::Ordered };
         let mut parts = Parts::new(Dimension::Space, self.kinds.len());
-        for (at, kind, corners) in self.chosen(is_solid) {
+        for (at, kind, corners) in self.chosen(CellKind::is_solid) {
             let element = match (kind.element().expect("a solid"), corners.len()) {
                 (ElementKind::Other, 4) => ElementKind::Tetrahedron,
                 (element, _) => element,
@@ -307,7 +346,7 @@ impl Cells {
     fn polygons(mut self) -> Result<Volume, ReadError> {
         let mut parts = Parts::new(Dimension::Plane, self.kinds.len());
         self.points.iter_mut().for_each(|point| point.z = 0.0);
-        for (at, _, corners) in self.chosen(|kind| kind == CellKind::Polygon) {
+        for (at, _, corners) in self.chosen(CellKind::is_face) {
             let mut cell = corners.to_vec();
             cell.dedup();
             if cell.first() == cell.last() {
@@ -405,12 +444,7 @@ impl Parts {
             };
             return Err(ReadError::new(message, "mesh the object again, or remove these cells"));
         }
-        let used = Used::new(cells.points.len(), self.cells.indices());
-        let renamed: Vec<u32> = self.cells.indices().iter().map(|&corner| used.new[corner as usize]).collect();
-        let lists = (0..self.cells.len()).map(|at| &renamed[self.cells.range(at)]).collect();
-        let groups = used.groups(&cells.groups);
-        let points = used.points(&cells.points);
-        Ok(Volume { dimension: self.dimension, solids, points, cells: lists, groups, turned: self.turned })
+        Ok(cells.volume(self.dimension, solids, &self.cells, self.turned))
     }
 }
 
@@ -442,8 +476,9 @@ impl Used {
         Self { new }
     }
 
-    fn points(&self, points: &[DVec3]) -> Vec<DVec3> {
-        points.iter().zip(&self.new).filter(|&(_, &new)| new != NONE).map(|(point, _)| *point).collect()
+    /// The values of these points among those of all.
+    fn of<T: Copy>(&self, all: &[T]) -> Vec<T> {
+        all.iter().zip(&self.new).filter(|&(_, &new)| new != NONE).map(|(value, _)| *value).collect()
     }
 
     /// The groups that have points in use.

@@ -12,6 +12,8 @@ pub struct Listed {
     pub time: f64,
     /// Its path, as typed.
     pub file: String,
+    /// Its part of the moment, as typed.
+    pub part: Option<String>,
 }
 
 /// Reads a list of files: those of one time after each other, in the order of times.
@@ -59,7 +61,7 @@ pub fn read_list(bytes: &[u8]) -> Result<Vec<Listed>, ReadError> {
                     let message = format!("has the time {time} after {before} {}; expected rising times", place());
                     return Err(ReadError::new(message, "list the files in the order of their times"));
                 }
-                listed.push(Listed { time, file });
+                listed.push(Listed { time, file, part: attribute(&tag, "part")? });
             }
             _ => {}
         }
@@ -93,8 +95,11 @@ mod tests {
         let found = list(
             "<DataSet timestep='0' part='0' file='a &lt;b&gt;/c_0.vtu'/><DataSet timestep='0.5' file='d.vtu'></DataSet>",
         );
-        let expected =
-            [(0.0, "a <b>/c_0.vtu"), (0.5, "d.vtu")].map(|(time, file)| Listed { time, file: file.to_owned() });
+        let expected = [(0.0, "a <b>/c_0.vtu", Some("0")), (0.5, "d.vtu", None)].map(|(time, file, part)| Listed {
+            time,
+            file: file.to_owned(),
+            part: part.map(str::to_owned),
+        });
         assert_eq!(found.unwrap(), expected);
     }
 

@@ -109,7 +109,7 @@ impl MeshSummary {
     }
 
     fn of_cells(volume: Volume) -> Self {
-        let Volume { dimension, points, solids, cells, groups, turned } = volume;
+        let Volume { dimension, points, solids, cells, groups, turned, .. } = volume;
         let (low, high) = bounds(&points);
         let (number, parts) = (points.len(), parts(points.len(), &cells));
         let body = Body::new(dimension, points, vec![1.0; number], cells, solids, None);

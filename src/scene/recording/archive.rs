@@ -1,7 +1,7 @@
 //! Recordings in NumPy archives.
 
 use super::course::{Course, StoredRun};
-use super::{Flaw, Quantity, Recorded, Rows};
+use super::{Flaw, Quantity, Recorded};
 use crate::reading::words::{list, nearest, quoted};
 use crate::scene::file::LARGEST;
 use crate::scene::npz::{Array, Npz};
@@ -33,15 +33,19 @@ struct Track {
     is_flat: bool,
 }
 
-/// The rows of an archive.
+/// The moments of an archive, read one at a time.
 #[derive(Debug)]
-struct ArchiveRows {
+pub(super) struct Rows {
     npz: Npz,
     tracks: Vec<Track>,
 }
 
-impl Rows for ArchiveRows {
-    fn row(&mut self, of: Quantity, moment: usize) -> Result<Vec<f64>, String> {
+impl Rows {
+    /// The numbers of a quantity in a moment: all coordinates of the first node, then those of the second, and so on.
+    ///
+    /// # Errors
+    /// The row cannot be read, or has changed; the message is the rest of a sentence about it.
+    pub(super) fn row(&mut self, of: Quantity, moment: usize) -> Result<Vec<f64>, String> {
         let track = self.tracks.iter().find(|track| track.of == of).ok_or("is not recorded")?;
         let mut bytes = vec![0; track.row()];
         self.npz.part(&track.array, (moment * bytes.len()) as u64, &mut bytes)?;
@@ -67,7 +71,11 @@ impl Archive {
     /// Opens a run of an archive: the `chosen` one, or the one with plain names, the only one, or the one called like the
     /// run that shows it.
     pub(crate) fn open(path: &Path, chosen: Option<&str>, shown_as: &str) -> Result<Self, Flaw> {
-        let npz = Npz::open(path).map_err(|message| Flaw::new("", message))?;
+        Self::of(Npz::open(path).map_err(|message| Flaw::new("", message))?, path, chosen, shown_as)
+    }
+
+    /// A run of an archive, which messages call by a path.
+    pub(in crate::scene) fn of(npz: Npz, path: &Path, chosen: Option<&str>, shown_as: &str) -> Result<Self, Flaw> {
         let run = choose(&npz.names(), chosen, shown_as)?;
         Ok(Self { path: path.to_owned(), npz, run })
     }
@@ -171,7 +179,8 @@ impl Archive {
                 Some((State::from_bytes(bytes)?, *times_wider))
             }),
             digest: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
-            rows: Mutex::new(Box::new(ArchiveRows { npz: self.npz, tracks })),
+            rows: Mutex::new(Rows { npz: self.npz, tracks }),
+            places: None,
             fault: Mutex::default(),
         })
     }

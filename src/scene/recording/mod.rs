@@ -1,13 +1,13 @@
 //! Runs that were computed elsewhere: positions and velocities over time, in a file beside the scene; and the stored states
 //! of an earlier simulation, which are drawn instead of simulating.
 //!
-//! Rows of the file are read when they are shown, so memory does not grow with the recording. A kind of file is a reader of
-//! [`Rows`], and a function that opens it.
+//! Rows of the file are read when they are shown, so memory does not grow with the recording.
 
 mod archive;
 mod course;
 
 pub(crate) use archive::Archive;
+use archive::Rows;
 pub(super) use archive::full;
 pub(crate) use course::{COURSE, Course, Origin, StoredRun};
 
@@ -52,18 +52,11 @@ pub struct Recorded {
     pub(crate) last_fit: Option<(State, f64)>,
     /// A digest of its moments, words and end, 64 hexadecimal digits.
     pub(super) digest: String,
-    rows: Mutex<Box<dyn Rows>>,
+    rows: Mutex<Rows>,
+    /// The places of the nodes in each row, if some have none.
+    places: Option<Vec<u32>>,
     /// Why a row could not be read.
     fault: Mutex<Option<String>>,
-}
-
-/// The moments of a file, read one at a time.
-pub(super) trait Rows: fmt::Debug + Send {
-    /// The numbers of a quantity in a moment: all coordinates of the first node, then those of the second, and so on.
-    ///
-    /// # Errors
-    /// The row cannot be read, or has changed; the message is the rest of a sentence about it.
-    fn row(&mut self, of: Quantity, moment: usize) -> Result<Vec<f64>, String>;
 }
 
 /// What is recorded in each moment.
@@ -84,7 +77,7 @@ pub(crate) struct Flaw {
 }
 
 impl Flaw {
-    fn new(place: impl Into<String>, message: impl Into<String>) -> Self {
+    pub(super) fn new(place: impl Into<String>, message: impl Into<String>) -> Self {
         Self { place: place.into(), message: message.into(), help: None }
     }
 
@@ -132,6 +125,11 @@ impl Recorded {
         Player { recorded: Arc::clone(self), step, rows: VecDeque::new() }
     }
 
+    /// The recording of some of its nodes only.
+    pub(super) fn only(self, places: Vec<u32>) -> Self {
+        Self { nodes: places.len(), places: Some(places), ..self }
+    }
+
     /// The state at the start.
     pub(super) fn start(self: &Arc<Self>) -> State {
         let mut state = State::default();
@@ -172,7 +170,14 @@ impl Player {
         }
         let numbers = self.recorded.row(of, moment)?;
         let vector = |node: &[f64]| DVec3::new(node[0], node[1], node.get(2).copied().unwrap_or(0.0));
-        let row: Arc<[DVec3]> = numbers.chunks_exact(self.recorded.columns).map(vector).collect();
+        let all = numbers.chunks_exact(self.recorded.columns);
+        let row: Arc<[DVec3]> = match &self.recorded.places {
+            None => all.map(vector).collect(),
+            Some(places) => {
+                let all: Vec<_> = all.collect();
+                places.iter().map(|&place| vector(all[place as usize])).collect()
+            }
+        };
         if self.rows.len() == KEPT {
             self.rows.pop_front();
         }
@@ -181,7 +186,7 @@ impl Player {
     }
 
     /// The velocities in a recorded moment: the recorded ones, or central differences of positions. At the first and last
-    /// moment, differences on one side.
+    /// moment, differences on one side. Moments of the same time are one.
     fn velocity(&mut self, moment: usize) -> Result<Vec<DVec3>, String> {
         if self.recorded.has_velocities() {
             return Ok(self.row(Quantity::Velocity, moment)?.to_vec());
@@ -194,7 +199,9 @@ impl Player {
             let (there, apart) = (self.row(Quantity::Position, other)?, times[other] - times[moment]);
             Ok(Some((apart.abs(), there.iter().zip(&*here).map(|(&there, &here)| (there - here) / apart).collect())))
         };
-        Ok(match (slope(moment.checked_sub(1))?, slope(Some(moment + 1))?) {
+        let before = times.partition_point(|&time| time < times[moment]).checked_sub(1);
+        let after = times.partition_point(|&time| time <= times[moment]);
+        Ok(match (slope(before)?, slope(Some(after))?) {
             // The slope of the parabola through three moments: with equal intervals the mean of both slopes.
             (Some((before, falling)), Some((after, rising))) => {
                 let share = before / (before + after);

@@ -199,6 +199,9 @@ impl Lists {
             hasher.update((length as u64).to_le_bytes());
         };
         lengths(&mut hasher, if self.dimension == Dimension::Plane { "plane" } else { "space" }, self.nodes.len());
+        if self.solids == Solids::Convex {
+            hasher.update("convex");
+        }
         coordinates(&self.nodes, &mut hasher);
         for (key, lists) in [("elements", Some(&self.elements)), ("faces", self.faces.as_ref())] {
             let Some(lists) = lists else { continue };
@@ -512,5 +515,20 @@ pub(super) fn check_exclusive(lists: &Lists, typed: bool, key: &str, array: &str
         let path = key_path![lists.source.body; key];
         let message = format!("`{}` and `{}` exclude each other", written(&path), lists.source.name(array, &[]));
         report.at_key(&path, message, "keep one");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hulls_have_another_digest_than_ordered_elements() {
+        let (springs, faces, positions, velocities, masses) = Default::default();
+        let source = ListSource { body: Vec::new(), file: None };
+        let (dimension, nodes) = (Dimension::Space, vec![DVec3::ZERO; 4]);
+        let (elements, solids) = ([&[0, 1, 2, 3][..]].into_iter().collect(), Solids::Ordered);
+        let lists = Lists { source, dimension, nodes, elements, solids, springs, faces, positions, velocities, masses };
+        assert_ne!(lists.digest(), Lists { solids: Solids::Convex, ..lists.clone() }.digest());
     }
 }

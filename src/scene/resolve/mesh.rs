@@ -99,18 +99,8 @@ fn cells(volume: Volume, file: &BodyFile, place: &Place, flawed: bool, report: &
         report.at(&path, message, "write `density` (kg/m³), such as density = 1000");
         return None;
     }
-    let Volume { dimension, solids, points: nodes, cells: elements, groups, turned } = volume;
-    if turned > 0 {
-        let all = count(elements.len() as u128);
-        let message = match turned {
-            1 => format!("1 of {all} cells of `{name}` was turned inside out, and is turned over"),
-            _ => format!(
-                "{} of {all} cells of `{name}` were turned inside out, and are turned over",
-                count(turned as u128)
-            ),
-        };
-        report.warn(&path, message, None);
-    }
+    let Volume { dimension, solids, points: nodes, cells: elements, groups, turned, .. } = volume;
+    warn_of_turned(turned, elements.len(), name, &path, report);
     warn_of_parts(
         nodes.len(),
         &elements,
@@ -226,6 +216,17 @@ fn check_mass(file: &BodyFile, place: &Place, flawed: bool, report: &mut Collect
         report.at(&key_path![place; "mesh"], message, help);
     }
     None
+}
+
+/// Warns of cells that a file lists inside out.
+pub(super) fn warn_of_turned(turned: usize, all: usize, name: &str, place: &Place, report: &mut Collector<'_>) {
+    let [number, all] = [turned, all].map(|cells| count(cells as u128));
+    let message = match turned {
+        0 => return,
+        1 => format!("1 of {all} cells of `{name}` was turned inside out, and is turned over"),
+        _ => format!("{number} of {all} cells of `{name}` were turned inside out, and are turned over"),
+    };
+    report.warn(place, message, None);
 }
 
 /// Warns of parts of a body that nothing holds together.

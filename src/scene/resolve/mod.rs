@@ -276,8 +276,8 @@ fn resolve(
     limits: &Limits,
     report: &mut Collector<'_>,
 ) -> Option<Scene> {
-    let beside = take(&mut parts.beside);
-    let physics = physics(&parts, beside, limits, report);
+    let (beside, recordings) = (take(&mut parts.beside), take(&mut parts.recordings));
+    let physics = physics(&parts, beside, recordings, limits, report);
     let view = view(&parts, &physics, report);
     if let (0, Some(runs)) = (report.total(), &physics.runs) {
         let fixed = runs.iter().filter(|run| run.tolerance.is_none() && run.recording.is_none());
@@ -312,7 +312,13 @@ fn resolve(
     Some(scene)
 }
 
-fn physics(parts: &SceneParts, beside: Vec<Option<Beside>>, limits: &Limits, report: &mut Collector<'_>) -> Physics {
+fn physics(
+    parts: &SceneParts,
+    beside: Vec<Option<Beside>>,
+    recordings: Vec<Option<ReadRecording>>,
+    limits: &Limits,
+    report: &mut Collector<'_>,
+) -> Physics {
     let flawed = parts.flawed.contains("body");
     let names = check_body_names(parts, report);
     let choices = choice::resolve(&parts.runs, parts.bodies.len(), names.as_deref(), report);
@@ -343,8 +349,7 @@ fn physics(parts: &SceneParts, beside: Vec<Option<Beside>>, limits: &Limits, rep
         check_frames(time, report);
     }
     let all = bodies.as_deref().zip(dimension);
-    let around =
-        runs::Around { choices: &choices, recordings: &parts.recordings, bodies: all, grips: grips.as_deref() };
+    let around = runs::Around { choices: &choices, recordings, bodies: all, grips: grips.as_deref() };
     let runs = runs::resolve(&parts.runs, parts.time.as_ref(), around, report);
     let (runs, own) = runs.map_or_else(Default::default, |(runs, own)| (Some(runs), own));
     if let (true, Some(names), Some(runs)) = (is_plural, names, &runs) {

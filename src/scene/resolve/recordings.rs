@@ -2,7 +2,7 @@
 
 use super::body::ResolvedBody;
 use super::lists::{ListSource, Lists};
-use super::{Place, body};
+use super::{Place, body, mesh};
 use crate::reading::beside::{missing, similar};
 use crate::reading::collector::{Collector, key_path};
 use crate::reading::words::{count, list, nearest};
@@ -11,30 +11,35 @@ use crate::scene::limits::Limits;
 use crate::scene::recording::{Archive, Flaw, Recorded};
 use crate::scene::sequence::{self, Sequence};
 use crate::scene::{COURSE, Together};
-use crate::sim::{Assembly, Dimension, State};
+use crate::sim::{Body, Dimension, IndexLists, State};
+use glam::DVec3;
+use localshape_mesh::{Cells, ReadError, Volume};
+use sha2::{Digest, Sha256};
 use std::path::Path;
 use std::sync::Arc;
 
 /// A recording of a run.
 #[derive(Debug)]
 pub(super) struct ReadRecording {
-    pub(super) recorded: Arc<Recorded>,
-    /// The body in its archive, if it has one.
-    own: Option<Lists>,
+    recorded: Recorded,
+    own: Own,
     /// The name of its file as typed.
     file: String,
-    alike: Alike,
 }
 
-/// When a body in a file is that of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Alike {
-    /// Nodes at rest and elements are equal.
-    Whole,
-    /// Elements are equal. Files of single moments do not tell the rest shape.
-    Elements,
-    /// There are as many nodes. Surfaces do not tell elements.
-    Nodes,
+/// What a recording tells about its body.
+#[derive(Debug)]
+enum Own {
+    Nothing,
+    /// Its nodes at rest and its elements.
+    Rest(Lists),
+    /// The points and cells of the first moment. The rest shape is not known.
+    Moment {
+        cells: Box<Cells>,
+        /// Whether the cells are elements.
+        has_elements: bool,
+        source: ListSource,
+    },
 }
 
 /// What a recording shows.
@@ -56,32 +61,25 @@ impl ReadRecording {
         report: &mut Collector<'_>,
     ) -> Option<Self> {
         let (file, chosen) = run.states.as_ref()?.parts();
-        let sequence = sequence::is_one(file).then(|| Sequence::read(folder, file, rate, limits)).transpose();
-        let sequence = sequence.map_err(|flaw| told(at, run, file, flaw, report)).ok()?;
-        let path = sequence.as_ref().map_or_else(|| folder.join(file), |made| made.archive.path().to_owned());
-        let alike = match sequence.as_ref().map(|made| made.has_elements) {
-            None => Alike::Whole,
-            Some(true) => Alike::Elements,
-            Some(false) => Alike::Nodes,
-        };
-        if !path.exists() {
-            let near = similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?"));
-            report.at(&place(at, run), format!("`{file}` {}", missing(&path)), near);
-            return None;
-        }
-        let known = report.total();
+        let (path, source, known) = (folder.join(file), source(at, run), report.total());
         let open = |report: &mut Collector<'_>| -> Result<_, Flaw> {
+            if sequence::is_one(file) {
+                let Sequence { archive, cells, has_elements } = Sequence::read(folder, file, rate, limits)?;
+                let archive = Archive::of(archive, &path, chosen, &run.name)?;
+                return Ok((archive.recorded()?, Own::Moment { cells: Box::new(cells), has_elements, source }));
+            }
+            if !path.exists() {
+                let help = similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?"));
+                return Err(Flaw { help, ..Flaw::new("", missing(&path)) });
+            }
             let mut archive = Archive::open(&path, chosen, &run.name)?;
             let (npz, name) = archive.parts();
             check_names(&npz.names(), name, file, &place(at, run), report);
-            let own = Lists::recorded(npz, name, source(at, run), limits, report);
+            let own = Lists::recorded(npz, name, source, limits, report).map_or(Own::Nothing, Own::Rest);
             Ok((archive.recorded()?, own))
         };
         match open(report) {
-            Ok((recorded, own)) => {
-                let (recorded, file) = (Arc::new(recorded), file.to_owned());
-                (report.total() == known).then_some(Self { recorded, own, file, alike })
-            }
+            Ok((recorded, own)) => (report.total() == known).then(|| Self { recorded, own, file: file.to_owned() }),
             Err(flaw) => {
                 told(at, run, file, flaw, report);
                 None
@@ -91,70 +89,101 @@ impl ReadRecording {
 
     /// A digest of the recording and its body.
     pub(super) fn digest(&self) -> String {
-        let own = self.own.as_ref().map(Lists::digest).unwrap_or_default();
+        let own = match &self.own {
+            Own::Nothing => String::new(),
+            Own::Rest(lists) => lists.digest(),
+            Own::Moment { cells, .. } => digest_of(cells),
+        };
         self.recorded.digest.clone() + &own
     }
 
-    /// Whether the body in the archive is the scene's, and how the recording moves it; `None` after reporting a mistake.
-    /// `all` are the bodies of the run, and `dimension` is that of the scene.
+    /// The recording, and whether its body is the scene's; `None` after reporting a mistake. `all` are the bodies of the run, and
+    /// `dimension` is that of the scene.
     pub(super) fn shown(
-        &self,
+        self,
         at: usize,
         run: &RunFile,
         all: &Together,
         dimension: Dimension,
         report: &mut Collector<'_>,
-    ) -> Option<Shown> {
-        let (file, place) = (&self.file, place(at, run));
-        let Recorded { columns, is_flat, .. } = *self.recorded;
-        let wrong = match (dimension, columns) {
-            (Dimension::Space, 2) => Some("has 2 coordinates for each node, and the scene is in space; expected 3"),
-            (Dimension::Plane, 3) if !is_flat => {
-                Some("leaves the plane of the scene; expected z = 0, or 2 coordinates")
+    ) -> Option<(Arc<Recorded>, Shown)> {
+        let (file, known) = (self.file, report.total());
+        let (recorded, own) = match self.own.of(self.recorded, all.bodies.whole(), dimension) {
+            Ok((recorded, own)) => (Arc::new(recorded), own),
+            Err(flaw) => {
+                told(at, run, &file, flaw, report);
+                return None;
             }
-            _ => None,
         };
-        if let Some(wrong) = wrong {
-            report.at(&place, format!("`{file}: position` {wrong}"), None);
-            return None;
-        }
-        let (nodes, known) = (self.recorded.nodes, report.total());
-        let start = self.recorded.start();
+        let start = recorded.start();
         let start = State::new(start.position, start.velocity);
-        let Some(own) = &self.own else {
-            let expected = all.bodies.whole().len();
-            if nodes == expected {
-                return Some(Shown::Bodies(start));
-            }
-            let [nodes, expected] = [nodes, expected].map(|nodes| count(nodes as u128));
-            let message = format!("`{file}: position` has {nodes} nodes, and the bodies of the run have {expected}");
-            let help = "expected the same nodes, or a body of its own: the arrays `rest` and `elements`";
-            report.at(&place, message, help.to_owned());
-            return None;
-        };
-        if own.nodes.len() != nodes {
-            let [nodes, rest] = [nodes, own.nodes.len()].map(|nodes| count(nodes as u128));
-            let message = format!("`{file}: position` has {nodes} nodes, and `rest` has {rest}; expected as many");
-            report.at(&place, message, None);
-            return None;
-        }
-        if dimension == Dimension::Plane && own.nodes.iter().any(|node| node.z != 0.0) {
-            let message = format!("`{file}: rest` leaves the plane of the scene; expected z = 0, or 2 coordinates");
-            report.at(&place, message, None);
-            return None;
-        }
-        if is_same(own, &all.bodies, self.alike) {
-            return Some(Shown::Bodies(start));
-        }
+        let Some((own, turned)) = own else { return Some((recorded, Shown::Bodies(start))) };
         if run.bodies.is_some() {
-            let message = format!("`{file}` has another body than those in `bodies`");
-            report.at(&place, message, "remove `bodies`, so that its own body is shown".to_owned());
+            let help = "remove `bodies`, so that its own body is shown";
+            told(at, run, &file, Flaw::new("", "has another body than those in `bodies`").with_help(help), report);
             return None;
         }
-        let mut own = own.clone();
-        own.dimension = dimension;
+        mesh::warn_of_turned(turned, own.elements.len(), &file, &place(at, run), report);
         let made = body::recorded(own, run.name.clone(), start, report)?;
-        (report.total() == known).then(|| Shown::Own(Box::new(made)))
+        (report.total() == known).then(|| (recorded, Shown::Own(Box::new(made))))
+    }
+}
+
+impl Own {
+    /// The recording of a body, and the body with the number of its elements that were turned over, unless it is the whole of a run.
+    fn of(
+        self,
+        recorded: Recorded,
+        whole: &Body,
+        dimension: Dimension,
+    ) -> Result<(Recorded, Option<(Lists, usize)>), Flaw> {
+        let wrong = match (dimension, recorded.columns) {
+            (Dimension::Space, 2) => "has 2 coordinates for each node, and the scene is in space; expected 3",
+            (Dimension::Plane, 3) if !recorded.is_flat => {
+                "leaves the plane of the scene; expected z = 0, or 2 coordinates"
+            }
+            _ => "",
+        };
+        if !wrong.is_empty() {
+            return Err(Flaw::new("position", wrong));
+        }
+        let is_as_long = recorded.nodes == whole.len();
+        let [nodes, expected] = [recorded.nodes, whole.len()].map(|nodes| count(nodes as u128));
+        match self {
+            Self::Nothing if is_as_long => Ok((recorded, None)),
+            Self::Nothing => {
+                let message = format!("has {nodes} nodes, and the bodies of the run have {expected}");
+                let help = "expected the same nodes, or a body of its own: the arrays `rest` and `elements`";
+                Err(Flaw::new("position", message).with_help(help))
+            }
+            Self::Rest(own) if own.nodes.len() != recorded.nodes => {
+                let rest = count(own.nodes.len() as u128);
+                Err(Flaw::new("position", format!("has {nodes} nodes, and `rest` has {rest}; expected as many")))
+            }
+            Self::Rest(own) if dimension == Dimension::Plane && own.nodes.iter().any(|node| node.z != 0.0) => {
+                Err(Flaw::new("rest", "leaves the plane of the scene; expected z = 0, or 2 coordinates"))
+            }
+            Self::Rest(own) => {
+                let is_same = are_near(&own.nodes, whole) && are_alike(&own.elements, &whole.elements);
+                Ok((recorded, (!is_same).then_some((Lists { dimension, ..own }, 0))))
+            }
+            // First with all points: nodes of springs may belong to no cell.
+            Self::Moment { cells, has_elements, .. }
+                if is_as_long && (!has_elements || are_alike(&cells.corners, &whole.elements)) =>
+            {
+                Ok((recorded, None))
+            }
+            Self::Moment { cells, source, .. } => {
+                let wrong = |error: ReadError| Flaw { help: error.help, ..Flaw::new("", error.message) };
+                let Volume { places, solids, points: nodes, cells: elements, turned, .. } =
+                    cells.elements(dimension).map_err(wrong)?;
+                let is_same = nodes.len() == whole.len() && are_alike(&elements, &whole.elements);
+                let (springs, faces, positions, velocities, masses) = Default::default();
+                let own =
+                    Lists { source, dimension, nodes, elements, solids, springs, faces, positions, velocities, masses };
+                Ok((recorded.only(places), (!is_same).then_some((own, turned))))
+            }
+        }
     }
 }
 
@@ -213,24 +242,32 @@ fn source(at: usize, run: &RunFile) -> ListSource {
     ListSource { body: place(at, run), file }
 }
 
-/// Whether a body in an archive is made of the same nodes and elements as the bodies of a run.
-fn is_same(own: &Lists, bodies: &Assembly, alike: Alike) -> bool {
-    /// The greatest distance of two equal nodes, as a share of the body's size: single precision is enough.
+/// Whether these are the nodes of a body at rest. Single precision is enough.
+fn are_near(nodes: &[DVec3], whole: &Body) -> bool {
+    /// The greatest distance of two equal nodes, as a share of the body's size.
     const APART: f64 = 1e-6;
-    let whole = bodies.whole();
     let near = APART * whole.extent();
-    let is_near = |(one, other): (&glam::DVec3, &glam::DVec3)| one.distance(*other) <= near;
-    // Grids list the corners of some elements in another order.
+    nodes.len() == whole.len() && nodes.iter().zip(&whole.rest).all(|(one, other)| one.distance(*other) <= near)
+}
+
+/// Whether elements have the same nodes. Programs list those of some kinds in other orders.
+fn are_alike(one: &IndexLists, other: &IndexLists) -> bool {
     let sorted = |nodes: &[u32]| {
         let mut nodes = nodes.to_vec();
         nodes.sort_unstable();
         nodes
     };
-    let is_element =
-        |(one, other): (&[u32], &[u32])| one == other || alike == Alike::Elements && sorted(one) == sorted(other);
-    let has_elements =
-        || own.elements.len() == whole.elements.len() && own.elements.iter().zip(whole.elements.iter()).all(is_element);
-    own.nodes.len() == whole.len()
-        && (alike == Alike::Nodes || has_elements())
-        && (alike != Alike::Whole || own.nodes.iter().zip(&whole.rest).all(is_near))
+    let is_alike = |(one, other): (&[u32], &[u32])| one == other || sorted(one) == sorted(other);
+    one.len() == other.len() && one.iter().zip(other.iter()).all(is_alike)
+}
+
+/// A digest of cells. Their points are positions of the recording.
+fn digest_of(cells: &Cells) -> String {
+    let mut hash = Sha256::new();
+    for (kind, corners) in cells.kinds.iter().zip(cells.corners.iter()) {
+        hash.update([*kind as u8]);
+        hash.update((corners.len() as u64).to_le_bytes());
+        corners.iter().for_each(|corner| hash.update(corner.to_le_bytes()));
+    }
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }

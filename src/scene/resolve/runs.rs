@@ -47,12 +47,11 @@ fn together(bodies: &[ResolvedBody], of: &[usize]) -> Together {
 }
 
 /// What runs are made of.
-#[derive(Clone, Copy)]
 pub(super) struct Around<'a> {
     /// The bodies and models of each run.
     pub(super) choices: &'a [Option<Choice<'a>>],
     /// The recording of each run.
-    pub(super) recordings: &'a [Option<ReadRecording>],
+    pub(super) recordings: Vec<Option<ReadRecording>>,
     /// The bodies of the scene, in the plane or in space.
     pub(super) bodies: Option<(&'a [ResolvedBody], Dimension)>,
     pub(super) grips: Option<&'a [SceneGrip]>,
@@ -71,16 +70,17 @@ fn parts(
     // Runs of the same bodies share them.
     let mut known: BTreeMap<&[usize], Together> = BTreeMap::new();
     let mut all = Vec::with_capacity(choices.len());
-    for (at, (choice, run)) in choices.iter().zip(typed).enumerate() {
+    for (at, ((choice, run), read)) in choices.iter().zip(typed).zip(recordings).enumerate() {
         let Some((Choice { of, models }, run)) = choice.as_ref().zip(run.as_ref()) else {
             all.push(None);
             continue;
         };
         let mut together = known.entry(of).or_insert_with(|| together(bodies, of)).clone();
         if run.states.is_some() {
-            let shown = recordings[at].as_ref().and_then(|read| {
+            let shown = read.and_then(|read| {
                 let mut of = of.clone();
-                match read.shown(at, run, &together, dimension, report)? {
+                let (recorded, shown) = read.shown(at, run, &together, dimension, report)?;
+                match shown {
                     Shown::Bodies(start) => together.initial = start,
                     Shown::Own(body) => {
                         if bodies.iter().any(|other| other.name == body.name) || body.name == ALL_BODIES {
@@ -95,7 +95,7 @@ fn parts(
                         own.push(*body);
                     }
                 }
-                let (models, grips, recording) = (Vec::new(), Vec::new(), Some(Arc::clone(&read.recorded)));
+                let (models, grips, recording) = (Vec::new(), Vec::new(), Some(recorded));
                 Some(Parts { of, together, models, grips, recording })
             });
             all.push(shown);
@@ -130,6 +130,7 @@ pub(super) fn resolve<'a>(
     let named = typed.iter().enumerate().map(|(at, run)| (key_path!["run", at].to_vec(), name(run)));
     check_names(["run", "runs"], named, report);
     // T depends on all models: without one of them, steps would be reported wrongly.
+    let bodies = around.bodies;
     let (parts, own) = parts(typed, around, report)?;
     let periods = parts.iter().flat_map(Parts::iter).map(|(model, body)| model.shortest_period(body));
     let cycle = periods.fold(f64::INFINITY, f64::min);
@@ -206,7 +207,7 @@ pub(super) fn resolve<'a>(
         if kernel == Kernel::Fast && fastest != Kernel::Fast {
             let path = key_path!["run", at, "kernel"];
             let slow = parts.iter().position(|(model, _)| Kernel::of(model, integrator) != Kernel::Fast);
-            let slow = slow.filter(|_| parts.of.len() > 1).and_then(|slow| around.bodies?.0.get(parts.of[slow]));
+            let slow = slow.filter(|_| parts.of.len() > 1).and_then(|slow| bodies?.0.get(parts.of[slow]));
             let of = slow.map_or(String::new(), |body| format!(" of {}", body.in_words()));
             let message = format!(
                 "`run[{at}].kernel` is \"fast\", but this `integrator`, `model.rotation` or `model.damping_of`{of} has no vectorised steps"
