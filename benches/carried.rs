@@ -66,9 +66,9 @@ fn main() {
     let coarse = sphere(FILLED, RADII[1]);
     let cubes = filled(&coarse).cage.elements.len();
     println!("{} triangles, filled with {cubes} cubes", coarse.triangles.len());
-    let [one, two] = pools.each_ref().map(|pool: &ThreadPool| {
-        pool.install(|| best((0..FILLS).map(|_| time(|| filled(black_box(&coarse))))))
-    });
+    let [one, two] = pools
+        .each_ref()
+        .map(|pool: &ThreadPool| pool.install(|| best((0..FILLS).map(|_| time(|| filled(black_box(&coarse)))))));
     println!("fill-ms: {one:.0}");
     println!("fill-threads-2: {:.2}", one / two);
 

@@ -39,7 +39,9 @@ impl Shown {
     fn body(self, folder: &Path) -> String {
         match self {
             Self::Block(cells) => {
-                format!("lattice = {{ cells = {cells:?}, side = 0.1 }}\nmass = 1.0\nrotation = {{ axis = [1, 0, 1], angle = 0.028284 }}")
+                format!(
+                    "lattice = {{ cells = {cells:?}, side = 0.1 }}\nmass = 1.0\nrotation = {{ axis = [1, 0, 1], angle = 0.028284 }}"
+                )
             }
             Self::Carried([rows, columns]) => {
                 std::fs::write(folder.join("surface.obj"), sphere(rows, columns)).expect("a temporary file");
@@ -59,7 +61,9 @@ fn sphere(rows: u32, columns: u32) -> String {
         let (x, z) = (polar.sin() * round.cos(), polar.sin() * round.sin());
         writeln!(text, "v {} {} {}", radius * x, radius * polar.cos(), radius * z).expect("text");
     };
-    let angles = |at: u32| (PI * (f64::from(at / columns) + 0.5) / f64::from(rows), TAU * f64::from(at % columns) / f64::from(columns));
+    let angles = |at: u32| {
+        (PI * (f64::from(at / columns) + 0.5) / f64::from(rows), TAU * f64::from(at % columns) / f64::from(columns))
+    };
     (0..rows * columns).map(angles).for_each(|(polar, round)| point(polar, round));
     point(0.0, 0.0);
     point(PI, 0.0);

@@ -54,7 +54,8 @@ impl Draft<'_> {
         };
         // Turned-over elements inside a carried surface are drawn themselves, others move a part of it, which is drawn.
         if !cages[1].is_empty() {
-            let inside = over.iter().zip(&self.bodies.inside).map(|(over, inside)| *over && *inside).collect::<Vec<_>>();
+            let inside =
+                over.iter().zip(&self.bodies.inside).map(|(over, inside)| *over && *inside).collect::<Vec<_>>();
             let [_, inside] = boundaries(self.body, &inside);
             sets[1].extend(inside.into_iter().filter(|side| is_cage(side)));
         }

@@ -13,7 +13,8 @@ impl Draft<'_> {
             room = room.max(radius + 2.0);
         }
         let region = |of: &PixelBox| region(self.viewport, of, room);
-        let [nodes, around] = [&self.position[..], around_obstacles].map(|points| region(&PixelBox::new(&self.lens, points)));
+        let [nodes, around] =
+            [&self.position[..], around_obstacles].map(|points| region(&PixelBox::new(&self.lens, points)));
         let body = self.carried_boxes().iter().map(region).fold(nodes, union);
         // Obstacles are drawn below the rows of words, if there are any.
         let has_words = self.scene.view.labels.are_in_panels();
