@@ -37,7 +37,13 @@ pub(super) fn short_description(scene: &Scene, run: &Run) -> String {
         return recording.description();
     }
     let short = |words: fn(&dyn ElasticModel, &Body) -> String| -> Vec<_> {
-        run.models_and_bodies().map(|(model, body)| words(model, body) + &model.unusual_choices(body)).collect()
+        let rotation = |model: &dyn ElasticModel| match model.brakes_rotation() && scene.braked(run).is_some() {
+            true => ", also of rotation",
+            false => "",
+        };
+        let all =
+            |(model, body): (&dyn ElasticModel, _)| words(model, body) + rotation(model) + &model.unusual_choices(body);
+        run.models_and_bodies().map(all).collect()
     };
     let models = short(constants);
     match &models[..] {

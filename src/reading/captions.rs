@@ -1,13 +1,21 @@
 //! Models, elements, choices and quantities in words, for captions and messages.
 
 use crate::sim::model::ElasticModel;
-use crate::sim::{Body, ElementKind};
+use crate::sim::{Body, Dimension, ElementKind, Material};
 use glam::DVec3;
 use serde::Serialize;
 
-/// A model with all choices that change the result, such as the rotation solver.
+/// A model with all choices that change the result, such as the rotation solver, and the material that it is.
 pub fn description(model: &dyn ElasticModel, body: &Body) -> String {
-    parts_and_constants(model, body) + &model.choices(body)
+    let is_material = model.material(body).filter(|_| model.typed_material().is_none());
+    let as_material = is_material.map_or_else(String::new, |is| format!(", as a material {}", material(is, body)));
+    parts_and_constants(model, body) + &model.choices(body) + &as_material
+}
+
+/// A material of a body: `E = 200 kPa, ν = 0.3`.
+fn material(Material { young, poisson }: Material, body: &Body) -> String {
+    let unit = if body.dimension == Dimension::Plane { "N/m" } else { "Pa" };
+    format!("E = {}, ν = {}", quantity(young, unit), rounded(poisson, 3))
 }
 
 /// The parts of a body in a model, and the constants of the model: `27 cubes, k = 10 kN/m, ζ = 0.1`.
@@ -25,10 +33,11 @@ fn parts(model: &dyn ElasticModel, body: &Body) -> String {
     }
 }
 
-/// The constants of a model of a body: `k = 10 kN/m, ζ = 0.1`.
+/// The constants of a model of a body, with the material that was given: `E = 200 kPa, ν = 0, k = 10 kN/m, ζ = 0.1`.
 pub(crate) fn constants(model: &dyn ElasticModel, body: &Body) -> String {
     let (k, damping) = (model.stiffness(), model.damping());
-    let mut text = format!("k = {}", quantity(k, "N/m"));
+    let given = model.typed_material().map_or_else(String::new, |given| material(given, body) + ", ");
+    let mut text = format!("{given}k = {}", quantity(k, "N/m"));
     if damping > 0.0 {
         text += &format!(", ζ = {}", rounded(damping / (2.0 * (k * body.lightest()).sqrt()), 3));
     }

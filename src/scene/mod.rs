@@ -31,6 +31,7 @@ mod stability;
 mod step;
 mod structure;
 mod summary;
+mod turning;
 
 pub use crate::reading::captions::description;
 pub use crate::reading::{Mistake, Mistakes};

@@ -133,10 +133,20 @@ pub trait ElasticModel: Debug + Send + Sync {
         None
     }
 
-    /// The material of the elements of a body, if they are of one.
+    /// The material that the model is on a body, in uniform strain; `None` if it is none.
     fn material(&self, body: &Body) -> Option<Material> {
         let _ = body;
+        self.typed_material()
+    }
+
+    /// The material that was given in place of an elastic constant.
+    fn typed_material(&self) -> Option<Material> {
         None
+    }
+
+    /// Whether damping brakes the rotation of a rigid body.
+    fn brakes_rotation(&self) -> bool {
+        false
     }
 
     /// Damping constant `D` (N s/m); 0 without damping. Captions show it as a ratio to `2√(km)` of the lightest node.

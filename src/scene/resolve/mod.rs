@@ -309,6 +309,7 @@ fn resolve(
     warn_of_time(&scene, report);
     warn_of_steps(&scene, report);
     warn_of_overlaps(&scene, &parts.places, report);
+    warn_of_braked_rotation(&scene, report);
     Some(scene)
 }
 
@@ -504,6 +505,19 @@ fn warn_of_steps(scene: &Scene, report: &mut Collector<'_>) {
             let own = key_path!["run", run, "integrator"];
             let path = if report.is_typed(&own) { &own[..] } else { &key_path!["time", "integrator"] };
             report.warn(path, message, help);
+        }
+    }
+}
+
+/// Warns of damping that also brakes rotation where bodies turn, unless it is asked for by name.
+fn warn_of_braked_rotation(scene: &Scene, report: &mut Collector<'_>) {
+    for run in 0..scene.runs.len() {
+        if let Some([message, help]) = scene.brakes_rotation(run) {
+            let own = key_path!["run", run, "model"];
+            let path = if report.is_typed(&own) { own } else { key_path!["run", run, "models"] };
+            if !report.is_typed(&key_path![path; "damping_of"]) {
+                report.warn(&path, message, help);
+            }
         }
     }
 }

@@ -200,6 +200,14 @@ impl ElasticModel for ShapeBased {
         text + &self.beyond_the_paper()
     }
 
+    fn typed_material(&self) -> Option<Material> {
+        self.material
+    }
+
+    fn brakes_rotation(&self) -> bool {
+        self.damping > 0.0 && self.damping_of == DampingReading::RelativeMotion
+    }
+
     fn material(&self, body: &Body) -> Option<Material> {
         let stiffness = || {
             let parts =
@@ -378,14 +386,7 @@ impl ShapeBased {
 
     /// The options that the paper's model does not have.
     fn beyond_the_paper(&self) -> String {
-        let mut text = String::new();
-        if let Some(Material { poisson, .. }) = self.material.filter(|material| material.poisson != 0.0) {
-            text += &format!(", ν = {poisson}");
-        }
-        if self.bending != 1.0 {
-            text += &format!(", β = {}", Ratio(self.bending));
-        }
-        text
+        if self.bending == 1.0 { String::new() } else { format!(", β = {}", Ratio(self.bending)) }
     }
 
     fn solver(&self, dimension: Dimension) -> Solver {
