@@ -9,6 +9,7 @@ mod good;
 mod look;
 mod manipulators;
 mod meshes;
+mod material;
 mod mistakes;
 mod peers;
 mod plural;

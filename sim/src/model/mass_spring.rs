@@ -30,7 +30,7 @@ use std::sync::Arc;
 #[serde(deny_unknown_fields)]
 #[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
 pub struct Parameters {
-    /// Elastic constant of each spring, `k_ij` of Eq. (1) (N/m).
+    /// Elastic constant of each spring, `k_ij` of Eq. (1) (N/m). Springs take no `young`, because their Poisson's ratio is not free.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub stiffness: f64,
     /// Damping constant of each spring, `D_ij` of Eq. (1) (N s/m). Default: 0. Not together with `damping_ratio`.

@@ -39,6 +39,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 #[serde(deny_unknown_fields)]
 #[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
 #[schemars(extend("oneOf" = [{ "required": ["stiffness"] }, { "required": ["young"] }]))]
+#[schemars(extend("dependentRequired" = { "poisson": ["young"] }))]
 pub struct Parameters {
     /// Elastic constant of each element, `k_e` of Eq. (4) (N/m). Or give `young`.
     #[serde(default, skip_serializing_if = "Option::is_none")]

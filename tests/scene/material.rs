@@ -1,0 +1,96 @@
+//! Materials in place of elastic constants, bending, and damping that brakes rotation.
+
+use super::{good, mistakes::case};
+use localshape::scene::Scene;
+
+const BAR: &str = "\
+gravity = [0, -9.8, 0]
+time = { duration = 1, step = 1e-3 }
+body = { lattice = { cells = [3, 1, 1], side = 0.1 }, mass = 0.1, lowest = 0.3 }
+[[run]]
+name = 'Local shape'
+model = { kind = 'shape-based', young = 2e5, damping_ratio = 0.1 }
+[[run]]
+name = 'Springs'
+model = { kind = 'mass-spring', stiffness = 1e4, damping_ratio = 0.1 }
+[[obstacle]]
+kind = 'floor'
+friction = 0.3
+";
+
+/// The models of all runs in words.
+fn models(scene: &Scene) -> Vec<String> {
+    let summary = scene.summary();
+    summary.runs.into_iter().flat_map(|run| run.parts).map(|part| part.model).collect()
+}
+
+/// Cubes of side a have the constant k = E a/2.
+#[test]
+fn a_modulus_gives_cubes_their_elastic_constant() {
+    let of_modulus = good(BAR);
+    let of_constant = good(&BAR.replace("young = 2e5", "stiffness = 1e4"));
+    let [one, other] = [&of_modulus, &of_constant].map(|scene| {
+        let mut world = scene.world(0);
+        world.advance(300);
+        world.state().position.clone()
+    });
+    assert_eq!(one, other);
+    assert!(models(&of_modulus)[0].starts_with("3 cubes, E = 200 kPa, ν = 0, k = 10 kN/m, ζ = 0.1, "));
+    assert!(models(&of_constant)[0].ends_with(", as a material E = 200 kPa, ν = 0"));
+    assert!(!models(&of_constant)[1].contains("E = "), "springs are no material");
+}
+
+#[test]
+fn bending_is_a_number_or_a_fraction() {
+    let bending = |typed: &str| {
+        let scene = good(&BAR.replace("young = 2e5", &format!("young = 2e5, poisson = 0.3, bending = {typed}")));
+        models(&scene)[0].clone()
+    };
+    assert!(bending("'1/3'").contains("E = 200 kPa, ν = 0.3, k = 7.69 kN/m"), "{}", bending("'1/3'"));
+    assert!(bending("'1/3'").ends_with(", β = 1/3"));
+    assert!(bending("0.4").ends_with(", β = 2/5"));
+    assert!(!bending("1").contains('β'));
+}
+
+#[test]
+fn materials_that_cannot_be() {
+    let young = |to: &str, expected: &str| case(BAR, "young = 2e5", to, expected);
+    young("stiffness = 1e4, young = 2e5", "6:46 `run[0].model` has both `stiffness` and `young`");
+    young("damping_of = 'deformation'", "6:9 `run[0].model` has neither `stiffness` nor `young`; one is needed");
+    young("stiffness = 1e4, poisson = 0.3", "6:46 `run[0].model.poisson` needs `young`");
+    young("young = -1", "6:41 `run[0].model.young` is -1; expected a number greater than 0");
+    young("young = 2e5, poisson = 0.5", "6:56 `run[0].model.poisson` is 0.5; expected a number");
+    young("young = 2e5, bending = 1.5", "6:56 `run[0].model.bending` is 1.5");
+    young("young = 2e5, bending = '1/0'", "6:56 `run[0].model.bending` is \"1/0\"");
+    case(BAR, "mass-spring', stiffness = 1e4", "mass-spring', young = 2e5", "9:9 unknown key `young` `young` belongs to");
+    let bars = "bars = { count = 3, length = 0.1 }";
+    case(BAR, "lattice = { cells = [3, 1, 1], side = 0.1 }", bars, "6:33 element 0 has no volume");
+}
+
+/// The warnings of a scene.
+fn warnings(text: &str) -> Vec<(usize, String)> {
+    good(text).warnings.into_iter().map(|warning| (warning.line, warning.message)).collect()
+}
+
+#[test]
+fn damping_that_brakes_a_body_which_turns_is_told() {
+    let with = |more: &str| BAR.replace("lowest = 0.3", &format!("lowest = 0.3, {more}"));
+    let message = |reason: &str| {
+        vec![(6, format!("the damping of \"Local shape\" also brakes rotation, and its body will turn: {reason}"))]
+    };
+    assert_eq!(warnings(BAR), []);
+    assert_eq!(warnings(&with("velocity = [0, -3, 0]")), []);
+    assert_eq!(warnings(&with("velocity = [2, -3, 0]")), message("it meets an obstacle at an angle"));
+    let spun = with("spin = { axis = [0, 1, 0], rate = 2 }");
+    assert_eq!(warnings(&spun), message("it starts with a spin"));
+    assert_eq!(warnings(&format!("{BAR}[[hold]]\nnodes = 'left'\n")), message("it is held at one side"));
+    let slope = BAR.replace("kind = 'floor'", "kind = 'floor'\nnormal = [0.5, 1, 0]");
+    assert_eq!(warnings(&slope), message("there is a slope"));
+    // Whoever asks for it by name, does not damp, or does not compare, is not told.
+    let of = |damping: &str| spun.replacen("damping_ratio = 0.1", damping, 1);
+    assert_eq!(warnings(&of("damping_ratio = 0.1, damping_of = 'relative-motion'")), []);
+    assert_eq!(warnings(&of("damping_ratio = 0.1, damping_of = 'deformation'")), []);
+    assert_eq!(warnings(&of("damping_ratio = 0")), []);
+    let alone = spun.replace("kind = 'mass-spring', stiffness", "kind = 'shape-based', stiffness");
+    assert_eq!(warnings(&alone), []);
+}
