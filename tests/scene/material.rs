@@ -62,7 +62,12 @@ fn materials_that_cannot_be() {
     young("young = 2e5, poisson = 0.5", "6:56 `run[0].model.poisson` is 0.5; expected a number");
     young("young = 2e5, bending = 1.5", "6:56 `run[0].model.bending` is 1.5");
     young("young = 2e5, bending = '1/0'", "6:56 `run[0].model.bending` is \"1/0\"");
-    case(BAR, "mass-spring', stiffness = 1e4", "mass-spring', young = 2e5", "9:9 unknown key `young` `young` belongs to");
+    case(
+        BAR,
+        "mass-spring', stiffness = 1e4",
+        "mass-spring', young = 2e5",
+        "9:9 unknown key `young` `young` belongs to",
+    );
     let bars = "bars = { count = 3, length = 0.1 }";
     case(BAR, "lattice = { cells = [3, 1, 1], side = 0.1 }", bars, "6:33 element 0 has no volume");
 }

@@ -8,8 +8,8 @@ mod good;
 #[cfg(feature = "render")]
 mod look;
 mod manipulators;
-mod meshes;
 mod material;
+mod meshes;
 mod mistakes;
 mod peers;
 mod plural;
