@@ -43,7 +43,7 @@ pub trait Vectorised {
 
 impl<W: Law> Vectorised for W {
     fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled {
-        Compiled::by(self.clone(), body, conditions, None)
+        Compiled::once(self.clone(), body, conditions, None)
     }
 }
 
@@ -67,6 +67,18 @@ pub struct Compiled {
 }
 
 impl Compiled {
+    /// As [`Self::by`], with a law that is compiled once: its relative stiffness is a constant, also where all are 1. Every other copy
+    /// of a law takes seconds of the time to build this crate.
+    pub(crate) fn once<W: Law>(
+        law: W,
+        body: &Arc<Body>,
+        conditions: &Conditions,
+        faster: Option<Box<dyn Stepper>>,
+    ) -> Self {
+        let stepper = faster.unwrap_or_else(|| Box::new(General::new(Filled(law.clone()), body, conditions)));
+        Self { stepper, energy: Box::new(ByLaw::with(conditions.set, law, body)) }
+    }
+
     /// By a law, or with a faster stepper, if there is one.
     pub(crate) fn by<W: Law>(
         law: W,

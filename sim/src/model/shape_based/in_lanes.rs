@@ -26,29 +26,38 @@ pub(super) fn compile(
     conditions: &Conditions,
     faster: Option<Box<dyn Stepper>>,
 ) -> Compiled {
-    let of = Common::new(model, body.dimension);
-    macro_rules! law {
-        ($law:ident<$([$solver:ty],)? $maps:literal> $($field:ident = $value:expr)?) => {
-            match model.damped() {
-                NONE => Compiled::by($law::<$($solver,)? $maps, NONE> { of, $($field: $value)? }, body, conditions, faster),
-                RELATIVE => {
-                    Compiled::by($law::<$($solver,)? $maps, RELATIVE> { of, $($field: $value)? }, body, conditions, faster)
-                }
-                _ => Compiled::by($law::<$($solver,)? $maps, DEFORMING> { of, $($field: $value)? }, body, conditions, faster),
-            }
-        };
-    }
-    match (body.dimension, rotation, model.fits_maps()) {
-        (Dimension::Plane, _, false) => law!(InPlane<false>),
-        (Dimension::Plane, _, true) => law!(InPlane<true>),
-        (_, Rotation::Optimum, false) => law!(InSpace < [Optimum], false > solver = Optimum),
-        (_, Rotation::Arctangent { passes }, false) => {
-            law!(InSpace < [Arctangent], false > solver = Arctangent { passes })
+    /// With a solver of rotations in space, without maps.
+    fn in_space<S: Solver>(
+        solver: S,
+        of: Common,
+        body: &Arc<Body>,
+        conditions: &Conditions,
+        faster: Option<Box<dyn Stepper>>,
+    ) -> Compiled {
+        match of.damped {
+            NONE => Compiled::by(InSpace::<S, false, NONE> { of, solver }, body, conditions, faster),
+            RELATIVE => Compiled::by(InSpace::<S, false, RELATIVE> { of, solver }, body, conditions, faster),
+            _ => Compiled::by(InSpace::<S, false, DEFORMING> { of, solver }, body, conditions, faster),
         }
+    }
+    let of = Common::new(model, body.dimension);
+    match (body.dimension, rotation, model.fits_maps()) {
+        (Dimension::Plane, _, false) if of.damped == NONE => {
+            Compiled::by(InPlane::<false, NONE> { of }, body, conditions, faster)
+        }
+        (Dimension::Plane, _, false) if of.damped == RELATIVE => {
+            Compiled::by(InPlane::<false, RELATIVE> { of }, body, conditions, faster)
+        }
+        (Dimension::Plane, ..) => Compiled::once(InPlane::<true, ANY> { of }, body, conditions, faster),
+        (_, Rotation::Optimum, false) => in_space(Optimum, of, body, conditions, faster),
+        (_, Rotation::Arctangent { passes }, false) => in_space(Arctangent { passes }, of, body, conditions, faster),
         // Whoever asks for maps has exact rotations, or the reference code.
-        (_, _, true) => law!(InSpace < [Optimum], true > solver = Optimum),
+        (.., true) => Compiled::once(InSpace::<Optimum, true, ANY> { of, solver: Optimum }, body, conditions, faster),
     }
 }
+
+/// Any of the velocities that are damped: it costs a test, and is one law instead of three.
+const ANY: u8 = 3;
 
 /// The numbers of a model.
 #[derive(Clone)]
@@ -61,6 +70,8 @@ pub(super) struct Common {
     bending: f64,
     /// `λ/μ`.
     volume: f64,
+    /// The velocity that is damped.
+    damped: u8,
     /// Decides the relative stiffness of elements.
     model: Arc<ShapeBased>,
 }
@@ -68,7 +79,14 @@ pub(super) struct Common {
 impl Common {
     fn new(model: &ShapeBased, dimension: Dimension) -> Self {
         let &ShapeBased { stiffness, damping, bending, .. } = model;
-        Self { stiffness, damping, bending, volume: model.volume(dimension), model: Arc::new(model.clone()) }
+        let (volume, damped) = (model.volume(dimension), model.damped());
+        Self { stiffness, damping, bending, volume, damped, model: Arc::new(model.clone()) }
+    }
+
+    /// Whether a law damps this velocity.
+    #[inline(always)]
+    fn damps<const DAMPING: u8>(&self, velocity: u8) -> bool {
+        DAMPING == velocity || DAMPING == ANY && self.damped == velocity
     }
 
     /// `k` and `D` of the forces of a node.
@@ -76,7 +94,7 @@ impl Common {
     fn of_node<const MAPS: bool, const DAMPING: u8>(&self) -> [f64; 2] {
         [
             if MAPS { self.bending * self.stiffness } else { self.stiffness },
-            if DAMPING == NONE { 0.0 } else { self.damping },
+            if self.damps::<DAMPING>(NONE) { 0.0 } else { self.damping },
         ]
     }
 }
@@ -124,7 +142,7 @@ impl<S: Solver, const MAPS: bool, const DAMPING: u8> Law for InSpace<S, MAPS, DA
     }
 
     fn is_damped(&self) -> bool {
-        DAMPING != NONE
+        !self.of.damps::<DAMPING>(NONE)
     }
 
     fn of_node(&self) -> [f64; 2] {
@@ -168,12 +186,12 @@ impl<S: Solver, const MAPS: bool, const DAMPING: u8> Law for InSpace<S, MAPS, DA
             }
             // Relative to the first corner, so that an element with all corners at one point gives exactly zero.
             let p = each!(3, axis => p[axis] - first[axis]);
-            if DAMPING == DEFORMING {
+            if self.of.damps::<DAMPING>(DEFORMING) {
                 rigid.add(p, each!(3, axis => v[axis] - slow[axis]));
             }
             for axis in 0..3 {
                 position[axis] = position[axis] + p[axis];
-                if DAMPING == RELATIVE {
+                if self.of.damps::<DAMPING>(RELATIVE) {
                     velocity[axis] = velocity[axis] + v[axis];
                 }
                 let rest = element.of_corner(corner, axis);
@@ -182,10 +200,10 @@ impl<S: Solver, const MAPS: bool, const DAMPING: u8> Law for InSpace<S, MAPS, DA
         }
         let mut mean = each!(3, axis => position[axis].mul_add(k_mean, first[axis] * k));
         let mut spin = [zero; 3];
-        if DAMPING == RELATIVE {
+        if self.of.damps::<DAMPING>(RELATIVE) {
             mean = each!(3, axis => velocity[axis].mul_add(d_mean, mean[axis]));
         }
-        if DAMPING == DEFORMING {
+        if self.of.damps::<DAMPING>(DEFORMING) {
             let ([middle, drift, turning], d) = (rigid.motion(element.corners()), L::splat(d));
             let still = cross(&turning, &each!(3, axis => middle[axis] + first[axis]));
             mean = each!(3, axis => (drift[axis] + slow[axis] - still[axis]).mul_add(d, mean[axis]));
@@ -227,7 +245,7 @@ impl<S: Solver, const MAPS: bool, const DAMPING: u8> Law for InSpace<S, MAPS, DA
         let Fit { mean, matrix: m, spin, .. } = fit;
         let [x, y, z] = each!(3, axis => element.of_corner(corner, axis));
         let force = each!(3, axis => z.mul_add(m[2][axis], y.mul_add(m[1][axis], x.mul_add(m[0][axis], mean[axis]))));
-        if DAMPING != DEFORMING {
+        if !self.of.damps::<DAMPING>(DEFORMING) {
             return force;
         }
         let (p, _) = element.corner(corner);
@@ -263,7 +281,7 @@ impl<const MAPS: bool, const DAMPING: u8> Law for InPlane<MAPS, DAMPING> {
     }
 
     fn is_damped(&self) -> bool {
-        DAMPING != NONE
+        !self.of.damps::<DAMPING>(NONE)
     }
 
     fn of_node(&self) -> [f64; 2] {
@@ -303,10 +321,10 @@ impl<const MAPS: bool, const DAMPING: u8> Law for InPlane<MAPS, DAMPING> {
             }
             let [px, py] = each!(2, axis => p[axis] - first[axis]);
             position = [position[0] + px, position[1] + py];
-            if DAMPING == RELATIVE {
+            if self.of.damps::<DAMPING>(RELATIVE) {
                 velocity = [velocity[0] + v[0], velocity[1] + v[1]];
             }
-            if DAMPING == DEFORMING {
+            if self.of.damps::<DAMPING>(DEFORMING) {
                 rigid.add([px, py, zero], [v[0] - slow[0], v[1] - slow[1], zero]);
             }
             if MAPS {
@@ -319,11 +337,11 @@ impl<const MAPS: bool, const DAMPING: u8> Law for InPlane<MAPS, DAMPING> {
         let turn = rotation::in_plane(turn, element.memory());
         element.remember(turn);
         let mut mean = each!(2, axis => position[axis].mul_add(k_mean, first[axis] * k));
-        if DAMPING == RELATIVE {
+        if self.of.damps::<DAMPING>(RELATIVE) {
             mean = each!(2, axis => velocity[axis].mul_add(d_mean, mean[axis]));
         }
         let mut spin = zero;
-        if DAMPING == DEFORMING {
+        if self.of.damps::<DAMPING>(DEFORMING) {
             let ([middle, drift, [_, _, turning]], d) = (rigid.motion(element.corners()), L::splat(d));
             let [x, y] = each!(2, axis => middle[axis] + first[axis]);
             let still = [-(turning * y), turning * x];
@@ -349,7 +367,7 @@ impl<const MAPS: bool, const DAMPING: u8> Law for InPlane<MAPS, DAMPING> {
         let [x, y] = each!(2, axis => element.of_corner(corner, axis));
         let mut fx = y.mul_add(other_sine, x.mul_add(cosine, wx));
         let mut fy = y.mul_add(other_cosine, x.mul_add(sine, wy));
-        if DAMPING == DEFORMING {
+        if self.of.damps::<DAMPING>(DEFORMING) {
             let ([px, py], _) = element.corner_in_plane(corner);
             (fx, fy) = (spin.neg_mul_add(py, fx), spin.mul_add(px, fy));
         }
