@@ -162,6 +162,7 @@ fn kind(schema: &Value) -> String {
         (Some("integer"), _) => numbers("whole number"),
         (Some("boolean"), _) => "`true` or `false`".into(),
         (Some("string"), Some("colour")) => "colour".into(),
+        (Some("string"), Some("fraction")) => "fraction such as `\"1/3\"`".into(),
         (Some("string"), Some("fraction-of-T")) => "fraction of T or `\"auto\"`".into(),
         (Some("string"), _) => "string".into(),
         (Some("array"), _) if is_vector(schema) => "vector".into(),

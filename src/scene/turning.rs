@@ -44,9 +44,14 @@ impl Scene {
         }
         let own = |node: &u32| nodes.contains(&(*node as usize));
         let gripping: Vec<_> = run.grips.iter().filter(|grip| grip.nodes.iter().any(own)).collect();
-        let is_held = |still: bool| gripping.iter().any(|grip| (grip.motion == Motion::Still) == still);
         let down = self.gravity.normalize_or_zero();
-        if is_held(true) && !is_held(false) && gripping.len() == 1 && down != DVec3::ZERO {
+        if let [grip] = gripping[..]
+            && grip.motion == Motion::Still
+            && grip.holds(0.0)
+            && grip.holds(self.duration)
+            && down != DVec3::ZERO
+            && self.obstacles.is_empty()
+        {
             return Some("it is held at one side");
         }
         let slopes = self.obstacles.iter().flat_map(normals).any(|normal| {

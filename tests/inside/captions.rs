@@ -33,7 +33,8 @@ fn descriptions_have_parts_constants_and_choices() {
     let one = body(Dimension::Space, &block(0.1), &[&[0, 1, 2, 3, 4, 5, 6, 7]]);
     let shape = ShapeBased { damping: 60.0, ..ShapeBased::new(1e4) };
     assert_eq!(parts_and_constants(&shape, &one), "1 cube, k = 10 kN/m, ζ = 0.3");
-    let full = "1 cube, k = 10 kN/m, ζ = 0.3, rotation robust (exact), damping of relative-motion";
+    let full = "1 cube, k = 10 kN/m, ζ = 0.3, rotation robust (exact), damping of relative-motion, \
+                as a material E = 200 kPa, ν = 0";
     assert_eq!(description(&shape, &one), full);
     let spring = MassSpring { stiffness: 50.0, damping: 0.0, springs: [[0, 1]].into() };
     assert_eq!(description(&spring, &one), "1 spring, k = 50 N/m");

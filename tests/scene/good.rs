@@ -300,7 +300,7 @@ fn a_summary_says_what_a_scene_holds() {
   gravity   (0, -9.8, 0) m/s²
   time      3 s, 181 frames at 60 per second
   cycle     T = 0.06283 s
-  run       Local shape: 27 cubes, k = 10 kN/m, ζ = 0.1, rotation arctangent with 2 passes, damping of relative-motion
+  run       Local shape: 27 cubes, k = 10 kN/m, ζ = 0.1, rotation arctangent with 2 passes, damping of relative-motion, as a material E = 200 kPa, ν = 0
             ΔT = 0.001257 s = T/50, 2 387 steps, semi-implicit-euler
             largest stable step 0.005472 s (23 % used)
   run       Mass-spring: 306 springs, k = 10 kN/m, ζ = 0.1
@@ -314,8 +314,11 @@ fn a_summary_says_what_a_scene_holds() {
     );
     let cube = format!("{WORLD}[body]\nlattice = {{ cells = [1, 1, 1], side = 1 }}\n");
     let model = |more: &str| good(&cube.replace("1e4", more)).summary().runs[0].parts[0].model.clone();
-    assert_eq!(model("1e4"), "1 cube, k = 10 kN/m, rotation robust (exact)");
-    assert_eq!(model("1e4, passes = 1"), "1 cube, k = 10 kN/m, rotation arctangent with 1 pass");
+    assert_eq!(model("1e4"), "1 cube, k = 10 kN/m, rotation robust (exact), as a material E = 20 kPa, ν = 0");
+    assert_eq!(
+        model("1e4, passes = 1"),
+        "1 cube, k = 10 kN/m, rotation arctangent with 1 pass, as a material E = 20 kPa, ν = 0"
+    );
     let json = serde_json::to_value(good(include_str!("explicit.toml")).summary()).unwrap();
     assert_eq!(json["bodies"][0]["elements"], serde_json::json!(["6 triangles"]));
     assert_eq!(json["runs"][1]["name"], "Mass-spring");

@@ -186,7 +186,9 @@ $Elements\n4\n1 2 2 1 1 1 3 2\n2 2 2 0 1 1 2 4\n3 2 2 0 1 1 4 3\n4 2 2 0 1 2 3 4
         // The face at z = 0 is all of the group, with the points between its corners: 15 of them, at distances of a quarter.
         let foot = held("foot");
         assert!(foot.len() >= 15, "{with_}: {foot:?}");
-        assert!(foot.iter().all(|at| at.z.abs() < 1e-9), "{with_}: {foot:?}");
+        // Lattices have nodes in the face; the nodes of cut elements around it are less than a side away.
+        let far = if ["cubes", "graded"].contains(&with_) { 1e-9 } else { 0.25 };
+        assert!(foot.iter().all(|at| at.z.abs() < far), "{with_}: {foot:?}");
         let expected = ["or a group of the mesh: \"foot\"", "did you mean \"foot\"?"];
         wrong(&scene("fot"), &[("foot.msh", surface.as_bytes())], &expected);
     }

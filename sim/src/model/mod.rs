@@ -27,6 +27,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt::Debug;
+use std::str::FromStr;
 use std::sync::{Arc, LazyLock};
 
 /// Defines [`ModelParameters`] from a list of models.
@@ -372,23 +373,29 @@ pub struct Ratio(pub f64);
 enum TypedRatio {
     /// From 0 to 1.
     Number(#[schemars(range(min = 0.0, max = 1.0))] f64),
-    /// Of two whole numbers.
-    Fraction(#[schemars(regex(pattern = r"^[0-9]{1,9} */ *[1-9][0-9]{0,8}$"))] String),
+    /// A fraction of whole numbers.
+    Fraction(#[schemars(extend("format" = "fraction"))] String),
 }
 
 impl TryFrom<TypedRatio> for Ratio {
     type Error = String;
 
     fn try_from(typed: TypedRatio) -> Result<Self, String> {
-        let value = match &typed {
-            TypedRatio::Number(number) => Some(*number),
-            TypedRatio::Fraction(text) => text.split_once('/').and_then(|(above, below)| {
-                let whole = |text: &str| text.trim().parse::<u32>().ok().map(f64::from);
-                Some(whole(above)? / whole(below)?)
-            }),
-        };
-        let expected = "expected a number from 0 to 1, or a fraction such as \"1/3\"";
-        value.filter(|value| (0.0..=1.0).contains(value)).map(Self).ok_or_else(|| expected.to_owned())
+        match typed {
+            TypedRatio::Number(number) => Ok(Self(number)),
+            TypedRatio::Fraction(text) => text.parse(),
+        }
+    }
+}
+
+impl FromStr for Ratio {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let whole = |text: &str| text.trim().parse::<u32>().ok().map(f64::from);
+        let value = text.split_once('/').and_then(|(above, below)| Some(whole(above)? / whole(below)?));
+        let expected = || "expected a number from 0 to 1, or a fraction such as \"1/3\"".to_owned();
+        value.filter(|value| (0.0..=1.0).contains(value)).map(Self).ok_or_else(expected)
     }
 }
 

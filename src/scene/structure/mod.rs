@@ -13,6 +13,7 @@ use super::step::NamedStep;
 use crate::look::typed::TypedColour;
 use crate::reading::collector::{Collector, PathPart, written};
 use crate::reading::words::{self, list, nearest, quoted};
+use crate::sim::model::Ratio;
 use expect::{expected, first_sentence, range};
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeSet;
@@ -175,6 +176,10 @@ impl<'p> Walk<'_, '_, 'p> {
             if let Err(expected) = text.parse::<NamedStep>() {
                 let message = format!("`{}` is {}; {expected}, or seconds as a number", self.here(), quoted(text));
                 self.mistake(span, message, None);
+            }
+        } else if schema["format"] == "fraction" {
+            if let Err(expected) = text.parse::<Ratio>() {
+                self.mistake(span, format!("`{}` is {}; {expected}", self.here(), quoted(text)), None);
             }
         } else if schema["format"] == "colour" {
             match TypedColour::read(text) {
