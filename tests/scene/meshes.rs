@@ -190,7 +190,7 @@ $Elements\n4\n1 2 2 1 1 1 3 2\n2 2 2 0 1 1 2 4\n3 2 2 0 1 1 4 3\n4 2 2 0 1 2 3 4
         let far = if ["cubes", "graded"].contains(&with_) { 1e-9 } else { 0.25 };
         assert!(foot.iter().all(|at| at.z.abs() < far), "{with_}: {foot:?}");
         let expected = ["or a group of the mesh: \"foot\"", "did you mean \"foot\"?"];
-        wrong(&scene("fot"), &[("foot.msh", surface.as_bytes())], &expected);
+        wrong(&scene("foo"), &[("foot.msh", surface.as_bytes())], &expected);
     }
 }
 
