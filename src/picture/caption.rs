@@ -9,7 +9,7 @@ use super::wrap::{balanced, cut, wrapped};
 use super::{Item, Panel, number};
 use crate::colour::Colour;
 use crate::look::{LineStyle, Palette};
-use crate::reading::captions::{constants, parts_and_constants};
+use crate::reading::captions::{constants, parts_and_constants, stiffness_of_material};
 use crate::scene::{Run, Scene};
 use crate::sim::model::ElasticModel;
 use crate::sim::{Body, Divergence, RunFrame, Snapshot, Status};
@@ -41,8 +41,9 @@ pub(super) fn short_description(scene: &Scene, run: &Run) -> String {
             true => ", also of rotation",
             false => "",
         };
-        let all =
-            |(model, body): (&dyn ElasticModel, _)| words(model, body) + rotation(model) + &model.unusual_choices(body);
+        let all = |(model, body): (&dyn ElasticModel, _)| {
+            words(model, body) + rotation(model) + &model.unusual_choices(body) + &stiffness_of_material(model)
+        };
         run.models_and_bodies().map(all).collect()
     };
     let models = short(constants);

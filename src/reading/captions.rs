@@ -9,7 +9,12 @@ use serde::Serialize;
 pub fn description(model: &dyn ElasticModel, body: &Body) -> String {
     let is_material = model.material(body).filter(|_| model.typed_material().is_none());
     let as_material = is_material.map_or_else(String::new, |is| format!(", as a material {}", material(is, body)));
-    parts_and_constants(model, body) + &model.choices(body) + &as_material
+    parts_and_constants(model, body) + &model.choices(body) + &stiffness_of_material(model) + &as_material
+}
+
+/// The elastic constant of a model whose material was given: `, k = 10 kN/m`.
+pub(crate) fn stiffness_of_material(model: &dyn ElasticModel) -> String {
+    model.typed_material().map_or_else(String::new, |_| format!(", k = {}", quantity(model.stiffness(), "N/m")))
 }
 
 /// A material of a body: `E = 200 kPa, ν = 0.3`.
@@ -33,11 +38,11 @@ fn parts(model: &dyn ElasticModel, body: &Body) -> String {
     }
 }
 
-/// The constants of a model of a body, with the material that was given: `E = 200 kPa, ν = 0, k = 10 kN/m, ζ = 0.1`.
+/// The constants of a model of a body: `k = 10 kN/m, ζ = 0.1`, or `E = 200 kPa, ν = 0, ζ = 0.1`, as they were given.
 pub(crate) fn constants(model: &dyn ElasticModel, body: &Body) -> String {
     let (k, damping) = (model.stiffness(), model.damping());
-    let given = model.typed_material().map_or_else(String::new, |given| material(given, body) + ", ");
-    let mut text = format!("{given}k = {}", quantity(k, "N/m"));
+    let of_material = model.typed_material().map(|given| material(given, body));
+    let mut text = of_material.unwrap_or_else(|| format!("k = {}", quantity(k, "N/m")));
     if damping > 0.0 {
         text += &format!(", ζ = {}", rounded(damping / (2.0 * (k * body.lightest()).sqrt()), 3));
     }

@@ -47,7 +47,7 @@ pub struct Parameters {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub damping: Option<f64>,
-    /// Damping as a ratio `ζ = D / 2√(km)`, with `k` of the springs and `m` the mass of the lightest node.
+    /// Damping as a ratio `ζ = D / 2√(km)`, with `m` the mass of the lightest node, as in `step = "T/50"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub damping_ratio: Option<f64>,

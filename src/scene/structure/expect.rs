@@ -36,6 +36,7 @@ pub(in crate::scene) fn range(
     let most = most.filter(|&most| most < f64::from(u32::MAX));
     match (least, most, above, below) {
         (Some(least), Some(most), ..) => format!("{noun} from {least} to {most}"),
+        (Some(least), _, _, Some(below)) => format!("{noun} from {least} to less than {below}"),
         (Some(least), ..) => format!("{noun} of at least {least}"),
         (None, _, Some(above), Some(below)) => format!("{noun} between {above} and {below}"),
         (None, _, Some(above), None) => format!("{noun} greater than {above}"),
