@@ -12,6 +12,7 @@ mod fill;
 mod grips;
 mod integrators;
 mod masses;
+mod material;
 mod own_method;
 mod parts;
 mod readings;

@@ -1,0 +1,219 @@
+//! The shape model as a material: its moduli, its bending, its modes and its waves, compared with closed forms.
+
+use super::support::{Remembering, bricks, forces, settled};
+use glam::DVec3;
+use localshape_sim::model::ElasticModel;
+use localshape_sim::model::shape_based::ShapeBased;
+use localshape_sim::{Body, Material, State};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Elastic constant of an element (N/m), and the side of a cube (m).
+const STIFFNESS: f64 = 1e4;
+const SIDE: f64 = 0.1;
+
+/// Cubes of a material with shear modulus `k/a`.
+fn cubes(cells: [u32; 3]) -> Arc<Body> {
+    bricks(cells, DVec3::splat(SIDE))
+}
+
+fn of_material(body: &Body, material: Material, bending: f64) -> ShapeBased {
+    let stiffness = material.stiffness(body).into_iter().fold(0.0, f64::max);
+    ShapeBased { material: Some(material), bending, ..ShapeBased::new(stiffness) }
+}
+
+fn bent(bending: f64) -> ShapeBased {
+    ShapeBased { bending, ..ShapeBased::new(STIFFNESS) }
+}
+
+fn energy(body: &Arc<Body>, model: &dyn ElasticModel, position: Vec<DVec3>) -> f64 {
+    let state = State::at_rest(position);
+    Remembering::new(body, model, &state).report(&state).0.energy.expect("an energy")
+}
+
+/// Nodes of the layer at this height (m) along z.
+fn layer(body: &Body, height: f64) -> impl Iterator<Item = usize> {
+    (0..body.len()).filter(move |&node| (body.rest[node].z - height).abs() < 1e-9)
+}
+
+/// A load (N) on the end of a bar along z: each face of its last cells distributes it to its corners alike.
+fn end_load(body: &Body, total: DVec3) -> Vec<DVec3> {
+    let end = body.rest[body.len() - 1].z;
+    let mut load = vec![DVec3::ZERO; body.len()];
+    for nodes in body.elements.iter() {
+        nodes.iter().for_each(|&node| load[node as usize] += DVec3::ONE);
+    }
+    let loaded: Vec<_> = layer(body, end).collect();
+    let sum: f64 = loaded.iter().map(|&node| load[node].x).sum();
+    let mut of_nodes = vec![DVec3::ZERO; body.len()];
+    loaded.into_iter().for_each(|node| of_nodes[node] = total * (load[node].x / sum));
+    of_nodes
+}
+
+/// A bar that is pulled grows by `σ/E`, and becomes thinner by `ν` times that.
+#[test]
+fn a_bar_that_is_pulled_has_the_moduli_of_the_material() {
+    let body = cubes([2, 3, 4]);
+    let (strain, thickness) = (1e-7, DVec3::new(2.0, 3.0, 4.0) * SIDE);
+    for (poisson, bending) in [(0.0, 1.0), (0.3, 1.0), (0.3, 1.0 / 3.0), (0.45, 0.5)] {
+        let material = Material { young: 3e5, poisson };
+        let model = of_material(&body, material, bending);
+        let load = end_load(&body, DVec3::Z * (material.young * strain * thickness.x * thickness.y));
+        // The middle planes of symmetry do not move across themselves: here those at x = 0, y = 0 and z = 0.
+        let held: Vec<_> = body.rest.iter().map(|rest| rest.to_array().map(|at| at == 0.0)).collect();
+        let found = settled(&body, &model, &load, &held, &body.rest);
+        for (found, &rest) in found.iter().zip(&body.rest) {
+            let expected = rest * DVec3::new(-poisson, -poisson, 1.0);
+            let off = ((*found - rest) / strain - expected).abs().max_element();
+            assert!(off < 1e-6 * thickness.z, "ν = {poisson}, β = {bending}: {off:e}");
+        }
+    }
+}
+
+/// A bar of N cells that is bent uniformly is stiffer than the material by `1 + (3 β − 1)/N²`, and in balance but for its ends.
+#[test]
+fn a_bent_bar_is_stiffer_by_its_discretisation() {
+    let curvature = 1e-5;
+    for cells in 1..=6u32 {
+        for bending in [1.0, 0.5, 1.0 / 3.0, 0.0] {
+            let (body, model) = (cubes([cells, 1, 6]), bent(bending));
+            let (depth, length) = (f64::from(cells) * SIDE, 6.0 * SIDE);
+            let bow = |rest: &DVec3| {
+                let (x, z) = (rest.x - 0.5 * depth, rest.z - 0.5 * length);
+                DVec3::new(0.5 * z * z, 0.0, -x * z)
+            };
+            let bow: Vec<_> = body.rest.iter().map(bow).collect();
+            let (young, inertia) = (2.0 * STIFFNESS / SIDE, SIDE * depth.powi(3) / 12.0);
+            let beam = 0.5 * young * inertia * curvature * curvature * length;
+            let position = body.rest.iter().zip(&bow).map(|(&rest, &bow)| rest + bow * curvature).collect();
+            let factor = energy(&body, &model, position) / beam;
+            let expected = 1.0 + (3.0 * bending - 1.0) / f64::from(cells * cells);
+            assert!((factor - expected).abs() < 1e-8, "{cells} {bending}: {factor} {expected}");
+            let forces = linear_forces(&body, &model, &bow, curvature);
+            for node in (1..6).flat_map(|between| layer(&body, f64::from(between) * SIDE)) {
+                let relative = forces[node].length() / (STIFFNESS * SIDE * SIDE);
+                assert!(relative < 1e-8, "{cells} {bending}: {relative:e}");
+            }
+        }
+    }
+}
+
+/// The deflection of the end of a cantilever N cells thick over Timoshenko's (κ = 5/6), under a load on its end.
+fn of_timoshenko(cells: u32, slenderness: u32, bending: f64) -> f64 {
+    let body = cubes([cells, 1, slenderness * cells]);
+    let (depth, young) = (f64::from(cells) * SIDE, 2.0 * STIFFNESS / SIDE);
+    let (length, area) = (f64::from(slenderness) * depth, depth * SIDE);
+    let (inertia, shear) = (area * depth * depth / 12.0, 0.5 * young);
+    let strain = 1e-6;
+    let load = strain * young * inertia / (length * length);
+    let expected = load * length * (length * length / (3.0 * young * inertia) + 1.0 / (5.0 / 6.0 * shear * area));
+    let held: Vec<_> = body.rest.iter().map(|rest| [rest.z == 0.0; 3]).collect();
+    let found = settled(&body, &bent(bending), &end_load(&body, DVec3::X * load), &held, &body.rest);
+    let end: Vec<_> = layer(&body, length).collect();
+    end.iter().map(|&node| found[node].x - body.rest[node].x).sum::<f64>() / end.len() as f64 / expected
+}
+
+/// The figures are from an independent implementation. With β = ½ they are those of hexahedral finite elements.
+#[test]
+fn a_cantilever_bends_by_the_parts_of_timoshenko_that_were_computed_independently() {
+    for (cells, printed, finite_elements) in
+        [(1, 0.3367, 0.6656), (2, 0.6676, 0.8875), (3, 0.8185, 0.9466), (4, 0.8890, 0.9692)]
+    {
+        for (bending, expected) in [(1.0, printed), (0.5, finite_elements)] {
+            let found = of_timoshenko(cells, 8, bending);
+            assert!((found - expected).abs() < 5e-4, "{cells} cells, β = {bending}: {found} instead of {expected}");
+        }
+    }
+    for (slenderness, expected) in [(8, 0.9946), (16, 0.9986)] {
+        let found = of_timoshenko(1, slenderness, 1.0 / 3.0);
+        assert!((found - expected).abs() < 5e-4, "L = {slenderness} h: {found} instead of {expected}");
+    }
+}
+
+/// The elastica: a thin cantilever under a load on its end that keeps its direction. Deflections across and along over its
+/// length, by integration of `θ'' = −(P L²/EI) cos θ`; Mattiasson (1981) has the same.
+#[test]
+fn a_thin_bar_bends_as_the_elastica() {
+    let table = [
+        (0.5, 0.16214, 0.01592),
+        (1.0, 0.30172, 0.05643),
+        (2.0, 0.49346, 0.16064),
+        (5.0, 0.71379, 0.38763),
+        (10.0, 0.81061, 0.55500),
+    ];
+    let (body, model) = (cubes([2, 2, 32]), bent(1.0 / 3.0));
+    let (length, depth) = (32.0 * SIDE, 2.0 * SIDE);
+    let rigidity = 2.0 * STIFFNESS / SIDE * depth.powi(4) / 12.0;
+    let held: Vec<_> = body.rest.iter().map(|rest| [rest.z == 0.0; 3]).collect();
+    let (mut position, mut before) = (body.rest.clone(), 0.0);
+    for (load, across, along) in table {
+        // In parts, each from the shape before.
+        let parts = ((load - before) / 2.5_f64).ceil() as u32;
+        for part in 1..=parts {
+            let load = before + (load - before) * f64::from(part) / f64::from(parts);
+            let of_nodes = end_load(&body, DVec3::X * (load * rigidity / (length * length)));
+            position = settled(&body, &model, &of_nodes, &held, &position);
+        }
+        before = load;
+        let end: Vec<_> = layer(&body, length).collect();
+        let moved =
+            end.iter().map(|&node| position[node] - body.rest[node]).sum::<DVec3>() / (end.len() as f64 * length);
+        assert!((moved.x / across - 1.0).abs() < 0.01, "{load}: w/L = {} instead of {across}", moved.x);
+        assert!((-moved.z / along - 1.0).abs() < 0.01, "{load}: u/L = {} instead of {along}", -moved.z);
+    }
+}
+
+/// The forces of small displacements (N/m of the amplitude), without what is even in them.
+fn linear_forces(body: &Arc<Body>, model: &dyn ElasticModel, shape: &[DVec3], amplitude: f64) -> Vec<DVec3> {
+    let by = |amplitude: f64| {
+        let moved = body.rest.iter().zip(shape).map(|(&rest, &shape)| rest + shape * amplitude).collect();
+        forces(body, model, &State::at_rest(moved))
+    };
+    let (there, back) = (by(amplitude), by(-amplitude));
+    there.into_iter().zip(back).map(|(there, back)| (there - back) / (2.0 * amplitude)).collect()
+}
+
+/// `ω_j = √(2k/m) sin(jπ / 2(N + 1))`, for the modes along a free column of N cubes, with any bending.
+#[test]
+fn a_free_column_has_the_frequencies_of_a_chain() {
+    for cells in [1, 2, 5, 8] {
+        let body = cubes([1, 1, cells]);
+        for mode in 1..=cells {
+            let phase = f64::from(mode) * PI / f64::from(cells + 1);
+            let shape: Vec<_> =
+                body.rest.iter().map(|rest| DVec3::Z * (phase * ((rest.z / SIDE).round() + 0.5)).cos()).collect();
+            let expected = 2.0 * STIFFNESS * (0.5 * phase).sin().powi(2);
+            for bending in [1.0, 1.0 / 3.0] {
+                let forces = linear_forces(&body, &bent(bending), &shape, 0.01);
+                for (force, shape) in forces.iter().zip(&shape) {
+                    assert!((*force + *shape * expected).length() < 1e-9 * expected, "{cells} {mode} {bending}");
+                }
+            }
+        }
+    }
+}
+
+/// Along an axis of a large lattice `ω = √(8k/m) |sin(qa/2)|` for waves of pressure, whose limit is the bound of the model, and
+/// `√(4k/m) |sin(qa/2)|` for waves of shear.
+#[test]
+fn plane_waves_have_the_speeds_of_the_material() {
+    let body = cubes([2, 2, 9]);
+    let is_inside = |rest: &DVec3| {
+        let [x, y, z] = rest.to_array().map(|at| (at / SIDE).round() as u32);
+        x == 1 && y == 1 && (1..9).contains(&z)
+    };
+    for phase in [0.1, 1.0, 2.0, PI] {
+        for (along, share) in [(DVec3::Z, 8.0), (DVec3::X, 4.0)] {
+            let expected = share * STIFFNESS * (0.5 * phase).sin().powi(2);
+            let shape: Vec<_> = body.rest.iter().map(|rest| along * (phase * (rest.z / SIDE) + 0.3).cos()).collect();
+            for bending in [1.0, 1.0 / 3.0] {
+                let forces = linear_forces(&body, &bent(bending), &shape, 3e-6 * SIDE);
+                for ((force, shape), _) in forces.iter().zip(&shape).zip(&body.rest).filter(|(_, rest)| is_inside(rest))
+                {
+                    let off = (*force + *shape * expected).length();
+                    assert!(off < 1e-9 * share * STIFFNESS, "qa = {phase}, {along}, β = {bending}: {off:e}");
+                }
+            }
+        }
+    }
+}
