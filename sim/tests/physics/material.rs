@@ -1,10 +1,11 @@
 //! The shape model as a material: its moduli, its bending, its modes and its waves, compared with closed forms.
 
-use super::support::{Remembering, bricks, forces, settled};
-use glam::DVec3;
+use super::support::{self, Noise, Remembering, bricks, forces, settled};
+use glam::{DMat3, DVec3};
+use localshape_sim::geometry::volumes_at_rest;
 use localshape_sim::model::ElasticModel;
 use localshape_sim::model::shape_based::ShapeBased;
-use localshape_sim::{Body, Material, State};
+use localshape_sim::{Body, Dimension, Material, State};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -48,6 +49,49 @@ fn end_load(body: &Body, total: DVec3) -> Vec<DVec3> {
     let mut of_nodes = vec![DVec3::ZERO; body.len()];
     loaded.into_iter().for_each(|node| of_nodes[node] = total * (load[node].x / sum));
     of_nodes
+}
+
+/// `W = (k/a) |ε|²`, and with a material `μ |ε|² + ½ λ (J − 1)²`, for any symmetric map `1 + ε`, however large.
+#[test]
+fn uniform_strain_has_the_energy_of_the_material() {
+    let mut noise = Noise(5);
+    let body = cubes([3, 2, 4]);
+    let tetrahedron = {
+        let half = 0.5 * SIDE;
+        let corner = [[half, half, half], [half, -half, -half], [-half, half, -half], [-half, -half, half]];
+        support::body(Dimension::Space, &corner, &[&[0, 2, 1, 3]])
+    };
+    for _ in 0..10 {
+        let (mut rows, turn) = ([[0.0; 3]; 3], DMat3::from_quat(noise.rotation()));
+        for (row, column) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
+            let entry = 0.3 * noise.next();
+            (rows[row][column], rows[column][row]) = (entry, entry);
+        }
+        let strain = DMat3::from_cols_array_2d(&rows);
+        let squares: f64 = strain.to_cols_array().iter().map(|entry| entry * entry).sum();
+        let map = turn * (DMat3::IDENTITY + strain);
+        let energy = |body: &Arc<Body>, model: &ShapeBased| {
+            let volume: f64 = volumes_at_rest(body).into_iter().sum();
+            energy(body, model, body.rest.iter().map(|&rest| map * rest).collect()) / volume
+        };
+        let is = |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 1e-11, "{found} {expected}");
+        for bending in [1.0, 1.0 / 3.0] {
+            is(energy(&body, &bent(bending)), STIFFNESS / SIDE * squares);
+        }
+        for (body, poisson) in [(&body, 0.0), (&body, 0.3), (&tetrahedron, 0.0), (&tetrahedron, 0.45)] {
+            let material = Material { young: 3e5, poisson };
+            let excess = map.determinant() - 1.0;
+            let expected = material.shear() * squares + 0.5 * material.lame(Dimension::Space) * excess * excess;
+            is(energy(body, &of_material(body, material, 0.5)), expected);
+        }
+    }
+    // k = 6 μ V / Σ |R0|²: μ a for a cube, (√2/3) μ s for a regular tetrahedron of side s.
+    let material = Material { young: 2.0, poisson: 0.0 };
+    let side = SIDE * f64::sqrt(2.0);
+    assert!((material.stiffness(&body)[7] / SIDE - 1.0).abs() < 1e-13);
+    assert!((material.stiffness(&tetrahedron)[0] / (f64::sqrt(2.0) / 3.0 * side) - 1.0).abs() < 1e-13);
+    let found = ShapeBased::new(STIFFNESS).material(&body).expect("a material");
+    assert!((found.young / (2.0 * STIFFNESS / SIDE) - 1.0).abs() < 1e-12 && found.poisson == 0.0);
 }
 
 /// A bar that is pulled grows by `σ/E`, and becomes thinner by `ν` times that.
