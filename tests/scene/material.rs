@@ -69,9 +69,9 @@ fn materials_that_cannot_be() {
     young("young = 2e5, bending = '1/0'", "6:56 `run[0].model.bending` is \"1/0\"");
     case(
         BAR,
-        "mass-spring', stiffness = 1e4",
-        "mass-spring', young = 2e5",
-        "9:9 unknown key `young` `young` belongs to",
+        "mass-spring', ",
+        "mass-spring', young = 2e5, ",
+        "9:33 unknown key `young` in `run[1].model` `young` belongs to",
     );
     let bars = "bars = { count = 3, length = 0.1 }";
     case(BAR, "lattice = { cells = [3, 1, 1], side = 0.1 }", bars, "6:33 element 0 has no volume");

@@ -112,7 +112,7 @@ fn missing_keys() {
         "",
         "16:1 `obstacle[0]` has no `kind`; expected \"floor\", \"plate\", \"sphere\", \"capsule\" or \"box\" such as kind = \"floor\"",
     );
-    case(PLANE, "kind = 'mass-spring', ", "", "15:9 has no `kind`; expected \"shape-based\" or \"mass-spring\"");
+    case(PLANE, "kind = 'mass-spring', ", "", "15:9 has no `kind`; expected \"shape-based\", \"mass-spring\", ");
     case(SPACE, ", side = 0.1", "", "5:11 `body.lattice` has no `side` `side`: Length of a cell's edges (m)");
     case(
         SPACE,
