@@ -10,12 +10,14 @@ const CELLS: u64 = 12;
 
 /// Options of the lattice, options of the model, and the greatest number of instructions per element and step: a tenth
 /// more than measured.
-const CASES: [(&str, &str, u64); 5] = [
+const CASES: [(&str, &str, u64); 7] = [
     ("", "kind = 'shape-based'", 294),
     ("", "kind = 'shape-based', rotation = 'arctangent'", 420),
     ("", "kind = 'mass-spring', springs = 'all'", 348),
     (", irregular = 0.2", "kind = 'shape-based'", 424),
     (", elements = 'tetrahedra'", "kind = 'shape-based'", 243),
+    ("", "kind = 'shape-based', damping_of = 'deformation'", 427),
+    (", irregular = 0.2", "kind = 'shape-based', damping_of = 'deformation'", 650),
 ];
 
 fn scene((lattice, model, _): (&str, &str, u64)) -> Scene {
