@@ -10,7 +10,7 @@
 //! edges. Fans far away are lumped together (G. Barill et al., 2018).
 
 use super::Surface;
-use super::surface::{EdgeUse, Sets, net};
+use super::edges::{EdgeUse, Sets, net};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use robust::{Coord, Coord3D, orient2d, orient3d};

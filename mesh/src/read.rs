@@ -123,7 +123,10 @@ pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Mesh, ReadE
 /// # Errors
 /// If it is damaged, or larger than the limits.
 pub fn read_cells(bytes: &[u8], format: Format, limits: &Limits) -> Result<Cells, ReadError> {
-    content::check(bytes, format)?;
+    // The first words of binary STL files may be anything.
+    if format != Format::Stl || !stl::is_binary(bytes) {
+        content::check(bytes, format)?;
+    }
     match format {
         Format::Obj => obj::read(bytes, limits),
         Format::Stl => stl::read(bytes, limits),

@@ -2,10 +2,10 @@
 
 pub use super::alike::Alike;
 pub use super::contact::ground;
-pub use super::diagnose::{volume_by_faces, volumes_at_rest};
 pub use super::element::{around, kind, ordered};
 pub use super::hull::bounds;
 pub use super::overlap::overlaps;
+pub use super::volume::{volume_by_faces, volumes_at_rest};
 
 use super::body::Body;
 use super::element::Dimension;

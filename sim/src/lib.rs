@@ -53,6 +53,7 @@ mod state;
 mod system;
 mod tally;
 mod topology;
+mod volume;
 mod world;
 
 pub use assembly::Assembly;

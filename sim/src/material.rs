@@ -1,8 +1,8 @@
 //! Elastic materials, and the stiffness of elements that are made of them.
 
 use super::body::Body;
-use super::diagnose::volumes_at_rest;
 use super::element::Dimension;
+use super::volume::volumes_at_rest;
 
 /// An isotropic elastic material. In the plane, it is a sheet of unit thickness under plane stress.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,8 +2,8 @@
 
 use super::clip::{self, Piece};
 use super::graded::{self, Graded};
-use super::lattice::{Cell, JOINED, Lattice, too_many};
-use super::parts::{Parts, Scene, corner};
+use super::lattice::{CORNERS, Cell, Full, JOINED, Lattice, Nodes, corner, too_many};
+use super::parts::{Parts, Scene};
 use super::{Cage, FillError, Filled};
 use crate::inside::{Grid, Inside};
 use crate::{Flaws, Surface};
@@ -15,15 +15,6 @@ use rayon::prelude::*;
 const LEAST: f64 = 1e-9;
 /// Points along each side of a cell at which it is tried whether they are inside, where a surface is open.
 const SAMPLES: usize = 4;
-
-/// A cell with a part of the inside.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Full {
-    /// The number of the cell.
-    pub(super) cell: u64,
-    /// The part of it that is inside.
-    pub(super) filled: f64,
-}
 
 /// Fills a surface with cubes of a side, or coarser ones away from the surface.
 pub(super) fn fill(
@@ -80,34 +71,6 @@ pub(super) fn fill(
 /// The filled parts of elements, unless all are full.
 pub(super) fn in_part(filled: Vec<f64>) -> Option<Vec<f64>> {
     filled.iter().any(|&filled| filled < 1.0).then_some(filled)
-}
-
-/// The corners of a cube, with x fastest, then y, then z.
-pub(super) const CORNERS: [Cell; 8] =
-    [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]];
-
-/// Nodes at corners of a lattice, numbered as they are met.
-pub(super) struct Nodes {
-    lattice: Lattice,
-    /// The node of each set of corners.
-    numbers: Vec<u32>,
-    pub(super) places: Vec<DVec3>,
-}
-
-impl Nodes {
-    pub(super) fn new(lattice: Lattice, sets: usize) -> Self {
-        Self { lattice, numbers: vec![u32::MAX; sets], places: Vec::new() }
-    }
-
-    /// The node of a set of corners, which are at this place of the lattice.
-    pub(super) fn of(&mut self, set: u32, place: Cell) -> u32 {
-        let number = &mut self.numbers[set as usize];
-        if *number == u32::MAX {
-            *number = self.places.len() as u32;
-            self.places.push(self.lattice.place(corner(place)));
-        }
-        *number
-    }
 }
 
 /// The cells whose middle is inside a surface or that its triangles touch, in rising order, and how much of each is

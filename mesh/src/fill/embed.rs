@@ -8,7 +8,7 @@
 use super::cubes::in_part;
 use super::cuts::Lattice;
 use super::draft::Draft;
-use crate::surface::Sets;
+use crate::edges::Sets;
 use crate::{Cage, FillError, Flaws, Surface};
 use glam::{DVec3, I64Vec3};
 use localshape_sim::geometry::{around, bounds};

@@ -5,8 +5,7 @@
 //! the shape model they are nodes like others. The surface is in the smallest cubes alone, where its weights are those of
 //! plain cubes.
 
-use super::cubes::{CORNERS, Nodes};
-use super::lattice::{Cell, Lattice};
+use super::lattice::{CORNERS, Cell, Lattice, Nodes};
 use super::parts::{Parts, Scene};
 use localshape_sim::IndexLists;
 use std::collections::HashSet;

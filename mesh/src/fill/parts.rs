@@ -6,11 +6,10 @@
 //! nodes where the same part passes their common face.
 
 use super::clip::{Piece, Polygon};
-use super::cubes::{CORNERS, Full};
-use super::lattice::{Cell, Lattice};
+use super::lattice::{CORNERS, Cell, Full, Lattice, corner};
 use crate::Surface;
+use crate::edges::{EdgeUse, Sets, net};
 use crate::inside::Inside;
-use crate::surface::{EdgeUse, Sets};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -70,7 +69,7 @@ impl Edges {
                 let place = corners.iter().position(|&corner| corner == from).unwrap_or(0);
                 of[one.triangle as usize][place] = open.len() as u32;
             }
-            open.push(crate::surface::net(edge) != 0);
+            open.push(net(edge) != 0);
         }
         Self { of, open }
     }
@@ -274,11 +273,6 @@ impl Scene<'_> {
             .iter()
             .any(|pieces| pieces.iter().any(|piece| self.corners(piece).iter().all(|corner| corner[axis] == plane)))
     }
-}
-
-/// The lowest corner of a cell.
-pub(super) fn corner(cell: Cell) -> DVec3 {
-    DVec3::from_array(cell.map(f64::from))
 }
 
 /// A piece of the surface in a cell.

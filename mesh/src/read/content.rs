@@ -15,9 +15,6 @@ pub(super) fn check(bytes: &[u8], format: Format) -> Result<(), ReadError> {
     if bytes.iter().all(u8::is_ascii_whitespace) {
         return Err(ReadError::new("is empty", super::source::CUT));
     }
-    if format == Format::Stl && super::stl::is_binary(bytes) {
-        return Ok(());
-    }
     let other = match found(bytes) {
         Some(Found::Format(found)) if found != format => found,
         Some(Found::Other(what, help)) => return Err(ReadError::new(format!("is {what}, and no mesh file"), help)),

@@ -12,7 +12,6 @@ pub mod shape_based;
 pub mod volume_springs;
 
 use super::body::Body;
-use super::diagnose::volumes_at_rest;
 use super::element::Dimension;
 pub use super::kernel::Vectorised;
 pub use super::lanes::Lanes;
@@ -22,6 +21,7 @@ use super::material::Material;
 pub use super::mode::Mode;
 use super::rotation::RotationReading;
 use super::state::Nodes;
+use super::volume::volumes_at_rest;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,0 +1,78 @@
+//! The edges of triangles, and what hangs together.
+
+use rayon::prelude::*;
+
+/// A triangle's use of an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct EdgeUse {
+    pub(crate) low: u32,
+    pub(crate) high: u32,
+    pub(crate) triangle: u32,
+    /// Whether the triangle passes the edge from its lower to its higher point.
+    pub(crate) forward: bool,
+}
+
+impl EdgeUse {
+    /// All uses, by edge and then by triangle.
+    pub(crate) fn all(triangles: &[[u32; 3]]) -> Vec<Self> {
+        let of = |(triangle, &[a, b, c]): (u32, &[u32; 3])| {
+            [(a, b), (b, c), (c, a)].map(|(from, to)| Self {
+                low: from.min(to),
+                high: from.max(to),
+                triangle,
+                forward: from < to,
+            })
+        };
+        let mut uses: Vec<_> = (0..).zip(triangles).flat_map(of).collect();
+        uses.par_sort_unstable();
+        uses
+    }
+
+    pub(crate) fn same(&self, other: &Self) -> bool {
+        (self.low, self.high) == (other.low, other.high)
+    }
+}
+
+/// How much more often an edge is passed from its lower to its higher point than back.
+pub(crate) fn net(edge: &[EdgeUse]) -> i32 {
+    edge.iter().map(|edge| if edge.forward { 1 } else { -1 }).sum()
+}
+
+/// Disjoint sets of numbers. The representative of a set is its lowest.
+#[derive(Clone, Debug)]
+pub(crate) struct Sets(Vec<u32>);
+
+impl Sets {
+    pub(crate) fn new(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    pub(crate) fn of(&mut self, mut one: u32) -> u32 {
+        while self.0[one as usize] != one {
+            self.0[one as usize] = self.0[self.0[one as usize] as usize];
+            one = self.0[one as usize];
+        }
+        one
+    }
+
+    pub(crate) fn join(&mut self, one: u32, other: u32) {
+        let (one, other) = (self.of(one), self.of(other));
+        self.0[one.max(other) as usize] = one.min(other);
+    }
+
+    /// The set of each number, counted in the order of the lowest numbers of sets, and how many there are.
+    pub(crate) fn numbered(mut self) -> (Vec<u32>, usize) {
+        let mut count = 0;
+        let mut number: Vec<u32> = Vec::with_capacity(self.0.len());
+        for one in 0..self.0.len() as u32 {
+            let of = self.of(one);
+            if of == one {
+                number.push(count);
+                count += 1;
+            } else {
+                number.push(number[of as usize]);
+            }
+        }
+        (number, count as usize)
+    }
+}
