@@ -73,8 +73,8 @@ fn materials_that_cannot_be() {
         "mass-spring', young = 2e5, ",
         "9:33 unknown key `young` in `run[1].model` `young` belongs to",
     );
-    let bars = "bars = { count = 3, length = 0.1 }";
-    case(BAR, "lattice = { cells = [3, 1, 1], side = 0.1 }", bars, "6:33 element 0 has no volume");
+    let bars = "bars = { count = 3, length = 0.1, direction = [1, 0.2, 0] }";
+    case(BAR, "lattice = { cells = [3, 1, 1], side = 0.1 }", bars, "6:41 element 0 has no volume");
 }
 
 /// The warnings of a scene.
