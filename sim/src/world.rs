@@ -45,9 +45,9 @@ impl Stepping {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kernel {
-    /// Vectorised, with the same bits on every machine and for any number of threads. For mass-spring models, and for
-    /// shape-based models with `rotation = "robust"` or `"arctangent"`, undamped or with `damping_of =
-    /// "relative-motion"`. Several bodies move together, so that it needs such a model for each of them.
+    /// Vectorised, with the same bits on every machine and for any number of threads. All models have it but the shape-based ones with
+    /// `rotation = "vector-length"` or `"linear-update"`, and with `"arctangent"` together with `bending` or `poisson`. Several bodies
+    /// move together, so that it needs such a model for each of them.
     #[default]
     Fast,
     /// The reference code, written like the equations of the paper. All models have it.

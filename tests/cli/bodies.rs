@@ -17,7 +17,7 @@ pub(crate) const BODIES: [(&str, &str); 3] = [
 const RUNS: &str = r#"
 [[run]]
 name = "soft"
-model = { kind = "shape-based", stiffness = 1e4, damping_ratio = 0.1 }
+model = { kind = "shape-based", stiffness = 1e4, damping_ratio = 0.1, damping_of = "relative-motion" }
 [[run]]
 name = "springs"
 model = { kind = "mass-spring", stiffness = 1e4, springs = "edges+one-diagonal" }

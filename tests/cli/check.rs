@@ -74,7 +74,9 @@ fn says_which_runs_take_the_plain_code() {
     let place = Place::with_small();
     assert!(!place.run("check small.toml").good().out.contains("reference"));
     let typed = |more: &str| SMALL.replacen("stiffness = 1e4", &format!("stiffness = 1e4{more}"), 1);
-    for more in [", rotation = 'vector-length'", ", rotation = 'linear-update'", ", damping_of = 'deformation'"] {
+    for more in
+        [", rotation = 'vector-length'", ", rotation = 'linear-update'", ", rotation = 'arctangent', bending = '1/3'"]
+    {
         place.write("plain.toml", &typed(more));
         let ran = place.run("check plain.toml").good();
         assert_eq!(ran.out.matches(", kernel reference\n").count(), 1, "{}", ran.out);

@@ -27,11 +27,13 @@ fn a_set_value_is_that_of_an_edited_file() {
                 "--set",
                 "body.lattice.cells = [1, 1, 1]",
                 "--set",
-                "body.spin.rate=3",
+                "body.rotation.angle=3",
                 "--set",
-                "body.spin.axis=[0, 1, 0]",
+                "body.rotation.axis=[0, 1, 0]",
             ],
-            SMALL.replace("[2, 1, 1]", "[1, 1, 1]").replace("[body]", "[body]\nspin = { axis = [0, 1, 0], rate = 3 }"),
+            SMALL
+                .replace("[2, 1, 1]", "[1, 1, 1]")
+                .replace("[body]", "[body]\nrotation = { axis = [0, 1, 0], angle = 3 }"),
         ),
         ("last", &["--set", "time.duration=9", "--set", "time.duration=0.05"], SMALL.replace("0.1\n", "0.05\n")),
     ] {

@@ -514,8 +514,12 @@ fn warn_of_braked_rotation(scene: &Scene, report: &mut Collector<'_>) {
     for run in 0..scene.runs.len() {
         if let Some([message, help]) = scene.brakes_rotation(run) {
             let own = key_path!["run", run, "model"];
+            let names = scene.runs[run].of.iter().map(|&body| scene.bodies[body].name.as_str());
+            let by_name = names.map(|name| key_path!["run", run, "models", name, "damping_of"]);
+            let is_named = by_name.into_iter().any(|path| report.is_typed(&path))
+                || report.is_typed(&key_path![own; "damping_of"]);
             let path = if report.is_typed(&own) { own } else { key_path!["run", run, "models"] };
-            if !report.is_typed(&key_path![path; "damping_of"]) {
+            if !is_named {
                 report.warn(&path, message, help);
             }
         }
