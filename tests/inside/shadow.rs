@@ -118,7 +118,8 @@ fn a_coarse_shape_is_closed_and_casts_nearly_the_same_shadow() {
     };
     // A flat disc with round edges.
     let points: Vec<_> = (0..=ROWS).flat_map(|row| (0..COLUMNS).map(move |column| place(row, column))).collect();
-    let at = |row: u32, column: u32| if row % ROWS == 0 { row * COLUMNS } else { row * COLUMNS + column % COLUMNS };
+    let at =
+        |row: u32, column: u32| if row.is_multiple_of(ROWS) { row * COLUMNS } else { row * COLUMNS + column % COLUMNS };
     let cells = (0..ROWS).flat_map(|row| (0..COLUMNS).map(move |column| (row, column)));
     let triangles: Vec<_> = cells
         .flat_map(|(row, column)| {

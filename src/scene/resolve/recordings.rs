@@ -32,7 +32,7 @@ pub(super) struct ReadRecording {
 enum Own {
     Nothing,
     /// Its nodes at rest and its elements.
-    Rest(Lists),
+    Rest(Box<Lists>),
     /// The points and cells of the first moment. The rest shape is not known.
     Moment {
         cells: Box<Cells>,
@@ -75,7 +75,8 @@ impl ReadRecording {
             let mut archive = Archive::open(&path, chosen, &run.name)?;
             let (npz, name) = archive.parts();
             check_names(&npz.names(), name, file, &place(at, run), report);
-            let own = Lists::recorded(npz, name, source, limits, report).map_or(Own::Nothing, Own::Rest);
+            let own =
+                Lists::recorded(npz, name, source, limits, report).map_or(Own::Nothing, |own| Own::Rest(Box::new(own)));
             Ok((archive.recorded()?, own))
         };
         match open(report) {
@@ -165,7 +166,7 @@ impl Own {
             }
             Self::Rest(own) => {
                 let is_same = are_near(&own.nodes, whole) && are_alike(&own.elements, &whole.elements);
-                Ok((recorded, (!is_same).then_some((Lists { dimension, ..own }, 0))))
+                Ok((recorded, (!is_same).then_some((Lists { dimension, ..*own }, 0))))
             }
             // First with all points: nodes of springs may belong to no cell.
             Self::Moment { cells, has_elements, .. }
