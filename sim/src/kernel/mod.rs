@@ -86,11 +86,9 @@ impl Compiled {
         conditions: &Conditions,
         faster: Option<Box<dyn Stepper>>,
     ) -> Self {
-        let stepper = faster.unwrap_or_else(|| match law.relative_stiffness(body) {
-            Some(_) => Box::new(General::new(Filled(law.clone()), body, conditions)),
-            None => Box::new(General::new(law.clone(), body, conditions)),
-        });
-        Self { stepper, energy: Box::new(ByLaw::with(conditions.set, law, body)) }
+        let full = || -> Box<dyn Stepper> { Box::new(General::new(law.clone(), body, conditions)) };
+        let faster = faster.or_else(|| law.relative_stiffness(body).is_none().then(full));
+        Self::once(law, body, conditions, faster)
     }
 }
 
