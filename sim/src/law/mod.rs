@@ -14,7 +14,7 @@ pub use by_law::ByLaw;
 pub(crate) use by_law::Energy;
 pub(crate) use filled::Filled;
 pub(crate) use reader::{Reader, alike};
-pub(crate) use rigid::{Rigid, Turning};
+pub(crate) use rigid::{Rigid, Turning, off};
 
 use super::body::Body;
 use super::fill;
@@ -268,10 +268,17 @@ impl<'a, L: Lanes> Element<'a, L> {
     #[inline(always)]
     pub fn memory<const COUNT: usize>(&self) -> [L; COUNT] {
         assert!(COUNT == self.numbers[2], "all numbers that an element remembers");
+        self.memory_from(0)
+    }
+
+    /// Some of the numbers that the element remembers, from one on.
+    #[inline(always)]
+    pub fn memory_from<const COUNT: usize>(&self, first: usize) -> [L; COUNT] {
+        assert!(first + COUNT <= self.numbers[2], "numbers that an element remembers");
         let mut numbers = [L::splat(0.0); COUNT];
         for (at, number) in numbers.iter_mut().enumerate() {
             // SAFETY: the condition of `new`.
-            *number = unsafe { L::load(self.memory.add(at * MOST)) };
+            *number = unsafe { L::load(self.memory.add((first + at) * MOST)) };
         }
         numbers
     }
@@ -280,10 +287,17 @@ impl<'a, L: Lanes> Element<'a, L> {
     #[inline(always)]
     pub fn remember<const COUNT: usize>(&self, numbers: [L; COUNT]) {
         assert!(COUNT == self.numbers[2], "all numbers that an element remembers");
+        self.remember_from(0, numbers);
+    }
+
+    /// Remembers some of the numbers, from one on, unless the evaluation is a trial.
+    #[inline(always)]
+    pub fn remember_from<const COUNT: usize>(&self, first: usize, numbers: [L; COUNT]) {
+        assert!(first + COUNT <= self.numbers[2], "numbers that an element remembers");
         if self.commit {
             for (at, number) in numbers.into_iter().enumerate() {
                 // SAFETY: the condition of `new`.
-                unsafe { number.store(self.memory.add(at * MOST)) };
+                unsafe { number.store(self.memory.add((first + at) * MOST)) };
             }
         }
     }

@@ -1,5 +1,7 @@
 //! The rigid motion of an element that fits its velocities best, for damping that leaves it alone.
 
+use super::Element;
+use crate::kernel::rotation::cross;
 use crate::lanes::{Lanes, each};
 
 /// Sums over the corners of an element, from which the rigid motion that fits its velocities best follows. Positions and velocities are
@@ -101,4 +103,23 @@ impl<L: Lanes> Rigid<L> {
         turning.add(each!(3, axis => -(middle[axis] * count)), middle, drift);
         [middle, drift, turning.spin()]
     }
+
+    /// The same of a whole element, not relative to its first corner.
+    #[inline(always)]
+    pub(crate) fn of(element: &Element<'_, L>) -> [[L; 3]; 3] {
+        let (mut sums, first) = (Self::new(), element.corner(0));
+        for corner in 1..element.corners() {
+            let (p, v) = element.corner(corner);
+            sums.add(each!(3, axis => p[axis] - first.0[axis]), each!(3, axis => v[axis] - first.1[axis]));
+        }
+        let [middle, drift, spin] = sums.motion(element.corners());
+        [each!(3, axis => middle[axis] + first.0[axis]), each!(3, axis => drift[axis] + first.1[axis]), spin]
+    }
+}
+
+/// The velocity (m/s) at a point (m) relative to that of a rigid motion.
+#[inline(always)]
+pub(crate) fn off<L: Lanes>([middle, drift, spin]: [[L; 3]; 3], p: [L; 3], v: [L; 3]) -> [L; 3] {
+    let turning = cross(&spin, &each!(3, axis => p[axis] - middle[axis]));
+    each!(3, axis => v[axis] - drift[axis] - turning[axis])
 }

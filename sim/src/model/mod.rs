@@ -6,8 +6,12 @@
 //! alone, which implement [`ForceModel`]. Then add it to the list.
 
 pub(crate) mod blocks;
+pub mod continuum;
+pub mod corotational;
 pub mod limited_springs;
+pub mod linear;
 pub mod mass_spring;
+pub mod neo_hookean;
 pub mod shape_based;
 pub mod volume_springs;
 
@@ -68,6 +72,13 @@ models! {
     LimitedSprings => limited_springs,
     /// Springs and a pressure that keeps the volume of each element (paper, Ref. 3).
     VolumeSprings => volume_springs,
+    /// Finite elements of a material under small displacements: Hooke's law (paper, Ref. 5). Of tetrahedra and hexahedra, in the plane of
+    /// triangles and quadrilaterals.
+    Linear => linear,
+    /// Finite elements of a material with Hooke's law for the strain without rotation. Of the same elements.
+    Corotational => corotational,
+    /// Finite elements of a stable neo-Hookean material, for large deformations. Of the same elements.
+    NeoHookean => neo_hookean,
 }
 
 impl ModelParameters {

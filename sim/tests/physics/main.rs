@@ -4,6 +4,7 @@ mod carried;
 mod closed_forms;
 mod conformance;
 mod contact;
+mod continuum;
 mod degenerate_starts;
 #[allow(unreachable_pub, reason = "documentation shows it, too")]
 mod example_model;
