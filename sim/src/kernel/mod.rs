@@ -43,7 +43,7 @@ pub trait Vectorised {
 
 impl<W: Law> Vectorised for W {
     fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled {
-        Compiled::once(self.clone(), body, conditions, None)
+        Compiled::once(self.clone(), body, conditions)
     }
 }
 
@@ -67,28 +67,24 @@ pub struct Compiled {
 }
 
 impl Compiled {
-    /// As [`Self::by`], with a law that is compiled once: its relative stiffness is a constant, also where all are 1. Every other copy
-    /// of a law takes seconds of the time to build this crate.
-    pub(crate) fn once<W: Law>(
-        law: W,
-        body: &Arc<Body>,
-        conditions: &Conditions,
-        faster: Option<Box<dyn Stepper>>,
-    ) -> Self {
-        let stepper = faster.unwrap_or_else(|| Box::new(General::new(Filled(law.clone()), body, conditions)));
-        Self { stepper, energy: Box::new(ByLaw::with(conditions.set, law, body)) }
+    /// By a law that is compiled once: its relative stiffness is a constant, also where all are 1. Every other copy of a law takes
+    /// seconds of the time to build this crate.
+    pub(crate) fn once<W: Law>(law: W, body: &Arc<Body>, conditions: &Conditions) -> Self {
+        let energy = Box::new(ByLaw::with(conditions.set, law.clone(), body));
+        Self { stepper: Self::filled(law, body, conditions), energy }
     }
 
-    /// By a law, or with a faster stepper, if there is one.
-    pub(crate) fn by<W: Law>(
-        law: W,
-        body: &Arc<Body>,
-        conditions: &Conditions,
-        faster: Option<Box<dyn Stepper>>,
-    ) -> Self {
-        let full = || -> Box<dyn Stepper> { Box::new(General::new(law.clone(), body, conditions)) };
-        let faster = faster.or_else(|| law.relative_stiffness(body).is_none().then(full));
-        Self::once(law, body, conditions, faster)
+    /// Steps by a law with the relative stiffness of each element.
+    pub(crate) fn filled<W: Law>(law: W, body: &Arc<Body>, conditions: &Conditions) -> Box<dyn Stepper> {
+        Box::new(General::new(Filled(law), body, conditions))
+    }
+
+    /// Steps by a law, without the relative stiffness of elements if all are 1.
+    pub(crate) fn full<W: Law>(law: W, body: &Arc<Body>, conditions: &Conditions) -> Box<dyn Stepper> {
+        match law.relative_stiffness(body) {
+            None => Box::new(General::new(law, body, conditions)),
+            Some(_) => Self::filled(law, body, conditions),
+        }
     }
 }
 

@@ -34,7 +34,7 @@ pub(crate) use thrice;
 /// The largest number of lanes of any set. Arrays padded to a multiple of it suit all sets.
 pub(crate) const MOST: usize = 8;
 
-/// A vector of doubles, with operations on each lane: two, four or eight numbers, of as many elements.
+/// A vector of doubles, with operations on each lane: one, two, four or eight numbers, of as many elements.
 ///
 /// Every function is `#[inline(always)]`, so that it becomes part of a function compiled for its set of vectors. Only that chooses
 /// an implementation.

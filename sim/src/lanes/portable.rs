@@ -1,9 +1,10 @@
-//! Arrays, for any processor. Without fused operations a library computes the same bits.
+//! Single numbers, for any processor. Without fused operations a library computes the same bits, one by one: wider vectors would be more
+//! code to build, and no faster.
 
 use super::*;
 use std::array::from_fn;
 
-const N: usize = 2;
+const N: usize = 1;
 
 #[derive(Clone, Copy)]
 pub(super) struct Vector([f64; N]);

@@ -15,13 +15,13 @@
 
 use super::{ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Law, Misfit, Vectorised};
 use crate::body::Body;
-use crate::volume::volumes_at_rest;
 use crate::element::{Dimension, ElementKind};
 use crate::kernel::rotation::{self, Moments, Optimum, Solver};
 use crate::kernel::{Compiled, Conditions};
 use crate::lanes::{MOST, Set, Work, each};
 use crate::law::{Reader, Rigid, alike, off};
 use crate::material::Material;
+use crate::volume::volumes_at_rest;
 use glam::{DMat3, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -187,7 +187,7 @@ impl<S: Stress> ElasticModel for FiniteElements<S> {
 
 impl<S: Stress> Vectorised for FiniteElements<S> {
     fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled {
-        by_law!(self, body, law => Compiled::once(law, body, conditions, None))
+        by_law!(self, body, law => Compiled::once(law, body, conditions))
     }
 }
 
@@ -396,7 +396,8 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Elements<S, D, CORNERS> {
                 rest = slopes(&modes);
             }
             let mut pulls = [[[zero; D]; 4]; D];
-            for point in 0..CORNERS {
+            // As many points as corners. Unrolled they are many times as long to compile, and no faster.
+            for point in 0..element.corners() {
                 let (inverse, weight) =
                     if self.is_affine { fixed } else { Self::inverse(&slope_at(&rest, point), Self::BOX) };
                 let f = product(&slope_at(&now, point), &inverse);
@@ -585,11 +586,11 @@ pub(super) fn cofactors<L: Lanes, const D: usize>(m: &Map<L, D>) -> Map<L, D> {
     cofactors
 }
 
-/// The bits of a point without that of an axis.
+/// The bits of a point without that of an axis: at most two, so that no index into [`Slopes`] needs a test.
 #[inline(always)]
 fn without(point: usize, axis: usize) -> usize {
     let below = (1 << axis) - 1;
-    (point & below) | (point >> 1 & !below)
+    ((point & below) | (point >> 1 & !below)) & 3
 }
 
 /// From the corners of a box, by their bits, its modes: the coefficients, times 2ᵈ, of 1, ξ, η, ξη, ζ, ξζ, ηζ, ξηζ.

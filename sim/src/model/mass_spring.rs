@@ -6,7 +6,7 @@
 //! Energy: `E = k/2 Σ (|p| − L)²`. A mirror image has the same energy, so an element that has turned over stays so.
 
 use super::{
-    Corners, ElasticModel, Element, ForceModel, Lanes, Late, Law, Misfit, Report, Scratch, Share, TypedModel,
+    ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Late, Law, Misfit, Report, Scratch, Share, TypedModel,
     Vectorised, blocks,
 };
 use crate::body::Body;
@@ -176,10 +176,12 @@ impl MassSpring {
         conditions: &Conditions,
         faster: Option<Box<dyn Stepper>>,
     ) -> Compiled {
-        match self.damping > 0.0 {
-            true => Compiled::by(Spring::<true>(self.clone()), body, conditions, faster),
-            false => Compiled::by(Spring::<false>(self.clone()), body, conditions, faster),
-        }
+        let stepper = faster.unwrap_or_else(|| match self.damping > 0.0 {
+            true => Compiled::full(Spring::<true>(self.clone()), body, conditions),
+            false => Compiled::full(Spring::<false>(self.clone()), body, conditions),
+        });
+        let energy = ByLaw::with(conditions.set, Spring::<false>(self.clone()), body);
+        Compiled { stepper, energy: Box::new(energy) }
     }
 }
 

@@ -122,7 +122,7 @@ impl ElasticModel for VolumeSprings {
 
     fn unusual_choices(&self, body: &Body) -> String {
         let unit = if body.dimension == Dimension::Plane { "N/m" } else { "Pa" };
-        format!(", κ = {} {unit}", self.bulk)
+        format!(", κ = {:e} {unit}", self.bulk)
     }
 
     fn springs(&self) -> &[[u32; 2]] {

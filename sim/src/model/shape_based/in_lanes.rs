@@ -13,7 +13,7 @@ use crate::kernel::rotation::{self, Arctangent, Matrix, Moments, Optimum, Solver
 use crate::kernel::shapes::{Shapes, square};
 use crate::kernel::{Compiled, Conditions, Rotation, Stepper};
 use crate::lanes::{Lanes, MOST, each};
-use crate::law::{Corners, Element, Law, Rigid};
+use crate::law::{ByLaw, Corners, Element, Law, Rigid};
 use crate::model::Report;
 use glam::DMat3;
 use std::sync::Arc;
@@ -26,7 +26,7 @@ pub(super) fn compile(
     conditions: &Conditions,
     faster: Option<Box<dyn Stepper>>,
 ) -> Compiled {
-    /// With a solver of rotations in space, without maps.
+    /// With a solver of rotations in space, without maps. Energies do not depend on damping.
     fn in_space<S: Solver>(
         solver: S,
         of: Common,
@@ -34,25 +34,34 @@ pub(super) fn compile(
         conditions: &Conditions,
         faster: Option<Box<dyn Stepper>>,
     ) -> Compiled {
-        match of.damped {
-            NONE => Compiled::by(InSpace::<S, false, NONE> { of, solver }, body, conditions, faster),
-            RELATIVE => Compiled::by(InSpace::<S, false, RELATIVE> { of, solver }, body, conditions, faster),
-            _ => Compiled::by(InSpace::<S, false, DEFORMING> { of, solver }, body, conditions, faster),
-        }
+        let energy = ByLaw::with(conditions.set, InSpace::<S, false, ANY> { of: of.clone(), solver }, body);
+        let stepper = faster.unwrap_or_else(|| match of.damped {
+            NONE => Compiled::full(InSpace::<S, false, NONE> { of, solver }, body, conditions),
+            RELATIVE => Compiled::full(InSpace::<S, false, RELATIVE> { of, solver }, body, conditions),
+            _ => Compiled::filled(InSpace::<S, false, DEFORMING> { of, solver }, body, conditions),
+        });
+        Compiled { stepper, energy: Box::new(energy) }
     }
     let of = Common::new(model, body.dimension);
     match (body.dimension, rotation, model.fits_maps()) {
-        (Dimension::Plane, _, false) if of.damped == NONE => {
-            Compiled::by(InPlane::<false, NONE> { of }, body, conditions, faster)
+        (Dimension::Plane, _, false) if of.damped != DEFORMING => {
+            let energy = ByLaw::with(conditions.set, InPlane::<false, ANY> { of: of.clone() }, body);
+            let stepper = faster.unwrap_or_else(|| match of.damped {
+                NONE => Compiled::full(InPlane::<false, NONE> { of }, body, conditions),
+                _ => Compiled::full(InPlane::<false, RELATIVE> { of }, body, conditions),
+            });
+            Compiled { stepper, energy: Box::new(energy) }
         }
-        (Dimension::Plane, _, false) if of.damped == RELATIVE => {
-            Compiled::by(InPlane::<false, RELATIVE> { of }, body, conditions, faster)
-        }
-        (Dimension::Plane, ..) => Compiled::once(InPlane::<true, ANY> { of }, body, conditions, faster),
+        (Dimension::Plane, ..) => Compiled::once(InPlane::<true, ANY> { of }, body, conditions),
         (_, Rotation::Optimum, false) => in_space(Optimum, of, body, conditions, faster),
         (_, Rotation::Arctangent { passes }, false) => in_space(Arctangent { passes }, of, body, conditions, faster),
         // Whoever asks for maps has exact rotations, or the reference code.
-        (.., true) => Compiled::once(InSpace::<Optimum, true, ANY> { of, solver: Optimum }, body, conditions, faster),
+        (.., true) => {
+            let law = InSpace::<Optimum, true, ANY> { of, solver: Optimum };
+            let energy = ByLaw::with(conditions.set, law.clone(), body);
+            let stepper = faster.unwrap_or_else(|| Compiled::filled(law, body, conditions));
+            Compiled { stepper, energy: Box::new(energy) }
+        }
     }
 }
 
