@@ -7,6 +7,7 @@
 mod failure;
 mod folder;
 mod methods;
+mod models;
 #[cfg(feature = "render")]
 mod page;
 mod progress;
@@ -25,6 +26,7 @@ mod table1;
 mod turns;
 mod work_precision;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueHint};
 use failure::Failure;
 use localshape::{Limits, Scene};
@@ -92,6 +94,9 @@ enum Name {
     },
     /// Falls, impacts, degenerate starts and elements, very long runs: the outcome of each with every model
     Stress {
+        /// A model beside the shape-based one; can be repeated [default: springs, and Eq. (15)]
+        #[arg(long, value_name = "KIND", value_parser = PossibleValuesParser::new(models::kinds()))]
+        model: Vec<String>,
         #[command(flatten)]
         threads: Threads,
     },
@@ -119,6 +124,10 @@ struct OfScene {
     #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
     scene: Option<PathBuf>,
 
+    /// A model for the built-in scenes; can be repeated [default: those of the paper]
+    #[arg(long, value_name = "KIND", conflicts_with = "scene", value_parser = PossibleValuesParser::new(models::kinds()))]
+    model: Vec<String>,
+
     /// Measure more, which takes ten times as long or longer
     #[arg(long)]
     full: bool,
@@ -130,12 +139,17 @@ fn quoted(word: &str) -> String {
     if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
 }
 
+/// The arguments that name models.
+fn of_models(models: &[String]) -> String {
+    models.iter().map(|model| format!(" --model {model}")).collect()
+}
+
 impl OfScene {
     /// The arguments that repeat it.
     fn arguments(&self) -> String {
         let scene =
             self.scene.as_ref().map_or_else(String::new, |path| format!(" {}", quoted(&path.to_string_lossy())));
-        format!("{scene}{}", if self.full { " --full" } else { "" })
+        format!("{scene}{}{}", of_models(&self.model), if self.full { " --full" } else { "" })
     }
 
     fn load(&self) -> Result<Option<Scene>, Failure> {
@@ -177,7 +191,7 @@ impl Name {
     fn threads(&self) -> usize {
         match self {
             Self::Rotation | Self::WorkPrecision { .. } => 1,
-            Self::Stability { threads, .. } | Self::Stress { threads } | Self::Table1 { threads, .. } => {
+            Self::Stability { threads, .. } | Self::Stress { threads, .. } | Self::Table1 { threads, .. } => {
                 threads.count()
             }
             Self::Ratio { threads } => (*threads).into(),
@@ -192,14 +206,14 @@ impl Name {
                 only.iter().for_each(|run| arguments += &format!(" --only {}", quoted(run)));
                 let effort = if of.full { Effort::FULL } else { Effort::USUAL };
                 let subjects =
-                    of.load()?.map_or_else(|| Ok(work_precision::usual()), |scene| subjects(&scene, &only))?;
+                    of.load()?.map_or_else(|| Ok(work_precision::usual(&of.model)), |scene| subjects(&scene, &only))?;
                 Box::new(WorkPrecision { effort, subjects, arguments })
             }
             Self::Stability { of, .. } => {
                 let study = Stability {
                     arguments: of.arguments(),
                     protocol: if of.full { Protocol::full() } else { Protocol::usual() },
-                    scene: of.load()?.unwrap_or_else(stability::usual),
+                    scene: of.load()?.unwrap_or_else(|| stability::usual(&of.model)),
                 };
                 if study.work() == 0 {
                     return Err(Failure::usage(format!(
@@ -209,7 +223,10 @@ impl Name {
                 }
                 Box::new(study)
             }
-            Self::Stress { .. } => Box::new(Stress { steps: stress::STEPS }),
+            Self::Stress { model, .. } => {
+                let (arguments, models) = (of_models(&model), stress::Model::compared(&model));
+                Box::new(Stress { steps: stress::STEPS, models, arguments })
+            }
             Self::Table1 { orientations, .. } => Box::new(Table1::new(orientations)),
             Self::Ratio { threads } => Box::new(Ratio::new(threads.into())),
         })

@@ -99,16 +99,21 @@ impl Protocol {
     }
 }
 
-/// The default scene: the fall of Fig. 4(b), with three integrators.
-pub(crate) fn usual() -> Scene {
+/// The default scene: the fall of Fig. 4(b), with the models of the paper and three integrators, or with these models and the default
+/// integrator.
+pub(crate) fn usual(models: &[String]) -> Scene {
     let model = |kind: &str| format!("model = {{ kind = '{kind}, stiffness = 1e4, damping_ratio = 0.1 }}");
     let (shape, springs) = (model("shape-based'"), model("mass-spring', springs = 'edges+one-diagonal'"));
-    let runs = ["semi-implicit-euler", "velocity-verlet", "runge-kutta"].map(|integrator| {
+    let of_paper = ["semi-implicit-euler", "velocity-verlet", "runge-kutta"].into_iter().flat_map(|integrator| {
         let run = |name: &str, model: &str| {
             format!("{{ name = '{name}, {integrator}', integrator = '{integrator}', {model} }}")
         };
-        format!("{},\n{}", run("Local shape", &shape), run("Mass-spring", &springs))
+        [run("Local shape", &shape), run("Mass-spring", &springs)]
     });
+    let of_models = models
+        .iter()
+        .map(|kind| format!("{{ name = '{kind}', model = {} }}", crate::models::typed(kind, 1e4, 0.1, 0.1)));
+    let runs: Vec<_> = if models.is_empty() { of_paper.collect() } else { of_models.collect() };
     let text = format!(
         "title = '3×3×3 cubes that hit a floor after a fall of 5 m'
         gravity = [0, -9.8, 0]

@@ -7,21 +7,24 @@ mod text;
 mod trials;
 
 use crate::folder::Notes;
+use crate::models;
 use crate::progress::Watch;
 use crate::study::{Findings, Study};
 use glam::DVec3;
-use localshape::sim::model::ElasticModel;
-use localshape::sim::model::mass_spring::MassSpring;
-use localshape::sim::model::shape_based::{RotationReading, ShapeBased};
-use localshape::sim::{Body, Integrator, Kernel, Springs, State, Status, Stepping, World};
+use localshape::sim::{Integrator, Kernel, State, Status, Stepping, World};
 use rayon::prelude::*;
+use serde_json::{Map, Value, json};
 use trials::{Trial, trials};
 
 /// The study.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Stress {
     /// Steps of bodies that rest or spin.
     pub(crate) steps: u64,
+    /// The models that are compared.
+    pub(crate) models: Vec<Model>,
+    /// The arguments that repeat it.
+    pub(crate) arguments: String,
 }
 
 /// The usual number of steps.
@@ -32,42 +35,49 @@ impl Study for Stress {
         "stress"
     }
 
+    fn command(&self) -> String {
+        format!("localshape-study stress{}", self.arguments)
+    }
+
     fn work(&self) -> u64 {
-        (trials(self.steps).len() * MODELS.len()) as u64
+        (trials(self.steps).len() * self.models.len()) as u64
     }
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
-        let results = measure(self.steps, watch)?;
+        let results = measure(self.steps, &self.models, watch)?;
         Some(Findings::new(results.text(), [("stress", results.table())]))
     }
 }
 
-/// A model.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Model {
-    /// Shape-based, with a solver of rotations.
-    Shape(RotationReading),
-    Springs(Springs),
+/// A model and its name in tables.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Model {
+    pub(crate) name: String,
+    kind: String,
+    /// Keys besides its stiffness and its damping.
+    keys: Map<String, Value>,
 }
 
-/// The models that are compared, with their names in tables; the first is the default.
-pub(crate) const MODELS: [(&str, Model); 4] = [
-    ("shape-based", Model::Shape(RotationReading::Robust)),
-    ("shape-based, Eq. (15) twice", Model::Shape(RotationReading::Arctangent)),
-    ("springs, edges and face diagonals", Model::Springs(Springs::EdgesFaceDiagonals)),
-    ("springs, all pairs of an element", Model::Springs(Springs::All)),
-];
-
 impl Model {
-    fn prepare(self, body: &Body, stiffness: f64, damping: f64) -> Box<dyn ElasticModel> {
-        match self {
-            // Two passes, as the paper advises.
-            Self::Shape(rotation) => Box::new(ShapeBased { damping, rotation, ..ShapeBased::new(stiffness) }),
-            Self::Springs(named) => {
-                let springs = body.topology().springs(named).into();
-                Box::new(MassSpring { stiffness, damping, springs })
-            }
+    fn new(name: &str, kind: &str, keys: &[(&str, &str)]) -> Self {
+        let keys = keys.iter().map(|&(key, value)| (key.to_owned(), json!(value))).collect();
+        Self { name: name.to_owned(), kind: kind.to_owned(), keys }
+    }
+
+    /// The shape model, whose promises are tested, and models by their names; without any, those of the paper.
+    pub(crate) fn compared(kinds: &[String]) -> Vec<Self> {
+        let shape = Self::new("shape-based", "shape-based", &[]);
+        if !kinds.is_empty() {
+            return [shape].into_iter().chain(kinds.iter().map(|kind| Self::new(kind, kind, &[]))).collect();
         }
+        let springs = |name: &str, topology: &str| Self::new(name, "mass-spring", &[("springs", topology)]);
+        vec![
+            shape,
+            // Two passes, as the paper advises.
+            Self::new("shape-based, Eq. (15) twice", "shape-based", &[("rotation", "arctangent")]),
+            springs("springs, edges and face diagonals", "edges+face-diagonals"),
+            springs("springs, all pairs of an element", "all"),
+        ]
     }
 }
 
@@ -104,7 +114,7 @@ pub(crate) struct Outcome {
     pub(crate) creep: f64,
 }
 
-/// The outcomes of a trial, one for each of [`MODELS`].
+/// The outcomes of a trial, one for each model that takes the body.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Row {
     pub(crate) group: &'static str,
@@ -112,12 +122,13 @@ pub(crate) struct Row {
     pub(crate) elements: usize,
     pub(crate) steps: u64,
     pub(crate) promise: Promise,
-    pub(crate) outcomes: Vec<Outcome>,
+    pub(crate) outcomes: Vec<Option<Outcome>>,
 }
 
 /// The findings, which do not depend on the machine.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Results {
+    pub(crate) models: Vec<Model>,
     pub(crate) rows: Vec<Row>,
 }
 
@@ -130,11 +141,11 @@ const MOST_CHANGE: f64 = 1e-9;
 const MOST_CREEP: f64 = 1e-3;
 
 /// Makes all trials on the thread pool of the caller; `None` if `watch` stops it.
-pub(crate) fn measure(steps: u64, watch: &Watch<'_>) -> Option<Results> {
+pub(crate) fn measure(steps: u64, models: &[Model], watch: &Watch<'_>) -> Option<Results> {
     let trials = trials(steps);
-    let pairs: Vec<_> = trials.iter().flat_map(|trial| MODELS.map(|(_, model)| (trial, model))).collect();
-    let outcome = |(trial, model): &(&Trial, Model)| {
-        let outcome = trial.outcome(*model);
+    let pairs: Vec<_> = trials.iter().flat_map(|trial| models.iter().map(move |model| (trial, model))).collect();
+    let outcome = |&(trial, model): &(&Trial, &Model)| {
+        let outcome = trial.outcome(model);
         watch(1).then_some(outcome)
     };
     let mut outcomes = pairs.par_iter().map(outcome).collect::<Option<Vec<_>>>()?.into_iter();
@@ -144,15 +155,15 @@ pub(crate) fn measure(steps: u64, watch: &Watch<'_>) -> Option<Results> {
         elements: trial.body.elements.len(),
         steps: trial.steps,
         promise: trial.promise,
-        outcomes: outcomes.by_ref().take(MODELS.len()).collect(),
+        outcomes: outcomes.by_ref().take(models.len()).collect(),
     };
-    Some(Results { rows: trials.into_iter().map(row).collect() })
+    Some(Results { models: models.to_vec(), rows: trials.into_iter().map(row).collect() })
 }
 
 impl Row {
     /// The promises that the default model breaks.
     pub(crate) fn broken(&self) -> Vec<String> {
-        let one = &self.outcomes[0];
+        let one = self.outcomes[0].as_ref().expect("the shape model takes all bodies");
         let mut broken = Vec::new();
         let mut demand = |holds: bool, what: String| {
             if !holds {
@@ -175,16 +186,17 @@ impl Row {
         }
         demand(one.creep.is_nan() || one.creep <= MOST_CREEP, format!("crept by {:.1e}", one.creep));
         // No model may give NaN or infinite numbers.
-        for ((model, _), outcome) in MODELS.iter().zip(&self.outcomes) {
-            demand(outcome.is_finite, format!("{model} is not finite"));
+        for (at, outcome) in self.outcomes.iter().enumerate() {
+            demand(outcome.is_none_or(|outcome| outcome.is_finite), format!("model {at} is not finite"));
         }
         broken
     }
 }
 
 impl Trial {
-    fn world(&self, model: Model, integrator: Integrator, damping: f64, start: State) -> World {
-        let model = model.prepare(&self.body, self.stiffness, damping);
+    /// `None` for a model that does not take the body.
+    fn world(&self, model: &Model, integrator: Integrator, start: State) -> Option<World> {
+        let model = models::on(&self.body, &model.kind, self.stiffness, self.damping, &model.keys)?;
         let Self { body, around, step, .. } = self;
         let stepping = Stepping {
             integrator,
@@ -192,13 +204,13 @@ impl Trial {
             tolerance: Integrator::TOLERANCE,
             kernel: Kernel::of(model.as_ref(), integrator),
         };
-        World::new(body, start, model.as_ref(), around.clone(), stepping)
+        Some(World::new(body, start, model.as_ref(), around.clone(), stepping))
     }
 
-    fn outcome(&self, model: Model) -> Outcome {
+    fn outcome(&self, model: &Model) -> Option<Outcome> {
         /// The number of checks of the state.
         const LOOKS: u64 = 64;
-        let mut world = self.world(model, Integrator::default(), self.damping, self.start.clone());
+        let mut world = self.world(model, Integrator::default(), self.start.clone())?;
         let first = Look::of(self, &world);
         let (mut most, mut fastest, mut changed) = (first.energy, first.sizes, [0.0f64; 2]);
         for look in 0..LOOKS {
@@ -216,35 +228,35 @@ impl Trial {
         };
         let last = Look::of(self, &world);
         let measured = |is_measured: bool, value: f64| if is_measured { value } else { f64::NAN };
-        Outcome {
+        Some(Outcome {
             diverged,
             is_finite: state.position.iter().chain(&state.velocity).all(|vector| vector.is_finite()),
             turned_over: d.turned_over,
             shape_error: d.shape_error / self.side,
-            unsettled: measured(matches!(self.promise, Promise::Settled(_)), self.unsettled(model, state)),
+            unsettled: measured(matches!(self.promise, Promise::Settled(_)), self.unsettled(model, state)?),
             energy: measured(self.has_energy, most / first.energy),
             momentum: [0, 1].map(|at| {
                 let is_kept = self.is_free && (at == 0 || self.damping == 0.0);
                 measured(is_kept && diverged.is_none(), changed[at] / fastest[at].max(f64::MIN_POSITIVE))
             }),
             creep: measured(self.is_still, (last.centre - first.centre).with_y(0.0).length() / self.side),
-        }
+        })
     }
 
     /// The greatest difference of a height from the body at rest on its side, as a part of a side. Heights are compared
     /// in order, so a cube may lie on any side.
-    fn unsettled(&self, model: Model, state: &State) -> f64 {
+    fn unsettled(&self, model: &Model, state: &State) -> Option<f64> {
         let heights = |state: &State| {
             let mut heights: Vec<_> = state.position.iter().map(|at| at.y).collect();
             heights.sort_by(f64::total_cmp);
             heights
         };
-        // Velocity Verlet comes to complete rest on a floor.
-        let mut world =
-            self.world(model, Integrator::VelocityVerlet, self.damping, State::at_rest(self.body.rest.clone()));
+        // Velocity Verlet comes to complete rest on a floor. XPBD steps by itself.
+        let integrator = if model.kind == "xpbd" { Integrator::default() } else { Integrator::VelocityVerlet };
+        let mut world = self.world(model, integrator, State::at_rest(self.body.rest.clone()))?;
         world.advance(self.steps.min(20_000));
         let pairs = heights(state).into_iter().zip(heights(world.state()));
-        pairs.fold(0.0, |most: f64, (one, other)| most.max((one - other).abs())) / self.side
+        Some(pairs.fold(0.0, |most: f64, (one, other)| most.max((one - other).abs())) / self.side)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The results as text and as a table.
 
-use super::{MODELS, Outcome, Promise, Results, Row};
+use super::{Outcome, Promise, Results, Row};
 use crate::table::{Cell, Table};
 
 /// The shape error of a body that counts as restored.
@@ -18,12 +18,18 @@ impl Results {
             this time step is too large for them.\n",
         );
         for group in self.rows.chunk_by(|one, other| one.group == other.group) {
-            let row = |row: &Row| {
-                let [one, two, three, four] = [0, 1, 2, 3].map(|model| row.words(&row.outcomes[model]).into());
-                let [a, b, c, d] = MODELS.map(|(name, _)| name);
-                [(group[0].group, row.name.as_str().into()), (a, one), (b, two), (c, three), (d, four)]
+            let words = |row: &Row, one: &Option<Outcome>| match one {
+                Some(outcome) => row.words(outcome).into(),
+                None => Cell::from("does not take it"),
             };
-            text += &format!("\n{}", Table::of(group.iter().map(row)).markdown(5));
+            let row = |row: &Row| -> Vec<Cell> {
+                let name = Cell::from(row.name.as_str());
+                [name].into_iter().chain(row.outcomes.iter().map(|one| words(row, one))).collect()
+            };
+            let models = self.models.iter().map(|model| model.name.clone());
+            let heads: Vec<_> = [group[0].group.to_owned()].into_iter().chain(models).collect();
+            let table = Table { rows: group.iter().map(row).collect(), heads };
+            text += &format!("\n{}", table.markdown(table.heads.len()));
         }
         let broken: Vec<_> = self.rows.iter().filter(|row| !row.broken().is_empty()).collect();
         text += match broken.is_empty() {
@@ -38,16 +44,18 @@ impl Results {
 
     /// All numbers, with all digits.
     pub(super) fn table(&self) -> Table {
-        let rows = self
-            .rows
-            .iter()
-            .flat_map(|row| row.outcomes.iter().zip(MODELS).map(move |(one, (model, _))| (row, one, model)));
+        let rows = self.rows.iter().flat_map(|row| {
+            row.outcomes
+                .iter()
+                .zip(&self.models)
+                .filter_map(move |(one, model)| Some((row, one.as_ref()?, &model.name)))
+        });
         let number = |value: f64| if value.is_nan() { Cell::Empty } else { value.into() };
         Table::of(rows.map(|(row, one, model)| {
             [
                 ("group", row.group.into()),
                 ("trial", row.name.as_str().into()),
-                ("model", model.into()),
+                ("model", model.as_str().into()),
                 ("steps", row.steps.into()),
                 ("elements", row.elements.into()),
                 ("diverged_s", one.diverged.into()),

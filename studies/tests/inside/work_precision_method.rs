@@ -26,7 +26,7 @@ fn all_runs_have_their_states_at_the_same_moments() {
     let numbers = |steps: u64| {
         let attempt = Attempt { steps, ..Attempt::new(Method::DEFAULT, 1.0, 1.0) };
         let mut numbers = Vec::new();
-        let subject = &super::super::usual()[1];
+        let subject = &super::super::usual(&[])[1];
         attempt.run(subject, &Method::DEFAULT.model(subject).expect("its own"), f64::INFINITY, |number, _| {
             numbers.push(number)
         });

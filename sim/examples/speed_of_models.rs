@@ -1,13 +1,11 @@
-//! The cost of a step with finite elements, beside the paper's model: `cargo run --release -p localshape-sim --example speed_of_elements`.
+//! The cost of a step with each model, beside the paper's: `cargo run --release -p localshape-sim --example speed_of_models`.
 //!
-//! All are measured in turn, on one thread, and the best of many samples counts. With `irregular` nodes the paper's model has its general kernel.
+//! All are measured in turn, on one thread, and the best of many samples counts. Where nodes are moved from the lattice, the paper's model has
+//! its general kernel.
 use glam::DVec3;
-use localshape_sim::model::continuum::Parameters;
-use localshape_sim::model::shape_based::{DampingReading, ShapeBased};
-use localshape_sim::model::{ElasticModel, corotational, linear, neo_hookean};
-use localshape_sim::{
-    Body, Crew, Dimension, IndexLists, Integrator, Material, Solids, State, Stepping, Surroundings, World,
-};
+use localshape_sim::model::{ElasticModel, ModelParameters};
+use localshape_sim::{Body, Crew, Dimension, IndexLists, Integrator, Solids, State, Stepping, Surroundings, World};
+use serde_json::{Value, json};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -59,26 +57,33 @@ fn world(body: &Arc<Body>, model: &dyn ElasticModel) -> World {
     world
 }
 
+/// The models, each of one stiffness.
+fn models() -> Vec<Value> {
+    let of_springs = |kind: &str| json!({ "kind": kind, "stiffness": 250.0, "springs": "edges+one-diagonal" });
+    let of_material = |kind: &str| json!({ "kind": kind, "young": 1e4, "poisson": 0.3 });
+    vec![
+        json!({ "kind": "shape-based", "young": 1e4 }),
+        of_material("shape-based"),
+        json!({ "kind": "shape-based", "young": 1e4, "damping": 1e-3, "damping_of": "deformation" }),
+        of_springs("mass-spring"),
+        of_springs("limited-springs"),
+        json!({ "kind": "volume-springs", "stiffness": 250.0, "bulk": 1e4, "springs": "edges+one-diagonal" }),
+        of_material("linear"),
+        of_material("corotational"),
+        of_material("neo-hookean"),
+        json!({ "kind": "corotational", "young": 1e4, "poisson": 0.3, "damping": 1e-3 }),
+    ]
+}
+
 fn main() {
     for (tetrahedra, irregular) in [(false, 0.0), (false, 0.05), (true, 0.0)] {
         let body = block(tetrahedra, irregular);
-        let material = Material { young: 1e4, poisson: 0.0 };
-        let mut cases: Vec<(String, World, f64)> = Vec::new();
-        for (name, damping) in [("", 0.0), (", damped", 1e-3)] {
-            let stiffness = material.stiffness(&body)[0];
-            let shape = ShapeBased { damping, damping_of: DampingReading::Deformation, ..ShapeBased::new(stiffness) };
-            cases.push((format!("shape-based{name}"), world(&body, &shape), f64::INFINITY));
-            let parameters = Parameters { young: 1e4, poisson: Some(0.3), damping: Some(damping), damping_ratio: None };
-            let models = [
-                ("linear", linear::Parameters(parameters.clone()).model(&body)),
-                ("corotational", corotational::Parameters(parameters.clone()).model(&body)),
-                ("neo-hookean", neo_hookean::Parameters(parameters).model(&body)),
-            ];
-            for (kind, model) in models {
-                let model = model.expect("elements that it takes");
-                cases.push((format!("{kind}{name}"), world(&body, &*model), f64::INFINITY));
-            }
-        }
+        let case = |model: Value| {
+            let parameters: ModelParameters = serde_json::from_value(model.clone()).expect("parameters of a model");
+            let resolved = parameters.resolve(&body, None).expect("a model that takes the body");
+            (model.to_string(), world(&body, &*resolved), f64::INFINITY)
+        };
+        let mut cases: Vec<(String, World, f64)> = models().into_iter().map(case).collect();
         for _ in 0..SAMPLES {
             for (_, world, best) in &mut cases {
                 let start = Instant::now();
@@ -87,13 +92,11 @@ fn main() {
                 *best = best.min(each);
             }
         }
-        println!(
-            "{} {}, irregular {irregular}",
-            body.elements.len(),
-            if tetrahedra { "tetrahedra" } else { "hexahedra" }
-        );
+        let kind = if tetrahedra { "tetrahedra" } else { "hexahedra" };
+        println!("{} {kind}, irregular {irregular}", body.elements.len());
         for (name, world, best) in &cases {
-            println!("  {name:24} {best:7.1} ns per element and step, {:?}", world.status());
+            let status = world.status();
+            println!("  {best:7.1} ns per element and step, {:5.2}: {status:?} {name}", best / cases[0].2);
         }
     }
 }
