@@ -13,6 +13,8 @@
 //!
 //! A node is damped by `−D` times its velocity without the rigid motion that fits its element best.
 
+#![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
+
 use super::{ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Law, Misfit, Vectorised};
 use crate::body::Body;
 use crate::element::{Dimension, ElementKind};
@@ -249,7 +251,7 @@ fn is_affine(body: &Body, nodes: &[u32]) -> bool {
     let Some(corners) = corners_by_bits(body, nodes) else { return true };
     let size = corners.iter().fold(0.0, |size: f64, corner| size.max(corner.abs().max_element()));
     let mode = |of: usize| -> DVec3 {
-        let sign = |corner: usize| if (of & !corner).count_ones() % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = |corner: usize| if (of & !corner).count_ones().is_multiple_of(2) { 1.0 } else { -1.0 };
         corners.iter().enumerate().map(|(corner, at)| *at * sign(corner)).sum()
     };
     let mut mixed = (0..corners.len()).filter(|of| of.count_ones() > 1);
@@ -469,9 +471,7 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Law for Elements<S, D, COR
             let mut modes = [[zero; D]; CORNERS];
             for corner in 0..CORNERS {
                 let place = rest.position(corner);
-                for row in 0..D {
-                    modes[bits::<D>(corner)][row] = place[row];
-                }
+                modes[bits::<D>(corner)].copy_from_slice(&place[..D]);
             }
             sums_and_differences(&mut modes);
             if !self.is_affine {

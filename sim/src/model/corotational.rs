@@ -8,6 +8,8 @@
 //! With `λ = 0` on regular tetrahedra it is the paper's model. The rotation has the determinant 1 for mirrored elements, too, which then turn
 //! back. In the plane it is that of Eq. (9).
 
+#![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
+
 use super::continuum::{self, FiniteElements, Map, Stress, dot};
 use super::{ElasticModel, Lanes, Misfit, TypedModel};
 use crate::body::Body;

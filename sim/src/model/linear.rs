@@ -7,6 +7,8 @@
 //! It is about small displacements from the place at rest: rotation by an angle φ counts as a strain `cos φ − 1` across its axis, so a body that
 //! turns swells, and its forces have a torque.
 
+#![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
+
 use super::continuum::{self, FiniteElements, Map, Stress};
 use super::{ElasticModel, Lanes, Misfit, TypedModel};
 use crate::body::Body;

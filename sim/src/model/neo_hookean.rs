@@ -11,6 +11,8 @@
 //! that is crushed to a point opens again. Without it `F = 0` is a second minimum in space, though not in the plane, and costs nothing if
 //! `ν = 0`.
 
+#![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
+
 use super::continuum::{self, FiniteElements, Map, Stress, cofactors, dot};
 use super::{ElasticModel, Lanes, Misfit, TypedModel};
 use crate::body::Body;
