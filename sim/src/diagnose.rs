@@ -43,7 +43,8 @@ impl Diagnose {
     pub(super) fn facts<'a>(
         &'a self,
         state: Nodes<'a>,
-        global_rotations: f64,
+        [global_rotations, broken]: [f64; 2],
+        gone: Vec<bool>,
         report: impl FnOnce() -> Report + 'a,
         crew: &'a Crew,
     ) -> BodyFacts<'a> {
@@ -51,8 +52,10 @@ impl Diagnose {
             mass: &self.body.mass,
             state,
             global_rotations,
+            broken,
             report: Lazy::new(Box::new(report)),
             volumes: Lazy::new(Box::new(move || self.volumes(state.position, crew))),
+            gone,
             volumes_at_rest: &self.volumes_at_rest,
             fill: self.body.fill.as_deref(),
             volume_at_rest: self.volume_at_rest,
@@ -99,7 +102,7 @@ mod tests {
 
     fn diagnostics(diagnose: &Diagnose, state: &State) -> Diagnostics {
         let crew = Crew::new(1);
-        let bodies = [diagnose.facts(state.nodes(), 0.0, Report::default, &crew)];
+        let bodies = [diagnose.facts(state.nodes(), [0.0; 2], Vec::new(), Report::default, &crew)];
         Diagnostics::of(Facts { bodies: &bodies, gravity: DVec3::ZERO }, Diagnostic::ALL)
     }
 

@@ -22,10 +22,14 @@ pub(super) struct BodyFacts<'a> {
     pub(super) state: Nodes<'a>,
     /// Rotations that the global solver has computed.
     pub(super) global_rotations: f64,
+    /// Elements or springs that are broken; NaN if none can be.
+    pub(super) broken: f64,
     /// Energy and residuals from the model.
     pub(super) report: Lazy<'a, Report>,
     /// Signed volume of each element (m³, in the plane m²).
     pub(super) volumes: Lazy<'a, Vec<f64>>,
+    /// Whether each element is broken; empty if none can be.
+    pub(super) gone: Vec<bool>,
     /// Signed volume of each element at rest (m³, in the plane m²).
     pub(super) volumes_at_rest: &'a [f64],
     /// The filled part of each element, unless all are full.
@@ -76,12 +80,28 @@ impl BodyFacts<'_> {
 
     /// Whether each element has turned over.
     pub(super) fn turned_over(&self) -> impl Iterator<Item = bool> {
-        self.volumes.iter().zip(self.volumes_at_rest).map(|(&now, &at_rest)| is_turned_over(now, at_rest))
+        self.are_whole(is_turned_over)
     }
 
     /// Whether each element is flat.
     pub(super) fn flat(&self) -> impl Iterator<Item = bool> {
-        self.volumes.iter().zip(self.volumes_at_rest).map(|(&now, &at_rest)| is_flat(now, at_rest))
+        self.are_whole(is_flat)
+    }
+
+    /// Whether each element is not broken, and has a property by its volumes now and at rest.
+    fn are_whole(&self, is: fn(f64, f64) -> bool) -> impl Iterator<Item = bool> {
+        let is_gone = |at: usize| self.gone.get(at).copied().unwrap_or(false);
+        let volumes = self.volumes.iter().zip(self.volumes_at_rest).enumerate();
+        volumes.map(move |(at, (&now, &at_rest))| is(now, at_rest) && !is_gone(at))
+    }
+
+    /// The volume of what is filled of the elements that are not broken (m³, in the plane m²).
+    fn volume(&self) -> f64 {
+        if !self.gone.contains(&true) {
+            return fill::volume(self.fill, &self.volumes);
+        }
+        let whole: Vec<_> = self.volumes.iter().zip(&self.gone).map(|(&v, &gone)| if gone { 0.0 } else { v }).collect();
+        fill::volume(self.fill, &whole)
     }
 
     /// The sum of the squared distances of the nodes from the placement (m²).
@@ -187,7 +207,7 @@ macro_rules! diagnostics {
         $variant:ident, $key:ident: $type:ty, $name:literal, $unit:literal, $scope:ident = $value:expr;
     )+) => {
         /// Numbers that describe a state, in SI units; in the plane volumes are areas. A number that the model or the
-        /// body does not have is NaN: the elastic energy, `residual` and `global_rotations` of some models, the volume ratio of a cloth.
+        /// body does not have is NaN: the elastic energy, `residual`, `global_rotations` and `broken` of some models, the volume ratio of a cloth.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
         pub struct Diagnostics {
             $($(#[doc = $meaning])+ pub $key: $type,)+
@@ -290,7 +310,7 @@ diagnostics! { facts:
 
     /// Total signed volume of what is filled of the elements, divided by that at rest; in the plane, area.
     VolumeRatio, volume_ratio: f64, "volume ratio", "", Summaries =
-        facts.total(|body| fill::volume(body.fill, &body.volumes)) / facts.total(|body| body.volume_at_rest);
+        facts.total(BodyFacts::volume) / facts.total(|body| body.volume_at_rest);
 
     /// RMS distance of the nodes from the best rigid placement of the rest shape of their body (m).
     ShapeError, shape_error: f64, "shape error", "m", Summaries = facts.shape_error();
@@ -302,6 +322,9 @@ diagnostics! { facts:
     /// inside out, or turned far in one step.
     GlobalRotations, global_rotations: f64, "global rotations", "", Frames =
         facts.reduced(|body| body.global_rotations, std::ops::Add::add);
+
+    /// Number of elements, or of springs, that are broken.
+    Broken, broken: f64, "broken", "", Frames = facts.reduced(|body| body.broken, std::ops::Add::add);
 }
 
 impl Diagnostic {

@@ -20,6 +20,7 @@
 mod alike;
 mod assembly;
 mod body;
+mod broken;
 mod carried;
 mod contact;
 mod crew;

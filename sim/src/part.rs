@@ -1,6 +1,7 @@
 //! One of the bodies that are advanced together.
 
 use super::body::Body;
+use super::broken::Broken;
 use super::diagnose::Diagnose;
 #[cfg(doc)]
 use super::diagnostics::Diagnostics;
@@ -23,6 +24,10 @@ pub(crate) struct Part {
     pub memory: Range<usize>,
     /// Whether the last number of that memory is [`Diagnostics::global_rotations`].
     pub(super) counts_global: bool,
+    /// How its elements or springs break, if they do.
+    pub(super) breaks: Option<Broken>,
+    /// The number of its springs.
+    pub(super) springs: usize,
     pub(super) diagnose: Diagnose,
 }
 
@@ -30,6 +35,22 @@ impl Part {
     /// The nodes of the part.
     pub(super) fn nodes_of<'a>(&self, all: Nodes<'a>) -> Nodes<'a> {
         Nodes { position: &all.position[self.nodes.clone()], velocity: &all.velocity[self.nodes.clone()] }
+    }
+
+    /// [`Diagnostics::broken`] by the memory of all models.
+    pub(super) fn count_broken(&self, memory: &[f64]) -> f64 {
+        let count = |breaks: &Broken| breaks.of(&memory[self.memory.clone()]).filter(|&broken| broken).count() as f64;
+        self.breaks.as_ref().map_or(f64::NAN, count)
+    }
+
+    /// Whether each element is broken, by the memory of all models; empty if none can be.
+    pub(super) fn broken_elements(&self, memory: &[f64]) -> Vec<bool> {
+        self.breaks.as_ref().map_or_else(Vec::new, |breaks| breaks.elements(&memory[self.memory.clone()]))
+    }
+
+    /// The same of each spring.
+    pub(super) fn broken_springs(&self, memory: &[f64]) -> Vec<bool> {
+        self.breaks.as_ref().map_or_else(Vec::new, |breaks| breaks.springs(&memory[self.memory.clone()]))
     }
 
     /// [`Diagnostics::global_rotations`] by the memory of all models.

@@ -21,6 +21,10 @@ pub struct Snapshot {
     pub turned_over: Vec<bool>,
     /// Whether each element is flat: its volume is below a hundredth of that at rest, and it has not turned over.
     pub flat: Vec<bool>,
+    /// Whether each element is broken; empty if no model of the run breaks.
+    pub broken: Vec<bool>,
+    /// Whether each spring is broken, body after body; empty if no model of the run breaks.
+    pub broken_springs: Vec<bool>,
     /// The best rigid placement of the rest shape of each body.
     pub placements: Vec<Placement>,
     /// The values of the requested field, one for each node or each element; empty if no field was requested.

@@ -1,6 +1,7 @@
 //! The simulation of one run. Its step is section 2 of the paper: forces, motion, collisions.
 
 use super::body::Body;
+use super::broken::Broken;
 #[cfg(test)]
 use super::contact::ContactStage;
 use super::crew::Crew;
@@ -149,7 +150,9 @@ impl World {
             let memory = first..state.memory.model.len();
             let counts_global = model.counts_global(body);
             let diagnose = Diagnose::new(body);
-            let part = Part { number, body: Arc::clone(body), forces, nodes, memory, counts_global, diagnose };
+            let (breaks, springs) = (Broken::new(*model, body), model.springs().len());
+            let own = Arc::clone(body);
+            let part = Part { number, body: own, forces, nodes, memory, counts_global, breaks, springs, diagnose };
             let period = model.shortest_period(body);
             let own = SpeedLimit::new(body, part.nodes_of(state.nodes()), period, &surroundings, step);
             scales.length = scales.length.max(body.extent());
@@ -398,7 +401,9 @@ impl World {
 
     fn facts<'a>(&'a self, part: &'a Part, report: impl FnOnce() -> Report + 'a) -> BodyFacts<'a> {
         let global_rotations = part.global_rotations(&self.state.memory.model);
-        part.diagnose.facts(part.nodes_of(self.state.nodes()), global_rotations, report, &self.crew)
+        let broken = part.count_broken(&self.state.memory.model);
+        let gone = part.broken_elements(&self.state.memory.model);
+        part.diagnose.facts(part.nodes_of(self.state.nodes()), [global_rotations, broken], gone, report, &self.crew)
     }
 
     /// The present state of all bodies with its diagnostics.
@@ -434,6 +439,16 @@ impl World {
             })
         };
         let field = parts.flat_map(values).collect();
+        let (mut broken, mut broken_springs) = (Vec::new(), Vec::new());
+        if system.parts.iter().any(|part| part.breaks.is_some()) {
+            for (part, facts) in system.parts.iter().zip(&bodies) {
+                broken.extend(&facts.gone);
+                broken.resize(broken.len() + part.body.elements.len() - facts.gone.len(), false);
+                let springs = part.broken_springs(&state.memory.model);
+                broken_springs.extend(&springs);
+                broken_springs.resize(broken_springs.len() + part.springs - springs.len(), false);
+            }
+        }
         Snapshot {
             step: state.steps,
             time: state.steps as f64 * system.step,
@@ -441,6 +456,8 @@ impl World {
             velocity: state.velocity.clone(),
             turned_over,
             flat,
+            broken,
+            broken_springs,
             placements,
             field,
             diagnostics,

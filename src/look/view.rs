@@ -218,7 +218,7 @@ words! {
         model,
         /// The time, in one panel only.
         clock,
-        /// The number of turned-over elements.
+        /// The number of turned-over elements, or of broken ones in runs that break.
         count,
         /// The shape error; in the plane, the smallest area ratio. Divergence is always shown.
         number,

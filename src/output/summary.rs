@@ -170,16 +170,20 @@ pub(crate) struct Numbers {
     pub diagnostics: Chosen,
     /// A diagnostic that goldens do not record; `null` for a model without it.
     pub global_rotations: Option<u64>,
+    /// Another one; absent for models whose parts never break.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub broken: Option<u64>,
     /// Digest of the state.
     pub state: String,
 }
 
 impl Numbers {
     fn new(diagnostics: &Diagnostics, state: String) -> Self {
-        let global_rotations = Some(diagnostics.global_rotations).filter(|count| count.is_finite());
+        let count = |number: f64| Some(number).filter(|count| count.is_finite()).map(|count| count as u64);
         Self {
             diagnostics: Chosen::within(Scope::Summaries, diagnostics),
-            global_rotations: global_rotations.map(|count| count as u64),
+            global_rotations: count(diagnostics.global_rotations),
+            broken: count(diagnostics.broken),
             state,
         }
     }

@@ -299,16 +299,21 @@ impl Writer<'_> {
     ) {
         let (room, lines) = (Room::new(panel, self.scale), Baselines::new(self.scale, panel));
         let [title, caption] = [self.scale.title(), self.scale.caption()];
-        let Snapshot { turned_over, flat, .. } = snapshot;
-        let states = [&turned_over[..], &flat[..]];
-        let [over, flattened] = states.map(|state| state.iter().filter(|&&is_so| is_so).count());
-        let (colour, second) = match over {
-            0 => (self.palette.text, self.palette.second_text),
-            _ => (self.palette.alarm_text, self.palette.alarm_text),
+        let Snapshot { turned_over, flat, broken, broken_springs, .. } = snapshot;
+        let states = [&turned_over[..], &flat[..], &broken[..]];
+        let [over, flattened, gone] = states.map(|state| state.iter().filter(|&&is_so| is_so).count());
+        // Where elements break, these are counted; else, if no element has turned over, flat ones.
+        let (count, state, which) = match over {
+            // Without all of its springs an element may be whole.
+            _ if !broken_springs.is_empty() => (gone, "in pieces", broken),
+            _ if !broken.is_empty() => (gone, "broken", broken),
+            0 if flattened > 0 => (flattened, "flat", flat),
+            _ => (over, TURNED_OVER, turned_over),
         };
-        // If no element has turned over, flat ones are counted.
-        let (count, state, which) =
-            if over == 0 && flattened > 0 { (flattened, "flat", flat) } else { (over, TURNED_OVER, turned_over) };
+        let (colour, second) = match (state, count) {
+            (TURNED_OVER, 1..) => (self.palette.alarm_text, self.palette.alarm_text),
+            _ => (self.palette.text, self.palette.second_text),
+        };
         let [(first, tally_room), (left, free)] = places.map(|[from, to]| (room.left + from, to - from));
         let corner = [first, room.top + lines.caption];
         tally.draw(states, self.palette, self.scale, tally_room, corner, &mut self.marks);

@@ -160,8 +160,11 @@ impl Fine {
     ///
     /// A triangle counts in the normal of a corner by the squares of the lengths of its two sides there (Max 1999, Weights for
     /// computing vertex normals from facet normals), which is exact on spheres.
-    fn seen(&self, places: &[Vec3], eye: Vec3) -> (Vec<Face>, Vec<bool>) {
-        let face = |triangle: &[u32; 3]| {
+    fn seen(&self, places: &[Vec3], gone: &[bool], eye: Vec3) -> (Vec<Face>, Vec<bool>) {
+        let face = |(triangle, at): (&[u32; 3], usize)| {
+            if gone.get(at).is_some_and(|&gone| gone) {
+                return (Face { normal: Vec3::ZERO, shares: [0.0; 3] }, false);
+            }
             let [a, b, c] = triangle.map(|point| places[point as usize]);
             let normal = (b - a).cross(c - a);
             let squares = [b.distance_squared(c), c.distance_squared(a), a.distance_squared(b)];
@@ -170,8 +173,35 @@ impl Fine {
             (Face { normal, shares }, normal.dot(a - eye) <= 0.0)
         };
         let (mut faces, mut seen) = (Vec::new(), Vec::new());
-        self.surface.triangles.par_iter().with_min_len(OF_THREAD).map(face).unzip_into_vecs(&mut faces, &mut seen);
+        let triangles = self.surface.triangles.par_iter().zip(0..self.surface.triangles.len());
+        triangles.with_min_len(OF_THREAD).map(face).unzip_into_vecs(&mut faces, &mut seen);
         (faces, seen)
+    }
+
+    /// Whether each triangle has a point that broken elements alone carry; empty if no element of its body is broken. An element
+    /// carries a point if it has all nodes that the point follows.
+    pub(super) fn gone(&self, bodies: &Assembly, broken: &[bool]) -> Vec<bool> {
+        let Some(broken) = broken.get(self.elements.clone()).filter(|broken| broken.contains(&true)) else {
+            return Vec::new();
+        };
+        let body = &bodies.bodies()[self.body];
+        let mut around = vec![Vec::new(); body.len()];
+        for (element, nodes) in body.elements.iter().enumerate() {
+            nodes.iter().for_each(|&node| around[node as usize].push(element));
+        }
+        let is_gone = |point: usize| {
+            let (nodes, weights) = self.surface.weights.of(point);
+            let followed: Vec<_> =
+                nodes.iter().zip(weights).filter(|&(_, &weight)| weight != 0.0).map(|(node, _)| node).collect();
+            let Some(&&first) = followed.first() else { return false };
+            let carries = |element: usize| followed.iter().all(|node| body.elements[element].contains(node));
+            let mut carriers = around[first as usize].iter().filter(|&&element| carries(element)).peekable();
+            carriers.peek().is_some() && carriers.all(|&element| broken[element])
+        };
+        let points: Vec<_> =
+            (0..self.surface.rest.len()).into_par_iter().with_min_len(OF_THREAD).map(is_gone).collect();
+        let has_gone = |triangle: &[u32; 3]| triangle.iter().any(|&point| points[point as usize]);
+        self.surface.triangles.par_iter().with_min_len(OF_THREAD).map(has_gone).collect()
     }
 
     /// The unit normal at a corner at a place.
@@ -230,7 +260,7 @@ impl Surroundings<'_> {
         &self,
         fine: &Fine,
         points: &[DVec3],
-        over: &[bool],
+        [over, broken]: [&[bool]; 2],
         of_nodes: &[f32],
         [sound, turned_over]: [&mut Mesh; 2],
         lines: &mut SurfaceLines,
@@ -239,7 +269,8 @@ impl Surroundings<'_> {
         let place = |at: &DVec3| narrow_point((at - self.origin) * per_side);
         let (eye, mut places) = (place(&self.lens.eye), Vec::new());
         points.par_iter().with_min_len(OF_THREAD).map(place).collect_into_vec(&mut places);
-        let faces = fine.seen(&places, eye);
+        let gone = fine.gone(self.bodies, broken);
+        let faces = fine.seen(&places, &gone, eye);
         let vertex = |corner: usize| {
             let at = places[fine.points[corner] as usize];
             Vertex { position: at.to_array(), normal: fine.normal(corner, at, &faces, eye).to_array(), hatch: 0.0 }
@@ -253,14 +284,18 @@ impl Surroundings<'_> {
             sound.shades.extend(fine.points.iter().map(|&point| shades[point as usize]));
         }
         let seen = faces.1;
+        let is_whole = |at: usize| gone.get(at).is_none_or(|gone| !gone);
+        let side = |at: usize| seen.get(at).filter(|_| is_whole(at));
         let over = over.get(fine.elements.clone()).filter(|over| over.contains(&true));
         let is_over: Vec<_> = over.map_or_else(Vec::new, |over| {
-            let is_over = |&mover: &u32| over.get(mover as usize).is_some_and(|&over| over);
-            fine.movers.iter().map(is_over).collect()
+            let is_over =
+                |(at, &mover): (usize, &u32)| is_whole(at) && over.get(mover as usize).is_some_and(|&over| over);
+            fine.movers.iter().enumerate().map(is_over).collect()
         });
-        // From outside nobody sees the inside of a closed surface of which no part has turned over.
-        let sides: &[bool] = if fine.is_closed && is_over.is_empty() { &[true] } else { &[true, false] };
-        let is_sound = |at: usize| is_over.get(at).is_none_or(|over| !over);
+        // From outside nobody sees the inside of a closed surface of which no part has turned over or is gone.
+        let is_shut = fine.is_closed && is_over.is_empty() && gone.is_empty();
+        let sides: &[bool] = if is_shut { &[true] } else { &[true, false] };
+        let is_sound = |at: usize| is_whole(at) && is_over.get(at).is_none_or(|over| !over);
         for &side in sides {
             let shown = fine.triangles.iter().enumerate().filter(|&(at, _)| seen[at] == side && is_sound(at));
             sound.triangles.extend(shown.map(|(_, triangle)| triangle.map(|corner| base as u32 + corner)));
@@ -272,7 +307,7 @@ impl Surroundings<'_> {
             let beside = fine.beside.par_iter().with_min_len(OF_THREAD).enumerate();
             beside.filter(|(_, beside)| holds(beside)).map(|(edge, _)| ends(edge)).collect()
         };
-        for ends in self.long(&edges_where(&|[one, other]| seen.get(one) != seen.get(other)), points) {
+        for ends in self.long(&edges_where(&|[one, other]| side(one) != side(other)), points) {
             let line = self.line(ends, LineKind::FineContour, 1.0);
             lines.drawn.push(line);
             lines.borders.push(Border { line, edge: None });

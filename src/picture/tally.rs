@@ -1,5 +1,5 @@
-//! The tally: one square for each element, a row for each layer, with the turned-over elements marked and the flat ones
-//! hollow.
+//! The tally: one square for each element, a row for each layer, with the turned-over elements marked, the flat ones
+//! hollow and the broken ones pale.
 
 use super::layout::Scale;
 use super::layout::steps::{CHART, FREE, MARGIN, RING, SMALL, STRONG, TEXT, TICK};
@@ -131,10 +131,10 @@ impl Tally {
         self.blocks.iter().map(|block| block.rows.len()).max().unwrap_or(0)
     }
 
-    /// Draws the tally with its lower left corner at a place (px). `states` tells the turned-over and the flat elements.
+    /// Draws the tally with its lower left corner at a place (px). `states` tells the turned-over, the flat and the broken elements.
     pub(super) fn draw(
         &self,
-        states: [&[bool]; 2],
+        states: [&[bool]; 3],
         palette: &Palette,
         scale: Scale,
         room: f64,
@@ -168,7 +168,7 @@ impl Tally {
 
     fn draw_squares(
         &self,
-        states: [&[bool]; 2],
+        states: [&[bool]; 3],
         palette: &Palette,
         [side, gap]: [f64; 2],
         [left, bottom]: [f64; 2],
@@ -178,13 +178,14 @@ impl Tally {
         for (block, plain) in self.blocks.iter().zip(self.colours(palette)) {
             for (up, row) in block.rows.iter().rev().enumerate() {
                 for (along, &element) in row.iter().enumerate() {
-                    let [over, flat] = states.map(|state| state.get(element).copied().unwrap_or(false));
+                    let [over, flat, broken] = states.map(|state| state.get(element).copied().unwrap_or(false));
                     let x = left + along as f64 * (side + gap);
                     let square = [x, bottom - side - up as f64 * (side + gap), side, side];
+                    let colour = if broken { palette.hairline } else { plain };
                     if flat {
                         marks.extend(hollow(square, palette));
                     } else {
-                        marks.push(if over { struck(square, palette) } else { Item::rectangle(square, plain) });
+                        marks.push(if over { struck(square, palette) } else { Item::rectangle(square, colour) });
                     }
                 }
             }
@@ -204,7 +205,7 @@ impl Tally {
 
     fn draw_bar(
         &self,
-        states: [&[bool]; 2],
+        states: [&[bool]; 3],
         palette: &Palette,
         scale: Scale,
         room: f64,
@@ -223,14 +224,18 @@ impl Tally {
             let width = place(before + all) - place(before);
             before += all;
             // A single element among thousands is visible.
-            let [over, flat] = states.map(|state| match state.get(block.elements.clone()).map_or(0, count) {
+            let [over, flat, broken] = states.map(|state| match state.get(block.elements.clone()).map_or(0, count) {
                 0 => 0.0,
                 count => (width * count as f64 / all as f64).max(2.0).min(width).round(),
             });
             let flat = flat.min(width - over);
+            let broken = broken.min(width - over - flat);
             let bar = |length, colour: Colour| Item::rectangle([left, top, length, height], colour);
             if width > 0.0 {
                 marks.push(bar(width, plain));
+            }
+            if broken > 0.0 {
+                marks.push(Item::rectangle([left + width - broken, top, broken, height], palette.hairline));
             }
             if flat > 0.0 {
                 marks.extend(hollow([left + over, top, flat, height], palette));

@@ -4,11 +4,13 @@ use super::field::{self, NOWHERE};
 use super::measures::SMALL_ELEMENT;
 use super::narrow::{narrow, narrow_point};
 use super::order::farthest_first;
+use super::shell::is_broken;
 use super::{Bead, Second, Stroke};
 use crate::colour::{Colour, mixed};
 use crate::look::{ColourScale, Palette};
 use crate::sim::Body;
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// Width of springs, of edges, of edges of turned-over elements and of elements without faces that a field colours (px
 /// in the reference picture).
@@ -46,12 +48,27 @@ impl Edges {
     /// The edges of all elements of a body.
     pub(super) fn new(body: &Body) -> Self {
         let of_elements: Vec<_> = (0..body.elements.len()).map(|element| body.topology().edges_of(element)).collect();
-        let mut all = of_elements.concat();
-        all.iter_mut().for_each(|edge| edge.sort_unstable());
-        all.sort_unstable();
-        all.dedup();
+        let all = each_once(of_elements.iter());
         Self { all, of_elements }
     }
+
+    /// Each edge of the elements that are not broken once.
+    fn of_whole(&self, broken: &[bool]) -> Cow<'_, [[u32; 2]]> {
+        if !broken.contains(&true) {
+            return Cow::Borrowed(&self.all);
+        }
+        let whole = self.of_elements.iter().zip(0..).filter(|&(_, element)| !is_broken(broken, element));
+        Cow::Owned(each_once(whole.map(|(edges, _)| edges)))
+    }
+}
+
+/// The edges of elements, each once.
+fn each_once<'a>(of_elements: impl Iterator<Item = &'a Vec<[u32; 2]>>) -> Vec<[u32; 2]> {
+    let mut all: Vec<_> = of_elements.flatten().copied().collect();
+    all.iter_mut().for_each(|edge| edge.sort_unstable());
+    all.sort_unstable();
+    all.dedup();
+    all
 }
 
 /// A line, and the distance of its middle from the eye (m).
@@ -128,21 +145,28 @@ impl Wire<'_> {
     }
 
     /// The edges of all elements, the farthest first, and the edges of turned-over ones again above them.
-    pub(super) fn edges(&self, edges: &Edges, turned_over: &[bool], only_turned_over: bool) -> Vec<Stroke> {
+    pub(super) fn edges(
+        &self,
+        edges: &Edges,
+        [turned_over, broken]: [&[bool]; 2],
+        only_turned_over: bool,
+    ) -> Vec<Stroke> {
         let haze = self.haze();
         let mut strokes = Vec::new();
+        let is_whole = |element: usize| !is_broken(broken, element as u32);
         if !only_turned_over {
-            for &ends in &edges.all {
+            for &ends in edges.of_whole(broken).iter() {
                 self.stroke(ends, self.palette.spring, EDGE, &haze, &mut strokes);
             }
-            let elements = edges.of_elements.iter().enumerate().filter(|(_, edges)| edges.is_empty());
+            let elements = edges.of_elements.iter().enumerate();
+            let elements = elements.filter(|&(element, edges)| edges.is_empty() && is_whole(element));
             elements.for_each(|(element, _)| self.spokes(element, self.palette.spring, EDGE, &mut strokes));
         }
         let mut strokes: Vec<_> = farthest_first(strokes).collect();
         let mut alarm = Vec::new();
         let plain = Wire { shades: None, ..*self };
         for (element, of_element) in edges.of_elements.iter().enumerate() {
-            if turned_over.get(element).copied().unwrap_or(false) {
+            if is_whole(element) && turned_over.get(element).copied().unwrap_or(false) {
                 for &ends in of_element {
                     plain.stroke(ends, self.palette.alarm, ALARM_EDGE, &haze, &mut alarm);
                 }
@@ -156,9 +180,9 @@ impl Wire<'_> {
     }
 
     /// Elements without faces, coloured by a field like the surfaces beside them.
-    pub(super) fn bare(&self, elements: &[usize], turned_over: &[bool]) -> Vec<Stroke> {
+    pub(super) fn bare(&self, elements: &[usize], [turned_over, broken]: [&[bool]; 2]) -> Vec<Stroke> {
         let mut strokes = Vec::new();
-        for &element in elements {
+        for &element in elements.iter().filter(|&&element| !is_broken(broken, element as u32)) {
             let over = turned_over.get(element).copied().unwrap_or(false);
             let edges = self.body.topology().edges_of(element);
             if edges.is_empty() {

@@ -226,6 +226,10 @@ impl Scene {
                 has(&|model, of| model.counts_global(&of.body)),
                 "only shape-based models in space count them; plot another diagnostic, such as \"turned_over\"",
             ),
+            Diagnostic::Broken => (
+                has(&|model, of| model.breaks(&of.body).is_some()),
+                "only models with `breaks_at` break; give it, or plot another diagnostic, such as \"turned_over\"",
+            ),
             Diagnostic::Residual => (
                 has(&has_residual),
                 "models without rotations, such as springs, have none; plot another diagnostic, such as \"turned_over\"",

@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::io::Read;
 
 const HEADS: &str = "run,body,frame,time,kinetic,elastic,gravitational,momentum_x,momentum_y,momentum_z,angular_momentum_x,\
-                     angular_momentum_y,angular_momentum_z,residual,turned_over,volume_ratio,shape_error,energy,global_rotations,status";
+                     angular_momentum_y,angular_momentum_z,residual,turned_over,volume_ratio,shape_error,energy,global_rotations,broken,status";
 
 /// The rows of a table without its headings.
 fn rows(table: &str) -> Vec<Vec<&str>> {
@@ -37,7 +37,7 @@ fn diagnostics_of_each_run_and_frame() {
     assert!(rows.iter().all(|row| (row[13] == "nan") == (row[0] == "Mass-spring")), "{table}");
     let digits = |number: &str| number.chars().take_while(|&c| c != 'e').filter(char::is_ascii_digit).count();
     assert!(rows.iter().all(|row| digits(row[3]) == 17 && digits(row[4]) == 17), "{table}");
-    assert!(rows.iter().all(|row| row[19] == "ok"));
+    assert!(rows.iter().all(|row| row[20] == "ok"));
     // The sum of all energies.
     let number = |text: &str| text.parse::<f64>().unwrap();
     let sum = |row: &[&str]| number(row[4]) + number(row[5]) + number(row[6]);
@@ -73,6 +73,7 @@ fn columns_are_what_their_heads_say() {
             ("volume_ratio", d.volume_ratio),
             ("shape_error", d.shape_error),
             ("global_rotations", d.global_rotations),
+            ("broken", d.broken),
         ];
         for (name, number) in columns {
             let at = heads.iter().position(|head| *head == name).expect("a column");

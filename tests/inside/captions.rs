@@ -36,7 +36,7 @@ fn descriptions_have_parts_constants_and_choices() {
     let full = "1 cube, k = 10 kN/m, ζ = 0.3, rotation robust (exact), damping of relative-motion, \
                 as a material E = 200 kPa, ν = 0";
     assert_eq!(description(&shape, &one), full);
-    let spring = MassSpring { stiffness: 50.0, damping: 0.0, springs: [[0, 1]].into() };
+    let spring = MassSpring { stiffness: 50.0, damping: 0.0, springs: [[0, 1]].into(), breaks_at: None };
     assert_eq!(description(&spring, &one), "1 spring, k = 50 N/m");
 }
 

@@ -73,6 +73,12 @@ fn materials_that_cannot_be() {
         "mass-spring', young = 2e5, ",
         "9:33 unknown key `young` in `run[1].model` `young` belongs to",
     );
+    // Elements that break have exact rotations.
+    let breaks_at = |strain: &str| format!("young = 2e5, breaks_at = {strain}");
+    young(&breaks_at("0"), "6:58 `run[0].model.breaks_at` is 0; expected a number greater than 0");
+    young(&breaks_at("0.1, passes = 2"), "6:58 `breaks_at` compares strains, which need exact rotations");
+    let rotation = "0.1, rotation = 'linear-update'";
+    young(&breaks_at(rotation), "6:58 `breaks_at` compares strains, which need exact rotations");
     let bars = "bars = { count = 3, length = 0.1, direction = [1, 0.2, 0] }";
     case(BAR, "lattice = { cells = [3, 1, 1], side = 0.1 }", bars, "6:41 element 0 has no volume");
 }

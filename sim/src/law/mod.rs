@@ -5,11 +5,13 @@
 
 #![expect(unsafe_code, reason = "the corners of elements are read without tests of bounds")]
 
+mod breaking;
 mod by_law;
 mod filled;
 mod reader;
 mod rigid;
 
+pub(crate) use breaking::{Breaking, Strained};
 pub use by_law::ByLaw;
 pub(crate) use by_law::Energy;
 pub(crate) use filled::Filled;
@@ -264,10 +266,9 @@ impl<'a, L: Lanes> Element<'a, L> {
         unsafe { L::load(self.constants.add((corner * self.numbers[1] + at) * MOST)) }
     }
 
-    /// The numbers that the element remembers.
+    /// The numbers that the element remembers, from the first on.
     #[inline(always)]
     pub fn memory<const COUNT: usize>(&self) -> [L; COUNT] {
-        assert!(COUNT == self.numbers[2], "all numbers that an element remembers");
         self.memory_from(0)
     }
 
@@ -283,10 +284,9 @@ impl<'a, L: Lanes> Element<'a, L> {
         numbers
     }
 
-    /// Remembers numbers, unless the evaluation is a trial.
+    /// Remembers numbers, from the first on, unless the evaluation is a trial.
     #[inline(always)]
     pub fn remember<const COUNT: usize>(&self, numbers: [L; COUNT]) {
-        assert!(COUNT == self.numbers[2], "all numbers that an element remembers");
         self.remember_from(0, numbers);
     }
 

@@ -63,7 +63,7 @@ impl Parameters {
 
     fn unlimited(&self) -> mass_spring::Parameters {
         let &Self { stiffness, damping, damping_ratio, springs, .. } = self;
-        mass_spring::Parameters { stiffness, damping, damping_ratio, springs }
+        mass_spring::Parameters { stiffness, damping, damping_ratio, springs, breaks_at: None }
     }
 }
 
@@ -195,7 +195,7 @@ mod tests {
         let rest = vec![DVec3::ZERO, 2.0 * DVec3::X];
         let elements = [&[0, 1][..]].into_iter().collect();
         let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 2], elements, Solids::Ordered, None));
-        let springs = MassSpring { stiffness: 7.0, damping: 0.0, springs: [[0, 1]].into() };
+        let springs = MassSpring { stiffness: 7.0, damping: 0.0, springs: [[0, 1]].into(), breaks_at: None };
         let state = State::at_rest(vec![DVec3::ONE, DVec3::ONE + length * DVec3::Y]);
         let (law, mut forces) = (ByLaw::new(LimitedSprings { springs, limit }, &body), vec![DVec3::ZERO; 2]);
         law.add_forces(state.nodes(), &[], &mut [], &mut Scratch::default(), &mut forces);
@@ -233,7 +233,7 @@ mod tests {
         let rest = vec![DVec3::ZERO; 2];
         let elements = [&[0, 1][..]].into_iter().collect();
         let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0; 2], elements, Solids::Ordered, None));
-        let springs = MassSpring { stiffness: 7.0, damping: 0.0, springs: [[0, 1]].into() };
+        let springs = MassSpring { stiffness: 7.0, damping: 0.0, springs: [[0, 1]].into(), breaks_at: None };
         let law = ByLaw::new(LimitedSprings { springs, limit: 0.5 }, &body);
         let energy = crate::law::Energy::report(&law, &[DVec3::ZERO, 3.0 * DVec3::X], &[], None, &Crew::new(1)).energy;
         assert_eq!(energy, Some(31.5));

@@ -4,10 +4,16 @@
 //! velocity of `i` relative to `j` and `L` the natural length.
 //!
 //! Energy: `E = k/2 Σ (|p| − L)²`. A mirror image has the same energy, so an element that has turned over stays so.
+//!
+//! Springs can break ([`breaks_at`](MassSpring::breaks_at)), as in Ref. 2 of the paper (Norton and others 1991, "Animation of fracture by
+//! physical modeling"), where "breakage is obtained in a three-dimensional flexible model as the limit of elastic behavior": a spring that is
+//! stretched beyond a share of its natural length is taken out for good. They let whole cubes of springs break at once, so that no strings of springs
+//! hang from the pieces (told by O'Brien and Hodgins 1999, "Graphical modeling and animation of brittle fracture"); here each spring breaks by itself, and
+//! what breaks as a whole is an element of the shape model.
 
 use super::{
-    ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Late, Law, Misfit, Report, Scratch, Share, TypedModel,
-    Vectorised, blocks,
+    Breaking, ByLaw, Corners, ElasticModel, Element, ForceModel, Lanes, Late, Law, Misfit, Report, Scratch, Share,
+    Strained, TypedModel, Vectorised, blocks,
 };
 use crate::body::Body;
 use crate::fill;
@@ -44,6 +50,10 @@ pub struct Parameters {
     /// The topology of the springs. Default: the springs that the body lists, else `edges+face-diagonals`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub springs: Option<Springs>,
+    /// The elongation, as a share of the natural length, at which a spring breaks: it is taken out for good. Default: springs never break.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub breaks_at: Option<f64>,
 }
 
 /// The model with its parameters in SI units, checked.
@@ -55,12 +65,14 @@ pub struct MassSpring {
     pub damping: f64,
     /// The two nodes of each spring; the natural length is their distance at rest.
     pub springs: Arc<[[u32; 2]]>,
+    /// The elongation, as a share of the natural length, at which a spring breaks; `None` if none does.
+    pub breaks_at: Option<f64>,
 }
 
 impl Parameters {
     /// A model with this elastic constant (N/m); the other parameters have their defaults.
     pub fn new(stiffness: f64) -> Self {
-        Self { stiffness, damping: None, damping_ratio: None, springs: None }
+        Self { stiffness, damping: None, damping_ratio: None, springs: None, breaks_at: None }
     }
 }
 
@@ -104,7 +116,8 @@ impl Parameters {
             return Err(Misfit { key: "springs", message });
         }
         let damping = super::damping(self.damping, self.damping_ratio, self.stiffness, body)?;
-        Ok(MassSpring { stiffness: self.stiffness, damping, springs: springs.into() })
+        let breaks_at = super::breaks_at(self.breaks_at)?;
+        Ok(MassSpring { stiffness: self.stiffness, damping, springs: springs.into(), breaks_at })
     }
 }
 
@@ -121,8 +134,20 @@ impl ElasticModel for MassSpring {
         self.damping
     }
 
+    fn unusual_choices(&self, _: &Body) -> String {
+        self.breaks_at.map_or_else(String::new, |strain| format!(", breaks at {strain}"))
+    }
+
     fn springs(&self) -> &[[u32; 2]] {
         &self.springs
+    }
+
+    fn breaks(&self, _: &Body) -> Option<usize> {
+        self.breaks_at.map(|_| 1)
+    }
+
+    fn start(&self, _: &Body, _: &[DVec3]) -> Vec<f64> {
+        vec![0.0; if self.breaks_at.is_some() { self.springs.len() } else { 0 }]
     }
 
     /// With displacements `u` the energy of a spring is at most `k/2 |uᵢ − uⱼ|²`, in which `|uᵢ − uⱼ|² ≤ (1/mᵢ + 1/mⱼ) (mᵢ |uᵢ|² +
@@ -146,12 +171,18 @@ impl ElasticModel for MassSpring {
 
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
         let (model, body) = (self.clone(), Arc::clone(body));
-        Late::boxed(move || SpringForces::new(model, &body))
+        match self.breaking() {
+            Some(law) => Late::boxed(move || ByLaw::new(law, &body)),
+            None => Late::boxed(move || SpringForces::new(model, &body)),
+        }
     }
 }
 
 impl Vectorised for MassSpring {
     fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled {
+        if let Some(law) = self.breaking() {
+            return Compiled::once(law, body, conditions);
+        }
         let stencil = Stencil::new(&self.springs, [self.stiffness, self.damping], body, conditions);
         self.by_law(body, conditions, stencil.map(|stencil| -> Box<dyn Stepper> { Box::new(stencil) }))
     }
@@ -162,6 +193,11 @@ impl MassSpring {
     pub(super) fn times(&self, stiffness: f64, damping: f64) -> Self {
         let (stiffness, damping) = (self.stiffness * stiffness, self.damping * damping);
         Self { stiffness, damping, ..self.clone() }
+    }
+
+    /// The law of springs that break, if they do.
+    fn breaking(&self) -> Option<Breaking<Spring<true>>> {
+        self.breaks_at.map(|limit| Breaking { law: Spring(self.clone()), limit })
     }
 
     /// The relative stiffness of each spring; `None` if all are 1.
@@ -200,7 +236,7 @@ impl<const DAMPED: bool> Law for Spring<DAMPED> {
     }
 
     fn is_damped(&self) -> bool {
-        DAMPED
+        DAMPED && self.0.damping > 0.0
     }
 
     #[inline(always)]
@@ -222,6 +258,16 @@ impl<const DAMPED: bool> Law for Spring<DAMPED> {
     fn energy<L: Lanes>(&self, spring: &Element<'_, L>, rest: &Corners<'_, L>, shares: &mut [L]) -> L {
         shares.fill(L::splat(0.5) * self.0.energy(spring, rest));
         L::splat(0.0)
+    }
+}
+
+impl<const DAMPED: bool> Strained for Spring<DAMPED> {
+    #[inline(always)]
+    fn strain<L: Lanes>(&self, spring: &Element<'_, L>, _: &[L; 3]) -> L {
+        let (zero, tension) = (L::splat(0.0), spring.of_element(0));
+        let stretch = length(spring) * L::splat(self.0.stiffness) / tension - L::splat(1.0);
+        // A spring without a natural length has no strain.
+        stretch.select(zero.lt(tension), zero)
     }
 }
 
@@ -380,7 +426,13 @@ mod tests {
             let rest: Vec<_> = (0..nodes).map(|at| at as f64).map(|t| DVec3::new(t, t * t, t * t * t)).collect();
             let body = Body::new(dimension, rest, vec![1.0; nodes], elements, solids, None);
             for springs in named {
-                let typed = Parameters { stiffness: 1.0, damping: None, damping_ratio: None, springs: Some(springs) };
+                let typed = Parameters {
+                    stiffness: 1.0,
+                    damping: None,
+                    damping_ratio: None,
+                    springs: Some(springs),
+                    breaks_at: None,
+                };
                 let made = body.topology().springs(springs).len() as u128;
                 assert!(
                     made <= typed.most_springs(&BTreeMap::from([(nodes, 1)]), None),

@@ -19,6 +19,7 @@ use super::body::Body;
 use super::element::Dimension;
 pub use super::kernel::Vectorised;
 pub use super::lanes::Lanes;
+use super::law::{Breaking, Strained};
 pub use super::law::{ByLaw, Corners, Element, Law};
 use super::material::Material;
 #[doc(hidden)]
@@ -201,6 +202,13 @@ pub trait ElasticModel: Debug + Send + Sync {
         false
     }
 
+    /// How many numbers of the memory belong to each spring, or to each element of a model without springs, if these can break: the last of
+    /// them is 1 once it is broken, and 0 before. They are at the start of the memory.
+    fn breaks(&self, body: &Body) -> Option<usize> {
+        let _ = body;
+        None
+    }
+
     /// The memory at the start, with the nodes of `body` at `position` (m). Its length never changes.
     fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
         let _ = (body, position);
@@ -322,6 +330,19 @@ fn damping(constant: Option<f64>, ratio: Option<f64>, stiffness: f64, body: &Bod
         (Some(constant), None) => Ok(constant),
         (None, Some(ratio)) => Ok(2.0 * ratio * (stiffness * body.lightest()).sqrt()),
         (None, None) => Ok(0.0),
+    }
+}
+
+/// The strain at which elements or springs break, if they do.
+fn breaks_at(given: Option<f64>) -> Result<Option<f64>, Misfit> {
+    // The schema has the same bound; scenes made in code pass it by.
+    match given {
+        Some(strain) if !(strain > 0.0 && strain.is_finite()) => {
+            let message =
+                format!("`breaks_at` is {strain}; expected a strain above 0, such as 0.1 for a tenth of the length");
+            Err(Misfit { key: "breaks_at", message })
+        }
+        _ => Ok(given),
     }
 }
 

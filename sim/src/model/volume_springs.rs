@@ -73,7 +73,7 @@ impl Parameters {
 
     fn without_volume(&self) -> mass_spring::Parameters {
         let &Self { stiffness, damping, damping_ratio, springs, .. } = self;
-        mass_spring::Parameters { stiffness, damping, damping_ratio, springs }
+        mass_spring::Parameters { stiffness, damping, damping_ratio, springs, breaks_at: None }
     }
 }
 
@@ -306,7 +306,7 @@ mod tests {
         let elements = [&[0, 1, 2, 3][..]].into_iter().collect();
         let body = Body::new(Dimension::Plane, rest, vec![1.0; 4], elements, Solids::Ordered, None);
         let springs = body.topology().springs(Springs::EdgesFaceDiagonals).into();
-        (Arc::new(body), MassSpring { stiffness: 10.0, damping: 1.0, springs })
+        (Arc::new(body), MassSpring { stiffness: 10.0, damping: 1.0, springs, breaks_at: None })
     }
 
     fn world(model: &dyn ElasticModel, map: impl Fn(DVec3) -> DVec3) -> World {

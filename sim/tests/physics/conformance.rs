@@ -6,6 +6,7 @@ use super::support::{Noise, Remembering, body, forces, lattice, mass_spring, sha
 use glam::DVec3;
 use localshape_sim::geometry::volumes_at_rest;
 use localshape_sim::model::limited_springs::LimitedSprings;
+use localshape_sim::model::mass_spring::MassSpring;
 use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape_sim::model::volume_springs::VolumeSprings;
 use localshape_sim::model::{ElasticModel, ModelParameters, continuum, corotational, linear, neo_hookean};
@@ -41,6 +42,8 @@ pub(crate) fn cases(body: &Body, damping: f64) -> Vec<Case> {
     }
     let exact = ShapeBased { rotation: RotationReading::Robust, ..shape.clone() };
     let mut options = vec![ShapeBased { bending: 1.0 / 3.0, ..exact.clone() }];
+    // Nothing breaks.
+    options.push(ShapeBased { breaks_at: Some(10.0), ..exact.clone() });
     if volumes_at_rest(body).iter().all(|&volume| volume > 0.0) {
         let of_material = |young, poisson| {
             let material = Material { young, poisson };
@@ -76,6 +79,7 @@ pub(crate) fn cases(body: &Body, damping: f64) -> Vec<Case> {
         all.push(sound(Box::new(spring)));
     }
     let springs = mass_spring(body, STIFFNESS, damping, Springs::EdgesFaceDiagonals);
+    all.push(sound(Box::new(MassSpring { breaks_at: Some(10.0), ..springs.clone() })));
     all.extend([0.3, 1.0].map(|limit| sound(Box::new(LimitedSprings { springs: springs.clone(), limit }))));
     if volumes_at_rest(body).iter().any(|&volume| volume > 0.0) {
         all.push(sound(Box::new(VolumeSprings { springs, bulk: 3.0 * STIFFNESS })));
@@ -382,7 +386,7 @@ fn a_node_sums_its_forces_in_the_order_of_the_elements() {
     let spring = mass_spring(&whole, STIFFNESS, 7.0, Springs::EdgesOneDiagonal);
     let elements: Vec<Vec<u32>> = whole.elements.iter().map(<[u32]>::to_vec).collect();
     let springs: Vec<Vec<u32>> = spring.springs.iter().map(|ends| ends.to_vec()).collect();
-    let pair = localshape_sim::model::mass_spring::MassSpring { springs: [[0, 1]].into(), ..spring.clone() };
+    let pair = MassSpring { springs: [[0, 1]].into(), ..spring.clone() };
     for (model, parts, alone) in
         [(&shape as &dyn ElasticModel, elements, &shape as &dyn ElasticModel), (&spring, springs, &pair)]
     {

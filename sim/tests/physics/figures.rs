@@ -29,7 +29,7 @@ fn agree(found: &[DVec3], expected: &[[f64; 2]]) {
 }
 
 fn springs(pairs: &[[u32; 2]]) -> MassSpring {
-    MassSpring { stiffness: 1.0, damping: 0.0, springs: pairs.into() }
+    MassSpring { stiffness: 1.0, damping: 0.0, springs: pairs.into(), breaks_at: None }
 }
 
 /// A regular triangle of side 1, its base on the x-axis around the origin.

@@ -221,7 +221,7 @@ fn pair(rest: [DVec3; 2], heavy: bool, stiffness: f64, damping: f64) -> (Arc<Bod
     let elements = [&[0, 1][..]].into_iter().collect();
     let mass = vec![1.0, if heavy { 1e12 } else { 1.0 }];
     let body = Arc::new(Body::new(Dimension::Space, rest.to_vec(), mass, elements, Solids::Ordered, None));
-    (body, MassSpring { stiffness, damping, springs: [[0, 1]].into() })
+    (body, MassSpring { stiffness, damping, springs: [[0, 1]].into(), breaks_at: None })
 }
 
 /// Nodes that bounce without loss keep their energy with a coarse tolerance, too: the acceleration of a rebound is that of its substep.

@@ -1,5 +1,6 @@
 //! The physics compared with the paper and with closed forms.
 
+mod breaking;
 mod carried;
 mod closed_forms;
 mod conformance;

@@ -11,7 +11,7 @@ fn world(integrator: Integrator) -> World {
     let rest = vec![DVec3::ZERO, DVec3::X];
     let elements = [&[0, 1][..]].into_iter().collect();
     let body = Arc::new(Body::new(Dimension::Space, rest, vec![1.0, 2.0], elements, Solids::Ordered, None));
-    let spring = MassSpring { stiffness: 10.0, damping: 0.0, springs: [[0, 1]].into() };
+    let spring = MassSpring { stiffness: 10.0, damping: 0.0, springs: [[0, 1]].into(), breaks_at: None };
     let start = State::at_rest(vec![DVec3::ZERO, DVec3::new(1.2, 0.1, 0.0)]);
     let around = Surroundings { gravity: DVec3::NEG_Y, ..Surroundings::default() };
     let stepping = Stepping { kernel: Kernel::Reference, ..Stepping::new(integrator, 0.02) };

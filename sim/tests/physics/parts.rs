@@ -92,7 +92,7 @@ fn things(damping: f64) -> [Thing; 4] {
     let mut noise = Noise(3);
     let mut end = |first: f64| (first + 6.0 * noise.next().abs()) as u32;
     let listed: Vec<[u32; 2]> = (0..40).map(|_| [end(0.0), end(20.0)]).collect();
-    let listed = MassSpring { stiffness: STIFFNESS, damping: 0.0, springs: listed.into() };
+    let listed = MassSpring { stiffness: STIFFNESS, damping: 0.0, springs: listed.into(), breaks_at: None };
     [
         Thing::new(&large, robust, 1),
         Thing::new(&other, shape_based(STIFFNESS, 0.0), 2).held(&[3, 5], 0.0, 0.03, &swing),

@@ -43,7 +43,7 @@ pub(crate) fn shape_based(stiffness: f64, damping: f64) -> ShapeBased {
 }
 
 pub(crate) fn mass_spring(body: &Body, stiffness: f64, damping: f64, named: Springs) -> MassSpring {
-    MassSpring { stiffness, damping, springs: body.topology().springs(named).into() }
+    MassSpring { stiffness, damping, springs: body.topology().springs(named).into(), breaks_at: None }
 }
 
 pub(crate) fn floor(restitution: f64, friction: f64) -> Obstacle {

@@ -175,7 +175,7 @@ impl<'a> Export<'a> {
 
     /// The grid of a part in a frame.
     fn grid(&self, series: &Series, part: &Part, frame: u64, run: &RunFrame) -> Vec<u8> {
-        let Snapshot { time, position, velocity, turned_over, field, .. } = &run.snapshot;
+        let Snapshot { time, position, velocity, turned_over, broken, field, .. } = &run.snapshot;
         let mark = mark(self.scene, Some(frame));
         let [position, velocity] = [position, velocity].map(|all| &all[part.nodes.clone()]);
         let body = match &part.shape {
@@ -188,6 +188,7 @@ impl<'a> Export<'a> {
         };
         let mut of_points = vec![Column::Vectors("velocity", velocity)];
         let mut of_cells = vec![Column::Flags("turned_over", &turned_over[part.elements.clone()])];
+        of_cells.extend(broken.get(part.elements.clone()).map(|broken| Column::Flags("broken", broken)));
         of_cells.extend(body.fill.as_ref().map(|fill| Column::Numbers("fill", fill)));
         let name = self.scene.view.colour.map(|scale| (scale.field.support(), typed(&scale.field)));
         // A run from which distances are measured has no values.

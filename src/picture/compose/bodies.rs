@@ -3,6 +3,7 @@
 use crate::picture::arrows;
 use crate::picture::ears::{Ears, bare_elements};
 use crate::picture::shadow;
+use crate::picture::shell::is_broken;
 use crate::picture::skin::Skin;
 use crate::picture::tally::Tally;
 use crate::picture::wire::Edges;
@@ -110,13 +111,14 @@ impl<'a> Bodies<'a> {
         (0..self.assembly.bodies().len()).map(|at| self.assembly.faces(at))
     }
 
-    /// The smallest signed area of a polygon over its area at rest, for bodies in the plane.
+    /// The smallest signed area of a polygon that is not broken over its area at rest, for bodies in the plane.
     pub(super) fn smallest_area_ratio(&self, snapshot: &Snapshot) -> Option<f64> {
         let body = self.body();
         if self.rest_areas.is_empty() || snapshot.position.len() != body.len() {
             return None;
         }
-        let areas = body.elements.iter().zip(&self.rest_areas).filter(|(_, rest)| **rest != 0.0);
+        let whole = (0..).zip(&self.rest_areas).filter(|&(at, rest)| *rest != 0.0 && !is_broken(&snapshot.broken, at));
+        let areas = whole.map(|(at, rest)| (&body.elements[at as usize], rest));
         areas.map(|(nodes, rest)| area(nodes, &snapshot.position) / rest).reduce(f64::min)
     }
 }

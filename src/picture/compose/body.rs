@@ -4,12 +4,13 @@ use super::Composer;
 use super::draft::Draft;
 use super::plane_marks::node_radius;
 use crate::look::ColourScale;
-use crate::picture::shell::{Side, boundaries};
+use crate::picture::shell::{Side, boundaries, is_broken};
 use crate::picture::surface::{Lines, SurfaceLines, Surroundings};
 use crate::picture::wire::Wire;
 use crate::picture::{Bead, Line, LineKind, Mesh, Stroke};
 use crate::sim::Field;
 use glam::DVec3;
+use std::borrow::Cow;
 use std::collections::HashSet;
 
 impl Composer<'_> {
@@ -44,10 +45,10 @@ impl Draft<'_> {
             shades: self.shades.as_ref(),
             coloured: self.bodies.assembly().bodies().len() > 1 && self.shades.is_none(),
         };
-        let over = &self.run.snapshot.turned_over;
+        let (over, broken) = (&self.run.snapshot.turned_over, &self.run.snapshot.broken);
         let fine = &self.bodies.skin.fine;
-        let mut sets = boundaries(self.body, over);
-        let is_cage = |side: &Side| fine.iter().any(|fine| fine.faces.contains(&(side.face as usize)));
+        let mut sets = boundaries(self.body, over, broken);
+        let is_cage = |side: &Side| self.is_covered(side);
         let cages: [Vec<_>; 2] = match fine.is_empty() {
             true => Default::default(),
             false => sets.each_mut().map(|sides| sides.extract_if(.., |side| is_cage(side)).collect()),
@@ -56,7 +57,7 @@ impl Draft<'_> {
         if !cages[1].is_empty() {
             let inside =
                 over.iter().zip(&self.bodies.inside).map(|(over, inside)| *over && *inside).collect::<Vec<_>>();
-            let [_, inside] = boundaries(self.body, &inside);
+            let [_, inside] = boundaries(self.body, &inside, broken);
             sets[1].extend(inside.into_iter().filter(|side| is_cage(side)));
         }
         let total = sets.iter().map(Vec::len).sum();
@@ -79,7 +80,7 @@ impl Draft<'_> {
         let mut points = self.carried();
         for fine in fine {
             let (own, others) = points.split_at(fine.surface.rest.len());
-            surroundings.add_carried(fine, own, over, &of_nodes, [&mut sound, &mut turned_over], lines);
+            surroundings.add_carried(fine, own, [over, broken], &of_nodes, [&mut sound, &mut turned_over], lines);
             points = others;
         }
         if self.scene.view.visible.cage {
@@ -97,11 +98,20 @@ impl Draft<'_> {
         [sound, turned_over]
     }
 
+    /// Whether a carried surface is seen in place of a face. Faces that a broken element uncovers are seen themselves.
+    pub(super) fn is_covered(&self, side: &Side) -> bool {
+        let (face, faces, broken) = (side.face as usize, &self.body.faces, &self.run.snapshot.broken);
+        let mut beside = [faces.inner[face], faces.outer[face]].into_iter().flatten();
+        !beside.any(|element| is_broken(broken, element))
+            && self.bodies.skin.fine.iter().any(|fine| fine.faces.contains(&face))
+    }
+
     /// Lines for elements without faces, and whether the element turned over: their edges or, if they have none, lines
     /// from their middle (m).
     pub(super) fn bare_lines(&self) -> Vec<([DVec3; 2], bool)> {
         let mut lines = Vec::new();
-        for &element in &self.bodies.bare {
+        let broken = &self.run.snapshot.broken;
+        for &element in self.bodies.bare.iter().filter(|&&element| !is_broken(broken, element as u32)) {
             let nodes = &self.body.elements[element];
             let over = self.run.snapshot.turned_over.get(element).copied().unwrap_or(false);
             let at = |node: u32| self.position[node as usize];
@@ -119,18 +129,18 @@ impl Draft<'_> {
     /// a field or their body colours.
     pub(super) fn strokes(&self) -> Vec<Stroke> {
         let visible = self.scene.view.visible;
-        let over = &self.run.snapshot.turned_over;
+        let (over, broken) = (&self.run.snapshot.turned_over, &self.run.snapshot.broken);
         let (wire, edges) = (self.wire(), &self.bodies.edges);
         let mut strokes = Vec::new();
         if self.position.is_empty() {
             return strokes;
         }
         if visible.surfaces && wire.shades.is_some() {
-            strokes.extend(wire.bare(&self.bodies.bare, over));
+            strokes.extend(wire.bare(&self.bodies.bare, [over, broken]));
         }
-        let springs = &self.composer.springs[self.run.run][..];
+        let springs = self.whole_springs();
         if !visible.surfaces && springs.is_empty() {
-            strokes.extend(wire.edges(edges, over, false));
+            strokes.extend(wire.edges(edges, [over, broken], false));
         }
         let strain = self.composer.strain_of_springs(self.run.run).map(|scale| (&self.composer.ramp[..], scale));
         let on_skin: Vec<_>;
@@ -139,16 +149,25 @@ impl Draft<'_> {
             on_skin = springs.iter().filter(holds).copied().collect();
             &on_skin[..]
         } else {
-            springs
+            &springs[..]
         };
         if !springs.is_empty() {
             strokes.extend(wire.without_surfaces().springs(springs, strain));
             if !visible.surfaces {
                 // Turned-over elements are always marked.
-                strokes.extend(wire.edges(edges, over, true));
+                strokes.extend(wire.edges(edges, [over, broken], true));
             }
         }
         strokes
+    }
+
+    /// The springs of the run that are shown and not broken.
+    fn whole_springs(&self) -> Cow<'_, [[u32; 2]]> {
+        let (all, broken) = (&self.composer.springs[self.run.run], &self.run.snapshot.broken_springs);
+        if !broken.contains(&true) {
+            return Cow::Borrowed(all);
+        }
+        all.iter().zip(broken).filter(|&(_, broken)| !broken).map(|(&ends, _)| ends).collect()
     }
 
     /// Nodes in space.

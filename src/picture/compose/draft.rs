@@ -165,6 +165,18 @@ impl<'a> Draft<'a> {
         })
     }
 
+    /// The positions of the nodes that belong to more than broken elements (m).
+    pub(super) fn whole(&self) -> Cow<'_, [DVec3]> {
+        let broken = &self.run.snapshot.broken;
+        if !broken.contains(&true) || self.position.is_empty() {
+            return Cow::Borrowed(&self.position[..]);
+        }
+        let mut whole = vec![false; self.body.len()];
+        let elements = self.body.elements.iter().zip(broken).filter(|(_, broken)| !*broken);
+        elements.flat_map(|(nodes, _)| nodes).for_each(|&node| whole[node as usize] = true);
+        self.position.iter().zip(whole).filter(|(_, whole)| *whole).map(|(&at, _)| at).collect()
+    }
+
     /// The boxes around carried surfaces.
     pub(super) fn carried_boxes(&self) -> &[PixelBox] {
         &self.boxes()[self.bodies.parts.len() - self.bodies.skin.fine.len()..]

@@ -9,6 +9,7 @@ use crate::picture::layout::steps::{MARGIN, NEAR};
 use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::Staged;
 use crate::picture::shadow::{Casters, Plane, Shade};
+use crate::picture::shell::{boundaries, triangles};
 use crate::sim::geometry;
 use crate::sim::{Motion, Obstacle, Shape};
 use glam::{DVec2, DVec3};
@@ -115,8 +116,15 @@ impl Draft<'_> {
     fn casters(&self, staged: &Staged) -> Casters<'_> {
         let Bodies { skin, seams, .. } = self.bodies;
         let relative = |at: &DVec3| (at - self.origin) / self.side;
+        let broken = &self.run.snapshot.broken;
         let mut casters = if self.skin.is_empty() {
             Casters::new(Vec::new(), &[], &[])
+        } else if broken.contains(&true) {
+            let mut casters = Casters::new(Vec::new(), &[], &[]);
+            let [mut sides, _] = boundaries(self.body, &[], broken);
+            sides.retain(|side| !self.is_covered(side));
+            casters.add(self.position.iter().map(relative), &triangles(self.body, &sides));
+            casters
         } else {
             let nodes = &self.skin[..skin.nodes.len()];
             Casters::new(nodes.iter().map(relative).collect(), &skin.triangles, seams)
@@ -124,7 +132,13 @@ impl Draft<'_> {
         let mut carried = self.carried();
         for fine in skin.fine.iter().filter(|_| !self.skin.is_empty()) {
             let (own, others) = carried.split_at(fine.surface.rest.len());
-            casters.add_shape(fine.shape.points.iter().map(|&at| relative(&own[at as usize])), &fine.shape);
+            let gone = fine.gone(self.bodies.assembly(), broken);
+            if gone.is_empty() {
+                casters.add_shape(fine.shape.points.iter().map(|&at| relative(&own[at as usize])), &fine.shape);
+            } else {
+                let whole = fine.surface.triangles.iter().zip(gone).filter(|(_, gone)| !gone);
+                casters.add(own.iter().map(relative), &whole.map(|(&triangle, _)| triangle).collect::<Vec<_>>());
+            }
             carried = others;
         }
         casters.add(staged.shadow_points.iter().map(relative), &staged.shadow_triangles);

@@ -10,6 +10,7 @@ use crate::picture::narrow::{narrow, narrow_point};
 use crate::picture::obstacle::{self, Site, Staged, Staging};
 use crate::picture::order::farthest_first;
 use crate::picture::pointer::Pointers;
+use crate::picture::shell::{boundaries, triangles};
 use crate::picture::surface::SurfaceLines;
 use crate::picture::{Item, Line, Obstacles, Panel, Sight, Solid};
 use crate::sim::geometry;
@@ -125,12 +126,15 @@ impl Draft<'_> {
 
     /// All obstacles in space but the ground, with their lines and marks.
     fn obstacles(&self, lines: &mut Vec<Line>, above: &mut Vec<Item>) -> (Obstacles, Staged) {
+        let broken = &self.run.snapshot.broken;
+        let left = || triangles(self.body, &boundaries(self.body, &[], broken)[0]);
         let staging = Staging {
             site: self.site(),
             cell: self.cell(),
             ground: geometry::ground(&self.scene.obstacles, self.run.snapshot.time),
             position: &self.position,
             skin: (self.scene.view.visible.surfaces && !self.diverged).then(|| self.bodies.cage()),
+            left: broken.contains(&true).then(left),
             soft: self.bodies.soft * self.side,
             start: self.composer.start_box,
             reach: &self.composer.reach,

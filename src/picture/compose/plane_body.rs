@@ -81,6 +81,9 @@ impl<'a> PlaneBody<'a> {
             for face in of_body {
                 let (nodes, element) = (&faces.nodes[face], faces.inner[face].or(faces.outer[face]));
                 let is = |flags: &[bool]| element.is_some_and(|at| flags.get(at as usize).copied().unwrap_or(false));
+                if is(&run.snapshot.broken) {
+                    continue;
+                }
                 let set = &mut sets[usize::from(is(&run.snapshot.turned_over))];
                 let places =
                     shades.as_ref().map_or_else(|| vec![0.0; nodes.len()], |shades| shades.corners(nodes, element));

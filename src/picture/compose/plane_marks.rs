@@ -12,6 +12,7 @@ use crate::picture::narrow::narrow;
 use crate::picture::obstacle::{HalfSpace, half_space};
 use crate::picture::page::{Image, Path, Step, direction, point, winding};
 use crate::picture::plane::{WHOLE, clipped, from_side, is_inside, sides};
+use crate::picture::shell::is_broken;
 use crate::sim::Motion;
 use glam::{DVec2, DVec3, Vec2};
 use std::f64::consts::TAU;
@@ -113,7 +114,10 @@ impl Draft<'_> {
             return;
         }
         let (mut sound, mut turned_over) = (Vec::new(), Vec::new());
-        for (element, nodes) in self.body.elements.iter().enumerate().filter(|(_, nodes)| nodes.len() > 2) {
+        let has_sign = |&(element, nodes): &(usize, &[u32])| {
+            nodes.len() > 2 && !is_broken(&self.run.snapshot.broken, element as u32)
+        };
+        for (element, nodes) in self.body.elements.iter().enumerate().filter(has_sign) {
             let corners: Vec<_> = nodes.iter().filter_map(|&node| self.pixel(self.position[node as usize])).collect();
             let over = self.run.snapshot.turned_over.get(element).copied().unwrap_or(false);
             let set = if over { &mut turned_over } else { &mut sound };

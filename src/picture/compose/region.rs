@@ -36,7 +36,7 @@ impl Draft<'_> {
         }
         // The elements that carry a surface are not seen.
         match self.carried().is_empty() {
-            true => !is_inside(&PixelBox::new(&self.lens, &*self.position)),
+            true => !is_inside(&PixelBox::new(&self.lens, &*self.whole())),
             false => !self.boxes().iter().all(is_inside),
         }
     }

@@ -33,16 +33,19 @@ impl Staging<'_> {
         let skin = self.skin?;
         let reach = REACH * self.soft;
         let [low, high] = bounds(points, reach);
-        let on_skin = |at: u32| self.position.get(skin.nodes[at as usize] as usize).copied();
-        let near = |triangle: &[u32; 3]| {
-            let corners = [on_skin(triangle[0])?, on_skin(triangle[1])?, on_skin(triangle[2])?];
+        let place = |node: u32| self.position.get(node as usize).copied();
+        let near = |[a, b, c]: [u32; 3]| {
+            let corners = [place(a)?, place(b)?, place(c)?];
             let [a, b, c] = corners;
             let apart = a.max(b).max(c).cmplt(low).any() || a.min(b).min(c).cmpgt(high).any();
             let middle = (a + b + c) / 3.0;
             let radius = corners.iter().map(|at| at.distance(middle)).fold(0.0, f64::max);
             (!apart).then_some(Piece { corners, middle, radius })
         };
-        let pieces: Vec<_> = skin.triangles.iter().filter_map(near).collect();
+        let pieces: Vec<_> = match &self.left {
+            Some(left) => left.iter().copied().filter_map(near).collect(),
+            None => skin.triangles.iter().map(|at| at.map(|at| skin.nodes[at as usize])).filter_map(near).collect(),
+        };
         let bounds = bounds(pieces.iter().flat_map(|piece| piece.corners), reach);
         (!pieces.is_empty()).then_some(Near { pieces, bounds, reach })
     }

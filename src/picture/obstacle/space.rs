@@ -20,6 +20,8 @@ pub(in crate::picture) struct Staging<'a> {
     pub(in crate::picture) position: &'a [DVec3],
     /// The surface of the body; `None` if it is not drawn.
     pub(in crate::picture) skin: Option<&'a Skin>,
+    /// The triangles of nodes that are left of it, if elements are broken.
+    pub(in crate::picture) left: Option<Vec<[u32; 3]>>,
     /// Unit of soft distances (m).
     pub(in crate::picture) soft: f64,
     /// The box around the nodes at the start (m).

@@ -147,7 +147,7 @@ fn energies_residuals_and_strains_are_those_of_the_reference() {
                 let name = format!("{name}, {rotation:?}");
                 assert_near(&name, both, largest_alpha(body, STIFFNESS, position), crush.is_none());
             }
-            let model = MassSpring { stiffness: 1e4, damping: 0.0, springs: Arc::clone(&springs) };
+            let model = MassSpring { stiffness: 1e4, damping: 0.0, springs: Arc::clone(&springs), breaks_at: None };
             let energy = |set| model.by_law(body, &conditions(SEMI, set), None).energy;
             assert_near(&name, reports(&energy, &model, body, position, &[]), 0.0, true);
         }

@@ -46,7 +46,7 @@ fn meeting(kernel: Kernel, integrator: Integrator, damping: f64, stage: Option<P
     let springs = bodies[1].topology().springs(Springs::All);
     let models: [Box<dyn ElasticModel>; 2] = [
         Box::new(shape_based(Rotation::Optimum, damping)),
-        Box::new(MassSpring { stiffness: STIFFNESS, damping: 0.0, springs: springs.into() }),
+        Box::new(MassSpring { stiffness: STIFFNESS, damping: 0.0, springs: springs.into(), breaks_at: None }),
     ];
     let mut all = State::default();
     for (at, body) in bodies.iter().enumerate() {

@@ -13,7 +13,7 @@ use crate::kernel::rotation::{self, Arctangent, Matrix, Moments, Optimum, Solver
 use crate::kernel::shapes::{Shapes, square};
 use crate::kernel::{Compiled, Conditions, Rotation, Stepper};
 use crate::lanes::{Lanes, MOST, each};
-use crate::law::{ByLaw, Corners, Element, Law, Rigid};
+use crate::law::{Breaking, ByLaw, Corners, Element, Law, Rigid, Strained};
 use crate::model::Report;
 use glam::DMat3;
 use std::sync::Arc;
@@ -67,6 +67,19 @@ pub(super) fn compile(
 
 /// Any of the velocities that are damped: it costs a test, and is one law instead of three.
 const ANY: u8 = 3;
+/// The same in elements that break, which know their rotation after all passes.
+const BREAKING: u8 = 4;
+
+/// The code of a model whose elements break at a strain. Laws with maps are about all of them.
+pub(super) fn compile_breaking(model: &ShapeBased, limit: f64, body: &Arc<Body>, conditions: &Conditions) -> Compiled {
+    let of = Common::new(model, body.dimension);
+    if body.dimension == Dimension::Plane {
+        let law = InPlane::<true, ANY> { of };
+        return Compiled::once(Breaking { law, limit }, body, conditions);
+    }
+    let law = InSpace::<Optimum, true, BREAKING> { of, solver: Optimum };
+    Compiled::once(Breaking { law, limit }, body, conditions)
+}
 
 /// The numbers of a model.
 #[derive(Clone)]
@@ -95,7 +108,7 @@ impl Common {
     /// Whether a law damps this velocity.
     #[inline(always)]
     fn damps<const DAMPING: u8>(&self, velocity: u8) -> bool {
-        DAMPING == velocity || DAMPING == ANY && self.damped == velocity
+        DAMPING == velocity || DAMPING >= ANY && self.damped == velocity
     }
 
     /// `k` and `D` of the forces of a node.
@@ -130,7 +143,7 @@ pub(super) struct Fit<L> {
     matrix: Matrix<L>,
     /// `D ω` (N/m), if damping leaves rotation alone.
     spin: [L; 3],
-    /// The rotation before a pass, if there are several.
+    /// The rotation before a pass, if there are several; of elements that break, after all passes that of the element.
     turn: [L; 4],
     /// The lanes that take part in the next pass.
     open: u32,
@@ -237,6 +250,9 @@ impl<S: Solver, const MAPS: bool, const DAMPING: u8> Law for InSpace<S, MAPS, DA
         if is_last {
             element.remember(turn);
             fit.matrix = rotation::matrix(turn, L::splat(self.of.stiffness));
+            if DAMPING == BREAKING {
+                fit.turn = turn;
+            }
             if MAPS {
                 let (map, pressure, _) = self.of.stretch(&a, &each!(8, at => element.of_element(at)));
                 let rest = L::splat((self.of.bending - 1.0) * self.of.stiffness);
@@ -396,6 +412,51 @@ impl<const MAPS: bool, const DAMPING: u8> Law for InPlane<MAPS, DAMPING> {
         }
         residual
     }
+}
+
+impl<S: Solver> Strained for InSpace<S, true, BREAKING> {
+    #[inline(always)]
+    fn strain<L: Lanes>(&self, element: &Element<'_, L>, fit: &Fit<L>) -> L {
+        strain::<L, 3>(element, &rotation::matrix(fit.turn, L::splat(1.0)))
+    }
+}
+
+impl<const DAMPING: u8> Strained for InPlane<true, DAMPING> {
+    #[inline(always)]
+    fn strain<L: Lanes>(&self, element: &Element<'_, L>, _: &FitInPlane<L>) -> L {
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let ((first, _), mut turn) = (element.corner_in_plane(0), [zero; 2]);
+        for corner in 1..element.corners() {
+            let (p, _) = element.corner_in_plane(corner);
+            let ([px, py], [x, y]) =
+                (each!(2, axis => p[axis] - first[axis]), each!(2, axis => element.of_corner(corner, axis)));
+            turn[0] = y.mul_add(py, x.mul_add(px, turn[0]));
+            turn[1] = y.neg_mul_add(px, x.mul_add(py, turn[1]));
+        }
+        let [cosine, sine] = rotation::in_plane(turn, element.memory());
+        strain::<L, 2>(element, &[[cosine, sine, zero], [-sine, cosine, zero], [zero, zero, one]])
+    }
+}
+
+/// `√(Σ |r − M R0|² / Σ |R0|²)` with rotations `m`.
+#[inline(always)]
+fn strain<L: Lanes, const AXES: usize>(element: &Element<'_, L>, m: &Matrix<L>) -> L {
+    let (zero, part, (first, _)) = (L::splat(0.0), L::splat(1.0 / element.corners() as f64), element.corner(0));
+    let (mut middle, mut off, mut squares) = ([zero; 3], zero, zero);
+    for corner in 1..element.corners() {
+        let (p, _) = element.corner(corner);
+        middle = each!(3, axis => (p[axis] - first[axis]).mul_add(part, middle[axis]));
+    }
+    for corner in 0..element.corners() {
+        let (p, _) = element.corner(corner);
+        let [x, y] = each!(2, axis => element.of_corner(corner, axis));
+        let z = if AXES == 3 { element.of_corner(corner, 2) } else { zero };
+        let displacement = each!(3, row => {
+            p[row] - first[row] - middle[row] - z.mul_add(m[2][row], y.mul_add(m[1][row], x * m[0][row]))
+        });
+        (off, squares) = (off + square(displacement), squares + square([x, y, z]));
+    }
+    (off / squares).sqrt()
 }
 
 /// What an element in the plane knows.

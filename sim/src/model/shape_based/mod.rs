@@ -10,6 +10,10 @@
 //! part of the displacement that is not affine, so that `d = β (r − F R0) + (F − R) R0`. A
 //! [Poisson's ratio](ShapeBased::material) adds the energy `½ λ V (det F − 1)²`.
 //!
+//! Elements can break ([`breaks_at`](ShapeBased::breaks_at)), as springs do in Ref. 2 of the paper (Norton and others 1991, "Animation of fracture by
+//! physical modeling"): an element whose [strain](crate::Field::Strain) exceeds a limit is taken out for good. They, too, let all springs of a cube
+//! break at once (O'Brien and Hodgins 1999, "Graphical modeling and animation of brittle fracture").
+//!
 //! The centre of an element is the unweighted mean of its nodes: with a centre of mass, unequal masses would give a net
 //! internal force.
 
@@ -78,6 +82,10 @@ pub struct Parameters {
     /// The velocity that the damping of Eq. (4) acts on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping_of: Option<DampingReading>,
+    /// The strain at which an element breaks: it is taken out for good. It is the `"strain"` that `view.colour` shows. Default: elements never break.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub breaks_at: Option<f64>,
 }
 
 /// The velocity that the damping of Eq. (4) acts on.
@@ -108,6 +116,8 @@ pub struct ShapeBased {
     pub rotation: RotationReading,
     /// Which velocity is damped.
     pub damping_of: DampingReading,
+    /// The [strain](crate::Field::Strain) at which an element breaks; `None` if none does. Elements that break have exact rotations.
+    pub breaks_at: Option<f64>,
 }
 
 impl Parameters {
@@ -140,6 +150,17 @@ impl TypedModel for Parameters {
             );
             return Err(Misfit { key: "passes", message });
         }
+        let rotation = self.rotation.unwrap_or(match self.passes {
+            Some(_) => RotationReading::Arctangent,
+            None => RotationReading::default(),
+        });
+        if self.breaks_at.is_some() && rotation != RotationReading::Robust {
+            let rotation = super::typed(&rotation);
+            let message = format!(
+                "`breaks_at` compares strains, which need exact rotations, but the rotation is \"{rotation}\"; take \"robust\" without `passes`"
+            );
+            return Err(Misfit { key: "breaks_at", message });
+        }
         let (stiffness, material) = super::stiffness(self.stiffness, self.young, self.poisson, body)?;
         Ok(Arc::new(ShapeBased {
             stiffness,
@@ -147,11 +168,9 @@ impl TypedModel for Parameters {
             bending: self.bending.map_or(1.0, |bending| bending.0),
             damping: super::damping(self.damping, self.damping_ratio, stiffness, body)?,
             passes: self.passes.unwrap_or(2),
-            rotation: self.rotation.unwrap_or(match self.passes {
-                Some(_) => RotationReading::Arctangent,
-                None => RotationReading::default(),
-            }),
+            rotation,
             damping_of: self.damping_of.unwrap_or_default(),
+            breaks_at: super::breaks_at(self.breaks_at)?,
         }))
     }
 }
@@ -251,16 +270,22 @@ impl ElasticModel for ShapeBased {
     }
 
     fn counts_global(&self, body: &Body) -> bool {
-        self.solver(body.dimension).counts()
+        self.solver(body.dimension).counts() && self.breaks_at.is_none()
+    }
+
+    fn breaks(&self, body: &Body) -> Option<usize> {
+        self.breaks_at.map(|_| self.solver(body.dimension).width() + 1)
     }
 
     /// The rotations that are optimal for the initial positions, which need not be the identity. In space they are followed by the
-    /// number of rotations that the global solver has computed since then.
+    /// number of rotations that the global solver has computed since then. Those of elements that break are each followed by whether it is broken.
     fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
         let solver = self.solver(body.dimension);
-        let mut memory = vec![0.0; solver.width() * body.elements.len() + usize::from(solver.counts())];
+        let width = self.breaks(body).unwrap_or(solver.width());
+        let mut memory = vec![0.0; width * body.elements.len() + usize::from(self.counts_global(body))];
         let mut rest = Vec::new();
-        for (nodes, memory) in body.elements.iter().zip(memory.chunks_exact_mut(solver.width())) {
+        for (nodes, memory) in body.elements.iter().zip(memory.chunks_exact_mut(width)) {
+            let memory = &mut memory[..solver.width()];
             rest.clear();
             rest.extend(at_rest(nodes, body));
             let at_rest = moment_at_rest(&rest, nodes, mean(nodes, position), position);
@@ -282,6 +307,9 @@ impl ElasticModel for ShapeBased {
 
 impl Vectorised for ShapeBased {
     fn compile(&self, body: &Arc<Body>, conditions: &Conditions) -> Compiled {
+        if let Some(limit) = self.breaks_at {
+            return in_lanes::compile_breaking(self, limit, body, conditions);
+        }
         let (&Self { stiffness, bending, damping, .. }, &Conditions { scheme, gravity, step, set }) =
             (self, conditions);
         let (volume, damped, rotation) = (self.volume(body.dimension), self.damped(), self.rotation_in_lanes());
@@ -351,7 +379,7 @@ impl ShapeBased {
     /// An undamped model with this elastic constant (N/m) and exact rotations.
     pub fn new(stiffness: f64) -> Self {
         let (rotation, damping_of) = (RotationReading::Robust, DampingReading::RelativeMotion);
-        Self { stiffness, material: None, bending: 1.0, damping: 0.0, passes: 2, rotation, damping_of }
+        Self { stiffness, material: None, bending: 1.0, damping: 0.0, passes: 2, rotation, damping_of, breaks_at: None }
     }
 
     /// `λ/μ`: 0 without an energy of the volume.
@@ -387,13 +415,20 @@ impl ShapeBased {
 
     /// The options that the paper's model does not have.
     fn beyond_the_paper(&self) -> String {
-        if self.bending == 1.0 { String::new() } else { format!(", β = {}", Ratio(self.bending)) }
+        let mut text = String::new();
+        if self.bending != 1.0 {
+            text += &format!(", β = {}", Ratio(self.bending));
+        }
+        if let Some(strain) = self.breaks_at {
+            text += &format!(", breaks at {strain}");
+        }
+        text
     }
 
     fn solver(&self, dimension: Dimension) -> Solver {
         match (dimension, self.rotation) {
             (Dimension::Plane, _) => Solver::Plane,
-            (Dimension::Space, RotationReading::LinearUpdate) => Solver::Linear,
+            (Dimension::Space, RotationReading::LinearUpdate) if self.breaks_at.is_none() => Solver::Linear,
             (Dimension::Space, _) => Solver::Space,
         }
     }
@@ -405,7 +440,8 @@ impl ShapeBased {
         match solver {
             Solver::Plane => planar::solve(at_rest, DVec2::from_slice(last)).write_to_slice(next),
             Solver::Space => {
-                let found = self.rotation.follow(at_rest, DQuat::from_slice(last), self.passes);
+                let reading = if self.breaks_at.is_some() { RotationReading::Robust } else { self.rotation };
+                let found = reading.follow(at_rest, DQuat::from_slice(last), self.passes);
                 found.rotation.write_to_slice(next);
                 is_global = found.is_global;
             }
@@ -421,6 +457,8 @@ impl ShapeBased {
 struct Elements {
     model: ShapeBased,
     solver: Solver,
+    /// Numbers in the memory for each element.
+    width: usize,
     body: Arc<Body>,
     /// `R0` of each corner (m), element after element.
     rest: Vec<DVec3>,
@@ -458,7 +496,8 @@ impl Elements {
         let at_rest = |element: usize| AtRest::new(&rest[elements.range(element)], body.dimension);
         let maps = model.fits_maps().then(|| (0..elements.len()).map(at_rest).collect());
         let (solver, parts) = (model.solver(body.dimension), model.relative_stiffness(body));
-        Self { solver, model, body: Arc::clone(body), rest, inertia, parts, maps, gather }
+        let width = model.breaks(body).unwrap_or(solver.width());
+        Self { solver, width, model, body: Arc::clone(body), rest, inertia, parts, maps, gather }
     }
 
     /// The nodes of an element and its shape at rest (m).
@@ -468,8 +507,7 @@ impl Elements {
 
     /// The memory of an element.
     fn of<'a>(&self, element: usize, memory: &'a [f64]) -> &'a [f64] {
-        let width = self.solver.width();
-        &memory[element * width..][..width]
+        &memory[element * self.width..][..self.width]
     }
 
     /// Computes the rotation of an element from the last one.
@@ -499,12 +537,30 @@ impl Elements {
         angular_acceleration(rotation * at_rest, k, self.inertia[element])
     }
 
+    /// Whether an element is broken: it was before, or is strained too far.
+    fn is_broken(&self, element: usize, position: &[DVec3], fit: &Fit, last: &[f64]) -> bool {
+        let (Some(limit), (nodes, rest)) = (self.model.breaks_at, self.element(element)) else { return false };
+        let off = |(&node, &rest): (&u32, &DVec3)| position[node as usize] - fit.centre - fit.rotation * rest;
+        let off: f64 = nodes.iter().zip(rest).map(|corner| off(corner).length_squared()).sum();
+        let squares: f64 = rest.iter().map(|rest| rest.length_squared()).sum();
+        last.last() == Some(&1.0) || (off / squares).sqrt() > limit
+    }
+
     /// Eq. (4) for one element: writes the force on each of its corners (N). Returns whether the global solver computed its
     /// rotation.
     #[doc(alias = "Eq. 4")]
     fn forces(&self, element: usize, at: Nodes<'_>, last: &[f64], next: &mut [f64], forces: &mut [DVec3]) -> bool {
         let ([k, d], (nodes, rest)) = (self.constants(element), self.element(element));
-        let Fit { centre, at_rest, rotation, is_global } = self.fit(element, at.position, last, next);
+        let fit = self.fit(element, at.position, last, next);
+        let is_broken = self.is_broken(element, at.position, &fit, last);
+        let Fit { centre, at_rest, rotation, is_global } = fit;
+        if let (Some(_), Some(told)) = (self.model.breaks_at, next.last_mut()) {
+            *told = f64::from(u8::from(is_broken));
+        }
+        if is_broken {
+            forces.fill(DVec3::ZERO);
+            return is_global;
+        }
         let stretch = self.stretch(element, at_rest);
         let drift = mean(nodes, at.velocity);
         let spin = match self.model.damping_of {
@@ -534,12 +590,12 @@ impl Elements {
 impl ForceModel for Elements {
     fn add_forces(&self, at: Nodes<'_>, memory: &[f64], next: &mut [f64], scratch: &mut Scratch, forces: &mut [DVec3]) {
         let (corners, globals) = (scratch.vectors(self.rest.len()), AtomicU64::new(0));
-        blocks::for_each(&self.body.elements, self.solver.width(), next, corners, &|element, next, corners| {
+        blocks::for_each(&self.body.elements, self.width, next, corners, &|element, next, corners| {
             if self.forces(element, at, self.of(element, memory), next, corners) {
                 globals.fetch_add(1, Ordering::Relaxed);
             }
         });
-        if self.solver.counts()
+        if self.model.counts_global(&self.body)
             && let (Some(before), Some(after)) = (memory.last(), next.last_mut())
         {
             *after = before + globals.into_inner() as f64;
@@ -562,7 +618,11 @@ impl ForceModel for Elements {
         blocks::for_each(&self.body.elements, 1, &mut alphas, &mut shares, &|element, alpha, shares| {
             let ([k, _], (nodes, rest)) = (self.constants(element), self.element(element));
             let (last, mut next) = (self.of(element, memory), [0.0; 9]);
-            let Fit { centre, at_rest, rotation, .. } = self.fit(element, at.position, last, &mut next[..last.len()]);
+            let fit = self.fit(element, at.position, last, &mut next[..last.len()]);
+            if self.is_broken(element, at.position, &fit, last) {
+                return;
+            }
+            let Fit { centre, at_rest, rotation, .. } = fit;
             let stretch = self.stretch(element, at_rest);
             for ((share, &node), &rest) in shares.iter_mut().zip(nodes).zip(rest) {
                 let r = at.position[node as usize] - centre;
@@ -589,8 +649,12 @@ impl ForceModel for Elements {
     fn residuals(&self, position: &[DVec3], memory: &[f64]) -> Vec<f64> {
         let residual = |element: usize| {
             let (nodes, rest) = self.element(element);
-            let at_rest = moment_at_rest(rest, nodes, mean(nodes, position), position);
-            self.residual(element, at_rest, self.solver.matrix(self.of(element, memory)))
+            let (last, at_rest) =
+                (self.of(element, memory), moment_at_rest(rest, nodes, mean(nodes, position), position));
+            if self.model.breaks_at.is_some() && last.last() == Some(&1.0) {
+                return 0.0;
+            }
+            self.residual(element, at_rest, self.solver.matrix(last))
         };
         (0..self.body.elements.len()).map(residual).collect()
     }

@@ -97,8 +97,8 @@ impl Key {
 /// The text below the body of a tile.
 pub(super) struct Below<'a> {
     /// The tally, if there is one, the turned-over and the flat elements, and its width (px).
-    tally: Option<(&'a Tally, [&'a [bool]; 2], f64)>,
-    /// The number of turned-over elements or, if there are none, of flat ones, then a diagnostic; or that the run diverges.
+    tally: Option<(&'a Tally, [&'a [bool]; 3], f64)>,
+    /// The number of broken elements of a run that breaks, else of turned-over ones or, if there are none, of flat ones, then a diagnostic; or that the run diverges.
     texts: Vec<(String, Weight, f64, Colour)>,
 }
 
@@ -121,16 +121,18 @@ impl<'a> Below<'a> {
             let text = |text| (text, Weight::SemiBold, scale.caption(), palette.text);
             return Self { tally: None, texts: fitting.map(text).into_iter().collect() };
         }
-        let Snapshot { turned_over: over, flat, diagnostics, .. } = &run.snapshot;
+        let Snapshot { turned_over: over, flat, broken, broken_springs, diagnostics, .. } = &run.snapshot;
         if over.is_empty() {
             return Self { tally: None, texts: Vec::new() };
         }
-        let states = [&over[..], &flat[..]];
+        let states = [&over[..], &flat[..], &broken[..]];
         let (smaller, room) = size_of_tallies(scale, layout);
         let tally = &composer.bodies(run.run).tally;
         let width = tally.width(smaller, room);
-        let flattened = flat.iter().filter(|&&flat| flat).count();
+        let [flattened, gone] = [flat, broken].map(|state| state.iter().filter(|&&is_so| is_so).count());
         let (count, colour) = match diagnostics.turned_over {
+            _ if !broken_springs.is_empty() => (format!("{} in pieces", number::count(gone)), palette.second_text),
+            _ if !broken.is_empty() => (format!("{} broken", number::count(gone)), palette.second_text),
             0 if flattened > 0 => (format!("{flattened} flat"), palette.second_text),
             0 => (number::count(0), palette.second_text),
             count => (number::count(count), palette.alarm_text),
