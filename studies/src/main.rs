@@ -1,11 +1,12 @@
 //! Measurements with `localshape`: the accuracy and the cost of its methods, their limits of stability, the robustness
-//! of models, and the tables of the paper. All use the public interface of the library.
+//! of models, their materials, and the tables of the paper. All use the public interface of the library.
 //!
 //! A study has a name, a measurement, and findings: text, tables and pages ([`study`]). It does not depend on files or on the
 //! command line.
 
 mod failure;
 mod folder;
+mod material;
 mod methods;
 mod models;
 #[cfg(feature = "render")]
@@ -30,6 +31,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueHint};
 use failure::Failure;
 use localshape::{Limits, Scene};
+use material::{Beam, Cook, Patch, Time};
 use ratio::Ratio;
 use rotation::Rotation;
 use stability::{Protocol, Stability};
@@ -48,6 +50,8 @@ Examples:
   localshape-study work-precision scenes/fig4b.toml  on a scene
   localshape-study stability                   the largest stable steps in output/study-stability/
   localshape-study stress                      the robustness of models in output/study-stress/
+  localshape-study beam                        how the models bend in output/study-beam/
+  localshape-study beam-time                   the error of a beam against time, with every model
   localshape-study table1 --orientations 200   Table 1 of the paper, from more starts
   localshape-study ratio --threads 4 -o four   the ratio of computation times on four threads
 
@@ -60,7 +64,7 @@ Exit status:
     4  reading or writing failed
   130  interrupted by Ctrl-C or SIGTERM";
 
-/// Measure the methods of localshape: accuracy, cost, stability, robustness, and the tables of the paper
+/// Measure the methods of localshape: accuracy, cost, stability, robustness, materials, and the tables of the paper
 #[derive(Debug, Parser)]
 #[command(name = "localshape-study", version, after_help = EXAMPLES)]
 struct Cli {
@@ -100,6 +104,23 @@ enum Name {
         #[command(flatten)]
         threads: Threads,
     },
+    /// The models as materials: cantilevers of few cells beside the theory of beams, the elastica, modes and waves
+    Beam {
+        #[command(flatten)]
+        threads: Threads,
+    },
+    /// The patch test: irregular blocks in uniform strain
+    Patch {
+        #[command(flatten)]
+        threads: Threads,
+    },
+    /// Cook's membrane in the plane, beside the literature
+    Cook {
+        #[command(flatten)]
+        threads: Threads,
+    },
+    /// The error of the end of one beam against the time of a simulated second, for every model and resolution
+    BeamTime,
     /// Table 1 of the paper, the errors of the rotations from Eq. (15), beside ours
     Table1 {
         /// Number of random orientations; the first ones are the same for any number
@@ -190,10 +211,13 @@ impl Threads {
 impl Name {
     fn threads(&self) -> usize {
         match self {
-            Self::Rotation | Self::WorkPrecision { .. } => 1,
-            Self::Stability { threads, .. } | Self::Stress { threads, .. } | Self::Table1 { threads, .. } => {
-                threads.count()
-            }
+            Self::Rotation | Self::WorkPrecision { .. } | Self::BeamTime => 1,
+            Self::Stability { threads, .. }
+            | Self::Stress { threads, .. }
+            | Self::Beam { threads }
+            | Self::Patch { threads }
+            | Self::Cook { threads }
+            | Self::Table1 { threads, .. } => threads.count(),
             Self::Ratio { threads } => (*threads).into(),
         }
     }
@@ -227,6 +251,10 @@ impl Name {
                 let (arguments, models) = (of_models(&model), stress::Model::compared(&model));
                 Box::new(Stress { steps: stress::STEPS, models, arguments })
             }
+            Self::Beam { .. } => Box::new(Beam::usual()),
+            Self::Patch { .. } => Box::new(Patch::usual()),
+            Self::Cook { .. } => Box::new(Cook::usual()),
+            Self::BeamTime => Box::new(Time::usual()),
             Self::Table1 { orientations, .. } => Box::new(Table1::new(orientations)),
             Self::Ratio { threads } => Box::new(Ratio::new(threads.into())),
         })

@@ -114,13 +114,13 @@ fn with_plots(names: &[&str], plots: &[&str]) -> Vec<String> {
 fn help_and_version_are_results() {
     let place = Place::new();
     let help = place.good("--help");
-    for word in
-        ["rotation", "work-precision", "stability", "stress", "table1", "ratio", "Exit status:", "130", "Examples:"]
-    {
+    let studies =
+        ["rotation", "work-precision", "stability", "stress", "beam", "patch", "cook", "beam-time", "table1", "ratio"];
+    for word in studies.iter().chain(&["Exit status:", "130", "Examples:"]) {
         assert!(help.contains(word), "{word}");
     }
     assert_eq!(place.good("--version"), format!("localshape-study {}\n", env!("CARGO_PKG_VERSION")));
-    for study in ["rotation", "work-precision", "stability", "stress", "table1", "ratio"] {
+    for study in studies {
         place.good(&format!("{study} --help"));
     }
 }

@@ -1,0 +1,116 @@
+//! Bars along z that are held at one end and loaded at the other.
+
+use super::balance::balance;
+use super::{Elements, Kind, Model, mean_shift};
+use glam::DVec3;
+use localshape::sim::model::ElasticModel;
+use localshape::sim::{Body, Material};
+use std::sync::Arc;
+
+/// A bar.
+pub(super) struct Bar {
+    pub(super) body: Arc<Body>,
+    /// Length of a cell's edges (m).
+    side: f64,
+    /// Width and depth, along y and x (m).
+    pub(super) section: [f64; 2],
+    pub(super) length: f64,
+    /// Nodes at the held end and at the loaded one.
+    ends: [Vec<usize>; 2],
+}
+
+impl Bar {
+    /// A bar of cells of a side (m), along x, y and z, with a density (kg/m³).
+    pub(super) fn new(elements: Elements, cells: [u32; 3], side: f64, density: f64) -> Self {
+        let body = elements.block(&cells, side, (0.0, 1), density);
+        let [depth, width, length] = cells.map(|cells| f64::from(cells) * side);
+        let ends = [-0.5, 0.5].map(|end| Self::layer(&body, end * length, side));
+        Self { body, side, section: [width, depth], length, ends }
+    }
+
+    fn layer(body: &Body, height: f64, side: f64) -> Vec<usize> {
+        (0..body.len()).filter(|&node| (body.rest[node].z - height).abs() < 1e-6 * side).collect()
+    }
+
+    /// A load (N) on the end, on each node in proportion to the area of the end around it.
+    fn load(&self, total: DVec3) -> Vec<DVec3> {
+        let [low, high] = [f64::min, f64::max].map(|pick| {
+            let rest = self.ends[1].iter().map(|&node| self.body.rest[node]);
+            rest.reduce(|one, other| DVec3::new(pick(one.x, other.x), pick(one.y, other.y), 0.0)).unwrap_or_default()
+        });
+        let is_rim = |at: f64, low: f64, high: f64| (at - low).abs().min((at - high).abs()) < 1e-6 * self.side;
+        let part = |rest: DVec3| {
+            let rims = [is_rim(rest.x, low.x, high.x), is_rim(rest.y, low.y, high.y)];
+            rims.iter().map(|&is_rim| if is_rim { 0.5 } else { 1.0 }).product::<f64>()
+        };
+        let whole: f64 = self.ends[1].iter().map(|&node| part(self.body.rest[node])).sum();
+        let mut load = vec![DVec3::ZERO; self.body.len()];
+        self.ends[1].iter().for_each(|&node| load[node] = total * (part(self.body.rest[node]) / whole));
+        load
+    }
+
+    /// The bar as a cantilever: places of its nodes (m) under a load (N) across its end, from a start nearby.
+    pub(super) fn bent(&self, model: &dyn ElasticModel, load: f64, start: &[DVec3]) -> Option<Vec<DVec3>> {
+        let mut held = vec![[false; 3]; self.body.len()];
+        self.ends[0].iter().for_each(|&node| held[node] = [true; 3]);
+        balance(&self.body, model, &self.load(DVec3::X * load), &held, start)
+    }
+
+    /// The nodes at its held end.
+    pub(super) fn held(&self) -> &[usize] {
+        &self.ends[0]
+    }
+
+    /// The mean displacement of its loaded end (m).
+    pub(super) fn tip(&self, position: &[DVec3]) -> DVec3 {
+        mean_shift(&self.body, position, &self.ends[1])
+    }
+
+    /// `E I` (N m²), with the load across the depth.
+    pub(super) fn rigidity(&self, material: Material) -> f64 {
+        let [width, depth] = self.section;
+        material.young * width * depth * depth * depth / 12.0
+    }
+
+    /// A model of a material on the bar, and the material that it is there. For springs that is what one measures by pulling the bar.
+    pub(super) fn model(&self, model: &Model, material: Material) -> Option<(Arc<dyn ElasticModel>, Material)> {
+        let made = model.on(&self.body, material, self.side)?;
+        let is = match model.kind {
+            Kind::Material => material,
+            Kind::Springs => self.pulled(made.as_ref(), material)?,
+        };
+        Some((made, is))
+    }
+
+    /// Young's modulus and Poisson's ratio between a quarter and three quarters of the length, of a bar that is pulled by a little. Across
+    /// itself it is free.
+    fn pulled(&self, model: &dyn ElasticModel, about: Material) -> Option<Material> {
+        const STRAIN: f64 = 1e-6;
+        let mut held = vec![[false; 3]; self.body.len()];
+        self.ends[0].iter().for_each(|&node| held[node][2] = true);
+        // The end neither moves across nor turns: one corner is held, and the next one along x does not move along y.
+        let &corner = self.ends[0].first()?;
+        let rest = |node: usize| self.body.rest[node];
+        let is_beside = |&&node: &&usize| node != corner && rest(node).y == rest(corner).y;
+        let &other = self.ends[0].iter().rev().find(is_beside)?;
+        held[corner] = [true; 3];
+        held[other][1] = true;
+        let [width, depth] = self.section;
+        let load = STRAIN * about.young * width * depth;
+        let found = balance(&self.body, model, &self.load(DVec3::Z * load), &held, &self.body.rest)?;
+        let layers = [-0.25, 0.25].map(|share| {
+            let height = libm::round((share + 0.5) * self.length / self.side) * self.side - 0.5 * self.length;
+            (height, Self::layer(&self.body, height, self.side))
+        });
+        let [low, high] = [0, 1].map(|at| mean_shift(&self.body, &found, &layers[at].1).z);
+        let strain = (high - low) / (layers[1].0 - layers[0].0);
+        // The sides at half of the depth away from the middle.
+        let middle: Vec<_> = layers.iter().flat_map(|(_, nodes)| nodes.iter().copied()).collect();
+        let side = |sign: f64| -> Vec<usize> {
+            let is_there = |&node: &usize| (self.body.rest[node].x - 0.5 * sign * depth).abs() < 1e-6 * self.side;
+            middle.iter().copied().filter(is_there).collect()
+        };
+        let [left, right] = [-1.0, 1.0].map(|sign| mean_shift(&self.body, &found, &side(sign)).x);
+        Some(Material { young: load / (width * depth * strain), poisson: -(right - left) / depth / strain })
+    }
+}

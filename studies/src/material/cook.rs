@@ -1,0 +1,208 @@
+//! Cook's membrane: a skew panel in the plane, held at its left side and sheared at its right one.
+//!
+//! R. Cook, Journal of the Structural Division 100, 1851 (1974). Corners at (0, 0), (48, 44), (48, 60) and (0, 44); `E` = 1, `ν` = 1/3, unit
+//! thickness, plane stress, and a shear load of 1, uniform along the right side. Literature gives the deflection of the middle of that side.
+
+use super::balance::balance;
+use super::{Elements, Kind, MODELS, Model, decimals};
+use crate::folder::Notes;
+use crate::progress::Watch;
+use crate::study::{Findings, Study};
+use crate::table::{Cell, Table};
+use glam::DVec3;
+use localshape::sim::{Body, Dimension, Material, Solids};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// The study.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Cook {
+    /// Cells along each side, each number even and twice the one before.
+    pub(crate) cells: Vec<u32>,
+}
+
+const MATERIAL: Material = Material { young: 1.0, poisson: 1.0 / 3.0 };
+/// The deflection from many elements of several kinds, as most papers since P. Bergan and C. Felippa, Computer Methods in Applied Mechanics
+/// and Engineering 50, 25 (1985), give it.
+const PRINTED: f64 = 23.96;
+/// The load here: so small that all laws are linear.
+const LOAD: f64 = 1e-6;
+
+impl Cook {
+    pub(crate) fn usual() -> Self {
+        Self { cells: vec![2, 4, 8, 16, 32] }
+    }
+
+    /// The models that are a material with any `ν`.
+    fn models() -> impl Iterator<Item = &'static Model> {
+        MODELS.iter().filter(|model| model.kind == Kind::Material)
+    }
+}
+
+impl Study for Cook {
+    fn name(&self) -> &'static str {
+        "cook"
+    }
+
+    fn work(&self) -> u64 {
+        (Self::models().count() * self.cells.len()) as u64
+    }
+
+    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+        let results = measure(self, watch)?;
+        Some(Findings {
+            #[cfg(feature = "render")]
+            pages: vec![("cook", results.page())],
+            ..Findings::new(results.text(), [("cook", results.table())])
+        })
+    }
+}
+
+/// The deflection with a model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Deflection {
+    pub(crate) model: Model,
+    pub(crate) cells: u32,
+    /// Of the middle of the right side, for a load of 1; `None` without a balance.
+    pub(crate) deflection: Option<f64>,
+}
+
+/// The findings, which do not depend on the machine.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Results {
+    study: Cook,
+    /// Model by model.
+    pub(crate) deflections: Vec<Deflection>,
+}
+
+/// Measures on the thread pool of the caller; `None` if `watch` stops it.
+pub(crate) fn measure(study: &Cook, watch: &Watch<'_>) -> Option<Results> {
+    let pairs: Vec<_> = Cook::models().flat_map(|model| study.cells.iter().map(move |&cells| (model, cells))).collect();
+    let deflections = pairs.par_iter().map(|&(model, cells)| {
+        let one = watch(0).then(|| Deflection { model: *model, cells, deflection: deflection(model, cells) });
+        one.filter(|_| watch(1))
+    });
+    Some(Results { study: study.clone(), deflections: deflections.collect::<Option<_>>()? })
+}
+
+fn deflection(model: &Model, cells: u32) -> Option<f64> {
+    let body = panel(model, cells);
+    let made = model.on(&body, MATERIAL, 1.0)?;
+    let held: Vec<_> = body.rest.iter().map(|rest| [rest.x == 0.0; 3]).collect();
+    let is_right = |rest: &DVec3| (rest.x - 48.0).abs() < 1e-9;
+    let right: Vec<_> = (0..body.len()).filter(|&node| is_right(&body.rest[node])).collect();
+    let mut load = vec![DVec3::ZERO; body.len()];
+    for (at, &node) in right.iter().enumerate() {
+        let part = if at == 0 || at + 1 == right.len() { 0.5 } else { 1.0 };
+        load[node] = DVec3::Y * (LOAD * part / f64::from(cells));
+    }
+    let found = balance(&body, made.as_ref(), &load, &held, &body.rest)?;
+    let middle = right[right.len() / 2];
+    Some((found[middle].y - body.rest[middle].y) / LOAD)
+}
+
+/// The panel, by a bilinear map of a square block.
+fn panel(model: &Model, cells: u32) -> Arc<Body> {
+    let square = model.elements.block(&[cells; 2], 1.0, (0.0, 1), 1.0);
+    let place = |rest: &DVec3| {
+        let [s, t] = [rest.x / f64::from(cells) + 0.5, rest.y / f64::from(cells)];
+        DVec3::new(48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s), 0.0)
+    };
+    let rest: Vec<_> = square.rest.iter().map(place).collect();
+    let elements = square.elements.clone();
+    Arc::new(Body::new(Dimension::Plane, rest, square.mass.clone(), elements, Solids::Ordered, None))
+}
+
+impl Results {
+    /// The deflections of a model, one for each number of cells.
+    fn of<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = &'a Deflection> {
+        self.deflections.iter().filter(move |one| one.model == *model)
+    }
+
+    /// The limit of the deflections of a model for many cells, from the last three, if they converge.
+    fn limit(&self, model: &Model) -> Option<f64> {
+        let all: Option<Vec<_>> = self.of(model).map(|one| one.deflection).collect();
+        let &[coarse, middle, fine] = all.as_deref()?.last_chunk()?;
+        // The corner at the upper left makes the convergence slower than 1/N².
+        let rate = (middle - coarse) / (fine - middle);
+        (rate > 1.2).then(|| fine + (fine - middle) / (rate - 1.0))
+    }
+
+    /// The results as text.
+    fn text(&self) -> String {
+        let mut text = format!(
+            "# Cook's membrane\n\n\
+            A skew panel in the plane, with corners at (0, 0), (48, 44), (48, 60) and (0, 44), is held at its left side and has a shear load \
+            of 1 along its right one (E = 1, ν = 1/3, thickness 1). The deflection of the middle of the right side is {PRINTED} in the \
+            literature. It is measured with N×N cells. *Limit* is extrapolated from the last three columns.\n\n",
+        );
+        let heads = ["model", "elements"].map(str::to_owned).into_iter();
+        let heads =
+            heads.chain(self.study.cells.iter().map(|cells| format!("N = {cells}"))).chain(["*limit*".to_owned()]);
+        let row = |model: &Model| -> Vec<Cell> {
+            let found = self.of(model).map(|one| one.deflection).chain([self.limit(model)]);
+            model.names(true).into_iter().chain(found.map(|number| decimals(number, 2))).collect()
+        };
+        text += &Table { heads: heads.collect(), rows: Cook::models().map(row).collect() }.markdown(2);
+        let off = |elements: Elements| {
+            let shape = MODELS.iter().find(|model| model.elements == elements).and_then(|model| self.limit(model));
+            shape.map_or_else(|| "unknown".to_owned(), |limit| format!("{:+.1} %", 100.0 * (limit / PRINTED - 1.0)))
+        };
+        text += &format!(
+            "\nFinite elements converge to the literature. The shape model does not: the cells are skew, their nodes do not spread alike in all \
+            directions, and finer cells are as skew as coarse ones. Such elements are no isotropic material, and their limit is that of another \
+            one: {} from the literature with quadrilaterals, {} with triangles. For the shape model, take cells that are squares or cubes.\n",
+            off(Elements::Cells),
+            off(Elements::Simplices),
+        );
+        text
+    }
+
+    /// All numbers, with all digits.
+    fn table(&self) -> Table {
+        Table::of(self.deflections.iter().map(|one| {
+            [
+                ("model", one.model.name.into()),
+                ("elements", one.model.elements.name(true).into()),
+                ("cells_along_side", one.cells.into()),
+                ("deflection", one.deflection.into()),
+                ("literature", Cell::Given(PRINTED)),
+            ]
+        }))
+    }
+
+    /// Errors against the number of cells.
+    #[cfg(feature = "render")]
+    fn page(&self) -> crate::page::Page {
+        use crate::page::{Contents, Line, Page, Plot};
+        let plot = |elements: Elements| {
+            let line = |model: &Model| Line {
+                name: model.name.to_owned(),
+                family: model.family,
+                is_strong: false,
+                points: self
+                    .of(model)
+                    .filter_map(|one| Some([f64::from(one.cells), (one.deflection? / PRINTED - 1.0).abs()]))
+                    .collect(),
+            };
+            Plot {
+                name: elements.name(true).to_owned(),
+                axes: ["cells along a side, N".to_owned(), "error of the deflection".to_owned()],
+                curves: super::joined(Cook::models().filter(|model| model.elements == elements).map(line)),
+                slopes: None,
+            }
+        };
+        Page {
+            title: "Cook's membrane: error against cells".to_owned(),
+            caption: vec![format!(
+                "The deflection beside {PRINTED}, the number in the literature (E = 1, ν = 1/3, load 1)."
+            )],
+            columns: 2,
+            contents: Contents::Plots(Elements::ALL.map(plot).into()),
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/inside/cook.rs"]
+mod tests;

@@ -1,0 +1,298 @@
+//! Error against time: one beam with every model and resolution, the error of its end at rest, and the time of a simulated second.
+
+use super::bar::Bar;
+use super::{Elements, Kind, MENDED, MODELS, Model};
+use crate::folder::Notes;
+use crate::progress::Watch;
+use crate::spread::Spread;
+use crate::study::{Findings, Study};
+use crate::table::{Cell, Table, figure};
+use crate::turns::{Clock, kind_of_time, machine, take_turns};
+use glam::DVec3;
+use localshape::sim::model::ElasticModel;
+use localshape::sim::stability::Stability;
+use localshape::sim::{Grip, Integrator, Material, Motion, State, Stepping, Surroundings, World};
+use std::sync::Arc;
+
+/// The study.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Time {
+    /// Cells across the bars; they are as wide as deep.
+    pub(crate) across: Vec<u32>,
+    /// Cells across the two bars from which the reference is extrapolated.
+    pub(crate) fine: [u32; 2],
+    /// The number of turns of each bar, and elements times steps in a turn.
+    pub(crate) rounds: u32,
+    pub(crate) turn: u64,
+}
+
+/// Depth and width (m), length over depth, density (kg/m³) and material of the beam, and its load as `P L²/EI`.
+const DEPTH: f64 = 0.1;
+const SLENDERNESS: u32 = 8;
+const DENSITY: f64 = 1000.0;
+const MATERIAL: Material = Material { young: 1e6, poisson: 0.0 };
+const LOAD: f64 = 2.0;
+/// The integrator that is timed: the default of scenes.
+const INTEGRATOR: Integrator = Integrator::SemiImplicitEuler;
+/// The errors for which a model is recommended.
+const WANTED: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
+
+impl Time {
+    pub(crate) fn usual() -> Self {
+        Self { across: vec![1, 2, 3, 4], fine: [6, 8], rounds: 9, turn: 100_000 }
+    }
+}
+
+impl Study for Time {
+    fn name(&self) -> &'static str {
+        "beam-time"
+    }
+
+    fn work(&self) -> u64 {
+        (MODELS.len() * self.across.len()) as u64 * u64::from(1 + self.rounds) + 2
+    }
+
+    fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
+        let results = measure(self, watch)?;
+        Some(Findings {
+            #[cfg(feature = "render")]
+            pages: vec![("beam-time", results.page())],
+            ..Findings::new(results.text(), [("beam-time", results.table())])
+        })
+    }
+}
+
+/// A model on one bar.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Timed {
+    pub(crate) model: Model,
+    pub(crate) across: u32,
+    pub(crate) elements: usize,
+    /// The deflection of the end over the length, and its relative distance from the reference.
+    pub(crate) across_length: f64,
+    pub(crate) error: f64,
+    /// Half of the largest stable step, which `step = "auto"` would take (s).
+    pub(crate) step: f64,
+    /// Time of a simulated second (s).
+    pub(crate) time: Spread,
+}
+
+/// The findings on one machine.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Results {
+    study: Time,
+    /// The deflection of the end over the length that the material has.
+    pub(crate) reference: f64,
+    /// Model by model.
+    pub(crate) timed: Vec<Timed>,
+}
+
+/// Measures with the rayon thread pool of the caller, which has one thread; `None` if `watch` stops it.
+pub(crate) fn measure(study: &Time, watch: &Watch<'_>) -> Option<Results> {
+    let corotational = MODELS.iter().find(|model| model.name == "corotational")?;
+    // Without contraction the width does not matter to hexahedra, so that one cell suffices.
+    let fine = study.fine.map(|across| Beam::new(corotational, [across, 1]).filter(|_| watch(1)));
+    let [Some(coarse), Some(fine)] = fine else { return None };
+    let parts = study.fine.map(|across| f64::from(across * across));
+    let reference = (parts[1] * fine.deflection - parts[0] * coarse.deflection) / (parts[1] - parts[0]);
+    let mut beams = Vec::new();
+    for model in &MODELS {
+        for &across in &study.across {
+            beams.extend(Beam::new(model, [across; 2]).map(|beam| (*model, across, beam)));
+            if !watch(1) {
+                return None;
+            }
+        }
+    }
+    let mut worlds: Vec<_> = beams.iter().map(|(.., beam)| beam.world()).collect();
+    let steps = |beam: &Beam| (study.turn / beam.bar.body.elements.len() as u64).max(1);
+    // The first access to memory is not timed.
+    worlds.iter_mut().for_each(|world| world.advance(1));
+    let times = take_turns(worlds.len(), study.rounds, watch, |at| {
+        let (.., beam) = &beams[at];
+        let clock = Clock::start();
+        worlds[at].advance(steps(beam));
+        clock.seconds() / (steps(beam) as f64 * beam.step)
+    })?;
+    let timed = beams.into_iter().zip(times).map(|((model, across, beam), times)| Timed {
+        model,
+        across,
+        elements: beam.bar.body.elements.len(),
+        across_length: beam.deflection,
+        error: (beam.deflection / reference - 1.0).abs(),
+        step: beam.step,
+        time: Spread::of(times),
+    });
+    Some(Results { study: study.clone(), reference, timed: timed.collect() })
+}
+
+/// The beam with a model.
+struct Beam {
+    bar: Bar,
+    model: Arc<dyn ElasticModel>,
+    held: Grip,
+    step: f64,
+    /// Of its end under the load, over its length.
+    deflection: f64,
+}
+
+impl Beam {
+    /// A beam of cells across its depth and width; `None` if the model does not take it or has no balance.
+    fn new(model: &Model, [deep, wide]: [u32; 2]) -> Option<Self> {
+        /// Parts of the load, each from the balance before.
+        const PARTS: u32 = 2;
+        let side = DEPTH / f64::from(deep);
+        let bar = Bar::new(model.elements, [deep, wide, SLENDERNESS * deep], side, DENSITY);
+        let (mut made, is) = bar.model(model, MATERIAL)?;
+        if model.kind == Kind::Springs {
+            // Springs with which the beam, when it is pulled, has the modulus of the material.
+            let material = Material { young: MATERIAL.young * MATERIAL.young / is.young, ..MATERIAL };
+            made = bar.model(model, material)?.0;
+        }
+        let load = LOAD * bar.rigidity(MATERIAL) / (bar.length * bar.length);
+        let mut position = bar.body.rest.clone();
+        for part in 1..=PARTS {
+            position = bar.bent(made.as_ref(), load * f64::from(part) / f64::from(PARTS), &position)?;
+        }
+        let nodes = bar.held().iter().map(|&node| node as u32).collect();
+        let held = Grip { nodes, from: 0.0, until: f64::INFINITY, motion: Motion::Still };
+        let stability = Stability::of(&bar.body, made.as_ref(), INTEGRATOR, std::slice::from_ref(&held), f64::INFINITY);
+        let (step, deflection) = (Stability::SHARE * stability.largest, bar.tip(&position).x / bar.length);
+        Some(Self { bar, model: made, held, step, deflection })
+    }
+
+    /// The beam as it begins to hang, by its own weight in place of the load, which changes no time.
+    fn world(&self) -> World {
+        let around = Surroundings { gravity: DVec3::X, grips: vec![self.held.clone()], ..Surroundings::default() };
+        let start = State::at_rest(self.bar.body.rest.clone());
+        World::new(&self.bar.body, start, self.model.as_ref(), around, Stepping::new(INTEGRATOR, self.step))
+    }
+}
+
+impl Results {
+    /// The results as text.
+    fn text(&self) -> String {
+        let mut text = format!(
+            "# A beam: error against time\n\n\
+            A cantilever, {SLENDERNESS} times as long as deep and as wide as deep, of N×N×{SLENDERNESS}N cells, bends under a load on its end \
+            with P L²/EI = {LOAD} (ν = 0). The error is that of its deflection at rest, beside {:.4} of the length, which corotational \
+            hexahedra of {} and {} cells across have in the limit. Times are of a simulated second, with half of the largest stable step \
+            and semi-implicit Euler: {} time of one thread on {}, medians of {} turns. The beam is {} mm deep, with E = {} MPa and {DENSITY} \
+            kg/m³. Springs have the stiffness with which the beam, when it is pulled, has this E. Other machines give other times.\n\n\
+            ## Which model to take\n\n\
+            The fastest of the runs in the table below for an error that no run of its model with more cells exceeds.\n\n",
+            self.reference,
+            self.study.fine[0],
+            self.study.fine[1],
+            kind_of_time(),
+            machine(),
+            self.study.rounds,
+            1e3 * DEPTH,
+            1e-6 * MATERIAL.young,
+        );
+        let rows = WANTED.into_iter().filter_map(|wanted| {
+            let named =
+                |one: &Timed| format!("`{}`, {}, N = {}", one.model.name, one.model.elements.name(false), one.across);
+            let fastest = |of: &dyn Fn(&Timed) -> bool| {
+                let good = self.timed.iter().filter(|one| of(one) && self.from(one).all(|finer| finer.error <= wanted));
+                good.min_by(|one, other| one.time.median.total_cmp(&other.time.median))
+            };
+            let shown = |one: Option<&Timed>| -> [Cell; 2] {
+                let words = one
+                    .map_or_else(|| ["–".to_owned(), String::new()], |one| [named(one), figure(1e3 * one.time.median)]);
+                words.map(Cell::from)
+            };
+            let [best, time] = shown(Some(fastest(&|_| true)?));
+            let [elements, of_elements] = shown(fastest(&|one| !one.model.name.starts_with("shape-based")));
+            let error = format!("{} %", 100.0 * wanted);
+            Some([
+                ("error", error.into()),
+                ("fastest", best),
+                ("ms", time),
+                ("without the shape model", elements),
+                ("ms ", of_elements),
+            ])
+        });
+        text += &Table::of(rows).markdown(2);
+        text += "\n## All runs\n\n";
+        let row = |one: &Timed| {
+            [
+                ("model", format!("`{}`", one.model.name).into()),
+                ("elements", one.model.elements.name(false).into()),
+                ("N", one.across.into()),
+                ("number", one.elements.into()),
+                ("error", format!("{:.1} %", 100.0 * one.error).into()),
+                ("ΔT (µs)", figure(1e6 * one.step).into()),
+                ("time of 1 s (ms)", figure(1e3 * one.time.median).into()),
+            ]
+        };
+        text += &Table::of(self.timed.iter().map(row)).markdown(2);
+        text += "\nLinear elements do not turn with the beam: where their error is small, too stiff cells and too small a resistance cancel, and it \
+            grows again with finer cells. Neo-Hookean elements are another material where strains are large: their limit differs a \
+            little. Springs are no material, and neither is the shape model on the irregular ones of its tetrahedra: each has a limit of \
+            its own.\n";
+        text
+    }
+
+    /// A run, and those of its model with more cells.
+    fn from<'a>(&'a self, one: &'a Timed) -> impl Iterator<Item = &'a Timed> {
+        self.timed.iter().filter(|other| other.model == one.model && other.across >= one.across)
+    }
+
+    /// All numbers, with all digits.
+    fn table(&self) -> Table {
+        Table::of(self.timed.iter().map(|one| {
+            [
+                ("model", one.model.name.into()),
+                ("elements", one.model.elements.name(false).into()),
+                ("cells_across", one.across.into()),
+                ("number", one.elements.into()),
+                ("deflection_over_length", one.across_length.into()),
+                ("error", one.error.into()),
+                ("step_s", one.step.into()),
+                ("s_median", one.time.median.into()),
+                ("s_lower", one.time.lower.into()),
+                ("s_upper", one.time.upper.into()),
+                ("s_least", one.time.least.into()),
+            ]
+        }))
+    }
+
+    /// Errors against times.
+    #[cfg(feature = "render")]
+    fn page(&self) -> crate::page::Page {
+        use crate::page::{Contents, Line, Page, Plot};
+        let plot = |elements: Elements| {
+            let line = |model: &Model| {
+                let of_model = self.timed.iter().filter(|one| one.model == *model);
+                Line {
+                    name: model.name.to_owned(),
+                    family: model.family,
+                    is_strong: model.name == MENDED,
+                    points: of_model.map(|one| [1e3 * one.time.median, one.error]).collect(),
+                }
+            };
+            Plot {
+                name: elements.name(false).to_owned(),
+                axes: ["time of a simulated second (ms)".to_owned(), "error of the deflection".to_owned()],
+                curves: MODELS.iter().filter(|model| model.elements == elements).map(line).collect(),
+                slopes: None,
+            }
+        };
+        Page {
+            title: "A beam: error against time".to_owned(),
+            caption: vec![
+                format!(
+                    "Each dot is a bar of N×N×{SLENDERNESS}N cells, N from 1, under a load with P L²/EI = {LOAD}; ν = 0."
+                ),
+                format!("Times on one thread of {}.", machine()),
+            ],
+            columns: 2,
+            contents: Contents::Plots(Elements::ALL.map(plot).into()),
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/inside/beam_time.rs"]
+mod tests;

@@ -1,0 +1,61 @@
+//! Beams of few cells, with numbers of an independent implementation, of closed forms and of the page in the documentation.
+
+use super::*;
+use crate::reading::{documented, markdown_rows};
+
+const PAGE: &str = include_str!("../../../docs/material/beam.md");
+
+/// The row of a model in a page.
+fn row(page: &str, name: &str, elements: &str) -> Vec<String> {
+    let rows = markdown_rows(page);
+    let found = rows.into_iter().find(|row| row[0] == name && row[1] == elements);
+    found.unwrap_or_else(|| panic!("no row {name}, {elements}"))
+}
+
+#[test]
+fn bars_bend_as_was_computed_independently_and_as_the_page_says() {
+    let study = Beam { across: vec![1, 2], along: 32, bent: &MODELS[2..3] };
+    let results = measure(&study, &|_| true).expect("nobody stops it");
+    assert_eq!(study.work(), (results.tips.len() + results.bent.len()) as u64 + 1);
+    let shape = [0.3367, 0.6676, 0.8185, 0.8890, 0.9474];
+    let finite_elements = [0.6656, 0.8875, 0.9466, 0.9692, 0.9861];
+    let expected =
+        [("`shape-based`", shape), ("`shape-based, bending 1/2`", finite_elements), ("`linear`", finite_elements)];
+    let text = results.text();
+    for (name, expected) in expected {
+        let shown = row(PAGE, name, "hexahedra");
+        for (cells, expected) in [1, 2, 3, 4, 6].into_iter().zip(expected) {
+            let found: f64 = shown[1 + cells].parse().expect("a number");
+            assert!((found - expected).abs() < 1.5e-4, "{name}, {cells} cells: {found} instead of {expected}");
+        }
+    }
+    for model in &MODELS {
+        let (name, elements) = (format!("`{}`", model.name), model.elements.name(false));
+        assert_eq!(row(&text, &name, elements)[2..], row(PAGE, &name, elements)[2..4], "{name} of {elements}");
+    }
+    let end = results.bent[0].ends.iter().zip(MATTIASSON);
+    for (end, (load, printed)) in end {
+        let (end, exact) = (end.expect("a balance"), elastica(load));
+        for axis in [0, 1] {
+            assert!(
+                (exact[axis] - printed[axis]).abs() < 0.6e-5,
+                "{load}: {} instead of {}",
+                exact[axis],
+                printed[axis]
+            );
+            assert!((end[axis] / exact[axis] - 1.0).abs() < 0.01, "{load}: {} instead of {}", end[axis], exact[axis]);
+        }
+    }
+    for wave in &results.waves {
+        assert!(wave.error < 1e-9, "{wave:?}");
+    }
+    assert_eq!(results.table().heads, documented("beam.csv"));
+    assert_eq!(results.elastica_table().heads, documented("beam-elastica.csv"));
+    assert_eq!(results.waves_table().heads, documented("beam-waves.csv"));
+}
+
+#[test]
+fn it_stops_when_it_is_told() {
+    let study = Beam { across: vec![1], along: 2, bent: &[] };
+    assert_eq!(measure(&study, &|_| false), None);
+}
