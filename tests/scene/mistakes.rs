@@ -286,6 +286,14 @@ fn keys_that_exclude_or_need_each_other() {
     }
     let passes = SPACE.replace("1e4 }", "1e4, passes = 2 }");
     case(&passes, "duration = 3", &method("runge-kutta"), "4:14 a fixed number of passes gives forces that depend");
+    let tetrahedron = "nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]\nelements = [[0, 1, 2, 3]]\nmass = 1";
+    let lattice = SPACE.replace("'shape-based', stiffness", "'metric', young");
+    case(
+        &lattice,
+        "lattice = { cells = [1, 1, 1], side = 0.1 }",
+        tetrahedron,
+        "10:18 element 0 has 4 nodes and is no cell of a lattice",
+    );
     case(SPACE, "1e4 }", "1e4, passes = 2, rotation = 'robust' }", "8:59 without; take it out");
     case(SPACE, "[[run]]", "masses = [1, 2]\n[[run]]", "6:1 `body.masses` needs `nodes`");
     case(

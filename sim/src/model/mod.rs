@@ -11,6 +11,7 @@ pub mod corotational;
 pub mod limited_springs;
 pub mod linear;
 pub mod mass_spring;
+pub mod metric;
 pub mod neo_hookean;
 pub mod shape_based;
 pub mod volume_springs;
@@ -80,6 +81,8 @@ models! {
     Corotational => corotational,
     /// Finite elements of a stable neo-Hookean material, for large deformations. Of the same elements.
     NeoHookean => neo_hookean,
+    /// Elastically deformable models: the energy of a changed metric, on lattices (paper, Ref. 1).
+    Metric => metric,
 }
 
 impl ModelParameters {

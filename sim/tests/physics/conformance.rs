@@ -7,6 +7,7 @@ use glam::DVec3;
 use localshape_sim::geometry::volumes_at_rest;
 use localshape_sim::model::limited_springs::LimitedSprings;
 use localshape_sim::model::mass_spring::MassSpring;
+use localshape_sim::model::metric::Metric;
 use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape_sim::model::volume_springs::VolumeSprings;
 use localshape_sim::model::{ElasticModel, ModelParameters, continuum, corotational, linear, neo_hookean};
@@ -83,6 +84,11 @@ pub(crate) fn cases(body: &Body, damping: f64) -> Vec<Case> {
     all.extend([0.3, 1.0].map(|limit| sound(Box::new(LimitedSprings { springs: springs.clone(), limit }))));
     if volumes_at_rest(body).iter().any(|&volume| volume > 0.0) {
         all.push(sound(Box::new(VolumeSprings { springs, bulk: 3.0 * STIFFNESS })));
+    }
+    // A metric is measured along the edges of cells.
+    for poisson in [0.0, 0.3] {
+        let material = Material { young: STIFFNESS, poisson };
+        all.extend(Metric::new(body, material, damping).ok().map(|metric| sound(Box::new(metric))));
     }
     if damping == 0.0 {
         all.push(sound(Box::new(Rods { stiffness: STIFFNESS })));
@@ -547,8 +553,16 @@ fn every_model_is_in_the_suite() {
     let schema = schemars::schema_for!(ModelParameters).to_value();
     let variants = schema["oneOf"].as_array().expect("models to choose from");
     let named: Vec<_> = variants.iter().map(|model| &model["properties"]["kind"]["const"]).collect();
-    let expected =
-        ["shape-based", "mass-spring", "limited-springs", "volume-springs", "linear", "corotational", "neo-hookean"];
+    let expected = [
+        "shape-based",
+        "mass-spring",
+        "limited-springs",
+        "volume-springs",
+        "linear",
+        "corotational",
+        "neo-hookean",
+        "metric",
+    ];
     assert_eq!(named, expected, "add the model to `cases`, then here");
 }
 

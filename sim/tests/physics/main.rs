@@ -15,6 +15,7 @@ mod grips;
 mod integrators;
 mod masses;
 mod material;
+mod metric;
 mod own_method;
 mod parts;
 mod readings;
