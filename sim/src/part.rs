@@ -5,7 +5,7 @@ use super::broken::Broken;
 use super::diagnose::Diagnose;
 #[cfg(doc)]
 use super::diagnostics::Diagnostics;
-use super::model::ForceModel;
+use super::model::{ForceModel, Projection};
 use super::state::Nodes;
 use std::ops::Range;
 use std::sync::Arc;
@@ -18,6 +18,8 @@ pub(crate) struct Part {
     pub body: Arc<Body>,
     /// The forces of its model.
     pub forces: Box<dyn ForceModel>,
+    /// What moves its nodes in place of the forces, if its model does so.
+    pub(super) projection: Option<Box<dyn Projection>>,
     /// The range of its nodes.
     pub nodes: Range<usize>,
     /// The range of its model's memory in [`Memory::model`](super::state::Memory::model).

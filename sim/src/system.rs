@@ -63,7 +63,7 @@ impl System {
     }
 
     /// Gravity, then the elastic models' Eq. (1) or Eq. (4): writes the force on each node (N), and the models' `next`
-    /// memory.
+    /// memory. Models that project positions exert none.
     pub(super) fn forces(
         &self,
         at: Nodes<'_>,
@@ -75,10 +75,36 @@ impl System {
         for (force, &mass) in forces.iter_mut().zip(&self.mass) {
             *force = self.gravity * mass;
         }
-        for part in &self.parts {
+        for part in self.parts.iter().filter(|part| part.projection.is_none()) {
             let (memory, next) = (&memory[part.memory.clone()], &mut next[part.memory.clone()]);
             part.forces.add_forces(part.nodes_of(at), memory, next, scratch, &mut forces[part.nodes.clone()]);
         }
+    }
+
+    /// Lets models project the positions of their nodes in a step, of which `next` has the free end, and writes their velocities and
+    /// memory. Returns whether one does.
+    pub(super) fn project(&self, interval: Interval, state: &State, next: &mut State) -> bool {
+        if self.parts.iter().all(|part| part.projection.is_none()) {
+            return false;
+        }
+        self.place_held(interval, 1.0, next);
+        let mut inverse_mass: Vec<f64> = self.mass.iter().map(|mass| mass.recip()).collect();
+        self.for_each_held(interval, next, |node| inverse_mass[node] = 0.0);
+        for part in &self.parts {
+            let Some(projection) = &part.projection else { continue };
+            let (memory, nodes) = (part.memory.clone(), part.nodes.clone());
+            projection.project(
+                &mut next.position[nodes.clone()],
+                &inverse_mass[nodes.clone()],
+                interval.step,
+                &state.memory.model[memory.clone()],
+                &mut next.memory.model[memory],
+            );
+            for node in nodes {
+                next.velocity[node] = (next.position[node] - state.position[node]) / interval.step;
+            }
+        }
+        true
     }
 
     /// Whether a grip becomes active at the beginning of the step after `steps` steps.

@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// The method and step of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stepping {
-    /// The integration method.
+    /// The integration method, unless a model [moves its nodes itself](ElasticModel::projection).
     pub integrator: Integrator,
     /// Time step ΔT (s).
     pub step: f64,
@@ -47,8 +47,8 @@ impl Stepping {
 #[serde(rename_all = "kebab-case")]
 pub enum Kernel {
     /// Vectorised, with the same bits on every machine and for any number of threads. All models have it but the shape-based ones with
-    /// `rotation = "vector-length"` or `"linear-update"`, and with `"arctangent"` together with `bending` or `poisson`. Several bodies
-    /// move together, so that it needs such a model for each of them.
+    /// `rotation = "vector-length"` or `"linear-update"`, and with `"arctangent"` together with `bending` or `poisson`, and `xpbd`. Several
+    /// bodies move together, so that it needs such a model for each of them.
     #[default]
     Fast,
     /// The reference code, written like the equations of the paper. All models have it.
@@ -133,6 +133,9 @@ impl World {
             state.memory.constraints.extend(memory);
         }
         let Stepping { integrator, step, tolerance, kernel } = stepping;
+        let projections: Vec<_> = bodies.iter().map(|(body, model)| model.projection(body)).collect();
+        let is_projected = projections.iter().any(Option::is_some);
+        let integrator = if is_projected { Integrator::SemiImplicitEuler } else { integrator };
         let scheme = Scheme::of(integrator).filter(|_| kernel == Kernel::Fast);
         let kernels = scheme.and_then(|scheme| {
             let kernels = ByKernel::compile(bodies, scheme, surroundings.gravity, step)?;
@@ -141,7 +144,7 @@ impl World {
         let (mut parts, mut limit) = (Vec::new(), None::<SpeedLimit>);
         let (mut first_node, mut mass) = (0, Vec::with_capacity(nodes));
         let mut scales = Scales { length: 0.0, time: f64::INFINITY };
-        for (number, (body, model)) in bodies.iter().enumerate() {
+        for (number, ((body, model), projection)) in bodies.iter().zip(projections).enumerate() {
             let forces = model.prepare(body);
             let nodes = first_node..first_node + body.len();
             let start = model.start(body, &state.position[nodes.clone()]);
@@ -152,7 +155,8 @@ impl World {
             let diagnose = Diagnose::new(body);
             let (breaks, springs) = (Broken::new(*model, body), model.springs().len());
             let own = Arc::clone(body);
-            let part = Part { number, body: own, forces, nodes, memory, counts_global, breaks, springs, diagnose };
+            let part =
+                Part { number, body: own, forces, projection, nodes, memory, counts_global, breaks, springs, diagnose };
             let period = model.shortest_period(body);
             let own = SpeedLimit::new(body, part.nodes_of(state.nodes()), period, &surroundings, step);
             scales.length = scales.length.max(body.extent());
@@ -196,8 +200,10 @@ impl World {
         Self { dynamics: Box::new(ByRecording::new(recording, self.dynamics)), ..self }
     }
 
-    /// Takes steps by a method of another crate from now on, with forces of the reference code.
+    /// Takes steps by a method of another crate from now on, with forces of the reference code, also of models that move their nodes
+    /// themselves otherwise.
     pub fn set_method(&mut self, method: Box<dyn Method>) {
+        self.system.parts.iter_mut().for_each(|part| part.projection = None);
         self.settle();
         self.state.memory.integrator.clear();
         self.dynamics = Box::new(ByForces::new(method, &self.state));

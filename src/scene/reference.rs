@@ -65,8 +65,11 @@ impl<'s> Reference<'s> {
             self.text += &format!("\n**`{tag} = \"{name}\"`**: {}\n", description(kind));
             self.keys(kind, path, |key, value| key != tag && !shared(key, value));
         }
-        self.text += &format!("\nKeys of every `{tag}`:\n");
-        self.keys(first, path, shared);
+        let mut properties = first["properties"].as_object().into_iter().flatten();
+        if properties.any(|(key, value)| shared(key, value)) {
+            self.text += &format!("\nKeys of every `{tag}`:\n");
+            self.keys(first, path, shared);
+        }
     }
 
     /// The selected keys of a table, as a list.

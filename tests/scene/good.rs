@@ -324,3 +324,14 @@ fn a_summary_says_what_a_scene_holds() {
     assert_eq!(json["runs"][1]["name"], "Mass-spring");
     assert_eq!(json["gravity"], serde_json::json!([0.0, -9.8]));
 }
+
+/// `step = "auto"` of a model that is stable with any step takes twenty steps in a frame of a sixtieth of a second.
+#[test]
+fn a_model_that_steps_itself_takes_a_step_that_does_not_depend_on_its_stiffness() {
+    let with = |stiffness: &str| {
+        let text = WORLD.replace("shape-based", "xpbd").replace("duration = 1", "duration = 1\nstep = 'auto'");
+        let body = "[body]\nlattice = { cells = [1, 1, 1], side = 0.1 }\n";
+        good(&format!("{}{body}", text.replace("1e4", stiffness))).runs[0].step
+    };
+    assert_eq!([with("1"), with("1e12")], [1.0 / 1200.0; 2]);
+}

@@ -286,6 +286,13 @@ fn keys_that_exclude_or_need_each_other() {
     }
     let passes = SPACE.replace("1e4 }", "1e4, passes = 2 }");
     case(&passes, "duration = 3", &method("runge-kutta"), "4:14 a fixed number of passes gives forces that depend");
+    let projected = SPACE.replace("shape-based", "xpbd");
+    case(
+        &projected,
+        "duration = 3",
+        &method("velocity-verlet"),
+        "4:14 \"velocity-verlet\" cannot step a model such as `xpbd`, which",
+    );
     let tetrahedron = "nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]\nelements = [[0, 1, 2, 3]]\nmass = 1";
     let lattice = SPACE.replace("'shape-based', stiffness", "'metric', young");
     case(

@@ -18,9 +18,10 @@ use self::explicit_euler::ExplicitEuler;
 use self::runge_kutta::RungeKutta;
 use self::semi_implicit_euler::SemiImplicitEuler;
 use self::velocity_verlet::VelocityVerlet;
+use super::body::Body;
 use super::crew::Crew;
 use super::dynamics::{Dynamics, SpeedLimit};
-use super::model::{ForceModel, Scratch};
+use super::model::{ElasticModel, Scratch};
 pub use super::motion::Interval;
 pub use super::state::Runaway;
 use super::state::{Nodes, State};
@@ -28,6 +29,7 @@ use super::system::System;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// The integrator, which advances positions and velocities by a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -70,11 +72,20 @@ impl Integrator {
     }
 
     /// Why this method cannot advance a model, and which method can; `None` if it can.
-    pub fn refusal(self, forces: impl FnOnce() -> Box<dyn ForceModel>) -> Option<&'static str> {
-        if matches!(self, Self::SemiImplicitEuler | Self::ExplicitEuler | Self::VelocityVerlet) {
+    pub fn refusal(self, model: &dyn ElasticModel, body: &Arc<Body>) -> Option<&'static str> {
+        if self == Self::SemiImplicitEuler {
             return None;
         }
-        let forces = forces();
+        if model.projection(body).is_some() {
+            return Some(
+                "cannot step a model such as `xpbd`, which moves its nodes itself, by constraints in place of forces; use \
+                 \"semi-implicit-euler\" for it",
+            );
+        }
+        if matches!(self, Self::ExplicitEuler | Self::VelocityVerlet) {
+            return None;
+        }
+        let forces = model.prepare(body);
         match self {
             _ if forces.depends_on_history() => Some(
                 "evaluates forces several times a step, but a fixed number of passes gives forces that depend on the \

@@ -15,6 +15,7 @@ pub mod metric;
 pub mod neo_hookean;
 pub mod shape_based;
 pub mod volume_springs;
+pub mod xpbd;
 
 use super::body::Body;
 use super::element::Dimension;
@@ -83,6 +84,9 @@ models! {
     NeoHookean => neo_hookean,
     /// Elastically deformable models: the energy of a changed metric, on lattices (paper, Ref. 1).
     Metric => metric,
+    /// Extended position-based dynamics, with the shape of each element as a constraint. It steps itself, stably with any step, and damps what a
+    /// step does not resolve: a body with the angular velocity `ω` (rad/s) loses the part `ω² ΔT` of its angular momentum each second.
+    Xpbd => xpbd,
 }
 
 impl ModelParameters {
@@ -191,6 +195,14 @@ pub trait ElasticModel: Debug + Send + Sync {
         None
     }
 
+    /// The constraints on positions by which the model moves the nodes of a body itself, in place of forces; `None` for a model that exerts
+    /// forces. A world then steps all its bodies by semi-implicit Euler, with the projections at the end, whatever its integrator. The forces
+    /// that the model [prepares](Self::prepare) are those of the energy of the constraints.
+    fn projection(&self, body: &Arc<Body>) -> Option<Box<dyn Projection>> {
+        let _ = body;
+        None
+    }
+
     /// This model with its rotations computed by another method; `None` for a model without that choice on a body.
     #[doc(hidden)]
     fn with_rotation(&self, body: &Body, rotation: RotationReading) -> Option<Arc<dyn ElasticModel>> {
@@ -250,6 +262,13 @@ pub trait ForceModel: Send + Sync {
         let _ = (position, memory);
         Vec::new()
     }
+}
+
+/// Constraints on the nodes of a body, as a pure function of positions and memory. They move nodes in place of forces.
+pub trait Projection: Send + Sync {
+    /// Moves nodes that have gone freely for a step (s), each by at most what constraints demand in it, from `position` (m) to the end of
+    /// the step. `inverse_mass` (1/kg) is zero for nodes that a kinematic constraint holds. Writes every entry of the `next` memory of the model.
+    fn project(&self, position: &mut [DVec3], inverse_mass: &[f64], step: f64, memory: &[f64], next: &mut [f64]);
 }
 
 /// Forces that are prepared at their first use. Vectorised steps need none, and forces of large bodies take several times the

@@ -10,6 +10,7 @@ use localshape_sim::model::mass_spring::MassSpring;
 use localshape_sim::model::metric::Metric;
 use localshape_sim::model::shape_based::{DampingReading, RotationReading, ShapeBased};
 use localshape_sim::model::volume_springs::VolumeSprings;
+use localshape_sim::model::xpbd::Xpbd;
 use localshape_sim::model::{ElasticModel, ModelParameters, continuum, corotational, linear, neo_hookean};
 use localshape_sim::{
     Body, Dimension, ElementKind, IndexLists, Integrator, Kernel, Material, Solids, Springs, State, Stepping,
@@ -91,6 +92,7 @@ pub(crate) fn cases(body: &Body, damping: f64) -> Vec<Case> {
         all.extend(Metric::new(body, material, damping).ok().map(|metric| sound(Box::new(metric))));
     }
     if damping == 0.0 {
+        all.push(sound(Box::new(Xpbd::new(ShapeBased { bending: 0.5, ..exact.clone() }))));
         all.push(sound(Box::new(Rods { stiffness: STIFFNESS })));
     }
     if is_continuum(body) {
@@ -562,6 +564,7 @@ fn every_model_is_in_the_suite() {
         "corotational",
         "neo-hookean",
         "metric",
+        "xpbd",
     ];
     assert_eq!(named, expected, "add the model to `cases`, then here");
 }

@@ -78,7 +78,7 @@ pub(in crate::scene) struct TimeFile {
     /// Time step ΔT: seconds, a fraction of the cycle T such as `"T/50"` or `"0.02 T"`, or `"auto"`. T = 2π√(m/k), with
     /// the mass of the lightest node and the largest stiffness of all bodies and runs. `"auto"` takes equal steps between two
     /// frames, at most half of the largest step that is predicted to be stable for every run without a step of its own.
-    /// `localshape check` prints that prediction.
+    /// `localshape check` prints that prediction. `xpbd`, stable with any step, takes at most 1/1200 s.
     #[schemars(extend("default" = "T/50"))]
     pub(in crate::scene) step: Option<StepFile>,
     /// The error allowed in each step of `integrator = "dormand-prince"`, as a share of the size of the body, in place

@@ -191,7 +191,7 @@ pub(super) fn resolve<'a>(
             report.at(path, message, help);
             return None;
         }
-        let refusal = parts.iter().find_map(|(model, body)| integrator.refusal(|| model.prepare(body)));
+        let refusal = parts.iter().find_map(|(model, body)| integrator.refusal(model, body));
         if let Some(reason) = refusal {
             let path = match run.integrator {
                 Some(_) => key_path!["run", at, "integrator"].to_vec(),
@@ -210,7 +210,7 @@ pub(super) fn resolve<'a>(
             let slow = slow.filter(|_| parts.of.len() > 1).and_then(|slow| bodies?.0.get(parts.of[slow]));
             let of = slow.map_or(String::new(), |body| format!(" of {}", body.in_words()));
             let message = format!(
-                "`run[{at}].kernel` is \"fast\", but this `integrator`, `model.rotation` or `model.damping_of`{of} has no vectorised steps"
+                "`run[{at}].kernel` is \"fast\", but this `integrator`, `model.kind` or `model.rotation`{of} has no vectorised steps"
             );
             report.at(&path, message, "remove it, or write \"reference\"");
             return None;
@@ -270,7 +270,10 @@ fn limits(typed: &[Option<RunFile>], time: &TimeFile, parts: &[Parts]) -> Vec<(f
         };
         let integrator = run.integrator.unwrap_or(time.integrator);
         let Parts { together, models, grips, .. } = parts;
-        Stability::of_all(&Stability::of_each(&together.bodies, models, integrator, grips, time.duration)).largest
+        let each = Stability::of_each(&together.bodies, models, integrator, grips, time.duration);
+        let largest = Stability::of_all(&each).largest;
+        let is_projected = parts.iter().any(|(model, body)| model.projection(body).is_some());
+        if is_projected { largest.min(Stability::PROJECTED / Stability::SHARE) } else { largest }
     };
     let limits: Vec<f64> = typed.iter().zip(parts).map(limit).collect();
     let mut limits: Vec<_> = limits.into_iter().zip(0..).collect();

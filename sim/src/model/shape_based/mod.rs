@@ -19,6 +19,7 @@
 
 mod affine;
 mod in_lanes;
+mod projection;
 
 use super::{ElasticModel, ForceModel, Late, Misfit, Ratio, Report, Scratch, Share, TypedModel, Vectorised, blocks};
 use crate::body::Body;
