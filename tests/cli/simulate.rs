@@ -281,10 +281,13 @@ fn everything_in_the_files_is_documented() {
         assert!(told.starts_with(&(first + &meaning[1..])), "{told} / {meaning}");
     }
 
-    // Several bodies, which diverge, have more arrays and keys.
+    // Several bodies, which diverge and could break, have more arrays and keys.
     place.write(
         "bodies.toml",
-        &crate::bodies::of_their_own().replace("step = 5e-4", "step = 0.05").replace("= 0.1\n", "= 10.0\n"),
+        &crate::bodies::of_their_own()
+            .replace("step = 5e-4", "step = 0.05")
+            .replace("= 0.1\n", "= 10.0\n")
+            .replace("stiffness = 1e4 }", "stiffness = 1e4, breaks_at = 1e9 }"),
     );
     place.run("simulate bodies.toml --states").too_large_steps();
     let general = |name: &str| {
