@@ -24,6 +24,8 @@
 //!
 //! The material softens under compression: squeezed to less than `1/√3` of its length, it pushes back less and less.
 
+#![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
+
 use super::{ElasticModel, ForceModel, Misfit, TypedModel, Vectorised};
 use crate::body::Body;
 use crate::element::{Dimension, ElementKind};
