@@ -13,7 +13,8 @@
 //! The constraints of an element: `C = √(Σ |r − R|²)` with `α = 1/k`, whose energy is that of [`shape_based`](super::shape_based) with
 //! its material and its `bending`; and with a Poisson's ratio `det F − 1` with `α = 1/λV`. Of one element of equal masses the first one alone
 //! is shape matching, `Δx = −s (r − R)` with `s = kΔT²/(m + kΔT²)` (M. Müller et al., Meshless Deformations Based on Shape Matching, SIGGRAPH
-//! 2005). Elements come one after the other, each from the positions that the one before has left, in one thread.
+//! 2005). Elements come one after the other, each from the positions that the one before has left, in one thread. Their order breaks the symmetry
+//! of a body by what a step does not resolve.
 //!
 //! A constraint pulls back by no more than to `C = 0`, which brings nodes nearer to every state without energy: stiff bodies do not diverge. In a
 //! step in which nodes fly much farther than an element one iteration takes back less than they have gained, and the steps after it take back
@@ -66,7 +67,7 @@ pub struct Parameters {
 /// The model with its parameters in SI units, checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Xpbd {
-    /// What the constraints are made from. Its damping takes no part.
+    /// What the constraints are made from, without damping and elements that break.
     shape: ShapeBased,
 }
 
@@ -91,9 +92,9 @@ impl TypedModel for Parameters {
 }
 
 impl Xpbd {
-    /// The constraints that have the energy of a shape model, without its damping.
+    /// The constraints that have the energy of a shape model, without its damping, and without elements that break.
     pub fn new(shape: ShapeBased) -> Self {
-        Self { shape: ShapeBased { damping: 0.0, ..shape } }
+        Self { shape: ShapeBased { damping: 0.0, breaks_at: None, ..shape } }
     }
 }
 

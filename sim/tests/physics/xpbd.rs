@@ -271,3 +271,16 @@ fn the_model_owns_its_step() {
     assert_eq!(run(Integrator::VelocityVerlet, Kernel::Fast), own);
     assert_eq!(run(Integrator::ExplicitEuler, Kernel::Reference), own);
 }
+
+/// A shape model whose elements break has the constraints of one whose elements do not.
+#[test]
+fn its_elements_do_not_break() {
+    let body = lattice(2, 0.1);
+    let run = |breaks_at| {
+        let model = Xpbd::new(ShapeBased { breaks_at, ..ShapeBased::new(1e3) });
+        let mut world = free(&body, shaken(&body, 0.04), &model, 1e-2);
+        world.advance(20);
+        world.state().clone()
+    };
+    assert_eq!(run(Some(1e-3)), run(None));
+}
