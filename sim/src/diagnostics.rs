@@ -198,6 +198,12 @@ pub enum Scope {
     Summaries,
 }
 
+/// Whether two values are equal, or both NaN.
+#[expect(clippy::eq_op, reason = "only NaN differs from itself")]
+fn is_same<T: PartialEq>(one: &T, other: &T) -> bool {
+    one == other || one != one && other != other
+}
+
 /// Defines a field of [`Diagnostics`] and a variant of [`Diagnostic`] for each entry. An entry has its meaning, with
 /// the unit in parentheses; its name in code, its key in files and its type; its name in captions; its unit; its
 /// [`Scope`]; and its formula, which can use the facts and the entries before it.
@@ -208,9 +214,16 @@ macro_rules! diagnostics {
     )+) => {
         /// Numbers that describe a state, in SI units; in the plane volumes are areas. A number that the model or the
         /// body does not have is NaN: the elastic energy, `residual`, `global_rotations` and `broken` of some models, the volume ratio of a cloth.
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+        /// Two that are both NaN are equal.
+        #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
         pub struct Diagnostics {
             $($(#[doc = $meaning])+ pub $key: $type,)+
+        }
+
+        impl PartialEq for Diagnostics {
+            fn eq(&self, other: &Self) -> bool {
+                $(is_same(&self.$key, &other.$key))&&+
+            }
         }
 
         impl Diagnostics {

@@ -23,7 +23,7 @@ pub struct Snapshot {
     pub flat: Vec<bool>,
     /// Whether each element is broken; empty if no model of the run breaks.
     pub broken: Vec<bool>,
-    /// Whether each spring is broken, body after body; empty if no model of the run breaks.
+    /// Whether each spring is broken, body after body; empty if no springs of the run break.
     pub broken_springs: Vec<bool>,
     /// The best rigid placement of the rest shape of each body.
     pub placements: Vec<Placement>,

@@ -447,9 +447,13 @@ impl World {
         let field = parts.flat_map(values).collect();
         let (mut broken, mut broken_springs) = (Vec::new(), Vec::new());
         if system.parts.iter().any(|part| part.breaks.is_some()) {
+            let springs_break = system.parts.iter().any(|part| part.breaks.is_some() && part.springs > 0);
             for (part, facts) in system.parts.iter().zip(&bodies) {
                 broken.extend(&facts.gone);
                 broken.resize(broken.len() + part.body.elements.len() - facts.gone.len(), false);
+                if !springs_break {
+                    continue;
+                }
                 let springs = part.broken_springs(&state.memory.model);
                 broken_springs.extend(&springs);
                 broken_springs.resize(broken_springs.len() + part.springs - springs.len(), false);

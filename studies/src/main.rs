@@ -51,7 +51,7 @@ Examples:
   localshape-study stability                   the largest stable steps in output/study-stability/
   localshape-study stress                      the robustness of models in output/study-stress/
   localshape-study beam                        how the models bend in output/study-beam/
-  localshape-study beam-time                   the error of a beam against time, with every model
+  localshape-study beam-time                   the error of a beam against time
   localshape-study table1 --orientations 200   Table 1 of the paper, from more starts
   localshape-study ratio --threads 4 -o four   the ratio of computation times on four threads
 
@@ -119,7 +119,7 @@ enum Name {
         #[command(flatten)]
         threads: Threads,
     },
-    /// The error of the end of one beam against the time of a simulated second, for every model and resolution
+    /// The error of the end of one beam against the time of a simulated second, by model and resolution
     BeamTime,
     /// Table 1 of the paper, the errors of the rotations from Eq. (15), beside ours
     Table1 {

@@ -100,7 +100,10 @@ impl<S: Stress> FiniteElements<S> {
             };
             if !is_taken {
                 let found = name(kind, nodes.len());
-                let message = format!("`{}` takes {taken}; element {at} is {found}", S::NAME);
+                let message = format!(
+                    "`{}` takes {taken}; element {at} is {found}; `shape-based` takes elements of every kind",
+                    S::NAME
+                );
                 return Err(Misfit { key: "kind", message });
             }
         }

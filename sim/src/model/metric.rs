@@ -159,10 +159,6 @@ impl ElasticModel for Metric {
         self.damping
     }
 
-    fn unusual_choices(&self, _: &Body) -> String {
-        if self.damping > 0.0 { " of deformation".into() } else { String::new() }
-    }
-
     fn vectorised(&self) -> Option<&dyn Vectorised> {
         Some(self)
     }

@@ -266,7 +266,7 @@ pub trait ForceModel: Send + Sync {
 
 /// Constraints on the nodes of a body, as a pure function of positions and memory. They move nodes in place of forces.
 pub trait Projection: Send + Sync {
-    /// Moves nodes that have gone freely for a step (s), each by at most what constraints demand in it, from `position` (m) to the end of
+    /// Moves nodes that have gone freely for a step (s), none by more than its constraints demand in that step, from `position` (m) to the end of
     /// the step. `inverse_mass` (1/kg) is zero for nodes that a kinematic constraint holds. Writes every entry of the `next` memory of the model.
     fn project(&self, position: &mut [DVec3], inverse_mass: &[f64], step: f64, memory: &[f64], next: &mut [f64]);
 }

@@ -39,7 +39,8 @@ pub(in crate::scene) fn range(
         (Some(least), _, _, Some(below)) => format!("{noun} from {least} to less than {below}"),
         (Some(least), ..) => format!("{noun} of at least {least}"),
         (None, _, Some(above), Some(below)) => format!("{noun} between {above} and {below}"),
-        (None, _, Some(above), None) => format!("{noun} greater than {above}"),
+        (None, Some(most), Some(above), None) => format!("{noun} greater than {above}, up to {most}"),
+        (None, None, Some(above), None) => format!("{noun} greater than {above}"),
         (None, Some(most), ..) => format!("{noun} of at most {most}"),
         _ => noun.into(),
     }
