@@ -117,7 +117,8 @@ fn with_whole_paths(texts: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").display().to_string();
     let whole = |text: Vec<u8>| {
         let text = String::from_utf8(text).expect("UTF-8").replace("../scenes", &scenes);
-        text.replace("file = \"", &format!("file = \"{scenes}/")).into_bytes()
+        let beside = |text: String, key: &str| text.replace(&format!("{key} = \""), &format!("{key} = \"{scenes}/"));
+        ["file", "states"].into_iter().fold(text, beside).into_bytes()
     };
     texts.into_iter().map(whole).collect()
 }
