@@ -1,7 +1,7 @@
 //! Finite elements: what the models of a continuum share.
 //!
 //! The places of an element are a map of its places at rest, with the gradient `F`. Its energy is `Σ w ψ(F)`, the sum of the energy density
-//! of a [material law](Stress) over points with weights, and the force on a node `−Σ w P ∇N`, with `P = ∂ψ/∂F` the first stress of Piola and
+//! of a material law over points with weights, and the force on a node `−Σ w P ∇N`, with `P = ∂ψ/∂F` the first stress of Piola and
 //! Kirchhoff and `∇N` the gradient at rest of the node's shape function. Triangles and tetrahedra have linear shape functions and one point.
 //! Quadrilaterals and hexahedra have bilinear and trilinear ones and the points of Gauss at `±1/√3` in each direction (T. Hughes, "The finite
 //! element method", 1987, chapter 3; O. Zienkiewicz, R. Taylor, "The finite element method", 5th ed. 2000, vol. 1, chapters 8 and 9; the
