@@ -109,6 +109,7 @@ impl Model {
 }
 
 impl Elements {
+    #[cfg(feature = "render")]
     const ALL: [Self; 2] = [Self::Cells, Self::Simplices];
 
     /// The name of the elements in space and in the plane.

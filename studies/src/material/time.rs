@@ -1,7 +1,9 @@
 //! Error against time: one beam with every model and resolution, the error of its end at rest, and the time of a simulated second.
 
 use super::bar::Bar;
-use super::{Elements, Kind, MENDED, MODELS, Model};
+#[cfg(feature = "render")]
+use super::{Elements, MENDED};
+use super::{Kind, MODELS, Model};
 use crate::folder::Notes;
 use crate::progress::Watch;
 use crate::spread::Spread;
