@@ -10,33 +10,10 @@
 
 #![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
 
-use super::continuum::{self, FiniteElements, Map, Stress, dot};
-use super::{ElasticModel, Lanes, Misfit, TypedModel};
-use crate::body::Body;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-use std::sync::Arc;
+use super::Lanes;
+use super::continuum::{Map, Stress, dot, parameters};
 
-/// The parameters of the model in a scene file.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(transparent)]
-pub struct Parameters(pub continuum::Parameters);
-
-impl Parameters {
-    /// The model for a body.
-    ///
-    /// # Errors
-    /// Parameters that contradict each other or do not fit the body.
-    pub fn model(&self, body: &Body) -> Result<Box<dyn ElasticModel>, Misfit> {
-        Ok(Box::new(FiniteElements::<Corotational>::new(&self.0, body)?))
-    }
-}
-
-impl TypedModel for Parameters {
-    fn resolve(&self, body: &Body, _: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
-        self.model(body).map(Arc::from)
-    }
-}
+parameters!(Corotational);
 
 /// Hooke's law for strains without rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]

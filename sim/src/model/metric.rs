@@ -26,7 +26,7 @@
 
 #![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
 
-use super::{ElasticModel, ForceModel, Misfit, TypedModel, Vectorised};
+use super::{ElasticModel, ForceModel, Misfit, TypedModel, Vectorised, continuum};
 use crate::body::Body;
 use crate::element::{Dimension, ElementKind};
 use crate::kernel::rotation::cross;
@@ -38,28 +38,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The parameters of the model in a scene file.
+/// The parameters of the model in a scene file: those of finite elements.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("not" = { "required": ["damping", "damping_ratio"] }))]
-pub struct Parameters {
-    /// Young's modulus of the material (Pa; N/m in the plane). Cycles and damping ratios have the elastic constant `k` of the shape model's
-    /// stiffest element for it.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub young: f64,
-    /// Poisson's ratio of the material. Default: 0.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 0.5))]
-    pub poisson: Option<f64>,
-    /// Damping constant of each element (N s/m). It leaves rigid motion alone. Default: 0. Not together with `damping_ratio`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0))]
-    pub damping: Option<f64>,
-    /// Damping as a ratio `ζ = D / 2√(km)`, with `m` the mass of the lightest node, as in `step = "T/50"`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0))]
-    pub damping_ratio: Option<f64>,
-}
+#[serde(transparent)]
+pub struct Parameters(pub continuum::Parameters);
 
 /// The model for a body, checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,19 +55,13 @@ pub struct Metric {
     moduli: [f64; 2],
 }
 
-impl Parameters {
-    /// A model of a material with this Young's modulus (Pa); the other parameters have their defaults.
-    pub fn of_material(young: f64) -> Self {
-        Self { young, ..Self::default() }
-    }
-}
-
 impl TypedModel for Parameters {
     fn resolve(&self, body: &Body, _springs: Option<&[[u32; 2]]>) -> Result<Arc<dyn ElasticModel>, Misfit> {
-        let material = Material { young: self.young, poisson: self.poisson.unwrap_or(0.0) };
+        let continuum::Parameters { young, poisson, damping, damping_ratio } = self.0;
+        let material = Material { young, poisson: poisson.unwrap_or(0.0) };
         let undamped = Metric::new(body, material, 0.0)?;
-        super::material(Some(self.young), self.poisson, body)?;
-        let damping = super::damping(self.damping, self.damping_ratio, undamped.stiffness, body)?;
+        super::material(Some(young), poisson, body)?;
+        let damping = super::damping(damping, damping_ratio, undamped.stiffness, body)?;
         Ok(Arc::new(Metric { damping, ..undamped }))
     }
 }

@@ -2,8 +2,8 @@
 
 use super::support::{Noise, Remembering, body, forces, lattice};
 use glam::{DMat3, DVec3};
-use localshape_sim::model::ModelParameters;
 use localshape_sim::model::metric::{Metric, Parameters};
+use localshape_sim::model::{ModelParameters, continuum};
 use localshape_sim::{Body, Dimension, IndexLists, Material, Solids, State};
 use std::sync::Arc;
 
@@ -146,7 +146,7 @@ fn bodies_that_are_no_lattices_are_refused_with_what_it_takes() {
         (body(Dimension::Plane, &dart, &[&[0, 1, 2, 3]]), "the edges of element 0 at node 2 span no"),
     ];
     for (body, expected) in cases {
-        let parameters = ModelParameters::from(Parameters::of_material(1e4));
+        let parameters = ModelParameters::from(Parameters(continuum::Parameters { young: 1e4, ..Default::default() }));
         let misfit = parameters.resolve(&body, None).expect_err("no lattice");
         assert!(misfit.message.contains(expected) && misfit.message.contains("`shape-based`"), "{misfit}");
     }
