@@ -335,3 +335,22 @@ fn a_model_that_steps_itself_takes_a_step_that_does_not_depend_on_its_stiffness(
     };
     assert_eq!([with("1"), with("1e12")], [1.0 / 60.0 / 20.0; 2]);
 }
+
+/// It holds the other runs that share the step of the scene to it, which is told.
+#[test]
+fn a_model_that_steps_itself_and_holds_other_runs_to_its_step_is_told() {
+    let world = WORLD.replace("duration = 1", "duration = 1\nstep = 'auto'").replace("1e4", "1e3");
+    let with = |model: &str, more: &str| {
+        let run = format!("[[run]]\nname = 'Own'\nmodel = {{ kind = '{model}', stiffness = 1e3 }}\n{more}\n");
+        good(&format!("{world}[body]\nlattice = {{ cells = [1, 1, 1], side = 0.1 }}\nmass = 1\n{run}"))
+    };
+    let held = with("xpbd", "");
+    assert_eq!([held.runs[0].step, held.runs[1].step], [1.0 / 60.0 / 20.0; 2]);
+    let [warning] = &held.warnings[..] else { panic!("{:?}", held.warnings) };
+    let message = "all runs take steps of 0.0008333 s, because of \"Own\"; the others would take 0.01667 s";
+    assert_eq!((warning.place.as_str(), warning.message.as_str()), ("time.step", message));
+    // Alone it holds no other.
+    let alone = with("xpbd", "step = 'auto'");
+    assert_eq!([alone.runs[0].step, alone.runs[1].step], [1.0 / 60.0, 1.0 / 60.0 / 20.0]);
+    assert_eq!((&alone.warnings[..], &with("shape-based", "").warnings[..]), (&[][..], &[][..]));
+}

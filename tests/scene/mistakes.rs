@@ -254,7 +254,8 @@ fn keys_that_exclude_or_need_each_other() {
     case(SPACE, "1e4 }", "1e4, damping = 1, damping_ratio = 1 }", "8:63 both `damping` and `damping_ratio`");
     let method = |to: &str| format!("duration = 3\nintegrator = '{to}'");
     let damped = SPACE.replace("1e4 }", "1e4, damping = 1 }");
-    case(&damped, "duration = 3", &method("pefrl"), "4:14 \"pefrl\" has substeps backwards in time");
+    let words = "9:9 \"pefrl\", which is `time.integrator`, has substeps backwards in time";
+    case(&damped, "duration = 3", &method("pefrl"), words);
     case(
         SPACE,
         "duration = 3",
@@ -285,13 +286,19 @@ fn keys_that_exclude_or_need_each_other() {
         case(SPACE, "duration = 3", &text, &format!("4:8 {words}"));
     }
     let passes = SPACE.replace("1e4 }", "1e4, passes = 2 }");
-    case(&passes, "duration = 3", &method("runge-kutta"), "4:14 a fixed number of passes gives forces that depend");
+    case(&passes, "duration = 3", &method("runge-kutta"), "9:9 a fixed number of passes gives forces that depend");
     let projected = SPACE.replace("shape-based", "xpbd");
     case(
         &projected,
         "duration = 3",
         &method("velocity-verlet"),
-        "4:14 \"velocity-verlet\" cannot step a model such as `xpbd`, which",
+        "9:9 \"velocity-verlet\", which is `time.integrator`, cannot step a model such as `xpbd`, which moves its nodes itself, by constraints",
+    );
+    case(
+        &projected,
+        "[[run]]",
+        "[[run]]\nintegrator = 'velocity-verlet'",
+        "7:14 \"velocity-verlet\" cannot step a model such as `xpbd`, which",
     );
     let tetrahedron = "nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]\nelements = [[0, 1, 2, 3]]\nmass = 1";
     let lattice = SPACE.replace("'shape-based', stiffness", "'metric', young");

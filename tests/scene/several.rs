@@ -97,6 +97,15 @@ fn masses_name_their_body() {
 }
 
 #[test]
+fn a_model_that_does_not_take_elements_names_their_body() {
+    let fan = PLANE.replace("lattice = { cells = [1, 1], side = 0.3 }", "fan = { sides = 5, radius = 1 }");
+    let metric = fan.replace("'shape-based', stiffness", "'metric', young");
+    expect(&bad(&metric), 0, "2:43 the body \"square\": element 0 has 3 nodes and is no cell of a lattice");
+    let one = metric.replace("name = 'Shape'", "name = 'Shape', bodies = ['square']");
+    expect(&bad(&one), 0, "2:64 element 0 has 3 nodes and is no cell of a lattice");
+}
+
+#[test]
 fn a_summary_has_a_line_for_each_body() {
     let runs = "run = [
         { name = 'Both', step = 'T/40', models = { bar = { kind = 'mass-spring', stiffness = 1e3 },

@@ -9,7 +9,7 @@ use crate::reading::words;
 use crate::scene::file::{RunFile, StepFile, TimeFile};
 use crate::scene::step::NamedStep;
 use crate::scene::{ALL_BODIES, Recorded, Run, Together};
-use crate::sim::model::ElasticModel;
+use crate::sim::model::{ElasticModel, Misfit};
 use crate::sim::stability::Stability;
 use crate::sim::{Body, Dimension, Grip, Integrator, Kernel};
 use std::collections::BTreeMap;
@@ -32,6 +32,11 @@ impl Parts {
     /// Each model with its body.
     fn iter(&self) -> impl Iterator<Item = (&dyn ElasticModel, &Arc<Body>)> {
         self.models.iter().map(|model| &**model).zip(self.together.bodies.bodies())
+    }
+
+    /// Whether a model moves its nodes itself.
+    fn is_projected(&self) -> bool {
+        self.iter().any(|(model, body)| model.projection(body).is_some())
     }
 
     /// The code that computes steps fastest.
@@ -101,11 +106,13 @@ fn parts(
             all.push(shown);
             continue;
         }
-        let resolved = of.iter().zip(models).map(|(&body, typed)| {
-            let ResolvedBody { body, springs, .. } = &bodies[body];
-            let model = typed.model.resolve(body, springs.as_deref());
-            let path = |key| key_path![typed.path; key];
-            model.map_err(|misfit| report.at(&path(misfit.key), misfit.message, None)).ok()
+        let resolved = of.iter().zip(models).map(|(&at, typed)| {
+            let ResolvedBody { body, springs, .. } = &bodies[at];
+            let misfit = |Misfit { key, message }| {
+                let of = if of.len() > 1 { format!("{}: ", bodies[at].in_words()) } else { String::new() };
+                report.at(&key_path![typed.path; key], of + &message, None);
+            };
+            typed.model.resolve(body, springs.as_deref()).map_err(misfit).ok()
         });
         // All misfits are reported.
         let models: Vec<_> = resolved.collect();
@@ -130,11 +137,13 @@ pub(super) fn resolve<'a>(
     let named = typed.iter().enumerate().map(|(at, run)| (key_path!["run", at].to_vec(), name(run)));
     check_names(["run", "runs"], named, report);
     // T depends on all models: without one of them, steps would be reported wrongly.
-    let bodies = around.bodies;
+    let (bodies, choices) = (around.bodies, around.choices);
     let (parts, own) = parts(typed, around, report)?;
     let periods = parts.iter().flat_map(Parts::iter).map(|(model, body)| model.shortest_period(body));
     let cycle = periods.fold(f64::INFINITY, f64::min);
-    let limits = limits(typed, time?, &parts);
+    let most = own_limits(typed, time?, &parts);
+    warn_of_held_steps(typed, time?, &parts, &most, report);
+    let limits = limits(most, &sharing(typed, time?));
     let mut runs = Vec::with_capacity(parts.len());
     for (at, (run, parts)) in typed.iter().zip(parts).enumerate() {
         let (run, time) = (run.as_ref()?, time?);
@@ -191,14 +200,17 @@ pub(super) fn resolve<'a>(
             report.at(path, message, help);
             return None;
         }
-        let refusal = parts.iter().find_map(|(model, body)| integrator.refusal(model, body));
-        if let Some(reason) = refusal {
-            let path = match run.integrator {
-                Some(_) => key_path!["run", at, "integrator"].to_vec(),
-                None => key_path!["time", "integrator"].to_vec(),
-            };
-            let message = format!("{} {reason}", words::quoted(&crate::reading::captions::typed(&integrator)));
-            report.at(&path, message, None);
+        let refusals = parts.iter().map(|(model, body)| integrator.refusal(model, body)).enumerate();
+        if let Some((body, reason)) = refusals.into_iter().find_map(|(body, reason)| Some((body, reason?))) {
+            let name = words::quoted(&crate::reading::captions::typed(&integrator));
+            // The integrator of the scene suits other runs.
+            match (run.integrator, &choices[at]) {
+                (None, Some(choice)) => {
+                    let message = format!("{name}, which is `time.integrator`, {reason}");
+                    report.at(&choice.models[body].path, message, "or give this run an `integrator` of its own");
+                }
+                _ => report.at(&key_path!["run", at, "integrator"], format!("{name} {reason}"), None),
+            }
             return None;
         }
         let colour = run.colour.map(|colour| colour.0);
@@ -259,28 +271,63 @@ fn misplaced(
     is_typed.then(|| (path, message, format!("{remedy}, or write `integrator = \"dormand-prince\"`")))
 }
 
-/// The largest stable step (s) for each run with `step = "auto"`, and the run that limits it: the run itself, or among
-/// the runs that share the scene's step the one with the least.
-fn limits(typed: &[Option<RunFile>], time: &TimeFile, parts: &[Parts]) -> Vec<(f64, usize)> {
-    let is_auto = |step: &Option<StepFile>| matches!(step, Some(StepFile::Named(NamedStep::Auto)));
-    let takes_scenes = |run: &RunFile| run.step.is_none() && is_auto(&time.step);
-    let limit = |(run, parts): (&Option<RunFile>, &Parts)| {
-        let Some(run) = run.as_ref().filter(|run| is_auto(&run.step) || takes_scenes(run)) else {
+fn is_auto(step: &Option<StepFile>) -> bool {
+    matches!(step, Some(StepFile::Named(NamedStep::Auto)))
+}
+
+/// The runs that share `step = "auto"` of the scene.
+fn sharing(typed: &[Option<RunFile>], time: &TimeFile) -> Vec<usize> {
+    let shares = |run: &RunFile| run.step.is_none() && is_auto(&time.step);
+    (0..typed.len()).filter(|&at| typed[at].as_ref().is_some_and(shares)).collect()
+}
+
+/// The largest step (s) for each run with `step = "auto"`, infinite for others: the largest stable one, or for a model that moves its
+/// nodes itself the one that is taken.
+fn own_limits(typed: &[Option<RunFile>], time: &TimeFile, parts: &[Parts]) -> Vec<f64> {
+    let sharing = sharing(typed, time);
+    let limit = |(at, (run, parts)): (usize, (&Option<RunFile>, &Parts))| {
+        let Some(run) = run.as_ref().filter(|run| is_auto(&run.step) || sharing.contains(&at)) else {
             return f64::INFINITY;
         };
         let integrator = run.integrator.unwrap_or(time.integrator);
         let Parts { together, models, grips, .. } = parts;
         let each = Stability::of_each(&together.bodies, models, integrator, grips, time.duration);
         let largest = Stability::of_all(&each).largest;
-        let is_projected = parts.iter().any(|(model, body)| model.projection(body).is_some());
-        if is_projected { largest.min(Stability::PROJECTED / Stability::SHARE) } else { largest }
+        if parts.is_projected() { largest.min(Stability::PROJECTED / Stability::SHARE) } else { largest }
     };
-    let limits: Vec<f64> = typed.iter().zip(parts).map(limit).collect();
-    let mut limits: Vec<_> = limits.into_iter().zip(0..).collect();
-    let takers: Vec<_> = (0..limits.len()).filter(|&at| typed[at].as_ref().is_some_and(takes_scenes)).collect();
-    let least = takers.iter().map(|&at| limits[at]).min_by(|one, other| one.0.total_cmp(&other.0));
-    takers.into_iter().zip(least.into_iter().cycle()).for_each(|(at, least)| limits[at] = least);
+    typed.iter().zip(parts).enumerate().map(limit).collect()
+}
+
+/// The largest step (s) for each run, and the run that limits it: the run itself, or among the runs that share the scene's step the one
+/// with the least.
+fn limits(own: Vec<f64>, sharing: &[usize]) -> Vec<(f64, usize)> {
+    let mut limits: Vec<_> = own.into_iter().zip(0..).collect();
+    let least = sharing.iter().map(|&at| limits[at]).min_by(|one, other| one.0.total_cmp(&other.0));
+    sharing.iter().zip(least.into_iter().cycle()).for_each(|(&at, least)| limits[at] = least);
     limits
+}
+
+/// Warns of a model that moves its nodes itself, if its short steps are those of all runs that share `step = "auto"` of the scene.
+fn warn_of_held_steps(
+    runs: &[Option<RunFile>],
+    time: &TimeFile,
+    parts: &[Parts],
+    own: &[f64],
+    report: &mut Collector<'_>,
+) {
+    let (holding, others): (Vec<usize>, Vec<usize>) =
+        sharing(runs, time).into_iter().partition(|&at| parts[at].is_projected());
+    let step = |of: &[usize]| automatic(of.iter().map(|&at| own[at]).fold(f64::INFINITY, f64::min), time);
+    if let (Some(held), Some(free)) = (step(&holding), step(&others))
+        && held < free
+    {
+        let names: Vec<_> = holding.iter().filter_map(|&at| Some(&runs[at].as_ref()?.name)).collect();
+        let names = words::list(&names, "and", |name| words::quoted(name));
+        let [held, free] = [held, free].map(words::short);
+        let message = format!("all runs take steps of {held} s, because of {names}; the others would take {free} s");
+        let help = format!("write `step = \"auto\"` for {names} alone, unless all runs need the same step");
+        report.warn(&key_path!["time", "step"], message, help);
+    }
 }
 
 /// The longest step (s) that divides the time between two frames into a whole number of steps, and is at most the
