@@ -11,9 +11,7 @@ use std::path::Path;
 /// A block of text: the results and their folder, the state of each run at the end, and the time taken.
 pub(super) fn report(summary: &Summary, folder: &Path, timings: bool) -> String {
     let mut text = format!("{}\n{}\n", summary.scene.title, made(summary, folder));
-    let heads = ["run", "status", "turned over", "shape error"].map(str::to_owned);
-    let rows: Vec<_> = std::iter::once(heads).chain(summary.runs.iter().flat_map(rows)).collect();
-    text += &columns(&rows, [false, false, true, true]);
+    text += &table(&summary.runs);
     text += &causes(summary);
     text += &cut(summary);
     text += &times(summary);
@@ -46,8 +44,19 @@ fn made(summary: &Summary, folder: &Path) -> String {
     }
 }
 
+/// The state of each run at the end, with what is broken if some run breaks.
+fn table(runs: &[RunSummary]) -> String {
+    let heads = ["run", "status", "turned over", "broken", "shape error"].map(str::to_owned);
+    let rows: Vec<_> = std::iter::once(heads).chain(runs.iter().flat_map(rows)).collect();
+    if runs.iter().any(|run| run.last.as_ref().is_some_and(|last| last.all.broken.is_some())) {
+        return columns(&rows, [false, false, true, true, true]);
+    }
+    let rows: Vec<_> = rows.into_iter().map(|[name, status, over, _, error]| [name, status, over, error]).collect();
+    columns(&rows, [false, false, true, true])
+}
+
 /// The row of a run, and one of each of its bodies if there are several.
-fn rows(run: &RunSummary) -> Vec<[String; 4]> {
+fn rows(run: &RunSummary) -> Vec<[String; 5]> {
     let status = match &run.status {
         RunStatus::Ok => "ok".to_owned(),
         RunStatus::Ended { time } => format!("recording ends at {} s", short(*time)),
@@ -59,14 +68,12 @@ fn rows(run: &RunSummary) -> Vec<[String; 4]> {
         }
     };
     let row = |name: String, status: String, numbers: Option<&Numbers>| {
-        let (turned_over, shape_error) = match numbers {
-            Some(Numbers { diagnostics, .. }) => {
-                let shape_error = quantity(diagnostics.get(Diagnostic::ShapeError), "m");
-                (diagnostics.get(Diagnostic::TurnedOver).to_string(), shape_error)
-            }
-            None => Default::default(),
+        let Some(Numbers { diagnostics, broken, .. }) = numbers else {
+            return [name, status, String::new(), String::new(), String::new()];
         };
-        [name, status, turned_over, shape_error]
+        let turned_over = diagnostics.get(Diagnostic::TurnedOver).to_string();
+        let broken = broken.map_or_else(String::new, |count| count.to_string());
+        [name, status, turned_over, broken, quantity(diagnostics.get(Diagnostic::ShapeError), "m")]
     };
     let all = row(run.name.clone(), status, run.last.as_ref().map(|last| &last.all));
     let bodies = run.last.iter().flat_map(|last| &last.bodies);

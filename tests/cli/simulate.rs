@@ -45,6 +45,21 @@ fn diagnostics_of_each_run_and_frame() {
     assert!(rows.iter().any(|row| number(row[5]) > 0.0 && number(row[6]) > 0.0), "{table}");
 }
 
+/// Springs that break are counted after the run, beside runs that do not break.
+#[test]
+fn what_is_broken_is_counted_if_something_breaks() {
+    let place = Place::with_small();
+    assert!(!place.run("simulate small.toml").good().out.contains("broken"));
+    place.write("brittle.toml", &SMALL.replace("springs = \"edges", "breaks_at = 1e-3, springs = \"edges"));
+    let ran = place.run("simulate brittle.toml").good();
+    let line = |start: &str| ran.out.lines().find(|line| line.starts_with(start)).expect(start);
+    assert!(line("  run ").contains("turned over  broken  shape error"), "{}", ran.out);
+    let document: Value = serde_json::from_str(&place.read("output/brittle/run.json")).unwrap();
+    let broken = document["runs"][1]["last"]["broken"].as_u64().expect("springs that break");
+    assert!(broken > 0 && line("  Mass-spring ").contains(&format!("  {broken}  ")), "{}", ran.out);
+    assert_eq!(line("  Local shape ").split("  ").filter(|cell| !cell.trim().is_empty()).count(), 4, "{}", ran.out);
+}
+
 /// Each number is in the column of its name.
 #[test]
 fn columns_are_what_their_heads_say() {
