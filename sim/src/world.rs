@@ -46,9 +46,9 @@ impl Stepping {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kernel {
-    /// Vectorised, with the same bits on every machine and for any number of threads. All models have it but the shape-based ones with
-    /// `rotation = "vector-length"` or `"linear-update"`, and with `"arctangent"` together with `bending` or `poisson`, and `xpbd`. Several
-    /// bodies move together, so that it needs such a model for each of them.
+    /// Vectorised, with the same bits on every machine and for any number of threads. All models have it, except `xpbd` and a shape-based model
+    /// with `rotation = "vector-length"`, with `rotation = "linear-update"`, or with `rotation = "arctangent"` beside `bending` or `poisson`. A run
+    /// of several bodies has it if the models of all of them do.
     #[default]
     Fast,
     /// The reference code, written like the equations of the paper. All models have it.

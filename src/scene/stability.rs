@@ -59,7 +59,7 @@ impl Scene {
 
     /// The approximate share of energy that each rebound adds to an undamped run with `e = 1`: elastic forces change
     /// within the step of the rebound. Measured for blocks of eight cubes that fall 1 m, with steps of T/25 to T/400:
-    /// 0.14 to 0.23 times the square of the step over the limit, for both models.
+    /// 0.14 to 0.23 times the square of the step over the limit, for the shape model and springs.
     pub(super) fn rebound_gain(&self, number: usize, largest: f64) -> Option<f64> {
         const GAIN: f64 = 0.2;
         let run = &self.runs[number];

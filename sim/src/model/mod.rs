@@ -248,6 +248,9 @@ pub trait ForceModel: Send + Sync {
 
     /// Whether forces depend, beyond round-off, on the memory, that is, on the evaluation before. Methods that evaluate
     /// forces several times a step are of their order only if they do not.
+    ///
+    /// Broken elements do not count: they depend on the memory, but only once. Each evaluation passes its memory on to the next, so that an
+    /// element that is strained too far at an inner stage of Runge–Kutta stays broken, even if the step ends without that strain.
     fn depends_on_history(&self) -> bool {
         false
     }
