@@ -11,7 +11,7 @@
 #![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
 
 use super::Lanes;
-use super::continuum::{Map, Stress, dot, parameters};
+use super::continuum::{Map, Stress, dot, parameters, with_nearest};
 
 parameters!(Corotational);
 
@@ -21,41 +21,22 @@ struct Corotational;
 
 impl Stress for Corotational {
     const NAME: &'static str = "corotational";
-    const TURNS: bool = true;
 
+    /// `2μ F + (λ (s − d) − 2μ) R`, with `s = tr RᵀF`.
     #[inline(always)]
-    fn stress<L: Lanes, const D: usize>([shear, lame]: [L; 2], f: &Map<L, D>, r: &Map<L, D>) -> Map<L, D> {
-        let (off, trace) = off(f, r);
-        let (twice, pressure) = (shear + shear, lame * trace);
-        let mut stress = off;
-        for column in 0..D {
-            for row in 0..D {
-                stress[column][row] = twice.mul_add(off[column][row], pressure * r[column][row]);
-            }
-        }
-        stress
+    fn stress<L: Lanes, const D: usize>([shear, lame]: [L; 2], f: &Map<L, D>) -> Map<L, D> {
+        let twice = shear + shear;
+        with_nearest(f, [twice, lame, -twice]).0
     }
 
     #[inline(always)]
-    fn energy<L: Lanes, const D: usize>([shear, lame]: [L; 2], f: &Map<L, D>, r: &Map<L, D>) -> L {
-        let (off, trace) = off(f, r);
-        let mut squares = L::splat(0.0);
+    fn energy<L: Lanes, const D: usize>([shear, lame]: [L; 2], f: &Map<L, D>) -> L {
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let (off, trace) = with_nearest(f, [one, zero, -one]);
+        let mut squares = zero;
         for column in 0..D {
             squares = squares + dot(&off[column], &off[column]);
         }
         shear.mul_add(squares, L::splat(0.5) * lame * trace * trace)
     }
-}
-
-/// `F − R` and `tr(RᵀF − I)`, which is `R : (F − R)`.
-#[inline(always)]
-fn off<L: Lanes, const D: usize>(f: &Map<L, D>, r: &Map<L, D>) -> (Map<L, D>, L) {
-    let (mut off, mut trace) = (*f, L::splat(0.0));
-    for column in 0..D {
-        for row in 0..D {
-            off[column][row] = f[column][row] - r[column][row];
-        }
-        trace = trace + dot(&r[column], &off[column]);
-    }
-    (off, trace)
 }

@@ -20,10 +20,9 @@ struct Linear;
 
 impl Stress for Linear {
     const NAME: &'static str = "linear";
-    const TURNS: bool = false;
 
     #[inline(always)]
-    fn stress<L: Lanes, const D: usize>([shear, lame]: [L; 2], f: &Map<L, D>, _: &Map<L, D>) -> Map<L, D> {
+    fn stress<L: Lanes, const D: usize>([shear, lame]: [L; 2], f: &Map<L, D>) -> Map<L, D> {
         let (twice, pressure) = (shear + shear, lame * stretch(f));
         let mut stress = *f;
         for column in 0..D {
@@ -39,7 +38,7 @@ impl Stress for Linear {
     }
 
     #[inline(always)]
-    fn energy<L: Lanes, const D: usize>([shear, lame]: [L; 2], f: &Map<L, D>, _: &Map<L, D>) -> L {
+    fn energy<L: Lanes, const D: usize>([shear, lame]: [L; 2], f: &Map<L, D>) -> L {
         let (half, one, trace) = (L::splat(0.5), L::splat(1.0), stretch(f));
         let mut squares = L::splat(0.0);
         for column in 0..D {

@@ -24,10 +24,9 @@ struct NeoHookean;
 
 impl Stress for NeoHookean {
     const NAME: &'static str = "neo-hookean";
-    const TURNS: bool = false;
 
     #[inline(always)]
-    fn stress<L: Lanes, const D: usize>([shear, lame]: [L; 2], f: &Map<L, D>, _: &Map<L, D>) -> Map<L, D> {
+    fn stress<L: Lanes, const D: usize>([shear, lame]: [L; 2], f: &Map<L, D>) -> Map<L, D> {
         let cofactors = cofactors(f);
         let excess = dot(&f[0], &cofactors[0]) - L::splat(1.0);
         // (λ + μ)(J − α).
@@ -44,7 +43,7 @@ impl Stress for NeoHookean {
     /// From `G = F − I`, as differences of large numbers are not precise: `J − 1` is `tr G` and a rest of higher order, and `2ψ = μ (|G|² − 2
     /// rest) + (λ + μ)(J − 1)²`.
     #[inline(always)]
-    fn energy<L: Lanes, const D: usize>([shear, lame]: [L; 2], f: &Map<L, D>, _: &Map<L, D>) -> L {
+    fn energy<L: Lanes, const D: usize>([shear, lame]: [L; 2], f: &Map<L, D>) -> L {
         let (mut g, mut trace, mut squares) = (*f, L::splat(0.0), L::splat(0.0));
         for column in 0..D {
             g[column][column] = g[column][column] - L::splat(1.0);

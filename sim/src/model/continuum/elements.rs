@@ -3,14 +3,11 @@
 #![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
 
 use super::Stress;
-use super::map::{Map, cofactors, dot, product, pulled};
+use super::map::{Map, cofactors, dot, product};
 use super::modes::{bits, of_slopes, slope_at, slopes, sums_and_differences, sums_and_differences_of_modes, without};
 use crate::body::Body;
-use crate::element::Dimension;
-use crate::kernel::rotation::{self, Moments, Optimum, Solver};
-use crate::lanes::{Lanes, MOST, Work, each};
-use crate::law::{Corners, Element, Law, Reader, Rigid, alike, off};
-use glam::DVec3;
+use crate::lanes::Lanes;
+use crate::law::{Corners, Element, Law, Rigid, off};
 use std::marker::PhantomData;
 
 /// The law of elements in `D` dimensions with so many corners at most: four in the plane; in space eight, or four if all are tetrahedra.
@@ -30,63 +27,53 @@ pub(super) struct Elements<S, const D: usize, const CORNERS: usize> {
 impl<S: Stress, const D: usize, const CORNERS: usize> Elements<S, D, CORNERS> {
     /// Whether some elements are quadrilaterals or hexahedra.
     const HAS_BOXES: bool = CORNERS == 1 << D;
-    /// How many numbers describe a rotation: a quaternion, or (cos θ, sin θ).
-    const TURN: usize = if D == 3 { 4 } else { 2 };
+    /// How many numbers the different [`slopes`] of a box are.
+    const SLOPES: usize = CORNERS / 2 * D * D;
 
-    /// The inverse of the gradient of an element from its parent, and the weight of a point.
+    /// The cofactors of the gradient of an element from its parent, and one over its determinant.
     #[inline(always)]
-    fn inverse<L: Lanes>(gradient: &Map<L, D>, size: f64) -> (Map<L, D>, L) {
+    fn parent<L: Lanes>(gradient: &Map<L, D>) -> (Map<L, D>, L) {
         let cofactors = cofactors(gradient);
         let determinant = dot(&gradient[0], &cofactors[0]);
-        let over = L::splat(1.0) / determinant;
-        let mut inverse = [[over; D]; D];
-        for column in 0..D {
-            for row in 0..D {
-                inverse[column][row] = cofactors[row][column] * over;
-            }
-        }
-        (inverse, determinant * L::splat(size))
+        (cofactors, L::splat(1.0) / determinant)
     }
 
-    /// The inverse and the weight from the constants of affine elements.
+    /// These, from the constants of affine elements.
     #[inline(always)]
     fn affine<L: Lanes>(element: &Element<'_, L>) -> (Map<L, D>, L) {
-        let weight = element.of_element(D * D);
-        let mut inverse = [[weight; D]; D];
+        let over = element.of_element(D * D);
+        let mut cofactors = [[over; D]; D];
         for column in 0..D {
             for row in 0..D {
-                inverse[column][row] = element.of_element(column * D + row);
+                cofactors[column][row] = element.of_element(column * D + row);
             }
         }
-        (inverse, weight)
+        (cofactors, over)
     }
 
-    /// The rotation nearest to `F` at a point, from the last one.
+    /// These at a point, from the constants of other elements.
     #[inline(always)]
-    fn rotation<L: Lanes>(element: &Element<'_, L>, point: usize, f: &Map<L, D>) -> Map<L, D> {
-        let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let mut r = [[zero; D]; D];
-        if !S::TURNS {
-            return r;
-        }
-        if D == 2 {
-            let last = element.memory_from::<2>(2 * point);
-            let turn = rotation::in_plane([f[0][0] + f[1][1], f[0][1] - f[1][0]], last);
-            element.remember_from(2 * point, turn);
-            (r[0][0], r[0][1], r[1][0], r[1][1]) = (turn[0], turn[1], -turn[1], turn[0]);
-        } else {
-            let a = each!(3, column => each!(3, row => f[column][row]));
-            let of = Moments { a: &a, scale: L::splat(1.0 / 3.0), tally: None };
-            let (turn, _) = Optimum.step(of, element.memory_from::<4>(4 * point), element.live(), true);
-            element.remember_from(4 * point, turn);
-            let matrix = rotation::matrix(turn, one);
-            for column in 0..D {
-                for row in 0..D {
-                    r[column][row] = matrix[column][row];
-                }
+    fn parent_at<L: Lanes>(element: &Element<'_, L>, point: usize) -> (Map<L, D>, L) {
+        let over = element.of_element(Self::SLOPES + point);
+        let mut gradient = [[over; D]; D];
+        for axis in 0..D {
+            for row in 0..D {
+                gradient[axis][row] = element.of_element((axis * CORNERS / 2 + without(point, axis)) * D + row);
             }
         }
-        r
+        (cofactors(&gradient), over)
+    }
+
+    /// `F`, from the gradient now from the parent.
+    #[inline(always)]
+    fn gradient<L: Lanes>(now: &Map<L, D>, (cofactors, over): &(Map<L, D>, L)) -> Map<L, D> {
+        let mut inverse = [[*over; D]; D];
+        for column in 0..D {
+            for row in 0..D {
+                inverse[column][row] = cofactors[row][column] * *over;
+            }
+        }
+        product(now, &inverse)
     }
 
     /// The position of a corner (m).
@@ -107,8 +94,11 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Elements<S, D, CORNERS> {
     #[inline(always)]
     fn evaluate<L: Lanes, const ENERGY: bool>(&self, element: &Element<'_, L>) -> ([[L; D]; CORNERS], L) {
         let zero = L::splat(0.0);
-        let moduli = [L::splat(self.shear), L::splat(self.lame)];
         let (mut forces, mut energy) = ([[zero; D]; CORNERS], zero);
+        // The weight of a point is in proportion to the determinant, so that the stress times the cofactors is the pull on each edge of the
+        // parent. An energy is divided by the inverse determinant.
+        let size = if element.corners() == D + 1 { Self::SIMPLEX } else { Self::BOX };
+        let moduli = [L::splat(self.shear * size), L::splat(self.lame * size)];
         if element.corners() == D + 1 {
             let first = Self::corner(element, 0);
             let mut edges = [[zero; D]; D];
@@ -118,17 +108,20 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Elements<S, D, CORNERS> {
                     edges[edge][row] = end[row] - first[row];
                 }
             }
-            let (inverse, weight) = Self::affine(element);
-            let f = product(&edges, &inverse);
-            let r = Self::rotation(element, 0, &f);
+            let parent = Self::affine(element);
+            let f = Self::gradient(&edges, &parent);
             if ENERGY {
-                energy = weight * S::energy(moduli, &f, &r);
+                energy = S::energy(moduli, &f) / parent.1;
             } else {
-                let of = pulled(&S::stress([moduli[0] * weight, moduli[1] * weight], &f, &r), &inverse);
+                let stress = S::stress(moduli, &f);
                 for edge in 0..D {
                     for row in 0..D {
-                        forces[0][row] = forces[0][row] + of[edge][row];
-                        forces[edge + 1][row] = -of[edge][row];
+                        let mut pull = stress[0][row] * parent.0[edge][0];
+                        for at in 1..D {
+                            pull = stress[at][row].mul_add(parent.0[edge][at], pull);
+                        }
+                        forces[0][row] = forces[0][row] + pull;
+                        forces[edge + 1][row] = -pull;
                     }
                 }
             }
@@ -139,34 +132,21 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Elements<S, D, CORNERS> {
             }
             sums_and_differences(&mut modes);
             let now = slopes(&modes);
-            let mut rest = [[[zero; D]; 4]; D];
-            let mut fixed = ([[zero; D]; D], zero);
-            if self.is_affine {
-                fixed = Self::affine(element);
-            } else {
-                let mut modes = [[zero; D]; CORNERS];
-                for mode in 1..CORNERS {
-                    for row in 0..D {
-                        modes[mode][row] = element.of_element((mode - 1) * D + row);
-                    }
-                }
-                rest = slopes(&modes);
-            }
             let mut pulls = [[[zero; D]; 4]; D];
             // As many points as corners. Unrolled they are many times as long to compile, and no faster.
             for point in 0..element.corners() {
-                let (inverse, weight) =
-                    if self.is_affine { fixed } else { Self::inverse(&slope_at(&rest, point), Self::BOX) };
-                let f = product(&slope_at(&now, point), &inverse);
-                let r = Self::rotation(element, point, &f);
+                let parent = if self.is_affine { Self::affine(element) } else { Self::parent_at(element, point) };
+                let f = Self::gradient(&slope_at(&now, point), &parent);
                 if ENERGY {
-                    energy = weight.mul_add(S::energy(moduli, &f, &r), energy);
+                    energy = energy + S::energy(moduli, &f) / parent.1;
                 } else {
-                    let of = pulled(&S::stress([moduli[0] * weight, moduli[1] * weight], &f, &r), &inverse);
+                    let stress = S::stress(moduli, &f);
                     for axis in 0..D {
                         let pull = &mut pulls[axis][without(point, axis)];
                         for row in 0..D {
-                            pull[row] = pull[row] - of[axis][row];
+                            for at in 0..D {
+                                pull[row] = stress[at][row].neg_mul_add(parent.0[axis][at], pull[row]);
+                            }
                         }
                     }
                 }
@@ -189,14 +169,9 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Elements<S, D, CORNERS> {
 }
 
 impl<S: Stress, const D: usize, const CORNERS: usize> Law for Elements<S, D, CORNERS> {
-    /// Of an affine element the inverse of its gradient and the weight of a point; else its modes at rest, but the first (m).
-    const OF_ELEMENT: usize = if Self::HAS_BOXES { (CORNERS - 1) * D } else { D * D + 1 };
-    /// The rotation of each point.
-    const MEMORY: usize = match (S::TURNS, Self::HAS_BOXES) {
-        (false, _) => 0,
-        (true, true) => CORNERS * Self::TURN,
-        (true, false) => Self::TURN,
-    };
+    /// Of an affine element the cofactors of its gradient and one over its determinant; else its slopes (m), and one over the determinant at
+    /// each point.
+    const OF_ELEMENT: usize = if Self::HAS_BOXES { Self::SLOPES + CORNERS } else { D * D + 1 };
     /// The forces on the corners (N).
     type Whole<L: Lanes> = [[L; D]; CORNERS];
 
@@ -213,7 +188,6 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Law for Elements<S, D, COR
     fn prepare<L: Lanes>(&self, rest: &Corners<'_, L>, of_element: &mut [L], _: &mut [L]) {
         let zero = L::splat(0.0);
         let mut gradient = [[zero; D]; D];
-        let mut size = Self::SIMPLEX;
         if rest.count() == D + 1 {
             let first = rest.position(0);
             for edge in 0..D {
@@ -230,25 +204,28 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Law for Elements<S, D, COR
             }
             sums_and_differences(&mut modes);
             if !self.is_affine {
-                for mode in 1..CORNERS {
-                    for row in 0..D {
-                        of_element[(mode - 1) * D + row] = modes[mode][row];
+                let rest = slopes(&modes);
+                for point in 0..CORNERS {
+                    let gradient = slope_at(&rest, point);
+                    for axis in 0..D {
+                        let at = (axis * CORNERS / 2 + without(point, axis)) * D;
+                        of_element[at..at + D].copy_from_slice(&gradient[axis]);
                     }
+                    of_element[Self::SLOPES + point] = Self::parent(&gradient).1;
                 }
                 return;
             }
             for axis in 0..D {
                 gradient[axis] = modes[1 << axis];
             }
-            size = Self::BOX;
         }
-        let (inverse, weight) = Self::inverse(&gradient, size);
+        let (cofactors, over) = Self::parent(&gradient);
         for column in 0..D {
             for row in 0..D {
-                of_element[column * D + row] = inverse[column][row];
+                of_element[column * D + row] = cofactors[column][row];
             }
         }
-        of_element[D * D] = weight;
+        of_element[D * D] = over;
     }
 
     #[inline(always)]
@@ -278,37 +255,5 @@ impl<S: Stress, const D: usize, const CORNERS: usize> Law for Elements<S, D, COR
         let (_, energy) = self.evaluate::<L, true>(element);
         shares.fill(energy * L::splat(1.0 / element.corners() as f64));
         L::splat(0.0)
-    }
-}
-
-/// Computes the memory of elements at the start, element by element.
-pub(super) struct Start<'a, W> {
-    pub(super) law: W,
-    pub(super) body: &'a Body,
-    pub(super) position: &'a [DVec3],
-}
-
-impl<W: Law> Work for Start<'_, W> {
-    type Output = Vec<f64>;
-
-    #[inline(always)]
-    fn run<L: Lanes>(self) -> Vec<f64> {
-        let Self { law, body, position } = self;
-        let identity: &[f64] = if body.dimension == Dimension::Plane { &[1.0, 0.0] } else { &[0.0, 0.0, 0.0, 1.0] };
-        let identity: Vec<f64> = identity.iter().copied().cycle().take(W::MEMORY).collect();
-        let (mut reader, mut memory) = (Reader::<L>::new(), Vec::with_capacity(body.elements.len() * W::MEMORY));
-        while memory.len() < body.elements.len() * W::MEMORY {
-            let first = memory.len() / W::MEMORY;
-            let (group, count) = alike::<L>(&body.elements, first..body.elements.len());
-            reader.read(&group, body, position, None, &[1.0; MOST]);
-            reader.prepare(&law);
-            reader.recall(&identity, 0, 1, W::MEMORY);
-            let (element, _) = reader.elements::<W>(count);
-            law.whole(&element);
-            for lane in 0..count {
-                memory.extend(reader.memory.iter().map(|row| row[lane]));
-            }
-        }
-        memory
     }
 }

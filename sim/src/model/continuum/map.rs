@@ -23,22 +23,6 @@ pub(in crate::model) fn product<L: Lanes, const D: usize>(a: &Map<L, D>, b: &Map
     product
 }
 
-/// `a bᵀ`.
-#[inline(always)]
-pub(super) fn pulled<L: Lanes, const D: usize>(a: &Map<L, D>, b: &Map<L, D>) -> Map<L, D> {
-    let mut product = [[L::splat(0.0); D]; D];
-    for column in 0..D {
-        for row in 0..D {
-            let mut sum = a[0][row] * b[0][column];
-            for at in 1..D {
-                sum = a[at][row].mul_add(b[at][column], sum);
-            }
-            product[column][row] = sum;
-        }
-    }
-    product
-}
-
 #[inline(always)]
 pub(in crate::model) fn dot<L: Lanes, const D: usize>(a: &[L; D], b: &[L; D]) -> L {
     let mut sum = a[0] * b[0];

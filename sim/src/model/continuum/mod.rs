@@ -16,17 +16,18 @@
 mod elements;
 mod map;
 mod modes;
+mod nearest;
 
 pub(in crate::model) use map::{Map, cofactors, dot};
+pub(in crate::model) use nearest::with_nearest;
 
 use super::{ByLaw, ElasticModel, ForceModel, Lanes, Misfit, Vectorised};
 use crate::body::Body;
 use crate::element::{Dimension, ElementKind};
 use crate::kernel::{Compiled, Conditions};
-use crate::lanes::Set;
 use crate::material::Material;
 use crate::volume::volumes_at_rest;
-use elements::{Elements, Start};
+use elements::Elements;
 use glam::{DMat3, DVec3};
 use modes::{GAUSS, bits};
 use schemars::JsonSchema;
@@ -94,14 +95,12 @@ pub(in crate::model) use parameters;
 pub(in crate::model) trait Stress: Clone + Copy + Debug + Send + Sync + 'static {
     /// The name of the model in a scene file.
     const NAME: &'static str;
-    /// Whether it depends on the rotation nearest to `F`. Without that, functions have zeros in its place.
-    const TURNS: bool;
 
-    /// `P` (Pa) in proportion to `[μ, λ]` (Pa), of `F` and the rotation.
-    fn stress<L: Lanes, const D: usize>(moduli: [L; 2], f: &Map<L, D>, r: &Map<L, D>) -> Map<L, D>;
+    /// `P` (Pa) in proportion to `[μ, λ]` (Pa), of `F`.
+    fn stress<L: Lanes, const D: usize>(moduli: [L; 2], f: &Map<L, D>) -> Map<L, D>;
 
     /// `ψ` (J/m³), 0 at rest.
-    fn energy<L: Lanes, const D: usize>(moduli: [L; 2], f: &Map<L, D>, r: &Map<L, D>) -> L;
+    fn energy<L: Lanes, const D: usize>(moduli: [L; 2], f: &Map<L, D>) -> L;
 }
 
 /// A model of finite elements with its parameters in SI units, checked.
@@ -207,14 +206,6 @@ impl<S: Stress> ElasticModel for FiniteElements<S> {
 
     fn vectorised(&self) -> Option<&dyn Vectorised> {
         Some(self)
-    }
-
-    /// The rotations that are optimal for the initial positions.
-    fn start(&self, body: &Body, position: &[DVec3]) -> Vec<f64> {
-        if !S::TURNS {
-            return Vec::new();
-        }
-        by_law!(self, body, law => Set::best().run(Start { law, body, position }))
     }
 
     fn prepare(&self, body: &Arc<Body>) -> Box<dyn ForceModel> {
