@@ -1,4 +1,4 @@
-//! Elastic models by their names in scene files, with parameters that make them alike: one stiffness, one damping.
+//! Elastic models by their names in scene files, with parameters that make them alike: one material, one damping.
 
 use localshape::sim::model::{ElasticModel, ModelParameters};
 use localshape::sim::{Body, Material};
@@ -12,62 +12,95 @@ pub(crate) fn kinds() -> Vec<String> {
     models.iter().map(|model| model["properties"]["kind"]["const"].as_str().expect("a name").to_owned()).collect()
 }
 
-/// Poisson's ratio of materials, and the bulk modulus of springs that keep volumes over the modulus of such a material.
-const POISSON: f64 = 0.3;
-const BULK: f64 = 1.0 / (3.0 * (1.0 - 2.0 * POISSON));
-/// The greatest elongation of limited springs over their natural length.
-const LIMIT: f64 = 0.5;
+/// Whether a model consists of springs, which have a constant in place of a material.
+pub(crate) fn is_springs(kind: &str) -> bool {
+    matches!(kind, "mass-spring" | "limited-springs" | "volume-springs")
+}
 
-/// The parameters of a model with an elastic constant `k` (N/m) or Young's modulus (Pa) of as stiff a material, without damping.
-fn elastic(kind: &str, stiffness: f64, young: f64) -> Map<String, Value> {
-    let mut keys = Map::from_iter([("kind".to_owned(), json!(kind))]);
-    let mut add = |key: &str, value: Value| keys.insert(key.to_owned(), value);
-    match kind {
-        "linear" | "corotational" | "neo-hookean" | "metric" => {
-            add("young", json!(young));
-            add("poisson", json!(POISSON))
+/// What models have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Alike {
+    material: Material,
+    /// The elastic constant `k` of springs, and of the shape model in place of the material (N/m).
+    springs: f64,
+    shapes: Option<f64>,
+}
+
+impl Alike {
+    /// Poisson's ratio of materials beside an elastic constant.
+    const POISSON: f64 = 0.3;
+    /// The bulk modulus of springs that keep volumes over Young's modulus: that of a material with this ratio.
+    const BULK: f64 = 1.0 / (3.0 * (1.0 - 2.0 * Self::POISSON));
+    /// The greatest elongation of limited springs over their natural length.
+    const LIMIT: f64 = 0.5;
+
+    /// A material, on elements for which the shape model has the constant `unit` (m) with the modulus 1: half of the side of cubes.
+    pub(crate) fn material(material: Material, unit: f64) -> Self {
+        Self { material, springs: material.young * unit, shapes: None }
+    }
+
+    /// An elastic constant `k` (N/m), on such elements.
+    pub(crate) fn constant(constant: f64, unit: f64) -> Self {
+        let young = if unit > 0.0 { constant / unit } else { 0.0 };
+        Self { material: Material { young, poisson: Self::POISSON }, springs: constant, shapes: Some(constant) }
+    }
+
+    /// An elastic constant `k` (N/m) of the stiffest element of a body.
+    pub(crate) fn on_body(constant: f64, body: &Body) -> Self {
+        let units = Material { young: 1.0, poisson: 0.0 }.stiffness(body);
+        Self::constant(constant, units.into_iter().fold(0.0, f64::max))
+    }
+
+    fn keys(&self, kind: &str) -> Map<String, Value> {
+        let mut keys = Map::from_iter([("kind".to_owned(), json!(kind))]);
+        let mut add = |key: &str, value: f64| keys.insert(key.to_owned(), json!(value));
+        let constant = match kind {
+            "shape-based" | "xpbd" => self.shapes,
+            _ => is_springs(kind).then_some(self.springs),
+        };
+        if let Some(constant) = constant {
+            add("stiffness", constant);
+        } else {
+            add("young", self.material.young);
+            add("poisson", self.material.poisson);
         }
-        _ => add("stiffness", json!(stiffness)),
-    };
-    match kind {
-        "volume-springs" => add("bulk", json!(young * BULK)),
-        "limited-springs" => add("limit", json!(LIMIT)),
-        _ => None,
-    };
-    keys
+        match kind {
+            "volume-springs" => add("bulk", self.material.young * Self::BULK),
+            "limited-springs" => add("limit", Self::LIMIT),
+            _ => None,
+        };
+        keys
+    }
+
+    /// A model for a body, with `D` (N s/m). `more` are further keys. `None` if the model does not take the elements of the body.
+    pub(crate) fn model(
+        &self,
+        body: &Body,
+        kind: &str,
+        damping: f64,
+        more: impl IntoIterator<Item = (String, Value)>,
+    ) -> Option<Arc<dyn ElasticModel>> {
+        let mut keys = self.keys(kind);
+        keys.extend(more);
+        if damping > 0.0 && is_damped(kind) {
+            keys.insert("damping".to_owned(), json!(damping));
+        }
+        let parameters: ModelParameters = serde_json::from_value(keys.into()).expect("the parameters of a model");
+        parameters.resolve(body, None).ok()
+    }
+
+    /// A model in a scene file, with `ζ`.
+    pub(crate) fn typed(&self, kind: &str, damping_ratio: f64) -> String {
+        let mut keys = self.keys(kind);
+        if damping_ratio > 0.0 && is_damped(kind) {
+            keys.insert("damping_ratio".to_owned(), json!(damping_ratio));
+        }
+        let keys: Vec<_> = keys.iter().map(|(key, value)| format!("{key} = {value}")).collect();
+        format!("{{ {} }}", keys.join(", "))
+    }
 }
 
 /// Whether a model takes a damping constant. XPBD has that of its steps alone.
 fn is_damped(kind: &str) -> bool {
     kind != "xpbd"
-}
-
-/// A model for a body, as stiff as the shape model with `k` (N/m), and with `D` (N s/m). `more` are further keys. `None` if the model does not
-/// take the elements of the body.
-pub(crate) fn on(
-    body: &Body,
-    kind: &str,
-    stiffness: f64,
-    damping: f64,
-    more: &Map<String, Value>,
-) -> Option<Arc<dyn ElasticModel>> {
-    let of_unit = Material { young: 1.0, poisson: 0.0 }.stiffness(body).into_iter().fold(0.0, f64::max);
-    let young = if of_unit > 0.0 { stiffness / of_unit } else { 0.0 };
-    let mut keys = elastic(kind, stiffness, young);
-    keys.extend(more.clone());
-    if is_damped(kind) {
-        keys.insert("damping".to_owned(), json!(damping));
-    }
-    let parameters: ModelParameters = serde_json::from_value(keys.into()).expect("the parameters of a model");
-    parameters.resolve(body, None).ok()
-}
-
-/// A model in a scene file, on cubes or squares of a side (m), with `k` (N/m) and `ζ`.
-pub(crate) fn typed(kind: &str, stiffness: f64, side: f64, damping_ratio: f64) -> String {
-    let mut keys = elastic(kind, stiffness, 2.0 * stiffness / side);
-    if is_damped(kind) && damping_ratio > 0.0 {
-        keys.insert("damping_ratio".to_owned(), json!(damping_ratio));
-    }
-    let keys: Vec<_> = keys.iter().map(|(key, value)| format!("{key} = {value}")).collect();
-    format!("{{ {} }}", keys.join(", "))
 }

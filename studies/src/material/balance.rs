@@ -1,4 +1,4 @@
-//! Bodies in balance with a load, by Newton's method.
+//! Bodies in balance with a load: by Newton's method, or by the steps of a model that steps itself.
 
 use glam::DVec3;
 use localshape::sim::model::{ElasticModel, ForceModel, Report, Scratch};
@@ -118,6 +118,54 @@ pub(super) fn balance(
         }
         if !most.is_finite() {
             return None;
+        }
+    }
+    None
+}
+
+/// The places (m) at which a model that steps itself is at rest under a load (N) on each node, in steps (s), from a start nearby that is not
+/// the rest shape; `None` if it does not come to rest, or exerts forces instead.
+///
+/// Velocities are damped by twice the frequency of the slowest mode, which Rayleigh's quotient of the start gives. At rest there are none.
+pub(super) fn settle(
+    body: &Arc<Body>,
+    model: &dyn ElasticModel,
+    load: &[DVec3],
+    held: &[[bool; 3]],
+    start: &[DVec3],
+    step: f64,
+) -> Option<Vec<DVec3>> {
+    /// The last change in the time in which damping takes a velocity to `1/e`, relative to the greatest displacement.
+    const LAST: f64 = 1e-5;
+    let projection = model.projection(body)?;
+    let shift: Vec<_> = start.iter().zip(&body.rest).map(|(start, rest)| *start - *rest).collect();
+    let work: f64 = shift.iter().zip(load).map(|(shift, load)| shift.dot(*load)).sum();
+    let inertia: f64 = shift.iter().zip(&body.mass).map(|(shift, mass)| mass * shift.length_squared()).sum();
+    let rate = 2.0 * libm::sqrt(work / inertia);
+    let far = shift.iter().map(|shift| shift.length()).fold(0.0, f64::max);
+    let light: Vec<_> = body.mass.iter().zip(held).map(|(mass, held)| if held[0] { 0.0 } else { 1.0 / mass }).collect();
+    let (mut position, mut velocity) = (start.to_vec(), vec![DVec3::ZERO; body.len()]);
+    let mut memory = model.start(body, start);
+    let mut next = memory.clone();
+    for _ in 0..MOST {
+        let before = position.clone();
+        for _ in 0..libm::ceil(1.0 / (rate * step)) as u64 {
+            let from = position.clone();
+            for (node, velocity) in velocity.iter_mut().enumerate() {
+                *velocity = *velocity / (1.0 + rate * step) + load[node] * (light[node] * step);
+                position[node] += *velocity * step;
+            }
+            projection.project(&mut position, &light, step, &memory, &mut next);
+            std::mem::swap(&mut memory, &mut next);
+            velocity
+                .iter_mut()
+                .zip(&position)
+                .zip(&from)
+                .for_each(|((velocity, to), from)| *velocity = (*to - *from) / step);
+        }
+        let most = position.iter().zip(&before).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max);
+        if most < LAST * far {
+            return Some(position);
         }
     }
     None

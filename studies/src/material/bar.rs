@@ -1,7 +1,7 @@
 //! Bars along z that are held at one end and loaded at the other.
 
-use super::balance::balance;
-use super::{Elements, Kind, Model, mean_shift};
+use super::balance::{balance, settle};
+use super::{Elements, Model, mean_shift};
 use glam::DVec3;
 use localshape::sim::model::ElasticModel;
 use localshape::sim::{Body, Material};
@@ -51,9 +51,24 @@ impl Bar {
 
     /// The bar as a cantilever: places of its nodes (m) under a load (N) across its end, from a start nearby.
     pub(super) fn bent(&self, model: &dyn ElasticModel, load: f64, start: &[DVec3]) -> Option<Vec<DVec3>> {
+        balance(&self.body, model, &self.load(DVec3::X * load), &self.clamped(), start)
+    }
+
+    /// As [`Self::bent`], with a model that steps itself, in its own steps (s).
+    pub(super) fn settled(
+        &self,
+        model: &dyn ElasticModel,
+        load: f64,
+        start: &[DVec3],
+        step: f64,
+    ) -> Option<Vec<DVec3>> {
+        settle(&self.body, model, &self.load(DVec3::X * load), &self.clamped(), start, step)
+    }
+
+    fn clamped(&self) -> Vec<[bool; 3]> {
         let mut held = vec![[false; 3]; self.body.len()];
         self.ends[0].iter().for_each(|&node| held[node] = [true; 3]);
-        balance(&self.body, model, &self.load(DVec3::X * load), &held, start)
+        held
     }
 
     /// The nodes at its held end.
@@ -75,10 +90,7 @@ impl Bar {
     /// A model of a material on the bar, and the material that it is there. For springs that is what one measures by pulling the bar.
     pub(super) fn model(&self, model: &Model, material: Material) -> Option<(Arc<dyn ElasticModel>, Material)> {
         let made = model.on(&self.body, material, self.side)?;
-        let is = match model.kind {
-            Kind::Material => material,
-            Kind::Springs => self.pulled(made.as_ref(), material)?,
-        };
+        let is = if model.is_springs() { self.pulled(made.as_ref(), material)? } else { material };
         Some((made, is))
     }
 

@@ -4,7 +4,7 @@
 //! thickness, plane stress, and a shear load of 1, uniform along the right side. Literature gives the deflection of the middle of that side.
 
 use super::balance::balance;
-use super::{Elements, Kind, MODELS, Model, decimals};
+use super::{Elements, MODELS, Model, decimals};
 use crate::folder::Notes;
 use crate::progress::Watch;
 use crate::study::{Findings, Study};
@@ -35,7 +35,7 @@ impl Cook {
 
     /// The models that are a material with any `ν`.
     fn models() -> impl Iterator<Item = &'static Model> {
-        MODELS.iter().filter(|model| model.kind == Kind::Material)
+        MODELS.iter().filter(|model| !model.is_springs())
     }
 }
 
@@ -149,7 +149,8 @@ impl Results {
             shape.map_or_else(|| "unknown".to_owned(), |limit| format!("{:+.1} %", 100.0 * (limit / PRINTED - 1.0)))
         };
         text += &format!(
-            "\nFinite elements converge to the literature. The shape model does not: the cells are skew, their nodes do not spread alike in all \
+            "\nFinite elements converge to the literature, and `metric`, with its points of integration at the corners, later. The shape model, \
+            and `xpbd` with it, does not: the cells are skew, their nodes do not spread alike in all \
             directions, and finer cells are as skew as coarse ones. Such elements are no isotropic material, and their limit is that of another \
             one: {} from the literature with quadrilaterals, {} with triangles. For the shape model, take cells that are squares or cubes.\n",
             off(Elements::Cells),
@@ -178,7 +179,7 @@ impl Results {
         let plot = |elements: Elements| {
             let line = |model: &Model| Line {
                 name: model.name.to_owned(),
-                family: model.family,
+                family: model.family(),
                 is_strong: false,
                 points: self
                     .of(model)

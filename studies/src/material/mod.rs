@@ -1,7 +1,8 @@
 //! The models as materials: bars, irregular blocks and a membrane in balance under loads, beside closed forms and the literature.
 //!
 //! A model is named as in a scene, with the elements that it takes, and gets the same material as all others. Balances are found by
-//! Newton's method from the forces alone, so that any model can join with one line in [`MODELS`].
+//! Newton's method from the forces alone, so that any model with forces can join with one line in [`MODELS`]. One that steps itself is stepped
+//! until it is at rest.
 
 mod balance;
 mod bar;
@@ -16,10 +17,11 @@ pub(crate) use cook::Cook;
 pub(crate) use patch::Patch;
 pub(crate) use time::Time;
 
+use crate::models::{self, Alike};
 use crate::table::Cell;
 use glam::DVec3;
 use localshape::scene::Cells;
-use localshape::sim::model::{ElasticModel, ModelParameters, shape_based};
+use localshape::sim::model::{ElasticModel, shape_based};
 use localshape::sim::{Body, Material};
 use localshape::{BodyBuilder, Lattice, Limits, Scene};
 use serde_json::json;
@@ -30,22 +32,11 @@ use std::sync::Arc;
 pub(crate) struct Model {
     /// Its name in tables, without its elements.
     name: &'static str,
-    /// As in a scene (JSON), without its material.
-    parameters: &'static str,
-    /// What it takes in place of a material, if it cannot be one.
-    kind: Kind,
+    /// As in a scene.
+    kind: &'static str,
+    /// A further key and its value.
+    more: Option<[&'static str; 2]>,
     elements: Elements,
-    /// The number of its colour in plots.
-    family: usize,
-}
-
-/// What a model can be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    /// A material with any `E` and `ν`.
-    Material,
-    /// Springs with a stiffness: `E` and `ν` follow from the springs and from the body.
-    Springs,
 }
 
 /// Elements of a lattice.
@@ -57,54 +48,70 @@ pub(crate) enum Elements {
     Simplices,
 }
 
-/// The paper's model first.
-pub(crate) static MODELS: [Model; 12] = [
-    of_cells("shape-based", r#"{ "kind": "shape-based" }"#, 0),
-    of_cells("shape-based, bending 1/2", r#"{ "kind": "shape-based", "bending": "1/2" }"#, 0),
-    of_cells(MENDED, r#"{ "kind": "shape-based", "bending": "1/3" }"#, 0),
-    of_cells("linear", r#"{ "kind": "linear" }"#, 1),
-    of_cells("corotational", r#"{ "kind": "corotational" }"#, 1),
-    of_cells("neo-hookean", r#"{ "kind": "neo-hookean" }"#, 1),
-    Model { kind: Kind::Springs, ..of_cells("mass-spring", r#"{ "kind": "mass-spring" }"#, 3) },
-    Model { kind: Kind::Springs, ..of_cells("mass-spring, all", r#"{ "kind": "mass-spring", "springs": "all" }"#, 3) },
-    of_simplices("shape-based", r#"{ "kind": "shape-based" }"#, 0),
-    of_simplices("linear", r#"{ "kind": "linear" }"#, 1),
-    of_simplices("corotational", r#"{ "kind": "corotational" }"#, 1),
-    of_simplices("neo-hookean", r#"{ "kind": "neo-hookean" }"#, 1),
+/// The models with forces, which have a balance; the paper's first.
+pub(crate) static MODELS: [Model; 15] = [
+    of_cells("shape-based"),
+    of_cells("shape-based").with("shape-based, bending 1/2", ["bending", "1/2"]),
+    of_cells("shape-based").with(MENDED, ["bending", "1/3"]),
+    of_cells("linear"),
+    of_cells("corotational"),
+    of_cells("neo-hookean"),
+    of_cells("metric"),
+    of_cells("mass-spring"),
+    of_cells("mass-spring").with("mass-spring, all", ["springs", "all"]),
+    of_cells("limited-springs"),
+    of_cells("volume-springs"),
+    of_simplices("shape-based"),
+    of_simplices("linear"),
+    of_simplices("corotational"),
+    of_simplices("neo-hookean"),
 ];
+
+/// The model that steps itself, with the energy of the shape model.
+pub(crate) static STEPPING: [Model; 2] = [of_cells("xpbd"), of_simplices("xpbd")];
 
 /// The shape model that bends like its material.
 const MENDED: &str = "shape-based, bending 1/3";
 
-const fn of_cells(name: &'static str, parameters: &'static str, family: usize) -> Model {
-    Model { name, parameters, kind: Kind::Material, elements: Elements::Cells, family }
+const fn of_cells(kind: &'static str) -> Model {
+    Model { name: kind, kind, more: None, elements: Elements::Cells }
 }
 
-const fn of_simplices(name: &'static str, parameters: &'static str, family: usize) -> Model {
-    Model { elements: Elements::Simplices, ..of_cells(name, parameters, family) }
+const fn of_simplices(kind: &'static str) -> Model {
+    Model { elements: Elements::Simplices, ..of_cells(kind) }
 }
 
 impl Model {
+    const fn with(self, name: &'static str, more: [&'static str; 2]) -> Self {
+        Self { name, more: Some(more), ..self }
+    }
+
     /// Its name and its elements, for tables.
     fn names(&self, is_flat: bool) -> [Cell; 2] {
         [format!("`{}`", self.name).into(), self.elements.name(is_flat).into()]
     }
 
-    /// The model of a material on a body; springs take a stiffness of `E` times a length (m) in its place. `None` for a model that does not
-    /// take this body.
-    fn on(&self, body: &Body, material: Material, length: f64) -> Option<Arc<dyn ElasticModel>> {
-        let mut typed: serde_json::Value = serde_json::from_str(self.parameters).expect("a table");
+    /// The number of its colour in plots.
+    #[cfg(feature = "render")]
+    fn family(&self) -> usize {
         match self.kind {
-            Kind::Material => {
-                typed["young"] = json!(material.young);
-                if material.poisson != 0.0 {
-                    typed["poisson"] = json!(material.poisson);
-                }
-            }
-            Kind::Springs => typed["stiffness"] = json!(material.young * length),
+            "shape-based" => 0,
+            "linear" | "corotational" | "neo-hookean" => 1,
+            "metric" => 2,
+            "xpbd" => 4,
+            _ => 3,
         }
-        let parameters: ModelParameters = serde_json::from_value(typed).expect("a model of scenes");
-        parameters.resolve(body, None).ok()
+    }
+
+    /// Whether `E` and `ν` follow from springs and from the body, in place of a material with any of them.
+    fn is_springs(&self) -> bool {
+        models::is_springs(self.kind)
+    }
+
+    /// The model of a material on a body of cells with a side (m). `None` for a model that does not take this body.
+    fn on(&self, body: &Body, material: Material, side: f64) -> Option<Arc<dyn ElasticModel>> {
+        let more = self.more.map(|[key, value]| (key.to_owned(), json!(value)));
+        Alike::material(material, 0.5 * side).model(body, self.kind, 0.0, more)
     }
 }
 
@@ -148,10 +155,11 @@ fn decimals(number: Option<f64>, decimals: usize) -> Cell {
     number.map_or_else(|| "–".to_owned(), |number| format!("{number:.decimals$}")).into()
 }
 
-/// Curves, those that are the same but for a thousandth as one, with all their names.
+/// Curves, those that look the same as one, with all their names.
 #[cfg(feature = "render")]
 fn joined(curves: impl IntoIterator<Item = crate::page::Line>) -> Vec<crate::page::Line> {
-    const ALIKE: f64 = 1e-3;
+    /// Relative to the numbers of a curve: less than a dot on logarithmic axes.
+    const ALIKE: f64 = 0.05;
     let mut all: Vec<crate::page::Line> = Vec::new();
     for curve in curves {
         let is_near = |(one, other): (&[f64; 2], &[f64; 2])| {
@@ -167,6 +175,7 @@ fn joined(curves: impl IntoIterator<Item = crate::page::Line>) -> Vec<crate::pag
     }
     for one in &mut all {
         one.name = one.name.replace("linear, corotational, neo-hookean", "finite elements");
+        one.name = one.name.replace("mass-spring, mass-spring, all, limited-springs, volume-springs", "springs");
     }
     all
 }

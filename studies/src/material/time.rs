@@ -3,7 +3,7 @@
 use super::bar::Bar;
 #[cfg(feature = "render")]
 use super::{Elements, MENDED};
-use super::{Kind, MODELS, Model};
+use super::{MODELS, Model, STEPPING};
 use crate::folder::Notes;
 use crate::progress::Watch;
 use crate::spread::Spread;
@@ -36,12 +36,21 @@ const MATERIAL: Material = Material { young: 1e6, poisson: 0.0 };
 const LOAD: f64 = 2.0;
 /// The integrator that is timed: the default of scenes.
 const INTEGRATOR: Integrator = Integrator::SemiImplicitEuler;
+/// The longest step of a model that steps itself, in shortest periods of a node. It is halved until the deflection at rest is as close as
+/// this to that in small steps.
+const LONGEST: f64 = 0.1;
+const CLOSE: f64 = 0.01;
 /// The errors for which a model is recommended.
 const WANTED: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
 
 impl Time {
     pub(crate) fn usual() -> Self {
         Self { across: vec![1, 2, 3, 4], fine: [6, 8], rounds: 9, turn: 100_000 }
+    }
+
+    /// All models.
+    fn models() -> impl Iterator<Item = &'static Model> {
+        MODELS.iter().chain(&STEPPING)
     }
 }
 
@@ -51,7 +60,7 @@ impl Study for Time {
     }
 
     fn work(&self) -> u64 {
-        (MODELS.len() * self.across.len()) as u64 * u64::from(1 + self.rounds) + 2
+        (Self::models().count() * self.across.len()) as u64 * u64::from(1 + self.rounds) + 2
     }
 
     fn measure(&self, watch: &Watch<'_>, _: &Notes) -> Option<Findings> {
@@ -73,8 +82,10 @@ pub(crate) struct Timed {
     /// The deflection of the end over the length, and its relative distance from the reference.
     pub(crate) across_length: f64,
     pub(crate) error: f64,
-    /// Half of the largest stable step, which `step = "auto"` would take (s).
+    /// Half of the largest stable step, which `step = "auto"` would take, or that of a model that steps itself (s).
     pub(crate) step: f64,
+    /// What [`Beam::softer`] has.
+    pub(crate) softer: Vec<f64>,
     /// Time of a simulated second (s).
     pub(crate) time: Spread,
 }
@@ -98,7 +109,7 @@ pub(crate) fn measure(study: &Time, watch: &Watch<'_>) -> Option<Results> {
     let parts = study.fine.map(|across| f64::from(across * across));
     let reference = (parts[1] * fine.deflection - parts[0] * coarse.deflection) / (parts[1] - parts[0]);
     let mut beams = Vec::new();
-    for model in &MODELS {
+    for model in Time::models() {
         for &across in &study.across {
             beams.extend(Beam::new(model, [across; 2]).map(|beam| (*model, across, beam)));
             if !watch(1) {
@@ -123,6 +134,7 @@ pub(crate) fn measure(study: &Time, watch: &Watch<'_>) -> Option<Results> {
         across_length: beam.deflection,
         error: (beam.deflection / reference - 1.0).abs(),
         step: beam.step,
+        softer: beam.softer,
         time: Spread::of(times),
     });
     Some(Results { study: study.clone(), reference, timed: timed.collect() })
@@ -136,6 +148,8 @@ struct Beam {
     step: f64,
     /// Of its end under the load, over its length.
     deflection: f64,
+    /// The excess of the deflection at rest over that in small steps, for [`LONGEST`] and its halves, of a model that steps itself.
+    softer: Vec<f64>,
 }
 
 impl Beam {
@@ -146,7 +160,7 @@ impl Beam {
         let side = DEPTH / f64::from(deep);
         let bar = Bar::new(model.elements, [deep, wide, SLENDERNESS * deep], side, DENSITY);
         let (mut made, is) = bar.model(model, MATERIAL)?;
-        if model.kind == Kind::Springs {
+        if model.is_springs() {
             // Springs with which the beam, when it is pulled, has the modulus of the material.
             let material = Material { young: MATERIAL.young * MATERIAL.young / is.young, ..MATERIAL };
             made = bar.model(model, material)?.0;
@@ -160,7 +174,26 @@ impl Beam {
         let held = Grip { nodes, from: 0.0, until: f64::INFINITY, motion: Motion::Still };
         let stability = Stability::of(&bar.body, made.as_ref(), INTEGRATOR, std::slice::from_ref(&held), f64::INFINITY);
         let (step, deflection) = (Stability::SHARE * stability.largest, bar.tip(&position).x / bar.length);
-        Some(Self { bar, model: made, held, step, deflection })
+        let mut beam = Self { bar, model: made, held, step, deflection, softer: Vec::new() };
+        if beam.model.projection(&beam.bar.body).is_some() {
+            beam.settle(load, &position)?;
+        }
+        Some(beam)
+    }
+
+    /// The step of a model that steps itself, and its deflection in such steps, from that in small ones: the balance of forces.
+    fn settle(&mut self, load: f64, balance: &[DVec3]) -> Option<()> {
+        let small = self.deflection;
+        self.step = LONGEST * self.model.shortest_period(&self.bar.body);
+        loop {
+            let found = self.bar.settled(self.model.as_ref(), load, balance, self.step)?;
+            self.deflection = self.bar.tip(&found).x / self.bar.length;
+            self.softer.push(self.deflection / small - 1.0);
+            if self.softer.last()?.abs() < CLOSE {
+                return Some(());
+            }
+            self.step *= 0.5;
+        }
     }
 
     /// The beam as it begins to hang, by its own weight in place of the load, which changes no time.
@@ -180,7 +213,8 @@ impl Results {
             with P L²/EI = {LOAD} (ν = 0). The error is that of its deflection at rest, beside {:.4} of the length, which corotational \
             hexahedra of {} and {} cells across have in the limit. Times are of a simulated second, with half of the largest stable step \
             and semi-implicit Euler: {} time of one thread on {}, medians of {} turns. The beam is {} mm deep, with E = {} MPa and {DENSITY} \
-            kg/m³. Springs have the stiffness with which the beam, when it is pulled, has this E. Other machines give other times.\n\n\
+            kg/m³. Springs have the stiffness with which the beam, when it is pulled, has this E. `xpbd` has a [step of its \
+            own](#steps-of-xpbd). Other machines give other times.\n\n\
             ## Which model to take\n\n\
             The fastest of the runs in the table below for an error that no run of its model with more cells exceeds.\n\n",
             self.reference,
@@ -231,9 +265,35 @@ impl Results {
         text += &Table::of(self.timed.iter().map(row)).markdown(2);
         text += "\nLinear elements do not turn with the beam: where their error is small, too stiff cells and too small a resistance cancel, and it \
             grows again with finer cells. Neo-Hookean elements are another material where strains are large: their limit differs a \
-            little. Springs are no material, and neither is the shape model on the irregular ones of its tetrahedra: each has a limit of \
+            little. `metric` has its points of integration at the corners of its cells, which bend less and \
+            need shorter steps. Springs are no material, and neither is the shape model on the irregular ones of its tetrahedra: each has a limit of \
             its own.\n";
+        text += &format!(
+            "\n## Steps of XPBD\n\n\
+            `xpbd` has no largest stable step, and the energy of `shape-based`. In small steps it rests where that does; in longer ones its one \
+            iteration a step leaves it softer, by the part of the deflection in this table. `T` is the shortest period of a node. \
+            Each bar was timed with the first step of its row that leaves less than {} %.\n\n",
+            100.0 * CLOSE
+        );
+        text += &self.steps_table().markdown(2);
         text
+    }
+
+    /// What longer steps change, of the model that steps itself.
+    fn steps_table(&self) -> Table {
+        let stepped = || self.timed.iter().filter(|one| !one.softer.is_empty());
+        let most = stepped().map(|one| one.softer.len()).max().unwrap_or(0);
+        let heads = (0..most).map(|halved| format!("ΔT = T/{}", f64::from(1 << halved) / LONGEST));
+        let row = |one: &Timed| -> Vec<Cell> {
+            let named: [Cell; 2] = [one.model.elements.name(false).into(), one.across.into()];
+            let shown =
+                |at: usize| one.softer.get(at).map_or_else(String::new, |softer| format!("{:.1} %", 100.0 * softer));
+            named.into_iter().chain((0..most).map(|at| shown(at).into())).collect()
+        };
+        Table {
+            heads: ["elements", "N"].map(str::to_owned).into_iter().chain(heads).collect(),
+            rows: stepped().map(row).collect(),
+        }
     }
 
     /// A run, and those of its model with more cells.
@@ -264,23 +324,32 @@ impl Results {
     #[cfg(feature = "render")]
     fn page(&self) -> crate::page::Page {
         use crate::page::{Contents, Line, Page, Plot};
-        let plot = |elements: Elements| {
+        let plot = |name: &str, is_shown: &dyn Fn(&Model) -> bool| {
             let line = |model: &Model| {
                 let of_model = self.timed.iter().filter(|one| one.model == *model);
                 Line {
                     name: model.name.to_owned(),
-                    family: model.family,
+                    family: model.family(),
                     is_strong: model.name == MENDED,
                     points: of_model.map(|one| [1e3 * one.time.median, one.error]).collect(),
                 }
             };
             Plot {
-                name: elements.name(false).to_owned(),
+                name: name.to_owned(),
                 axes: ["time of a simulated second (ms)".to_owned(), "error of the deflection".to_owned()],
-                curves: MODELS.iter().filter(|model| model.elements == elements).map(line).collect(),
+                curves: Time::models().filter(|model| is_shown(model)).map(line).collect(),
                 slopes: None,
             }
         };
+        let is_of_cells = |model: &Model| model.elements == Elements::Cells;
+        let is_usual = |model: &Model| matches!(model.kind, "shape-based" | "linear" | "corotational" | "neo-hookean");
+        let plots = vec![
+            plot("hexahedra: shape model and finite elements", &|model| is_of_cells(model) && is_usual(model)),
+            plot("hexahedra: other models, and the best of these", &|model| {
+                is_of_cells(model) && (!is_usual(model) || model.name == MENDED)
+            }),
+            plot("tetrahedra", &|model| !is_of_cells(model)),
+        ];
         Page {
             title: "A beam: error against time".to_owned(),
             caption: vec![
@@ -290,7 +359,7 @@ impl Results {
                 format!("Times on one thread of {}.", machine()),
             ],
             columns: 2,
-            contents: Contents::Plots(Elements::ALL.map(plot).into()),
+            contents: Contents::Plots(plots),
         }
     }
 }

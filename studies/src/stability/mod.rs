@@ -110,9 +110,9 @@ pub(crate) fn usual(models: &[String]) -> Scene {
         };
         [run("Local shape", &shape), run("Mass-spring", &springs)]
     });
-    let of_models = models
-        .iter()
-        .map(|kind| format!("{{ name = '{kind}', model = {} }}", crate::models::typed(kind, 1e4, 0.1, 0.1)));
+    let of_models = models.iter().map(|kind| {
+        format!("{{ name = '{kind}', model = {} }}", crate::models::Alike::constant(1e4, 0.05).typed(kind, 0.1))
+    });
     let runs: Vec<_> = if models.is_empty() { of_paper.collect() } else { of_models.collect() };
     let text = format!(
         "title = '3×3×3 cubes that hit a floor after a fall of 5 m'

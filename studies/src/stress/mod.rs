@@ -7,7 +7,7 @@ mod text;
 mod trials;
 
 use crate::folder::Notes;
-use crate::models;
+use crate::models::Alike;
 use crate::progress::Watch;
 use crate::study::{Findings, Study};
 use glam::DVec3;
@@ -196,7 +196,8 @@ impl Row {
 impl Trial {
     /// `None` for a model that does not take the body.
     fn world(&self, model: &Model, integrator: Integrator, start: State) -> Option<World> {
-        let model = models::on(&self.body, &model.kind, self.stiffness, self.damping, &model.keys)?;
+        let alike = Alike::on_body(self.stiffness, &self.body);
+        let model = alike.model(&self.body, &model.kind, self.damping, model.keys.clone())?;
         let Self { body, around, step, .. } = self;
         let stepping = Stepping {
             integrator,

@@ -1,7 +1,7 @@
 //! The default scenes.
 
 use super::Subject;
-use crate::models;
+use crate::models::Alike;
 use glam::DVec3;
 use localshape::{Limits, Scene};
 
@@ -17,7 +17,7 @@ pub(crate) fn usual(kinds: &[String]) -> Vec<Subject> {
 /// The bodies with one model, which their names tell by a suffix.
 fn with(kind: &str, suffix: &str) -> Vec<Subject> {
     let run = |damping_ratio: f64| {
-        let model = models::typed(kind, 1e4, 0.1, damping_ratio);
+        let model = Alike::constant(1e4, 0.05).typed(kind, damping_ratio);
         format!("run = [{{ name = '{kind}', model = {model} }}]")
     };
     let twist = |at: DVec3| {
