@@ -2,8 +2,9 @@
 //!
 //! Beside the springs of Eq. (1) each element of volume `V0` at rest has the energy `½ κ (V − V0)² / V0`, with the bulk modulus `κ`: a pressure
 //! `−κ (V − V0) / V0`, times `∂V/∂x` on each corner. A penalty of that kind keeps the volumes of Teschner and others 2004 ("A versatile and
-//! robust model for geometrically complex deformable solids"), on tetrahedra; Hong and others 2006 ("Fast volume preservation for a mass-spring
-//! system") project on the volume inside the whole closed surface instead, along the same `∂V/∂x`.
+//! robust model for geometrically complex deformable solids", Computer Graphics International, 312), on tetrahedra; Hong and others 2006 ("Fast
+//! volume preservation for a mass-spring system", IEEE Computer Graphics and Applications) project on the volume inside the whole closed
+//! surface instead, along the same `∂V/∂x`.
 //!
 //! **Our reading** is one volume for each element, because a body of many elements can keep its whole volume while some of them are pressed
 //! flat, because elements that are filled in part or differ in size then have theirs, and because forces stay local. `V` is `V0 det F` with `F` the
@@ -11,7 +12,8 @@
 //! it leaves out the warping, which springs resist.
 //!
 //! The paper's objection is that a volume is "merely a necessary condition for the shape restoration". A square that is pressed
-//! to half of its height and twice its width has its volume: nothing but the springs pulls it back.
+//! to half of its height and twice its width has its volume: nothing but the springs pulls it back. One that is pressed flat to a line
+//! may fold on the way back, with all its volumes, and stay so: `scenes/volume-kept.toml`.
 //!
 //! The model is a sum of two laws in one: its elements are the springs, which have two nodes, and those of the body.
 
