@@ -2,9 +2,9 @@
 //! disorder: "the amplitude has constraints to less than the natural length of the spring".
 //!
 //! **The formula is our own reading**, because the paper prints none: that of finitely extensible springs (FENE: Warner 1972, *Ind. Eng. Chem.
-//! Fundam.* 11, 379; Kremer and Grest 1990, *J. Chem. Phys.* 92, 5057), about the natural length. With `x` the elongation and `L` a share of
-//! the natural length, the [`limit`](LimitedSprings::limit), the tension is `k x / (1 − (x/L)²)` and the energy `−½ k L² ln(1 − (x/L)²)`: the
-//! springs of Eq. (1) for small `x`, and a wall at `±L`.
+//! Fundam.* 11, 379; Kremer and Grest 1990, *J. Chem. Phys.* 92, 5057), about the natural length, as in the bonds of ESPResSo. With `x` the
+//! elongation and `L` a share of the natural length, the [`limit`](LimitedSprings::limit), the tension is `k x / (1 − (x/L)²)` and the
+//! energy `−½ k L² ln(1 − (x/L)²)`: the springs of Eq. (1) for small `x`, and a wall at `±L`.
 //!
 //! A step may carry a node through the wall. From `|x| = 0.999 L` on the denominator therefore stays as it is, as in a linear
 //! spring of `k / (1 − 0.999²) ≈ 500 k`. The tension has no jump there, stays finite, and is the derivative of an energy everywhere; `|x| < L` holds

@@ -10,11 +10,13 @@
 //! A mirrored body is at rest.
 //!
 //! D. Terzopoulos, J. Platt, A. Barr, K. Fleischer, Elastically Deformable Models, SIGGRAPH 87, 205 (1987), have for solids the density
-//! `Σ_ij η_ij (G_ij − G⁰_ij)²` in the coordinates of the lattice. Here indices are raised by `G⁰`, which is the same in orthonormal
-//! coordinates of the rest shape and does not depend on the lattice. With all `η_ij = μ/4` and the second term it is an isotropic material,
-//! that of St. Venant and Kirchhoff: `U/2` has the invariants of Green's strain (E. Sifakis, J. Barbič, FEM Simulation of 3D Deformable
-//! Solids, SIGGRAPH 2012 courses; J. Bonet, R. Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2008, chapter 6).
-//! They derive the equation of motion from the continuous energy first and then replace its derivatives by forward and backward
+//! `Σ_ij η_ij (G_ij − G⁰_ij)²` in the coordinates of the lattice (M. Kelager, A. Fleron, K. Erleben, Electronic Letters on Computer Vision and
+//! Image Analysis 5(3), 32 (2005), whose OpenTissue has the tension `η_ij (G_ij − G⁰_ij)`, too). Here indices are raised by `G⁰`, which is
+//! the same in orthonormal coordinates of the rest shape and does not depend on the lattice. With all `η_ij = μ/4` and the second term it is
+//! an isotropic material, that of St. Venant and Kirchhoff: `U/2` has the invariants of Green's strain (E. Sifakis, J. Barbič, FEM Simulation
+//! of 3D Deformable Solids, SIGGRAPH 2012 courses, section 3.3; J. Bonet, R. Wood, Nonlinear Continuum Mechanics for Finite Element Analysis,
+//! 2008, chapter 6).
+//! Terzopoulos et al. derive the equation of motion from the continuous energy first and then replace its derivatives by forward and backward
 //! differences, with one metric at each node, and forces that need not be the gradient of an energy of nodes. They also have curves and
 //! surfaces, whose bending and twist are further tensors.
 //!

@@ -5,11 +5,11 @@
 //! Hooke's with the same `μ` and `λ`: `cof F` is `(1 + tr ε) I − ε` to first order. Both hold in the plane as in space. Everything is finite for
 //! `J ≤ 0`, so mirrored elements turn back.
 //!
-//! It is Eq. (11) of B. Smith, F. de Goes, T. Kim, "Stable neo-Hookean flesh simulation", ACM Trans. Graph. 37(2), 2018, with their `λ` for `λ +
-//! μ`; so in M. Macklin, M. Müller, "A constraint-based formulation of stable neo-Hookean materials", MIG 2021. Their final Eq. (14) also
-//! subtracts `½ μ ln(I_C + 1)`, with `α = 1 + 3μ/4λ`, and replaces Lamé's `μ` and `λ` by `4μ/3` and `λ + 5μ/6`. With the logarithm an element
-//! that is crushed to a point opens again. Without it `F = 0` is a second minimum in space, though not in the plane, and costs nothing if
-//! `ν = 0`.
+//! It is the law to which B. Smith, F. de Goes, T. Kim, "Stable neo-Hookean flesh simulation", ACM Trans. Graph. 37(2), 2018, add a
+//! logarithm, with their `λ` for `λ + μ`; so in M. Macklin, M. Müller, "A constraint-based formulation of stable neo-Hookean materials", MIG
+//! 2021, and in SOFA's `StableNeoHookean`. The final Eq. (14) of Smith et al. also subtracts `½ μ ln(I_C + 1)`, with `α = 1 + 3μ/4λ`, and
+//! replaces Lamé's `μ` and `λ` by `4μ/3` and `λ + 5μ/6` (section 3.4). With the logarithm an element that is crushed to a point opens again.
+//! Without it `F = 0` is a second minimum in space, though not in the plane, and costs nothing if `ν = 0`.
 
 #![expect(clippy::needless_range_loop, reason = "loops over the coordinates of several arrays, without closures")]
 

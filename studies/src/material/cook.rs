@@ -1,7 +1,8 @@
 //! Cook's membrane: a skew panel in the plane, held at its left side and sheared at its right one.
 //!
-//! R. Cook, Journal of the Structural Division 100, 1851 (1974). Corners at (0, 0), (48, 44), (48, 60) and (0, 44); `E` = 1, `ν` = 1/3, unit
-//! thickness, plane stress, and a shear load of 1, uniform along the right side. Literature gives the deflection of the middle of that side.
+//! R. Cook, "Improved two-dimensional finite element", Journal of the Structural Division 100, 1851 (1974). Corners at (0, 0), (48, 44),
+//! (48, 60) and (0, 44); `E` = 1, `ν` = 1/3, unit thickness, plane stress, and a shear load of 1, uniform along the right side. Literature gives
+//! the deflection of the middle of that side.
 
 use super::balance::balance;
 use super::{Elements, MODELS, Model, decimals};
@@ -23,7 +24,8 @@ pub(crate) struct Cook {
 
 const MATERIAL: Material = Material { young: 1.0, poisson: 1.0 / 3.0 };
 /// The deflection from many elements of several kinds, as most papers since P. Bergan and C. Felippa, Computer Methods in Applied Mechanics
-/// and Engineering 50, 25 (1985), give it.
+/// and Engineering 50, 25 (1985), give it, such as J. Simo and M. Rifai, International Journal for Numerical Methods in Engineering 29, 1595
+/// (1990).
 const PRINTED: f64 = 23.96;
 /// The load here: so small that all laws are linear.
 const LOAD: f64 = 1e-6;

@@ -1,7 +1,8 @@
 //! The patch test: an irregular block whose surface is strained uniformly, and how far its inside stays from that strain.
 //!
 //! In a uniform material the inside follows (B. Irons, A. Razzaque, "Experience with the patch test for convergence of finite elements", in
-//! A. Aziz (ed.), "The mathematical foundations of the finite element method", 1972, 557).
+//! A. Aziz (ed.), "The mathematical foundations of the finite element method", 1972, 557; R. Taylor and others, "The patch test: a condition
+//! for assessing FEM convergence", International Journal for Numerical Methods in Engineering 22, 39 (1986)).
 
 use super::balance::{Forces, balance};
 use super::{MODELS, Model};

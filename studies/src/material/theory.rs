@@ -5,7 +5,8 @@ use localshape::sim::Material;
 /// The deflection of the end of a cantilever under a load (N) across it at its end, by Timoshenko's theory of small deflections (m), with
 /// a rectangular section of `width` and `depth` (m).
 ///
-/// The shear coefficient is that of G. Cowper, Journal of Applied Mechanics 33, 335 (1966): 5/6 without contraction.
+/// S. Timoshenko, Philosophical Magazine 41, 744 (1921). The shear coefficient is that of G. Cowper, "The shear coefficient in Timoshenko's
+/// beam theory", Journal of Applied Mechanics 33, 335 (1966): 5/6 without contraction.
 pub(super) fn timoshenko(material: Material, length: f64, [width, depth]: [f64; 2], load: f64) -> f64 {
     let Material { young, poisson } = material;
     let coefficient = 10.0 * (1.0 + poisson) / (12.0 + 11.0 * poisson);
@@ -16,7 +17,8 @@ pub(super) fn timoshenko(material: Material, length: f64, [width, depth]: [f64; 
 /// Across and along, over its length, the deflection of the end of a thin cantilever under a load that keeps its direction, with
 /// `load = P L²/EI`: the elastica.
 ///
-/// Its slope obeys `θ'' = −(P L²/EI) cos θ`, with `θ(0) = 0` and `θ'(1) = 0`. The curvature at the clamp is found by bisection.
+/// Its slope obeys `θ'' = −(P L²/EI) cos θ`, with `θ(0) = 0` and `θ'(1) = 0` (K. Bisshopp, D. Drucker, Quarterly of Applied Mathematics 3, 272
+/// (1945), by elliptic integrals). The curvature at the clamp is found by bisection.
 pub(super) fn elastica(load: f64) -> [f64; 2] {
     // No slope exceeds a right angle, so the curvature at the clamp is at most √(2 load).
     let (mut low, mut high) = (0.0, libm::sqrt(2.0 * load));
