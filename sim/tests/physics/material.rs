@@ -175,7 +175,7 @@ fn a_cantilever_bends_by_the_parts_of_timoshenko_that_were_computed_independentl
 }
 
 /// The elastica: a thin cantilever under a load on its end that keeps its direction. Deflections across and along over its
-/// length, by integration of `θ'' = −(P L²/EI) cos θ`; Mattiasson (1981) has the same.
+/// length, by integration of `θ'' = −(P L²/EI) cos θ`; Mattiasson (1981) has the same from the load 1 on.
 #[test]
 fn a_thin_bar_bends_as_the_elastica() {
     let table = [

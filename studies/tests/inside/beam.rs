@@ -41,12 +41,8 @@ fn bars_bend_as_was_computed_independently_and_as_the_page_says() {
     for (end, (load, printed)) in end {
         let (end, exact) = (end.expect("a balance"), elastica(load));
         for axis in [0, 1] {
-            assert!(
-                (exact[axis] - printed[axis]).abs() < 0.6e-5,
-                "{load}: {} instead of {}",
-                exact[axis],
-                printed[axis]
-            );
+            let is_near = printed.is_none_or(|printed| (exact[axis] - printed[axis]).abs() < 0.6e-5);
+            assert!(is_near, "{load}: {} instead of {printed:?}", exact[axis]);
             assert!((end[axis] / exact[axis] - 1.0).abs() < 0.01, "{load}: {} instead of {}", end[axis], exact[axis]);
         }
     }
