@@ -51,7 +51,8 @@ impl Alike {
         Self::constant(constant, units.into_iter().fold(0.0, f64::max))
     }
 
-    fn keys(&self, kind: &str) -> Map<String, Value> {
+    /// The parameters of a model, with the key of its damping. XPBD has that of its steps alone.
+    fn keys(&self, kind: &str, (damped, damping): (&str, f64)) -> Map<String, Value> {
         let mut keys = Map::from_iter([("kind".to_owned(), json!(kind))]);
         let mut add = |key: &str, value: f64| keys.insert(key.to_owned(), json!(value));
         let constant = match kind {
@@ -69,6 +70,9 @@ impl Alike {
             "limited-springs" => add("limit", Self::LIMIT),
             _ => None,
         };
+        if damping > 0.0 && kind != "xpbd" {
+            add(damped, damping);
+        }
         keys
     }
 
@@ -80,27 +84,15 @@ impl Alike {
         damping: f64,
         more: impl IntoIterator<Item = (String, Value)>,
     ) -> Option<Arc<dyn ElasticModel>> {
-        let mut keys = self.keys(kind);
-        keys.extend(more);
-        if damping > 0.0 && is_damped(kind) {
-            keys.insert("damping".to_owned(), json!(damping));
-        }
+        let keys: Map<_, _> = self.keys(kind, ("damping", damping)).into_iter().chain(more).collect();
         let parameters: ModelParameters = serde_json::from_value(keys.into()).expect("the parameters of a model");
         parameters.resolve(body, None).ok()
     }
 
     /// A model in a scene file, with `ζ`.
     pub(crate) fn typed(&self, kind: &str, damping_ratio: f64) -> String {
-        let mut keys = self.keys(kind);
-        if damping_ratio > 0.0 && is_damped(kind) {
-            keys.insert("damping_ratio".to_owned(), json!(damping_ratio));
-        }
+        let keys = self.keys(kind, ("damping_ratio", damping_ratio));
         let keys: Vec<_> = keys.iter().map(|(key, value)| format!("{key} = {value}")).collect();
         format!("{{ {} }}", keys.join(", "))
     }
-}
-
-/// Whether a model takes a damping constant. XPBD has that of its steps alone.
-fn is_damped(kind: &str) -> bool {
-    kind != "xpbd"
 }

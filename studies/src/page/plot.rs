@@ -46,10 +46,14 @@ const HIGH: f64 = 1.08;
 const CURVE: f64 = 1.8;
 const STRONG: f64 = 3.2;
 const SLOPE: f64 = 1.2;
+const LEADER: f64 = 1.0;
 const DOT: f64 = 3.6;
 const STRONG_DOT: f64 = 5.0;
-/// The gap from a dot to the name beside it (px).
+/// The distance of points along curves, by which names keep away from them (px).
+const APART: f64 = 4.0;
+/// The gap from a dot to the name beside it (px), and the number of gaps, each greater by most of the height of a name.
 const GAP: f64 = 8.0;
+const FARTHEST: u32 = 7;
 /// Colours of families of curves, and of lines of known slopes.
 const FAMILIES: [Colour; 6] = [
     [0x00, 0x72, 0xb2],
@@ -113,9 +117,31 @@ fn slopes(plot: &Plot, [across, up]: [[f64; 2]; 2]) -> Vec<(String, [[f64; 2]; 2
 /// A plot at its place.
 struct Frame {
     area: Area,
+    /// The logarithms at the ends of its axes.
+    ranges: [[f64; 2]; 2],
     chart: Chart,
     /// The lines of known slopes, and the curves.
     lines: Vec<Drawn>,
+}
+
+/// A place of a name.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    area: Area,
+    /// The point that it names.
+    dot: [f64; 2],
+    /// Whether a thin line leads there.
+    leads: bool,
+    /// Its cost, whatever else is there.
+    cost: f64,
+}
+
+impl Place {
+    /// The ends of the line that leads from the point to the name.
+    fn leader(&self) -> [[f64; 2]; 2] {
+        let Self { area: [left, top, right, bottom], dot: [x, y], .. } = *self;
+        [[x, y], [x.clamp(left, right), y.clamp(top, bottom)]]
+    }
 }
 
 /// Joined points (px) with a name beside one of them.
@@ -148,7 +174,7 @@ impl Frame {
             chart.layers.push(Layer::Line { points: points.clone(), colour, width, dash: Vec::new() });
             chart.layers.push(Layer::Dots { points, colour, radius });
         }
-        Self { area, chart, lines }
+        Self { area, ranges, chart, lines }
     }
 
     fn draw(&self, diagram: &mut Diagram, plot: &Plot) {
@@ -156,46 +182,72 @@ impl Frame {
         write(diagram, &plot.name, NAME, 0.0, [left - NUMBERS, top - ABOVE + 20.0]);
         write(diagram, &plot.axes[1], SMALL, 0.0, [left - NUMBERS, top - 12.0]);
         write(diagram, &plot.axes[0], SMALL, 1.0, [right, bottom + 43.0]);
-        diagram.chart(&self.chart, self.area);
-        for (one, area) in self.lines.iter().zip(self.names(diagram)) {
-            let Some([left, top, ..]) = area else { continue };
+        let named: Vec<_> =
+            self.lines.iter().zip(self.names(diagram)).filter_map(|(one, at)| Some((one, at?))).collect();
+        let mut chart = self.chart.clone();
+        for (one, place) in named.iter().filter(|(_, place)| place.leads) {
+            let points = place.leader().map(|point| self.value(point)).into();
+            chart.layers.insert(0, Layer::Line { points, colour: one.colour, width: LEADER, dash: Vec::new() });
+        }
+        diagram.chart(&chart, self.area);
+        for (one, Place { area: [left, top, ..], .. }) in named {
             let baseline = top + (0.5 * HIGH + MIDDLE) * SMALL.size;
             write(diagram, &one.name, label(one.colour), 0.0, [left, baseline]);
         }
     }
 
-    /// The place of each line's name beside one of its points, where it covers least; `None` without points or name.
-    fn names(&self, diagram: &Diagram) -> Vec<Option<Area>> {
+    /// The pair of numbers at a point (px).
+    fn value(&self, point: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| {
+            let [start, end] = [[0, 3][axis], [2, 1][axis]].map(|side| self.area[side]);
+            let [low, high] = self.ranges[axis];
+            libm::exp10(low + (point[axis] - start) / (end - start) * (high - low))
+        })
+    }
+
+    /// The place of each line's name near one of its points, where it covers least; `None` without points or name.
+    fn names(&self, diagram: &Diagram) -> Vec<Option<Place>> {
         let lines = &self.lines;
-        let places: Vec<Vec<(Area, f64)>> = lines.iter().map(|line| self.places(diagram, line)).collect();
-        let mut chosen: Vec<Option<Area>> = vec![None; lines.len()];
+        let places: Vec<Vec<Place>> = lines.iter().map(|line| self.places(diagram, line)).collect();
+        let mut chosen: Vec<Option<Place>> = vec![None; lines.len()];
         // Names of later curves are placed first. Then each is placed again, with the others in place.
         for at in (0..lines.len()).rev().cycle().take(3 * lines.len()) {
-            let others: Vec<Area> = (0..lines.len()).filter(|&other| other != at).filter_map(|at| chosen[at]).collect();
-            let cost = |&(area, cost): &(Area, f64)| {
-                let on_names: f64 = others.iter().map(|&other| 60.0 * shared(area, other)).sum();
-                let on_line = |(of, line): (usize, &Drawn)| match of == at {
-                    true => 0.6 * covered(area, &line.points),
-                    // Next to a dot of another curve, the name would seem to belong to it.
-                    false => covered(area, &line.points) + near(area, &line.points),
+            let others: Vec<Place> =
+                (0..lines.len()).filter(|&other| other != at).filter_map(|at| chosen[at]).collect();
+            let cost = |place: &Place| {
+                let (area, leader) = (place.area, place.leader());
+                let own = apart(area, &lines[at].points) + 0.5 * GAP;
+                let on_name = |other: &Place| {
+                    let leaders = covered(other.area, &leader) + covered(area, &other.leader());
+                    60.0 * shared(area, other.area) + 5.0 * leaders + 5.0 * crossings(leader, &other.leader())
                 };
-                cost + on_names + lines.iter().enumerate().map(on_line).sum::<f64>()
+                let on_line = |(of, line): (usize, &Drawn)| {
+                    let covered = covered(area, &line.points);
+                    match (of == at, place.leads) {
+                        (true, _) => 0.6 * covered,
+                        (false, true) => 3.0 * covered + crossings(leader, &line.points),
+                        // Nearer to another curve, the name would seem to belong to it.
+                        (false, false) => 3.0 * covered + if apart(area, &line.points) < own { 4.0 } else { 0.0 },
+                    }
+                };
+                let on_lines: f64 = lines.iter().enumerate().map(on_line).sum();
+                place.cost + others.iter().map(on_name).sum::<f64>() + on_lines
             };
             let best = places[at].iter().min_by(|one, other| cost(one).total_cmp(&cost(other)));
-            chosen[at] = best.map(|(area, _)| *area);
+            chosen[at] = best.copied();
         }
         chosen
     }
 
-    /// The places of a name: beside, above and below each of its points, each with its own cost.
-    fn places(&self, diagram: &Diagram, line: &Drawn) -> Vec<(Area, f64)> {
+    /// The places of a name: beside, above and below each of its points.
+    fn places(&self, diagram: &Diagram, line: &Drawn) -> Vec<Place> {
         let (wide, high) = (diagram.text_width(&line.name, label(line.colour)), HIGH * SMALL.size);
         let [low, top, far, bottom] = self.area;
         let anchors = if line.name.is_empty() { &[] } else { line.points.get(line.first..).unwrap_or_default() };
         let mut places = Vec::new();
         for (number, &[x, y]) in anchors.iter().enumerate() {
             let is_end = number == 0 || number + 1 == anchors.len();
-            for further in [0.0, 1.0, 2.0] {
+            for further in (0..FARTHEST).map(f64::from) {
                 let gap = GAP + 0.9 * further * high;
                 let corners = [
                     [x + gap, y - 0.5 * high],
@@ -208,10 +260,14 @@ impl Frame {
                     [x - 0.6 * gap - wide, y + 0.6 * gap],
                 ];
                 for (place, [left, above]) in corners.into_iter().enumerate() {
+                    // Above and below, a name may be shifted.
+                    let left = if place < 2 { left } else { left.min(far - wide).max(low) };
                     let area = [left, above, left + wide, above + high];
                     let is_inside = left >= low && area[2] <= far && above >= top && area[3] <= bottom;
-                    let own = 2.0 * further + if is_end { 0.0 } else { 1.0 } + 0.1 * place as f64;
-                    places.push((area, if is_inside { own } else { own + 100.0 }));
+                    let leads = further > 0.0;
+                    let away = if leads { 1.0 + 0.5 * further } else { 0.0 };
+                    let cost = away + if is_end { 0.0 } else { 1.0 } + 0.1 * place as f64;
+                    places.push(Place { area, dot: [x, y], leads, cost: if is_inside { cost } else { cost + 100.0 } });
                 }
             }
         }
@@ -230,14 +286,34 @@ fn shared(one: Area, other: Area) -> f64 {
     side(0) * side(1) / size(one).min(size(other))
 }
 
-/// The number of dots beside an area.
-fn near(area: Area, dots: &[[f64; 2]]) -> f64 {
-    let is_near = |&&[x, y]: &&[f64; 2]| {
-        let beside = (area[0] - x).max(x - area[2]).max(0.0);
-        let above = (area[1] - y).max(y - area[3]).max(0.0);
-        libm::hypot(beside, above) < 1.5 * GAP
+/// The cost of crossing a line through points: each dot counts as four pieces.
+fn crossings([start, end]: [[f64; 2]; 2], line: &[[f64; 2]]) -> f64 {
+    let side = |from: [f64; 2], to: [f64; 2], at: [f64; 2]| {
+        (to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0])
     };
-    dots.iter().filter(is_near).count() as f64
+    let is_crossed = |two: &&[[f64; 2]]| {
+        side(start, end, two[0]) * side(start, end, two[1]) < 0.0
+            && side(two[0], two[1], start) * side(two[0], two[1], end) < 0.0
+    };
+    let dots = line.iter().filter(|[x, y]| apart([*x, *y, *x, *y], &[start, end]) < 2.0 * DOT).count();
+    (4 * dots + line.windows(2).filter(is_crossed).count()) as f64
+}
+
+/// The distance of an area from a line through points (px).
+fn apart(area: Area, line: &[[f64; 2]]) -> f64 {
+    let away = |[x, y]: [f64; 2]| {
+        libm::hypot((area[0] - x).max(x - area[2]).max(0.0), (area[1] - y).max(y - area[3]).max(0.0))
+    };
+    sampled(line).chain(line.iter().copied()).map(away).fold(f64::INFINITY, f64::min)
+}
+
+/// Points along a line through points, a few px apart.
+fn sampled(line: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> {
+    line.windows(2).flat_map(|two| {
+        let [dx, dy] = [two[1][0] - two[0][0], two[1][1] - two[0][1]];
+        let pieces = libm::ceil(libm::hypot(dx, dy) / APART).max(1.0);
+        (0..=pieces as usize).map(move |piece| [0, 1].map(|axis| two[0][axis] + [dx, dy][axis] * piece as f64 / pieces))
+    })
 }
 
 /// The cost of covering parts of a line through points: each dot counts, and each height of a letter along the line.
@@ -246,13 +322,7 @@ fn covered(area: Area, line: &[[f64; 2]]) -> f64 {
         x > area[0] - margin && x < area[2] + margin && y > area[1] - margin && y < area[3] + margin
     };
     let dots = line.iter().filter(|&&dot| is_in(dot, DOT)).count() as f64;
-    let on_way = line.windows(2).map(|two| {
-        let [dx, dy] = [two[1][0] - two[0][0], two[1][1] - two[0][1]];
-        let pieces = libm::ceil(libm::hypot(dx, dy) / 4.0).max(1.0);
-        let at = |piece: f64| [two[0][0] + dx * piece / pieces, two[0][1] + dy * piece / pieces];
-        (0..=pieces as usize).filter(|&piece| is_in(at(piece as f64), 0.0)).count() as f64 * 4.0 / SMALL.size
-    });
-    3.0 * dots + on_way.sum::<f64>()
+    3.0 * dots + sampled(line).filter(|&at| is_in(at, 0.0)).count() as f64 * APART / SMALL.size
 }
 
 #[cfg(test)]

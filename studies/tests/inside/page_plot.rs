@@ -38,7 +38,8 @@ fn a_decade_is_equally_long_everywhere_and_plots_share_their_axes() {
 fn names_do_not_cover_each_other() {
     let plots = plots(vec![[1.0, 1e-12], [10.0, 1e-9], [100.0, 1e-6]]);
     for frame in frames(&plots) {
-        let names: Vec<Area> = frame.names(&Diagram::new([1280, 600])).into_iter().flatten().collect();
+        let names = frame.names(&Diagram::new([1280, 600]));
+        let names: Vec<Area> = names.into_iter().flatten().map(|place| place.area).collect();
         // Two curves and two slopes.
         assert_eq!(names.len(), 4);
         for (at, one) in names.iter().enumerate() {
