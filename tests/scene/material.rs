@@ -83,6 +83,33 @@ fn materials_that_cannot_be() {
     case(BAR, "lattice = { cells = [3, 1, 1], side = 0.1 }", bars, "6:41 element 0 has no volume");
 }
 
+#[test]
+fn bending_of_what_does_not_bend_is_told() {
+    let triangle = "body = { nodes = [[0, 0], [1, 0], [0, 1]], elements = [[0, 1, 2]] }";
+    let square = "body = { lattice = { cells = [1, 1], side = 1 } }";
+    let with = |body: &str, model: &str| {
+        let run = format!("[[run]]\nname = 'run'\nmodel = {{ kind = {model} }}\n");
+        warnings(&format!("time = {{ duration = 1 }}\n{body}\n{run}"))
+    };
+    for kind in ["'shape-based'", "'xpbd'"] {
+        let bent = format!("{kind}, stiffness = 1e4, bending = '1/3'");
+        let [(5, message)] = &with(triangle, &bent)[..] else { panic!("{:?}", with(triangle, &bent)) };
+        assert!(
+            message.starts_with("`bending` has no effect on this body: segments and triangles do not bend"),
+            "{message}"
+        );
+        assert_eq!(with(square, &bent), []);
+        assert_eq!(with(triangle, &bent.replace("'1/3'", "1")), []);
+        // A model of several bodies acts on those that bend.
+        let both = format!(
+            "body = [{}, {}]",
+            square.replacen("body = {", "{ name = 'a', offset = [3, 0], ", 1),
+            triangle.replacen("body = {", "{ name = 'b', ", 1)
+        );
+        assert_eq!(with(&both, &bent), []);
+    }
+}
+
 /// The warnings of a scene.
 fn warnings(text: &str) -> Vec<(usize, String)> {
     good(text).warnings.into_iter().map(|warning| (warning.line, warning.message)).collect()

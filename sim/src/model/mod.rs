@@ -164,6 +164,13 @@ pub trait ElasticModel: Debug + Send + Sync {
         None
     }
 
+    /// A parameter that was given and has no effect on a body, with the reason and the remedy; `None` if all have one.
+    #[doc(hidden)]
+    fn without_effect(&self, body: &Body) -> Option<Misfit> {
+        let _ = body;
+        None
+    }
+
     /// Whether damping brakes the rotation of a rigid body.
     fn brakes_rotation(&self) -> bool {
         false

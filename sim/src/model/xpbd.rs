@@ -115,6 +115,10 @@ impl ElasticModel for Xpbd {
         self.shape.typed_material()
     }
 
+    fn without_effect(&self, body: &Body) -> Option<Misfit> {
+        self.shape.without_effect(body)
+    }
+
     /// It exerts no forces in a step.
     fn bound(&self, _: &Body) -> Option<Mode> {
         Some(Mode { stiffness: 0.0, damping: 0.0 })

@@ -1,7 +1,7 @@
 //! The runs: models, steps and integrators.
 
 use super::body::ResolvedBody;
-use super::choice::{Choice, check_names};
+use super::choice::{Choice, TypedModel, check_names};
 use super::grips::SceneGrip;
 use super::recordings::{ReadRecording, Shown};
 use crate::reading::collector::{Collector, PathPart, key_path};
@@ -115,12 +115,30 @@ fn parts(
             typed.model.resolve(body, springs.as_deref()).map_err(misfit).ok()
         });
         // All misfits are reported.
-        let models: Vec<_> = resolved.collect();
-        let models = models.into_iter().collect::<Option<Vec<_>>>();
+        let resolved: Vec<_> = resolved.collect();
+        let resolved = resolved.into_iter().collect::<Option<Vec<_>>>();
+        if let Some(resolved) = &resolved {
+            warn_without_effect(of.iter().map(|&at| &bodies[at].body).zip(resolved), models, report);
+        }
         let grips = grips.iter().flat_map(|grip| grip.in_run(of, &together.bodies)).collect();
-        all.push(models.map(|models| Parts { of: of.clone(), together, models, grips, recording: None }));
+        all.push(resolved.map(|models| Parts { of: of.clone(), together, models, grips, recording: None }));
     }
     Some((all.into_iter().collect::<Option<_>>()?, own))
+}
+
+/// Warns of parameters that have no effect on any of the bodies of their model.
+fn warn_without_effect<'a>(
+    parts: impl Iterator<Item = (&'a Arc<Body>, &'a Arc<dyn ElasticModel>)>,
+    typed: &[TypedModel<'_>],
+    report: &mut Collector<'_>,
+) {
+    let parts: Vec<_> = parts.zip(typed).collect();
+    for models in parts.chunk_by(|(_, one), (_, other)| one.path == other.path) {
+        let idle = models.iter().map(|((body, model), _)| model.without_effect(body)).collect::<Option<Vec<_>>>();
+        if let Some(Misfit { key, message }) = idle.and_then(|idle| idle.into_iter().next()) {
+            report.warn(&key_path![models[0].1.path; key], message, None);
+        }
+    }
 }
 
 /// The steps of a recording between two frames, if the step of the program that made it is not known.

@@ -1,7 +1,7 @@
 //! The linear map that fits an element best, for what goes beyond the paper.
 
 use crate::element::Dimension;
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 /// What of the rest shape of an element the map follows from.
 #[derive(Clone, Copy)]
@@ -24,13 +24,20 @@ pub(super) struct Stretch {
     pub(super) volume: f64,
 }
 
+/// `M` of an element with these `R0` (m).
+fn moment(rest: &[DVec3]) -> DMat3 {
+    rest.iter().fold(DMat3::ZERO, |sum, &rest| sum + DMat3::from_cols(rest * rest.x, rest * rest.y, rest * rest.z))
+}
+
+/// Whether the nodes of an element with these `R0` (m) are those of a simplex, so that a linear map fits all their displacements.
+pub(super) fn is_simplex(rest: &[DVec3]) -> bool {
+    pseudo_inverse(moment(rest)).1 + 1 == rest.len()
+}
+
 impl AtRest {
     /// Of an element with these `R0` (m).
-    pub(super) fn new(rest: &[glam::DVec3], dimension: Dimension) -> Self {
-        let moment = rest
-            .iter()
-            .fold(DMat3::ZERO, |sum, &rest| sum + DMat3::from_cols(rest * rest.x, rest * rest.y, rest * rest.z));
-        Self::of_moment(moment, dimension)
+    pub(super) fn new(rest: &[DVec3], dimension: Dimension) -> Self {
+        Self::of_moment(moment(rest), dimension)
     }
 
     /// Of an element with this `M` (m²).
@@ -90,7 +97,7 @@ fn pseudo_inverse(matrix: DMat3) -> (DMat3, usize) {
     let (mut inverse, mut rank) = (DMat3::ZERO, 0);
     for (axis, vector) in vectors.into_iter().enumerate() {
         if rows[axis][axis] > SMALL * mean {
-            let vector = glam::DVec3::from_array(vector);
+            let vector = DVec3::from_array(vector);
             let scaled = vector / rows[axis][axis];
             inverse += DMat3::from_cols(scaled * vector.x, scaled * vector.y, scaled * vector.z);
             rank += 1;

@@ -225,6 +225,21 @@ impl ElasticModel for ShapeBased {
         self.material
     }
 
+    fn without_effect(&self, body: &Body) -> Option<Misfit> {
+        let bends = |nodes: &[u32]| !affine::is_simplex(&at_rest(nodes, body).collect::<Vec<_>>());
+        (self.bending != 1.0 && !body.elements.iter().any(bends)).then(|| {
+            let [simplices, others] = match body.dimension {
+                Dimension::Plane => ["segments and triangles", "quadrilaterals"],
+                Dimension::Space => ["segments, triangles and tetrahedra", "hexahedra"],
+            };
+            let message = format!(
+                "`bending` has no effect on this body: {simplices} do not bend, because a linear map fits any of their displacements; take it \
+                 out, or take elements of more nodes, such as {others}"
+            );
+            Misfit { key: "bending", message }
+        })
+    }
+
     fn brakes_rotation(&self) -> bool {
         self.damping > 0.0 && self.damping_of == DampingReading::RelativeMotion
     }
