@@ -4,6 +4,7 @@ use super::last_fit::fits;
 use crate::reading::captions::quantity;
 use crate::scene::{Run, Scene};
 use crate::sim::geometry::bounds;
+use crate::sim::stability::Stability;
 use crate::sim::{Crew, Divergence, Grip, Integrator, Pose, State, Status};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -117,12 +118,35 @@ impl Cause {
             world.advance(steps);
             if world.status() == Status::Ok && fits(&scene.runs[run], &world.state().position) {
                 let [long, short] = [step, step / parts as f64].map(|step| quantity(step, "s"));
-                return format!("steps of {long} are too long; with steps of {short} it does not diverge there{hint}");
+                let stiffer = Self::stiffer(scene, run, divergence.part);
+                let stiffer = stiffer.map_or(String::new(), |words| format!("; {words}, so give a shorter `step`"));
+                return format!(
+                    "steps of {long} are too long; with steps of {short} it does not diverge there{hint}{stiffer}"
+                );
             }
             tried = Some(parts);
         }
         let tried = tried.map_or(String::new(), |parts| format!("steps of 1/{parts} do not help{hint}; "));
-        format!("{tried}look at the motion before it")
+        let stiffer = Self::stiffer(scene, run, divergence.part);
+        let stiffer = stiffer.map_or(String::new(), |words| format!(", or take shorter steps: {words}"));
+        format!("{tried}look at the motion before it{stiffer}")
+    }
+
+    /// Why steps that are stable for a body at rest may be too long, if they are stable there and not for certain in any state.
+    fn stiffer(scene: &Scene, run: usize, part: usize) -> Option<String> {
+        let Run { step, integrator, models, bodies, grips, .. } = &scene.runs[run];
+        let certain = Stability::certain(&bodies.bodies()[part], &*models[part], *integrator);
+        if certain.is_some_and(|certain| *step <= certain) {
+            return None;
+        }
+        let limit = Stability::of_each(bodies, models, *integrator, grips, scene.duration)[part].largest;
+        let words = || {
+            format!(
+                "up to {} they are stable at rest, but this model can stiffen when it is stretched",
+                quantity(limit, "s")
+            )
+        };
+        (*step <= limit && limit.is_finite()).then(words)
     }
 }
 
@@ -171,6 +195,19 @@ mod tests {
             words.contains("m/s: steps of 31.4 ms are too long; with steps of 7.85 ms it does not diverge"),
             "{words}"
         );
+    }
+
+    #[test]
+    fn a_model_that_stiffens_is_named_where_its_step_would_be_stable_at_rest() {
+        let (Cause { words, .. }, _) = cause(
+            "hold = [{ nodes = 'left' }]
+            grab = [{ nodes = 'right', path.keys = [{ time = 0 }, { time = 1, shift = [0.8, 0, 0] }] }]",
+            "model = { kind = 'limited-springs', stiffness = 1e4, limit = 0.3 }\nstep = 'auto'",
+        );
+        assert!(words.contains(" they are stable at rest, but this model can stiffen when it is stretched"), "{words}");
+        // With the shape model no state of the body is stiffer than its bound.
+        let (Cause { words, .. }, _) = cause("", "model = { kind = 'shape-based', stiffness = 1e4 }\nstep = 'T/2'");
+        assert!(!words.contains("stiffen"), "{words}");
     }
 
     #[test]

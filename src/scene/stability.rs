@@ -17,15 +17,15 @@ impl Scene {
         (all, limiting.map(|body| self.bodies[run.of[body]].name.as_str()))
     }
 
-    /// The message and remedy for a run whose step is more than 0.9 of the largest stable one, with that share. Runs
-    /// far below, nearly all, need no eigenvalue. Explicit Euler without damping has another message
-    /// ([`Self::never_stable`]), and models of the caller have none.
+    /// The message and remedy for a run whose step is more than 0.9 of the largest stable one, with that share. Runs far
+    /// below, nearly all, need no exact eigenvalue. Explicit Euler without damping has another message
+    /// ([`Self::never_stable`]).
     pub(super) fn near_limit(&self, number: usize) -> Option<(f64, [String; 2])> {
         const NEAR: f64 = 0.9;
         let run = &self.runs[number];
-        let certain = |(model, body)| Stability::certain(body, model, run.integrator);
-        let certain = run.models_and_bodies().map(certain).reduce(|one, other| Some(one?.min(other?)))??;
-        if run.step <= NEAR * certain || run.tolerance.is_some() {
+        let Run { bodies, models, grips, integrator, step, .. } = run;
+        let is_far = || Stability::is_below(bodies, models, *integrator, grips, (self.duration, *step / NEAR));
+        if run.tolerance.is_some() || is_far() {
             return None;
         }
         let (Stability { largest, .. }, body) = self.stability(number);
@@ -47,8 +47,7 @@ impl Scene {
     /// The message and remedy for a run that is unstable with any step: explicit Euler without damping.
     pub(super) fn never_stable(&self, number: usize) -> Option<[String; 2]> {
         let run = &self.runs[number];
-        let is_undamped = run.is_undamped();
-        (run.integrator == Integrator::ExplicitEuler && is_undamped).then(|| {
+        (run.integrator == Integrator::ExplicitEuler && run.is_undamped()).then(|| {
             let name = quoted(&run.name);
             [
                 format!("`explicit-euler` adds energy to {name} with any step, because the run has no damping"),
@@ -63,11 +62,10 @@ impl Scene {
     pub(super) fn rebound_gain(&self, number: usize, largest: f64) -> Option<f64> {
         const GAIN: f64 = 0.2;
         let run = &self.runs[number];
-        let is_undamped = run.is_undamped();
         let is_elastic = self.obstacles.iter().any(|obstacle| obstacle.restitution == 1.0);
         let has_limit = run.tolerance.is_none() && largest > 0.0 && largest.is_finite();
         let share = run.step / largest;
-        (is_undamped && is_elastic && has_limit && share < 1.0).then_some(GAIN * share * share)
+        (is_elastic && has_limit && share < 1.0 && run.is_undamped()).then_some(GAIN * share * share)
     }
 
     /// The message for each run whose step is larger than the largest stable one.
@@ -78,9 +76,9 @@ impl Scene {
 }
 
 impl Run {
-    /// Whether a body of it is known to have no damping.
+    /// Whether a body of it has no damping.
     fn is_undamped(&self) -> bool {
-        self.models_and_bodies().any(|(model, body)| model.bound(body).is_some_and(|bound| bound.damping == 0.0))
+        self.models.iter().zip(self.bodies.bodies()).any(|(model, body)| !model.prepare(body).is_damped())
     }
 }
 

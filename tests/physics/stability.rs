@@ -145,3 +145,36 @@ fn certain_steps_are_stable() {
         }
     }
 }
+
+/// What is told without exact eigenvalues holds, and is told of steps far below the limit.
+#[test]
+fn steps_that_are_roughly_below_the_limit_are() {
+    for model in [
+        "kind = 'shape-based', stiffness = 100",
+        "kind = 'shape-based', young = 100, poisson = 0.4",
+        "kind = 'mass-spring', stiffness = 100",
+        "kind = 'limited-springs', stiffness = 100, limit = 0.2",
+        "kind = 'volume-springs', stiffness = 100, bulk = 1000",
+        "kind = 'linear', young = 100, poisson = 0.3",
+        "kind = 'corotational', young = 100, poisson = 0.45",
+        "kind = 'neo-hookean', young = 100, poisson = 0.49",
+        "kind = 'metric', young = 100",
+    ] {
+        for (body, damping) in [CUBES, MASSES, HELD].into_iter().flat_map(|body| [0.0, 0.3].map(|ratio| (body, ratio)))
+        {
+            // A metric is measured on lattices.
+            if model.contains("metric") && body != CUBES {
+                continue;
+            }
+            let scene =
+                scene(&format!("{body}\nrun = [{{ name = 'a', model = {{ {model}, damping_ratio = {damping} }} }}]"));
+            let Stability { largest, .. } = predicted(&scene);
+            let run = &scene.runs[0];
+            let is_below = |share: f64| {
+                let step = (scene.duration, share * largest);
+                Stability::is_below(&run.bodies, &run.models, run.integrator, &run.grips, step)
+            };
+            assert_eq!([is_below(0.25), is_below(1.001)], [true, false], "{model} {damping} {body}");
+        }
+    }
+}

@@ -196,4 +196,16 @@ fn steps_near_the_limit_name_the_body() {
     let told = good(&text).warnings;
     let [warning] = &told[..] else { panic!("{told:?}") };
     assert!(warning.message.contains(" s of \"bar\"; the run may diverge"), "{}", warning.message);
+    // Models without a bound are asked for the prediction itself, and those far below it are not told.
+    let finite = text.replace("'shape-based', stiffness = 1e4", "'corotational', young = 2e5");
+    let warning = &good(&finite).warnings[0].message;
+    assert!(
+        warning.starts_with("the time step of \"Shape\" is 0.02 s, ") && warning.contains(" s of \"bar\""),
+        "{warning}"
+    );
+    let limit = good(&finite).summary().runs[0].largest_step.expect("a limit");
+    for (share, told) in [(0.3, 0), (0.85, 0), (0.95, 1)] {
+        let near = finite.replace("step = 0.02", &format!("step = {}", share * limit));
+        assert_eq!(good(&near).warnings.len(), told, "{share}");
+    }
 }

@@ -59,12 +59,34 @@ impl Stability {
         if let Some(step) = certain.filter(|&step| corners > MOST_CORNERS && step > 0.0) {
             return Self { largest: step, stretched: None };
         }
-        let mut is_free = vec![true; body.len()];
-        let holding = grips.iter().filter(|grip| grip.from <= 0.0 && grip.until >= duration);
-        holding.flat_map(|grip| &grip.nodes).for_each(|&node| is_free[node as usize] = false);
+        let is_free = free(body, grips, duration);
         let has_springs = !model.springs().is_empty();
         let stretched = has_springs.then(|| stretched(body, model, &is_free).largest_step(integrator));
         Self { largest: Linear::new(body, model, is_free).largest_step(integrator), stretched }
+    }
+
+    /// Whether a step (s) is below the largest stable one at rest for each body of a run, told in a tenth of the time of [`Self::of_each`].
+    /// False does not tell that it is above.
+    pub fn is_below(
+        bodies: &Assembly,
+        models: &[Arc<dyn ElasticModel>],
+        integrator: Integrator,
+        grips: &[Grip],
+        (duration, step): (f64, f64),
+    ) -> bool {
+        /// So many products find the largest eigenvalue to some tenths, so that a step is below the limit up to this share of it.
+        const FEW: usize = 12;
+        const FAR: f64 = 0.67;
+        let is_implicit = matches!(integrator, Integrator::BackwardEuler | Integrator::DormandPrince);
+        let mut parts = bodies.bodies().iter().zip(models).enumerate();
+        parts.all(|(at, (body, model))| {
+            let certain = Self::certain(body, &**model, integrator);
+            let rough = || {
+                let is_free = free(body, &of_body(bodies, at, grips), duration);
+                FAR * Linear { most: FEW, ..Linear::new(body, &**model, is_free) }.rough_step(integrator)
+            };
+            is_implicit || step <= certain.unwrap_or_else(rough)
+        })
     }
 
     /// Predicts the largest stable step for each body of a run with its model, as [`Self::of`]. Grips number the nodes of all
@@ -76,16 +98,11 @@ impl Stability {
         grips: &[Grip],
         duration: f64,
     ) -> Vec<Self> {
-        let own_grips = |body: usize| {
-            let own = bodies.nodes(body);
-            let nodes = |grip: &Grip| -> Vec<u32> {
-                let nodes = grip.nodes.iter().filter(|&&node| own.contains(&(node as usize)));
-                nodes.map(|node| node - own.start as u32).collect()
-            };
-            grips.iter().map(|grip| Grip { nodes: nodes(grip), ..grip.clone() }).collect::<Vec<_>>()
-        };
         let parts = bodies.bodies().iter().zip(models).enumerate();
-        parts.map(|(at, (body, model))| Self::of(body, &**model, integrator, &own_grips(at), duration)).collect()
+        let of = |(at, (body, model)): (usize, (&Arc<Body>, &Arc<dyn ElasticModel>))| {
+            Self::of(body, &**model, integrator, &of_body(bodies, at, grips), duration)
+        };
+        parts.map(of).collect()
     }
 
     /// The largest step that is stable for all of several bodies.
@@ -101,6 +118,24 @@ impl Stability {
     pub fn certain(body: &Body, model: &dyn ElasticModel, integrator: Integrator) -> Option<f64> {
         Some(model.bound(body)?.certain_step(integrator))
     }
+}
+
+/// The grips of one of several bodies, with its own numbers of nodes.
+fn of_body(bodies: &Assembly, body: usize, grips: &[Grip]) -> Vec<Grip> {
+    let own = bodies.nodes(body);
+    let nodes = |grip: &Grip| -> Vec<u32> {
+        let nodes = grip.nodes.iter().filter(|&&node| own.contains(&(node as usize)));
+        nodes.map(|node| node - own.start as u32).collect()
+    };
+    grips.iter().map(|grip| Grip { nodes: nodes(grip), ..grip.clone() }).collect()
+}
+
+/// Whether each node of a body vibrates: no grip holds it from the start to the end at a time (s).
+fn free(body: &Body, grips: &[Grip], duration: f64) -> Vec<bool> {
+    let mut is_free = vec![true; body.len()];
+    let holding = grips.iter().filter(|grip| grip.from <= 0.0 && grip.until >= duration);
+    holding.flat_map(|grip| &grip.nodes).for_each(|&node| is_free[node as usize] = false);
+    is_free
 }
 
 /// Elements and springs of bodies up to this size are looked at, by their corners and ends: a prediction takes some seconds on one
@@ -164,8 +199,8 @@ struct Linear {
     small: f64,
     /// At rest (N).
     at_rest: Vec<DVec3>,
-    /// The corners of all elements, or the ends of all springs.
-    corners: usize,
+    /// The most products in one search of an eigenvalue.
+    most: usize,
 }
 
 impl Linear {
@@ -185,7 +220,7 @@ impl Linear {
             is_free,
             small: SMALL * smallest,
             at_rest: Vec::new(),
-            corners: body.elements.indices().len().max(2 * model.springs().len()),
+            most: most_products(body.elements.indices().len().max(2 * model.springs().len())),
             body: Arc::clone(body),
         };
         own.at_rest = own.evaluate(&body.rest, &vec![DVec3::ZERO; body.len()], &mut Scratch::default());
@@ -228,11 +263,10 @@ impl Linear {
 
     /// The mode in which stiffness and damping, with these weights, have the largest sum.
     fn top(&self, weights: [f64; 2]) -> Mode {
-        let corners = self.corners;
         let mut scratch = Scratch::default();
         let is_damped = self.forces.is_damped();
         let start = start(&self.body, &self.is_free);
-        let (value, vector) = lanczos::largest(&start, most_products(corners), is_damped, |from, to| {
+        let (value, vector) = lanczos::largest(&start, self.most, is_damped, |from, to| {
             self.product(weights, from, to, &mut scratch);
         });
         let Some(vector) = vector else { return Mode { stiffness: value / weights[0], damping: 0.0 } };
@@ -242,6 +276,13 @@ impl Linear {
             lanczos::dot(&vector, &image).max(0.0)
         };
         Mode { stiffness: quotient([1.0, 0.0]), damping: quotient([0.0, 1.0]) }
+    }
+
+    /// The largest step that is stable for a mode with the largest stiffness and the largest damping.
+    fn rough_step(&self, integrator: Integrator) -> f64 {
+        let stiffness = self.top([1.0, 0.0]).stiffness;
+        let damping = if self.forces.is_damped() { self.top([0.0, 1.0]).damping } else { 0.0 };
+        Mode { stiffness, damping }.largest_step(integrator)
     }
 
     /// The largest step that is stable for the modes that limit it, beginning with those of the largest stiffness and the largest
