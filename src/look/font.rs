@@ -15,6 +15,21 @@ const LONGEST: u64 = 64 << 20;
 const ENDINGS: [&str; 3] = ["ttf", "otf", "ttc"];
 const EXPECTED: &str = "expected a TrueType or OpenType font (.ttf, .otf, .ttc)";
 
+/// The built-in fonts of explanations, and of names and counts.
+#[cfg(feature = "render")]
+pub(crate) static REGULAR: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf");
+#[cfg(feature = "render")]
+pub(crate) static SEMI_BOLD: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-SemiBold.otf");
+
+/// Invisible characters: marks of direction, joiners, variation selectors.
+#[cfg(feature = "render")]
+pub(crate) fn is_invisible(character: char) -> bool {
+    matches!(
+        character,
+        '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{2064}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}'
+    )
+}
+
 /// Font files, TrueType or OpenType (.ttf, .otf, .ttc), beside the scene file.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -111,6 +126,23 @@ fn letters(bytes: &[u8]) -> Result<(), String> {
 #[cfg(not(feature = "render"))]
 fn letters(_: &[u8]) -> Result<(), String> {
     Ok(())
+}
+
+/// The first character of a text that neither a scene's fonts nor the built-in ones have; `None` if all are drawn.
+#[cfg(feature = "render")]
+pub(crate) fn missing(files: &FontFiles, text: &str) -> Option<char> {
+    let own = [&files.regular, &files.semi_bold].into_iter().flatten().map(|file| &**file);
+    let fonts = own.chain([REGULAR, SEMI_BOLD]).filter_map(|bytes| ttf_parser::Face::parse(bytes, 0).ok());
+    let fonts: Vec<_> = fonts.collect();
+    let is_drawn = |&c: &char| !c.is_whitespace() && !c.is_control() && !is_invisible(c);
+    let is_missing = |c: &char| fonts.iter().all(|font| font.glyph_index(*c).is_none_or(|glyph| glyph.0 == 0));
+    text.chars().filter(is_drawn).find(is_missing)
+}
+
+/// Builds that cannot draw have no fonts.
+#[cfg(not(feature = "render"))]
+pub(crate) fn missing(_: &FontFiles, _: &str) -> Option<char> {
+    None
 }
 
 /// The digest of a file, which replaces its name in the digest of a scene.

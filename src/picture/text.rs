@@ -3,6 +3,7 @@
 use super::narrow::narrow;
 use crate::colour::Colour;
 use crate::look::FontFiles;
+use crate::look::font::{REGULAR, SEMI_BOLD, is_invisible};
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
 use ttf_parser::{Face as Parsed, GlyphId};
@@ -101,17 +102,6 @@ impl PartialEq for Fonts {
     fn eq(&self, other: &Self) -> bool {
         self.faces.iter().map(|face| face.key).eq(other.faces.iter().map(|face| face.key))
     }
-}
-
-static REGULAR: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-Regular.otf");
-static SEMI_BOLD: &[u8] = include_bytes!("../../assets/fonts/LocalshapeSans-SemiBold.otf");
-
-/// Invisible characters: marks of direction, joiners, variation selectors.
-pub(super) fn is_invisible(character: char) -> bool {
-    matches!(
-        character,
-        '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{2064}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}'
-    )
 }
 
 /// The space between thousands, and its width relative to the space between words.

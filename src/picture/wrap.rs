@@ -1,6 +1,7 @@
 //! Breaking text into lines.
 
-use super::text::{Fonts, Weight, is_invisible};
+use super::text::{Fonts, Weight};
+use crate::look::font::is_invisible;
 
 /// Lines of a text that are at most `room` wide (px) at a weight and a size; longer words are cut.
 pub(super) fn wrapped(fonts: &Fonts, text: &str, weight: Weight, size: f64, room: f64) -> Vec<String> {

@@ -288,6 +288,19 @@ fn fonts_are_found_beside_the_scene_and_count_by_what_is_in_them() {
     assert!(format!("{:?}", one.view).len() < 5000);
 }
 
+#[cfg(feature = "render")]
+#[test]
+fn characters_that_no_font_has_are_told() {
+    let warnings = |line: &str| {
+        let told = good(&with(line)).warnings;
+        told.into_iter().map(|one| (one.place, one.message)).collect::<Vec<_>>()
+    };
+    assert_eq!(warnings("title = 'β = 1/3, ΔT² ≤ 4 – “a”\u{200b}'"), []);
+    let message = "no font has \"⅓\" (U+2153), so that a box is drawn in its place".to_owned();
+    assert_eq!(warnings("title = 'β = ⅓'"), [("view.title".to_owned(), message.clone())]);
+    assert_eq!(warnings("caption = 'a ⅓ and 龍'"), [("view.caption".to_owned(), message.clone())]);
+}
+
 #[test]
 fn mistakes_of_fonts() {
     let place = Place::new();

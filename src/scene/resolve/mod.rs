@@ -437,7 +437,20 @@ fn view(parts: &SceneParts, physics: &Physics, report: &mut Collector<'_>) -> Op
     let view = View::read(parts.view.as_ref()?, &around, parts.font.clone().unwrap_or_default(), report)?;
     let chosen: Vec<_> = parts.runs.iter().map(|run| Some(run.as_ref()?.colour?.0)).collect();
     look::check_runs(&chosen, &view.look.palette(), report);
+    warn_of_missing_letters(&view, report);
     Some(view)
+}
+
+/// Warns of texts around panels with a character that no font has.
+fn warn_of_missing_letters(view: &View, report: &mut Collector<'_>) {
+    for (key, text) in [("title", &view.title), ("caption", &view.caption), ("clock", &view.clock)] {
+        if let Some(missing) = font::missing(&view.look.font, text) {
+            let (letter, number) = (quoted(&missing.to_string()), u32::from(missing));
+            let message = format!("no font has {letter} (U+{number:04X}), so that a box is drawn in its place");
+            let help = "write it in other letters, or give a `view.font` that has it";
+            report.warn(&key_path!["view", key], message, help);
+        }
+    }
 }
 
 fn scene_body(of: &ResolvedBody) -> SceneBody {
