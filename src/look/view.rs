@@ -218,7 +218,8 @@ words! {
         model,
         /// The time, in one panel only.
         clock,
-        /// The number of turned-over elements, or of broken ones in runs that break.
+        /// The number of turned-over elements, or of broken ones in runs that break. With springs that break, an element is in pieces when
+        /// those that are left do not hold its nodes together; `broken` in charts and files counts the springs.
         count,
         /// The shape error; in the plane, the smallest area ratio. Divergence is always shown.
         number,

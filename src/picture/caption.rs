@@ -117,6 +117,8 @@ pub(super) struct Heading<'a> {
     pub(super) sample: Option<LineStyle>,
     /// The second line.
     pub(super) second: String,
+    /// The descriptions of all runs shown.
+    pub(super) descriptions: Vec<&'a str>,
 }
 
 /// A number in a panel.
@@ -197,13 +199,9 @@ impl Writer<'_> {
             let left = left + self.fonts.width(&name, Weight::SemiBold, size) + BESIDE * self.scale.unit;
             self.sample([left, baseline - X_HEIGHT / 2.0 * title], sample);
         }
-        // Parts are left out from the end: a number without its middle would be another number.
         let fits = |text: &str| self.fonts.width(text, Weight::Regular, caption) <= free[1];
-        let mut second = &*heading.second;
-        while !fits(second) {
-            second = second.rsplit_once(", ").map_or("", |(first, _)| first);
-        }
-        self.left(second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
+        let second = fitting(&heading.second, &heading.descriptions, fits);
+        self.left(&second, Weight::Regular, caption, self.palette.second_text, room.left, room.top + lines.second);
     }
 
     /// The common size of names in headings with a room (px). It is smaller than usual if one of them is too wide, but
@@ -433,6 +431,42 @@ impl Writer<'_> {
     }
 }
 
+/// The separator of the parts of a description.
+pub(super) const BETWEEN_PARTS: &str = ", ";
+
+/// The parts of a description. A part that begins with `also` belongs to the one before it.
+fn parts(description: &str) -> Vec<String> {
+    let mut parts: Vec<String> = Vec::new();
+    for part in description.split(BETWEEN_PARTS) {
+        match parts.last_mut().filter(|_| part.starts_with("also ")) {
+            Some(last) => *last = format!("{last}{BETWEEN_PARTS}{part}"),
+            None => parts.push(part.to_owned()),
+        }
+    }
+    parts
+}
+
+/// As many parts of a description as fit, whole: a number without its middle would be another number. From the end, what follows from other
+/// parts or is the usual choice goes first, then what all descriptions share, and last what tells a run from the others.
+fn fitting(description: &str, all: &[&str], fits: impl Fn(&str) -> bool) -> String {
+    let mut own = parts(description);
+    let all: Vec<_> = all.iter().map(|description| parts(description)).collect();
+    let has_modulus = own.iter().any(|part| part.starts_with("E = "));
+    let rank = |part: &String| match &**part {
+        "exact rotations" => 0,
+        part if part.starts_with("k = ") && has_modulus => 0,
+        // The parts of several bodies are not told apart.
+        _ if description.contains("; ") => 1,
+        _ if all.iter().all(|other| other.contains(part)) => 1,
+        _ => 2,
+    };
+    while !own.is_empty() && !fits(&own.join(BETWEEN_PARTS)) {
+        let first = (0..own.len()).rev().min_by_key(|&at| rank(&own[at]));
+        first.into_iter().for_each(|at| drop(own.remove(at)));
+    }
+    own.join(BETWEEN_PARTS)
+}
+
 /// The number of elements of each named body in a state, in words; `None` without names.
 fn of_bodies(state: &str, names: &[&str], counts: impl Iterator<Item = usize>) -> Option<String> {
     let each: Vec<_> =
@@ -498,6 +532,24 @@ mod tests {
         let scene = Scene::builder("cube", body).run("shape", shape).build(&Limits::default()).expect("a scene");
         let caption = short_description(&scene, &scene.runs[0]);
         assert_eq!(caption, "1 cube, k = 10 kN/m, ζ = 0.3, exact rotations");
+    }
+
+    #[test]
+    fn what_tells_runs_apart_is_left_out_last() {
+        let brakes = "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1, also of rotation, exact rotations, k = 10 kN/m";
+        let bends = "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1 of deformation, β = 1/3, exact rotations, k = 10 kN/m";
+        let short = |text: &str, all: &[&str], most: usize| fitting(text, all, |text| text.chars().count() <= most);
+        let both = [brakes, bends];
+        assert_eq!(short(bends, &both, 100), bends);
+        assert_eq!(short(bends, &both, 65), "27 cubes, E = 200 kPa, ν = 0, ζ = 0.1 of deformation, β = 1/3");
+        assert_eq!(short(bends, &both, 50), "27 cubes, ζ = 0.1 of deformation, β = 1/3");
+        assert_eq!(short(bends, &both, 32), "ζ = 0.1 of deformation, β = 1/3");
+        assert_eq!(short(brakes, &both, 40), "27 cubes, ζ = 0.1, also of rotation");
+        assert_eq!(short(brakes, &both, 10), "");
+        // What one run alone has is left out from the end, and so is what belongs to one of several bodies.
+        assert_eq!(short(bends, &[bends], 50), "27 cubes, E = 200 kPa, ν = 0");
+        let bodies = "bar k = 1 kN/m, ζ = 0.1; cube k = 2 kN/m, ζ = 0.1";
+        assert_eq!(short(bodies, &[bodies, brakes], 45), "bar k = 1 kN/m, ζ = 0.1; cube k = 2 kN/m");
     }
 
     #[test]

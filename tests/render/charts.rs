@@ -473,6 +473,21 @@ fn several_charts_have_one_axis_of_time() {
 }
 
 #[test]
+fn a_chart_of_what_is_broken_says_what_breaks() {
+    let brittle =
+        |text: String| text.replace("energy", "broken").replace("'shape-based',", "'shape-based', breaks_at = 9,");
+    let said = |text: &str| {
+        let scene = parse(text);
+        let picture = compose(&scene, &Runner::new(&scene, &[0, 1]).frame(0));
+        picture.words.into_iter().map(|word| word.text).collect::<Vec<_>>()
+    };
+    let same = brittle(alike(2, "light"));
+    assert!(said(&same).contains(&"of 3 cubes".to_owned()), "{:?}", said(&same));
+    let mixed = same.replacen("'shape-based'", "'mass-spring'", 1);
+    assert!(said(&mixed).contains(&"elements, springs".to_owned()), "{:?}", said(&mixed));
+}
+
+#[test]
 fn an_axis_that_does_not_begin_at_zero_says_so() {
     for (diagnostic, is_said) in [("volume_ratio", true), ("energy", false)] {
         let scene = parse(&alike(2, "light").replace("energy", diagnostic));

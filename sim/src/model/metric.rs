@@ -137,6 +137,11 @@ impl ElasticModel for Metric {
         self.damping
     }
 
+    fn unusual_choices(&self, _: &Body) -> String {
+        let damping = if self.damping > 0.0 { " of deformation" } else { "" };
+        damping.to_owned()
+    }
+
     fn vectorised(&self) -> Option<&dyn Vectorised> {
         Some(self)
     }

@@ -13,8 +13,9 @@ use crate::picture::number;
 use crate::picture::text::{Fonts, Weight};
 use crate::reading::captions::elements;
 use crate::runner::history::History;
-use crate::scene::Scene;
-use crate::sim::Diagnostic;
+use crate::scene::{Run, Scene};
+use crate::sim::model::ElasticModel;
+use crate::sim::{Body, Diagnostic};
 
 /// The most numbers beside a chart.
 const MOST_TICKS: usize = 4;
@@ -72,7 +73,7 @@ impl Quantity {
         if series.len() > MOST_CURVES {
             series.truncate(runs);
         }
-        let is_count = diagnostic == Diagnostic::TurnedOver;
+        let is_count = matches!(diagnostic, Diagnostic::TurnedOver | Diagnostic::Broken);
         let mut name = series::name(diagnostic, scene).to_owned();
         if let Some(first) = name.get_mut(..1) {
             first.make_ascii_uppercase();
@@ -89,7 +90,7 @@ impl Quantity {
             extent: scene.extent(),
         };
         let unit = match one.values(MOST_TICKS) {
-            _ if is_count => of_elements(of_scenes),
+            _ if is_count => of_parts(diagnostic, of_scenes),
             Some(values) => values.unit,
             None => "none".to_owned(),
         };
@@ -145,17 +146,31 @@ impl Quantity {
     }
 }
 
-/// The unit of a count of elements: how many there are, if all runs have equally many.
-fn of_elements(of_scenes: &[(&Scene, &History)]) -> String {
-    let shown = |(scene, history): &(&Scene, &History)| -> Vec<_> {
-        history.series.iter().map(|series| elements(scene.runs[series.run].body())).collect()
+/// The unit of a count of elements, or of springs where these break: how many there are, if all runs have equally many.
+fn of_parts(diagnostic: Diagnostic, of_scenes: &[(&Scene, &History)]) -> String {
+    let of_run = |run: &Run| -> Vec<(usize, &'static str)> {
+        if diagnostic != Diagnostic::Broken {
+            return elements(run.body());
+        }
+        let breaking = run.models_and_bodies().filter(|(model, body)| model.breaks(body).is_some());
+        let of_body = |(model, body): (&dyn ElasticModel, &Body)| match model.springs().len() {
+            0 => elements(body),
+            springs => vec![(springs, "springs")],
+        };
+        breaking.flat_map(of_body).collect()
     };
-    let all: Vec<_> = of_scenes.iter().flat_map(shown).collect();
+    let of_scene = |(scene, history): &(&Scene, &History)| -> Vec<_> {
+        history.series.iter().map(|series| of_run(&scene.runs[series.run])).filter(|parts| !parts.is_empty()).collect()
+    };
+    let all: Vec<_> = of_scenes.iter().flat_map(of_scene).collect();
+    let has_springs = |parts: &Vec<(usize, &str)>| parts.iter().any(|(_, name)| *name == "springs");
     match all.first() {
         Some(first) if all.iter().all(|other| other == first) => match first[..] {
             [(count, name)] => format!("of {} {name}", number::count(count)),
             _ => format!("of {} elements", number::count(first.iter().map(|(count, _)| count).sum())),
         },
+        _ if all.iter().all(has_springs) => "springs".to_owned(),
+        _ if all.iter().any(has_springs) => "elements, springs".to_owned(),
         _ => "elements".to_owned(),
     }
 }

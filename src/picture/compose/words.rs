@@ -2,7 +2,7 @@
 
 use super::Composer;
 use crate::look::{Ghost, Labels, LineStyle, Palette, View};
-use crate::picture::caption::{self, Heading, Writer};
+use crate::picture::caption::{self, BETWEEN_PARTS, Heading, Writer};
 use crate::picture::chart::{event, style};
 use crate::picture::layout::{self, Layout, Part, Scale, Wanted};
 use crate::picture::legend::Legend;
@@ -12,8 +12,6 @@ use crate::scene::Scene;
 
 /// From this number of panels on, only the first one has the part of descriptions that all share.
 const MANY: usize = 4;
-/// The separator of the parts of a description.
-const BETWEEN_PARTS: &str = ", ";
 
 /// The words of a scene.
 pub(super) struct Words<'a> {
@@ -103,6 +101,7 @@ impl<'a> Words<'a> {
             names,
             sample: self.sample(runs[at], layout.parts.get(Part::Chart).is_some()),
             second: if labels.model { self.description(at, runs) } else { String::new() },
+            descriptions: runs.iter().filter_map(|&run| self.descriptions.get(run)).map(String::as_str).collect(),
         }
     }
 

@@ -204,6 +204,11 @@ impl<S: Stress> ElasticModel for FiniteElements<S> {
         self.damping
     }
 
+    fn unusual_choices(&self, _: &Body) -> String {
+        let damping = if self.damping > 0.0 { " of deformation" } else { "" };
+        damping.to_owned()
+    }
+
     fn vectorised(&self) -> Option<&dyn Vectorised> {
         Some(self)
     }
