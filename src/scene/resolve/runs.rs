@@ -340,7 +340,7 @@ fn warn_of_held_steps(
         && held < free
     {
         let names: Vec<_> = holding.iter().filter_map(|&at| Some(&runs[at].as_ref()?.name)).collect();
-        let names = words::list(&names, "and", |name| words::quoted(name));
+        let names = words::list(&names, "and", words::quoted);
         let [held, free] = [held, free].map(words::short);
         let message = format!("all runs take steps of {held} s, because of {names}; the others would take {free} s");
         let help = format!("write `step = \"auto\"` for {names} alone, unless all runs need the same step");
