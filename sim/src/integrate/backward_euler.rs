@@ -14,8 +14,8 @@
 use super::{Evaluation, Method, Nodes, Runaway, Scales, State, Step};
 use glam::DVec3;
 
-/// The most Newton steps. Most time steps need three or four, time steps of many periods T more.
-const MOST_NEWTON: usize = 50;
+/// The most Newton steps. Most time steps need three or four, those of many periods T or with strong damping more.
+const MOST_NEWTON: usize = 200;
 /// The most iterations of conjugate gradients in a Newton step.
 const MOST_LINEAR: usize = 100;
 /// The final residual of a linear system, as a share of its first.
@@ -26,7 +26,7 @@ const RESIDUAL: f64 = 1e-10;
 const DIFFERENCE: f64 = 1e-7;
 /// How often a Newton step is shortened.
 const MOST_CUTS: usize = 10;
-/// After this number of Newton steps that do not halve the residual, only round-off is left.
+/// After this number of whole Newton steps that do not halve the residual, only round-off is left.
 const MOST_IDLE: usize = 3;
 
 /// Buffers, and the size of the body.
@@ -74,7 +74,7 @@ impl Method for BackwardEuler {
             if is_solved || idle == MOST_IDLE || !size.is_finite() {
                 break;
             }
-            self.solve(step, state, next);
+            let is_whole = self.solve(step, state, next);
             self.from.clone_from(&next.velocity);
             let first = dot(step, &self.residual, &self.linear[1]);
             let mut share = 1.0;
@@ -91,7 +91,7 @@ impl Method for BackwardEuler {
                 // Where the residual would be across the step, if it changed linearly.
                 share *= if slope.is_finite() { (first / (first - slope)).clamp(0.1, 0.5) } else { 0.1 };
             }
-            idle = if size < 0.25 * least { 0 } else { idle + 1 };
+            idle = if size < 0.25 * least || !is_whole { 0 } else { idle + 1 };
             least = least.min(size);
         }
         next.memory.model.copy_from_slice(&self.evaluations[0].memory);
@@ -121,8 +121,8 @@ impl BackwardEuler {
     }
 
     /// Solves `(1 − ∂A/∂V' ΔT) x = residual` by conjugate gradients with the masses as weights, in which the matrix is
-    /// symmetric. The solution is in `self.linear[1]`.
-    fn solve(&mut self, step: &Step<'_>, state: &State, next: &State) {
+    /// symmetric. The solution is in `self.linear[1]`. Returns whether the iterations came to it before their end.
+    fn solve(&mut self, step: &Step<'_>, state: &State, next: &State) -> bool {
         let Self { scales, is_held, residual, linear: [rest, solution, direction, product], .. } = self;
         let ([here, there], [position, velocity]) = (&mut self.evaluations, &mut self.moved);
         let time = step.interval.step;
@@ -153,7 +153,7 @@ impl BackwardEuler {
                 if iteration == 0 {
                     solution.clone_from(direction);
                 }
-                return;
+                return true;
             }
             let length = size / curvature;
             for node in 0..nodes {
@@ -162,12 +162,13 @@ impl BackwardEuler {
             }
             let last = std::mem::replace(&mut size, dot(step, rest, rest));
             if size <= LINEAR * LINEAR * first {
-                return;
+                return true;
             }
             for (direction, &rest) in direction.iter_mut().zip(&*rest) {
                 *direction = rest + *direction * (size / last);
             }
         }
+        false
     }
 }
 
