@@ -447,7 +447,7 @@ fn parts(description: &str) -> Vec<String> {
 }
 
 /// As many parts of a description as fit, whole: a number without its middle would be another number. From the end, what follows from other
-/// parts or is the usual choice goes first, then what all descriptions share, and last what tells a run from the others.
+/// parts or is the usual choice goes first, then what most descriptions share, and last what tells a run from the others.
 fn fitting(description: &str, all: &[&str], fits: impl Fn(&str) -> bool) -> String {
     let mut own = parts(description);
     let all: Vec<_> = all.iter().map(|description| parts(description)).collect();
@@ -457,8 +457,7 @@ fn fitting(description: &str, all: &[&str], fits: impl Fn(&str) -> bool) -> Stri
         part if part.starts_with("k = ") && has_modulus => 0,
         // The parts of several bodies are not told apart.
         _ if description.contains("; ") => 1,
-        _ if all.iter().all(|other| other.contains(part)) => 1,
-        _ => 2,
+        _ => 1 + all.iter().filter(|other| !other.contains(part)).count(),
     };
     while !own.is_empty() && !fits(&own.join(BETWEEN_PARTS)) {
         let first = (0..own.len()).rev().min_by_key(|&at| rank(&own[at]));
@@ -546,6 +545,9 @@ mod tests {
         assert_eq!(short(bends, &both, 32), "ζ = 0.1 of deformation, β = 1/3");
         assert_eq!(short(brakes, &both, 40), "27 cubes, ζ = 0.1, also of rotation");
         assert_eq!(short(brakes, &both, 10), "");
+        // What most share goes before what few do.
+        let springs = "54 springs, k = 10 kN/m, ζ = 0.1";
+        assert_eq!(short(bends, &[brakes, springs, bends, brakes], 32), "ζ = 0.1 of deformation, β = 1/3");
         // What one run alone has is left out from the end, and so is what belongs to one of several bodies.
         assert_eq!(short(bends, &[bends], 50), "27 cubes, E = 200 kPa, ν = 0");
         let bodies = "bar k = 1 kN/m, ζ = 0.1; cube k = 2 kN/m, ζ = 0.1";
