@@ -274,7 +274,7 @@ impl<'a, L: Lanes> Element<'a, L> {
 
     /// Some of the numbers that the element remembers, from one on.
     #[inline(always)]
-    pub fn memory_from<const COUNT: usize>(&self, first: usize) -> [L; COUNT] {
+    pub(crate) fn memory_from<const COUNT: usize>(&self, first: usize) -> [L; COUNT] {
         assert!(first + COUNT <= self.numbers[2], "numbers that an element remembers");
         let mut numbers = [L::splat(0.0); COUNT];
         for (at, number) in numbers.iter_mut().enumerate() {
@@ -292,7 +292,7 @@ impl<'a, L: Lanes> Element<'a, L> {
 
     /// Remembers some of the numbers, from one on, unless the evaluation is a trial.
     #[inline(always)]
-    pub fn remember_from<const COUNT: usize>(&self, first: usize, numbers: [L; COUNT]) {
+    pub(crate) fn remember_from<const COUNT: usize>(&self, first: usize, numbers: [L; COUNT]) {
         assert!(first + COUNT <= self.numbers[2], "numbers that an element remembers");
         if self.commit {
             for (at, number) in numbers.into_iter().enumerate() {

@@ -65,7 +65,7 @@ impl Stability {
         Self { largest: Linear::new(body, model, is_free).largest_step(integrator), stretched }
     }
 
-    /// Whether a step (s) is below the largest stable one at rest for each body of a run, told in a tenth of the time of [`Self::of_each`].
+    /// Whether a step (s) is below the largest stable one at rest for each body of a run, told by fewer products than [`Self::of_each`] takes.
     /// False does not tell that it is above.
     pub fn is_below(
         bodies: &Assembly,

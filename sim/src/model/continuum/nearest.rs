@@ -16,7 +16,7 @@ use glam::{DMat3, DQuat};
 
 /// A step of this size relative to `s` is the last: the next one would be of the order of its cube.
 const LAST: f64 = 3e-6;
-/// More steps are needed for stretches beyond a billion only.
+/// Equal stretches up to 3e8 take no more steps; the global solver does the rest.
 const MOST_STEPS: u32 = 40;
 /// The least `d / s³`. The error of `R` grows as its inverse squared, and below that the global solver computes it.
 const SOUND: f64 = 1e-3;
