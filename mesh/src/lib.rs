@@ -15,6 +15,6 @@ mod surface;
 mod volume;
 
 pub use fill::{Cage, Fill, FillError, Filled, fill};
-pub use read::{CellKind, Cells, Format, Limits, Listed, Mesh, ReadError, read, read_cells, read_list};
+pub use read::{CellKind, Cells, Format, Limits, Listed, Mesh, ReadError, read, read_cells, read_list, read_pieces};
 pub use surface::{Flaws, Measures, Surface};
 pub use volume::{Group, Volume};

@@ -19,7 +19,7 @@ mod vtk;
 mod vtu;
 
 pub use cells::{CellKind, Cells};
-pub use pvd::{Listed, read_list};
+pub use pvd::{Listed, read_list, read_pieces};
 
 use super::{Surface, Volume};
 

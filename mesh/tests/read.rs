@@ -575,7 +575,7 @@ fn faces_named_again_and_again_are_refused() {
         array("polyhedron_offsets", "1000"),
     );
     let error = read(text.as_bytes(), Format::Vtu, &limits).expect_err("a limit");
-    assert_eq!(error.message, "has more than 18000 numbers in its arrays and faces");
+    assert_eq!(error.message, "has more than 21000 numbers in its arrays and faces");
 }
 
 /// Pieces that share packed data cost as much as others.
@@ -607,4 +607,23 @@ fn only_the_first_buffer_of_gltf_is_the_data_of_the_file() {
     let total = (20 + json.len() + rest.len()) as u32;
     let file = [&bytes[..8], &total.to_le_bytes(), &(json.len() as u32).to_le_bytes(), b"JSON", json.as_bytes(), rest];
     assert!(refusal(&file.concat(), format).starts_with("has no data for its buffer 1 "));
+}
+
+/// Displacements are the point data `U` with three components, and are not added to the points.
+#[test]
+fn displacements_are_read_beside_points() {
+    let bytes = include_bytes!("files/displaced.vtu");
+    let limits = Limits { points: 4, corners: 4 };
+    let cells = read_cells(bytes, Format::Vtu, &limits).unwrap();
+    let moved = [DVec3::ZERO, DVec3::X * 0.5, DVec3::Y * 0.25, -DVec3::Z];
+    assert_eq!((cells.points[1], cells.displacements.as_deref()), (DVec3::X, Some(&moved[..])));
+    // A scalar of that name, and vectors in the plane, are none.
+    for (components, numbers) in [(1, "0 0.5 0.25 1"), (2, "0 0 0.5 0 0 0.25 0 0")] {
+        let text = std::str::from_utf8(bytes).unwrap();
+        let array = format!("Name=\"U\" NumberOfComponents=\"{components}\" format=\"ascii\">{numbers}<");
+        let old = "Name=\"U\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 0.5 0 0 0 0.25 0 0 0 -1<";
+        assert!(text.contains(old));
+        let cells = read_cells(text.replace(old, &array).as_bytes(), Format::Vtu, &limits).unwrap();
+        assert_eq!(cells.displacements, None);
+    }
 }

@@ -65,6 +65,9 @@ pub struct Cells {
     pub groups: Vec<Group>,
     /// Velocity of each point, in the unit of the file a second: the point data `velocity` of VTK's grids.
     pub velocities: Option<Vec<DVec3>>,
+    /// Displacement of each point, in the unit of the file: the point data of VTK's grids named `displacement` or `u`, in capital letters
+    /// or not. They are not added to the points.
+    pub displacements: Option<Vec<DVec3>>,
 }
 
 /// The order in which files list the corners of a hexahedron, around one side and then around the other, as places in the order of
@@ -179,6 +182,11 @@ impl<'l> Builder<'l> {
         self.cells.velocities.get_or_insert_default().extend(velocities);
     }
 
+    /// Adds the displacements of the next points.
+    pub(super) fn displacements(&mut self, displacements: Vec<DVec3>) {
+        self.cells.displacements.get_or_insert_default().extend(displacements);
+    }
+
     /// Adds points to the set of this name.
     pub(super) fn group(&mut self, name: String, points: Vec<u32>) {
         self.groups.entry(name).or_default().extend(points);
@@ -199,6 +207,7 @@ impl<'l> Builder<'l> {
         }
         // Some pieces may have none.
         self.cells.velocities = self.cells.velocities.filter(|all| all.len() == count);
+        self.cells.displacements = self.cells.displacements.filter(|all| all.len() == count);
         self.cells.groups = self
             .groups
             .into_iter()

@@ -1,4 +1,4 @@
-//! ParaView's lists of files over time (`.pvd`).
+//! VTK's files that list other files: ParaView's files over time (`.pvd`), and the pieces of a grid (`.pvtu`, `.pvtp`).
 
 use super::ReadError;
 use super::source::{DAMAGED, Source, quoted};
@@ -16,61 +16,82 @@ pub struct Listed {
     pub part: Option<String>,
 }
 
-/// Reads a list of files: those of one time after each other, in the order of times.
+/// Reads a list of files over time (`.pvd`), in its own order, which need not be that of the times.
 ///
 /// # Errors
-/// If it is damaged, lists no file, or has times that do not rise.
+/// If it is damaged, or lists no file.
 pub fn read_list(bytes: &[u8]) -> Result<Vec<Listed>, ReadError> {
+    let listed = entries(bytes, &["Collection"], "DataSet", |tag, place| {
+        let file = required(tag, "file", place)?;
+        let time = required(tag, "timestep", place)?;
+        let number = time.trim().parse().ok().filter(|time: &f64| time.is_finite());
+        let time = number.ok_or_else(|| {
+            let message = format!("has the time {} {place}; expected a number (s)", quoted(time.as_bytes()));
+            ReadError::new(message, DAMAGED)
+        })?;
+        Ok(Listed { time, file, part: attribute(tag, "part")? })
+    })?;
+    if listed.is_empty() {
+        return Err(ReadError::new("lists no file: it has no `<DataSet>`", DAMAGED));
+    }
+    Ok(listed)
+}
+
+/// Reads the paths, as typed, of the files with the pieces of a grid or of polygons (`.pvtu`, `.pvtp`), in their order.
+///
+/// # Errors
+/// If it is damaged, or names no file.
+pub fn read_pieces(bytes: &[u8]) -> Result<Vec<String>, ReadError> {
+    let kinds = ["PUnstructuredGrid", "PPolyData"];
+    let files = entries(bytes, &kinds, "Piece", |tag, place| required(tag, "Source", place))?;
+    if files.is_empty() {
+        return Err(ReadError::new("names no file: it has no `<Piece>`", DAMAGED));
+    }
+    Ok(files)
+}
+
+/// The elements of a name in a VTK file of one of these types. `read` gets the place of each in words.
+fn entries<T>(
+    bytes: &[u8],
+    kinds: &[&str],
+    name: &str,
+    read: impl Fn(&BytesStart<'_>, &str) -> Result<T, ReadError>,
+) -> Result<Vec<T>, ReadError> {
+    let place = |at: u64| Source::text(bytes).place(at as usize);
     let mut reader = Reader::from_reader(bytes);
-    let mut listed: Vec<Listed> = Vec::new();
-    let mut is_begun = false;
+    let (mut found, mut is_begun) = (Vec::new(), false);
     loop {
         let event = reader.read_event().map_err(|error| {
-            let place = Source::text(bytes).place(reader.error_position() as usize);
-            ReadError::new(format!("is no sound XML {place}: {error}"), DAMAGED)
+            ReadError::new(format!("is no sound XML {}: {error}", place(reader.error_position())), DAMAGED)
         })?;
-        let (Event::Start(tag) | Event::Empty(tag)) = event else {
-            if matches!(event, Event::Eof) {
-                break;
-            }
-            continue;
-        };
-        match tag.local_name().as_ref().as_bytes() {
-            b"VTKFile" => {
+        match event {
+            Event::Start(tag) | Event::Empty(tag) if tag.local_name().as_ref().as_bytes() == b"VTKFile" => {
                 is_begun = true;
                 let kind = attribute(&tag, "type")?.unwrap_or_default();
-                if kind != "Collection" {
-                    let message =
-                        format!("is a VTK file of the type {}; expected `Collection`", quoted(kind.as_bytes()));
+                if !kinds.contains(&&*kind) {
+                    let (kind, kinds) = (quoted(kind.as_bytes()), kinds.join("` or `"));
+                    let message = format!("is a VTK file of the type {kind}; expected `{kinds}`");
                     return Err(ReadError::new(message, "a single file is named by its own ending, such as .vtu"));
                 }
             }
-            b"DataSet" => {
-                let at = reader.buffer_position() as usize;
-                let place = || Source::text(bytes).place(at);
-                let missing =
-                    |what: &str| ReadError::new(format!("has a `<DataSet>` without `{what}` {}", place()), DAMAGED);
-                let file = attribute(&tag, "file")?.ok_or_else(|| missing("file"))?;
-                let time = attribute(&tag, "timestep")?.ok_or_else(|| missing("timestep"))?;
-                let Some(time) = time.trim().parse().ok().filter(|time: &f64| time.is_finite()) else {
-                    let message =
-                        format!("has the time {} {}; expected a number (s)", quoted(time.as_bytes()), place());
-                    return Err(ReadError::new(message, DAMAGED));
-                };
-                if let Some(before) = listed.last().map(|before| before.time).filter(|before| time < *before) {
-                    let message = format!("has the time {time} after {before} {}; expected rising times", place());
-                    return Err(ReadError::new(message, "list the files in the order of their times"));
-                }
-                listed.push(Listed { time, file, part: attribute(&tag, "part")? });
+            Event::Start(tag) | Event::Empty(tag) if tag.local_name().as_ref().as_bytes() == name.as_bytes() => {
+                found.push(read(&tag, &place(reader.buffer_position()))?);
             }
+            Event::Eof if !is_begun => {
+                return Err(ReadError::new("is no list of VTK's files: it has no `<VTKFile>`", DAMAGED));
+            }
+            Event::Eof => return Ok(found),
             _ => {}
         }
     }
-    match listed.is_empty() {
-        true if !is_begun => Err(ReadError::new("is no list of VTK's files: it has no `<VTKFile>`", DAMAGED)),
-        true => Err(ReadError::new("lists no file: it has no `<DataSet>`", DAMAGED)),
-        false => Ok(listed),
-    }
+}
+
+/// An attribute that an element at a place has to have.
+fn required(tag: &BytesStart<'_>, name: &str, place: &str) -> Result<String, ReadError> {
+    let element = tag.local_name();
+    let element = String::from_utf8_lossy(element.as_ref().as_bytes());
+    let missing = || ReadError::new(format!("has a `<{element}>` without `{name}` {place}"), DAMAGED);
+    attribute(tag, name)?.ok_or_else(missing)
 }
 
 /// An attribute without its escapes.
@@ -110,10 +131,6 @@ mod tests {
             ("<DataSet file='a.vtu'/>", "without `timestep`"),
             ("<DataSet timestep='0'/>", "without `file`"),
             ("<DataSet timestep='soon' file='a.vtu'/>", "has the time `soon`"),
-            (
-                "<DataSet timestep='1' file='a'/>\n<DataSet timestep='0.5' file='b'/>",
-                "has the time 0.5 after 1 in line 3",
-            ),
             ("<DataSet timestep='0' file='a'", "is no sound XML"),
         ] {
             let error = list(sets).unwrap_err();

@@ -37,9 +37,10 @@ impl Array {
     }
 }
 
-/// Where the only array beside points and cells that is read stands: the velocities of points.
+/// Where the only arrays beside points and cells that are read stand: the velocities and displacements of points.
 const POINT_DATA: &[u8] = b"PointData";
 const VELOCITY: &[u8] = b"velocity";
+const DISPLACEMENT: &[u8] = b"displacement";
 
 /// How the arrays of a file are written.
 struct Layout<'b> {
@@ -70,8 +71,8 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         Some(begin) => Some(appended(&bytes[begin..])?),
         None => None,
     };
-    // Positions and velocities, and lists of the faces of polyhedra, where each corner belongs to several faces.
-    let most = limits.points.saturating_mul(6).saturating_add(limits.corners.saturating_mul(12));
+    // Positions, velocities and displacements, and lists of the faces of polyhedra, where each corner belongs to several faces.
+    let most = limits.points.saturating_mul(9).saturating_add(limits.corners.saturating_mul(12));
     let mut layout = Layout {
         bytes,
         coding: Coding::Little,
@@ -134,8 +135,15 @@ fn pieces(
                     b"DataArray" => {
                         let parent = path.last().cloned().unwrap_or_default();
                         let wanted: [&[u8]; 6] = [b"Points", b"Cells", b"Verts", b"Lines", b"Polys", b"Strips"];
-                        let name = attribute(&tag, "Name")?.unwrap_or_default().into_bytes();
-                        if wanted.contains(&&*parent) || parent == POINT_DATA && name == VELOCITY {
+                        let mut name = attribute(&tag, "Name")?.unwrap_or_default().into_bytes();
+                        // CalculiX and others write `U`.
+                        let is_displacement = parent == POINT_DATA
+                            && [DISPLACEMENT, b"u"].iter().any(|other| name.eq_ignore_ascii_case(other))
+                            && attribute(&tag, "NumberOfComponents")?.is_some_and(|number| number.trim() == "3");
+                        if is_displacement {
+                            name = DISPLACEMENT.to_vec();
+                        }
+                        if wanted.contains(&&*parent) || is_displacement || parent == POINT_DATA && name == VELOCITY {
                             let key = (parent, name);
                             let scalar = scalar(&attribute(&tag, "type")?.unwrap_or_default())?;
                             let start = reader.buffer_position() as usize;
@@ -256,15 +264,18 @@ impl Layout<'_> {
                 builder.point(DVec3::new(coordinate()?, coordinate()?, coordinate()?)).map(drop)
             })?;
         }
-        if let Some(array) = piece.get(&(POINT_DATA.to_vec(), VELOCITY.to_vec())) {
-            let mut velocities = Vec::new();
-            self.each(array, VELOCITY, 3 * limits.points, |source| {
-                let mut component = || source.float(array.scalar, "a velocity");
-                velocities.push(DVec3::new(component()?, component()?, component()?));
+        let vectors = |name: &[u8], expected: &str| -> Result<Option<Vec<DVec3>>, ReadError> {
+            let Some(array) = piece.get(&(POINT_DATA.to_vec(), name.to_vec())) else { return Ok(None) };
+            let mut vectors = Vec::new();
+            self.each(array, name, 3 * limits.points, |source| {
+                let mut component = || source.float(array.scalar, expected);
+                vectors.push(DVec3::new(component()?, component()?, component()?));
                 Ok(())
             })?;
-            builder.velocities(velocities);
-        }
+            Ok(Some(vectors))
+        };
+        vectors(VELOCITY, "a velocity")?.into_iter().for_each(|all| builder.velocities(all));
+        vectors(DISPLACEMENT, "a displacement")?.into_iter().for_each(|all| builder.displacements(all));
         let get = |parent: &[u8], name: &[u8]| piece.get(&(parent.to_vec(), name.to_vec()));
         let integers = |parent: &[u8], name: &[u8]| match get(parent, name) {
             Some(array) => self.integers(array, name, 4 * limits.corners),
