@@ -354,3 +354,41 @@ fn a_model_that_steps_itself_and_holds_other_runs_to_its_step_is_told() {
     assert_eq!([alone.runs[0].step, alone.runs[1].step], [1.0 / 60.0, 1.0 / 60.0 / 20.0]);
     assert_eq!((&alone.warnings[..], &with("shape-based", "").warnings[..]), (&[][..], &[][..]));
 }
+
+#[test]
+fn a_frame_shows_the_step_that_its_formula_says() {
+    let text = r#"
+        time = { duration = 10, step = 0.004, frames_per_second = 60 }
+        body = { lattice = { cells = [1, 1, 1], side = 1 } }
+        run = [{ name = "one", model = { kind = "shape-based", stiffness = 1 } }]
+    "#;
+    let scene = Scene::parse(text, "steps", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    // Ties go up: 21 / (60 · 0.004) is 87.5, and 57 / (60 · 0.004) is 237.5.
+    let steps = [0, 1, 21, 57, 600].map(|frame| scene.frame_step(0, frame));
+    assert_eq!(steps, [0, 4, 88, 238, 2500]);
+    assert_eq!(scene.last_frame(), 600);
+}
+
+#[test]
+fn frames_lie_within_the_duration() {
+    for (duration, rate, last) in [
+        ("1", "29.97", 29),
+        ("1", "2.6", 2),
+        ("1", "30", 30),
+        ("0.1", "60", 6),
+        ("0.7", "10", 7),
+        ("1.1", "10", 11),
+        ("0.3", "10", 3),
+        ("0.0333", "30", 0),
+        ("100000", "29.97", 2_997_000),
+        ("0", "60", 0),
+    ] {
+        let text = format!(
+            "time = {{ duration = {duration}, step = 0.01, frames_per_second = {rate} }}
+            body = {{ lattice = {{ cells = [1, 1, 1], side = 1 }} }}
+            run = [{{ name = 'one', model = {{ kind = 'shape-based', stiffness = 1 }} }}]"
+        );
+        let scene = Scene::parse(&text, "frames", &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(scene.last_frame(), last, "{duration} s at {rate}");
+    }
+}

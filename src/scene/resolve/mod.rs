@@ -476,7 +476,7 @@ fn warn_of_time(scene: &Scene, report: &mut Collector<'_>) {
         report.warn(
             &key_path!["time", "frames_per_second"],
             message,
-            format!("use at least {} to show the end", short(1.0 / scene.duration)),
+            format!("use at least {} to show the end", short((1.0 / scene.duration).ceil())),
         );
     }
     let simulated = || (0..).zip(&scene.runs).filter(|(_, run)| run.recording.is_none());
