@@ -1,6 +1,6 @@
 //! Sound files of every kind are read. Damaged ones are refused or read, and never end the program. `fuzz/` looks for more.
 
-use localshape::internals::untrusted::{GRID, LIST, READERS, SCENE, checkpoint_of_scene};
+use localshape::internals::untrusted::{GRID, LIST, PIECES, READERS, SCENE, SERIES, checkpoint_of_scene};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -100,8 +100,15 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
         "gmsh" => files("mesh/tests/files", "msh"),
         "vtu" => [files("mesh/tests/files", "vtu"), files("mesh/tests/files", "vtp")].concat(),
         "font" => files("assets/fonts", "otf"),
-        "states" | "recording" => vec![simulated("states.npz")],
+        "states" => vec![simulated("states.npz")],
+        "recording" => {
+            let layouts = files("tests/scene/layouts", "npz");
+            // In Fortran order, big-endian and compressed.
+            [1, 4, 8].into_iter().map(|at| layouts[at].clone()).chain([simulated("states.npz")]).collect()
+        }
         "list" => vec![LIST.into()],
+        "series" => vec![SERIES.into()],
+        "pieces" => vec![PIECES.into()],
         "moment" => vec![GRID.into()],
         "summary" => vec![simulated("run.json")],
         "checkpoint" => vec![checkpoint_of_scene()],

@@ -24,7 +24,7 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 22] = [
+pub const READERS: [Reader; 24] = [
     Reader { name: "scene", read: scene },
     Reader { name: "setting", read: setting },
     Reader { name: "figure", read: figure },
@@ -40,7 +40,9 @@ pub const READERS: [Reader; 22] = [
     Reader { name: "font", read: font },
     Reader { name: "states", read: states },
     Reader { name: "recording", read: recording },
-    Reader { name: "list", read: list },
+    Reader { name: "list", read: |bytes| list("list.pvd", "list.pvd", bytes) },
+    Reader { name: "series", read: |bytes| list("list.vtu.series", "list.vtu.series", bytes) },
+    Reader { name: "pieces", read: |bytes| list("list_0.pvtu", "list_*.pvtu", bytes) },
     Reader { name: "moment", read: moment },
     Reader { name: "checkpoint", read: checkpoint },
     Reader { name: "state", read: |bytes| State::from_bytes(bytes).is_some() },
@@ -85,7 +87,11 @@ pub const LIST: &str = "<?xml version=\"1.0\"?>
 <DataSet timestep=\"0.05\" part=\"0\" file=\"grid.vtu\"/>
 </Collection></VTKFile>";
 
-/// The grid that it names: a cube.
+/// The same list in JSON, and the pieces of a grid.
+pub const SERIES: &str = r#"{ "files": [{ "name": "grid.vtu", "time": 0 }, { "name": "grid.vtu", "time": 0.05 }] }"#;
+pub const PIECES: &str = r#"<VTKFile type="PUnstructuredGrid"><Piece Source="grid.vtu"/></VTKFile>"#;
+
+/// The grid that they name: a cube.
 pub const GRID: &str = "<?xml version=\"1.0\"?>
 <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid>
 <Piece NumberOfPoints=\"8\" NumberOfCells=\"1\">
@@ -167,12 +173,12 @@ fn recording(bytes: &[u8]) -> bool {
     beside("states.npz", bytes, &SCENE.replace(MODEL, "states = 'states.npz'"))
 }
 
-/// Reads a list of grids as the recording of a run, beside the grid that it names.
-fn list(bytes: &[u8]) -> bool {
-    in_folder("list.pvd", bytes, |path| {
+/// Reads a list of grids as the recording of a run with these states, beside the grid that it names.
+fn list(name: &str, states: &str, bytes: &[u8]) -> bool {
+    in_folder(name, bytes, |path| {
         fs::write(path.with_file_name("grid.vtu"), GRID).expect("a file");
         let file = path.with_file_name("scene.toml");
-        fs::write(&file, SCENE.replace(MODEL, "states = 'list.pvd'")).expect("a file");
+        fs::write(&file, SCENE.replace(MODEL, &format!("states = '{states}'"))).expect("a file");
         begin(Scene::load(&file, &LIMITS))
     })
 }

@@ -36,6 +36,42 @@ pub(crate) fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
     fs::read_dir(folder)?.map(|entry| entry.map(|entry| entry.path())).collect()
 }
 
+/// The files in a folder whose names have a number between `before` and `after`, in the order of their numbers. Other words may stand
+/// before the number, the same in all names. A minus there is the sign of the number if another of the files has the number 0 without it.
+///
+/// # Errors
+/// The folder cannot be read, or has several such sequences.
+pub(crate) fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(i64, PathBuf)>, Wrong> {
+    let split = |path: PathBuf| {
+        let inner = path.file_name()?.to_str()?.strip_prefix(before)?.strip_suffix(after)?;
+        let stem = inner.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
+        Some((stem.clone(), inner[stem.len()..].parse::<i64>().ok()?, path))
+    };
+    let all = entries(folder)
+        .map_err(|error| (format!("cannot be read: {error} (looked for {})", folder.display()), None))?;
+    let mut found: Vec<_> = all.into_iter().filter_map(split).collect();
+    let middle = found.iter().filter(|(_, number, _)| *number == 0).map(|(stem, ..)| stem).min().cloned();
+    for (stem, number, _) in &mut found {
+        if middle.as_ref().is_some_and(|middle| stem.strip_suffix('-') == Some(middle)) {
+            stem.pop();
+            *number = -*number;
+        }
+    }
+    found.sort_by(|one, other| (one.1, &one.2).cmp(&(other.1, &other.2)));
+    if let Some(pair) = found.windows(2).find(|pair| pair[0].0 != pair[1].0) {
+        let [one, other] = [&pair[0].0, &pair[1].0].map(|stem| format!("{before}{stem}…"));
+        return Err((
+            format!("has several sequences, {} and {}; expected one", one.clone().min(other.clone()), one.max(other)),
+            None,
+        ));
+    }
+    if let Some(pair) = found.windows(2).find(|pair| pair[0].1 == pair[1].1) {
+        let [one, other] = [&pair[0].2, &pair[1].2].map(|path| path.file_name().unwrap_or_default().to_string_lossy());
+        return Err((format!("has two files of one number, {one} and {other}; expected one"), None));
+    }
+    Ok(found.into_iter().map(|(_, number, path)| (number, path)).collect())
+}
+
 /// The message for a missing file.
 pub(crate) fn missing(path: &Path) -> String {
     let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());

@@ -15,7 +15,7 @@ pub struct Limits {
     pub springs: u64,
     /// Length of the scene file, and of each mesh file (bytes).
     pub file: u64,
-    /// Points in all moments of a recording in files of single moments, which are copied: up to 48 bytes each.
+    /// Points in all moments of a recording that is copied, such as files of single moments: up to 48 bytes each.
     pub recorded: u64,
 }
 

@@ -1,4 +1,5 @@
-//! Reads NumPy archives (.npz): ZIP archives of plain arrays, as `numpy.savez` and `numpy.savez_compressed` write them.
+//! Reads NumPy archives (.npz): ZIP archives of plain arrays, as `numpy.savez` and `numpy.savez_compressed` write them, in
+//! either order of bytes and of axes.
 //!
 //! Archives are untrusted. Sizes are compared with the file before memory is allocated, and memory grows only with the
 //! data.
@@ -8,8 +9,9 @@
 
 use crate::reading::words::{count, quoted};
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{BufReader, Read, Seek};
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use zip::read::ZipFile;
 use zip::{CompressionMethod, ZipArchive};
@@ -20,12 +22,17 @@ const LONGEST_HEAD: usize = 4096;
 /// The largest allocation for an array before it is read (bytes), larger than most arrays and available on every machine.
 const MOST_RESERVED: u64 = 1 << 26;
 
+/// Bytes that are held together while an array is copied.
+const MOST_HELD: usize = 1 << 26;
+
 /// An open archive.
 #[derive(Debug)]
 pub(crate) struct Npz {
     zip: ZipArchive<BufReader<File>>,
     /// Length of the file (bytes).
     length: u64,
+    /// Copies of arrays by their indices, row by row and little-endian ([`Self::unfold`]).
+    copies: BTreeMap<usize, File>,
 }
 
 /// The header of an array in an archive.
@@ -34,6 +41,8 @@ pub(crate) struct Array {
     /// Index in the archive.
     index: usize,
     dtype: Dtype,
+    /// Whether its numbers are big-endian. They are turned where they are read.
+    is_big: bool,
     /// Whether columns, not rows, are contiguous (Fortran order).
     by_columns: bool,
     is_packed: bool,
@@ -74,33 +83,56 @@ impl Dtype {
         }
     }
 
-    /// The type of a NumPy name, or a message about it.
-    fn of(name: &str) -> Result<Self, String> {
+    /// The type of a NumPy name, and whether it is big-endian, or a message about it.
+    fn of(name: &str) -> Result<(Self, bool), String> {
         const EXPECTED: &str = "expected float64, float32 or whole numbers";
         let (order, rest) = name.split_at_checked(1).unwrap_or_default();
         let (letter, bytes) = rest.split_at_checked(1).unwrap_or_default();
         let dtype = match (letter, bytes) {
-            ("f", "8") => Self::Float64,
-            ("f", "4") => Self::Float32,
-            ("i" | "u", "1" | "2" | "4" | "8") => {
-                let bytes = bytes.parse().unwrap_or(8);
-                if letter == "i" { Self::Signed(bytes) } else { Self::Unsigned(bytes) }
-            }
+            _ if !matches!(order, "<" | ">" | "|") => None,
+            ("f", "8") => Some(Self::Float64),
+            ("f", "4") => Some(Self::Float32),
+            ("i", "1" | "2" | "4" | "8") => bytes.parse().ok().map(Self::Signed),
+            ("u", "1" | "2" | "4" | "8") => bytes.parse().ok().map(Self::Unsigned),
             ("O", _) => {
                 return Err(format!(
                     "contains Python objects, as made from lists of different lengths; {EXPECTED}, with -1 at the end of short lists"
                 ));
             }
-            _ => return Err(format!("has numbers of the type {}; {EXPECTED}", quoted(name))),
+            _ => None,
         };
-        match order {
-            "<" | "|" => Ok(dtype),
-            _ => Err("has big-endian numbers; expected little-endian ones, as by astype(\"<f8\") or, for indices, astype(\"<i4\")".to_owned()),
+        let unknown = || format!("has numbers of the type {}; {EXPECTED}", quoted(name));
+        dtype.map(|dtype| (dtype, order == ">")).ok_or_else(unknown)
+    }
+
+    /// A number as an integer, saturated to signed 64 bits. Zero for a fraction.
+    fn whole(self, raw: &[u8]) -> i64 {
+        let mut all = [0; 8];
+        match self {
+            Self::Float64 | Self::Float32 => 0,
+            Self::Signed(bytes) => {
+                all.fill(if raw[bytes - 1] >= 0x80 { 0xff } else { 0 });
+                all[..bytes].copy_from_slice(raw);
+                i64::from_le_bytes(all)
+            }
+            Self::Unsigned(bytes) => {
+                all[..bytes].copy_from_slice(raw);
+                i64::try_from(u64::from_le_bytes(all)).unwrap_or(i64::MAX)
+            }
+        }
+    }
+
+    /// A number in double precision.
+    fn double(self, raw: &[u8]) -> f64 {
+        match self {
+            Self::Float64 => f64::from_le_bytes(raw.try_into().unwrap_or_default()),
+            Self::Float32 => f32::from_le_bytes(raw.try_into().unwrap_or_default()).into(),
+            _ => self.whole(raw) as f64,
         }
     }
 }
 
-/// The numbers of an array with one to three axes, row by row.
+/// The numbers of an array with up to two axes.
 #[derive(Clone, Debug)]
 pub(crate) struct Values {
     bytes: Vec<u8>,
@@ -132,31 +164,12 @@ impl Values {
 
     /// One number as an integer, saturated to signed 64 bits. Zero for a fraction.
     pub(crate) fn whole(&self, row: usize, column: usize) -> i64 {
-        let raw = self.raw(row, column);
-        match self.dtype {
-            Dtype::Float64 | Dtype::Float32 => 0,
-            Dtype::Signed(bytes) => {
-                let is_negative = raw[bytes - 1] >= 0x80;
-                let mut all = [if is_negative { 0xff } else { 0 }; 8];
-                all[..bytes].copy_from_slice(raw);
-                i64::from_le_bytes(all)
-            }
-            Dtype::Unsigned(bytes) => {
-                let mut all = [0; 8];
-                all[..bytes].copy_from_slice(raw);
-                i64::try_from(u64::from_le_bytes(all)).unwrap_or(i64::MAX)
-            }
-        }
+        self.dtype.whole(self.raw(row, column))
     }
 
     /// One number in double precision.
     pub(crate) fn double(&self, row: usize, column: usize) -> f64 {
-        let raw = self.raw(row, column);
-        match self.dtype {
-            Dtype::Float64 => f64::from_le_bytes(raw.try_into().unwrap_or_default()),
-            Dtype::Float32 => f32::from_le_bytes(raw.try_into().unwrap_or_default()).into(),
-            _ => self.whole(row, column) as f64,
-        }
+        self.dtype.double(self.raw(row, column))
     }
 }
 
@@ -194,7 +207,8 @@ impl Npz {
     pub(crate) fn of(file: File) -> Result<Self, String> {
         let broken = |error| format!("is a damaged NumPy archive, or is cut short ({error})");
         let length = file.metadata().map_err(|error| format!("cannot be read: {error}"))?.len();
-        Ok(Self { zip: ZipArchive::new(BufReader::new(file)).map_err(broken)?, length })
+        let zip = ZipArchive::new(BufReader::new(file)).map_err(broken)?;
+        Ok(Self { zip, length, copies: BTreeMap::new() })
     }
 
     /// Whether an array may be stored unpacked: no longer than the file.
@@ -219,7 +233,7 @@ impl Npz {
         const LONGEST: u64 = 4096;
         let index = self.zip.index_for_name(&format!("{name}.npy")).ok_or("is missing")?;
         let Head { dtype, shape, length, mut entry, .. } = self.open_head(index)?;
-        let kind = dtype.get(1..2).filter(|_| shape.iter().product::<u64>() == 1 && !dtype.starts_with('>'));
+        let kind = dtype.get(1..2).filter(|_| shape.iter().product::<u64>() == 1);
         let bytes = entry.size().saturating_sub(length);
         if !matches!(kind, Some("U" | "S")) || bytes > LONGEST {
             return Err(format!("has numbers of the type {}; expected one short text", quoted(&dtype)));
@@ -229,7 +243,8 @@ impl Npz {
         read.map_err(|error| format!("cannot be read, the file is damaged or cut short ({error})"))?;
         let letters: Option<String> = match kind {
             Some("U") => {
-                text.as_chunks::<4>().0.iter().map(|&letter| char::from_u32(u32::from_le_bytes(letter))).collect()
+                let number = if dtype.starts_with('>') { u32::from_be_bytes } else { u32::from_le_bytes };
+                text.as_chunks::<4>().0.iter().map(|&letter| char::from_u32(number(letter))).collect()
             }
             _ => String::from_utf8(text).ok(),
         };
@@ -238,8 +253,8 @@ impl Npz {
 
     fn head(&mut self, index: usize) -> Result<Array, String> {
         let Head { dtype, by_columns, shape, length, entry, is_packed } = self.open_head(index)?;
-        let dtype = Dtype::of(&dtype)?;
-        let array = Array { index, dtype, by_columns, is_packed, shape, head: length };
+        let (dtype, is_big) = Dtype::of(&dtype)?;
+        let array = Array { index, dtype, is_big, by_columns, is_packed, shape, head: length };
         let stored = entry.size();
         if array.bytes().and_then(|bytes| bytes.checked_add(array.head)) != Some(stored) {
             let (shape, stored) = (array.shape_in_words(), count(stored.saturating_sub(array.head).into()));
@@ -292,12 +307,15 @@ impl Npz {
         Ok(Head { dtype, by_columns, shape, length: (start + length) as u64, entry, is_packed })
     }
 
-    /// Reads all numbers of an array in blocks of up to `most` bytes, and compares the checksum.
+    /// Reads all numbers of an array in blocks of up to `most` bytes, a multiple of a number's, and compares the checksum.
     pub(crate) fn blocks(&mut self, array: &Array, most: usize, each: &mut dyn FnMut(&[u8])) -> Result<(), String> {
         let broken = |error| format!("cannot be read, the file is damaged or cut short ({error})");
         let mut left = array.bytes().unwrap_or(u64::MAX);
-        let mut entry = self.zip.by_index(array.index).map_err(|error| broken(error.into()))?;
-        std::io::copy(&mut (&mut entry).take(array.head), &mut std::io::sink()).map_err(broken)?;
+        let mut entry: Box<dyn Read + '_> = match self.copies.get_mut(&array.index) {
+            Some(copy) => copy.rewind().map(|()| Box::new(copy)).map_err(broken)?,
+            None => Box::new(self.zip.by_index(array.index).map_err(|error| broken(error.into()))?),
+        };
+        io::copy(&mut (&mut entry).take(array.head), &mut io::sink()).map_err(broken)?;
         let mut block = Vec::new();
         while left > 0 {
             block.clear();
@@ -306,13 +324,14 @@ impl Npz {
                 return Err(format!("is cut short: {} bytes are missing", count(left.into())));
             }
             left -= read as u64;
+            array.turn(&mut block);
             each(&block);
         }
         // At the end the reader compares the checksum.
         entry.read(&mut [0]).map_err(broken).map(drop)
     }
 
-    /// The numbers of an array: without an axis as one number, with one axis as one column, with three axes with the last two in one row.
+    /// The numbers of an array: without an axis as one number, with one axis as one column.
     pub(crate) fn values(&mut self, array: &Array) -> Result<Values, String> {
         let expected = array.bytes().unwrap_or(u64::MAX);
         let mut bytes = Vec::with_capacity(expected.min(MOST_RESERVED) as usize);
@@ -321,39 +340,82 @@ impl Npz {
             [] => [1, 1],
             [rows] => [rows, 1],
             [rows, columns] => [rows, columns],
-            [rows, columns, depth] if !array.by_columns => [rows, columns * depth],
             _ => return Err(format!("has the shape {}; expected rows and columns", array.shape_in_words())),
         };
         let (dtype, by_columns) = (array.dtype, array.by_columns);
         Ok(Values { bytes, dtype, by_columns, rows: rows as usize, columns: columns as usize })
     }
+
+    /// Reads a part of the numbers of an array that is stored row by row and not compressed, from an offset (bytes).
+    pub(crate) fn part(&mut self, array: &Array, offset: u64, into: &mut [u8]) -> Result<(), String> {
+        let broken = |error: &dyn std::fmt::Display| format!("cannot be read, the file is damaged or packed ({error})");
+        let place = array.head + offset;
+        let read = match self.copies.get_mut(&array.index) {
+            Some(copy) => read_at(copy, place, into),
+            None => read_at(&mut self.zip.by_index_seek(array.index).map_err(|error| broken(&error))?, place, into),
+        };
+        array.turn(into);
+        read.map_err(|error| broken(&error))
+    }
+
+    /// Lets single rows be read of an array with three axes: one that is compressed or stored column by column is copied
+    /// into a temporary file, row by row. Memory does not grow with the array.
+    pub(crate) fn unfold(&mut self, array: &mut Array) -> Result<(), String> {
+        let [rows, nodes, axes] = array.shape[..] else { return Ok(()) };
+        if array.is_by_rows() || rows == 0 {
+            return Ok(());
+        }
+        let failed = |error: io::Error| format!("cannot be copied into a temporary file: {error}");
+        let (width, rows) = (array.width(), if array.by_columns { rows } else { 1 });
+        let (column, row) = (rows as usize * width, array.bytes().unwrap_or(u64::MAX) / rows);
+        let mut copy = tempfile::tempfile().map_err(failed)?;
+        let (mut done, mut fault) = (0, None);
+        self.blocks(array, (MOST_HELD / column).max(1) * column, &mut |block| {
+            // The same part of each row.
+            let mut part = vec![0; block.len() / column * width];
+            // A block that is cut short may be less than a column.
+            let is_cut = part.is_empty();
+            for at in (0..rows).take_while(|_| !is_cut) {
+                for (to, from) in part.chunks_exact_mut(width).zip(block.chunks_exact(column)) {
+                    to.copy_from_slice(&from[at as usize * width..][..width]);
+                }
+                let write = copy.seek(SeekFrom::Start(at * row + done)).and_then(|_| copy.write_all(&part));
+                fault = write.err().or(fault.take());
+            }
+            done += part.len() as u64;
+        })?;
+        fault.map_or(Ok(()), Err).map_err(failed)?;
+        // The numbers of a row are still those of the first axis of all nodes, then those of the second, and so on.
+        let mut from = vec![0; if array.by_columns { row as usize } else { 0 }];
+        for at in (0..rows).take_while(|_| array.by_columns) {
+            read_at(&mut copy, at * row, &mut from).map_err(failed)?;
+            let number = |place: usize| (place % axes as usize) * nodes as usize + place / axes as usize;
+            let numbers = (0..from.len() / width).flat_map(|place| &from[number(place) * width..][..width]);
+            let to: Vec<u8> = numbers.copied().collect();
+            copy.seek(SeekFrom::Start(at * row)).and_then(|_| copy.write_all(&to)).map_err(failed)?;
+        }
+        self.copies.insert(array.index, copy);
+        *array = Array { is_big: false, by_columns: false, is_packed: false, head: 0, ..array.clone() };
+        Ok(())
+    }
 }
 
-impl Npz {
-    /// Reads a part of the numbers of an array, from an offset (bytes).
-    pub(crate) fn part(&mut self, array: &Array, offset: u64, into: &mut [u8]) -> Result<(), String> {
-        use std::io::SeekFrom;
-        let broken = |error: &dyn std::fmt::Display| format!("cannot be read, the file is damaged or packed ({error})");
-        let mut entry = self.zip.by_index_seek(array.index).map_err(|error| broken(&error))?;
-        entry.seek(SeekFrom::Start(array.head + offset)).map_err(|error| broken(&error))?;
-        entry.read_exact(into).map_err(|error| broken(&error))
-    }
+/// Reads the bytes at a place.
+fn read_at(from: &mut (impl Read + Seek), place: u64, into: &mut [u8]) -> io::Result<()> {
+    from.seek(SeekFrom::Start(place)).and_then(|_| from.read_exact(into))
 }
 
 impl Array {
-    /// Whether the array has numbers with a point.
-    pub(crate) fn is_float(&self) -> bool {
-        matches!(self.dtype, Dtype::Float64 | Dtype::Float32)
+    /// Turns big-endian numbers.
+    fn turn(&self, bytes: &mut [u8]) {
+        if self.is_big {
+            bytes.chunks_exact_mut(self.width()).for_each(<[u8]>::reverse);
+        }
     }
 
-    /// Whether rows, not columns, are contiguous.
+    /// Whether single rows can be read: it is stored row by row and not compressed.
     pub(crate) fn is_by_rows(&self) -> bool {
-        !self.by_columns
-    }
-
-    /// Whether it is compressed, so that no part of it can be read alone.
-    pub(crate) fn is_packed(&self) -> bool {
-        self.is_packed
+        !self.by_columns && !self.is_packed
     }
 
     /// The width of a number (bytes).
@@ -361,13 +423,13 @@ impl Array {
         self.dtype.bytes()
     }
 
-    /// The numbers with these bytes, for an array of numbers with a point.
+    /// The numbers with these bytes.
     pub(crate) fn numbers<'b>(&self, bytes: &'b [u8]) -> impl Iterator<Item = f64> + use<'b> {
-        let is_double = self.dtype == Dtype::Float64;
-        let doubles = if is_double { bytes.as_chunks::<8>().0 } else { &[] };
-        let singles = if is_double { &[] } else { bytes.as_chunks::<4>().0 };
-        let doubles = doubles.iter().map(|&number| f64::from_le_bytes(number));
-        doubles.chain(singles.iter().map(|&number| f64::from(f32::from_le_bytes(number))))
+        let (dtype, is_double) = (self.dtype, self.dtype == Dtype::Float64);
+        // Most arrays have doubles, which are read fastest without a look at the type of each.
+        let (doubles, others) = if is_double { (bytes, &[][..]) } else { (&[][..], bytes) };
+        let doubles = doubles.as_chunks::<8>().0.iter().map(|&number| f64::from_le_bytes(number));
+        doubles.chain(others.chunks_exact(self.width()).map(move |raw| dtype.double(raw)))
     }
 
     /// Whether the array has whole numbers.
@@ -418,49 +480,5 @@ fn tuple(text: &str) -> Option<Vec<u64>> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn heads_are_read_as_numpy_writes_them() {
-        let text = "{'descr': '<f8', 'fortran_order': False, 'shape': (64, 3), }          \n";
-        assert_eq!(value(text, "descr").and_then(quoted_text), Some("<f8"));
-        assert!(value(text, "fortran_order").unwrap().starts_with("False"));
-        assert_eq!(value(text, "shape").and_then(tuple), Some(vec![64, 3]));
-        assert_eq!(tuple("(3L,)"), Some(vec![3]));
-        assert_eq!(tuple("()"), Some(vec![]));
-        assert_eq!((tuple("(3"), tuple("(-1, 2)"), tuple("(99999999999999999999,)")), (None, None, None));
-        assert_eq!((value(text, "size"), quoted_text("<f8"), quoted_text("'<f8")), (None, None, None));
-    }
-
-    #[test]
-    fn types_are_known_or_refused_in_words() {
-        assert_eq!(Dtype::of("<f8"), Ok(Dtype::Float64));
-        assert_eq!(Dtype::of("|u1"), Ok(Dtype::Unsigned(1)));
-        for (name, words) in [
-            (">f8", "big-endian"),
-            ("<f2", "of the type \"<f2\""),
-            ("<c16", "of the type"),
-            ("|O", "Python objects"),
-            ("<U7", "of the type"),
-            ("", "of the type"),
-            ("é", "of the type"),
-        ] {
-            assert!(Dtype::of(name).unwrap_err().contains(words), "{name}");
-        }
-    }
-
-    #[test]
-    fn whole_numbers_of_all_widths_keep_their_sign() {
-        for bytes in [1, 2, 4, 8] {
-            let mut raw = (-1i64).to_le_bytes()[..bytes].to_vec();
-            raw.extend(&5i64.to_le_bytes()[..bytes]);
-            let mut numbers =
-                Values { bytes: raw, dtype: Dtype::Signed(bytes), by_columns: false, rows: 1, columns: 2 };
-            assert_eq!((numbers.whole(0, 0), numbers.whole(0, 1)), (-1, 5));
-            numbers.dtype = Dtype::Unsigned(bytes);
-            let largest = if bytes == 8 { i64::MAX } else { (1 << (8 * bytes)) - 1 };
-            assert_eq!((numbers.whole(0, 0), numbers.double(0, 1)), (largest, 5.0));
-        }
-    }
-}
+#[path = "../../tests/inside/npz.rs"]
+mod tests;

@@ -1,22 +1,21 @@
-//! Sequences of files of single moments: VTK's grids with a list of their times (`.pvd`), or files with numbers in their names.
+//! Sequences of files of single moments: lists of files with their times (`.pvd`, `.series`), or files with numbers in their names.
 //! They are copied into an archive like those of NumPy, so that recordings have one form.
 
 use super::limits::Limits;
 use super::npy::begin;
 use super::npz::Npz;
-use super::recording::Flaw;
+use super::recording::{Flaw, check_length};
 use crate::reading::beside::{self, Wrong};
-use crate::reading::words::count;
+use crate::reading::words::{count, short};
 use glam::DVec3;
 use localshape_mesh::{self as mesh, Cells, Format};
+use serde::Deserialize;
 use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use zip::ZipWriter;
 
-/// The formats of single moments.
-const FORMATS: [Format; 2] = [Format::Obj, Format::Vtu];
 /// The comments by which this program tells the time of a surface, and the time step of the run of surfaces and of lists (s).
 const TIME: &str = "# time ";
 const STEPS: [&str; 2] = ["# step ", "<!-- step "];
@@ -32,31 +31,47 @@ pub(super) struct Sequence {
     pub(super) cells: Cells,
     /// Whether these cells are elements. Surfaces have faces only.
     pub(super) has_elements: bool,
+    /// What is to be known about it: predicates of sentences about the sequence, with remedies.
+    pub(super) notes: Vec<Wrong>,
 }
 
 /// Whether the name of recorded states is that of a sequence.
 pub(super) fn is_one(file: &str) -> bool {
-    file.contains('*') || file.to_lowercase().ends_with(".pvd")
+    let file = file.to_lowercase();
+    file.contains('*') || file.ends_with(".pvd") || file.ends_with(".series")
 }
 
 impl Sequence {
     /// Reads all files of a sequence in a folder. Those with numbers follow each other at a rate (1/s), and the first is at the start.
     pub(super) fn read(folder: &Path, file: &str, rate: f64, limits: &Limits) -> Result<Self, Flaw> {
-        let (moments, step) =
-            if file.contains('*') { (numbered(folder, file, rate)?, None) } else { listed(folder, file, limits)? };
+        let mut notes = Vec::new();
+        let (moments, step) = match file.contains('*') {
+            true => (numbered(folder, file, rate)?, None),
+            false => listed(folder, file, limits, &mut notes)?,
+        };
         let first = Moment::read(&moments[0], limits)?;
-        let [frames, nodes] = [moments.len(), first.cells.points.len()].map(|length| length as u64);
-        // As many as 64 bits can count bytes of.
-        let most = limits.recorded.min(u64::MAX / 48);
-        if frames.saturating_mul(nodes) > most {
-            let [frames, nodes, most] = [frames, nodes, most].map(|number| count(number.into()));
-            let message = format!("has {frames} moments of {nodes} points; the limit is {most} points in all moments");
-            let help = "list fewer moments, or allow it with --allow-large (in code, `Limits::NONE`)";
-            return Err(Flaw::new("", message).with_help(help));
-        }
-        let archive = copied(&moments, &first, step, limits)?;
+        check_length(moments.len() as u64, first.cells.points.len() as u64, limits)?;
+        let is_displaced = first.cells.displacements.is_some() && is_at_rest(&moments, &first, limits)?;
+        let (archive, moves) = copied(&moments, &first, step, is_displaced, limits)?;
+        let note = match moments.len() {
+            1 if first.cells.displacements.is_some() => Some((
+                "has one moment, to whose points its array `displacement` or `U` is not added".to_owned(),
+                "add it in the program that wrote it, or list the moment at rest before it",
+            )),
+            1 => None,
+            _ if is_displaced => Some((
+                "has points that do not move, to which their array `displacement` or `U` is added".to_owned(),
+                "give the array another name if it is no displacement",
+            )),
+            moments if !moves => Some((
+                format!("does not move: its {moments} moments have the same points"),
+                "if an array has their displacements, name it `displacement` in the .vtu files of all moments",
+            )),
+            _ => None,
+        };
+        notes.extend(note.map(|(message, help)| (message, Some(help.to_owned()))));
         let has_elements = !first.is_surface && !first.cells.kinds.is_empty();
-        Ok(Self { archive, cells: first.cells, has_elements })
+        Ok(Self { archive, cells: first.cells, has_elements, notes })
     }
 }
 
@@ -67,30 +82,97 @@ struct Listed {
     files: Vec<PathBuf>,
 }
 
-/// The moments in a list of VTK's files, and the time step (s) if the list tells it.
-fn listed(folder: &Path, file: &str, limits: &Limits) -> Result<(Vec<Listed>, Option<f64>), Flaw> {
+/// ParaView's list of files in JSON (`.vtu.series`).
+#[derive(Deserialize)]
+struct Series {
+    files: Vec<InSeries>,
+}
+
+/// A file of such a list.
+#[derive(Deserialize)]
+struct InSeries {
+    name: String,
+    /// Its time (s).
+    time: f64,
+}
+
+/// The files in a list in JSON.
+fn series(bytes: &[u8]) -> Result<Vec<mesh::Listed>, Wrong> {
+    const EXPECTED: &str = "expected { \"files\": [{ \"name\": \"a.vtu\", \"time\": 0 }] }";
+    let wrong = |found: String| (format!("{found}; {EXPECTED}"), None);
+    let Series { files } =
+        serde_json::from_slice(bytes).map_err(|error| wrong(format!("is no list of files over time: {error}")))?;
+    if files.is_empty() {
+        return Err(wrong("lists no file".to_owned()));
+    }
+    Ok(files.into_iter().map(|InSeries { name, time }| mesh::Listed { time, file: name, part: None }).collect())
+}
+
+/// The moments in a list of files in the order of their times, and the time step (s) if the list tells it.
+fn listed(
+    folder: &Path,
+    file: &str,
+    limits: &Limits,
+    notes: &mut Vec<Wrong>,
+) -> Result<(Vec<Listed>, Option<f64>), Flaw> {
     let path = folder.join(file);
     let told = |(message, help): Wrong| Flaw { place: String::new(), message, help };
-    let bytes =
-        beside::bytes(&path, &["pvd"], limits.file, "a list", "expected a list of grids (.pvd)").map_err(told)?;
-    let all = mesh::read_list(&bytes).map_err(|error| told((error.message, error.help)))?;
-    let beside = path.parent().unwrap_or(Path::new(""));
-    let mut moments: Vec<Listed> = Vec::new();
-    // The files and parts of the last moment.
-    let mut known = HashSet::new();
-    for mesh::Listed { time, file, part } in &all {
-        // Files of one time are bodies of one moment, until a file or a part comes again.
-        let mut is_new = |key| known.insert(key);
-        let is_other = is_new(Ok(file)) & part.as_ref().is_none_or(|part| is_new(Err(part)));
-        match moments.last_mut().filter(|last| last.time == *time && is_other) {
-            Some(last) => last.files.push(beside.join(file)),
-            None => {
-                moments.push(Listed { time: *time, files: vec![beside.join(file)] });
-                known = HashSet::from_iter([Ok(file)].into_iter().chain(part.as_ref().map(Err)));
-            }
-        }
+    let expected = "expected a list of files over time (.pvd, .series)";
+    let bytes = beside::bytes(&path, &["pvd", "series"], limits.file, "a list", expected).map_err(told)?;
+    let all = match file.to_lowercase().ends_with(".pvd") {
+        true => mesh::read_list(&bytes).map_err(|error| (error.message, error.help)),
+        false => series(&bytes),
     }
-    Ok((moments, step_in(&bytes)))
+    .map_err(told)?;
+    Ok((in_order(&all, &path, notes), step_in(&bytes)))
+}
+
+/// The moments of the files in a list, in the order of their times.
+fn in_order(all: &[mesh::Listed], path: &Path, notes: &mut Vec<Wrong>) -> Vec<Listed> {
+    let mut order: Vec<usize> = (0..all.len()).collect();
+    order.sort_by(|&one, &other| all[one].time.total_cmp(&all[other].time));
+    let mut moments: Vec<Listed> = Vec::new();
+    // Where the list begins again after a restart, the time of the first one, and the number of moments left out.
+    let (mut begin, mut restart, mut left_out) = (0, None, 0);
+    for of_time in order.chunk_by(|&one, &other| all[one].time == all[other].time) {
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        // The files and parts of the last moment.
+        let mut known = HashSet::new();
+        for &at in of_time {
+            let keys = || [Ok(&all[at].file)].into_iter().chain(all[at].part.as_ref().map(Err));
+            // Files of one time are bodies of one moment, until a file or a part comes again.
+            if groups.is_empty() || keys().any(|key| known.contains(&key)) {
+                groups.push(Vec::new());
+                known.clear();
+            }
+            known.extend(keys());
+            groups.last_mut().into_iter().for_each(|group| group.push(at));
+        }
+        // A moment that comes again after others is that of a run that was started again there.
+        for pair in groups.windows(2).filter(|pair| pair[0].last().is_some_and(|last| last + 1 != pair[1][0])) {
+            begin = begin.max(pair[1][0]);
+            restart = restart.or(Some(all[begin].time));
+        }
+        let number = groups.len();
+        groups.retain(|group| group[0] >= begin);
+        left_out += number - groups.len();
+        let beside = |&at: &usize| listed_path(path, &all[at].file);
+        let moment = |group: Vec<usize>| Listed { time: all[group[0]].time, files: group.iter().map(beside).collect() };
+        moments.extend(groups.into_iter().map(moment));
+    }
+    notes.extend(restart.map(|time| {
+        let (plural, time) = (if left_out == 1 { " is" } else { "s are" }, short(time));
+        let message =
+            format!("has the time {time} s again after later ones: {left_out} moment{plural} left out, which a later start replaces");
+        (message, Some("list each moment once".to_owned()))
+    }));
+    moments
+}
+
+/// The path of a file that is named in another. Programs on Windows write `\`.
+fn listed_path(list: &Path, file: &str) -> PathBuf {
+    let path = list.with_file_name(file);
+    if file.contains('\\') && !path.exists() { list.with_file_name(file.replace('\\', "/")) } else { path }
 }
 
 /// The moments in files with numbers in place of the star in a name.
@@ -103,30 +185,13 @@ fn numbered(folder: &Path, pattern: &str, rate: f64) -> Result<Vec<Listed>, Flaw
     };
     // The folder of a scene may have no name.
     let within = if within.as_os_str().is_empty() { Path::new(".") } else { within };
-    let entries = beside::entries(within)
-        .map_err(|error| Flaw::new("", format!("cannot be read: {error} (looked for {})", within.display())))?;
-    let number = |entry: PathBuf| {
-        let name = entry.file_name()?.to_str()?.to_owned();
-        let inner = name.strip_prefix(before)?.strip_suffix(after)?;
-        // A name may have further words before its number.
-        let stem = inner.trim_end_matches(|c: char| c.is_ascii_digit());
-        Some((inner[stem.len()..].parse::<u64>().ok()?, stem.to_owned(), entry))
-    };
-    let mut found: Vec<(u64, String, PathBuf)> = entries.into_iter().filter_map(number).collect();
-    found.sort();
-    let Some((first, stem, _)) = found.first().cloned() else {
+    let found = beside::numbered(within, before, after)
+        .map_err(|(message, _)| Flaw::new("", message).with_help("write more of the name before the star"))?;
+    let Some(&(first, _)) = found.first() else {
         let help = "expected files with numbers in place of the star, such as frame_00000.obj";
         return Err(Flaw::new("", format!("names no file (looked in {})", within.display())).with_help(help));
     };
-    if let Some((_, other, _)) = found.iter().find(|(_, other, _)| *other != stem) {
-        let message = format!("names several sequences, {before}{stem}… and {before}{other}…; expected one");
-        return Err(Flaw::new("", message).with_help("write more of the name before the star"));
-    }
-    if let Some(pair) = found.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-        let [one, other] = [&pair[0].2, &pair[1].2].map(|path| name_of(path));
-        return Err(Flaw::new("", format!("names two files of one number, {one} and {other}; expected one")));
-    }
-    let moment = |(number, _, file)| Listed { time: (number - first) as f64 / rate, files: vec![file] };
+    let moment = |(number, file): (i64, _)| Listed { time: number.abs_diff(first) as f64 / rate, files: vec![file] };
     Ok(found.into_iter().map(moment).collect())
 }
 
@@ -135,7 +200,7 @@ fn name_of(path: &Path) -> String {
 }
 
 /// A moment as read.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Moment {
     /// The name of its file, or of the first of them.
     name: String,
@@ -145,6 +210,8 @@ struct Moment {
     /// The points and cells of all its files.
     cells: Cells,
     is_surface: bool,
+    /// Whether triangles share points only where these are equal.
+    is_welded: bool,
 }
 
 impl Moment {
@@ -152,40 +219,93 @@ impl Moment {
         let first = name_of(&listed.files[0]);
         let name = if listed.files.len() == 1 { first } else { format!("{first} and others") };
         let mut moment = Self { name, time: listed.time, ..Self::default() };
-        for (at, path) in listed.files.iter().enumerate() {
+        for path in &listed.files {
             let name = name_of(path);
             let told = |(message, help): Wrong| Flaw { place: name.clone(), message, help };
+            let of_mesh = |error: mesh::ReadError| told((error.message, error.help));
             let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-            let Some(format) = FORMATS.into_iter().find(|format| format.endings().contains(&&*ending)) else {
-                return Err(Flaw::new(&name, "is neither a grid (.vtu, .vtp) nor a surface (.obj)"));
-            };
+            if !matches!(&*ending, "pvtu" | "pvtp") {
+                moment.add(path, limits)?;
+                continue;
+            }
             let bytes = beside::bytes(path, &[&*ending], limits.file, "a moment", "expected a file").map_err(told)?;
-            let most = |limit: u64| usize::try_from(limit).unwrap_or(usize::MAX).min(u32::MAX as usize);
-            let limits = mesh::Limits { points: most(limits.nodes), corners: most(limits.corners) };
-            let cells = mesh::read_cells(&bytes, format, &limits).map_err(|error| told((error.message, error.help)))?;
-            if format == Format::Obj {
-                moment.is_surface = true;
-                moment.time = number_in(&bytes, TIME).unwrap_or(moment.time);
-                moment.step = step_in(&bytes);
-            }
-            let corners = moment.cells.corners.indices().len() + cells.corners.indices().len();
-            if moment.cells.points.len() + cells.points.len() > limits.points || corners > limits.corners {
-                let most = count(limits.points as u128);
-                let message = format!("brings its moment to more points or cells than are allowed, {most} points");
-                return Err(
-                    Flaw::new(&name, message).with_help("allow it with --allow-large (in code, `Limits::NONE`)")
-                );
-            }
-            if at == 0 {
-                moment.cells = cells;
-            } else {
-                append(&mut moment.cells, cells);
+            for piece in mesh::read_pieces(&bytes).map_err(of_mesh)? {
+                moment.add(&listed_path(path, &piece), limits)?;
             }
         }
         match moment.cells.points.is_empty() {
             true => Err(Flaw::new(moment.name, "has no points")),
             false => Ok(moment),
         }
+    }
+
+    /// Adds the points and cells of a file.
+    fn add(&mut self, path: &Path, limits: &Limits) -> Result<(), Flaw> {
+        let name = name_of(path);
+        let told = |(message, help): Wrong| Flaw { place: name.clone(), message, help };
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let Some(format) = Format::of(&ending) else {
+            return Err(Flaw::new(
+                &name,
+                "is neither a grid (.vtu, .vtp, .pvtu, .vtk) nor a surface (.obj, .ply, .stl)",
+            ));
+        };
+        let bytes = beside::bytes(path, &[&*ending], limits.file, "a moment", "expected a file").map_err(told)?;
+        let most = |limit: u64| usize::try_from(limit).unwrap_or(usize::MAX).min(u32::MAX as usize);
+        let limits = mesh::Limits { points: most(limits.nodes), corners: most(limits.corners) };
+        let cells = mesh::read_cells(&bytes, format, &limits).map_err(|error| told((error.message, error.help)))?;
+        if !matches!(format, Format::Gmsh | Format::Vtk | Format::Vtu) {
+            self.is_surface = true;
+            self.is_welded |= format == Format::Stl;
+            self.time = number_in(&bytes, TIME).unwrap_or(self.time);
+            self.step = step_in(&bytes);
+        }
+        let corners = self.cells.corners.indices().len() + cells.corners.indices().len();
+        if self.cells.points.len() + cells.points.len() > limits.points || corners > limits.corners {
+            let most = count(limits.points as u128);
+            let message = format!("brings its moment to more points or cells than are allowed, {most} points");
+            return Err(Flaw::new(&name, message).with_help("allow it with --allow-large (in code, `Limits::NONE`)"));
+        }
+        // Some pieces may be empty.
+        if self.cells.points.is_empty() {
+            self.cells = cells;
+        } else if !cells.points.is_empty() {
+            append(&mut self.cells, cells);
+        }
+        Ok(())
+    }
+
+    /// With the points of another moment, if the triangles of both have points of their own: points that are equal in one moment
+    /// are apart in others.
+    fn joined_like(mut self, first: &Self) -> Result<Self, Flaw> {
+        /// The greatest distance of corners that are one point, as a share of the largest coordinate: single precision is enough.
+        const APART: f64 = 1e-6;
+        let [own, wanted] = [&self.cells, &first.cells].map(|cells| cells.corners.indices());
+        if !self.is_welded || own.len() != wanted.len() {
+            return Ok(self);
+        }
+        let far = self.cells.points.iter().fold(0.0, |far: f64, point| far.max(point.abs().max_element()));
+        let mut points = vec![None; first.cells.points.len()];
+        for (&from, &to) in own.iter().zip(wanted) {
+            let (point, known) = (self.cells.points[from as usize], &mut points[to as usize]);
+            if known.get_or_insert(point).distance(point) > APART * far {
+                let message = format!("has corners apart that are at one place in {}", first.name);
+                let help = "write the moments as .ply or .obj, whose points have numbers";
+                return Err(Flaw::new(self.name, message).with_help(help));
+            }
+        }
+        self.cells.points = points.into_iter().flatten().collect();
+        self.cells.corners = first.cells.corners.clone();
+        Ok(self)
+    }
+
+    /// With the displacements added to the points.
+    fn displaced(mut self) -> Result<Self, Flaw> {
+        let Some(by) = self.cells.displacements.take() else {
+            return Err(Flaw::new(self.name, "has no `displacement` for each point, and files before it have"));
+        };
+        self.cells.points.iter_mut().zip(by).for_each(|(point, by)| *point += by);
+        Ok(self)
     }
 
     /// Refuses a moment that is not one of the same body after another.
@@ -221,10 +341,23 @@ fn append(all: &mut Cells, other: Cells) {
     all.corners.append(&other.corners, all.points.len() as u32);
     all.kinds.extend(other.kinds);
     all.points.extend(other.points);
-    match (&mut all.velocities, other.velocities) {
-        (Some(all), Some(other)) => all.extend(other),
-        (velocities, _) => *velocities = None,
+    let vectors = [(&mut all.velocities, other.velocities), (&mut all.displacements, other.displacements)];
+    for (all, other) in vectors {
+        match (&mut *all, other) {
+            (Some(all), Some(other)) => all.extend(other),
+            _ => *all = None,
+        }
     }
+}
+
+/// Whether the points of all moments are those of the first.
+fn is_at_rest(moments: &[Listed], first: &Moment, limits: &Limits) -> Result<bool, Flaw> {
+    for listed in &moments[1..] {
+        if Moment::read(listed, limits)?.cells.points != first.cells.points {
+            return Ok(false);
+        }
+    }
+    Ok(moments.len() > 1)
 }
 
 /// The number in a comment in the head of a file.
@@ -239,8 +372,15 @@ fn step_in(bytes: &[u8]) -> Option<f64> {
     STEPS.iter().find_map(|comment| number_in(bytes, comment)).filter(|step| *step > 0.0)
 }
 
-/// The archive of some moments, of which the first is read. Velocities wait in a file of their own until all positions are there.
-fn copied(moments: &[Listed], first: &Moment, step: Option<f64>, limits: &Limits) -> Result<Npz, Flaw> {
+/// The archive of some moments, of which the first is read, with displaced points or not, and whether these move. Velocities wait in a
+/// file of their own until all positions are there.
+fn copied(
+    moments: &[Listed],
+    first: &Moment,
+    step: Option<f64>,
+    is_displaced: bool,
+    limits: &Limits,
+) -> Result<(Npz, bool), Flaw> {
     let failed = |error: io::Error| Flaw::new("", format!("cannot be brought into one file: {error}"));
     let (frames, nodes) = (moments.len(), first.cells.points.len());
     let shape = format!("({frames}, {nodes}, 3)");
@@ -256,13 +396,16 @@ fn copied(moments: &[Listed], first: &Moment, step: Option<f64>, limits: &Limits
         let mut all = moment.cells.velocities.iter().filter(|_| moves).flatten();
         all.try_for_each(|one| vector(&mut velocities, one))
     };
-    copy(first).map_err(failed)?;
-    let mut last = None;
+    let displaced = |moment: Moment| if is_displaced { moment.displaced() } else { Ok(moment) };
+    let mut last = displaced(first.clone())?;
+    copy(&last).map_err(failed)?;
+    let mut is_moving = false;
     for listed in &moments[1..] {
-        let moment = Moment::read(listed, limits)?;
-        moment.check_after(last.as_ref().unwrap_or(first))?;
+        let moment = displaced(Moment::read(listed, limits)?.joined_like(first)?)?;
+        moment.check_after(&last)?;
         copy(&moment).map_err(failed)?;
-        last = Some(moment);
+        is_moving |= moment.cells.points != last.cells.points;
+        last = moment;
     }
     let rest = || -> io::Result<File> {
         if moves {
@@ -279,7 +422,8 @@ fn copied(moments: &[Listed], first: &Moment, step: Option<f64>, limits: &Limits
         }
         Ok(zip.finish()?.into_inner()?)
     };
-    Npz::of(rest().map_err(failed)?).map_err(|message| Flaw::new("", message))
+    let archive = Npz::of(rest().map_err(failed)?).map_err(|message| Flaw::new("", message))?;
+    Ok((archive, is_moving))
 }
 
 fn vector(to: &mut impl Write, vector: &DVec3) -> io::Result<()> {

@@ -118,6 +118,27 @@ fn our_own_run_that_diverged_is_played_back_as_such() {
     assert_eq!(run("changed")[0], "ok");
 }
 
+/// Of a run that diverged, the states up to its last finite one are those of the recording.
+#[test]
+fn a_run_that_diverged_has_no_states_after_that() {
+    let place = Place::new();
+    let wild = PLANE
+        .replace("\"shape-based\", stiffness = 1e4 }", "\"mass-spring\", stiffness = 1e4 }\nstep = \"T/2\"")
+        .replace("duration = 0.1", "duration = 1");
+    place.write("wild.toml", &wild);
+    place.run("simulate wild.toml --states -o own").too_large_steps();
+    let rows = place.read("own/diagnostics.csv");
+    let sound = rows.lines().skip(1).filter(|row| row.ends_with(",ok"));
+    let times: Vec<f64> = sound.map(|row| row.split(',').nth(3).unwrap().parse().unwrap()).collect();
+    // Frames nearer than a step have one state.
+    let before = times.iter().filter(|time| *time < times.last().unwrap()).count();
+    assert!((2..60).contains(&before), "{rows}");
+    place.write("played.toml", &recorded(&wild, "\"own/states.npz\"").replace("step = \"T/2\"\n", ""));
+    let told = place.run("check played.toml").good();
+    let words = format!("recorded, {} states", before + 1);
+    assert!(told.out.contains(&words), "{words}: {}", told.out);
+}
+
 /// After its last moment a recording shows its last state, and says so.
 #[test]
 fn a_recording_ends() {

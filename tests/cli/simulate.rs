@@ -1,6 +1,6 @@
 //! `simulate`: diagnostics, summary and states.
 
-use crate::support::{Place, SMALL, SMALL_FRAMES, documented, frame_file, lasting};
+use crate::support::{Place, SMALL, SMALL_FRAMES, documented, frame_file, lasting, run};
 use localshape::internals::{Shown, Spent, Tags, Timings};
 use localshape::runner::Runner;
 use localshape::scene::{Limits, Scene};
@@ -140,6 +140,18 @@ fn summary_of_what_was_run() {
     assert_eq!(run["runs"][1]["last"]["frame"], 6);
     assert!(run["times"]["simulate"]["wall"].as_f64().unwrap() > 0.0);
     assert!(run["times"]["draw"].is_null());
+}
+
+/// Numbers have points and no separators in every language.
+#[test]
+fn the_same_in_any_language() {
+    let place = Place::with_small();
+    place.run("simulate small.toml -q -o C").good();
+    for language in ["de_DE.UTF-8", "tr_TR.UTF-8"] {
+        let mut command = place.command(["simulate", "small.toml", "-q", "-o", language]);
+        run(command.env("LC_ALL", language).env("LANG", language)).good();
+        assert_eq!(place.read(&format!("{language}/diagnostics.csv")), place.read("C/diagnostics.csv"), "{language}");
+    }
 }
 
 /// The command line never changes a bit of the state.

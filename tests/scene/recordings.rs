@@ -177,20 +177,8 @@ fn damaged_recordings_are_refused_with_place_and_remedy() {
         &[&sound[..], &[doubles("mass", "(4,)", &[1.0; 4])]].concat(),
         "`played.npz: mass` belongs to a body, whose nodes at rest are missing",
     );
-    wrong(
-        &[sound[0].clone(), indices("position", "(3, 4, 2)", &[0; 24])],
-        "`played.npz: position` is int64; expected float64 or float32",
-    );
-    let mut by_columns = position.clone();
-    by_columns.by_columns = true;
-    wrong(
-        &[sound[0].clone(), by_columns],
-        "`played.npz: position` is stored column by column; expected rows, as by numpy.ascontiguousarray",
-    );
-    wrong_bytes(
-        &archive(&sound, CompressionMethod::Deflated),
-        "`played.npz: position` is compressed; expected an archive of numpy.savez, of which single moments can be read",
-    );
+    let packed = archive(&sound, CompressionMethod::Deflated);
+    wrong_bytes(&packed[..packed.len() - 400], "`played.npz` is a damaged NumPy archive, or is cut short");
     wrong_bytes(b"PK", "`played.npz` is a damaged NumPy archive, or is cut short");
     let runs = [
         doubles("a.position", "(1, 4, 2)", &REST),
@@ -253,6 +241,206 @@ fn a_run_has_a_model_or_states() {
     let time = "[time]\nstep = 0.1\nintegrator = 'dormand-prince'";
     // Steps of the scene are those of other runs.
     assert!(load(&SCENE.replace("[time]", &time.replace("step = 0.1\n", "")), &stored(&swing(5.0, 0.5))).1.is_ok());
+}
+
+/// A thrown cube in eleven moments, .1 s apart and with 1 s in file f, as NumPy writes it in other layouts.
+#[test]
+fn every_layout_of_numpy_has_the_same_moments() {
+    let read = |bytes: &[u8], rate: f64| {
+        let time = format!("time = {{ duration = {}, frames_per_second = {rate} }}", 10.0 / rate);
+        let scene = format!(
+            "{time}\nbody = {{ lattice = {{ cells = [1, 1, 1], side = 0.1 }} }}\n[[run]]\nname = 'R'\nstates = 'played.npz'"
+        );
+        let (_folder, scene) = load(&scene, bytes);
+        let scene = scene.unwrap_or_else(|error| panic!("{error}"));
+        assert!(scene.warnings.is_empty());
+        let mut world = scene.world(0);
+        let at = |count: i32| {
+            world.advance_towards(Moment { count: count.into(), rate }, u64::MAX);
+            world.state().position.clone()
+        };
+        (0..=10).flat_map(at).collect::<Vec<_>>()
+    };
+    let plain = read(include_bytes!("layouts/a.npz"), 10.0);
+    assert_eq!(plain.len(), 88);
+    let layouts: [(&str, &[u8], f64, f64); 9] = [
+        ("Fortran order", include_bytes!("layouts/b.npz"), 10.0, 0.0),
+        ("float32", include_bytes!("layouts/c.npz"), 10.0, 1e-7),
+        ("big-endian", include_bytes!("layouts/d.npz"), 10.0, 0.0),
+        ("big-endian float32 in Fortran order", include_bytes!("layouts/e.npz"), 10.0, 1e-7),
+        ("times in int64", include_bytes!("layouts/f.npz"), 1.0, 0.0),
+        ("elements in uint32, rest in float32", include_bytes!("layouts/g.npz"), 10.0, 0.0),
+        ("Fortran order, reversed", include_bytes!("layouts/h.npz"), 10.0, 0.0),
+        ("compressed", include_bytes!("layouts/x.npz"), 10.0, 0.0),
+        ("times in float32", include_bytes!("layouts/z.npz"), 10.0, 2e-7),
+    ];
+    for (layout, bytes, rate, most) in layouts {
+        let found = read(bytes, rate);
+        let apart = found.iter().zip(&plain).map(|(found, plain)| found.distance(*plain)).fold(0.0, f64::max);
+        assert!(found.len() == plain.len() && apart <= most, "{layout}: {apart:e}");
+    }
+    let objects = load(SCENE, include_bytes!("layouts/y.npz")).1.expect_err("objects").to_string();
+    assert!(objects.contains("contains Python objects"), "{objects}");
+}
+
+/// Arrays of which single moments cannot be read are copied, unless they are too long.
+#[test]
+fn layouts_that_are_copied_have_a_limit() {
+    for (bytes, is_copied) in [
+        (&include_bytes!("layouts/a.npz")[..], false),
+        (include_bytes!("layouts/b.npz"), true),
+        (include_bytes!("layouts/x.npz"), true),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("played.npz"), bytes).unwrap();
+        let space = SCENE.replace("[0, 0], [1, 0], [1, 1], [0, 1]", "[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 1]");
+        let space = space.replace("[[0, 1, 2], [0, 2, 3]]", "[[0, 1, 2, 3]]");
+        std::fs::write(folder.path().join("scene.toml"), space).unwrap();
+        let loaded =
+            |recorded| Scene::load(&folder.path().join("scene.toml"), &Limits { recorded, ..Limits::default() });
+        loaded(88).unwrap_or_else(|error| panic!("{error}"));
+        match loaded(87) {
+            Err(error) if is_copied => expect(
+                &error,
+                0,
+                "8:10 `played.npz` has 11 moments of 8 points; the limit is 87 points in all moments record fewer moments, or allow it with --allow-large",
+            ),
+            found => assert!(!is_copied && found.is_ok()),
+        }
+    }
+}
+
+/// Numbers of any type in either order of axes, packed or not: a square with whole coordinates.
+#[test]
+fn whole_numbers_are_positions_and_times() {
+    let rows = [0, 0, 1, 0, 1, 1, 0, 1, 5, 0, 6, 0, 6, 1, 5, 1];
+    let arrays = [indices("time", "(2,)", &[0, 1]), indices("position", "(2, 4, 2)", &rows)];
+    // All moments of the first node's x, then of the second's, and so on.
+    let columns: Vec<i64> =
+        (0..8).flat_map(|at| [rows[(at % 4) * 2 + at / 4], rows[8 + (at % 4) * 2 + at / 4]]).collect();
+    let mut turned = arrays.clone();
+    turned[1] = indices("position", "(2, 4, 2)", &columns);
+    turned[1].by_columns = true;
+    for arrays in [arrays, turned] {
+        for method in [CompressionMethod::Stored, CompressionMethod::Deflated] {
+            let (_folder, scene) = load(SCENE, &archive(&arrays, method));
+            let mut world = scene.unwrap_or_else(|error| panic!("{error}")).world(0);
+            assert_eq!(world.state().position[2], DVec3::new(1.0, 1.0, 0.0));
+            world.advance_towards(Moment::at(1.0), u64::MAX);
+            assert_eq!(world.state().position[1..3], [DVec3::new(6.0, 0.0, 0.0), DVec3::new(6.0, 1.0, 0.0)]);
+        }
+    }
+}
+
+/// Programs with z up: (x, y, z) is (x, z, -y) in scenes, and velocities are turned and scaled like positions.
+#[test]
+fn recordings_are_put_upright_in_metres() {
+    let corners = [0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 1.0];
+    let moved: Vec<f64> = corners.iter().enumerate().map(|(at, x)| x + [0.0, 0.0, 10.0][at % 3]).collect();
+    let arrays = [
+        doubles("time", "(2,)", &[0.0, 1.0]),
+        doubles("position", "(2, 4, 3)", &[&corners[..], &moved].concat()),
+        doubles("velocity", "(2, 4, 3)", &[0.0, 4.0, 10.0].repeat(8)),
+        doubles("rest", "(4, 3)", &corners),
+        indices("elements", "(1, 4)", &[0, 1, 2, 3]),
+    ];
+    let base =
+        "time.duration = 1\nbody.lattice = { cells = [1, 1, 1], side = 1 }\nrun = [{ name = 'R', states = 'played.npz'";
+    let shown = |keys: &str| {
+        let (_folder, scene) = load(&format!("{base}{keys} }}]"), &stored(&arrays));
+        let scene = scene.unwrap_or_else(|error| panic!("{error}"));
+        let mut world = scene.world(0);
+        world.advance_towards(Moment::at(1.0), u64::MAX);
+        (scene.runs[0].body().rest.clone(), world.state().position.clone(), world.state().velocity[0], scene.digest)
+    };
+    let (rest, position, velocity, digest) = shown(", up = 'z', scale = 0.001");
+    assert_eq!(rest, [[0.0; 3], [0.003, 0.0, 0.0], [0.0, 0.0, -0.002], [0.0, 0.001, 0.0]].map(DVec3::from));
+    assert_eq!(position[3], DVec3::new(0.0, 0.011, 0.0));
+    assert_eq!(velocity, DVec3::new(0.0, 0.01, -0.004));
+    let (rest, position, velocity, other) = shown(", up = 'x'");
+    assert_eq!((rest[1], position[0], velocity), (DVec3::Y * 3.0, DVec3::Z * 10.0, DVec3::new(-4.0, 0.0, 10.0)));
+    assert_ne!(digest, other);
+    let (rest, position, velocity, plain) = shown("");
+    assert_eq!((rest[1], position[0], velocity), (DVec3::X * 3.0, DVec3::Z * 10.0, DVec3::new(0.0, 4.0, 10.0)));
+    assert_eq!(shown(", up = 'y', scale = 1").3, plain, "the defaults");
+    let refused = |text: &str, arrays: &[Array], words: &str| {
+        let error = load(text, &stored(arrays)).1.expect_err(words).to_string();
+        assert!(error.contains(words), "{error}");
+    };
+    let plane = SCENE.replace("states = ", "up = 'z'\nstates = ");
+    refused(&plane, &swing(5.0, 0.5), "`run[0].up` is \"z\", but `played.npz` is in the plane");
+    let model = SCENE.replace("states = 'played.npz'", "scale = 2\nmodel = { kind = 'shape-based', stiffness = 1 }");
+    refused(&model, &swing(5.0, 0.5), "`run[0].scale` needs `states`");
+    // With z up, a motion in the plane of x and z is one in the plane of the scene.
+    let flat: Vec<f64> = REST.chunks(2).flat_map(|rest| [rest[0], 0.0, rest[1]]).collect();
+    let arrays = [doubles("time", "(1,)", &[0.0]), doubles("position", "(1, 4, 3)", &flat)];
+    let (_folder, scene) = load(&plane, &stored(&arrays));
+    let state = scene.unwrap_or_else(|error| panic!("{error}")).world(0).state().clone();
+    assert_eq!(state.position, REST.chunks(2).map(|rest| DVec3::new(rest[0], rest[1], 0.0)).collect::<Vec<_>>());
+}
+
+/// A recording of a square whose nodes are at `x`, at times, with a step.
+fn at(times: &[f64], step: f64, x: &[f64]) -> Vec<Array> {
+    let position: Vec<f64> =
+        x.iter().flat_map(|x| REST.chunks(2).flat_map(move |rest| [rest[0] + x, rest[1]])).collect();
+    let shape: &'static str = Box::leak(format!("({}, 4, 2)", times.len()).into_boxed_str());
+    let time: &'static str = Box::leak(format!("({},)", times.len()).into_boxed_str());
+    vec![doubles("time", time, times), doubles("position", shape, &position), doubles("step", "()", &[step])]
+}
+
+/// The first step without a state is the one after the last moment, also where a frame is exactly there.
+#[test]
+fn a_recording_ends_in_the_step_after_its_last_moment() {
+    let (_folder, scene) = load(SCENE, &stored(&at(&[0.0, 0.5, 1.0], 0.5, &[0.0, 1.0, 2.0])));
+    let scene = scene.unwrap_or_else(|error| panic!("{error}"));
+    for (steps, is_ended) in [(2, false), (3, true), (4, true)] {
+        let mut world = scene.world(0);
+        world.advance(steps);
+        assert_eq!(world.status() != Status::Ok, is_ended, "{steps} steps");
+        world.settle();
+        assert_eq!(world.state().position[0].x, 2.0, "the last state");
+    }
+}
+
+/// A world that is set back shows the recorded state again, not the one that was put in its place.
+#[test]
+fn a_recording_that_starts_again_shows_its_moment() {
+    let (_folder, scene) = load(SCENE, &stored(&at(&[0.0, 0.5, 1.0], 0.5, &[0.0, 1.0, 2.0])));
+    let mut world = scene.unwrap_or_else(|error| panic!("{error}")).world(0);
+    world.advance(1);
+    world.settle();
+    assert_eq!(world.state().position[0].x, 1.0);
+    let mut other = world.state().clone();
+    other.position.iter_mut().for_each(|node| node.x += 70.0);
+    world.set_state(other);
+    world.settle();
+    assert_eq!(world.state().position[0].x, 1.0);
+}
+
+/// The slope of a parabola through three moments at unequal times is its own: t² at 0, .1 and .4 s.
+#[test]
+fn velocities_at_unequal_times_have_the_right_weights() {
+    let times: [f64; 3] = [0.0, 0.1, 0.4];
+    let scene = SCENE.replace("duration = 1", "duration = 0.4");
+    let (_folder, scene) = load(&scene, &stored(&at(&times, 0.1, &times.map(|time| time * time))));
+    let mut world = scene.unwrap_or_else(|error| panic!("{error}")).world(0);
+    world.advance(1);
+    world.settle();
+    let velocity = world.state().velocity[0].x;
+    assert!((velocity - 0.2).abs() < 1e-12, "{velocity}");
+}
+
+/// 3 · .1 s is one round-off after .3 s, and 1 · .3 s one before 3 · .1 s.
+#[test]
+fn a_moment_one_round_off_away_is_that_moment() {
+    for (moment, step, steps) in [(0.3, 0.1, 3_u32), (0.1 * 3.0, 0.3, 1)] {
+        let (_folder, scene) = load(SCENE, &stored(&at(&[0.0, moment, 1.0], step, &[-1e12, 1.0, 1e12])));
+        let mut world = scene.unwrap_or_else(|error| panic!("{error}")).world(0);
+        assert_ne!(step * f64::from(steps), moment);
+        world.advance(steps.into());
+        world.settle();
+        assert_eq!(world.state().position[0].x, 1.0, "{moment:?}");
+    }
 }
 
 /// Loads a scene in space with this body, and a run that shows a sequence of files beside it.
@@ -371,6 +559,191 @@ fn moments_are_bounded_before_they_are_copied() {
     expect(
         &error,
         0,
-        "6:10 `m_*.vtu` has 2 moments of 4 points; the limit is 7 points in all moments list fewer moments, or allow it with --allow-large",
+        "6:10 `m_*.vtu` has 2 moments of 4 points; the limit is 7 points in all moments record fewer moments, or allow it with --allow-large",
     );
+}
+
+/// A tetrahedron as a surface, moved along x.
+fn surface(format: &str, x: f64) -> Vec<u8> {
+    let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|[a, b, c]| [a + x, b, c]);
+    let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    let row = |point: [f64; 3]| point.map(|number| number.to_string()).join(" ");
+    let text = match format {
+        "obj" => {
+            let points = points.map(|point| format!("v {}\n", row(point))).concat();
+            points + &faces.map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1)).concat()
+        }
+        "ply" => {
+            let head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n\
+                        element face 4\nproperty list uchar int vertex_indices\nend_header\n";
+            let points = points.map(|point| row(point) + "\n").concat();
+            format!("{head}{points}{}", faces.map(|[a, b, c]| format!("3 {a} {b} {c}\n")).concat())
+        }
+        _ => {
+            let corner = |at: usize| format!("vertex {}\n", row(points[at]));
+            let facet = |face: [usize; 3]| {
+                format!("facet normal 0 0 0\nouter loop\n{}endloop\nendfacet\n", face.map(corner).concat())
+            };
+            format!("solid t\n{}endsolid t\n", faces.map(facet).concat())
+        }
+    };
+    text.into_bytes()
+}
+
+/// The x of the first node at each of the frames, which are .1 s apart.
+fn course(scene: &Scene, frames: u32) -> Vec<f64> {
+    let mut world = scene.world(0);
+    let at = |frame: u32| {
+        world.advance_towards(Moment { count: frame.into(), rate: 10.0 }, u64::MAX);
+        (world.state().position[0].x * 1e6).round() / 1e6
+    };
+    (0..frames).map(at).collect()
+}
+
+#[test]
+fn surfaces_of_every_format_and_negative_numbers_are_sequences() {
+    for format in ["obj", "ply", "stl"] {
+        let files: Vec<_> = (-2..=2).map(|at| (format!("f{at}.{format}"), surface(format, f64::from(at)))).collect();
+        let files: Vec<_> = files.iter().map(|(name, bytes)| (name.as_str(), &bytes[..])).collect();
+        let scene = of_sequence(&files, &format!("f*.{format}"));
+        assert_eq!(course(&scene, 5), [-2.0, -1.0, 0.0, 1.0, 2.0], "{format}");
+        assert_eq!(scene.runs[0].body().elements.len(), 4, "{format}");
+        assert!(scene.warnings.is_empty());
+        // Without a zero in between, a hyphen stands before the numbers of another sequence.
+        let two: Vec<_> = files.iter().filter(|(name, _)| !name.contains('0')).copied().collect();
+        let error = load_sequence(
+            &two,
+            "lattice = { cells = [1, 1, 1], side = 1 }",
+            &format!("f*.{format}"),
+            &Limits::default(),
+        );
+        let error = error.expect_err("two sequences").to_string();
+        assert!(error.contains("has several sequences, f-… and f…; expected one"), "{error}");
+        let only: Vec<_> = two.iter().filter(|(name, _)| name.contains('-')).copied().collect();
+        assert_eq!(course(&of_sequence(&only, &format!("f*.{format}")), 2), [-1.0, -2.0], "a hyphen before 1 and 2");
+    }
+}
+
+/// The triangles of STL files have corners of their own: two tetrahedra that touch at the start, or later, are the same bodies.
+#[test]
+fn corners_of_stl_files_are_joined_as_at_the_start() {
+    let facets = |x: f64| {
+        let [one, other] = [0.0, x].map(|x| String::from_utf8(surface("stl", x)).unwrap());
+        (one + &other).into_bytes()
+    };
+    // The second has its first corner where the first has its second at 1 m.
+    let (apart, touching) = (facets(2.0), facets(1.0));
+    let scene = of_sequence(&[("a0.stl", &apart[..]), ("a1.stl", &touching)], "a*.stl");
+    assert_eq!(scene.runs[0].body().len(), 8);
+    let body = "lattice = { cells = [1, 1, 1], side = 1 }";
+    let torn = load_sequence(&[("a0.stl", &touching[..]), ("a1.stl", &apart)], body, "a*.stl", &Limits::default());
+    let torn = torn.expect_err("torn").to_string();
+    assert!(torn.contains("`a*.stl: a1.stl` has corners apart that are at one place in a0.stl"), "{torn}");
+}
+
+/// Point data of a tetrahedron at rest.
+fn with_data(name: &str, components: usize, x: f64) -> Vec<u8> {
+    let numbers = std::iter::repeat_n(x.to_string() + &" 0".repeat(components - 1), 4).collect::<Vec<_>>().join(" ");
+    let data = format!(
+        "<PointData><DataArray type='Float64' Name='{name}' NumberOfComponents='{components}' format='ascii'>{numbers}\
+         </DataArray></PointData><Points>"
+    );
+    String::from_utf8(tetrahedron(10, 0.0)).unwrap().replace("<Points>", &data).into_bytes()
+}
+
+#[test]
+fn displacements_of_points_at_rest_are_added_and_told() {
+    let warnings = |scene: &Scene| scene.warnings.iter().map(|one| one.message.clone()).collect::<Vec<_>>().join("\n");
+    let of = |name: &str, components: usize| {
+        let files: Vec<_> = (0..3).map(|at| with_data(name, components, 0.5 * f64::from(at))).collect();
+        of_sequence(&[("m0.vtu", &files[0]), ("m1.vtu", &files[1]), ("m2.vtu", &files[2])], "m*.vtu")
+    };
+    for name in ["displacement", "Displacement", "DISPLACEMENT", "U", "u"] {
+        let scene = of(name, 3);
+        assert_eq!(course(&scene, 3), [0.0, 0.5, 1.0], "{name}");
+        assert_eq!(scene.runs[0].body().rest[0], DVec3::ZERO, "the shape at rest");
+        let told = "`m*.vtu` has points that do not move, to which their array `displacement` or `U` is added";
+        assert_eq!(warnings(&scene), told);
+    }
+    // What cannot be applied is told.
+    for scene in [of("temperature", 1), of("u", 1), of("displacement", 2)] {
+        assert_eq!(course(&scene, 3), [0.0; 3]);
+        assert_eq!(warnings(&scene), "`m*.vtu` does not move: its 3 moments have the same points");
+    }
+    // Points that move have been displaced already.
+    let moved = |x: f64| {
+        String::from_utf8(with_data("U", 3, x))
+            .unwrap()
+            .replace("'3' format='ascii'>0 0 0 1", &format!("'3' format='ascii'>{x} 0 0 1"))
+    };
+    let files = [moved(0.0), moved(0.25)];
+    let scene = of_sequence(&[("m0.vtu", files[0].as_bytes()), ("m1.vtu", files[1].as_bytes())], "m*.vtu");
+    assert_eq!((course(&scene, 2), warnings(&scene)), (vec![0.0, 0.25], String::new()));
+    let one = of_sequence(&[("m0.vtu", &with_data("U", 3, 1.0))], "m*.vtu");
+    assert_eq!(warnings(&one), "`m*.vtu` has one moment, to whose points its array `displacement` or `U` is not added");
+}
+
+/// Lists in any order; those of runs that were started again; with paths of Windows; of pieces; and in JSON.
+#[test]
+fn lists_of_other_programs_are_read() {
+    let [a, b, c] = [0.0, 1.0, 2.0].map(|x| tetrahedron(10, x));
+    let load = |states: &str, bytes: &[u8]| {
+        let files =
+            [("a.vtu", &a[..]), ("b.vtu", &b[..]), ("c.vtu", &c[..]), ("two.pvtu", PIECES.as_bytes()), (states, bytes)];
+        of_sequence(&files, states)
+    };
+    let unsorted = load("l.pvd", &list(&[(0.0, "a.vtu", ""), (0.2, "c.vtu", ""), (0.1, "b.vtu", "")]));
+    assert_eq!((course(&unsorted, 3), unsorted.warnings.len()), (vec![0.0, 1.0, 2.0], 0));
+    // Each body over all times, one after another.
+    let sets = [
+        (0.0, "a.vtu", "part='0'"),
+        (0.1, "b.vtu", "part='0'"),
+        (0.0, "b.vtu", "part='1'"),
+        (0.1, "c.vtu", "part='1'"),
+    ];
+    let bodies = load("l.pvd", &list(&sets));
+    assert_eq!((bodies.runs[0].body().len(), bodies.warnings.len()), (8, 0));
+    assert_eq!(course(&bodies, 2), [0.0, 1.0]);
+    // Started again at .1 s after .3 s: what was at .1 and .3 s is of the first start.
+    let sets = [(0.0, "a.vtu"), (0.1, "c.vtu"), (0.3, "c.vtu"), (0.1, "b.vtu"), (0.2, "c.vtu"), (0.4, "a.vtu")];
+    let again = load("l.pvd", &list(&sets.map(|(time, file)| (time, file, "part='0'"))));
+    assert_eq!(course(&again, 5), [0.0, 1.0, 2.0, 1.0, 0.0], "linear between .2 and .4 s");
+    let told =
+        "`l.pvd` has the time 0.1 s again after later ones: 2 moments are left out, which a later start replaces";
+    assert_eq!(again.warnings.iter().map(|one| one.message.as_str()).collect::<Vec<_>>(), [told]);
+    let windows = load("l.pvd", &list(&[(0.0, ".\\a.vtu", ""), (0.1, ".\\b.vtu", "")]));
+    assert_eq!(course(&windows, 2), [0.0, 1.0]);
+    let pieces = load("l.pvd", &list(&[(0.0, "two.pvtu", ""), (0.1, "two.pvtu", "")]));
+    assert_eq!((pieces.runs[0].body().len(), pieces.runs[0].body().elements.len()), (8, 2));
+    let series = r#"{ "file-series-version": "1.0", "files": [{ "name": "a.vtu", "time": 0 }, { "name": "c.vtu", "time": 0.2 }] }"#;
+    assert_eq!(course(&load("l.vtu.series", series.as_bytes()), 3), [0.0, 1.0, 2.0]);
+}
+
+/// Two pieces of a grid.
+const PIECES: &str = "<VTKFile type='PUnstructuredGrid'><PUnstructuredGrid><PPoints/><Piece Source='a.vtu'/>\
+                      <Piece Source='c.vtu'/></PUnstructuredGrid></VTKFile>";
+
+#[test]
+fn damaged_lists_are_told() {
+    let refused = |file: &str, states: &str, text: &str, words: &str| {
+        let grid = tetrahedron(10, 0.0);
+        let files = [("a.vtu", &grid[..]), (file, text.as_bytes())];
+        let error = load_sequence(&files, "lattice = { cells = [1, 1, 1], side = 1 }", states, &Limits::default());
+        let error = error.expect_err(words).to_string();
+        assert!(error.contains(words), "{error}");
+    };
+    let series = |text: &str, words: &str| refused("l.vtu.series", "l.vtu.series", text, words);
+    series("", "`l.vtu.series` is no list of files over time: EOF");
+    series(r#"{ "files": [] }"#, "`l.vtu.series` lists no file; expected { \"files\"");
+    series("{ \"files\": [\n{ \"name\": \"a.vtu\" }] }", "missing field `time` at line 2");
+    series(r#"{ "files": [{ "name": "b.vtu", "time": 0 }] }"#, "`l.vtu.series: b.vtu` is not there");
+    let pieces = |text: &str, words: &str| refused("p0.pvtu", "p*.pvtu", text, words);
+    pieces("<VTKFile type='PUnstructuredGrid'/>", "`p*.pvtu: p0.pvtu` names no file: it has no `<Piece>`");
+    pieces("<VTKFile type='PUnstructuredGrid'><Piece/></VTKFile>", "has a `<Piece>` without `Source` in line 1");
+    pieces("<VTKFile type='PImageData'/>", "of the type `PImageData`; expected `PUnstructuredGrid` or `PPolyData`");
+    pieces("<VTKFile type='PPolyData'><Piece Source='b.vtp'/></VTKFile>", "`p*.pvtu: b.vtp` is not there");
+    let windows = "<VTKFile type='Collection'><DataSet timestep='0' file='x\\a.vtu'/></VTKFile>";
+    refused("l.pvd", "l.pvd", windows, "x/a.vtu)");
+    refused("b.obj", "b.obj", "v 0 0 0", "`b.obj` is a file of one moment");
+    refused("a0.toml", "a*.toml", "", "`a*.toml: a0.toml` is neither a grid (.vtu, .vtp, .pvtu, .vtk) nor a surface");
 }

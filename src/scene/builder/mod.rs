@@ -332,8 +332,9 @@ impl RunBuilder {
 
     /// A run without a model.
     fn empty() -> RunFile {
-        let (name, bodies, model, models, states, step, tolerance, integrator, kernel, colour) = Default::default();
-        RunFile { name, bodies, model, models, states, step, tolerance, integrator, kernel, colour }
+        let (name, bodies, model, models, states, scale, up, step, tolerance, integrator, kernel, colour) =
+            Default::default();
+        RunFile { name, bodies, model, models, states, scale, up, step, tolerance, integrator, kernel, colour }
     }
 
     setters! {

@@ -85,7 +85,7 @@ pub(in crate::scene) struct TimeFile {
     /// of `step`. Below 1e-11 round-off is larger. For a body at rest on an obstacle, a tenth of the tolerance takes three times as long. Default: 1e-6.
     #[schemars(range(min = 1e-11, max = 0.1))]
     pub(in crate::scene) tolerance: Option<f64>,
-    /// Frames per second of simulated time (1/s).
+    /// Frames per second of simulated time (1/s). Frames lie within the duration: 1 s has frames 0 to 29 at 29.97 a second.
     #[serde(default = "sixty")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(in crate::scene) frames_per_second: f64,
@@ -122,7 +122,7 @@ impl StepFile {
     { "not": { "required": ["states", "tolerance"] } },
     { "not": { "required": ["states", "integrator"] } },
     { "not": { "required": ["states", "kernel"] } },
-]))]
+]), extend("dependentRequired" = { "scale": ["states"], "up": ["states"] }))]
 pub(in crate::scene) struct RunFile {
     /// Unique name, shown above the panel and used by `--only` and in result files.
     #[schemars(length(min = 1, max = 80))]
@@ -141,10 +141,16 @@ pub(in crate::scene) struct RunFile {
     #[schemars(with = "Option<BTreeMap<String, ModelParameters>>")]
     pub(in crate::scene) models: Option<BTreeMap<String, ModelFile>>,
     /// States that another program computed, in place of `model`: a NumPy archive beside the scene, such as
-    /// `"mujoco.npz"`, or `{ file = "states.npz", run = "Local shape" }` for one of several runs in it. Also ParaView's lists of grids,
+    /// `"mujoco.npz"`, or `{ file = "states.npz", run = "Local shape" }` for one of several runs in it. Also ParaView's lists of files,
     /// such as `"soft.pvd"`, and numbered files, such as `"frames/*.obj"`. Between recorded
     /// moments nodes move linearly in time. The run ends with the recording. `docs/recordings.md` tells what is in the files.
     pub(in crate::scene) states: Option<StatesFile>,
+    /// Length of the unit of `states` (m), such as 0.001 for millimetres. Velocities are scaled, too.
+    #[schemars(extend("default" = 1.0))]
+    pub(in crate::scene) scale: Option<Positive>,
+    /// The axis of `states` that points up. Scenes have y up, and MuJoCo, Isaac and Newton have z. Velocities are turned, too.
+    #[schemars(extend("default" = "y"))]
+    pub(in crate::scene) up: Option<Up>,
     /// Time step of this run, with the T of `[time]`. `"auto"` uses the prediction of this run alone. Default: that of
     /// `[time]`.
     pub(in crate::scene) step: Option<StepFile>,

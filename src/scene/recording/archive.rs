@@ -1,9 +1,10 @@
 //! Recordings in NumPy archives.
 
 use super::course::{Course, StoredRun};
-use super::{Flaw, Quantity, Recorded};
+use super::{Axes, Flaw, Quantity, Recorded, check_length};
 use crate::reading::words::{list, nearest, quoted};
-use crate::scene::file::LARGEST;
+use crate::scene::file::{LARGEST, Up};
+use crate::scene::limits::Limits;
 use crate::scene::npz::{Array, Npz};
 use crate::sim::{Divergence, State};
 use sha2::{Digest, Sha256};
@@ -29,7 +30,7 @@ struct Track {
     array: Array,
     /// The SHA-256 of each row.
     digests: Vec<[u8; 32]>,
-    /// Whether the third coordinate, if there is one, is zero everywhere.
+    /// Whether the third coordinate of the scene, if the file has three, is zero everywhere.
     is_flat: bool,
 }
 
@@ -85,11 +86,17 @@ impl Archive {
         (&mut self.npz, &self.run)
     }
 
-    /// The recording of the run. Every number is read once.
-    pub(in crate::scene) fn recorded(mut self) -> Result<Recorded, Flaw> {
+    /// The recording of the run, in axes of its file. Every number is read once. Arrays of which single moments cannot be read
+    /// are copied.
+    pub(in crate::scene) fn recorded(mut self, axes: Axes, limits: &Limits) -> Result<Recorded, Flaw> {
         let mut tracks = self.tracks()?;
         for track in &mut tracks {
-            track.check(&mut self.npz, &full(&self.run, track.of.key()))?;
+            let name = full(&self.run, track.of.key());
+            if !track.array.is_by_rows() {
+                check_length(track.array.shape[0], track.array.shape[1], limits)?;
+                self.npz.unfold(&mut track.array).map_err(|what| Flaw::new(&name, what))?;
+            }
+            track.check(&mut self.npz, &name, axes)?;
         }
         // What this program has written about a run belongs to these numbers only.
         let own = Course::read(&mut self.npz).ok().and_then(|(_, mut course, _)| {
@@ -110,7 +117,7 @@ impl Archive {
             }
             _ => {}
         }
-        self.of_tracks(tracks, times, own.as_ref())
+        self.of_tracks(tracks, times, own.as_ref(), axes)
     }
 
     /// The states of the run as this program has stored them. Rows are compared with the digests of its course when they are
@@ -128,8 +135,14 @@ impl Archive {
         tracks.push(Track { of: Quantity::Memory, array, digests: Vec::new(), is_flat: true });
         let moments = course.frames.len() as u64;
         for (track, digests) in tracks.iter_mut().zip(&run.digests) {
+            let name = full(&self.run, track.of.key());
+            if !track.array.is_by_rows() {
+                return Err(Flaw::new(
+                    name,
+                    "is compressed or stored column by column; expected it as this program writes it",
+                ));
+            }
             if track.array.shape[0] != moments {
-                let name = full(&self.run, track.of.key());
                 let found = track.array.shape_in_words();
                 let message = format!("has the shape {found}; expected {moments} rows, one for each frame");
                 return Err(Flaw::new(name, message));
@@ -137,11 +150,17 @@ impl Archive {
             track.digests.clone_from(digests);
         }
         let times = self.times(moments, &tracks[0].digests)?;
-        self.of_tracks(tracks, times, Some(run))
+        self.of_tracks(tracks, times, Some(run), Axes::default())
     }
 
     /// The recording of these tracks at these times, which may be those of a run of this program.
-    fn of_tracks(mut self, tracks: Vec<Track>, mut times: Vec<f64>, own: Option<&StoredRun>) -> Result<Recorded, Flaw> {
+    fn of_tracks(
+        mut self,
+        tracks: Vec<Track>,
+        mut times: Vec<f64>,
+        own: Option<&StoredRun>,
+        axes: Axes,
+    ) -> Result<Recorded, Flaw> {
         let (step, engine) = (self.step()?, self.engine()?);
         let file = || self.path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let source = engine.unwrap_or_else(file);
@@ -176,8 +195,11 @@ impl Archive {
             divergence,
             last_fit: own.and_then(|own| {
                 let (bytes, times_wider) = own.last_fit.as_ref()?;
-                Some((State::from_bytes(bytes)?, *times_wider))
+                let mut state = State::from_bytes(bytes)?;
+                [&mut state.position, &mut state.velocity].into_iter().for_each(|vectors| axes.place(vectors));
+                Some((state, *times_wider))
             }),
+            axes,
             digest: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
             rows: Mutex::new(Rows { npz: self.npz, tracks }),
             places: None,
@@ -217,14 +239,9 @@ impl Archive {
             () if array.shape.len() < 2 => {
                 format!("has the shape {}; expected moments × nodes × 3, in the plane × 2", array.shape_in_words())
             }
-            () if !array.is_float() => format!("is {}; expected float64 or float32", array.type_in_words()),
-            () if !array.is_by_rows() => {
-                "is stored column by column; expected rows, as by numpy.ascontiguousarray".to_owned()
+            () if array.is_by_rows() && !self.npz.has_room_for(&array) => {
+                "is longer than the file, which is damaged".to_owned()
             }
-            () if array.is_packed() => {
-                "is compressed; expected an archive of numpy.savez, of which single moments can be read".to_owned()
-            }
-            () if !self.npz.has_room_for(&array) => "is longer than the file, which is damaged".to_owned(),
             () => return Ok(Some(array)),
         };
         Err(Flaw::new(name, wrong))
@@ -301,17 +318,19 @@ impl Track {
     }
 
     /// Reads every number once.
-    fn check(&mut self, npz: &mut Npz, name: &str) -> Result<(), Flaw> {
+    fn check(&mut self, npz: &mut Npz, name: &str, axes: Axes) -> Result<(), Flaw> {
         let (row, columns) = (self.row(), self.array.shape[2] as usize);
+        let depth = if axes.up == Up::Z { 1 } else { 2 };
         let Self { array, digests, is_flat, .. } = self;
         let mut beyond = None;
         let mut check = |bytes: &[u8]| {
             for bytes in bytes.chunks_exact(row) {
-                let is_beyond = |&(_, number): &(usize, f64)| number.is_nan() || number.abs() > LARGEST;
+                let is_beyond =
+                    |&(_, number): &(usize, f64)| number.is_nan() || number.abs() * axes.scale.max(1.0) > LARGEST;
                 let found = array.numbers(bytes).enumerate().find(is_beyond);
                 beyond = beyond.or(found.map(|(at, number)| (digests.len(), at, number)));
                 if columns == 3 && *is_flat {
-                    *is_flat = array.numbers(bytes).skip(2).step_by(3).all(|z| z == 0.0);
+                    *is_flat = array.numbers(bytes).skip(depth).step_by(3).all(|z| z == 0.0);
                 }
                 digests.push(Sha256::digest(bytes).into());
             }

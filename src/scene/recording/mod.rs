@@ -11,6 +11,9 @@ use archive::Rows;
 pub(super) use archive::full;
 pub(crate) use course::{COURSE, Course, Origin, StoredRun};
 
+use super::file::Up;
+use super::limits::Limits;
+use super::mesh;
 use crate::reading::words::{count, short};
 use crate::sim::{Divergence, Recording, State};
 use glam::DVec3;
@@ -23,6 +26,42 @@ use std::sync::{Arc, Mutex, PoisonError};
 const AT: f64 = 1e-9;
 /// Rows that are kept: those of central differences on both sides of a moment, with velocities or without.
 const KEPT: usize = 4;
+
+/// The axis of a file that points up, and the length of its unit (m).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Axes {
+    pub(super) up: Up,
+    pub(super) scale: f64,
+}
+
+impl Default for Axes {
+    /// Those of scenes.
+    fn default() -> Self {
+        Self { up: Up::Y, scale: 1.0 }
+    }
+}
+
+impl Axes {
+    /// Brings vectors of the file into the axes and the unit of scenes. In those they keep every bit.
+    pub(super) fn place(self, vectors: &mut [DVec3]) {
+        if self != Self::default() {
+            mesh::place(vectors, self.up as usize, self.scale);
+        }
+    }
+}
+
+/// Refuses recordings that are too long to be copied.
+pub(super) fn check_length(moments: u64, nodes: u64, limits: &Limits) -> Result<(), Flaw> {
+    // As many as 64 bits can count bytes of.
+    let most = limits.recorded.min(u64::MAX / 48);
+    if moments.saturating_mul(nodes) <= most {
+        return Ok(());
+    }
+    let [moments, nodes, most] = [moments, nodes, most].map(|number| count(number.into()));
+    let message = format!("has {moments} moments of {nodes} points; the limit is {most} points in all moments");
+    let help = "record fewer moments, or allow it with --allow-large (in code, `Limits::NONE`)";
+    Err(Flaw::new("", message).with_help(help))
+}
 
 /// A run of a file.
 #[derive(Debug)]
@@ -41,8 +80,9 @@ pub struct Recorded {
     pub(crate) nodes: usize,
     /// The number of coordinates of each node.
     pub(super) columns: usize,
-    /// Whether the third coordinate, if there is one, is zero everywhere.
+    /// Whether the third coordinate in the scene, if there is one, is zero everywhere.
     pub(super) is_flat: bool,
+    axes: Axes,
     has_velocities: bool,
     /// The length of the memory of models and constraints in each moment, if it is recorded.
     pub(crate) memory: Option<usize>,
@@ -171,13 +211,15 @@ impl Player {
         let numbers = self.recorded.row(of, moment)?;
         let vector = |node: &[f64]| DVec3::new(node[0], node[1], node.get(2).copied().unwrap_or(0.0));
         let all = numbers.chunks_exact(self.recorded.columns);
-        let row: Arc<[DVec3]> = match &self.recorded.places {
+        let mut row: Vec<DVec3> = match &self.recorded.places {
             None => all.map(vector).collect(),
             Some(places) => {
                 let all: Vec<_> = all.collect();
                 places.iter().map(|&place| vector(all[place as usize])).collect()
             }
         };
+        self.recorded.axes.place(&mut row);
+        let row: Arc<[DVec3]> = row.into();
         if self.rows.len() == KEPT {
             self.rows.pop_front();
         }

@@ -4,11 +4,11 @@ use super::body::ResolvedBody;
 use super::lists::{ListSource, Lists};
 use super::{Place, body, mesh};
 use crate::reading::beside::{missing, similar};
-use crate::reading::collector::{Collector, key_path};
+use crate::reading::collector::{Collector, key_path, written};
 use crate::reading::words::{count, list, nearest};
-use crate::scene::file::{RunFile, StatesFile};
+use crate::scene::file::{Positive, RunFile, StatesFile, Up};
 use crate::scene::limits::Limits;
-use crate::scene::recording::{Archive, Flaw, Recorded};
+use crate::scene::recording::{Archive, Axes, Flaw, Recorded};
 use crate::scene::sequence::{self, Sequence};
 use crate::scene::{COURSE, Together};
 use crate::sim::{Body, Dimension, IndexLists, State};
@@ -62,22 +62,39 @@ impl ReadRecording {
     ) -> Option<Self> {
         let (file, chosen) = run.states.as_ref()?.parts();
         let (path, source, known) = (folder.join(file), source(at, run), report.total());
+        let scale = run.scale.map_or(1.0, |Positive(scale)| scale);
+        let axes = Axes { up: run.up.unwrap_or_default(), scale };
         let open = |report: &mut Collector<'_>| -> Result<_, Flaw> {
             if sequence::is_one(file) {
-                let Sequence { archive, cells, has_elements } = Sequence::read(folder, file, rate, limits)?;
-                let archive = Archive::of(archive, &path, chosen, &run.name)?;
-                return Ok((archive.recorded()?, Own::Moment { cells: Box::new(cells), has_elements, source }));
+                let Sequence { archive, mut cells, has_elements, notes } = Sequence::read(folder, file, rate, limits)?;
+                let note = |(message, help)| report.warn(&place(at, run), format!("`{file}` {message}"), help);
+                notes.into_iter().for_each(note);
+                axes.place(&mut cells.points);
+                let recorded = Archive::of(archive, &path, chosen, &run.name)?.recorded(axes, limits)?;
+                return Ok((recorded, Own::Moment { cells: Box::new(cells), has_elements, source }));
             }
             if !path.exists() {
                 let help = similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?"));
                 return Err(Flaw { help, ..Flaw::new("", missing(&path)) });
             }
+            if crate::scene::mesh::is_mesh(&path) {
+                let help = "name those of all moments with a star, such as \"frames/*.obj\", or in a list (.pvd)";
+                return Err(Flaw::new("", "is a file of one moment").with_help(help));
+            }
             let mut archive = Archive::open(&path, chosen, &run.name)?;
             let (npz, name) = archive.parts();
             check_names(&npz.names(), name, file, &place(at, run), report);
-            let own =
-                Lists::recorded(npz, name, source, limits, report).map_or(Own::Nothing, |own| Own::Rest(Box::new(own)));
-            Ok((archive.recorded()?, own))
+            let own = Lists::recorded(npz, name, source, limits, report).map(|mut own| {
+                axes.place(&mut own.nodes);
+                Own::Rest(Box::new(own))
+            });
+            let recorded = archive.recorded(axes, limits)?;
+            if recorded.columns == 2 && axes.up == Up::Z {
+                let up = key_path!["run", at, "up"];
+                let message = format!("`{}` is \"z\", but `{file}` is in the plane", written(&up));
+                report.at(&up, message, "expected \"x\" or \"y\"");
+            }
+            Ok((recorded, own.unwrap_or(Own::Nothing)))
         };
         match open(report) {
             Ok((recorded, own)) => (report.total() == known).then(|| Self { recorded, own, file: file.to_owned() }),
