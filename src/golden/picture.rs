@@ -1,4 +1,4 @@
-//! Reads pictures for comparison: 8-bit red, green and blue, and nothing else.
+//! Reads pictures for comparison: as 8-bit red, green and blue, whatever their kind of pixels.
 
 use crate::output::Tags;
 use std::fs::File;
@@ -31,9 +31,9 @@ pub enum PictureError {
     /// It is damaged or incomplete.
     #[error("this PNG picture is damaged or cut short ({0})")]
     Broken(String),
-    /// It has another pixel format than the pictures of this crate.
-    #[error("the picture {0}; expected 8 bits of red, green and blue, not interlaced")]
-    Kind(String),
+    /// It is no plain picture.
+    #[error("the picture {0}; save it as a still picture that is not interlaced")]
+    Kind(&'static str),
     /// Its width and height (px) are too large.
     #[error(
         "the picture says that it has {0}×{1} pixels; expected at most {LONGEST_SIDE} a side and {million} million in all",
@@ -59,8 +59,10 @@ pub enum PictureError {
 pub struct Pixels {
     /// Width and height (px).
     pub size: [u32; 2],
-    /// Three bytes for each pixel, row after row from the top left.
+    /// Three bytes for each pixel, row after row from the top left: what transparent pixels show on white.
     pub bytes: Vec<u8>,
+    /// What they show on black; `None` if all pixels are opaque.
+    pub on_black: Option<Vec<u8>>,
     /// Its metadata, if it has any.
     pub label: Option<Tags>,
 }
@@ -69,7 +71,7 @@ impl Pixels {
     /// Reads a PNG file.
     ///
     /// # Errors
-    /// A file that cannot be read, is not a complete PNG file, or has another pixel format than frames.
+    /// A file that cannot be read, is not a complete PNG file, is interlaced, or has several frames.
     pub fn read(path: &Path) -> Result<Self, PictureError> {
         Self::from_bytes(&file(path)?)
     }
@@ -87,20 +89,59 @@ impl Pixels {
         if width.max(height) > LONGEST_SIDE || u64::from(width) * u64::from(height) > MOST_PIXELS {
             return Err(PictureError::Size(width, height));
         }
+        decoder.set_transformations(png::Transformations::EXPAND);
         let mut reader = decoder.read_info().map_err(broken)?;
         check(reader.info()).map_err(PictureError::Kind)?;
         let label = Tags::of(reader.info()).map_err(PictureError::Label)?;
+        let kind @ (colour, _) = reader.output_color_type();
         let row = 3 * width as usize;
         let mut bytes = vec![0; row * height as usize];
-        for row in bytes.chunks_exact_mut(row) {
-            let read = reader.read_row(row).map_err(broken)?;
+        let mut on_black = if has_opacities(colour) { vec![0; bytes.len()] } else { Vec::new() };
+        let mut line = vec![0; reader.output_line_size(width).unwrap_or(0)];
+        for (at, white) in bytes.chunks_exact_mut(row).enumerate() {
+            let is_plain = kind == (png::ColorType::Rgb, png::BitDepth::Eight);
+            let read = reader.read_row(if is_plain { &mut *white } else { &mut line }).map_err(broken)?;
             read.ok_or_else(|| PictureError::Broken("rows are missing".to_owned()))?;
+            if !is_plain {
+                show(&line, kind, white, on_black.get_mut(at * row..(at + 1) * row).unwrap_or_default());
+            }
         }
         reader.finish().map_err(broken)?;
         if Tags::of(reader.info()).map_err(PictureError::Label)? != label {
             return Err(PictureError::Late);
         }
-        Ok(Self { size: [width, height], bytes, label })
+        let on_black = (has_opacities(colour) && on_black != bytes).then_some(on_black);
+        Ok(Self { size: [width, height], bytes, on_black, label })
+    }
+}
+
+fn has_opacities(colour: png::ColorType) -> bool {
+    matches!(colour, png::ColorType::Rgba | png::ColorType::GrayscaleAlpha)
+}
+
+/// Writes what a row of pixels shows on white, and on black if there is room for it, rounded to 8 bits. Opacities act on the numbers
+/// as they are, as in browsers.
+fn show(line: &[u8], (colour, depth): (png::ColorType, png::BitDepth), white: &mut [u8], black: &mut [u8]) {
+    let samples: Vec<u64> = match depth {
+        png::BitDepth::Sixteen => line.as_chunks::<2>().0.iter().map(|&two| u16::from_be_bytes(two).into()).collect(),
+        _ => line.iter().map(|&byte| byte.into()).collect(),
+    };
+    let most = if depth == png::BitDepth::Sixteen { u16::MAX.into() } else { u64::from(u8::MAX) };
+    let mut black = black.as_chunks_mut::<3>().0.iter_mut();
+    for (pixel, white) in samples.chunks_exact(colour.samples()).zip(white.as_chunks_mut::<3>().0) {
+        let (light, opacity) = match *pixel {
+            [grey] => ([grey; 3], most),
+            [grey, opacity] => ([grey; 3], opacity),
+            [red, green, blue] => ([red, green, blue], most),
+            _ => ([pixel[0], pixel[1], pixel[2]], pixel[3]),
+        };
+        let square = most * most;
+        let on = |ground: u64| {
+            let seen = |light: u64| light * opacity + ground * (most - opacity);
+            light.map(|light| ((seen(light) * u64::from(u8::MAX) + square / 2) / square) as u8)
+        };
+        *white = on(most);
+        black.next().into_iter().for_each(|black| *black = on(0));
     }
 }
 
@@ -156,19 +197,11 @@ fn broken(error: png::DecodingError) -> PictureError {
     }
 }
 
-/// A message for pixel formats that are not compared.
-fn check(info: &png::Info<'_>) -> Result<(), String> {
-    if info.bit_depth != png::BitDepth::Eight {
-        return Err(format!("has {} bits a channel", info.bit_depth as u8));
+/// A message for pictures that are not compared.
+fn check(info: &png::Info<'_>) -> Result<(), &'static str> {
+    match () {
+        () if info.interlaced => Err("is interlaced"),
+        () if info.animation_control.is_some() => Err("is an animation"),
+        () => Ok(()),
     }
-    let kind = match info.color_type {
-        _ if info.interlaced => "is interlaced",
-        _ if info.animation_control.is_some() => "is an animation",
-        png::ColorType::Rgb if info.trns.is_some() => "calls one colour transparent",
-        png::ColorType::Rgb => return Ok(()),
-        png::ColorType::Rgba => "has opacities",
-        png::ColorType::Indexed => "has a palette",
-        png::ColorType::Grayscale | png::ColorType::GrayscaleAlpha => "is grey",
-    };
-    Err(kind.to_owned())
 }

@@ -52,7 +52,8 @@ impl Distance {
             }
             distance.largest = distance.largest.max(difference);
         })?;
-        distance.mean = largest_mean(expected, actual);
+        let means = grounds(expected, actual).into_iter().map(|both| largest_mean(expected.size, both));
+        distance.mean = means.fold(0.0, f64::max);
         Some(distance)
     }
 
@@ -62,18 +63,31 @@ impl Distance {
     }
 }
 
-/// Calls `each` for every unequal pixel, with its index and its distance ([`outside`]); `None` if the sizes differ.
+/// The pixels of both pictures on white, and if some are transparent, on black.
+fn grounds<'p>(expected: &'p Pixels, actual: &'p Pixels) -> Vec<[&'p [[u8; 3]]; 2]> {
+    let both = [expected, actual];
+    let has_holes = both.iter().any(|picture| picture.on_black.is_some());
+    let white = both.map(|picture| &picture.bytes);
+    let black = has_holes.then(|| both.map(|picture| picture.on_black.as_ref().unwrap_or(&picture.bytes)));
+    [white].into_iter().chain(black).map(|both| both.map(|bytes| bytes.as_chunks::<3>().0)).collect()
+}
+
+/// Calls `each` for every unequal pixel, with its index and its distance ([`outside`]), on the worse ground; `None` if the sizes differ.
 pub(super) fn differences(expected: &Pixels, actual: &Pixels, mut each: impl FnMut(usize, u8)) -> Option<()> {
     if expected.size != actual.size {
         return None;
     }
-    let width = expected.size[0] as usize;
-    let [before, after] = [expected, actual].map(|picture| picture.bytes.as_chunks::<3>().0.chunks_exact(width));
-    for (y, (before, after)) in before.zip(after).enumerate().filter(|(_, (before, after))| before != after) {
-        for (x, (before, after)) in before.iter().zip(after).enumerate().filter(|(_, (before, after))| before != after)
-        {
-            let difference = outside(before, actual, [x, y]).max(outside(after, expected, [x, y]));
-            each(y * width + x, difference);
+    let (width, all) = (expected.size[0] as usize, grounds(expected, actual));
+    for row in (0..expected.size[1] as usize).map(|y| y * width..(y + 1) * width) {
+        if all.iter().all(|[before, after]| before[row.clone()] == after[row.clone()]) {
+            continue;
+        }
+        for at in row {
+            let unequal = all.iter().filter(|[before, after]| before[at] != after[at]);
+            let one =
+                |from: &[[u8; 3]], to: &[[u8; 3]]| outside(&from[at], to, expected.size, [at % width, at / width]);
+            let worst = unequal.map(|[before, after]| one(before, after).max(one(after, before))).max();
+            worst.into_iter().for_each(|worst| each(at, worst));
         }
     }
     Some(())
@@ -81,9 +95,8 @@ pub(super) fn differences(expected: &Pixels, actual: &Pixels, mut each: impl FnM
 
 /// The largest difference of the means of a channel over a block, of two pictures of one size. The last blocks of rows and
 /// columns overlap the ones before them.
-fn largest_mean(expected: &Pixels, actual: &Pixels) -> f64 {
-    let [width, height] = expected.size.map(|side| side as usize);
-    let [before, after] = [expected, actual].map(|picture| picture.bytes.as_chunks::<3>().0);
+fn largest_mean(size: [u32; 2], [before, after]: [&[[u8; 3]]; 2]) -> f64 {
+    let [width, height] = size.map(|side| side as usize);
     let blocks = |side: usize| {
         let start = move |at: usize| (at * BLOCK).min(side.saturating_sub(BLOCK));
         (0..side.div_ceil(BLOCK)).map(move |at| start(at)..(start(at) + BLOCK).min(side))
@@ -103,12 +116,12 @@ fn largest_mean(expected: &Pixels, actual: &Pixels) -> f64 {
 }
 
 /// The distance of a pixel, in its worst channel, from the range of the nine pixels around its place in a picture.
-fn outside(pixel: &[u8; 3], picture: &Pixels, [x, y]: [usize; 2]) -> u8 {
-    let [width, height] = picture.size.map(|side| side as usize);
+fn outside(pixel: &[u8; 3], picture: &[[u8; 3]], size: [u32; 2], [x, y]: [usize; 2]) -> u8 {
+    let [width, height] = size.map(|side| side as usize);
     let near = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
     let mut range = [[u8::MAX, 0]; 3];
     for at in near(y, height).flat_map(|y| near(x, width).map(move |x| y * width + x)) {
-        for ([low, high], &byte) in range.iter_mut().zip(&picture.bytes.as_chunks::<3>().0[at]) {
+        for ([low, high], &byte) in range.iter_mut().zip(&picture[at]) {
             (*low, *high) = ((*low).min(byte), (*high).max(byte));
         }
     }
@@ -131,82 +144,5 @@ impl fmt::Display for Distance {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const SIZE: [usize; 2] = [400, 300];
-
-    /// A dark square on light ground, after a change.
-    fn picture(change: impl FnOnce(&mut [[u8; 3]])) -> Pixels {
-        let [width, height] = SIZE;
-        let is_dark = |at: usize| (100..300).contains(&(at % width)) && (50..250).contains(&(at / width));
-        let mut pixels: Vec<[u8; 3]> = (0..width * height).map(|at| [if is_dark(at) { 50 } else { 200 }; 3]).collect();
-        change(&mut pixels);
-        Pixels { size: SIZE.map(|side| side as u32), bytes: pixels.concat(), label: None }
-    }
-
-    fn distance(change: impl FnOnce(&mut [[u8; 3]])) -> Distance {
-        Distance::new(&picture(|_| ()), &picture(change)).expect("of one size")
-    }
-
-    #[test]
-    fn limits_are_kept_to_the_pixel() {
-        let ground = |count: usize, by: u8| distance(|pixels| pixels[..count].fill([200, 200 + by, 200]));
-        let told = ground(1200, FAINT + 1);
-        let mean = 3.0 * f64::from(FAINT + 1) / BLOCK as f64;
-        let expected = Distance { unequal: 1200, differing: [1200, 0], allowed: [1200, 36], largest: FAINT + 1, mean };
-        assert_eq!(told, expected);
-        assert!(told.is_allowed() && !ground(1201, FAINT + 1).is_allowed());
-        assert!(ground(10_000, 1).is_allowed() && !ground(10_000, FAINT).is_allowed());
-        assert!(ground(36, STRONG + 1).is_allowed());
-        assert!(!ground(37, STRONG + 1).is_allowed() && ground(37, STRONG).is_allowed());
-        let told = ground(37, 50).to_string();
-        assert_eq!(
-            told,
-            "37 pixels differ by more than 16 of 255 (36 may), 37 by more than 2 (1200 may), the mean of 16×16 pixels by 3.1 (1.5 may)"
-        );
-    }
-
-    /// Drivers may disagree about some pixels along a border, but not about all of them, about two rows or about an object.
-    #[test]
-    fn borders_may_wander_by_a_pixel_here_and_there() {
-        let [width, _] = SIZE;
-        let moved = |by: usize, every: usize| {
-            distance(|pixels| {
-                for row in pixels.chunks_exact_mut(width).skip(50).take(200).step_by(every) {
-                    row.rotate_right(by);
-                }
-            })
-        };
-        let here_and_there = moved(1, 8);
-        assert_eq!((here_and_there.unequal, here_and_there.differing), (50, [0, 0]));
-        assert!(here_and_there.is_allowed() && !moved(1, 4).is_allowed());
-        // The whole square moves by a pixel. Each pixel is near one of its colour.
-        assert_eq!((moved(1, 1).is_allowed(), moved(1, 1).differing), (false, [0, 0]));
-        assert!(!moved(2, 1).is_allowed() && moved(2, 1).differing[1] >= 400);
-        let line = distance(|pixels| pixels[20 * width..20 * width + 40].fill([120; 3]));
-        assert_eq!((line.is_allowed(), line.differing), (false, [40, 40]));
-        let single = Pixels { size: [1, 1], bytes: vec![7; 3], label: None };
-        let other = Pixels { bytes: vec![9; 3], ..single.clone() };
-        assert_eq!(Distance::new(&single, &other).expect("of one size").largest, 2);
-        assert_eq!(Distance::new(&single, &picture(|_| ())), None);
-    }
-
-    /// A hatch of a part of the picture at nine tenths of its strength: few pixels differ, and each only a little.
-    #[test]
-    fn lines_may_not_fade() {
-        let hatched = |by: u8| {
-            picture(|pixels| {
-                for (at, pixel) in pixels.iter_mut().enumerate() {
-                    let [x, y] = [at % SIZE[0], at / SIZE[0]];
-                    if x < 64 && y < 48 && x % 4 == 0 {
-                        *pixel = [200 - by; 3];
-                    }
-                }
-            })
-        };
-        let faded = Distance::new(&hatched(150), &hatched(135)).expect("of one size");
-        assert_eq!((faded.is_allowed(), faded.differing), (false, [768, 0]));
-        assert!(faded.mean > 3.0, "{faded}");
-    }
-}
+#[path = "../../tests/inside/tolerance.rs"]
+mod tests;
