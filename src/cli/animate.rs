@@ -8,7 +8,8 @@ use super::interrupt;
 use super::options::{PrintOptions, ThreadOptions, number_in};
 use crate::animation::{Animation, AnimationError, Format, Image, Reel, Timeline, Written, resized};
 use crate::golden::Pixels;
-use crate::output::{FolderLock, Shown, Tags, folder_of, frame_file_name, frame_files, read_tags};
+use crate::output::{FolderLock, Shown, Tags, folder_of, frame_file_name, frame_files, picture_size, read_tags};
+use crate::reading::beside;
 use clap::{Args, ValueHint};
 use serde_json::json;
 use std::ffi::OsString;
@@ -19,6 +20,7 @@ Examples:
   localshape animate output/fig4b -o fig4b.gif --width 800      for chats and READMEs
   localshape animate output/fig4b -o fig4b.mp4 --speed 0.25     slow motion for slides
   localshape animate output/fig4b -o fig4b.apng --frames 0-60   lossless
+  localshape animate other -o other.mp4 --fps 30                numbered PNG files of another program
 
 The extension of FILE chooses the format: .gif, .apng, .mp4 (H.264) or .webm (VP9); the latter two need ffmpeg. Each frame is \
 shown until the time of the next. GIF has a resolution of 1/100 s, and players need 2/100 s for each frame: at more than 50 \
@@ -31,7 +33,7 @@ const PARTS: u64 = 1000;
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Animate {
-    /// Folder of frames made by `render`
+    /// Folder of frames made by `render`, or of numbered PNG files of another program
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
     folder: PathBuf,
 
@@ -51,7 +53,7 @@ pub(super) struct Animate {
     #[arg(long, value_name = "TIMES", value_parser = number_in(0.001, 1000.0), allow_hyphen_values = true)]
     speed: Option<f64>,
 
-    /// Frames per second of the animation [default: every frame is shown]
+    /// Frames per second of the animation; frames of other programs need it [default: every frame is shown]
     #[arg(long, value_name = "RATE", value_parser = number_in(0.1, 1000.0), allow_hyphen_values = true)]
     fps: Option<f64>,
 
@@ -82,8 +84,8 @@ impl Animate {
         if !self.overwrite {
             replaceable(&self.out)?;
         }
-        let reel =
-            Folder::open(&self.folder, |last| self.frames.as_ref().map(|frames| frames.select(last)), self.width)?;
+        let asked = |last| self.frames.as_ref().map(|frames| frames.select(last));
+        let reel = Folder::open(&self.folder, asked, self.width, self.fps)?;
         let mut timeline = Timeline::of(&reel.moments);
         if let Some(times) = self.speed {
             timeline = timeline.faster(times);
@@ -138,7 +140,7 @@ pub(super) fn make(
     comment: &str,
     threads: usize,
 ) -> Result<Written, Failure> {
-    let reel = Folder::open(folder, |_| Some(Ok(frames.to_vec())), None)?;
+    let reel = Folder::open(folder, |_| Some(Ok(frames.to_vec())), None, None)?;
     let timeline = Timeline::of(&reel.moments);
     let go_on = &|| !interrupt::requested();
     let animation =
@@ -152,7 +154,7 @@ struct Folder {
     moments: Vec<(u64, f64)>,
     /// Their files.
     paths: Vec<PathBuf>,
-    /// Digests of the scenes shown.
+    /// Digests of the scenes shown; none for frames of another program.
     scenes: Vec<String>,
     /// Width and height of a frame, and after scaling (px).
     own: [u32; 2],
@@ -169,7 +171,7 @@ impl Reel for Folder {
         let picture = |source| AnimationError::Picture { path: path.clone(), source };
         let found = Pixels::read(path).map_err(picture)?;
         let shown = found.label.as_ref().and_then(Tags::frame);
-        if found.size != self.own || shown != Some(self.moments[frame].0) {
+        if found.size != self.own || !self.scenes.is_empty() && shown != Some(self.moments[frame].0) {
             let message =
                 format!("{} has changed meanwhile; try again when no other process writes there", path.display());
             return Err(AnimationError::Wrong(message));
@@ -180,11 +182,12 @@ impl Reel for Folder {
 
 impl Folder {
     /// Reads the metadata of frames in a folder: of the requested ones up to the last one there, or of all. Frames are
-    /// scaled to a width (px), if it is given.
+    /// scaled to a width (px), if it is given. Those of another program follow each other at a rate (1/s).
     fn open(
         path: &Path,
         asked: impl FnOnce(u64) -> Option<Result<Vec<u64>, String>>,
         width: Option<u32>,
+        rate: Option<f64>,
     ) -> Result<Self, Failure> {
         let name = path.display();
         match path.metadata() {
@@ -196,25 +199,23 @@ impl Folder {
                 bail!("{name} cannot be read: {error}; expected a folder with frames of `localshape render`");
             }
         }
-        let mut files = frame_files(path)?;
-        let Some(&(last, _)) = files.last() else {
-            bail!(
-                "{name} has no frames, such as {}; make some with `localshape render SCENE -o {name}`",
-                frame_file_name(0)
-            );
-        };
-        if let Some(wanted) = asked(last) {
+        let own = frame_files(path)?;
+        let is_own = !own.is_empty();
+        let (mut files, rate) =
+            if is_own { (own, None) } else { others(path, rate).map(|(files, rate)| (files, Some(rate)))? };
+        if let Some(wanted) = asked(files.last().map_or(0, |(last, _)| *last)) {
             let wanted = wanted.map_err(|message| Failure::usage(format!("frames of {name}: {message}")))?;
             if let Some(missing) =
                 wanted.iter().find(|number| files.binary_search_by_key(number, |(number, _)| number).is_err())
             {
-                bail!("frames of {name}: there is no {}", frame_file_name(*missing));
+                let missing = if is_own { frame_file_name(*missing) } else { format!("frame {missing}") };
+                bail!("frames of {name}: there is no {missing}");
             }
             files.retain(|(number, _)| wanted.binary_search(number).is_ok());
         } else if let Some(stride) = files.get(1).map(|(second, _)| second - files[0].0)
             && let Some(pair) = files.windows(2).find(|pair| pair[1].0 - pair[0].0 != stride)
         {
-            let [before, after] = [&pair[0], &pair[1]].map(|(number, _)| frame_file_name(*number));
+            let [before, after] = [&pair[0], &pair[1]].map(|(_, file)| name_of(file));
             bail!(
                 "{name} has a gap: {after} follows {before}, while frames before that are {stride} apart; render the \
                  missing frames, or choose frames with --frames"
@@ -222,17 +223,22 @@ impl Folder {
         }
         let mut moments: Vec<(u64, f64)> = Vec::new();
         let mut first = None;
-        for (number, file) in &files {
-            let Some((size, Tags { shows: Shown::Frame { frame, time }, scenes, states, .. })) = read_tags(file)?
-            else {
-                bail!(
-                    "{} is damaged, or is not a frame of `localshape render`: it does not name its scene",
-                    file.display()
-                );
+        for (at, (number, file)) in files.iter().enumerate() {
+            let found = match rate {
+                Some(rate) => picture_size(file)?.map(|size| (size, *number, at as f64 / rate, Vec::new(), Vec::new())),
+                None => read_tags(file)?.and_then(|(size, tags)| match tags.shows {
+                    Shown::Frame { frame, time } => Some((size, frame, time, tags.scenes, tags.states)),
+                    _ => None,
+                }),
+            };
+            let Some((size, frame, time, scenes, states)) = found else {
+                let what =
+                    if is_own { "frame of `localshape render`: it does not name its scene" } else { "PNG picture" };
+                bail!("{} is damaged, or is not a {what}", file.display());
             };
             let runs: Vec<String> = states.into_iter().map(|(_, run)| run).collect();
             let (own, all_scenes, all_runs) = first.get_or_insert_with(|| (size, scenes.clone(), runs.clone()));
-            let before = moments.last().map_or_else(String::new, |(number, _)| frame_file_name(*number));
+            let before = name_of(&files[at.saturating_sub(1)].1);
             let unlike = if frame != *number {
                 format!("shows frame {frame}; was it renamed?")
             } else if size != *own {
@@ -245,7 +251,7 @@ impl Folder {
             } else if moments.last().is_some_and(|(_, last)| time <= *last) {
                 format!("is at {time} s, not after {before}")
             } else {
-                moments.push((*number, time));
+                moments.push((rate.map_or(*number, |_| at as u64), time));
                 continue;
             };
             bail!("{} {unlike}", file.display());
@@ -258,6 +264,31 @@ impl Folder {
         }
         Ok(Self { moments, paths: files.into_iter().map(|(_, file)| file).collect(), scenes, own, size })
     }
+}
+
+/// The numbered PNG files of another program in a folder, and their rate (1/s), which is to be given.
+fn others(path: &Path, rate: Option<f64>) -> Result<(Vec<(u64, PathBuf)>, f64), Failure> {
+    let name = path.display();
+    let found = beside::numbered(path, "", ".png")
+        .map_err(|(message, _)| Failure::usage(format!("{name} {message}; move the others to another folder")))?;
+    let Some((first, file)) = found.first() else {
+        let like = frame_file_name(0);
+        bail!("{name} has no frames, such as {like}; make some with `localshape render SCENE -o {name}`");
+    };
+    let file = name_of(file);
+    if *first < 0 {
+        bail!("{name} has a frame before 0, {file}; number frames from 0");
+    }
+    let Some(rate) = rate else {
+        bail!(
+            "{name} has frames of another program, such as {file}, which carry no times; add --fps, such as --fps 30"
+        );
+    };
+    Ok((found.into_iter().map(|(number, file)| (number.unsigned_abs(), file)).collect(), rate))
+}
+
+fn name_of(file: &Path) -> String {
+    file.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 fn quoted(names: &[String]) -> String {

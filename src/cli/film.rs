@@ -25,7 +25,8 @@ pub(super) fn summary(path: &Path, frames: usize, written: &Written) -> String {
 pub(super) fn comment(words: &[OsString], scene: &str) -> String {
     let command: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
     let version = env!("CARGO_PKG_VERSION");
-    format!("{MARK}{version}; scene {scene}; command: {}", command.join(" "))
+    let scene = if scene.is_empty() { String::new() } else { format!("scene {scene}; ") };
+    format!("{MARK}{version}; {scene}command: {}", command.join(" "))
 }
 
 /// Refuses to replace files that this program did not make.

@@ -45,6 +45,14 @@ pub(crate) fn frame_files(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputEr
     Ok(frames)
 }
 
+/// Reads width and height of a picture (px), whatever program wrote it; `None` if the file is not a PNG file.
+///
+/// # Errors
+/// If the file cannot be read.
+pub(crate) fn picture_size(path: &Path) -> Result<Option<[u32; 2]>, OutputError> {
+    Ok(header(path)?.map(|reader| [reader.info().width, reader.info().height]))
+}
+
 /// Encodes a picture like [`encode_print`], with the compressed pixels of another file, which it made from equal
 /// pixels.
 pub(crate) fn encode_like(

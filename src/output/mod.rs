@@ -41,7 +41,7 @@ pub use timing::{Spent, Timings};
 #[cfg(feature = "render")]
 pub(crate) use {
     atomic::temporary_folder,
-    drawn::{encode_like, frame_files, is_drawn, packed},
+    drawn::{encode_like, frame_files, is_drawn, packed, picture_size},
     frame_name::frame_file_name,
     frames::{FrameWriter, PixelFrame},
     png::{Texts, encode_print},

@@ -477,6 +477,83 @@ print('fine')
     assert_eq!(python(&place.path("."), script), "fine\n");
 }
 
+/// One second at 60 frames a second has 61 frames, of which players show half in a GIF.
+#[test]
+fn durations_are_those_of_the_frames() {
+    let place = Place::new();
+    for number in 0..=60 {
+        put(&place, "in", number, &frame_file(SIZE, &pixels(number, SIZE), &frame_tags(number, number as f64 / 60.0)));
+    }
+    for (arguments, words) in [
+        ("out.gif", "31 pictures of 61 frames in 1.03 s"),
+        ("out.apng", "61 pictures in 1.02 s"),
+        ("out.apng --speed 0.25 --hold-last 1.5", "61 pictures in 5.57 s"),
+        ("out.apng --frames 7", "1 picture in 1.00 s"),
+    ] {
+        let ran = place.run(&format!("animate in -o {arguments}")).good();
+        assert!(ran.out.contains(words), "{words}: {}", ran.out);
+    }
+}
+
+/// Names with what shells, patterns and browsers read.
+#[cfg(unix)]
+#[test]
+fn odd_paths_are_names_like_others() {
+    let place = Place::new();
+    let folder = "100%d & \"q\" ü/-x/out%05d";
+    (0..6).for_each(|number| put(&place, folder, number, &frame_file(SIZE, &pixels(number, SIZE), &tags(number))));
+    for file in ["m%03d.apng", "a%d:b.gif", "a%d:b.mp4"] {
+        if file.ends_with("mp4") && !has_ffmpeg() {
+            continue;
+        }
+        let ran = run(&mut place.command(["animate", folder, "-o", file])).good();
+        assert!(ran.out.contains("6 pictures in 0.20 s") && place.path(file).is_file(), "{file}: {}", ran.out);
+    }
+}
+
+/// Numbered pictures of another program are frames at a given rate, on white where they are transparent.
+#[test]
+fn frames_of_other_programs_have_the_rate_that_is_given() {
+    let place = Place::new();
+    let file = |number: u64| {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, SIZE[0], SIZE[1]);
+        encoder.set_color(png::ColorType::Rgba);
+        let opaque = |pixel: &[u8]| [pixel[0], pixel[1], pixel[2], 255];
+        let all: Vec<u8> = pixels(number, SIZE).chunks_exact(3).flat_map(opaque).collect();
+        encoder.write_header().unwrap().write_image_data(&all).unwrap();
+        bytes
+    };
+    (1..=6).for_each(|number| place.write(&format!("other/render.{number:04}.png"), &file(number)));
+    bad(
+        &place,
+        "other -o out.apng",
+        &["other has frames of another program, such as render.0001.png, which carry no times; add --fps"],
+    );
+    let ran = place.run("animate other -o out.apng --fps 29.97").good();
+    assert!(ran.out.starts_with("out.apng  64×48, 6 pictures in 0.20 s, "), "{}", ran.out);
+    let (frames, _) = decode_apng(&place.path("out.apng"));
+    assert_eq!(frames.len(), 6);
+    for (number, (shown, delay)) in (1..).zip(&frames) {
+        assert!(*shown == pixels(number, SIZE), "frame {number}");
+        assert!((delay * 29.97 - 1.0).abs() < 1e-6, "{delay}");
+    }
+    // Slow motion shows each frame twice; a part of the frames has no longer pauses.
+    let ran = place.run("animate other -o out.apng --fps 30 --speed 0.5 --overwrite").good();
+    assert!(ran.out.contains("6 pictures in 0.40 s"), "{}", ran.out);
+    let ran = place.run("animate other -o out.apng --fps 30 --frames 1,4,6").good();
+    assert!(ran.out.contains("3 pictures in 0.10 s"), "{}", ran.out);
+    bad(&place, "other -o out.apng --fps 30 --frames 0-6", &["frames of other: there is no frame 0"]);
+    std::fs::remove_file(place.path("other/render.0003.png")).unwrap();
+    bad(&place, "other -o out.apng --fps 30", &["other has a gap: render.0004.png follows render.0002.png"]);
+    place.write("other/render.0003.png", &frame_file([32, 48], &pixels(2, [32, 48]), &tags(2)));
+    bad(&place, "other -o out.apng --fps 30", &["other/render.0003.png has 32×48 pixels, render.0002.png has 64×48"]);
+    place.write("other/render.0003.png", b"GIF89a");
+    bad(&place, "other -o out.apng --fps 30", &["other/render.0003.png is damaged, or is not a PNG picture"]);
+    place.write("other/left.0003.png", &file(3));
+    bad(&place, "other -o out.apng --fps 30", &["other has several sequences, left.… and render.…"]);
+}
+
 fn bad(place: &Place, arguments: &str, words: &[&str]) -> Ran {
     place.run(&format!("animate {arguments}")).bad(2, words)
 }
