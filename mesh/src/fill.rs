@@ -14,7 +14,6 @@ mod tetrahedra;
 use super::{Flaws, Group, Surface};
 use glam::DVec3;
 use localshape_sim::{IndexLists, Weights};
-use std::collections::BTreeSet;
 
 /// Weights below this are round-off.
 const CLOSE: f64 = 1e-9;
@@ -117,8 +116,7 @@ impl Filled {
             nodes.iter().zip(weights).filter(|(_, weight)| weight.abs() > CLOSE).map(|(&node, _)| node)
         };
         let group = |group: &Group| {
-            let nodes: BTreeSet<u32> = group.points.iter().flat_map(nodes).collect();
-            Group { name: group.name.clone(), points: nodes.into_iter().collect() }
+            Group::new(group.name.clone(), group.points.iter().flat_map(nodes).collect(), self.cage.nodes.len())
         };
         self.cage.groups = self.surface.groups.iter().map(group).collect();
         self

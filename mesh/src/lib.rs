@@ -13,8 +13,12 @@ mod inside;
 mod read;
 mod surface;
 mod volume;
+mod weld;
 
 pub use fill::{Cage, Fill, FillError, Filled, fill};
-pub use read::{CellKind, Cells, Format, Limits, Listed, Mesh, ReadError, read, read_cells, read_list, read_pieces};
+pub use read::{
+    Beside, CellKind, Cells, Format, Limits, Listed, Mesh, ReadError, converter, read, read_cells, read_cells_with,
+    read_list, read_pieces,
+};
 pub use surface::{Flaws, Measures, Surface};
 pub use volume::{Group, Volume};

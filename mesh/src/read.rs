@@ -10,6 +10,7 @@ mod gmsh;
 mod kinds;
 mod obj;
 mod off;
+mod others;
 mod ply;
 mod polygon;
 mod pvd;
@@ -18,7 +19,9 @@ mod stl;
 mod vtk;
 mod vtu;
 
+pub(crate) use cells::Used;
 pub use cells::{CellKind, Cells};
+pub use others::converter;
 pub use pvd::{Listed, read_list, read_pieces};
 
 use super::{Surface, Volume};
@@ -43,7 +46,7 @@ pub enum Format {
     Ply,
     /// Object File Format (`.off`).
     Off,
-    /// Khronos' transmission format 2.0 (`.gltf`, `.glb`), with its data inside.
+    /// Khronos' transmission format 2.0 (`.gltf`, `.glb`), with its data inside or in files beside it.
     Gltf,
     /// Gmsh 2.2 or 4.1 (`.msh`), ASCII or binary.
     Gmsh,
@@ -102,19 +105,21 @@ impl ReadError {
     fn new(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self { message: message.into(), help: Some(help.into()) }
     }
+
+    fn damaged(message: impl Into<String>) -> Self {
+        Self::new(message, source::DAMAGED)
+    }
 }
 
-/// Reads a file.
+/// Gives the bytes of a file beside the one that is read, by its name: a relative path below the folder, with `/` between folders.
+pub type Beside<'b> = dyn FnMut(&str) -> Result<Vec<u8>, ReadError> + 'b;
+
+/// Reads a file without others beside it.
 ///
 /// # Errors
 /// If it is damaged, or larger than the limits, or has neither faces nor cells, or cells without area or volume.
 pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Mesh, ReadError> {
-    let cells = read_cells(bytes, format, limits)?;
-    match format {
-        Format::Gmsh | Format::Vtk | Format::Vtu => cells.mesh(),
-        // A flat surface is not a body in the plane.
-        Format::Obj | Format::Stl | Format::Ply | Format::Off | Format::Gltf => cells.faces(),
-    }
+    read_cells(bytes, format, limits)?.mesh(format)
 }
 
 /// Reads the points and cells of a file as they are listed: in their order, unused and flat ones, too. Files of one mesh at
@@ -123,6 +128,19 @@ pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Mesh, ReadE
 /// # Errors
 /// If it is damaged, or larger than the limits.
 pub fn read_cells(bytes: &[u8], format: Format, limits: &Limits) -> Result<Cells, ReadError> {
+    read_cells_with(bytes, format, limits, &mut |_| Err(ReadError::new("is another file", "export all as one file")))
+}
+
+/// As [`read_cells`]. A glTF file may have its data in files beside it.
+///
+/// # Errors
+/// If it is damaged, or larger than the limits, or a file beside it is not there.
+pub fn read_cells_with(
+    bytes: &[u8],
+    format: Format,
+    limits: &Limits,
+    beside: &mut Beside<'_>,
+) -> Result<Cells, ReadError> {
     // The first words of binary STL files may be anything.
     if format != Format::Stl || !stl::is_binary(bytes) {
         content::check(bytes, format)?;
@@ -133,7 +151,7 @@ pub fn read_cells(bytes: &[u8], format: Format, limits: &Limits) -> Result<Cells
         Format::Ply => ply::read(bytes, limits),
         Format::Off => off::read(bytes, limits),
         Format::Gmsh => gmsh::read(bytes, limits),
-        Format::Gltf => gltf::read(bytes, limits),
+        Format::Gltf => gltf::read(bytes, limits, beside),
         Format::Vtk => vtk::read(bytes, limits),
         Format::Vtu => vtu::read(bytes, limits),
     }

@@ -3,7 +3,10 @@
 use super::Group;
 use super::edges::{EdgeUse, Sets, net};
 use super::inside::Columns;
+use super::read::Used;
+use super::weld::joined;
 use glam::DVec3;
+use localshape_sim::geometry::bounds;
 
 /// A surface of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,13 +17,19 @@ pub struct Surface {
     pub triangles: Vec<[u32; 3]>,
     /// Sets of points with a name.
     pub groups: Vec<Group>,
+    /// The number of points of the file without coordinates, which no triangle used and which were left out.
+    pub lost: usize,
 }
 
 /// What is wrong with a surface, by number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flaws {
-    /// Points at the same place as another, which were welded.
+    /// Points at the same place as another but for round-off, which were welded.
     pub welded: usize,
+    /// Those of them that are not at exactly the same place.
+    pub near: usize,
+    /// Points without coordinates, which were left out.
+    pub lost: usize,
     /// Triangles without area, or with a corner that has no place, which were left out. Those without area that keep a
     /// surface closed stay.
     pub degenerate: usize,
@@ -89,7 +98,7 @@ impl Surface {
 
     /// The surface without its flaws, as far as that is safe, and what they were.
     ///
-    /// Points with the same coordinates become one. Triangles without area and doubled ones are left out; of two with
+    /// Points with the same coordinates to 10⁻¹² of the extent become one. Triangles without area and doubled ones are left out; of two with
     /// opposite sides both stay, a wall between two pieces, unless most of the surface is of that kind. Each piece is
     /// turned so that neighbours agree, which the fewest triangles determine, and that its volume is positive. A piece
     /// inside another is turned with that one: if it looked the other way in the file, it is a cavity.
@@ -181,20 +190,19 @@ impl Surface {
 
     /// The surface with its points welded, without triangles of fewer than three points.
     fn welded(&self, flaws: &mut Flaws) -> Self {
+        /// Programs write zeros as sines of half turns, parts of the extent as small as this.
+        const ROUND_OFF: f64 = 1e-12;
         let is_place = |&point: &u32| self.points.get(point as usize).is_some_and(|point| point.is_finite());
-        // Adding zero makes −0 to 0.
-        let bits = |point: u32| self.points[point as usize].to_array().map(|x| (x + 0.0).to_bits());
         let mut used: Vec<u32> = self.triangles.as_flattened().iter().copied().filter(is_place).collect();
         used.sort_unstable();
         used.dedup();
-        let count = used.len();
-        used.sort_by_cached_key(|&point| (bits(point), point));
-        let mut first: Vec<u32> = (0..self.points.len() as u32).collect();
-        for same in used.chunk_by(|&a, &b| bits(a) == bits(b)) {
-            same.iter().for_each(|&point| first[point as usize] = same[0]);
-            flaws.welded += same.len() - 1;
+        let (low, high) = bounds(&used.iter().map(|&point| self.points[point as usize]).collect::<Vec<_>>());
+        let first = joined(&self.points, used.clone(), ROUND_OFF * (high - low).max_element());
+        for &point in used.iter().filter(|&&point| first[point as usize] != point) {
+            flaws.welded += 1;
+            flaws.near += usize::from(self.points[first[point as usize] as usize] != self.points[point as usize]);
         }
-        debug_assert!(flaws.welded <= count);
+        flaws.lost = self.lost;
         let mut triangles = Vec::with_capacity(self.triangles.len());
         for triangle in &self.triangles {
             if triangle.iter().all(is_place) {
@@ -205,35 +213,19 @@ impl Surface {
             }
         }
         flaws.degenerate = self.triangles.len() - triangles.len();
-        let mut groups = self.groups.clone();
-        groups.iter_mut().flat_map(|group| &mut group.points).for_each(|point| *point = first[*point as usize]);
-        Self { points: self.points.clone(), triangles, groups }.compact()
+        let groups = self.groups.iter().map(|group| group.renamed(&first)).collect();
+        Self { points: self.points.clone(), triangles, groups, lost: 0 }.compact()
     }
 
     /// The surface with those points only that belong to a triangle, in the same order.
-    fn compact(mut self) -> Self {
-        let mut number = vec![u32::MAX; self.points.len()];
-        for &point in self.triangles.as_flattened() {
-            number[point as usize] = 0;
+    pub(crate) fn compact(mut self) -> Self {
+        let used = Used::new(self.points.len(), self.triangles.as_flattened());
+        if used.are_all() {
+            self.groups.retain(|group| !group.points.is_empty());
+            return self;
         }
-        let mut points = Vec::new();
-        for (number, &point) in number.iter_mut().zip(&self.points) {
-            if *number == 0 {
-                *number = points.len() as u32;
-                points.push(point);
-            }
-        }
-        for triangle in &mut self.triangles {
-            *triangle = triangle.map(|point| number[point as usize]);
-        }
-        for group in &mut self.groups {
-            group.points.iter_mut().for_each(|point| *point = number[*point as usize]);
-            group.points.retain(|&point| point != u32::MAX);
-            group.points.sort_unstable();
-            group.points.dedup();
-        }
-        self.groups.retain(|group| !group.points.is_empty());
-        Self { points, ..self }
+        self.triangles.as_flattened_mut().iter_mut().for_each(|corner| *corner = used.new[*corner as usize]);
+        Self { points: used.of(&self.points), groups: used.groups(&self.groups), ..self }
     }
 
     fn drop_doubled(&mut self, flaws: &mut Flaws) {

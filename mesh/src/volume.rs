@@ -30,3 +30,30 @@ pub struct Group {
     /// Its points, in ascending order.
     pub points: Vec<u32>,
 }
+
+impl Group {
+    /// A set of points among so many, each once.
+    pub(crate) fn new(name: String, mut points: Vec<u32>, count: usize) -> Self {
+        // Marks, 64 in a word, are faster than sorting if they do not stand far apart.
+        if points.len() > count / 64 {
+            let mut marks = vec![0u64; count.div_ceil(64)];
+            points.iter().for_each(|&point| marks[point as usize / 64] |= 1 << (point % 64));
+            points.clear();
+            for (word, mut marks) in (0..).zip(marks) {
+                while marks != 0 {
+                    points.push(64 * word + marks.trailing_zeros());
+                    marks &= marks - 1;
+                }
+            }
+        } else {
+            points.sort_unstable();
+            points.dedup();
+        }
+        Self { name, points }
+    }
+
+    /// The group with other indices of its points, some of which may be equal.
+    pub(crate) fn renamed(&self, new: &[u32]) -> Self {
+        Self::new(self.name.clone(), self.points.iter().map(|&point| new[point as usize]).collect(), new.len())
+    }
+}

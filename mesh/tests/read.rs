@@ -278,7 +278,11 @@ fn refusals_say_where_and_what_to_do() {
         (Off, "OFF\n8 6 0\n0 0\n1 2 3", format!("has nothing more in line 3; expected a coordinate {damaged}")),
         (Off, "OFF\n8 6 0\n0 0 0\n", format!("ends in line 4; expected point 2 of 8 {incomplete}")),
         (Off, "OFF\n1 1 0\n0 0 x\n", format!("has `x` in line 3; expected a coordinate {damaged}")),
-        (Off, "OFF\n1 1 0\n0 0 nan\n", format!("has `nan` in line 3; expected a coordinate {damaged}")),
+        (
+            Off,
+            "OFF\n1 1 0\n0 0 nan\n3 0 0 0\n",
+            "has point 0 without coordinates in line 3, and a face with it; expected numbers (remove".to_owned(),
+        ),
         (
             Off,
             "OFF\n1 1 0\n0 0 1e300\n",

@@ -4,7 +4,7 @@ mod common;
 
 use common::{apart, ball, block, ring, scan, together};
 use glam::DVec3;
-use localshape_mesh::{Flaws, Surface};
+use localshape_mesh::{Fill, Flaws, Surface, fill};
 
 #[test]
 fn a_sound_surface_stays_as_it_is() {
@@ -112,6 +112,34 @@ fn edges_that_are_open_or_cannot_agree_are_counted() {
     });
     let flaws = Surface { points, triangles: triangles.collect(), ..Surface::default() }.mended().1;
     assert_eq!((flaws.boundary, flaws.inconsistent, flaws.pieces), (24, 1, 1));
+}
+
+/// Of a triangle with two edges longer than the elements, four corners are left behind the third: the shorter diagonal divides them.
+#[test]
+fn triangles_with_two_long_edges_are_cut_along_the_shorter_diagonal() {
+    let base = [DVec3::ZERO, DVec3::new(0.5, 0.0, 0.1), DVec3::new(0.2, 0.0, 0.45)];
+    let apex = DVec3::new(0.9, 1.0, 0.1);
+    let points = vec![base[0], base[1], base[2], apex];
+    for triangles in
+        [vec![[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]], vec![[1, 2, 0], [3, 1, 0], [3, 2, 1], [0, 2, 3]]]
+    {
+        let surface = Surface { points: points.clone(), triangles, ..Surface::default() };
+        let filled = fill(&surface, Fill::Cubes { side: 1.0 }, 1000).expect("an inside").surface;
+        assert_eq!((filled.points.len(), filled.triangles.len()), (7, 10), "each long edge is halved once");
+        let at =
+            |place: DVec3| filled.points.iter().position(|point| point.distance(place) < 1e-4).expect("a point") as u32;
+        let is_edge = |[one, other]: [DVec3; 2]| {
+            let ends = [at(one), at(other)];
+            filled.triangles.iter().any(|triangle| ends.iter().all(|end| triangle.contains(end)))
+        };
+        for (one, other) in [(0, 1), (1, 2), (2, 0)] {
+            let [middle, next] = [one, other].map(|corner: usize| base[corner].midpoint(apex));
+            let diagonals = [[base[one], next], [base[other], middle]];
+            let [first, second] = diagonals.map(|[one, other]| one.distance(other));
+            let (shorter, longer) = if first < second { (0, 1) } else { (1, 0) };
+            assert!(is_edge(diagonals[shorter]) && !is_edge(diagonals[longer]), "{one}–{other}: {first} {second}");
+        }
+    }
 }
 
 #[test]

@@ -151,7 +151,9 @@ fn body(bytes: &[u8]) -> bool {
 /// Reads a mesh, and fills a surface with elements of every kind.
 fn mesh(bytes: &[u8], format: Format) -> bool {
     let limits = mesh::Limits { points: LIMITS.nodes as usize, corners: LIMITS.corners as usize };
-    let found = mesh::read(bytes, format, &limits);
+    // A file that is named beside has the same bytes.
+    let cells = mesh::read_cells_with(bytes, format, &limits, &mut |_| Ok(bytes.to_vec()));
+    let found = cells.and_then(|cells| cells.mesh(format));
     if let Ok(Mesh::Surface(surface)) = &found {
         let (low, high) = bounds(&surface.points);
         let side = (high - low).max_element() / 6.0;

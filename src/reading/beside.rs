@@ -12,7 +12,7 @@ pub(crate) type Wrong = (String, Option<String>);
 /// call the file `what` and end with `expected`.
 pub(crate) fn bytes(path: &Path, endings: &[&str], longest: u64, what: &str, expected: &str) -> Result<Vec<u8>, Wrong> {
     if !path.exists() {
-        return Err((missing(path), similar(path, endings).map(|near| format!("did you mean {near:?}?"))));
+        return Err(missing(path, endings));
     }
     // Reading a pipe could block for ever.
     if !path.is_file() {
@@ -72,10 +72,17 @@ pub(crate) fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(
     Ok(found.into_iter().map(|(_, number, path)| (number, path)).collect())
 }
 
-/// The message for a missing file.
-pub(crate) fn missing(path: &Path) -> String {
+/// The message for a missing file. One with one of the `endings` is suggested.
+pub(crate) fn missing(path: &Path, endings: &[&str]) -> Wrong {
     let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    format!("is not there (looked for {})", full.display())
+    let similar = || similar(path, endings).map(|near| format!("did you mean {near:?}?"));
+    (format!("is not there (looked for {})", full.display()), backslash(path).or_else(similar))
+}
+
+/// What to do about a missing path whose folders are separated as on Windows.
+pub(crate) fn backslash(path: &Path) -> Option<String> {
+    let has_some = !std::path::is_separator('\\') && path.to_string_lossy().contains('\\');
+    has_some.then(|| "write / between folders, not \\, which is a part of a name here".to_owned())
 }
 
 /// The file in the folder of a missing one with the most similar name and one of the `endings`.

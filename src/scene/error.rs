@@ -1,8 +1,9 @@
 //! The errors of reading a scene file.
 
+use crate::reading::beside::backslash;
 use crate::reading::{Mistake, Mistakes};
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A reason why a file gives no scene.
 ///
@@ -11,7 +12,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// The file does not exist.
-    #[error("{}: there is no such file{}", path.display(), similar(nearest.as_deref()))]
+    #[error("{}: there is no such file{}", path.display(), instead(path, nearest.as_deref()))]
     Missing {
         /// The path.
         path: PathBuf,
@@ -98,8 +99,9 @@ impl SceneError {
     }
 }
 
-fn similar(nearest: Option<&std::path::Path>) -> String {
-    nearest.map_or(String::new(), |path| format!("; did you mean {}?", path.display()))
+fn instead(path: &Path, nearest: Option<&Path>) -> String {
+    let similar = nearest.map(|path| format!("did you mean {}?", path.display()));
+    backslash(path).or(similar).map_or(String::new(), |help| format!("; {help}"))
 }
 
 fn inside(scenes: &[PathBuf]) -> String {

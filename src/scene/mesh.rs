@@ -10,7 +10,7 @@ use crate::reading::words::{count, list, nearest};
 use crate::sim::geometry::bounds;
 use crate::sim::{ElementKind, IndexLists};
 use glam::DVec3;
-use localshape_mesh::{self as mesh, Flaws, Format, Mesh};
+use localshape_mesh::{self as mesh, Flaws, Format, Mesh, ReadError};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
@@ -19,9 +19,6 @@ fn endings() -> Vec<&'static str> {
     Format::ALL.into_iter().flat_map(Format::endings).copied().collect()
 }
 
-/// Endings of mesh files that are not read.
-const OTHERS: [&str; 11] = ["mesh", "node", "ele", "inp", "fbx", "3mf", "dae", "blend", "step", "stp", "usd"];
-
 /// The number of cells along the longest side of a filled surface, unless a scene tells another.
 pub(crate) const CELLS: u32 = 20;
 
@@ -29,13 +26,15 @@ pub(crate) const CELLS: u32 = 20;
 #[derive(Debug)]
 pub(crate) struct MeshFile {
     pub(crate) mesh: Mesh,
-    /// The digest of its bytes.
+    /// The number of points that were joined with others on request.
+    pub(crate) joined: usize,
+    /// The digest of its bytes and of those of files beside it.
     pub(crate) digest: String,
 }
 
 impl MeshFile {
-    /// Reads a file. A message is the predicate of a sentence about the file.
-    pub(crate) fn read(path: &Path, limits: &Limits) -> Result<Self, Wrong> {
+    /// Reads a file, and joins points nearer than a distance in its unit. A message is the predicate of a sentence about the file.
+    pub(crate) fn read(path: &Path, weld: Option<f64>, limits: &Limits) -> Result<Self, Wrong> {
         let endings = endings();
         let expected = format!("expected a mesh: {}", list(&endings, "or", |ending| format!(".{ending}")));
         let bytes = beside::bytes(path, &endings, limits.file, "a mesh", &expected)?;
@@ -49,16 +48,30 @@ impl MeshFile {
             return Err((format!("{found}; {expected}"), help));
         };
         let most = |limit: u64| usize::try_from(limit).unwrap_or(usize::MAX).min(u32::MAX as usize);
+        let (mut hash, mut left) = (Sha256::new_with_prefix(&bytes), limits.file - bytes.len() as u64);
         let limits = mesh::Limits { points: most(limits.nodes), corners: most(limits.corners) };
-        let mesh = mesh::read(&bytes, format, &limits).map_err(|error| (error.message, error.help))?;
-        let digest = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-        Ok(Self { mesh, digest })
+        // All files together may be as long as one.
+        let mut beside = |name: &str| {
+            let path = path.with_file_name(name);
+            let data = beside::bytes(&path, &["bin"], left, "data of a mesh", "expected a file")
+                .map_err(|(message, help)| ReadError { message, help })?;
+            left -= data.len() as u64;
+            hash.update(&data);
+            Ok(data)
+        };
+        let told = |error: ReadError| (error.message, error.help);
+        let mut cells = mesh::read_cells_with(&bytes, format, &limits, &mut beside).map_err(told)?;
+        let joined = weld.map_or(0, |distance| cells.weld(distance));
+        let mesh = cells.mesh(format).map_err(told)?;
+        let digest = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok(Self { mesh, joined, digest })
     }
 }
 
-/// Whether a file has the ending of a mesh.
+/// Whether a file has the ending of a mesh, of one that is not read, too.
 pub(crate) fn is_mesh(path: &Path) -> bool {
-    Format::of(&ending(path)).is_some()
+    let ending = ending(path);
+    Format::of(&ending).is_some() || mesh::converter(&ending).is_some()
 }
 
 /// The ending of a file in small letters.
@@ -68,10 +81,8 @@ fn ending(path: &Path) -> String {
 
 /// The remedy for a file with an ending that is not read.
 fn other(ending: &str) -> Option<String> {
-    if OTHERS.contains(&ending) {
-        return Some(
-            "export it again: surfaces from Blender as .ply or .glb, cells from Gmsh or meshio as .vtu".to_owned(),
-        );
+    if let Some(help) = mesh::converter(ending) {
+        return Some(help.to_owned());
     }
     // Of short endings, others are formats of their own.
     let near = nearest(ending, &endings()).filter(|near| ending.len() > near.len());
@@ -81,12 +92,12 @@ fn other(ending: &str) -> Option<String> {
 /// Why an archive of arrays cannot be read from a mesh file, and what to write instead; `None` for other files.
 pub(crate) fn instead_of_archive(path: &Path, name: &str) -> Option<Wrong> {
     let ending = ending(path);
-    if is_mesh(path) {
+    if Format::of(&ending).is_some() {
         return Some((format!("is a mesh (.{ending})"), Some(format!("write mesh = {name:?} in place of `file`"))));
     }
     let message =
         format!("is a mesh (.{ending}), which is not read; expected a NumPy archive (.npz), or a mesh as `mesh`");
-    OTHERS.contains(&&*ending).then(|| (message, other(&ending)))
+    mesh::converter(&ending).map(|help| (message, Some(help.to_owned())))
 }
 
 /// Puts points of a file into the axes of scenes, with y up, and scales them. The axis of the file that points up is 0, 1 or 2.
@@ -146,10 +157,12 @@ pub(crate) fn crossing(kind: ElementKind, corners: &[DVec3]) -> Option<[usize; 2
         .find(|&[one, other]| apart(side(one), side(other)) && apart(side(other), side(one)))
 }
 
-/// What was wrong with a surface and is mended, in words; empty for nothing. Welded points are no flaw: some formats have no
+/// What was wrong with a surface and is mended, in words; empty for nothing. Points at one place are no flaw: some formats have no
 /// others.
 pub(crate) fn mended(flaws: &Flaws) -> Vec<String> {
     [
+        (flaws.lost, "point", " without coordinates left out"),
+        (flaws.near, "point", " welded that only round-off sets apart"),
         (flaws.degenerate, "triangle", " without area left out"),
         (flaws.doubled, "doubled triangle", " left out"),
         (flaws.turned, "triangle", " turned over"),
@@ -172,7 +185,7 @@ pub(crate) fn left(flaws: &Flaws) -> Vec<String> {
 }
 
 /// A number of things; `None` for none.
-fn several(number: usize, one: &str) -> Option<String> {
+pub(crate) fn several(number: usize, one: &str) -> Option<String> {
     let plural = if number == 1 { "" } else { "s" };
     (number > 0).then(|| format!("{} {one}{plural}", count(number as u128)))
 }
@@ -183,7 +196,7 @@ mod tests {
 
     #[test]
     fn files_are_read_or_not() {
-        assert!(OTHERS.iter().all(|ending| Format::of(ending).is_none()));
+        assert!(endings().iter().all(|ending| mesh::converter(ending).is_none()));
     }
 
     #[test]

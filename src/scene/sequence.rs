@@ -188,7 +188,8 @@ fn numbered(folder: &Path, pattern: &str, rate: f64) -> Result<Vec<Listed>, Flaw
     let found = beside::numbered(within, before, after)
         .map_err(|(message, _)| Flaw::new("", message).with_help("write more of the name before the star"))?;
     let Some(&(first, _)) = found.first() else {
-        let help = "expected files with numbers in place of the star, such as frame_00000.obj";
+        let help = || "expected files with numbers in place of the star, such as frame_00000.obj".to_owned();
+        let help = beside::backslash(Path::new(pattern)).unwrap_or_else(help);
         return Err(Flaw::new("", format!("names no file (looked in {})", within.display())).with_help(help));
     };
     let moment = |(number, file): (i64, _)| Listed { time: number.abs_diff(first) as f64 / rate, files: vec![file] };

@@ -271,6 +271,38 @@ fn says_what_a_mesh_is() {
     assert!(fills[0]["elements"].as_u64().unwrap() > 1000 && fills[0]["side"] == 0.1, "{}", fills[0]);
 }
 
+#[test]
+fn says_which_distance_closes_a_surface_or_joins_cells() {
+    let place = Place::with_small();
+    let files = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("mesh/tests/files");
+    for name in ["last-digits.stl", "discontinuous.vtu", "unknown-point.obj"] {
+        place.write(name, &std::fs::read(files.join(name)).expect("a file"));
+    }
+    let ran = place.run("check last-digits.stl").good();
+    for word in ["36 open edges", "remedy     weld = 1e-6 in `[body]`, times its `scale`, joins points"] {
+        assert!(ran.out.contains(word), "{word}: {}", ran.out);
+    }
+    assert!(place.run("check discontinuous.vtu").good().out.contains("remedy     weld = 1e-10 in `[body]`"));
+    let lost = place.run("check unknown-point.obj").good().out;
+    assert!(lost.contains("mended     1 point without coordinates left out") && !lost.contains("remedy"), "{lost}");
+    let document = place.run("check last-digits.stl unknown-point.obj --json").json();
+    let surface = |at: usize| &document["meshes"][at]["mesh"]["surface"];
+    assert_eq!((&surface(0)["weld"], &surface(0)["open_edges"]), (&1e-6.into(), &36.into()));
+    assert_eq!((&surface(1)["weld"], &surface(1)["lost"]), (&serde_json::Value::Null, &1.into()));
+}
+
+#[test]
+fn says_what_converts_files_that_are_not_read() {
+    let place = Place::with_small();
+    for (name, tool) in [("part.step", "gmsh -3 FILE -o NEW.msh"), ("part.FBX", "Blender"), ("part.3mf", "PrusaSlicer")]
+    {
+        place.write(name, "ISO-10303-21;\nHEADER;\n");
+        let ran = place.run(&format!("check {name}"));
+        ran.bad(2, &[&format!("{name} is a .{} file", name[5..].to_lowercase()), tool]);
+    }
+    place.run("simulate part.step").bad(2, &["part.step", "mesh"]);
+}
+
 /// Two hexahedra side by side, and a pentagon that crosses itself.
 #[test]
 fn says_what_cells_are() {

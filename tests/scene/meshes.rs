@@ -37,6 +37,9 @@ fn files_that_are_no_meshes_are_named() {
     let named = |name: &str| SCENE.replace("body.ply", name);
     wrong(&named("body.npz"), &[("body.npz", b"PK")], &["`body.npz` is a NumPy archive", "`file` in place of `mesh`"]);
     wrong(&named("body.fbx"), &[("body.fbx", b"")], &["`body.fbx` is a .fbx file", ".obj, .stl", "Blender"]);
+    wrong(&named("body.stp"), &[("body.stp", b"")], &["`body.stp` is a .stp file", "gmsh -3 FILE -o NEW.msh"]);
+    let file = SCENE.replace("mesh = 'body.ply'", "file = 'body.step'");
+    wrong(&file, &[("body.step", b"")], &["is a mesh (.step), which is not read", "gmsh -3 FILE -o NEW.msh"]);
     wrong(&named("body.stll"), &[("body.stll", b"")], &["is a .stll file", "did you mean .stl?"]);
     let series = load(&named("body.vtm"), &[("body.vtm", b"")]).unwrap_err().to_string();
     assert!(series.contains("is a .vtm file") && !series.contains("did you mean"), "{series}");
@@ -51,6 +54,7 @@ fn keys_of_meshes_belong_to_meshes() {
         ("fill = {}", "`body.fill` needs `mesh`"),
         ("scale = 0.001", "`body.scale` needs `mesh`"),
         ("up = 'z'", "`body.up` needs `mesh`"),
+        ("weld = 1e-6", "`body.weld` needs `mesh`"),
         ("mesh = 'body.ply'", "has both `lattice` and `mesh`"),
     ] {
         wrong(&lattice.replace("KEY", key), &[], &[message]);
@@ -59,6 +63,7 @@ fn keys_of_meshes_belong_to_meshes() {
     wrong(&fill("side = 0.1, cells = 3"), &[], &["`body.fill` has both `side` and `cells`"]);
     wrong(&fill("with = 'cube'"), &[], &["`body.fill.with` is \"cube\"", "did you mean \"cubes\"?"]);
     wrong(&fill("side = 0"), &[], &["`body.fill.side` is 0; expected a number greater than 0"]);
+    wrong(&SCENE.replace("density", "weld = 0\ndensity"), &[], &["`body.weld` is 0; expected a number greater than 0"]);
     wrong(&SCENE.replace("density", "scale = 'mm'\ndensity"), &[], &["`body.scale` is the string \"mm\"", "0.001"]);
 }
 
@@ -250,4 +255,120 @@ fn the_digest_is_of_the_content_of_a_mesh() {
     assert_eq!(digest("other.obj", defaults, CUBE), cube);
     assert_ne!(digest("cube.obj", "fill.cells = 21", CUBE), cube);
     assert_ne!(digest("cube.obj", "", &format!("{CUBE}# a comment\n")), cube);
+}
+
+/// A file of the crate of meshes.
+fn field(name: &str) -> Vec<u8> {
+    std::fs::read(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("mesh/tests/files").join(name)).unwrap()
+}
+
+fn messages(scene: &Scene) -> String {
+    scene.warnings.iter().map(|one| format!("{} {}\n", one.message, one.help.as_deref().unwrap_or_default())).collect()
+}
+
+#[test]
+fn backslashes_in_paths_are_told_everywhere() {
+    let expected = ["is not there", "write / between folders, not \\"];
+    for scene in [
+        with("a\\b.obj", ""),
+        SCENE.replace("mesh = 'body.ply'", "file = 'a\\b.npz'"),
+        "view.font.regular = 'a\\b.otf'\n".to_owned() + &with("cube.obj", ""),
+        with("cube.obj", "").replace("model = { kind = 'shape-based', stiffness = 1e4 }", "states = 'a\\b.npz'"),
+        with("cube.obj", "").replace("model = { kind = 'shape-based', stiffness = 1e4 }", "states = 'a\\b.pvd'"),
+    ] {
+        wrong(&scene, &[("cube.obj", CUBE.as_bytes())], &expected);
+    }
+    let stars =
+        with("cube.obj", "").replace("model = { kind = 'shape-based', stiffness = 1e4 }", "states = 'a\\b*.obj'");
+    wrong(&stars, &[("cube.obj", CUBE.as_bytes())], &["names no file", "write / between folders"]);
+    let missing = Scene::load(std::path::Path::new("a\\b.toml"), &Limits::default()).unwrap_err().to_string();
+    assert!(missing.contains("write / between folders"), "{missing}");
+}
+
+#[test]
+fn points_are_welded_within_a_distance_in_metres() {
+    let files = [
+        ("a.stl", &field("last-digits.stl")[..]),
+        ("b.stl", &field("small-zeros.stl")),
+        ("c.vtu", &field("discontinuous.vtu")),
+    ];
+    let scene = |lines: &str, name: &str| load(&with(name, lines), &files).unwrap();
+    let open = messages(&scene("fill.cells = 6", "a.stl"));
+    assert!(
+        open.contains("36 open edges") && open.contains("`localshape check FILE` tells whether `weld` helps"),
+        "{open}"
+    );
+    let welded = "`a.stl` is mended: 28 points welded, nearer than weld = 1e-6 m to others \n";
+    assert_eq!(messages(&scene("fill.cells = 6\nweld = 1e-6", "a.stl")), welded);
+    // In metres after the scale.
+    let small = scene("fill.cells = 6\nscale = 0.001\nweld = 1e-9", "a.stl");
+    assert!(messages(&small).starts_with("`a.stl` is mended: 28 points welded, nearer than weld = 1e-9 m to others"));
+    assert!(messages(&scene("fill.cells = 6\nscale = 0.001\nweld = 1e-11", "a.stl")).contains("36 open edges"));
+    let zeros = messages(&scene("fill.cells = 6", "b.stl"));
+    assert!(
+        zeros.starts_with("`b.stl` is mended: ") && zeros.contains(" points welded that only round-off sets apart"),
+        "{zeros}"
+    );
+    // Cells are joined on request, which the warning tells.
+    let apart = scene("", "c.vtu");
+    assert_eq!(apart.bodies[0].body.len(), 24);
+    assert!(
+        messages(&apart).contains("makes 6 parts that share no node")
+            && messages(&apart).contains("write weld = 1e-10 (m)")
+    );
+    let joined = scene("weld = 1e-10", "c.vtu");
+    assert_eq!((joined.bodies[0].body.len(), joined.bodies[0].body.elements.len()), (8, 6));
+    assert_eq!(messages(&joined), "`c.vtu` is mended: 16 points welded, nearer than weld = 1e-10 m to others \n");
+    assert_ne!(apart.digest, joined.digest);
+}
+
+#[test]
+fn groups_of_obj_files_are_named() {
+    let files = [("a.obj", &field("groups.obj")[..])];
+    let held = |nodes: &str| {
+        let scene = with("a.obj", "fill.cells = 6") + &format!("[[hold]]\nnodes = '{nodes}'\n");
+        let scene = load(&scene, &files).unwrap();
+        let body = &scene.bodies[0].body;
+        scene.runs[0].grips[0].nodes.iter().map(|&node| body.rest[node as usize].y).collect::<Vec<_>>()
+    };
+    // A box of 2 × 1 × 3 m with cubes of half a metre.
+    assert_eq!(held("cap"), [1.0; 35]);
+    assert_eq!(held("red"), held("cap"));
+    let wrong_name = with("a.obj", "") + "[[hold]]\nnodes = 'cup'\n";
+    wrong(&wrong_name, &files, &["or a group of the mesh: \"cap\", \"red\" or \"rest\"", "did you mean \"cap\"?"]);
+}
+
+#[test]
+fn points_without_coordinates_are_told() {
+    for name in ["unknown-point.obj", "unknown-point.ply", "unknown-point-binary.ply"] {
+        let scene = load(&with(name, "fill.cells = 6"), &[(name, &field(name))]).unwrap();
+        assert_eq!(messages(&scene), format!("`{name}` is mended: 1 point without coordinates left out \n"));
+        assert!((scene.bodies[0].body.mass.iter().sum::<f64>() - 6000.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn data_of_a_gltf_file_is_beside_it() {
+    let gltf = "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [{\"mesh\": 0}], \"meshes\": [{\"primitives\": [{\"attributes\": \
+        {\"POSITION\": 0}, \"indices\": 1}]}], \"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 4, \"type\": \"VEC3\"}, \
+        {\"bufferView\": 1, \"componentType\": 5121, \"count\": 12, \"type\": \"SCALAR\"}], \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 48}, \
+        {\"buffer\": 0, \"byteOffset\": 48, \"byteLength\": 12}], \"buffers\": [{\"byteLength\": 60, \"uri\": \"my%20box.bin\"}]}";
+    let data = |height: f32| {
+        let corners = [[0.0f32; 3], [1.0, 0.0, 0.0], [0.0, height, 0.0], [0.0, 0.0, 1.0]];
+        let mut bytes: Vec<u8> = corners.as_flattened().iter().flat_map(|number| number.to_le_bytes()).collect();
+        bytes.extend([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]);
+        bytes
+    };
+    let scene = with("a.gltf", "fill.cells = 6");
+    let read = |height: f32| load(&scene, &[("a.gltf", gltf.as_bytes()), ("my box.bin", &data(height))]).unwrap();
+    let (low, high) = (read(1.0), read(3.0));
+    let mass = |scene: &Scene| scene.bodies[0].body.mass.iter().sum::<f64>();
+    assert!((mass(&low) - 1000.0 / 6.0).abs() < 1e-9 && (mass(&high) - 500.0).abs() < 1e-9);
+    assert_ne!(low.digest, high.digest, "the data is a part of the scene");
+    let mut only = vec![("a.gltf", gltf.as_bytes())];
+    wrong(&scene, &only, &["`a.gltf` has its data in `my box.bin`, which is not there (looked for "]);
+    only.push(("my bo.bin", b""));
+    wrong(&scene, &only, &["is not there", "did you mean \"my bo.bin\"?"]);
+    let outside = gltf.replace("my%20box.bin", "../scene.toml");
+    wrong(&scene, &[("a.gltf", outside.as_bytes())], &["outside of its folder", "beside it"]);
 }

@@ -1,13 +1,15 @@
 //! Points and cells as a file lists them, and the mesh that they make.
 
 use super::polygon::Triangulation;
-use super::source::{DAMAGED, Source};
-use super::{Limits, Mesh, ReadError, Surface, Volume};
+use super::source::Source;
+use super::{Format, Limits, Mesh, ReadError, Surface, Volume};
 use crate::Group;
+use crate::weld::joined;
 use glam::DVec3;
 use localshape_sim::geometry::volume_by_faces;
 use localshape_sim::{Dimension, ElementKind, IndexLists, Solids};
 use std::collections::{BTreeMap, HashSet};
+use std::ops::Range;
 
 /// The kind of a cell in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -68,6 +70,8 @@ pub struct Cells {
     /// Displacement of each point, in the unit of the file: the point data of VTK's grids named `displacement` or `u`, in capital letters
     /// or not. They are not added to the points.
     pub displacements: Option<Vec<DVec3>>,
+    /// The number of points of the file without coordinates, which no cell names and which are left out.
+    pub lost: usize,
 }
 
 /// The order in which files list the corners of a hexahedron, around one side and then around the other, as places in the order of
@@ -87,11 +91,18 @@ pub(super) struct Builder<'l> {
     limits: &'l Limits,
     /// The highest index of a corner, and the place where it was found. Points may follow the cells that name them.
     highest: (u32, usize),
+    /// The points without coordinates, and the places where they were found.
+    lost: Vec<(u32, usize)>,
+    /// The names of cells from now on, of three kinds, and the first cell that has them.
+    names: [(Vec<String>, usize); 3],
+    /// The cells of each name.
+    named: BTreeMap<String, Vec<Range<usize>>>,
 }
 
 impl<'l> Builder<'l> {
     pub(super) fn new(limits: &'l Limits) -> Self {
-        Self { cells: Cells::default(), groups: BTreeMap::new(), limits, highest: (0, 0) }
+        let (cells, groups, lost, names, named) = Default::default();
+        Self { cells, groups, limits, highest: (0, 0), lost, names, named }
     }
 
     /// The number of points so far.
@@ -122,7 +133,7 @@ impl<'l> Builder<'l> {
         if !(point.abs().max_element() <= FAR && point.is_finite()) {
             let [x, y, z] = point.to_array();
             let message = format!("has point {index} at [{x:?}, {y:?}, {z:?}]; expected coordinates up to 1e100");
-            return Err(ReadError::new(message, DAMAGED));
+            return Err(ReadError::damaged(message));
         }
         let most = self.limits.points.min(u32::MAX as usize - 1);
         if index >= most {
@@ -132,12 +143,19 @@ impl<'l> Builder<'l> {
         Ok(index as u32)
     }
 
+    /// Adds a point that was found at a place. Programs write some that no cell names without coordinates: those are left out.
+    pub(super) fn point_at(&mut self, point: DVec3, at: usize) -> Result<u32, ReadError> {
+        if point.is_finite() {
+            return self.point(point);
+        }
+        self.lost.push((self.points() as u32, at));
+        self.point(DVec3::ZERO)
+    }
+
     /// The index of a point, counted from 0, that was found at a place.
     pub(super) fn corner(&mut self, index: i64, at: usize, source: &Source<'_>) -> Result<u32, ReadError> {
-        let corner = u32::try_from(index).map_err(|_| {
-            let message = format!("names a point that it does not have {}", source.place(at));
-            ReadError::new(message, DAMAGED)
-        })?;
+        let corner = u32::try_from(index)
+            .map_err(|_| ReadError::damaged(format!("names a point that it does not have {}", source.place(at))))?;
         if corner > self.highest.0 {
             self.highest = (corner, at);
         }
@@ -192,6 +210,34 @@ impl<'l> Builder<'l> {
         self.groups.entry(name).or_default().extend(points);
     }
 
+    /// Gives cells from now on other names of a kind, 0 to 2. Their points become groups.
+    pub(super) fn name(&mut self, kind: usize, names: Vec<String>) {
+        let now = self.cells.kinds.len();
+        let (before, start) = std::mem::replace(&mut self.names[kind], (names, now));
+        for name in before.into_iter().filter(|name| start < now && !name.is_empty()) {
+            self.named.entry(name).or_default().push(start..now);
+        }
+    }
+
+    /// Leaves points without coordinates out, if no cell names them.
+    fn drop_lost(&mut self, source: &Source<'_>, first: u64) -> Result<(), ReadError> {
+        let cells = &mut self.cells;
+        let named = Used::new(cells.points.len(), cells.corners.indices());
+        if let Some(&(index, at)) = self.lost.iter().find(|(index, _)| named.new[*index as usize] != NONE) {
+            let (index, place) = (u64::from(index) + first, source.place(at));
+            let message =
+                format!("has point {index} without coordinates {place}, and a face with it; expected numbers");
+            return Err(ReadError::new(message, "remove its faces, or write the file again"));
+        }
+        let mut new = vec![0; cells.points.len()];
+        self.lost.iter().for_each(|(index, _)| new[*index as usize] = NONE);
+        let kept = Used::numbered(new);
+        cells.lost = self.lost.len();
+        cells.points = kept.of(&cells.points);
+        cells.rename(&kept.new);
+        Ok(())
+    }
+
     /// All cells, if each names points that are there. Errors count points from `first`.
     pub(super) fn finish(mut self, source: &Source<'_>, first: u64) -> Result<Cells, ReadError> {
         let count = self.cells.points.len();
@@ -203,25 +249,29 @@ impl<'l> Builder<'l> {
                     format!("names point {index} {place}, but has points {first} to {}", count as u64 + first - 1)
                 }
             };
-            return Err(ReadError::new(message, DAMAGED));
+            return Err(ReadError::damaged(message));
         }
         // Some pieces may have none.
         self.cells.velocities = self.cells.velocities.filter(|all| all.len() == count);
         self.cells.displacements = self.cells.displacements.filter(|all| all.len() == count);
-        self.cells.groups = self
-            .groups
-            .into_iter()
-            .map(|(name, mut points)| {
-                points.sort_unstable();
-                points.dedup();
-                Group { name, points }
-            })
-            .collect();
+        if !self.lost.is_empty() {
+            self.drop_lost(source, first)?;
+        }
+        (0..self.names.len()).for_each(|kind| self.name(kind, Vec::new()));
+        let (count, corners) = (self.cells.points.len(), &self.cells.corners);
+        let of = |cells: &Range<usize>| {
+            &corners.indices()[corners.range(cells.start).start..corners.range(cells.end - 1).end]
+        };
+        let named =
+            self.named.into_iter().map(|(name, cells)| (name, cells.iter().map(of).collect::<Vec<_>>().concat()));
+        let groups =
+            self.groups.into_iter().chain(named).map(|(name, points)| Group::new(name, points, count)).collect();
+        self.cells.groups = groups;
         Ok(self.cells)
     }
 }
 
-fn too_many(found: &str, what: &str, most: usize) -> ReadError {
+pub(super) fn too_many(found: &str, what: &str, most: usize) -> ReadError {
     let message = format!("has {found} {what}; at most {most} are read");
     ReadError::new(message, "make the mesh coarser, with a decimation of the program that wrote it")
 }
@@ -230,25 +280,43 @@ fn too_many(found: &str, what: &str, most: usize) -> ReadError {
 const FLAT: f64 = 1e-12;
 
 impl Cells {
-    /// The mesh: a volume of the cells with a volume; else, if all faces lie in a plane of equal z, a volume of them in the plane;
-    /// else a surface of triangles. Points that belong to no part of it are left out.
+    /// The mesh of a file of a format. In formats of cells it is a volume of the cells with a volume; else, if all faces lie in a plane
+    /// of equal z, a volume of them in the plane; else, and in formats of surfaces, a surface of triangles. Points that belong to no
+    /// part of it are left out.
     ///
     /// # Errors
     /// If there are neither cells nor faces, or cells without area or volume.
-    pub fn mesh(self) -> Result<Mesh, ReadError> {
+    pub fn mesh(self, format: Format) -> Result<Mesh, ReadError> {
+        // A flat surface is not a body in the plane.
+        if matches!(format, Format::Obj | Format::Stl | Format::Ply | Format::Off | Format::Gltf) {
+            return self.faces();
+        }
         let is_volume = self.has(CellKind::is_solid) || self.has(CellKind::is_face) && self.is_plane();
         if is_volume { self.elements(Dimension::Plane).map(Mesh::Volume) } else { self.faces() }
+    }
+
+    /// Makes points nearer than a distance to an earlier one one with it, and returns their number.
+    pub fn weld(&mut self, distance: f64) -> usize {
+        let first = joined(&self.points, (0..self.points.len() as u32).collect(), distance);
+        self.rename(&first);
+        self.groups.iter_mut().for_each(|group| *group = group.renamed(&first));
+        (0..).zip(&first).filter(|&(point, &first)| point != first).count()
+    }
+
+    /// Gives the corners of all cells other indices.
+    fn rename(&mut self, new: &[u32]) {
+        let renamed: Vec<u32> = self.corners.indices().iter().map(|&corner| new[corner as usize]).collect();
+        self.corners = (0..self.corners.len()).map(|at| &renamed[self.corners.range(at)]).collect();
     }
 
     /// The faces as a surface of triangles, without points that belong to none.
     ///
     /// # Errors
     /// If there are no faces.
-    pub(super) fn faces(self) -> Result<Mesh, ReadError> {
-        let mut triangles = self.triangles()?;
-        let used = Used::new(self.points.len(), triangles.as_flattened());
-        triangles.as_flattened_mut().iter_mut().for_each(|corner| *corner = used.new[*corner as usize]);
-        Ok(Mesh::Surface(Surface { points: used.of(&self.points), triangles, groups: used.groups(&self.groups) }))
+    fn faces(self) -> Result<Mesh, ReadError> {
+        let triangles = self.triangles()?;
+        let Self { points, groups, lost, .. } = self;
+        Ok(Mesh::Surface(Surface { points, triangles, groups, lost }.compact()))
     }
 
     /// All that could be elements of one kind: the cells with a volume; else the faces, in space as triangles; else the lines. Points
@@ -471,27 +539,37 @@ fn turn(kind: ElementKind, cell: &mut [u32]) {
 const NONE: u32 = u32::MAX;
 
 /// New indices of the points in use.
-struct Used {
+pub(crate) struct Used {
     /// The new index of each point, or [`NONE`].
-    new: Vec<u32>,
+    pub(crate) new: Vec<u32>,
 }
 
 impl Used {
-    fn new(points: usize, corners: &[u32]) -> Self {
+    pub(crate) fn new(points: usize, corners: &[u32]) -> Self {
         let mut new = vec![NONE; points];
         corners.iter().for_each(|&corner| new[corner as usize] = 0);
+        Self::numbered(new)
+    }
+
+    /// Numbers the points that are not left out.
+    fn numbered(mut new: Vec<u32>) -> Self {
         let used = new.iter_mut().filter(|new| **new != NONE);
         used.zip(0..).for_each(|(new, index)| *new = index);
         Self { new }
     }
 
+    /// Whether no point is left out.
+    pub(crate) fn are_all(&self) -> bool {
+        !self.new.contains(&NONE)
+    }
+
     /// The values of these points among those of all.
-    fn of<T: Copy>(&self, all: &[T]) -> Vec<T> {
+    pub(crate) fn of<T: Copy>(&self, all: &[T]) -> Vec<T> {
         all.iter().zip(&self.new).filter(|&(_, &new)| new != NONE).map(|(value, _)| *value).collect()
     }
 
     /// The groups that have points in use.
-    fn groups(&self, groups: &[Group]) -> Vec<Group> {
+    pub(crate) fn groups(&self, groups: &[Group]) -> Vec<Group> {
         let group = |group: &Group| {
             let points = group.points.iter().map(|&point| self.new[point as usize]);
             let points: Vec<u32> = points.filter(|&point| point != NONE).collect();

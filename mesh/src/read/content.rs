@@ -1,7 +1,7 @@
 //! What a file is by its content, whatever its ending says.
 
 use super::source::quoted;
-use super::{Format, ReadError};
+use super::{Format, ReadError, converter};
 
 /// The remedy for a page of the Web.
 const PAGE: &str = "the download gave a page in place of the file: download the file itself";
@@ -64,7 +64,7 @@ fn found(bytes: &[u8]) -> Option<Found> {
     Some(match () {
         () if begins(b"<!doctype html") || begins(b"<html") => Other("a page of the Web (HTML)", PAGE),
         () if has(b"<vtkfile") => Found::Format(Format::Vtu),
-        () if has(b"<collada") => Other("a COLLADA file", OTHER),
+        () if has(b"<collada") => Other("a COLLADA file", converter("dae").unwrap_or(OTHER)),
         () if begins(b"<?xml") || begins(b"<svg") => Other("another XML file", OTHER),
         () if head.starts_with(b"glTF") => Found::Format(Format::Gltf),
         () if begins(b"{") => Found::Format(Format::Gltf),
@@ -88,11 +88,9 @@ fn found(bytes: &[u8]) -> Option<Found> {
         () if head.starts_with(b"%PDF") => Other("a PDF file", OTHER),
         () if head.starts_with(b"\x89HDF") => Other("an HDF5 file", OTHER),
         () if head.starts_with(b"\x93NUMPY") => Other("a NumPy array", OTHER),
-        () if head.starts_with(b"Kaydara FBX") => Other("an FBX file", OTHER),
-        () if head.starts_with(b"BLENDER") => Other("a Blender file", OTHER),
-        () if begins(b"iso-10303") => {
-            Other("a STEP file", "mesh it first, with Gmsh for example, and write an `.msh` file")
-        }
+        () if head.starts_with(b"Kaydara FBX") => Other("an FBX file", converter("fbx").unwrap_or(OTHER)),
+        () if head.starts_with(b"BLENDER") => Other("a Blender file", converter("blend").unwrap_or(OTHER)),
+        () if begins(b"iso-10303") => Other("a STEP file", converter("step").unwrap_or(OTHER)),
         () if begins(b"version https://git-lfs") => Other("a pointer of Git LFS", "run `git lfs pull`"),
         () => return None,
     })

@@ -1,133 +1,193 @@
-//! glTF 2.0: the triangles of the scene, with the transforms of its nodes. The data must be inside the file, as in `.glb` or as
-//! Base64 in `.gltf`.
+//! glTF 2.0 (<https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html>): the triangles of the scene as it rests, with the transforms of
+//! its nodes, the weights of morph targets and the joints of skins. Its data is inside the file or in files beside it.
+
+mod data;
+mod document;
 
 use super::cells::Builder;
-use super::source::{CUT, DAMAGED, Source, quoted};
-use super::{Cells, Limits, ReadError};
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use glam::{DMat4, DQuat, DVec3};
-use gltf::accessor::DataType;
-use gltf::buffer::{Source as Data, View};
-use gltf::json::validation::{Error, Validate};
+use super::source::Source;
+use super::{Beside, Cells, Limits, ReadError};
+use data::Lists;
+use glam::{DMat4, DQuat, DVec3, DVec4};
 use gltf::mesh::Mode;
 use gltf::scene::Transform;
-use gltf::{Accessor, Document, Node, Primitive, Semantic};
-use std::borrow::Cow;
+use gltf::{Document, Node, Primitive, Semantic, Skin};
 
-pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
-    let (document, blob) = document(bytes)?;
-    let buffers = document.buffers().map(|buffer| data(&buffer, blob.as_deref())).collect::<Result<Vec<_>, _>>()?;
-    let mut builder = Builder::new(limits);
-    // The nodes to visit, the next last.
-    let mut nodes: Vec<(Node<'_>, DMat4)> = Vec::new();
-    match document.default_scene().or_else(|| document.scenes().next()) {
-        Some(scene) => nodes.extend(scene.nodes().map(|node| (node, DMat4::IDENTITY))),
-        None => {
-            let mut is_root = vec![true; document.nodes().len()];
-            document.nodes().flat_map(|node| node.children()).for_each(|child| is_root[child.index()] = false);
-            nodes.extend(document.nodes().filter(|node| is_root[node.index()]).map(|node| (node, DMat4::IDENTITY)));
-        }
-    }
-    nodes.reverse();
-    let mut is_visited = vec![false; document.nodes().len()];
-    while let Some((node, above)) = nodes.pop() {
-        if std::mem::replace(&mut is_visited[node.index()], true) {
-            let message = format!("has the node {} below two others, or below itself", node.index());
-            return Err(ReadError::new(message, DAMAGED));
-        }
-        let transform = above * matrix(node.transform());
-        if let Some(mesh) = node.mesh() {
-            for primitive in mesh.primitives() {
-                triangles(&primitive, transform, &buffers, limits, &mut builder)?;
-            }
-        }
-        let children: Vec<_> = node.children().map(|child| (child, transform)).collect();
-        nodes.extend(children.into_iter().rev());
-    }
-    builder.finish(&Source::text(b""), 0)
-}
-
-/// The validated structure of a file, and the binary data of a `.glb`.
-fn document(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), ReadError> {
-    /// The length of the header of a `.glb`, which the length in it includes.
-    const HEADER: u32 = 12;
-    if bytes.starts_with(b"glTF") {
-        let length = bytes.get(8..).and_then(|rest| rest.first_chunk()).map(|length| u32::from_le_bytes(*length));
-        if length.is_none_or(|length| length < HEADER) {
-            return Err(ReadError::new("ends in its header of 12 bytes", CUT));
-        }
-        if bytes[4..8] == 1u32.to_le_bytes() {
-            return Err(old());
-        }
-    }
-    let no = |text: String| {
-        let text = text.replace(['\n', '\r'], " ");
-        ReadError::new(format!("is no sound glTF 2.0 file: {text}"), DAMAGED)
+pub(super) fn read(bytes: &[u8], limits: &Limits, beside: &mut Beside<'_>) -> Result<Cells, ReadError> {
+    let (document, blob) = document::read(bytes)?;
+    let mut scene = Scene {
+        lists: Lists::new(&document, blob, beside, limits)?,
+        builder: Builder::new(limits),
+        places: vec![None; document.nodes().len()],
     };
-    let found = gltf::Gltf::from_slice_without_validation(bytes);
-    let found = found.map_err(|error| if is_old(bytes) { old() } else { no(error.to_string()) })?;
-    let json = found.document.into_json();
-    if json.asset.version.starts_with("1.") {
-        return Err(old());
+    let nodes = scene.place(&document)?;
+    nodes.iter().try_for_each(|node| scene.add(node))?;
+    if scene.builder.is_empty() {
+        let message = "shows nothing: no node of its scene has a mesh of triangles";
+        return Err(ReadError::new(message, "make the scene with meshes the default `scene`, or export it again"));
     }
-    // Points packed by these cannot be read. Other extensions concern materials and lights.
-    let packed = |name: &&String| ["KHR_draco_mesh_compression", "EXT_meshopt_compression"].contains(&name.as_str());
-    if let Some(name) = json.extensions_required.iter().find(packed) {
-        let message = format!("has its mesh packed by {}; expected plain data", quoted(name.as_bytes()));
-        return Err(ReadError::new(message, "export it again without compression"));
-    }
-    // The validation looks up the lists of attributes before it checks that they are there.
-    let lists = json.accessors.len();
-    let mut attributes = json.meshes.iter().flat_map(|mesh| &mesh.primitives).flat_map(|part| part.attributes.values());
-    if let Some(list) = attributes.find(|list| list.value() >= lists) {
-        return Err(no(format!("a mesh names the list {} of {lists}", list.value())));
-    }
-    let mut first = None;
-    json.validate(&json, gltf::json::Path::new, &mut |path, error| {
-        let path = path().to_string();
-        // Boxes around points are not needed, and often left out.
-        let is_needed = !path.ends_with(".min") && !path.ends_with(".max") && error != Error::Unsupported;
-        if is_needed && first.is_none() {
-            first = Some(format!("{path}: {error}"));
-        }
-    });
-    match first {
-        Some(error) => Err(no(error)),
-        None => Ok((Document::from_json_without_validation(json), found.blob)),
-    }
+    scene.builder.finish(&Source::text(b""), 0)
 }
 
-/// Whether a file that is not read as version 2.0 is one of version 1.0, which names things where 2.0 numbers them.
-fn is_old(bytes: &[u8]) -> bool {
-    let value: gltf::json::Value = gltf::json::deserialize::from_slice(bytes).unwrap_or_default();
-    let version = value.get("asset").and_then(|asset| asset.get("version")).and_then(|version| version.as_str());
-    let are_named = ["meshes", "nodes"].iter().any(|key| value.get(key).is_some_and(gltf::json::Value::is_object));
-    are_named || version.is_some_and(|version| version.starts_with('1'))
+/// The scene that a file shows.
+struct Scene<'b, 'l> {
+    lists: Lists<'b>,
+    builder: Builder<'l>,
+    /// The transform of each node of the scene with those above it.
+    places: Vec<Option<DMat4>>,
 }
 
-fn old() -> ReadError {
-    ReadError::new("is a glTF 1.0 file; expected 2.0", "export it again as glTF 2.0 (.glb)")
-}
-
-/// The data of a buffer. Only the first may be the binary data of the file.
-fn data<'b>(buffer: &gltf::Buffer<'_>, blob: Option<&'b [u8]>) -> Result<Cow<'b, [u8]>, ReadError> {
-    let index = buffer.index();
-    match buffer.source() {
-        Data::Bin if index == 0 => {
-            blob.map(Cow::Borrowed).ok_or_else(|| ReadError::new("ends before its binary data", CUT))
-        }
-        Data::Bin => Err(ReadError::new(format!("has no data for its buffer {index}"), DAMAGED)),
-        Data::Uri(uri) => match uri.strip_prefix("data:").and_then(|data| data.split_once(";base64,")) {
-            Some((_, text)) => STANDARD
-                .decode(text.trim())
-                .map(Cow::Owned)
-                .map_err(|error| ReadError::new(format!("has damaged Base64 in its buffer {index}: {error}"), DAMAGED)),
+impl Scene<'_, '_> {
+    /// The nodes of the scene in the order of the tree, with their places noted.
+    fn place<'d>(&mut self, document: &'d Document) -> Result<Vec<Node<'d>>, ReadError> {
+        // The nodes to visit, the next last.
+        let mut next: Vec<(Node<'_>, DMat4)> = Vec::new();
+        match document.default_scene().or_else(|| document.scenes().next()) {
+            Some(scene) => next.extend(scene.nodes().map(|node| (node, DMat4::IDENTITY))),
             None => {
-                let message = format!("has its data in another file, {}; expected data inside", quoted(uri.as_bytes()));
-                Err(ReadError::new(message, "export it as one file, `.glb`"))
+                let mut is_root = vec![true; document.nodes().len()];
+                document.nodes().flat_map(|node| node.children()).for_each(|child| is_root[child.index()] = false);
+                next.extend(document.nodes().filter(|node| is_root[node.index()]).map(|node| (node, DMat4::IDENTITY)));
             }
-        },
+        }
+        next.reverse();
+        let mut nodes = Vec::new();
+        while let Some((node, above)) = next.pop() {
+            let place = above * matrix(node.transform());
+            if self.places[node.index()].replace(place).is_some() {
+                let message = format!("has the node {} below two others, or below itself", node.index());
+                return Err(ReadError::damaged(message));
+            }
+            let children: Vec<_> = node.children().map(|child| (child, place)).collect();
+            next.extend(children.into_iter().rev());
+            nodes.push(node);
+        }
+        Ok(nodes)
+    }
+
+    /// Adds the mesh of a node.
+    fn add(&mut self, node: &Node<'_>) -> Result<(), ReadError> {
+        let Some(mesh) = node.mesh() else { return Ok(()) };
+        let place = self.places[node.index()].unwrap_or_default();
+        let joints = node.skin().map(|skin| self.joints(&skin)).transpose()?;
+        let weights = node.weights().or(mesh.weights()).unwrap_or_default();
+        mesh.primitives().try_for_each(|primitive| self.triangles(&primitive, place, joints.as_deref(), weights))
+    }
+
+    /// The matrices by which the joints of a skin place its points.
+    fn joints(&mut self, skin: &Skin<'_>) -> Result<Vec<DMat4>, ReadError> {
+        let (index, count) = (skin.index(), skin.joints().count());
+        let inverse: Vec<_> = match skin.inverse_bind_matrices() {
+            // As many as joints, which are nodes, or some more.
+            Some(list) => self.lists.numbers(&list, 16, 4 * self.places.len())?,
+            None => DMat4::IDENTITY.to_cols_array().repeat(count),
+        };
+        if inverse.len() < 16 * count {
+            let found = inverse.len() / 16;
+            let message = format!("has {found} inverse matrices for {count} joints of its skin {index}");
+            return Err(ReadError::damaged(message));
+        }
+        let matrix = |(joint, inverse): (Node<'_>, &[f64])| {
+            let place = self.places[joint.index()].ok_or_else(|| {
+                let message = format!("has the joint {} of its skin {index} outside of its scene", joint.index());
+                ReadError::new(message, "export it again with its skeleton, or with the pose applied to the mesh")
+            })?;
+            Ok(place * DMat4::from_cols_slice(inverse))
+        };
+        skin.joints().zip(inverse.chunks_exact(16)).map(matrix).collect()
+    }
+
+    /// The positions of the points of a part, moved by morph targets.
+    fn positions(&mut self, primitive: &Primitive<'_>, weights: &[f32]) -> Result<Vec<DVec3>, ReadError> {
+        let Some(list) = primitive.get(&Semantic::Positions) else { return Ok(Vec::new()) };
+        let mut positions = self.lists.vectors(&list)?;
+        for (target, &weight) in primitive.morph_targets().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+            let Some(moves) = target.positions().map(|list| self.lists.vectors(&list)).transpose()? else { continue };
+            if moves.len() != positions.len() {
+                let [found, expected] = [&moves, &positions].map(Vec::len);
+                let message = format!("has a morph target of {found} points for a part with {expected}");
+                return Err(ReadError::damaged(message));
+            }
+            positions.iter_mut().zip(moves).for_each(|(position, moves)| *position += f64::from(weight) * moves);
+        }
+        Ok(positions)
+    }
+
+    /// The points of a part of a skin, each at the mean of where its joints bring it, and whether they mirror the first. `None` if it
+    /// names no joints.
+    fn skinned(
+        &mut self,
+        primitive: &Primitive<'_>,
+        joints: &[DMat4],
+        points: &[DVec3],
+    ) -> Result<Option<(Vec<DVec3>, bool)>, ReadError> {
+        let (most, mut sums, mut turn) = (self.lists.limits.points, Vec::new(), 0.0);
+        for set in 0.. {
+            let lists = [Semantic::Joints(set), Semantic::Weights(set)].map(|semantic| primitive.get(&semantic));
+            let [Some(indices), Some(weights)] = lists else { break };
+            let (indices, weights) = (self.lists.numbers(&indices, 4, most)?, self.lists.numbers(&weights, 4, most)?);
+            sums.resize(points.len(), DVec4::ZERO);
+            let each = indices.iter().zip(&weights).take(4 * points.len()).enumerate();
+            for (at, (&index, &weight)) in each.filter(|(_, (_, weight))| **weight != 0.0) {
+                let Some(joint) = joints.get(index as usize) else {
+                    let message = format!("names joint {index} of a skin with {} joints", joints.len());
+                    return Err(ReadError::damaged(message));
+                };
+                sums[at / 4] += weight * joint.transform_point3(points[at / 4]).extend(1.0);
+                turn += if at < 4 { weight * joint.determinant() } else { 0.0 };
+            }
+        }
+        if let Some(at) = sums.iter().position(|sum| sum.w <= 0.0) {
+            let message = format!("has point {at} of a part without weights, which its skin needs");
+            return Err(ReadError::new(message, "export it again with weights for all points, or without its skin"));
+        }
+        let points = || sums.iter().map(|sum| sum.truncate() / sum.w).collect();
+        Ok((!sums.is_empty()).then(|| (points(), turn < 0.0)))
+    }
+
+    /// Adds the triangles of a part of a mesh. Points and lines are left out.
+    fn triangles(
+        &mut self,
+        primitive: &Primitive<'_>,
+        place: DMat4,
+        joints: Option<&[DMat4]>,
+        weights: &[f32],
+    ) -> Result<(), ReadError> {
+        let mode = primitive.mode();
+        if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+            return Ok(());
+        }
+        let positions = self.positions(primitive, weights)?;
+        let (first, count) = (self.builder.points(), positions.len());
+        self.builder.expect((first + count) as u64, 0)?;
+        // Joints place a mesh, whatever the node that has it.
+        let skinned = joints.map_or(Ok(None), |joints| self.skinned(primitive, joints, &positions))?;
+        let (positions, is_mirrored) = skinned.unwrap_or_else(|| {
+            (positions.iter().map(|&point| place.transform_point3(point)).collect(), place.determinant() < 0.0)
+        });
+        positions.into_iter().try_for_each(|point| self.builder.point(point).map(drop))?;
+        let corners: Vec<usize> = match primitive.indices() {
+            Some(list) => {
+                let indices = self.lists.numbers(&list, 1, self.lists.limits.corners)?;
+                indices.into_iter().map(|index| index as usize).collect()
+            }
+            None => (0..count).collect(),
+        };
+        if let Some(index) = corners.iter().find(|index| **index >= count) {
+            return Err(ReadError::damaged(format!("names point {index} of a part with {count} points")));
+        }
+        let places = |at: usize| match mode {
+            Mode::TriangleStrip if at.is_multiple_of(2) => [at, at + 1, at + 2],
+            Mode::TriangleStrip => [at + 1, at, at + 2],
+            Mode::TriangleFan => [0, at + 1, at + 2],
+            _ => [3 * at, 3 * at + 1, 3 * at + 2],
+        };
+        let triangles = if mode == Mode::Triangles { corners.len() / 3 } else { corners.len().saturating_sub(2) };
+        (0..triangles).try_for_each(|at| {
+            let [a, b, c] = places(at).map(|place| (first + corners[place]) as u32);
+            // A mirrored part is turned over.
+            self.builder.face(&if is_mirrored { [a, c, b] } else { [a, b, c] })
+        })
     }
 }
 
@@ -142,146 +202,4 @@ fn matrix(transform: Transform) -> DMat4 {
             DMat4::from_scale_rotation_translation(scale, rotation, translation)
         }
     }
-}
-
-/// Adds the triangles of a part of a mesh. Points and lines are left out.
-fn triangles(
-    primitive: &Primitive<'_>,
-    transform: DMat4,
-    buffers: &[Cow<'_, [u8]>],
-    limits: &Limits,
-    builder: &mut Builder<'_>,
-) -> Result<(), ReadError> {
-    if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
-        return Ok(());
-    }
-    let Some(positions) = primitive.get(&Semantic::Positions) else { return Ok(()) };
-    let first = builder.points();
-    builder.expect((first + positions.count()) as u64, 0)?;
-    for point in numbers(&positions, 3, buffers, limits.points)?.chunks_exact(3) {
-        builder.point(transform.transform_point3(DVec3::new(point[0], point[1], point[2])))?;
-    }
-    let count = builder.points() - first;
-    let corner = |index: usize| match index < count {
-        true => Ok((first + index) as u32),
-        false => {
-            let message = format!("names point {index} of a part with {count} points");
-            Err(ReadError::new(message, DAMAGED))
-        }
-    };
-    let corners = match primitive.indices() {
-        Some(indices) => {
-            let indices = numbers(&indices, 1, buffers, limits.corners)?;
-            indices.into_iter().map(|index| corner(index as usize)).collect::<Result<Vec<_>, _>>()?
-        }
-        None => (0..count).map(corner).collect::<Result<Vec<_>, _>>()?,
-    };
-    // A mirrored part is turned over.
-    let is_mirrored = transform.determinant() < 0.0;
-    let mut add = |[a, b, c]: [u32; 3]| builder.face(&if is_mirrored { [a, c, b] } else { [a, b, c] });
-    match primitive.mode() {
-        Mode::TriangleStrip => {
-            let turned = |(at, list): (usize, &[u32])| match at % 2 {
-                0 => [list[0], list[1], list[2]],
-                _ => [list[1], list[0], list[2]],
-            };
-            corners.windows(3).enumerate().map(turned).try_for_each(add)
-        }
-        Mode::TriangleFan => (2..corners.len()).try_for_each(|at| add([corners[0], corners[at - 1], corners[at]])),
-        _ => corners.chunks_exact(3).try_for_each(|list| add([list[0], list[1], list[2]])),
-    }
-}
-
-/// The numbers of a list with so many in each row.
-fn numbers(
-    accessor: &Accessor<'_>,
-    columns: usize,
-    buffers: &[Cow<'_, [u8]>],
-    most: usize,
-) -> Result<Vec<f64>, ReadError> {
-    let (index, count) = (accessor.index(), accessor.count());
-    if count > most {
-        let message = format!("has {count} entries in its list {index}; at most {most} are read");
-        return Err(ReadError::new(message, "make the mesh coarser, with a decimation of the program that wrote it"));
-    }
-    if accessor.dimensions().multiplicity() != columns {
-        let found = accessor.dimensions().multiplicity();
-        let message = format!("has {found} numbers in each entry of its list {index}; expected {columns}");
-        return Err(ReadError::new(message, DAMAGED));
-    }
-    let kind = accessor.data_type();
-    // Integers may stand for the numbers from −1 or 0 to 1.
-    let scale = match kind {
-        _ if !accessor.normalized() => 1.0,
-        DataType::I8 => 1.0 / 127.0,
-        DataType::U8 => 1.0 / 255.0,
-        DataType::I16 => 1.0 / 32767.0,
-        DataType::U16 => 1.0 / 65535.0,
-        DataType::U32 | DataType::F32 => 1.0,
-    };
-    let mut all = match accessor.view() {
-        Some(view) => rows(&view, accessor.offset(), count, columns, kind, buffers)?,
-        None => vec![0.0; count * columns],
-    };
-    if let Some(sparse) = accessor.sparse() {
-        let (indices, values) = (sparse.indices(), sparse.values());
-        let kind_of_index = match indices.index_type() {
-            gltf::accessor::sparse::IndexType::U8 => DataType::U8,
-            gltf::accessor::sparse::IndexType::U16 => DataType::U16,
-            gltf::accessor::sparse::IndexType::U32 => DataType::U32,
-        };
-        let count = sparse.count().min(most);
-        let places = rows(&indices.view(), indices.offset(), count, 1, kind_of_index, buffers)?;
-        let values = rows(&values.view(), values.offset(), count, columns, kind, buffers)?;
-        for (place, value) in places.into_iter().zip(values.chunks_exact(columns)) {
-            let start = place as usize * columns;
-            let row = all.get_mut(start..start + columns).ok_or_else(|| {
-                ReadError::new(format!("changes entry {place} of its list {index}, which has fewer"), DAMAGED)
-            })?;
-            row.copy_from_slice(value);
-        }
-    }
-    all.iter_mut().for_each(|value| *value *= scale);
-    Ok(all)
-}
-
-/// The numbers of a part of a buffer.
-fn rows(
-    view: &View<'_>,
-    offset: usize,
-    count: usize,
-    columns: usize,
-    kind: DataType,
-    buffers: &[Cow<'_, [u8]>],
-) -> Result<Vec<f64>, ReadError> {
-    let size = kind.size() * columns;
-    let stride = view.stride().unwrap_or(size);
-    let bytes = || {
-        let start = view.offset();
-        let part = buffers.get(view.buffer().index())?.get(start..start.checked_add(view.length())?)?.get(offset..)?;
-        let length = match count {
-            0 => 0,
-            _ => stride.checked_mul(count - 1)?.checked_add(size)?,
-        };
-        part.get(..length)
-    };
-    let bytes = bytes().ok_or_else(|| {
-        ReadError::new(format!("has data beyond the end of its buffer {}", view.buffer().index()), CUT)
-    })?;
-    let mut numbers = Vec::with_capacity(count * columns);
-    for row in 0..count {
-        for column in 0..columns {
-            let at = row * stride + column * kind.size();
-            let [a, b, c, d] = std::array::from_fn(|byte| bytes.get(at + byte).copied().unwrap_or(0));
-            numbers.push(match kind {
-                DataType::I8 => i8::from_le_bytes([a]).into(),
-                DataType::U8 => a.into(),
-                DataType::I16 => i16::from_le_bytes([a, b]).into(),
-                DataType::U16 => u16::from_le_bytes([a, b]).into(),
-                DataType::U32 => u32::from_le_bytes([a, b, c, d]).into(),
-                DataType::F32 => f32::from_le_bytes([a, b, c, d]).into(),
-            });
-        }
-    }
-    Ok(numbers)
 }

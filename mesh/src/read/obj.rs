@@ -1,9 +1,9 @@
-//! Wavefront: points and polygons, one a line. Textures, normals, materials, lines and free-form curves are left out.
+//! Wavefront: points and polygons, one a line. Names of groups, objects and materials become groups of points. Textures, normals, lines
+//! and free-form curves are left out.
 
 use super::cells::Builder;
 use super::source::{Scalar, Source, integer};
 use super::{Cells, Limits, ReadError};
-use glam::DVec3;
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     let mut source = Source::text(bytes);
@@ -14,8 +14,8 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     while let Some(mut line) = source.next_line(b'#') {
         match line.word() {
             b"v" => {
-                let mut coordinate = || line.float(Scalar::F64, "a coordinate");
-                builder.point(DVec3::new(coordinate()?, coordinate()?, coordinate()?))?;
+                let start = line.at;
+                builder.point_at(line.point(Scalar::F64)?, start)?;
             }
             b"f" | b"fo" => {
                 corners.clear();
@@ -33,7 +33,10 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
                 }
                 builder.face(&corners)?;
             }
-            b"vt" | b"vn" | b"vp" | b"g" | b"o" | b"s" | b"l" | b"p" | b"usemtl" | b"mtllib" => {}
+            b"g" => builder.name(0, groups(line.rest())),
+            b"o" => builder.name(1, vec![whole(line.rest())]),
+            b"usemtl" => builder.name(2, vec![whole(line.rest())]),
+            b"vt" | b"vn" | b"vp" | b"s" | b"l" | b"p" | b"mtllib" => {}
             word => unknown = unknown.or_else(|| Some(line.wrong(word, "`v`, `f` or another keyword of OBJ"))),
         }
     }
@@ -42,4 +45,18 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         Some(error) if builder.is_empty() => Err(error),
         _ => builder.finish(&source, 1),
     }
+}
+
+/// The rest of a line as a name.
+fn whole(rest: &[u8]) -> String {
+    String::from_utf8_lossy(rest.trim_ascii()).into_owned()
+}
+
+/// The groups that a line names. By the format each word is one, but many programs write one name with spaces: both are names.
+fn groups(rest: &[u8]) -> Vec<String> {
+    /// More words are a sentence. This limits the groups of a face.
+    const MOST: usize = 8;
+    let words: Vec<_> = rest.trim_ascii().split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).collect();
+    let each = words.iter().filter(|_| (2..=MOST).contains(&words.len()));
+    each.map(|word| whole(word)).chain([whole(rest)]).collect()
 }

@@ -3,12 +3,15 @@
 use super::cells::Builder;
 use super::source::{Scalar, Source};
 use super::{Cells, Format, Limits, ReadError, content};
-use glam::DVec3;
 
 pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     let mut source = Source::text(bytes);
     let mut header = source.next_line(b'#').ok_or_else(|| source.ends("`OFF`"))?;
-    let word = header.word();
+    let mut word = header.word();
+    // The number of points may follow without a space, as in the files of ModelNet: `OFF490 518 0`.
+    if word.starts_with(b"OFF") {
+        (word, header.at) = (b"OFF", header.at + 3 - word.len());
+    }
     // Normals (N), colours (C) and coordinates of textures (ST) follow the coordinates in their line.
     match word.strip_suffix(b"OFF") {
         Some(b"" | b"C" | b"N" | b"CN" | b"NC" | b"ST" | b"STC" | b"STN" | b"STCN") => {}
@@ -22,7 +25,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
         return Err(ReadError::new("is a binary OFF file; expected text", "write it as text, or as binary PLY"));
     }
     // The numbers are in the same line, or in the next.
-    let mut numbers = match header.is_done() {
+    let mut numbers = match header.is_done() || header.peek().starts_with(b"#") {
         false => header,
         true => source.next_line(b'#').ok_or_else(|| source.ends("the number of points"))?,
     };
@@ -32,8 +35,8 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Cells, ReadError> {
     builder.expect(points, faces)?;
     for at in 0..points {
         let mut line = source.next_line(b'#').ok_or_else(|| source.ends(&format!("point {} of {points}", at + 1)))?;
-        let mut coordinate = || line.float(Scalar::F64, "a coordinate");
-        builder.point(DVec3::new(coordinate()?, coordinate()?, coordinate()?))?;
+        let start = line.at;
+        builder.point_at(line.point(Scalar::F64)?, start)?;
     }
     let mut corners = Vec::new();
     for at in 0..faces {

@@ -48,6 +48,7 @@ fn header<'b>(bytes: &'b [u8], source: &mut Source<'b>) -> Result<(Coding, Vec<E
     if source.line().trim_ascii() != b"ply" {
         return Err(content::no_beginning(bytes, Format::Ply, "`ply`"));
     }
+    let has_feeds = bytes[..source.at].ends_with(b"\n");
     let mut coding = None;
     let mut elements: Vec<Element<'_>> = Vec::new();
     loop {
@@ -85,6 +86,10 @@ fn header<'b>(bytes: &'b [u8], source: &mut Source<'b>) -> Result<(Coding, Vec<E
             }
             b"end_header" => {
                 let coding = coding.ok_or_else(|| wrong(text, "`format` before it"))?;
+                // Where lines end with a carriage return alone, a line feed behind it is the first byte of the data.
+                if !has_feeds {
+                    source.at = start + text.len() + 1;
+                }
                 return Ok((coding, elements));
             }
             // Comments. Blender 2.4 writes one without its keyword.
@@ -101,6 +106,9 @@ fn scalar(name: &[u8]) -> Option<Scalar> {
         b"ushort" | b"uint16" => Scalar::U16,
         b"int" | b"int32" => Scalar::I32,
         b"uint" | b"uint32" => Scalar::U32,
+        // No standard has these, but large meshes do.
+        b"int64" => Scalar::I64,
+        b"uint64" => Scalar::U64,
         b"float" | b"float32" => Scalar::F32,
         b"double" | b"float64" => Scalar::F64,
         _ => return None,
@@ -124,13 +132,13 @@ fn points(element: &Element<'_>, source: &mut Source<'_>, builder: &mut Builder<
         let mut point = DVec3::ZERO;
         for (at, property) in element.properties.iter().enumerate() {
             match at {
-                _ if at == x => point.x = source.float(property.scalar, "a coordinate")?,
-                _ if at == y => point.y = source.float(property.scalar, "a coordinate")?,
-                _ if at == z => point.z = source.float(property.scalar, "a coordinate")?,
+                _ if at == x => point.x = source.coordinate(property.scalar)?,
+                _ if at == y => point.y = source.coordinate(property.scalar)?,
+                _ if at == z => point.z = source.coordinate(property.scalar)?,
                 _ => skip(property, source)?,
             }
         }
-        builder.point(point)?;
+        builder.point_at(point, source.at - 1)?;
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! Bytes read one number or word after the other, as text or as binary numbers.
 
 use super::ReadError;
+use glam::DVec3;
 
 /// The remedy for a file that ends early.
 pub(super) const CUT: &str = "the file is incomplete: copy, download or write it again";
@@ -80,11 +81,16 @@ impl<'b> Source<'b> {
     pub(super) fn place(&self, at: usize) -> String {
         match self.coding {
             Coding::Text => {
-                let before = &self.bytes[..at.min(self.bytes.len())];
-                format!("in line {}", 1 + before.iter().filter(|&&byte| byte == b'\n').count())
+                let before = at.min(self.bytes.len());
+                format!("in line {}", 1 + (0..before).filter(|&at| self.ends_line(at)).count())
             }
             _ => format!("at byte {at}"),
         }
+    }
+
+    /// Whether a byte is the last of the end of a line: a line feed, a carriage return, or both.
+    fn ends_line(&self, at: usize) -> bool {
+        self.bytes[at] == b'\n' || self.bytes[at] == b'\r' && self.bytes.get(at + 1) != Some(&b'\n')
     }
 
     fn skip_space(&mut self) {
@@ -92,7 +98,7 @@ impl<'b> Source<'b> {
             match self.bytes[self.at] {
                 byte if is_space(byte) => self.at += 1,
                 // A line that is continued in the next.
-                b'\\' if matches!(self.rest(), [b'\\', b'\n', ..] | [b'\\', b'\r', b'\n', ..]) => self.at += 1,
+                b'\\' if matches!(self.rest(), [b'\\', b'\n' | b'\r', ..]) => self.at += 1,
                 _ => break,
             }
         }
@@ -126,9 +132,11 @@ impl<'b> Source<'b> {
     /// The rest of the line, and goes to the next.
     pub(super) fn line(&mut self) -> &'b [u8] {
         let rest = self.rest();
-        let length = rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
-        self.at += (length + 1).min(rest.len());
-        rest[..length].strip_suffix(b"\r").unwrap_or(&rest[..length])
+        let is_end = |&byte: &u8| byte <= b'\r' && (byte == b'\n' || byte == b'\r');
+        let length = rest.iter().position(is_end).unwrap_or(rest.len());
+        let end = if rest[length..].starts_with(b"\r\n") { 2 } else { 1 };
+        self.at += (length + end).min(rest.len());
+        &rest[..length]
     }
 
     /// The next line that is not empty and not a comment, with the lines that continue it.
@@ -184,6 +192,11 @@ impl<'b> Source<'b> {
 
     /// A number: a coordinate, for example.
     pub(super) fn float(&mut self, scalar: Scalar, expected: &str) -> Result<f64, ReadError> {
+        self.number(scalar, expected, false)
+    }
+
+    /// A number, or NaN if it may be unknown.
+    fn number(&mut self, scalar: Scalar, expected: &str, may_be_unknown: bool) -> Result<f64, ReadError> {
         if self.coding != Coding::Text {
             return match scalar {
                 Scalar::F32 => Ok(f64::from(f32::from_le_bytes(self.array(expected)?))),
@@ -195,8 +208,22 @@ impl<'b> Source<'b> {
         match std::str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok()).filter(|value| value.is_finite())
         {
             Some(value) => Ok(value),
-            None => Err(self.wrong(word, expected)),
+            None if may_be_unknown && is_no_number(word) => Ok(f64::NAN),
+            None => Err(match comma(word) {
+                Some(help) => ReadError::new(self.wrong(word, expected).message, help),
+                None => self.wrong(word, expected),
+            }),
         }
+    }
+
+    /// A coordinate of a point, or what programs write for one that they do not know, which is read as NaN.
+    pub(super) fn coordinate(&mut self, scalar: Scalar) -> Result<f64, ReadError> {
+        self.number(scalar, "a coordinate", true)
+    }
+
+    /// The coordinates of a point, one after the other. Those that are no numbers are NaN.
+    pub(super) fn point(&mut self, scalar: Scalar) -> Result<DVec3, ReadError> {
+        Ok(DVec3::new(self.coordinate(scalar)?, self.coordinate(scalar)?, self.coordinate(scalar)?))
     }
 
     /// An integer: an index, for example.
@@ -250,6 +277,25 @@ impl<'b> Source<'b> {
         }
         ReadError::new(format!("ends {}; expected {expected}", self.place(self.bytes.len())), CUT)
     }
+}
+
+/// What to do about a number with a comma.
+fn comma(word: &[u8]) -> Option<String> {
+    let word = std::str::from_utf8(word).ok().filter(|word| word.contains(','))?;
+    let point = word.replacen(',', ".", 1);
+    let is_number = |text: &str| text.is_empty() || text.parse::<f64>().is_ok();
+    match () {
+        () if !word.ends_with(',') && is_number(&point) => Some(format!("write a decimal point, not a comma: {point}")),
+        () if word.split(',').all(is_number) => Some("separate numbers by spaces, not by commas".to_owned()),
+        () => None,
+    }
+}
+
+/// Whether a word stands for a number that is none, in the notations of C and of Windows: `-nan(ind)`, `1.#QNAN`, `inf`.
+fn is_no_number(word: &[u8]) -> bool {
+    let lower = word.to_ascii_lowercase();
+    let unsigned = lower.strip_prefix(b"-").or(lower.strip_prefix(b"+")).unwrap_or(&lower);
+    matches!(unsigned, b"nan" | b"inf" | b"infinity" | [b'1', b'.', b'#', ..] | [b'n', b'a', b'n', b'(', ..])
 }
 
 /// An integer as text.

@@ -44,7 +44,8 @@ fn text(source: &mut Source<'_>, welder: &mut Welder<'_>) -> Result<(), ReadErro
             source.line();
         }
         let word = source.word();
-        if word.eq_ignore_ascii_case(b"endsolid") {
+        // Some programs write `end solid`, `end facet` and `end loop`.
+        if word.eq_ignore_ascii_case(b"endsolid") || word.eq_ignore_ascii_case(b"end") {
             source.line();
             continue;
         }
@@ -71,8 +72,12 @@ fn text(source: &mut Source<'_>, welder: &mut Welder<'_>) -> Result<(), ReadErro
             *corner = DVec3::new(coordinate()?, coordinate()?, coordinate()?);
         }
         for expected in ["endloop", "endfacet"] {
-            let word = source.word();
-            if !word.eq_ignore_ascii_case(expected.as_bytes()) {
+            let mut word = source.word();
+            let mut last = expected;
+            if word.eq_ignore_ascii_case(b"end") {
+                (word, last) = (source.word(), &expected[3..]);
+            }
+            if !word.eq_ignore_ascii_case(last.as_bytes()) {
                 return Err(source.wrong(word, &format!("`{expected}`")));
             }
         }

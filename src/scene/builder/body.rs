@@ -79,6 +79,8 @@ impl BodyBuilder {
         scale(scale: f64) 0.scale = Some(Positive(scale));
         /// The axis of a mesh file that points up. Scenes have y up.
         up(up: Up) 0.up = Some(up);
+        /// The distance within which points of a mesh file become one (m).
+        weld(distance: f64) 0.weld = Some(Positive(distance));
         /// The name, which [`RunBuilder::bodies`](super::RunBuilder::bodies) and
         /// [`RunBuilder::by_body`](super::RunBuilder::by_body) use, and result files.
         name(name: impl Into<String>) 0.name = Some(name.into());

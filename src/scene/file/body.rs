@@ -42,7 +42,7 @@ pub(super) fn written<S: Serializer>(bodies: &[BodyFile], serializer: S) -> Resu
     "dependentRequired" = {
         "elements": ["nodes"], "springs": ["nodes"], "faces": ["nodes"],
         "positions": ["nodes"], "velocities": ["nodes"], "masses": ["nodes"],
-        "fill": ["mesh"], "scale": ["mesh"], "up": ["mesh"]
+        "fill": ["mesh"], "scale": ["mesh"], "up": ["mesh"], "weld": ["mesh"]
     }
 ))]
 pub(in crate::scene) struct BodyFile {
@@ -90,7 +90,7 @@ pub(in crate::scene) struct BodyFile {
     pub(in crate::scene) masses: Option<Vec<Positive>>,
     /// A mesh file beside the scene. Cells become elements: Gmsh (.msh, 2.2 or 4.1), VTK (.vtk, .vtu). A surface is filled with
     /// elements, which carry it: .obj, .stl, .ply, .off, .gltf, .glb, .vtp, and .msh, .vtk or .vtu without cells. It then needs
-    /// `density` or `mass_total`. `localshape check FILE` tells what a file contains.
+    /// `density` or `mass_total`. `localshape check FILE` tells what a file contains. A .gltf may have its data in files beside it.
     #[schemars(length(min = 1))]
     pub(in crate::scene) mesh: Option<String>,
     /// The elements that fill the surface in `mesh`: `{ with = "cubes", cells = 20 }`.
@@ -101,6 +101,9 @@ pub(in crate::scene) struct BodyFile {
     /// The axis of the mesh file that points up. Scenes have y up.
     #[schemars(extend("default" = "y"))]
     pub(in crate::scene) up: Option<Up>,
+    /// Points of the mesh that are nearer than this to an earlier one become that one (m, after `scale`): corners of a surface
+    /// that differ in their last digits, or equal points of cells. Default: points of surfaces that only round-off sets apart.
+    pub(in crate::scene) weld: Option<Positive>,
     /// A NumPy archive (.npz) beside the scene, written by `numpy.savez` or `numpy.savez_compressed`. Its arrays
     /// `nodes` and `elements`, and optionally `springs`, `faces`, `positions`, `velocities` and `masses`, mean the same
     /// as these keys. Coordinates and masses are float64 or float32. Indices are integers, with -1 at the end of

@@ -44,6 +44,8 @@ struct CellsSummary {
     turned: usize,
     /// Number of parts that share no point.
     parts: usize,
+    /// The value of `weld` that would join some of them.
+    weld: Option<f64>,
     groups: Vec<GroupSummary>,
     /// Why they cannot be elements.
     #[serde(skip)]
@@ -65,17 +67,32 @@ struct SurfaceSummary {
     /// The volume inside, if the surface is closed.
     volume: Option<f64>,
     closed: bool,
-    welded: usize,
-    degenerate: usize,
-    doubled: usize,
-    turned: usize,
-    open_edges: usize,
-    edges_of_several: usize,
-    inconsistent_edges: usize,
-    pieces: usize,
+    #[serde(flatten, with = "FlawNames")]
+    flaws: Flaws,
+    /// The value of `weld` that would close at least half of the open edges.
+    weld: Option<f64>,
     groups: Vec<GroupSummary>,
     /// What each fill would give.
     fills: Vec<FillSummary>,
+}
+
+/// The names of flaws in the document.
+#[derive(Serialize)]
+#[serde(remote = "Flaws")]
+struct FlawNames {
+    welded: usize,
+    near: usize,
+    lost: usize,
+    degenerate: usize,
+    doubled: usize,
+    turned: usize,
+    #[serde(rename = "open_edges")]
+    boundary: usize,
+    #[serde(rename = "edges_of_several")]
+    non_manifold: usize,
+    #[serde(rename = "inconsistent_edges")]
+    inconsistent: usize,
+    pieces: usize,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -102,16 +119,18 @@ impl GroupSummary {
 impl MeshSummary {
     /// Reads a file. A message is the predicate of a sentence about the file.
     pub(crate) fn read(path: &Path, limits: &Limits) -> Result<Self, Wrong> {
-        Ok(match MeshFile::read(path, limits)?.mesh {
+        Ok(match MeshFile::read(path, None, limits)?.mesh {
             Mesh::Volume(volume) => Self::of_cells(volume),
             Mesh::Surface(surface) => Self::of_surface(&surface, limits),
         })
     }
 
     fn of_cells(volume: Volume) -> Self {
+        let parts = parts(volume.points.len(), &volume.cells);
+        let weld = if parts > 1 { volume.joining_weld() } else { None };
         let Volume { dimension, points, solids, cells, groups, turned, .. } = volume;
         let (low, high) = bounds(&points);
-        let (number, parts) = (points.len(), parts(points.len(), &cells));
+        let number = points.len();
         let body = Body::new(dimension, points, vec![1.0; number], cells, solids, None);
         let of_kind = |(number, name): (usize, &str)| format!("{} {name}", count(number as u128));
         let content = Content::Cells(CellsSummary {
@@ -122,6 +141,7 @@ impl MeshSummary {
                 .then(|| body.faces.outer.iter().filter(|outer| outer.is_none()).count()),
             turned,
             parts,
+            weld,
             groups: groups.iter().map(GroupSummary::new).collect(),
             error: crossed(&body),
         });
@@ -131,7 +151,6 @@ impl MeshSummary {
     fn of_surface(surface: &Surface, limits: &Limits) -> Self {
         let (surface, flaws) = surface.mended();
         let Measures { volume, area, closed, low, high, .. } = surface.measures();
-        let Flaws { welded, degenerate, doubled, turned, boundary, non_manifold, inconsistent, pieces } = flaws;
         let side = longest(&surface.points) / f64::from(CELLS);
         let most = usize::try_from(limits.nodes).unwrap_or(usize::MAX).min(u32::MAX as usize);
         let fills = [
@@ -155,14 +174,8 @@ impl MeshSummary {
             area,
             volume: closed.then_some(volume),
             closed,
-            welded,
-            degenerate,
-            doubled,
-            turned,
-            open_edges: boundary,
-            edges_of_several: non_manifold,
-            inconsistent_edges: inconsistent,
-            pieces,
+            flaws,
+            weld: surface.closing_weld(),
             groups: surface.groups.iter().map(GroupSummary::new).collect(),
             fills: fills.into(),
         });
@@ -190,14 +203,6 @@ fn crossed(body: &Body) -> Option<String> {
         let help = "list its nodes in order around it, counter-clockwise";
         Some(format!("has a cell, elements[{at}], whose sides {one} and {other} cross; {help}"))
     })
-}
-
-impl SurfaceSummary {
-    fn flaws(&self) -> Flaws {
-        let &Self { welded, degenerate, doubled, turned, pieces, .. } = self;
-        let (boundary, non_manifold, inconsistent) = (self.open_edges, self.edges_of_several, self.inconsistent_edges);
-        Flaws { welded, degenerate, doubled, turned, boundary, non_manifold, inconsistent, pieces }
-    }
 }
 
 impl fmt::Display for MeshSummary {
@@ -231,9 +236,9 @@ impl fmt::Display for MeshSummary {
                     Some(volume) => format!("closed, volume {}", short(volume)),
                     None => "not closed".to_owned(),
                 };
-                let pieces = several(surface.pieces, "separate piece");
+                let pieces = several(surface.flaws.pieces, "separate piece");
                 line("form", &format!("{measure}, area {}, {pieces}", short(surface.area)))?;
-                let (mended, left) = (mended(&surface.flaws()), left(&surface.flaws()));
+                let (mended, left) = (mended(&surface.flaws), left(&surface.flaws));
                 for (name, flaws) in [("mended", mended), ("flaws", left)].iter().filter(|(_, flaws)| !flaws.is_empty())
                 {
                     line(name, &list(flaws, "and", str::to_owned))?;
@@ -254,8 +259,11 @@ impl fmt::Display for MeshSummary {
                 }
             }
         }
-        let (Content::Cells(CellsSummary { groups, .. }) | Content::Surface(SurfaceSummary { groups, .. })) =
+        let (Content::Cells(CellsSummary { weld, groups, .. }) | Content::Surface(SurfaceSummary { weld, groups, .. })) =
             &self.content;
+        if let Some(weld) = weld {
+            line("remedy", &format!("weld = {} in `[body]`, times its `scale`, joins points", short(*weld)))?;
+        }
         groups.iter().try_for_each(|group| {
             line("group", &format!("{}: {}", quoted(&group.name), several(group.points, "point")))
         })

@@ -1,7 +1,7 @@
 //! The lists of a body: typed in the scene, or in a file beside it.
 
 use super::{Place, vector};
-use crate::reading::beside::{missing, similar};
+use crate::reading::beside::missing;
 use crate::reading::collector::{Collector, Help, PathPart, key_path, written};
 use crate::reading::words::{count, list, nearest};
 use crate::scene::file::LARGEST;
@@ -133,7 +133,8 @@ impl Lists {
             report.at(&key_path![place; "file"], format!("`{name}` {message}"), help);
         };
         if !path.exists() {
-            whole(report, missing(&path), similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?")));
+            let (message, help) = missing(&path, &["npz"]);
+            whole(report, message, help);
             return None;
         }
         if let Some((message, help)) = mesh::instead_of_archive(&path, name) {

@@ -6,7 +6,7 @@ use crate::reading::collector::{Collector, key_path, written};
 use crate::reading::words::{count, list, short};
 use crate::scene::file::{BodyFile, FillFile, FillKind, LARGEST, Positive, Up};
 use crate::scene::limits::Limits;
-use crate::scene::mesh::{self, CELLS, MeshFile};
+use crate::scene::mesh::{self, CELLS, MeshFile, several};
 use crate::sim::{Dimension, IndexLists};
 use localshape_mesh::{Cage, Fill, Filled, Group, Mesh, Surface, Volume, fill};
 use std::path::Path;
@@ -29,8 +29,14 @@ pub(super) fn read(
     report: &mut Collector<'_>,
 ) -> Option<MeshFile> {
     let name = file.mesh.as_ref()?;
-    let read = MeshFile::read(&folder.join(name), limits);
+    let weld = file.weld.map(|Positive(distance)| distance / scale(file));
+    let read = MeshFile::read(&folder.join(name), weld, limits);
     read.map_err(|(message, help)| report.at(&key_path![place; "mesh"], format!("`{name}` {message}"), help)).ok()
+}
+
+/// The length of the unit of a mesh file (m).
+fn scale(file: &BodyFile) -> f64 {
+    file.scale.map_or(1.0, |Positive(scale)| scale)
 }
 
 /// The elements of a mesh with at most so many of them, or `None` after reporting a mistake. `flawed` tells whether keys were left
@@ -56,8 +62,7 @@ pub(super) fn make(
         report.at(&key_path![place; "up"], message, "expected \"x\" or \"y\"");
         return None;
     }
-    let scale = file.scale.map_or(1.0, |Positive(scale)| scale);
-    mesh::place(points, up as usize, scale);
+    mesh::place(points, up as usize, scale(file));
     let (most_distant, longest) =
         (points.iter().fold(0.0, |far: f64, at| far.max(at.abs().max_element())), mesh::longest(points));
     if most_distant.is_nan() || most_distant > LARGEST {
@@ -74,6 +79,14 @@ pub(super) fn make(
     if file.scale.is_none() && longest >= LONG {
         let message = format!("`{name}` is {} m long, as no `scale` is given", short(longest));
         report.warn(&path, message, "write scale = 0.001 if its unit is the millimetre, scale = 1 if it is the metre");
+    }
+    if let Some(Positive(weld)) = file.weld.filter(|_| read.joined > 0) {
+        let joined = several(read.joined, "point").unwrap_or_default();
+        report.warn(
+            &path,
+            format!("`{name}` is mended: {joined} welded, nearer than weld = {} m to others", short(weld)),
+            None,
+        );
     }
     match mesh {
         Mesh::Volume(volume) => cells(volume, file, place, flawed, report),
@@ -99,16 +112,13 @@ fn cells(volume: Volume, file: &BodyFile, place: &Place, flawed: bool, report: &
         report.at(&path, message, "write `density` (kg/m³), such as density = 1000");
         return None;
     }
-    let Volume { dimension, solids, points: nodes, cells: elements, groups, turned, .. } = volume;
-    warn_of_turned(turned, elements.len(), name, &path, report);
-    warn_of_parts(
-        nodes.len(),
-        &elements,
-        "merge nodes at the same place, as Coherence does in Gmsh",
-        place,
-        name,
-        report,
-    );
+    let help = || match volume.joining_weld() {
+        Some(distance) => format!("join nodes at one place: write weld = {} (m)", short(distance)),
+        None => "mesh them as one body".to_owned(),
+    };
+    warn_of_turned(volume.turned, volume.cells.len(), name, &path, report);
+    warn_of_parts(volume.points.len(), &volume.cells, help, place, name, report);
+    let Volume { dimension, solids, points: nodes, cells: elements, groups, .. } = volume;
     let source = ListSource { body: place.clone(), file: Some((name.to_owned(), path)) };
     let (springs, faces, positions, velocities, masses) = Default::default();
     let lists = Lists { source, dimension, nodes, elements, solids, springs, faces, positions, velocities, masses };
@@ -164,10 +174,13 @@ fn filled(
             "`{name}` has {}, and is filled where its triangles enclose most",
             list(&left, "and", str::to_owned)
         );
-        report.warn(&path, message, "close it in the program that made it, unless the elements are right");
+        let help = "close it in the program that made it, unless the elements are right; \
+                    `localshape check FILE` tells whether `weld` helps";
+        report.warn(&path, message, help);
     }
     let Cage { nodes, elements, .. } = &filled.cage;
-    warn_of_parts(nodes.len(), elements, "join them in the program that made it", place, name, report);
+    let help = || "join them in the program that made it".to_owned();
+    warn_of_parts(nodes.len(), elements, help, place, name, report);
     Some(Made::Filled(Box::new(filled), side))
 }
 
@@ -233,7 +246,7 @@ pub(super) fn warn_of_turned(turned: usize, all: usize, name: &str, place: &Plac
 fn warn_of_parts(
     nodes: usize,
     elements: &IndexLists,
-    help: &str,
+    help: impl FnOnce() -> String,
     place: &Place,
     name: &str,
     report: &mut Collector<'_>,
@@ -242,6 +255,6 @@ fn warn_of_parts(
     if parts > 1 {
         let message =
             format!("`{name}` makes {} parts that share no node, so nothing holds them together", count(parts as u128));
-        report.warn(&key_path![place; "mesh"], message, format!("{help}, unless they may fall apart"));
+        report.warn(&key_path![place; "mesh"], message, format!("{}, unless they may fall apart", help()));
     }
 }

@@ -3,7 +3,7 @@
 use super::body::ResolvedBody;
 use super::lists::{ListSource, Lists};
 use super::{Place, body, mesh};
-use crate::reading::beside::{missing, similar};
+use crate::reading::beside::missing;
 use crate::reading::collector::{Collector, key_path, written};
 use crate::reading::words::{count, list, nearest};
 use crate::scene::file::{Positive, RunFile, StatesFile, Up};
@@ -74,8 +74,8 @@ impl ReadRecording {
                 return Ok((recorded, Own::Moment { cells: Box::new(cells), has_elements, source }));
             }
             if !path.exists() {
-                let help = similar(&path, &["npz"]).map(|near| format!("did you mean {near:?}?"));
-                return Err(Flaw { help, ..Flaw::new("", missing(&path)) });
+                let (message, help) = missing(&path, &["npz"]);
+                return Err(Flaw { help, ..Flaw::new("", message) });
             }
             if crate::scene::mesh::is_mesh(&path) {
                 let help = "name those of all moments with a star, such as \"frames/*.obj\", or in a list (.pvd)";

@@ -1,0 +1,103 @@
+//! The structure of a glTF file, validated.
+
+use super::super::ReadError;
+use super::super::source::{CUT, DAMAGED, quoted};
+use gltf::Document;
+use gltf::binary::Glb;
+use gltf::json::deserialize::{from_slice, from_value};
+use gltf::json::validation::{Error, Validate};
+use gltf::json::{Root, Value};
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
+/// The structure of a file, and the binary data of a `.glb`.
+type Parts<'b> = (Document, Option<Cow<'b, [u8]>>);
+
+/// Reads the structure, and checks it.
+pub(super) fn read(bytes: &[u8]) -> Result<Parts<'_>, ReadError> {
+    /// The length of the header of a `.glb`, which the length in it includes.
+    const HEADER: u32 = 12;
+    let no = |text: String| {
+        let text = text.replace(['\n', '\r'], " ");
+        ReadError::new(format!("is no sound glTF 2.0 file: {text}"), DAMAGED)
+    };
+    let (text, blob) = if bytes.starts_with(b"glTF") {
+        let length = bytes.get(8..).and_then(|rest| rest.first_chunk()).map(|length| u32::from_le_bytes(*length));
+        if length.is_none_or(|length| length < HEADER) {
+            return Err(ReadError::new("ends in its header of 12 bytes", CUT));
+        }
+        if bytes[4..8] == 1u32.to_le_bytes() {
+            return Err(old());
+        }
+        let Glb { json, bin, .. } = Glb::from_slice(bytes).map_err(|error| no(error.to_string()))?;
+        (json, bin)
+    } else {
+        (Cow::Borrowed(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)), None)
+    };
+    let root = from_slice::<Root>(&text).or_else(|error| with_nodes(&text).ok_or(error));
+    let root = root.map_err(|error| if is_old(&text) { old() } else { no(error.to_string()) })?;
+    if root.asset.version.starts_with("1.") {
+        return Err(old());
+    }
+    check_extensions(&root)?;
+    // The validation looks up the lists of attributes before it checks that they are there.
+    let lists = root.accessors.len();
+    let mut attributes = root.meshes.iter().flat_map(|mesh| &mesh.primitives).flat_map(|part| part.attributes.values());
+    if let Some(list) = attributes.find(|list| list.value() >= lists) {
+        return Err(no(format!("a mesh names the list {} of {lists}", list.value())));
+    }
+    let mut first = None;
+    root.validate(&root, gltf::json::Path::new, &mut |path, error| {
+        let path = path().to_string();
+        // Boxes around points are not needed, and often left out.
+        let is_needed = !path.ends_with(".min") && !path.ends_with(".max") && error != Error::Unsupported;
+        if is_needed && first.is_none() {
+            first = Some(format!("{path}: {error}"));
+        }
+    });
+    match first {
+        Some(error) => Err(no(error)),
+        None => Ok((Document::from_json_without_validation(root), blob)),
+    }
+}
+
+/// A structure whose scenes have lists of nodes, empty ones where the file leaves them out.
+fn with_nodes(text: &[u8]) -> Option<Root> {
+    let mut value: Value = from_slice(text).ok()?;
+    for scene in value.get_mut("scenes")?.as_array_mut()? {
+        scene.as_object_mut()?.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
+    }
+    from_value(value).ok()
+}
+
+/// Refuses a file that needs what is not read here.
+fn check_extensions(root: &Root) -> Result<(), ReadError> {
+    /// Those about looks and data, which change no place of a point, and that for coordinates as integers.
+    const READ: &str = "KHR_mesh_quantization KHR_lights_ KHR_materials_ KHR_texture_ KHR_xmp EXT_lights_ EXT_mesh_features \
+                        EXT_structural_metadata EXT_texture_ MSFT_texture_";
+    // A scene without its copies is another, although the format leaves them to the reader if they are only used.
+    let copies = root.extensions_used.iter().filter(|name| *name == "EXT_mesh_gpu_instancing");
+    let is_read = |name: &&String| READ.split(' ').any(|read| name.starts_with(read));
+    let needed = root.extensions_required.iter().filter(|name| !is_read(name)).chain(copies);
+    let names: BTreeSet<_> = needed.map(|name| quoted(name.as_bytes())).collect();
+    if names.is_empty() {
+        return Ok(());
+    }
+    let message = format!("needs extensions that are not read: {}", Vec::from_iter(names).join(", "));
+    Err(ReadError::new(
+        message,
+        "export it again without compression and extensions, and with copies as meshes of their own",
+    ))
+}
+
+/// Whether a file that is not read as version 2.0 is one of version 1.0, which names things where 2.0 numbers them.
+fn is_old(text: &[u8]) -> bool {
+    let value: Value = from_slice(text).unwrap_or_default();
+    let version = value.get("asset").and_then(|asset| asset.get("version")).and_then(|version| version.as_str());
+    let are_named = ["meshes", "nodes"].iter().any(|key| value.get(key).is_some_and(Value::is_object));
+    are_named || version.is_some_and(|version| version.starts_with('1'))
+}
+
+fn old() -> ReadError {
+    ReadError::new("is a glTF 1.0 file; expected 2.0", "export it again as glTF 2.0 (.glb)")
+}

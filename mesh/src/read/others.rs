@@ -1,0 +1,27 @@
+//! Formats of meshes that are not read, and what converts them.
+
+/// Endings of files, and what to do.
+const CONVERTERS: [(&str, &str); 7] = [
+    (
+        "step stp iges igs brep",
+        "mesh it with Gmsh: `gmsh -3 FILE -o NEW.msh` for cells, `gmsh -2 FILE -o NEW.stl` for its surface",
+    ),
+    ("blend fbx dae abc usd usda usdc usdz x3d wrl", "open it in Blender, and export it as `.glb` or `.ply`"),
+    ("3ds ac lwo lxo ms3d", "convert it with Assimp: `assimp export FILE NEW.ply`"),
+    ("3mf amf", "open it in a slicer, such as PrusaSlicer, and export it as `.stl`"),
+    (
+        "3dm c4d catpart dwg dxf f3d fcstd ipt ma max mb prt skp sldprt x_t",
+        "export it as `.stl` or `.obj` from the program that made it",
+    ),
+    (
+        "node ele bdf nas fem cgns e exo med mdpa meshb su2 ugrid unv vol xdmf xmf",
+        "convert it with meshio: `meshio convert FILE NEW.vtu`",
+    ),
+    ("vti vtm vtr vts", "open it in ParaView, and save it as `.vtu`"),
+];
+
+/// What converts a file to a format that is read, by its ending in small letters and without the dot. `None` for files that are no
+/// meshes of a known kind.
+pub fn converter(ending: &str) -> Option<&'static str> {
+    CONVERTERS.iter().find(|(endings, _)| endings.split(' ').any(|known| known == ending)).map(|&(_, help)| help)
+}
